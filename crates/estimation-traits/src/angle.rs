@@ -1,0 +1,103 @@
+use nalgebra::{Const, RealField, Vector1};
+
+use crate::{LieGroup, Manifold, Tangent, TangentMatrix};
+
+/// Brings an angle into (−π, π].
+///
+/// NaN and infinities give NaN.
+///
+/// ```
+/// use std::f64::consts::PI;
+/// assert_eq!(wayfix_estimation_traits::wrap_angle(-PI), PI);
+/// assert!((wayfix_estimation_traits::wrap_angle(7.0) - (7.0 - 2.0 * PI)).abs() < 1e-15);
+/// ```
+pub fn wrap_angle<T: RealField + Copy>(angle: T) -> T {
+    if angle > -T::pi() && angle <= T::pi() {
+        return angle;
+    }
+    let wrapped = angle - T::two_pi() * ((angle - T::pi()) / T::two_pi()).ceil();
+    // Rounding can land a hair outside on either side.
+    if wrapped <= -T::pi() {
+        wrapped + T::two_pi()
+    } else if wrapped > T::pi() {
+        wrapped - T::two_pi()
+    } else {
+        wrapped
+    }
+}
+
+/// A direction in the plane, kept in (−π, π]; differences wrap by construction.
+///
+/// ```
+/// use wayfix_estimation_traits::{Angle, Manifold};
+/// let almost_pi = Angle::new(3.1);
+/// let beyond_pi = Angle::new(-3.1);
+/// assert!((almost_pi.local(&beyond_pi)[0] - (2.0 * std::f64::consts::PI - 6.2)).abs() < 1e-12);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Angle<T>(T);
+
+impl<T: RealField + Copy> Angle<T> {
+    /// The direction `radians`, wrapped into (−π, π].
+    pub fn new(radians: T) -> Self {
+        Self(wrap_angle(radians))
+    }
+    /// The value in (−π, π].
+    pub fn radians(self) -> T {
+        self.0
+    }
+}
+
+impl<T: RealField + Copy> Manifold for Angle<T> {
+    type Scalar = T;
+    type Dim = Const<1>;
+    fn dim(&self) -> Const<1> {
+        Const
+    }
+    fn retract(&self, delta: &Vector1<T>) -> Self {
+        Self::new(self.0 + delta.x)
+    }
+    fn local(&self, other: &Self) -> Vector1<T> {
+        Vector1::new(wrap_angle(other.0 - self.0))
+    }
+}
+
+impl<T: RealField + Copy> LieGroup for Angle<T> {
+    fn identity() -> Self {
+        Self(T::zero())
+    }
+    fn compose(&self, other: &Self) -> Self {
+        Self::new(self.0 + other.0)
+    }
+    fn inverse(&self) -> Self {
+        Self::new(-self.0)
+    }
+    fn exp(tangent: &Tangent<Self>) -> Self {
+        Self::new(tangent.x)
+    }
+    fn log(&self) -> Tangent<Self> {
+        Vector1::new(self.0)
+    }
+    fn adjoint(&self) -> TangentMatrix<Self> {
+        TangentMatrix::<Self>::identity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn wraps_into_the_half_open_interval() {
+        for k in -1000..=1000 {
+            let angle = f64::from(k) * 0.37;
+            let wrapped = wrap_angle(angle);
+            assert!(wrapped > -PI && wrapped <= PI, "{angle} wrapped to {wrapped}");
+            assert!((wrapped.sin() - angle.sin()).abs() < 1e-12 && (wrapped.cos() - angle.cos()).abs() < 1e-12);
+        }
+        assert_eq!(wrap_angle(3.0 * PI), PI);
+        assert_eq!(wrap_angle(-3.0 * PI), PI);
+        assert!(wrap_angle(f64::NAN).is_nan() && wrap_angle(f64::INFINITY).is_nan());
+    }
+}

@@ -1,0 +1,58 @@
+//! The vocabulary of recursive estimation.
+//!
+//! Traits for the things every estimator speaks of, one axis of variation each, and no algorithm:
+//!
+//! | trait | says | implement it to |
+//! | --- | --- | --- |
+//! | [`Manifold`] | what a state or a measurement is | estimate something that is not a vector |
+//! | [`LieGroup`] | that states compose | use invariant filters, compose poses |
+//! | [`MotionModel`] | where the state goes, with Jacobian and noise | drive a Kalman filter |
+//! | [`SampleMotion`] | the same, as a curried sampler | drive particles |
+//! | [`SensorModel`] | what the sensor should read, with Jacobian and noise | correct a Kalman filter |
+//! | [`LikelihoodModel`] | the same, as a curried log-likelihood | weigh particles |
+//! | [`BayesFilter`] | predict, update, estimate | write code that runs any filter |
+//! | [`Policy`] | when to do something | decide when to resample, publish, relearn |
+//!
+//! Each trait states its **laws**; [`laws`] holds suites that check them on your own types.
+//! The concrete states that planar and spatial robots need are here too: [`Angle`], [`Pose2`], [`Pose3`].
+//!
+//! Conventions everywhere: SI units and radians, x forward, y left, z up (REP 103), angles in (−π, π],
+//! tangent vectors in the body frame in the order `(x, y, θ)`.
+//!
+//! ```
+//! use wayfix_estimation_traits::{Manifold, Pose2};
+//! use nalgebra::Vector3;
+//!
+//! let pose = Pose2::new(1.0, 2.0, std::f64::consts::FRAC_PI_2);
+//! let ahead = pose.retract(&Vector3::new(1.0, 0.0, 0.0)); // one metre ahead, in the body frame
+//! assert!((ahead.translation.y - 3.0).abs() < 1e-12);
+//! assert!((pose.local(&ahead) - Vector3::new(1.0, 0.0, 0.0)).norm() < 1e-12);
+//! ```
+
+mod alloc;
+mod angle;
+mod bayes_filter;
+mod derivative;
+pub mod laws;
+mod lie_group;
+mod manifold;
+mod motion;
+mod policy;
+mod pose2;
+mod pose3;
+mod sensor;
+
+pub use alloc::{StateAlloc, UpdateAlloc};
+pub use angle::{Angle, wrap_angle};
+pub use bayes_filter::BayesFilter;
+pub use derivative::numerical_jacobian;
+pub use lie_group::LieGroup;
+pub use manifold::{Jacobian, Manifold, Tangent, TangentMatrix};
+pub use motion::{MotionModel, SampleMotion};
+pub use policy::{Always, And, EveryN, Never, Not, Or, Policy, When, always, every_n, never, when};
+pub use pose2::Pose2;
+pub use pose3::Pose3;
+pub use sensor::{LikelihoodModel, LogWeight, SensorModel};
+
+/// The matrix library of every public signature, re-exported because its versions do not mix.
+pub use nalgebra;

@@ -1,0 +1,50 @@
+use nalgebra::DefaultAllocator;
+use rand::Rng;
+
+use crate::{Jacobian, Manifold, StateAlloc, TangentMatrix, numerical_jacobian};
+
+/// Where a control takes a state: deterministic, with Jacobian and noise.
+///
+/// $`x_k = f(x_{k-1}, u_k) ⊞ w_k,\; w_k ∼ N(0, Q(x_{k-1}, u_k))`$
+///
+/// **Laws** ([`laws::motion`](crate::laws::motion) checks them):
+/// 1. [`jacobian`](Self::jacobian) is the derivative of [`propagate`](Self::propagate) in tangent coordinates,
+/// 2. [`noise`](Self::noise) is symmetric and positive semidefinite,
+/// 3. all three are finite for finite arguments. Where a model is undefined it returns non-finite numbers, which filters
+///    turn into a typed error.
+pub trait MotionModel
+where
+    DefaultAllocator: StateAlloc<<Self::State as Manifold>::Dim>,
+{
+    /// What moves.
+    type State: Manifold;
+    /// What moves it: an odometry increment, a velocity and a duration, `()` for a free motion.
+    type Control: ?Sized;
+
+    /// $`f(x, u)`$, without noise.
+    fn propagate(&self, state: &Self::State, control: &Self::Control) -> Self::State;
+
+    /// $`F = ∂ (f(x ⊞ δ, u) ⊟ f(x, u)) / ∂δ`$ at $`δ = 0`$. By default a central difference; give the analytic one where speed counts.
+    fn jacobian(&self, state: &Self::State, control: &Self::Control) -> TangentMatrix<Self::State> {
+        numerical_jacobian(|x: &Self::State| self.propagate(x, control), state)
+    }
+
+    /// $`Q`$ in the tangent space of the propagated state.
+    fn noise(&self, state: &Self::State, control: &Self::Control) -> TangentMatrix<Self::State>;
+}
+
+/// A motion as a curried sampler: everything that depends only on the control is computed once.
+///
+/// **Law**: for a fixed control the samples are distributed as $`p(x_k | x_{k-1}, u_k)`$, and the same generator state gives the same sample.
+pub trait SampleMotion {
+    /// What moves.
+    type State;
+    /// What moves it.
+    type Control: ?Sized;
+
+    /// The sampler for one control; apply it to every particle.
+    fn given<R: Rng + ?Sized>(&self, control: &Self::Control) -> impl Fn(&Self::State, &mut R) -> Self::State;
+}
+
+// Jacobian<X, X> and TangentMatrix<X> are the same type; this keeps the two aliases honest.
+const _: fn(Jacobian<crate::Pose2<f64>, crate::Pose2<f64>>) -> TangentMatrix<crate::Pose2<f64>> = |m| m;

@@ -1,0 +1,115 @@
+use nalgebra::{Const, Matrix3, Matrix6, RealField, UnitQuaternion, Vector3, Vector6};
+
+use crate::{LieGroup, Manifold};
+
+/// A spatial rigid-body pose: metres and a unit quaternion, x forward, y left, z up (REP 103).
+///
+/// Tangent order `(x, y, z, rx, ry, rz)` in the **body** frame; the retraction moves translation and rotation apart:
+/// $`(t, R) ⊞ (δ_t, δ_r) = (t + R δ_t, R \exp(δ_r))`$.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose3<T: RealField + Copy> {
+    /// Position of the body's origin in the world, metres.
+    pub translation: Vector3<T>,
+    /// Rotation from the body frame to the world frame.
+    pub rotation: UnitQuaternion<T>,
+}
+
+impl<T: RealField + Copy> Manifold for Pose3<T> {
+    type Scalar = T;
+    type Dim = Const<6>;
+    fn dim(&self) -> Const<6> {
+        Const
+    }
+    fn retract(&self, delta: &Vector6<T>) -> Self {
+        let (t, r) = split(delta);
+        Self {
+            translation: self.translation + self.rotation * t,
+            rotation: renormalized(self.rotation * UnitQuaternion::from_scaled_axis(r)),
+        }
+    }
+    fn local(&self, other: &Self) -> Vector6<T> {
+        let t = self.rotation.inverse() * (other.translation - self.translation);
+        join(&t, &scaled_axis(&(self.rotation.inverse() * other.rotation)))
+    }
+}
+
+impl<T: RealField + Copy> LieGroup for Pose3<T> {
+    fn identity() -> Self {
+        Self { translation: Vector3::zeros(), rotation: UnitQuaternion::identity() }
+    }
+    fn compose(&self, other: &Self) -> Self {
+        Self {
+            translation: self.translation + self.rotation * other.translation,
+            rotation: renormalized(self.rotation * other.rotation),
+        }
+    }
+    fn inverse(&self) -> Self {
+        let rotation = self.rotation.inverse();
+        Self { translation: -(rotation * self.translation), rotation }
+    }
+    /// $`\exp(v, ω) = (V(ω) v, \exp ω)`$, [Solà et al. 2018, Eqs. 172-174].
+    fn exp(tangent: &Vector6<T>) -> Self {
+        let (t, r) = split(tangent);
+        Self { translation: left_jacobian(&r) * t, rotation: UnitQuaternion::from_scaled_axis(r) }
+    }
+    fn log(&self) -> Vector6<T> {
+        let r = scaled_axis(&self.rotation);
+        join(&(left_jacobian_inverse(&r) * self.translation), &r)
+    }
+    /// $`\mathrm{Ad} = \begin{pmatrix} R & [t]_× R \\ 0 & R \end{pmatrix}`$. [Solà et al. 2018, Eq. 175]
+    fn adjoint(&self) -> Matrix6<T> {
+        let r = self.rotation.to_rotation_matrix().into_inner();
+        let mut adjoint = Matrix6::zeros();
+        adjoint.fixed_view_mut::<3, 3>(0, 0).copy_from(&r);
+        adjoint.fixed_view_mut::<3, 3>(3, 3).copy_from(&r);
+        adjoint.fixed_view_mut::<3, 3>(0, 3).copy_from(&(self.translation.cross_matrix() * r));
+        adjoint
+    }
+}
+
+fn split<T: RealField + Copy>(v: &Vector6<T>) -> (Vector3<T>, Vector3<T>) {
+    (v.fixed_rows::<3>(0).into_owned(), v.fixed_rows::<3>(3).into_owned())
+}
+
+fn join<T: RealField + Copy>(t: &Vector3<T>, r: &Vector3<T>) -> Vector6<T> {
+    Vector6::new(t.x, t.y, t.z, r.x, r.y, r.z)
+}
+
+/// Products of unit quaternions drift off the unit sphere by rounding; one Newton step brings them back.
+fn renormalized<T: RealField + Copy>(mut q: UnitQuaternion<T>) -> UnitQuaternion<T> {
+    q.renormalize_fast();
+    q
+}
+
+/// The rotation vector with angle in [0, π], accurate for small angles too (an `acos` of the scalar part is not).
+fn scaled_axis<T: RealField + Copy>(q: &UnitQuaternion<T>) -> Vector3<T> {
+    let two: T = nalgebra::convert(2.0);
+    let (w, v) = if q.w < T::zero() { (-q.w, -q.imag()) } else { (q.w, q.imag()) };
+    let norm = v.norm();
+    if norm < T::default_epsilon() { v * two } else { v * (two * norm.atan2(w) / norm) }
+}
+
+/// V(ω) of the exponential; its series where the closed form cancels.
+fn left_jacobian<T: RealField + Copy>(r: &Vector3<T>) -> Matrix3<T> {
+    let angle = r.norm();
+    let (a, b): (T, T) = if angle < T::default_epsilon().sqrt().sqrt() {
+        (nalgebra::convert(0.5), nalgebra::convert(1.0 / 6.0))
+    } else {
+        ((T::one() - angle.cos()) / (angle * angle), (angle - angle.sin()) / (angle * angle * angle))
+    };
+    let cross = r.cross_matrix();
+    Matrix3::identity() + cross * a + cross * cross * b
+}
+
+fn left_jacobian_inverse<T: RealField + Copy>(r: &Vector3<T>) -> Matrix3<T> {
+    let angle = r.norm();
+    let half: T = nalgebra::convert(0.5);
+    let c: T = if angle < T::default_epsilon().sqrt().sqrt() {
+        nalgebra::convert(1.0 / 12.0)
+    } else {
+        let half_angle = angle * half;
+        (T::one() - half_angle * half_angle.cos() / half_angle.sin()) / (angle * angle)
+    };
+    let cross = r.cross_matrix();
+    Matrix3::identity() - cross * half + cross * cross * c
+}

@@ -1,0 +1,1 @@
+//! Kalman filters in linear, extended, unscented, square-root, information and switching forms.

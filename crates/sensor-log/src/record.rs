@@ -1,0 +1,76 @@
+use wayfix_estimation_traits::Pose2;
+
+use crate::Stamp;
+
+/// One thing that happened, and when.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// When it happened, on the clock of the log.
+    pub stamp: Stamp,
+    /// What happened.
+    pub data: Data,
+}
+
+/// What a record holds. SI units and radians, REP 103 axes.
+///
+/// More kinds come with more sensors; match with a wildcard arm.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Data {
+    /// Body velocity that holds until the next one.
+    Velocity(Velocity),
+    /// Motion since the previous increment, in the robot frame before the motion.
+    OdometryIncrement(Pose2<f64>),
+    /// Everything one look of a range-bearing sensor saw, in the order of the log.
+    Sightings(Vec<Sighting>),
+    /// Where the robot truly was, from motion capture, a simulator or GPS.
+    TruePose(Pose2<f64>),
+    /// Where a landmark truly is.
+    TrueLandmark(TrueLandmark),
+    /// A pose some program estimated.
+    EstimatedPose(Pose2<f64>),
+}
+
+/// Planar body velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Velocity {
+    /// Forward, m/s.
+    pub linear: f64,
+    /// Counter-clockwise, rad/s.
+    pub angular: f64,
+}
+
+/// One range and bearing to one thing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// What the sensor says it saw.
+    pub target: Target,
+    /// Distance, metres.
+    pub range: f64,
+    /// Direction in the robot frame, radians, 0 ahead, counter-clockwise.
+    pub bearing: f64,
+}
+
+/// What a sighting is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Target {
+    /// A landmark whose identity the sensor reads.
+    Landmark(u32),
+    /// Another robot.
+    Robot(u32),
+    /// A code that the log's own table does not list.
+    UnknownCode(u32),
+    /// The sensor does not tell things apart.
+    Unlabelled,
+}
+
+/// A surveyed landmark.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrueLandmark {
+    /// Its identity.
+    pub id: u32,
+    /// x in the world, metres.
+    pub x: f64,
+    /// y in the world, metres.
+    pub y: f64,
+}

@@ -1,0 +1,1 @@
+//! EKF-SLAM with honest uncertainty: landmarks, association, anchors.
