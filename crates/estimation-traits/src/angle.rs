@@ -94,7 +94,9 @@ mod tests {
             let angle = f64::from(k) * 0.37;
             let wrapped = wrap_angle(angle);
             assert!(wrapped > -PI && wrapped <= PI, "{angle} wrapped to {wrapped}");
-            assert!((wrapped.sin() - angle.sin()).abs() < 1e-12 && (wrapped.cos() - angle.cos()).abs() < 1e-12);
+            assert!(
+                (wrapped.sin() - angle.sin()).abs() < 1e-12 && (wrapped.cos() - angle.cos()).abs() < 1e-12
+            );
         }
         assert_eq!(wrap_angle(3.0 * PI), PI);
         assert_eq!(wrap_angle(-3.0 * PI), PI);

@@ -40,6 +40,7 @@ mod motion;
 mod policy;
 mod pose2;
 mod pose3;
+mod scalar;
 mod sensor;
 
 pub use alloc::{StateAlloc, UpdateAlloc};
@@ -52,6 +53,7 @@ pub use motion::{MotionModel, SampleMotion};
 pub use policy::{Always, And, EveryN, Never, Not, Or, Policy, When, always, every_n, never, when};
 pub use pose2::Pose2;
 pub use pose3::Pose3;
+pub use scalar::to_f64;
 pub use sensor::{LikelihoodModel, LogWeight, SensorModel};
 
 /// The matrix library of every public signature, re-exported because its versions do not mix.

@@ -1,7 +1,7 @@
 use nalgebra::DefaultAllocator;
 use rand::Rng;
 
-use crate::{Jacobian, Manifold, StateAlloc, TangentMatrix, numerical_jacobian};
+use crate::{Manifold, StateAlloc, TangentMatrix, numerical_jacobian};
 
 /// Where a control takes a state: deterministic, with Jacobian and noise.
 ///
@@ -43,8 +43,6 @@ pub trait SampleMotion {
     type Control: ?Sized;
 
     /// The sampler for one control; apply it to every particle.
-    fn given<R: Rng + ?Sized>(&self, control: &Self::Control) -> impl Fn(&Self::State, &mut R) -> Self::State;
+    fn given<R: Rng + ?Sized>(&self, control: &Self::Control)
+    -> impl Fn(&Self::State, &mut R) -> Self::State;
 }
-
-// Jacobian<X, X> and TangentMatrix<X> are the same type; this keeps the two aliases honest.
-const _: fn(Jacobian<crate::Pose2<f64>, crate::Pose2<f64>>) -> TangentMatrix<crate::Pose2<f64>> = |m| m;

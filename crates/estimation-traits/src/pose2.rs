@@ -100,9 +100,15 @@ impl<T: RealField + Copy> LieGroup for Pose2<T> {
         let r = self.rotation_matrix();
         let (zero, one) = (T::zero(), T::one());
         Matrix3::new(
-            r.m11, r.m12, self.y(), //
-            r.m21, r.m22, -self.x(), //
-            zero, zero, one,
+            r.m11,
+            r.m12,
+            self.y(), //
+            r.m21,
+            r.m22,
+            -self.x(), //
+            zero,
+            zero,
+            one,
         )
     }
 }
