@@ -1,7 +1,40 @@
-//! Stamped robot records: readers for public data sets and MCAP, writer for MCAP.
+//! Stamped robot records: readers for public data sets and MCAP, writers for the same.
+//!
+//! [`open`] gives the records of a log in time order, whatever its format, and a [`ReadReport`] of what could not be read:
+//!
+//! | format | is | holds |
+//! | --- | --- | --- |
+//! | [`Format::Utias`] | a folder of the UTIAS multi-robot set | velocity, sightings, truth |
+//! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, sightings, truth |
+//! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
+//!
+//! A bad row never stops the reading: it is left out, counted by kind, and the first few are named with file and line.
+//!
+//! ```
+//! use wayfix_sensor_log::{Data, OpenOptions, open};
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("walk.txt");
+//! std::fs::write(&path, "L 7 2.0 0.0\nO 0.5 0.0 0.0\nZ 7 1.5 0.0\nZ 7 far 0.0\n")?;
+//! let mut log = open(&path, &OpenOptions::default())?;
+//! let sightings = log.by_ref().filter(|record| matches!(record.data, Data::Sightings(_))).count();
+//! assert_eq!(sightings, 1);
+//! assert_eq!(log.report().n_problems(), 1); // line 4: "far" is not a number
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod error;
+mod format;
+mod log;
+mod open;
 mod record;
+mod report;
 mod stamp;
+mod text;
 
+pub use error::LogError;
+pub use format::Format;
+pub use log::{Log, LogMeta};
+pub use open::{OpenOptions, PoseKind, open};
 pub use record::{Data, Record, Sighting, Target, TrueLandmark, Velocity};
+pub use report::{Problem, ProblemKind, ReadReport};
 pub use stamp::Stamp;

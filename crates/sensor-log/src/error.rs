@@ -1,0 +1,88 @@
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::Format;
+
+/// Why a log could not be opened or written, and what to do about it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LogError {
+    /// Nothing is there.
+    #[error("{}: no such file or folder", path.display())]
+    NotFound {
+        /// What was asked for.
+        path: PathBuf,
+    },
+    /// The operating system refuses.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// What was read or written.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A folder where a file belongs.
+    #[error("{}: is a folder without RobotN_*.dat files; give a log file, or the folder of a UTIAS set", path.display())]
+    IsADirectory {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The content looks like no known format.
+    #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), Format::NAMES)]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// What was seen instead.
+        reason: String,
+    },
+    /// The content is not of the format that was asked for, or that the name promises.
+    #[error("{}: is not a {format} log: {reason}", path.display())]
+    NotThisFormat {
+        /// The file or folder.
+        path: PathBuf,
+        /// The format it should have.
+        format: Format,
+        /// Why it has not.
+        reason: String,
+    },
+    /// A set of several robots needs a choice.
+    #[error("{}: holds the robots {present:?}; choose one (--robot N)", path.display())]
+    RobotNeeded {
+        /// The folder.
+        path: PathBuf,
+        /// The robots that are there.
+        present: Vec<u32>,
+    },
+    /// The chosen robot is not in the set.
+    #[error("{}: has no robot {robot}; it holds the robots {present:?}", path.display())]
+    NoSuchRobot {
+        /// The folder.
+        path: PathBuf,
+        /// The robot that was chosen.
+        robot: u32,
+        /// The robots that are there.
+        present: Vec<u32>,
+    },
+    /// The right format, and no record in it.
+    #[error("{}: holds no record", path.display())]
+    Empty {
+        /// The file or folder.
+        path: PathBuf,
+    },
+    /// A name that is no format.
+    #[error("{name:?} is no log format; the formats are {}", Format::NAMES)]
+    NoSuchFormat {
+        /// The name.
+        name: String,
+    },
+}
+
+impl LogError {
+    pub(crate) fn io(path: &Path, source: io::Error) -> Self {
+        match source.kind() {
+            io::ErrorKind::NotFound => Self::NotFound { path: path.into() },
+            io::ErrorKind::IsADirectory => Self::IsADirectory { path: path.into() },
+            _ => Self::Io { path: path.into(), source },
+        }
+    }
+}

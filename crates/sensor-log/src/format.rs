@@ -1,0 +1,105 @@
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{BufReader, Read};
+use std::path::Path;
+use std::str::FromStr;
+
+use crate::LogError;
+use crate::text::{Lines, range_bearing, tum, utias};
+
+/// The first bytes of every MCAP file.
+const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+/// How a log is stored.
+///
+/// ```
+/// use wayfix_sensor_log::Format;
+/// assert_eq!("range-bearing".parse::<Format>()?, Format::RangeBearing);
+/// assert_eq!(Format::Utias.to_string(), "utias");
+/// assert!("rosbag".parse::<Format>().is_err());
+/// # Ok::<(), wayfix_sensor_log::LogError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Format {
+    /// A folder of the UTIAS Multi-Robot Cooperative Localization and Mapping set.
+    Utias,
+    /// Plain `L`, `P`, `O`, `Z` lines.
+    RangeBearing,
+    /// A trajectory as the TUM RGB-D benchmark writes it.
+    Tum,
+    /// MCAP with Foxglove protobuf messages.
+    Mcap,
+}
+
+impl Format {
+    pub(crate) const NAMES: &'static str = "utias, range-bearing, tum, mcap";
+
+    /// The format of what lies at `path`: by name for folders and `.mcap`, else by the first bytes.
+    ///
+    /// # Errors
+    /// When nothing is there, it cannot be read, is empty, or looks like no known format.
+    pub fn detect(path: &Path) -> Result<Self, LogError> {
+        let io = |source| LogError::io(path, source);
+        if fs::metadata(path).map_err(io)?.is_dir() {
+            return match utias::robots_present(path)?.is_empty() {
+                true => Err(LogError::IsADirectory { path: path.into() }),
+                false => Ok(Self::Utias),
+            };
+        }
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) {
+            return Ok(Self::Mcap);
+        }
+        let mut head = Vec::new();
+        let file = File::open(path).map_err(io)?;
+        (&file).take(MCAP_MAGIC.len() as u64).read_to_end(&mut head).map_err(io)?;
+        if head == MCAP_MAGIC {
+            return Ok(Self::Mcap);
+        }
+        let rest = BufReader::new(head.as_slice().chain(file));
+        Self::detect_text(&mut Lines::new(rest, path), path)
+    }
+
+    fn detect_text<R: std::io::BufRead>(lines: &mut Lines<'_, R>, path: &Path) -> Result<Self, LogError> {
+        let Some(row) = lines.next_row()? else {
+            return Err(LogError::Empty { path: path.into() });
+        };
+        let unknown = |reason| Err(LogError::UnknownFormat { path: path.into(), reason });
+        match row.text {
+            Ok(text) if range_bearing::looks_like(text) => Ok(Self::RangeBearing),
+            Ok(text) if tum::looks_like(text) => Ok(Self::Tum),
+            Ok(text) => unknown(format!("line {} is {:?}", row.number, shortened(text))),
+            Err(error) => unknown(format!("line {}: {}", row.number, error.reason)),
+        }
+    }
+}
+
+/// Enough of a text to recognize it in a message.
+pub(crate) fn shortened(text: &str) -> String {
+    const MAX_CHARS: usize = 40;
+    match text.char_indices().nth(MAX_CHARS) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Utias => "utias",
+            Self::RangeBearing => "range-bearing",
+            Self::Tum => "tum",
+            Self::Mcap => "mcap",
+        })
+    }
+}
+
+impl FromStr for Format {
+    type Err = LogError;
+    fn from_str(name: &str) -> Result<Self, LogError> {
+        [Self::Utias, Self::RangeBearing, Self::Tum, Self::Mcap]
+            .into_iter()
+            .find(|format| format.to_string() == name)
+            .ok_or_else(|| LogError::NoSuchFormat { name: name.to_owned() })
+    }
+}

@@ -1,0 +1,59 @@
+use std::path::PathBuf;
+use std::vec;
+
+use crate::{Format, ReadReport, Record};
+
+/// An open log: an iterator over its records in time order, and what is known about it.
+///
+/// Iterate by reference when the report is wanted afterwards: for streamed formats it is complete only at the end.
+#[derive(Debug)]
+pub struct Log {
+    meta: LogMeta,
+    records: Records,
+    report: ReadReport,
+}
+
+/// Where a log comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct LogMeta {
+    /// How it is stored.
+    pub format: Format,
+    /// The file or folder.
+    pub source: PathBuf,
+    /// The robot whose records these are, in sets of several robots.
+    pub robot: Option<u32>,
+}
+
+#[derive(Debug)]
+enum Records {
+    Memory(vec::IntoIter<Record>),
+}
+
+impl Log {
+    pub(crate) fn in_memory(meta: LogMeta, records: Vec<Record>, report: ReadReport) -> Self {
+        Self { meta, records: Records::Memory(records.into_iter()), report }
+    }
+    /// Where the log comes from.
+    pub fn meta(&self) -> &LogMeta {
+        &self.meta
+    }
+    /// What was read so far and what was not.
+    pub fn report(&self) -> &ReadReport {
+        &self.report
+    }
+    /// All remaining records, and the complete report.
+    pub fn read_all(mut self) -> (Vec<Record>, ReadReport) {
+        let records = self.by_ref().collect();
+        (records, self.report)
+    }
+}
+
+impl Iterator for Log {
+    type Item = Record;
+    fn next(&mut self) -> Option<Record> {
+        match &mut self.records {
+            Records::Memory(records) => records.next(),
+        }
+    }
+}

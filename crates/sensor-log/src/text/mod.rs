@@ -1,0 +1,11 @@
+//! Line-based formats.
+
+mod lines;
+mod row;
+mod time_check;
+
+pub(crate) mod range_bearing;
+pub(crate) mod tum;
+pub(crate) mod utias;
+
+pub(crate) use lines::Lines;

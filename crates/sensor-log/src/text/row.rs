@@ -1,0 +1,80 @@
+use std::str::FromStr;
+
+use crate::format::shortened;
+use crate::{ProblemKind, Stamp};
+
+/// Why a row is not used.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RowError {
+    pub(crate) kind: ProblemKind,
+    pub(crate) reason: String,
+}
+
+impl RowError {
+    pub(crate) fn new(kind: ProblemKind, reason: impl Into<String>) -> Self {
+        Self { kind, reason: reason.into() }
+    }
+}
+
+/// Exactly `N` columns, separated by blanks or tabs.
+pub(crate) fn columns<const N: usize>(row: &str) -> Result<[&str; N], RowError> {
+    let mut columns = [""; N];
+    let mut n_columns = 0;
+    for column in row.split_ascii_whitespace() {
+        if let Some(slot) = columns.get_mut(n_columns) {
+            *slot = column;
+        }
+        n_columns += 1;
+    }
+    if n_columns == N {
+        Ok(columns)
+    } else {
+        Err(RowError::new(ProblemKind::ColumnCount, format!("{n_columns} columns instead of {N}")))
+    }
+}
+
+/// A finite number.
+pub(crate) fn number(column: &str) -> Result<f64, RowError> {
+    let value: f64 = parse(column, "a number")?;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(RowError::new(ProblemKind::NotFinite, format!("{:?} is not finite", shortened(column))))
+    }
+}
+
+/// An identity.
+pub(crate) fn id(column: &str) -> Result<u32, RowError> {
+    parse(column, "an identity")
+}
+
+/// Seconds as a stamp.
+pub(crate) fn stamp(column: &str) -> Result<Stamp, RowError> {
+    let seconds = number(column)?;
+    Stamp::from_seconds(seconds)
+        .ok_or_else(|| RowError::new(ProblemKind::BadStamp, format!("{seconds} s is no time stamp")))
+}
+
+fn parse<T: FromStr>(column: &str, what: &str) -> Result<T, RowError> {
+    column
+        .parse()
+        .map_err(|_| RowError::new(ProblemKind::NotANumber, format!("{:?} is not {what}", shortened(column))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn says_what_is_wrong_with_a_column() {
+        let kind = |result: Result<f64, RowError>| result.unwrap_err().kind;
+        assert_eq!(number("-1.5e3").unwrap(), -1500.0);
+        assert_eq!(kind(number("1,5")), ProblemKind::NotANumber);
+        assert_eq!(kind(number("nan")), ProblemKind::NotFinite);
+        assert_eq!(kind(number("1e999")), ProblemKind::NotFinite);
+        assert_eq!(stamp("-1").unwrap_err().kind, ProblemKind::BadStamp);
+        assert_eq!(id("4294967296").unwrap_err().kind, ProblemKind::NotANumber);
+        assert_eq!(columns::<2>(" a\t b ").unwrap(), ["a", "b"]);
+        assert_eq!(columns::<2>("a b c").unwrap_err().reason, "3 columns instead of 2");
+    }
+}

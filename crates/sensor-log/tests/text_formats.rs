@@ -1,0 +1,172 @@
+//! The text readers, on files written here.
+
+use std::fs;
+use std::path::Path;
+
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{
+    Data, Format, LogError, OpenOptions, PoseKind, ProblemKind, Record, Sighting, Stamp, Target,
+    TrueLandmark, Velocity, open,
+};
+
+fn write(folder: &Path, name: &str, text: &str) {
+    fs::write(folder.join(name), text).unwrap();
+}
+
+fn utias_set(folder: &Path, robots: &[u32]) {
+    write(folder, "Barcodes.dat", "# Subject Barcode\n 1 5\n 2 14\n 6 72\n 7 27\n");
+    write(folder, "Landmark_Groundtruth.dat", "# header\n 6 1.5 -2 0.1 0.1\n 7 0 3 0.1 0.1\n");
+    for robot in robots {
+        let name = |kind| format!("Robot{robot}_{kind}.dat");
+        write(folder, &name("Groundtruth"), "100.5 1 2 3\n100.0 0 0 0\n");
+        write(folder, &name("Odometry"), "100.0\t0.1\t-0.2\n100.25 nan 0\n");
+        write(folder, &name("Measurement"), "100.5 72 1 0.5\n100.5 14 2 -0.5\n100.5 99 3 0\n100.75 27 4 1\n");
+    }
+}
+
+fn at(seconds: f64, data: Data) -> Record {
+    Record { stamp: Stamp::from_seconds(seconds).unwrap(), data }
+}
+
+fn sighting(target: Target, range: f64, bearing: f64) -> Sighting {
+    Sighting { target, range, bearing }
+}
+
+#[test]
+fn utias_files_are_merged_by_time_and_codes_become_subjects() {
+    let folder = tempfile::tempdir().unwrap();
+    utias_set(folder.path(), &[2]);
+    let log = open(folder.path(), &OpenOptions::default()).unwrap();
+    assert_eq!((log.meta().format, log.meta().robot), (Format::Utias, Some(2)));
+    let (records, report) = log.read_all();
+    let look = vec![
+        sighting(Target::Landmark(6), 1.0, 0.5),
+        sighting(Target::Robot(2), 2.0, -0.5),
+        sighting(Target::UnknownCode(99), 3.0, 0.0),
+    ];
+    let expected = [
+        at(100.0, Data::TrueLandmark(TrueLandmark { id: 6, x: 1.5, y: -2.0 })),
+        at(100.0, Data::TrueLandmark(TrueLandmark { id: 7, x: 0.0, y: 3.0 })),
+        at(100.0, Data::TruePose(Pose2::new(0.0, 0.0, 0.0))),
+        at(100.0, Data::Velocity(Velocity { linear: 0.1, angular: -0.2 })),
+        at(100.5, Data::TruePose(Pose2::new(1.0, 2.0, 3.0))),
+        at(100.5, Data::Sightings(look)),
+        at(100.75, Data::Sightings(vec![sighting(Target::Landmark(7), 4.0, 1.0)])),
+    ];
+    assert_eq!(records, expected);
+    let problems: Vec<String> = report.examples.iter().map(ToString::to_string).collect();
+    assert!(problems[0].starts_with("Robot2_Groundtruth.dat:2: 100.000000000 s comes after 100.500000000 s"));
+    assert_eq!(problems[1], "Robot2_Odometry.dat:2: \"nan\" is not finite");
+    assert_eq!(report.n_problems(), 2);
+}
+
+#[test]
+fn a_set_of_several_robots_asks_which_and_names_them() {
+    let folder = tempfile::tempdir().unwrap();
+    utias_set(folder.path(), &[3, 1]);
+    let open_robot = |robot| open(folder.path(), &OpenOptions { robot, ..Default::default() });
+    assert!(matches!(open_robot(None), Err(LogError::RobotNeeded { present, .. }) if present == [1, 3]));
+    assert!(
+        matches!(open_robot(Some(2)), Err(LogError::NoSuchRobot { robot: 2, present, .. }) if present == [1, 3])
+    );
+    assert_eq!(open_robot(Some(3)).unwrap().meta().robot, Some(3));
+}
+
+#[test]
+fn range_bearing_lines_make_steps_of_a_tenth_of_a_second() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines =
+        "# two steps\nL 4 1 2\nP 0 0 0\nO 0 0 0\nZ 4 2 0.5\nZ -1 3 1\nP 1 0 0\nO 1 0 0\nO 1 0 0\nZ ? 1 1\n";
+    write(folder.path(), "walk.log", lines);
+    let (records, report) = open(folder.path().join("walk.log"), &OpenOptions::default()).unwrap().read_all();
+    let step = |x| Data::OdometryIncrement(Pose2::new(x, 0.0, 0.0));
+    let look = vec![sighting(Target::Landmark(4), 2.0, 0.5), sighting(Target::Unlabelled, 3.0, 1.0)];
+    let expected = [
+        at(0.0, Data::TrueLandmark(TrueLandmark { id: 4, x: 1.0, y: 2.0 })),
+        at(0.0, Data::TruePose(Pose2::new(0.0, 0.0, 0.0))),
+        at(0.0, step(0.0)),
+        at(0.0, Data::Sightings(look)),
+        at(0.1, Data::TruePose(Pose2::new(1.0, 0.0, 0.0))),
+        at(0.1, step(1.0)),
+        at(0.2, step(1.0)),
+        at(0.2, Data::Sightings(vec![sighting(Target::Unlabelled, 1.0, 1.0)])),
+    ];
+    assert_eq!(records, expected);
+    assert_eq!((report.rows_read, report.n_problems()), (9, 0));
+}
+
+#[test]
+fn tum_headings_come_from_the_quaternion_for_both_signs() {
+    let folder = tempfile::tempdir().unwrap();
+    let half = 0.65_f64;
+    let (sin, cos) = half.sin_cos();
+    let rows = format!(
+        "1 2 3 0 0 0 {sin} {cos}\n2 0 0 0 0 0 {} {}\n3 0 0 0 0 0 {} {cos}\n4 0 0 0 0 0 0 0\n",
+        -sin, -cos, -sin
+    );
+    write(folder.path(), "poses.txt", &rows);
+    let options = OpenOptions { poses: PoseKind::True, ..Default::default() };
+    let (records, report) = open(folder.path().join("poses.txt"), &options).unwrap().read_all();
+    let headings: Vec<f64> = records
+        .iter()
+        .map(|record| match &record.data {
+            Data::TruePose(pose) => pose.heading(),
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    for (heading, expected) in headings.iter().zip([1.3, 1.3, -1.3]) {
+        assert!((heading - expected).abs() < 1e-15, "{heading} instead of {expected}");
+    }
+    assert_eq!(headings.len(), 3);
+    assert_eq!(report.problems[&ProblemKind::Inconsistent], 1);
+}
+
+#[test]
+fn every_kind_of_bad_row_is_counted_and_none_stops_the_reading() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = "Z 1 ".repeat(5000);
+    let mut bytes = format!("O 1 0 0\nO 1 0\nO 1 0 inf\nQ 1 2 3\nZ x 1 1\n{long}\n").into_bytes();
+    bytes.extend(b"O \xff\xfe 1 1\nO 2 0 0\n");
+    fs::write(folder.path().join("bad.txt"), bytes).unwrap();
+    let (records, report) = open(folder.path().join("bad.txt"), &OpenOptions::default()).unwrap().read_all();
+    assert_eq!(records.len(), 2);
+    let rows: Vec<u64> = report.examples.iter().map(|problem| problem.row).collect();
+    assert_eq!(rows, [2, 3, 4, 5, 6, 7]);
+    assert_eq!(report.problems[&ProblemKind::ColumnCount], 1);
+    assert_eq!(report.problems[&ProblemKind::NotFinite], 1);
+    assert_eq!(report.problems[&ProblemKind::NotANumber], 1);
+    assert_eq!(report.problems[&ProblemKind::Unrecognized], 3);
+}
+
+#[test]
+fn the_report_names_the_first_twenty_and_counts_the_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "bad.txt", &format!("O 1 0 0\n{}", "O 1 0\n".repeat(50)));
+    let (_, report) = open(folder.path().join("bad.txt"), &OpenOptions::default()).unwrap().read_all();
+    assert_eq!((report.n_problems(), report.examples.len()), (50, 20));
+    assert!(report.to_string().contains("… and 30 more"));
+}
+
+#[test]
+fn what_cannot_be_opened_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let fails = |name: &str, format| {
+        open(at(name), &OpenOptions { format, ..Default::default() }).expect_err("must not open")
+    };
+    write(folder.path(), "empty.txt", "# nothing\n\n");
+    write(folder.path(), "letter.txt", "Dear sir,\n");
+    write(folder.path(), "walk.txt", "O 1 0 0\n");
+    assert!(matches!(fails("absent", None), LogError::NotFound { .. }));
+    assert!(matches!(fails("", None), LogError::IsADirectory { .. }));
+    assert!(matches!(fails("", Some(Format::Utias)), LogError::IsADirectory { .. }));
+    assert!(matches!(fails("", Some(Format::Tum)), LogError::IsADirectory { .. }));
+    assert!(matches!(fails("empty.txt", None), LogError::Empty { .. }));
+    assert!(matches!(fails("empty.txt", Some(Format::Tum)), LogError::Empty { .. }));
+    assert!(matches!(fails("letter.txt", None), LogError::UnknownFormat { .. }));
+    assert!(matches!(
+        fails("walk.txt", Some(Format::Tum)),
+        LogError::NotThisFormat { format: Format::Tum, .. }
+    ));
+    assert!(matches!(fails("walk.txt", Some(Format::Utias)), LogError::NotThisFormat { .. }));
+}
