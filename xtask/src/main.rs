@@ -1,1 +1,54 @@
-fn main() {}
+//! The workspace's tasks, one file each; every task shells out to the tools that do the work.
+
+mod bench;
+mod ci;
+mod clients;
+mod docs;
+mod fixtures;
+mod regress;
+mod shell;
+mod tidy;
+
+use std::process::ExitCode;
+
+const HELP: &str = "\
+Usage: cargo xtask TASK [OPTIONS]
+
+  regress [SUITE…]   run the systems on stored logs, compare figures with bounds, write the report
+                     [--data DIR] [--out DIR] [--seed N] [--quick] [--bless] [--threads N]
+                     DIR of --data defaults to $WAYFIX_DATA, of --out to target/regress
+  fixtures           rebuild every stored log from its seed; --check compares and writes nothing
+  ci                 what CI runs, cheap steps first; --from STEP resumes
+  tidy               check the invariants of docs/architecture.md that a machine can check
+  docs [PACKAGE…]    build the API reference with formulas; --open shows it
+  bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
+  clients [DIR]      read the report and the logs in DIR (default target/regress) with other people's programs
+";
+
+fn main() -> ExitCode {
+    let mut args = std::env::args().skip(1);
+    let task = args.next().unwrap_or_default();
+    let args: Vec<String> = args.collect();
+    if args.iter().any(|arg| arg == "--help" || arg == "-h") && task != "regress" {
+        print!("{HELP}");
+        return ExitCode::SUCCESS;
+    }
+    let outcome = match task.as_str() {
+        "regress" => regress::run(&args),
+        "fixtures" => fixtures::run(&args),
+        "ci" => ci::run(&args),
+        "tidy" => tidy::run(&args),
+        "docs" => docs::run(&args),
+        "bench" => bench::run(&args),
+        "clients" => clients::run(&args),
+        "" | "help" | "--help" | "-h" => {
+            print!("{HELP}");
+            Ok(ExitCode::SUCCESS)
+        }
+        other => Err(anyhow::anyhow!("there is no task `{other}`\n\n{HELP}")),
+    };
+    outcome.unwrap_or_else(|error| {
+        eprintln!("xtask {task}: {error:#}");
+        ExitCode::FAILURE
+    })
+}

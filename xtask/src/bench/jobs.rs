@@ -1,0 +1,189 @@
+//! What there is to measure: benches of our crates, and peers where they are installed.
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::Result;
+
+use super::Options;
+use super::table::{Measurement, parse_line};
+use crate::shell;
+
+/// The logs that other programs read too; published figures exist for them (docs/performance.md).
+const SLAM_LOGS: [&str; 3] = ["slam_100", "slam_200", "slam_400"];
+
+/// Finds the measurement in a line of output.
+type Reader = Box<dyn Fn(&str) -> Option<Measurement>>;
+
+pub(super) struct Job {
+    pub(super) name: String,
+    pub(super) command: Command,
+    /// What has to be installed or given first.
+    pub(super) missing: Option<String>,
+    pub(super) read: Reader,
+}
+
+pub(super) fn all(options: &Options) -> Result<Vec<Job>> {
+    let mut jobs = crate_benches()?;
+    jobs.extend(slam_ours(options));
+    if options.peers {
+        jobs.extend(rust_peers()?);
+        jobs.extend(python_peers(options));
+        jobs.extend(mrpt(options));
+    }
+    Ok(jobs)
+}
+
+fn job(name: impl Into<String>, command: Command) -> Job {
+    Job { name: name.into(), command, missing: None, read: Box::new(parse_line) }
+}
+
+/// `benches/` of every crate.
+fn crate_benches() -> Result<Vec<Job>> {
+    let crates = crates_with("benches")?;
+    Ok(crates
+        .iter()
+        .map(|folder| {
+            let manifest = format!("crates/{folder}/Cargo.toml");
+            job(
+                folder,
+                shell::command("cargo", &["bench", "--quiet", "--benches", "--manifest-path", &manifest]),
+            )
+        })
+        .collect())
+}
+
+/// Packages of their own, so that no crate of ours ever depends on a peer.
+fn rust_peers() -> Result<Vec<Job>> {
+    let crates = crates_with("peers/Cargo.toml")?;
+    Ok(crates
+        .iter()
+        .map(|folder| {
+            let manifest = format!("crates/{folder}/peers/Cargo.toml");
+            let command =
+                shell::command("cargo", &["run", "--quiet", "--release", "--manifest-path", &manifest]);
+            job(format!("{folder} peers"), command)
+        })
+        .collect())
+}
+
+fn crates_with(path: &str) -> Result<Vec<String>> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(shell::root().join("crates"))? {
+        let entry = entry?;
+        if entry.path().join(path).exists() {
+            found.push(entry.file_name().to_string_lossy().into_owned());
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+fn slam_ours(options: &Options) -> Vec<Job> {
+    slam_jobs(options, "wayfix", |log, job| {
+        let log = log.display().to_string();
+        let args =
+            ["run", "slam", "--log", &log, "--format", "range-bearing", "--association", "known", "--json"];
+        job.command = shell::wayfix(&args);
+        let name = job_name(Path::new(&log));
+        job.read = Box::new(move |line| {
+            let nanoseconds = 1e3 * json_number(line, "step_mean_us")?;
+            Some(Measurement { job: name.clone(), program: "wayfix".into(), nanoseconds })
+        });
+    })
+}
+
+fn python_peers(options: &Options) -> Vec<Job> {
+    let python = shell::python_tool("python3");
+    let pypi = |modules: &[&str], packages: &str| {
+        (!shell::python_has(modules)).then(|| format!("PyPI package missing: pip install {packages}"))
+    };
+    let mut kalman =
+        job("kalman numpy OpenCV filterpy", shell::command(&python, &["peers/opencv_filterpy_kalman.py"]));
+    kalman.missing = pypi(&["numpy", "cv2", "filterpy"], "numpy opencv-python-headless filterpy");
+    let mut jobs = vec![kalman];
+    jobs.extend(slam_jobs(options, "numpy", |log, job| {
+        job.command = shell::command(&python, &["peers/numpy_ekf_slam.py"]);
+        job.command.arg(log);
+        job.missing = pypi(&["numpy"], "numpy");
+    }));
+    jobs
+}
+
+fn mrpt(options: &Options) -> Vec<Job> {
+    let build = shell::target_dir().join("peers");
+    let missing = build_mrpt(&build).err().map(|error| {
+        format!("{error:#} (apt-get install --no-install-recommends libmrpt-slam-dev libmrpt-apps-dev cmake libeigen3-dev)")
+    });
+    slam_jobs(options, "MRPT", |log, job| {
+        job.command = shell::command(build.join("mrpt_ekf_slam"), &[]);
+        job.command.arg(log).arg("known");
+        job.missing.clone_from(&missing);
+    })
+}
+
+fn build_mrpt(build: &Path) -> Result<()> {
+    let source = shell::root().join("peers");
+    shell::output(shell::command("cmake", &["-S"]).arg(source).arg("-B").arg(build))?;
+    shell::output(shell::command("cmake", &["--build"]).arg(build)).map(drop)
+}
+
+/// One job a log, completed by `finish`; a single skipped one when there are no logs.
+fn slam_jobs(options: &Options, program: &str, mut finish: impl FnMut(&Path, &mut Job)) -> Vec<Job> {
+    let Some(folder) = options.data.as_ref().map(|data| shell::root().join(data).join("range_bearing"))
+    else {
+        let mut skipped = job(format!("ekf_slam_step {program}"), Command::new("true"));
+        skipped.missing =
+            Some("no logs: give --data DIR or WAYFIX_DATA, with range_bearing/slam_*.txt in it".into());
+        return vec![skipped];
+    };
+    let logs = SLAM_LOGS.map(|name| folder.join(name).with_extension("txt"));
+    logs.iter()
+        .map(|log| {
+            let mut job = job(format!("{} {program}", job_name(log)), Command::new("true"));
+            finish(log, &mut job);
+            if !log.is_file() {
+                job.missing = Some(format!("{} is not there", log.display()));
+            }
+            job
+        })
+        .collect()
+}
+
+fn job_name(log: &Path) -> String {
+    format!("ekf_slam_step/{}", log.file_stem().unwrap_or_default().to_string_lossy())
+}
+
+/// The number behind `"key":` in a line of JSON.
+fn json_number(line: &str, key: &str) -> Option<f64> {
+    let (_, rest) = line.split_once(&format!("\"{key}\""))?;
+    let rest = rest.trim_start().strip_prefix(':')?.trim_start();
+    rest.split([',', '}', ' ', '\n']).next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+
+    #[test]
+    fn a_number_is_read_from_json_in_one_line_or_many() {
+        assert_eq!(json_number("{\"metrics\":{\"step_mean_us\":12.5,\"x\":1}}", "step_mean_us"), Some(12.5));
+        assert_eq!(json_number("    \"step_mean_us\": 3e1", "step_mean_us"), Some(30.0));
+        assert_eq!(json_number("\"step_mean\": 1", "step_mean_us"), None);
+    }
+
+    #[test]
+    fn without_logs_the_slam_jobs_say_what_to_give() {
+        let options =
+            Options { peers: false, data: Some(PathBuf::from("no-such-folder")), filter: String::new() };
+        let jobs = slam_ours(&options);
+        assert_eq!(jobs.len(), SLAM_LOGS.len());
+        assert!(
+            jobs.iter().all(|job| job.missing.as_deref().is_some_and(|text| text.ends_with("is not there")))
+        );
+        let nowhere = slam_ours(&Options { data: None, ..options });
+        assert!(nowhere[0].missing.as_deref().is_some_and(|text| text.contains("WAYFIX_DATA")));
+    }
+}

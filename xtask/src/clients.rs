@@ -1,0 +1,155 @@
+//! `cargo xtask clients`: other people's programs read what the regression run wrote.
+//!
+//! A format is right when somebody else's reader says so: Python's `mcap`, the Rerun command line, a browser.
+//! Where a program is missing its check is skipped, except under `CI=true`, where it is required.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::{regress, shell};
+
+pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
+    let dir = match args {
+        [] => regress::default_out(),
+        [dir] => PathBuf::from(dir),
+        _ => bail!("usage: cargo xtask clients [DIR]"),
+    };
+    let dir = shell::root().join(dir);
+    let files =
+        files_below(&dir).with_context(|| format!("{}: run `cargo xtask regress` first", dir.display()))?;
+    let logs = with_extension(&files, "mcap");
+    let pages = with_extension(&files, "html");
+    ensure!(!logs.is_empty(), "no .mcap below {}", dir.display());
+    ensure!(!pages.is_empty(), "no .html below {}", dir.display());
+
+    if available(
+        "Python's mcap",
+        shell::python_has(&["mcap", "mcap_protobuf"]),
+        ".ci/run, or pip install mcap mcap-protobuf-support",
+    )? {
+        read_with_python(&logs)?;
+    }
+    let rerun = shell::python_tool("rerun");
+    if available("Rerun", shell::have(&rerun), ".ci/run, or pip install rerun-sdk")? {
+        logs.iter().try_for_each(|log| convert_with_rerun(&rerun, log))?;
+    }
+    let browser =
+        ["chromium", "chromium-browser", "google-chrome"].into_iter().find(|name| shell::have(name));
+    if available("a browser", browser.is_some(), ".ci/run, or apt-get install chromium")? {
+        pages.iter().try_for_each(|page| open_in_browser(browser.unwrap_or_default(), page))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
+    let required = std::env::var("CI").is_ok_and(|value| value == "true");
+    if !found && required {
+        bail!("{what} is missing, and CI=true requires it ({remedy})");
+    }
+    if !found {
+        println!("clients: {what} is missing, check skipped ({remedy})");
+    }
+    Ok(found)
+}
+
+fn read_with_python(logs: &[PathBuf]) -> Result<()> {
+    let mut command = shell::command(shell::python_tool("python3"), &["xtask/clients/read_mcap.py"]);
+    shell::check(command.args(logs))
+}
+
+/// `convert` exits with 0 for files it does not understand, so the recording is asked what it holds.
+fn convert_with_rerun(rerun: &Path, log: &Path) -> Result<()> {
+    let recording = log.with_extension("rrd");
+    shell::check(quiet(&mut shell::command(rerun, &["mcap", "check"])).arg(log))?;
+    shell::check(quiet(&mut shell::command(rerun, &["mcap", "convert"])).arg(log).arg("-o").arg(&recording))?;
+    let listing = shell::output(shell::command(rerun, &["rrd", "print"]).arg(&recording))?;
+    std::fs::remove_file(&recording)?;
+    let topics = topics_in(&listing);
+    ensure!(!topics.is_empty(), "Rerun found no message in {}", log.display());
+    println!("rerun: {}: {}", name(log), topics.join(" "));
+    Ok(())
+}
+
+/// Entities in what `rerun rrd print` lists, without the ones that describe the file itself.
+fn topics_in(listing: &str) -> Vec<&str> {
+    let chunks = listing.lines().filter(|line| line.starts_with("Chunk("));
+    let mut topics: Vec<_> = chunks.filter_map(|line| line.split(" - ").nth(1)).collect();
+    topics.retain(|topic| *topic != "/__mcap_properties");
+    topics.sort_unstable();
+    topics.dedup();
+    topics
+}
+
+/// The page must draw something and throw nothing.
+fn open_in_browser(browser: &str, page: &Path) -> Result<()> {
+    let profile = shell::target_dir().join("browser");
+    let picture = page.with_extension("png");
+    let flags = [
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--no-first-run",
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--disable-sync",
+        "--enable-logging=stderr",
+        "--window-size=1200,1600",
+        "--virtual-time-budget=5000",
+    ];
+    let mut command = shell::command(browser, &flags);
+    command
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .arg(format!("--screenshot={}", picture.display()))
+        .arg(format!("file://{}", page.display()));
+    let output = command.output().with_context(|| format!("cannot start {browser}"))?;
+    let log = String::from_utf8_lossy(&output.stderr);
+    ensure!(output.status.success(), "{browser} failed on {}:\n{log}", page.display());
+    if let Some(error) = log.lines().find(|line| line.contains("CONSOLE") && line.contains("rror")) {
+        bail!("{}: {error}", page.display());
+    }
+    ensure!(picture.is_file(), "{browser} drew nothing of {}", page.display());
+    println!("browser: {}: {}", name(page), picture.display());
+    Ok(())
+}
+
+fn quiet(command: &mut Command) -> &mut Command {
+    command.stdout(Stdio::null())
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn files_below(dir: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(dir)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            files.extend(files_below(&path)?);
+        } else {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn with_extension(files: &[PathBuf], extension: &str) -> Vec<PathBuf> {
+    files.iter().filter(|file| file.extension().is_some_and(|found| found == extension)).cloned().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::topics_in;
+
+    #[test]
+    fn a_recording_that_only_describes_itself_has_no_topics() {
+        let header = "Chunk(chunk_1) with 1 rows (1.4 KiB) - /__mcap_properties - data columns: [RecordingInfo:start_time]\n";
+        assert!(topics_in(header).is_empty());
+        let pose =
+            "Chunk(chunk_2) with 5 rows (2.4 KiB) - /robot/pose - data columns: [Transform3D:translation]\n";
+        assert_eq!(topics_in(&[header, pose, pose].concat()), ["/robot/pose"]);
+    }
+}

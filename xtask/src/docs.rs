@@ -1,0 +1,77 @@
+//! `cargo xtask docs`: the API reference with its formulas drawn, readable without a network.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+
+use crate::shell;
+
+/// The npm package that draws the formulas.
+const KATEX: &str = "katex@0.19.1";
+
+pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
+    let (flags, packages): (Vec<_>, Vec<_>) = args.iter().partition(|arg| arg.starts_with('-'));
+    let open = flags.iter().any(|flag| *flag == "--open");
+    if flags.len() > usize::from(open) {
+        bail!("usage: cargo xtask docs [PACKAGE…] [--open]");
+    }
+    let doc = shell::target_dir().join("doc");
+    let mut command = shell::command("cargo", &["doc", "--no-deps", "--locked"]);
+    if packages.is_empty() {
+        command.arg("--workspace");
+    }
+    for package in packages {
+        command.args(["--package", package]);
+    }
+    let formulas = match bring_katex(&doc) {
+        Ok(()) => {
+            let header = shell::root().join("docs/katex-header.html");
+            command.env("RUSTDOCFLAGS", format!("--html-in-header {}", header.display()));
+            "with formulas"
+        }
+        Err(error) => {
+            println!("docs: formulas stay as source text: {error:#}");
+            "without formulas"
+        }
+    };
+    if open {
+        command.arg("--open");
+    }
+    shell::check(&mut command)?;
+    println!("docs: {}, {formulas}", doc.display());
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Puts the style, script and fonts where `docs/katex-header.html` looks for them.
+fn bring_katex(doc: &Path) -> Result<()> {
+    let katex = doc.join("katex");
+    let stamp = katex.join("package.txt");
+    if std::fs::read_to_string(&stamp).is_ok_and(|package| package == KATEX) {
+        return Ok(());
+    }
+    if !shell::have("npm") {
+        bail!("npm is missing (it brings {KATEX})");
+    }
+    let unpacked = shell::target_dir().join("katex");
+    std::fs::create_dir_all(&unpacked)?;
+    let mut pack = shell::command("npm", &["pack", "--silent", KATEX]);
+    let archive = shell::output(pack.arg("--pack-destination").arg(&unpacked))?;
+    let archive = archive.lines().last().context("npm pack named no file")?;
+    shell::check(shell::command("tar", &["-xzf"]).arg(unpacked.join(archive)).arg("-C").arg(&unpacked))?;
+
+    std::fs::create_dir_all(katex.join("fonts"))?;
+    let dist = unpacked.join("package/dist");
+    for file in ["katex.min.css", "katex.min.js"] {
+        std::fs::copy(dist.join(file), katex.join(file))
+            .with_context(|| format!("{KATEX} has no dist/{file}"))?;
+    }
+    for font in std::fs::read_dir(dist.join("fonts"))? {
+        let font = font?.path();
+        if font.extension().is_some_and(|extension| extension == "woff2") {
+            std::fs::copy(&font, katex.join("fonts").join(font.file_name().unwrap_or_default()))?;
+        }
+    }
+    std::fs::write(stamp, KATEX)?;
+    Ok(())
+}

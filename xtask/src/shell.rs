@@ -1,0 +1,117 @@
+//! Running programs, and where things are.
+
+use std::ffi::OsStr;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+use anyhow::{Context, Result, bail};
+
+/// The folder that holds the workspace's `Cargo.toml`.
+pub(crate) fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
+}
+
+/// Where cargo builds.
+pub(crate) fn target_dir() -> PathBuf {
+    match std::env::var_os("CARGO_TARGET_DIR") {
+        Some(dir) => root().join(dir),
+        None => root().join("target"),
+    }
+}
+
+/// `program` with `args`, to be run in the root of the workspace.
+pub(crate) fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
+    let mut command = Command::new(program);
+    command.args(args).current_dir(root()).stdin(Stdio::null());
+    command
+}
+
+/// The application, built for speed; arguments follow.
+pub(crate) fn wayfix(args: &[&str]) -> Command {
+    let mut command = command("cargo", &["run", "--quiet", "--release", "--package", "wayfix", "--"]);
+    command.args(args);
+    command
+}
+
+/// Whether `program --version` can be run.
+pub(crate) fn have(program: impl AsRef<OsStr>) -> bool {
+    let mut probe = command(program, &["--version"]);
+    probe.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+}
+
+/// A tool of the Python environment that `.ci/run` makes, else the one on the path.
+pub(crate) fn python_tool(name: &str) -> PathBuf {
+    let ours = target_dir().join("venv/bin").join(name);
+    if ours.exists() { ours } else { PathBuf::from(name) }
+}
+
+/// Whether this Python finds all of `modules`.
+pub(crate) fn python_has(modules: &[&str]) -> bool {
+    let script = format!("import {}", modules.join(", "));
+    let mut probe = command(python_tool("python3"), &["-c", &script]);
+    probe.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
+}
+
+/// Runs to the end and fails when the program does.
+pub(crate) fn check(command: &mut Command) -> Result<()> {
+    let status = command.status().with_context(|| format!("cannot start `{}`", spelled(command)))?;
+    if !status.success() {
+        bail!("`{}` failed ({status})", spelled(command));
+    }
+    Ok(())
+}
+
+/// Runs to the end and hands the program's exit code on.
+pub(crate) fn pass_on(command: &mut Command) -> Result<ExitCode> {
+    let status = command.status().with_context(|| format!("cannot start `{}`", spelled(command)))?;
+    Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// Runs to the end and returns standard output; standard error goes to the terminal.
+pub(crate) fn output(command: &mut Command) -> Result<String> {
+    let output = command
+        .stderr(Stdio::inherit())
+        .output()
+        .with_context(|| format!("cannot start `{}`", spelled(command)))?;
+    if !output.status.success() {
+        bail!("`{}` failed ({})", spelled(command), output.status);
+    }
+    String::from_utf8(output.stdout).with_context(|| format!("output of `{}`", spelled(command)))
+}
+
+/// The command as one would type it.
+pub(crate) fn spelled(command: &Command) -> String {
+    let mut line = String::new();
+    for (key, value) in command.get_envs() {
+        if let Some(value) = value {
+            let _ = write!(line, "{}={:?} ", key.display(), value.display().to_string());
+        }
+    }
+    line.push_str(&command.get_program().to_string_lossy());
+    for arg in command.get_args() {
+        let arg = arg.to_string_lossy();
+        let plain = !arg.is_empty() && !arg.contains(|c: char| c.is_whitespace() || "\"'$&|;()".contains(c));
+        let _ = if plain { write!(line, " {arg}") } else { write!(line, " '{arg}'") };
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_spelled_so_that_it_can_be_repeated() {
+        let mut doc = command("cargo", &["doc", "--html-in-header", "a file.html"]);
+        doc.env("RUSTDOCFLAGS", "-D warnings");
+        assert_eq!(spelled(&doc), "RUSTDOCFLAGS=\"-D warnings\" cargo doc --html-in-header 'a file.html'");
+    }
+
+    #[test]
+    fn a_failing_program_is_an_error_that_names_it() {
+        let error = check(&mut command("sh", &["-c", "exit 3"])).unwrap_err();
+        assert!(error.to_string().contains("exit 3"), "{error}");
+        assert!(check(&mut command("no-such-program-here", &[])).is_err());
+    }
+}

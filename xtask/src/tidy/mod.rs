@@ -1,0 +1,85 @@
+//! `cargo xtask tidy`: the invariants of `docs/architecture.md` that a machine can check.
+//!
+//! Every check is a function from texts to findings, so that its tests need no tree.
+
+mod code;
+mod direction;
+mod files;
+mod leftovers;
+mod links;
+mod manifest;
+mod members;
+mod msrv;
+mod purity;
+mod size;
+
+use std::fmt;
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+
+use crate::shell;
+
+/// A tracked text file.
+pub(crate) struct Source {
+    /// Path from the root, with slashes.
+    path: String,
+    text: String,
+}
+
+/// Something that is not as it should be.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Finding {
+    path: String,
+    /// From 1; 0 when it concerns the whole file.
+    line: usize,
+    what: String,
+    why: &'static str,
+}
+
+impl Finding {
+    fn new(path: &str, line: usize, what: impl Into<String>, why: &'static str) -> Self {
+        Self { path: path.to_owned(), line, what: what.into(), why }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}: {}", self.path, self.line.max(1), self.what, self.why)
+    }
+}
+
+pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
+    if !args.is_empty() {
+        bail!("usage: cargo xtask tidy");
+    }
+    let paths = files::tracked()?;
+    let sources = files::read(&paths)?;
+
+    let mut findings = Vec::new();
+    findings.extend(purity::check(&sources));
+    findings.extend(direction::check(&sources));
+    findings.extend(members::check(&sources));
+    findings.extend(leftovers::check(&sources));
+    findings.extend(links::check(&sources, &paths));
+    findings.extend(size::lengths(&sources));
+    findings.extend(size::weights(&files::weights(&paths)));
+    let kalman_tree = ["tree", "--locked", "-p", "wayfix-kalman", "-e", "normal", "--prefix", "none"];
+    findings.extend(size::tree("wayfix-kalman", &shell::output(&mut shell::command("cargo", &kalman_tree))?));
+    let metadata = ["metadata", "--locked", "--format-version", "1"];
+    findings.extend(msrv::check(&sources, &shell::output(&mut shell::command("cargo", &metadata))?));
+
+    for warning in size::long(&sources) {
+        println!("warning: {warning}");
+    }
+    for finding in &findings {
+        println!("{finding}");
+    }
+    println!("tidy: {} files, {} findings", paths.len(), findings.len());
+    Ok(if findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+#[cfg(test)]
+fn source(path: &str, text: &str) -> Source {
+    Source { path: path.to_owned(), text: text.to_owned() }
+}
