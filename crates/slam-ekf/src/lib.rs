@@ -1,1 +1,42 @@
-//! EKF-SLAM with honest uncertainty: landmarks, association, anchors.
+//! EKF-SLAM with honest uncertainty: where the robot is and where the landmarks are, estimated together.
+//!
+//! The state is one robot pose and a growing number of landmarks,
+//! $`x = (x_r, m_1, …, m_n)`$, with one joint covariance. A step of the filter reads
+//!
+//! ```text
+//! predict      x_r ← f(x_r, u)                      O(n)      [predict]
+//! associate    which landmark is each sighting of   O(k n)    [DataAssociation]
+//! gate         is it compatible with it             O(k)      [Outcome::Gated]
+//! correct      all accepted sightings together      O(k n²)   Joseph form, sparse H, lower triangle
+//! augment      certainly new ones enter the map     O(n)      [EkfSlam::insert]
+//! ```
+//!
+//! A robot meets new kinds of landmarks through [`LandmarkModel`]: what to expect, how noisy, how to start. Everything else
+//! is the same for points, walls or radio beacons (`examples/range_only.rs`).
+//!
+//! [Andrade-Cetto 2003, section 2; Dissanayake et al. 2001]
+//!
+//! [predict]: EkfSlam::predict
+
+mod alloc;
+pub mod association;
+mod covariance;
+mod error;
+mod filter;
+mod landmark;
+mod models;
+mod outcome;
+
+pub use alloc::{LandmarkDim, MeasurementDim, SlamAlloc};
+pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
+pub use error::SlamError;
+pub use filter::{EkfSlam, LandmarkEstimate, PredictedSighting, SlamParams};
+pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
+pub use models::{
+    IncrementMotion, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor, VelocityControl,
+    VelocityMotion,
+};
+pub use outcome::{Outcome, StepReport};
+
+/// The matrix library of every public signature.
+pub use wayfix_estimation_traits::nalgebra;

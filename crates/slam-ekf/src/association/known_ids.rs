@@ -1,0 +1,24 @@
+use nalgebra::DefaultAllocator;
+
+use super::{Association, DataAssociation};
+use crate::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, Observation, SlamAlloc};
+
+/// The sensor reads identities: bar codes, tags, a simulator.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KnownIds;
+
+impl<M: LandmarkModel> DataAssociation<M> for KnownIds
+where
+    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+{
+    fn associate(&mut self, filter: &EkfSlam<M>, observations: &[Observation<M::Measurement>]) -> Vec<Association> {
+        observations
+            .iter()
+            .map(|observation| match observation.label {
+                Some(id) if filter.knows(id) => Association::Matched(id),
+                Some(id) => Association::New(id),
+                None => Association::Unlabelled,
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,39 @@
+//! Which landmark is each observation of: one rule a file, all behind [`DataAssociation`].
+
+mod known_ids;
+mod nearest_neighbour;
+mod tentative;
+
+use nalgebra::DefaultAllocator;
+
+pub use known_ids::KnownIds;
+pub use nearest_neighbour::{NearestNeighbour, NearestNeighbourParams};
+
+use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, SlamAlloc};
+
+/// What an observation is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Association {
+    /// A landmark or anchor of the map.
+    Matched(LandmarkId),
+    /// Certainly none of the map: starts a landmark with this identity.
+    New(LandmarkId),
+    /// Perhaps a new landmark; it has to be seen again.
+    Tentative,
+    /// Neither certainly old nor certainly new.
+    Ambiguous,
+    /// No identity was read, and this rule needs one.
+    Unlabelled,
+}
+
+/// A rule that tells which landmark each observation of one look is of.
+///
+/// **Laws**: one association an observation, in order; the filter's state decides, together with what the rule itself remembers; the
+/// filter gates afterwards, so a rule need not.
+pub trait DataAssociation<M: LandmarkModel>
+where
+    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+{
+    /// Associates the usable observations of one look.
+    fn associate(&mut self, filter: &EkfSlam<M>, observations: &[Observation<M::Measurement>]) -> Vec<Association>;
+}

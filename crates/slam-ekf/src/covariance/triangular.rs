@@ -1,0 +1,77 @@
+//! Blocked kernels on the lower triangle: the whole cost of a large map is in these three loops.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DMatrixViewMut};
+
+/// Columns that one matrix product handles: wide enough for the product to be fast, narrow enough to waste little of the triangle.
+const PANEL: usize = 64;
+/// Columns solved one by one between two matrix products.
+const SOLVE_PANEL: usize = 24;
+
+/// `P ← P + sign · A Bᵀ` on the lower triangle, where the product is known to be symmetric.
+pub(super) fn add_to_lower(p: &mut DMatrixViewMut<'_, f64>, sign: f64, a: &DMatrix<f64>, b: &DMatrix<f64>) {
+    let n = p.nrows();
+    let b_transposed = b.transpose();
+    for panel in panels(n, PANEL) {
+        let below = n - panel.start;
+        p.view_mut((panel.start, panel.start), (below, panel.len())).gemm(
+            sign,
+            &a.rows(panel.start, below),
+            &b_transposed.columns(panel.start, panel.len()),
+            1.0,
+        );
+    }
+}
+
+/// Copies the lower triangle onto the upper one.
+pub(super) fn mirror_lower(p: &mut DMatrixViewMut<'_, f64>) {
+    let n = p.nrows();
+    for rows in panels(n, PANEL) {
+        for columns in panels(rows.end, PANEL) {
+            for column in columns {
+                for row in rows.start.max(column + 1)..rows.end {
+                    p[(column, row)] = p[(row, column)];
+                }
+            }
+        }
+    }
+}
+
+/// `X ← X L⁻ᵀ` for a lower-triangular `L`.
+pub(super) fn solve_right_transposed(x: &mut DMatrix<f64>, l: &DMatrix<f64>) {
+    for panel in panels(l.ncols(), SOLVE_PANEL) {
+        let (done, mut open) = x.columns_range_pair_mut(0..panel.start, panel.clone());
+        open.gemm(-1.0, &done, &l.view((panel.start, 0), (panel.len(), panel.start)).transpose(), 1.0);
+        for column in 0..panel.len() {
+            for earlier in 0..column {
+                let factor = l[(panel.start + column, panel.start + earlier)];
+                let (from, mut to) = open.columns_range_pair_mut(earlier, column);
+                to.axpy(-factor, &from, 1.0);
+            }
+            open.column_mut(column).unscale_mut(l[(panel.start + column, panel.start + column)]);
+        }
+    }
+}
+
+/// `X ← X L⁻¹` for a lower-triangular `L`.
+pub(super) fn solve_right(x: &mut DMatrix<f64>, l: &DMatrix<f64>) {
+    let m = l.ncols();
+    let panels: Vec<Range<usize>> = panels(m, SOLVE_PANEL).collect();
+    for panel in panels.into_iter().rev() {
+        let (mut open, done) = x.columns_range_pair_mut(panel.clone(), panel.end..m);
+        open.gemm(-1.0, &done, &l.view((panel.end, panel.start), (m - panel.end, panel.len())), 1.0);
+        for column in (0..panel.len()).rev() {
+            for later in column + 1..panel.len() {
+                let factor = l[(panel.start + later, panel.start + column)];
+                let (mut to, from) = open.columns_range_pair_mut(column, later);
+                to.axpy(-factor, &from, 1.0);
+            }
+            open.column_mut(column).unscale_mut(l[(panel.start + column, panel.start + column)]);
+        }
+    }
+}
+
+fn panels(n: usize, width: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..n).step_by(width).map(move |start| start..(start + width).min(n))
+}

@@ -1,0 +1,46 @@
+use crate::LandmarkId;
+
+/// Why the filter refused a call. The filter is as it was before it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SlamError {
+    /// A control, pose, landmark or noise is NaN or infinite.
+    #[error("{what} is not finite")]
+    NotFinite {
+        /// What it is.
+        what: &'static str,
+    },
+    /// A noise or covariance is not symmetric positive (semi)definite.
+    #[error("{what} is not a covariance: its smallest eigenvalue or pivot is {value:e}, its asymmetry {asymmetry:e}")]
+    NotACovariance {
+        /// Which matrix.
+        what: &'static str,
+        /// The offending eigenvalue or pivot.
+        value: f64,
+        /// Largest difference across the diagonal.
+        asymmetry: f64,
+    },
+    /// Sizes do not fit.
+    #[error("{what} has dimension {got}, expected {expected}")]
+    Dimension {
+        /// What has the wrong size.
+        what: &'static str,
+        /// The size that fits.
+        expected: usize,
+        /// The size that came.
+        got: usize,
+    },
+    /// A landmark with this identity is in the map already.
+    #[error("landmark {0} is in the map already")]
+    LandmarkExists(LandmarkId),
+    /// A parameter is outside its range.
+    #[error("parameter {name} is {value}, must be {range}")]
+    Parameter {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
+}

@@ -1,0 +1,103 @@
+use std::fmt;
+
+use nalgebra::{DefaultAllocator, DimName, OMatrix, OVector};
+use wayfix_estimation_traits::{Jacobian, Manifold, Pose2, TangentMatrix, numerical_jacobian};
+
+use crate::{LandmarkDim, MeasurementDim, SlamAlloc};
+
+/// The identity of a landmark in the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LandmarkId(pub u32);
+
+impl fmt::Display for LandmarkId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.0)
+    }
+}
+
+/// One measurement of one landmark, with its identity where the sensor reads one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation<Z> {
+    /// The identity that the sensor reads.
+    pub label: Option<LandmarkId>,
+    /// What was measured.
+    pub measurement: Z,
+}
+
+/// A kind of landmark and how a sensor sees it: the one trait to implement for a new kind.
+///
+/// $`z = h(x_r, m) ⊞ v,\; v ∼ N(0, R)`$, and backwards $`m = g(x_r, z)`$.
+///
+/// **Laws**: the Jacobians are the derivatives of [`expected`](Self::expected) in tangent coordinates (body frame for the robot);
+/// [`noise`](Self::noise) is symmetric positive definite; `expected(robot, initialize(robot, z).landmark)` is `z` for every `z` the sensor can
+/// give. Where a model is undefined (a bearing to where the robot stands) it returns non-finite numbers and the filter counts the
+/// observation as rejected.
+pub trait LandmarkModel
+where
+    DefaultAllocator: SlamAlloc<LandmarkDim<Self>, MeasurementDim<Self>>,
+{
+    /// What is in the map: `Vector2` for points.
+    type Landmark: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
+    /// What the sensor gives.
+    type Measurement: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
+
+    /// $`h(x_r, m)`$: the measurement to expect.
+    fn expected(&self, robot: &Pose2<f64>, landmark: &Self::Landmark) -> Self::Measurement;
+
+    /// $`∂h/∂x_r`$. By default a central difference.
+    fn robot_jacobian(&self, robot: &Pose2<f64>, landmark: &Self::Landmark) -> Jacobian<Self::Measurement, Pose2<f64>> {
+        numerical_jacobian(|robot| self.expected(robot, landmark), robot)
+    }
+
+    /// $`∂h/∂m`$. By default a central difference.
+    fn landmark_jacobian(
+        &self,
+        robot: &Pose2<f64>,
+        landmark: &Self::Landmark,
+    ) -> Jacobian<Self::Measurement, Self::Landmark> {
+        numerical_jacobian(|landmark| self.expected(robot, landmark), landmark)
+    }
+
+    /// $`R`$ at a measurement: the expected one when correcting, the measured one when a landmark starts.
+    fn noise(&self, measurement: &Self::Measurement) -> TangentMatrix<Self::Measurement>;
+
+    /// Whether the measurement can be used at all. By default: whether it is finite.
+    fn is_usable(&self, measurement: &Self::Measurement) -> bool {
+        measurement.local(measurement).iter().all(|entry| entry.is_finite())
+    }
+
+    /// $`g(x_r, z)`$: a landmark from its first measurement.
+    fn initialize(&self, robot: &Pose2<f64>, measurement: &Self::Measurement) -> NewLandmark<Self::Landmark>;
+}
+
+/// A landmark at its start: where it is given the robot, and how that depends on the robot.
+///
+/// $`m = g(x_r, z)`$, $`P_{mm} = G_r P_{rr} G_r^T + N`$, $`P_{mr} = G_r P_{rr}`$.
+#[derive(Clone, Debug)]
+pub struct NewLandmark<L: Manifold<Scalar = f64>>
+where
+    DefaultAllocator: nalgebra::allocator::Allocator<L::Dim, nalgebra::Const<3>>
+        + nalgebra::allocator::Allocator<L::Dim, L::Dim>,
+{
+    /// $`g(x_r, z)`$.
+    pub landmark: L,
+    /// $`G_r = ∂g/∂x_r`$.
+    pub robot_jacobian: OMatrix<f64, L::Dim, nalgebra::Const<3>>,
+    /// $`N`$: covariance of the landmark were the robot known. $`G_z R G_z^T`$ for a sensor that fixes the landmark at once; wider in
+    /// the directions a single measurement leaves open.
+    pub covariance: TangentMatrix<L>,
+}
+
+/// What a measurement said beyond what was expected.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Innovation<Z: Manifold<Scalar = f64>>
+where
+    DefaultAllocator: nalgebra::allocator::Allocator<Z::Dim> + nalgebra::allocator::Allocator<Z::Dim, Z::Dim>,
+{
+    /// $`ν = z ⊟ h(x)`$.
+    pub residual: OVector<f64, Z::Dim>,
+    /// $`S = H P H^T + R`$.
+    pub covariance: TangentMatrix<Z>,
+    /// Normalized innovation squared, $`ν^T S^{-1} ν`$: chi-squared with `dim Z` degrees of freedom for a consistent filter.
+    pub nis: f64,
+}

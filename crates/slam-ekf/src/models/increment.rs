@@ -1,0 +1,51 @@
+use nalgebra::{Matrix3, Vector3};
+use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
+
+/// Odometry increments: the control is the motion in the robot frame since the last one, $`x' = x ∘ u`$.
+///
+/// The noise is a variance per metre and per radian travelled, so that the result does not depend on how finely a log
+/// cuts the path, and a robot that stands still stays certain.
+///
+/// The defaults are what `σ = 0.02 m, 0.005 rad` over a step of a quarter of a metre means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IncrementMotion {
+    /// Variance along and across the motion per metre, m²/m.
+    pub translation_variance_per_meter: f64,
+    /// Heading variance per metre, rad²/m.
+    pub heading_variance_per_meter: f64,
+    /// Heading variance per radian turned, rad²/rad.
+    pub heading_variance_per_radian: f64,
+}
+
+impl Default for IncrementMotion {
+    fn default() -> Self {
+        Self {
+            translation_variance_per_meter: 0.02 * 0.02 / 0.25,
+            heading_variance_per_meter: 0.005 * 0.005 / 0.25,
+            heading_variance_per_radian: 1e-4,
+        }
+    }
+}
+
+impl MotionModel for IncrementMotion {
+    type State = Pose2<f64>;
+    type Control = Pose2<f64>;
+
+    fn propagate(&self, pose: &Pose2<f64>, increment: &Pose2<f64>) -> Pose2<f64> {
+        pose.compose(increment)
+    }
+
+    /// $`\begin{pmatrix} R(u_θ)^T & R(u_θ)^T (-u_y, u_x)^T \\ 0 & 1 \end{pmatrix} = \mathrm{Ad}_{u^{-1}}`$: in body coordinates it depends on
+    /// the increment alone.
+    fn jacobian(&self, _: &Pose2<f64>, increment: &Pose2<f64>) -> Matrix3<f64> {
+        increment.inverse().adjoint()
+    }
+
+    fn noise(&self, _: &Pose2<f64>, increment: &Pose2<f64>) -> Matrix3<f64> {
+        let distance = increment.translation.norm();
+        let translation = self.translation_variance_per_meter * distance;
+        let heading =
+            self.heading_variance_per_meter * distance + self.heading_variance_per_radian * increment.heading().abs();
+        Matrix3::from_diagonal(&Vector3::new(translation, translation, heading))
+    }
+}

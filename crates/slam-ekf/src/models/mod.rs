@@ -1,0 +1,11 @@
+//! Motions and sensors of planar robots.
+
+mod increment;
+mod range_bearing;
+mod relative_position;
+mod velocity;
+
+pub use increment::IncrementMotion;
+pub use range_bearing::{RangeBearing, RangeBearingSensor};
+pub use relative_position::{RelativePosition, RelativePositionSensor};
+pub use velocity::{VelocityControl, VelocityMotion};

@@ -1,0 +1,53 @@
+use nalgebra::{Matrix2, Matrix2x3, Vector2};
+use wayfix_estimation_traits::{Pose2, TangentMatrix};
+
+use crate::{LandmarkModel, NewLandmark};
+
+/// Position of a point in the robot frame, metres: x forward, y left.
+pub type RelativePosition = Vector2<f64>;
+
+/// Point landmarks seen as a position in the robot frame: $`z = R^T (m - t)`$.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelativePositionSensor {
+    /// Standard deviation of either coordinate, m.
+    pub sigma: f64,
+}
+
+impl LandmarkModel for RelativePositionSensor {
+    type Landmark = Vector2<f64>;
+    type Measurement = RelativePosition;
+
+    fn expected(&self, robot: &Pose2<f64>, landmark: &Vector2<f64>) -> RelativePosition {
+        robot.inverse_transform(landmark)
+    }
+
+    fn robot_jacobian(&self, robot: &Pose2<f64>, landmark: &Vector2<f64>) -> Matrix2x3<f64> {
+        let q = robot.inverse_transform(landmark);
+        Matrix2x3::new(
+            -1.0, 0.0, q.y, //
+            0.0, -1.0, -q.x,
+        )
+    }
+
+    fn landmark_jacobian(&self, robot: &Pose2<f64>, _: &Vector2<f64>) -> Matrix2<f64> {
+        robot.rotation_matrix().transpose()
+    }
+
+    fn noise(&self, _: &RelativePosition) -> TangentMatrix<RelativePosition> {
+        Matrix2::identity() * self.sigma.powi(2)
+    }
+
+    fn initialize(&self, robot: &Pose2<f64>, measurement: &RelativePosition) -> NewLandmark<Vector2<f64>> {
+        let rotation = robot.rotation_matrix();
+        let turned = rotation * Vector2::new(-measurement.y, measurement.x);
+        NewLandmark {
+            landmark: robot.transform(measurement),
+            robot_jacobian: Matrix2x3::from_columns(&[
+                rotation.column(0).into_owned(),
+                rotation.column(1).into_owned(),
+                turned,
+            ]),
+            covariance: self.noise(measurement), // isotropic, so rotating it changes nothing
+        }
+    }
+}
