@@ -1,4 +1,4 @@
-use nalgebra::{Const, RealField, Vector1};
+use nalgebra::{Const, Matrix1, RealField, Vector1};
 
 use crate::{LieGroup, Manifold, Tangent, TangentMatrix};
 
@@ -16,14 +16,13 @@ pub fn wrap_angle<T: RealField + Copy>(angle: T) -> T {
         return angle;
     }
     let wrapped = angle - T::two_pi() * ((angle - T::pi()) / T::two_pi()).ceil();
-    // Rounding can land a hair outside on either side.
-    if wrapped <= -T::pi() {
-        wrapped + T::two_pi()
-    } else if wrapped > T::pi() {
-        wrapped - T::two_pi()
-    } else {
-        wrapped
+    if wrapped > -T::pi() && wrapped <= T::pi() {
+        return wrapped;
     }
+    // Rounding lands a hair outside, or anywhere for angles of millions of turns, which sine and cosine reduce exactly.
+    let (sin, cos) = angle.sin_cos();
+    let direction = sin.atan2(cos);
+    if direction <= -T::pi() { T::pi() } else { direction }
 }
 
 /// A direction in the plane, kept in (−π, π]; differences wrap by construction.
@@ -59,6 +58,9 @@ impl<T: RealField + Copy> Manifold for Angle<T> {
     }
     fn local(&self, other: &Self) -> Vector1<T> {
         Vector1::new(wrap_angle(other.0 - self.0))
+    }
+    fn chart_jacobian(&self, _: &Self) -> Matrix1<T> {
+        Matrix1::identity()
     }
 }
 
@@ -98,8 +100,15 @@ mod tests {
                 (wrapped.sin() - angle.sin()).abs() < 1e-12 && (wrapped.cos() - angle.cos()).abs() < 1e-12
             );
         }
-        assert_eq!(wrap_angle(3.0 * PI), PI);
-        assert_eq!(wrap_angle(-3.0 * PI), PI);
+        assert_eq!(wrap_angle(-PI), PI);
+        for odd in [3.0, -3.0, 5.0, -7.0] {
+            // The product is not exactly an odd multiple of π, so either end is right.
+            assert!((wrap_angle(odd * PI).abs() - PI).abs() < 1e-14);
+        }
+        for huge in [1e6, -1e16, 1e300, f64::MAX, f64::MIN] {
+            let wrapped = wrap_angle(huge);
+            assert!(wrapped > -PI && wrapped <= PI, "{huge} wrapped to {wrapped}");
+        }
         assert!(wrap_angle(f64::NAN).is_nan() && wrap_angle(f64::INFINITY).is_nan());
     }
 }

@@ -1,10 +1,11 @@
-use nalgebra::{Const, DefaultAllocator, Dim, OMatrix, RealField, allocator::Allocator};
+use nalgebra::{ComplexField, Const, DefaultAllocator, Dim, OMatrix, allocator::Allocator};
 
-use crate::{Jacobian, Manifold, Tangent};
+use crate::{Jacobian, Manifold, Tangent, epsilon};
 
 /// The central-difference derivative of `function` at `point`, in tangent coordinates.
 ///
-/// $`J_{·i} = \big(f(x ⊞ h e_i) ⊟ f(x) \;-\; (f(x ⊞ -h e_i) ⊟ f(x))\big) / 2h`$ with $`h = ε^{1/3}`$, error about $`ε^{2/3}`$ (4e-11 for `f64`).
+/// $`J_{·i} = \big(f(x ⊞ h e_i) ⊟ f(x) \;-\; (f(x ⊞ -h e_i) ⊟ f(x))\big) / 2h`$ with $`h = ε^{1/3}`$, error about $`ε^{2/3}`$ (4e-11 for `f64`)
+/// where function and derivatives are of order one; values of size $`s`$ add $`ε s / h`$.
 ///
 /// ```
 /// use nalgebra::{Vector1, Vector2};
@@ -19,8 +20,21 @@ where
     Z: Manifold<Scalar = X::Scalar>,
     DefaultAllocator: Allocator<X::Dim> + Allocator<Z::Dim> + Allocator<Z::Dim, X::Dim>,
 {
+    central_difference(function, point, epsilon::<X::Scalar>().cbrt())
+}
+
+/// [`numerical_jacobian`] with a step of the caller's.
+pub(crate) fn central_difference<X, Z>(
+    function: impl Fn(&X) -> Z,
+    point: &X,
+    step: X::Scalar,
+) -> Jacobian<Z, X>
+where
+    X: Manifold,
+    Z: Manifold<Scalar = X::Scalar>,
+    DefaultAllocator: Allocator<X::Dim> + Allocator<Z::Dim> + Allocator<Z::Dim, X::Dim>,
+{
     let value = function(point);
-    let step = cube_root_epsilon::<X::Scalar>();
     let mut jacobian = OMatrix::zeros_generic(value.dim(), point.dim());
     for i in 0..point.dim().value() {
         let difference = |signed_step| {
@@ -32,8 +46,4 @@ where
         jacobian.set_column(i, &column);
     }
     jacobian
-}
-
-fn cube_root_epsilon<T: RealField + Copy>() -> T {
-    T::default_epsilon().cbrt()
 }

@@ -50,10 +50,12 @@ pub use derivative::numerical_jacobian;
 pub use lie_group::LieGroup;
 pub use manifold::{Jacobian, Manifold, Tangent, TangentMatrix};
 pub use motion::{MotionModel, SampleMotion};
-pub use policy::{Always, And, EveryN, Never, Not, Or, Policy, When, always, every_n, never, when};
+pub use policy::{
+    Always, And, EveryN, Never, Not, Or, Policy, PolicyExt, When, always, every_n, never, when,
+};
 pub use pose2::Pose2;
 pub use pose3::Pose3;
-pub use scalar::to_f64;
+pub use scalar::{epsilon, to_f64};
 pub use sensor::{LikelihoodModel, LogWeight, SensorModel};
 
 /// The matrix library of every public signature, re-exported because its versions do not mix.

@@ -1,5 +1,7 @@
 use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, RealField, allocator::Allocator};
 
+use crate::{StateAlloc, numerical_jacobian};
+
 /// A tangent vector of `X`.
 pub type Tangent<X> = OVector<<X as Manifold>::Scalar, <X as Manifold>::Dim>;
 
@@ -16,7 +18,8 @@ pub type Jacobian<Z, X> = OMatrix<<X as Manifold>::Scalar, <Z as Manifold>::Dim,
 /// 1. $`x ⊞ 0 = x`$,
 /// 2. $`(x ⊞ δ) ⊟ x = δ`$ for every δ shorter than the injectivity radius (π for angles),
 /// 3. $`x ⊞ (y ⊟ x) = y`$ for every $`y`$,
-/// 4. both are finite for finite arguments, and `dim` does not change under `retract`.
+/// 4. both are finite for finite arguments, and `dim` does not change under `retract`,
+/// 5. [`chart_jacobian`](Self::chart_jacobian) is the derivative it says it is.
 ///
 /// [`laws::manifold`](crate::laws::manifold) checks them. Vectors (static and dynamic), [`Angle`](crate::Angle),
 /// [`Pose2`](crate::Pose2) and [`Pose3`](crate::Pose3) implement it. [Hertzberg et al. 2013, Def. 1]
@@ -35,6 +38,16 @@ pub trait Manifold: Clone {
     fn local(&self, other: &Self) -> Tangent<Self>
     where
         DefaultAllocator: Allocator<Self::Dim>;
+
+    /// $`∂ \big((x ⊞ δ) ⊟ y\big) / ∂δ`$ at $`δ = 0`$ with $`y`$ = `at`: carries a covariance at $`x`$ to the tangent space at $`y`$.
+    ///
+    /// The identity for $`y = x`$ and on flat spaces. By default a central difference.
+    fn chart_jacobian(&self, at: &Self) -> TangentMatrix<Self>
+    where
+        DefaultAllocator: StateAlloc<Self::Dim>,
+    {
+        numerical_jacobian(|x: &Self| at.local(x), self)
+    }
 }
 
 /// Vectors are the flat manifold: $`x ⊞ δ = x + δ`$.
@@ -52,5 +65,11 @@ where
     }
     fn local(&self, other: &Self) -> OVector<T, D> {
         other - self
+    }
+    fn chart_jacobian(&self, _: &Self) -> OMatrix<T, D, D>
+    where
+        DefaultAllocator: StateAlloc<D>,
+    {
+        OMatrix::identity_generic(self.dim(), self.dim())
     }
 }

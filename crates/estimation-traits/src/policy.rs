@@ -3,7 +3,7 @@
 /// `C` is what the decision looks at: an effective sample size, a distance travelled, `()` for none.
 ///
 /// ```
-/// use wayfix_estimation_traits::{Policy, every_n, when};
+/// use wayfix_estimation_traits::{Policy, PolicyExt, every_n, when};
 /// // every second step, but only while the effective share of particles is below one half
 /// let mut resample = every_n(2).and(when(|share: &f64| *share < 0.5));
 /// let fired: Vec<bool> = [0.4, 0.4, 0.9, 0.9, 0.1, 0.1].iter().map(|share| resample.fires(share)).collect();
@@ -12,37 +12,32 @@
 pub trait Policy<C: ?Sized> {
     /// Whether to act now. Called once a step: counting policies count here.
     fn fires(&mut self, context: &C) -> bool;
+}
 
+/// Composition of policies, for every policy; apart from [`Policy`] so that no context type has to be spelt out.
+pub trait PolicyExt: Sized {
     /// Acts when both do. Both are always asked, so counters keep counting.
-    fn and<P: Policy<C>>(self, other: P) -> And<Self, P>
-    where
-        Self: Sized,
-    {
+    fn and<P>(self, other: P) -> And<Self, P> {
         And(self, other)
     }
     /// Acts when either does. Both are always asked, so counters keep counting.
-    fn or<P: Policy<C>>(self, other: P) -> Or<Self, P>
-    where
-        Self: Sized,
-    {
+    fn or<P>(self, other: P) -> Or<Self, P> {
         Or(self, other)
     }
     /// Acts when this one does not.
-    fn not(self) -> Not<Self>
-    where
-        Self: Sized,
-    {
+    fn not(self) -> Not<Self> {
         Not(self)
     }
 }
+impl<P> PolicyExt for P {}
 
-/// See [`Policy::and`].
+/// See [`PolicyExt::and`].
 #[derive(Clone, Copy, Debug)]
 pub struct And<A, B>(A, B);
-/// See [`Policy::or`].
+/// See [`PolicyExt::or`].
 #[derive(Clone, Copy, Debug)]
 pub struct Or<A, B>(A, B);
-/// See [`Policy::not`].
+/// See [`PolicyExt::not`].
 #[derive(Clone, Copy, Debug)]
 pub struct Not<A>(A);
 /// See [`always`].

@@ -64,6 +64,10 @@ impl<T: RealField + Copy> Manifold for Pose2<T> {
         let t = self.inverse_transform(&other.translation);
         Vector3::new(t.x, t.y, wrap_angle(other.heading() - self.heading()))
     }
+    fn chart_jacobian(&self, at: &Self) -> Matrix3<T> {
+        let r = Self::new(T::zero(), T::zero(), self.heading() - at.heading()).rotation_matrix();
+        r.to_homogeneous()
+    }
 }
 
 impl<T: RealField + Copy> LieGroup for Pose2<T> {
@@ -115,13 +119,12 @@ impl<T: RealField + Copy> LieGroup for Pose2<T> {
 
 /// V(ω): where a unit body velocity ends after turning by ω on the way.
 fn arc_matrix<T: RealField + Copy>(omega: T) -> Matrix2<T> {
-    let (sin, cos) = omega.sin_cos();
-    let small = omega.abs() < T::default_epsilon().sqrt().sqrt();
-    let (a, b) = if small {
-        let (half, sixth): (T, T) = (nalgebra::convert(0.5), nalgebra::convert(1.0 / 6.0));
-        (T::one() - omega * omega * sixth, omega * half)
-    } else {
-        (sin / omega, (T::one() - cos) / omega)
-    };
+    if omega == T::zero() {
+        return Matrix2::identity();
+    }
+    let half: T = nalgebra::convert(0.5);
+    let half_sin = (omega * half).sin();
+    // 1 - cos ω = 2 sin² ω/2 keeps its digits near 0, where the difference loses them.
+    let (a, b) = (omega.sin() / omega, half_sin * half_sin / (omega * half));
     Matrix2::new(a, -b, b, a)
 }

@@ -10,3 +10,12 @@ pub fn to_f64<T: RealField>(value: T) -> f64 {
     // Called unchecked for fields beyond the reals; `f32` and `f64` have nothing to check.
     nalgebra::convert_unchecked(value)
 }
+
+/// The scalar's rounding unit: the distance from 1 to the next number.
+///
+/// ```
+/// assert_eq!(wayfix_estimation_traits::epsilon::<f32>(), f32::EPSILON);
+/// ```
+pub fn epsilon<T: RealField>() -> T {
+    T::default_epsilon()
+}
