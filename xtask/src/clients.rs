@@ -4,7 +4,7 @@
 //! Where a program is missing its check is skipped, except under `CI=true`, where it is required.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode, Stdio};
+use std::process::{ExitCode, Stdio};
 
 use anyhow::{Context, Result, bail, ensure};
 
@@ -62,9 +62,14 @@ fn read_with_python(logs: &[PathBuf]) -> Result<()> {
 /// `convert` exits with 0 for files it does not understand, so the recording is asked what it holds.
 fn convert_with_rerun(rerun: &Path, log: &Path) -> Result<()> {
     let recording = log.with_extension("rrd");
-    shell::check(quiet(&mut shell::command(rerun, &["mcap", "check"])).arg(log))?;
-    shell::check(quiet(&mut shell::command(rerun, &["mcap", "convert"])).arg(log).arg("-o").arg(&recording))?;
-    let listing = shell::output(shell::command(rerun, &["rrd", "print"]).arg(&recording))?;
+    let rerun = |args: &[&str]| {
+        let mut command = shell::command(rerun, args);
+        command.env("RUST_LOG", "error").stdout(Stdio::null());
+        command
+    };
+    shell::check(rerun(&["mcap", "check"]).arg(log))?;
+    shell::check(rerun(&["mcap", "convert"]).arg(log).arg("-o").arg(&recording))?;
+    let listing = shell::output(rerun(&["rrd", "print"]).arg(&recording).stdout(Stdio::piped()))?;
     std::fs::remove_file(&recording)?;
     let topics = topics_in(&listing);
     ensure!(!topics.is_empty(), "Rerun found no message in {}", log.display());
@@ -112,10 +117,6 @@ fn open_in_browser(browser: &str, page: &Path) -> Result<()> {
     ensure!(picture.is_file(), "{browser} drew nothing of {}", page.display());
     println!("browser: {}: {}", name(page), picture.display());
     Ok(())
-}
-
-fn quiet(command: &mut Command) -> &mut Command {
-    command.stdout(Stdio::null())
 }
 
 fn name(path: &Path) -> String {

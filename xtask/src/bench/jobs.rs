@@ -9,8 +9,10 @@ use super::Options;
 use super::table::{Measurement, parse_line};
 use crate::shell;
 
-/// The logs that other programs read too; published figures exist for them (docs/performance.md).
-const SLAM_LOGS: [&str; 3] = ["slam_100", "slam_200", "slam_400"];
+/// Log and association: logs that other programs read too.
+type SlamCase = (&'static str, &'static str);
+const KNOWN: [SlamCase; 3] = [("slam_100", "known"), ("slam_200", "known"), ("slam_400", "known")];
+const UNKNOWN: [SlamCase; 1] = [("slam_100", "nn")];
 
 /// Finds the measurement in a line of output.
 type Reader = Box<dyn Fn(&str) -> Option<Measurement>>;
@@ -80,12 +82,10 @@ fn crates_with(path: &str) -> Result<Vec<String>> {
 }
 
 fn slam_ours(options: &Options) -> Vec<Job> {
-    slam_jobs(options, "wayfix", |log, job| {
-        let log = log.display().to_string();
-        let args =
-            ["run", "slam", "--log", &log, "--format", "range-bearing", "--association", "known", "--json"];
-        job.command = shell::wayfix(&args);
-        let name = job_name(Path::new(&log));
+    slam_jobs(options, "wayfix", &[&KNOWN[..], &UNKNOWN].concat(), |log, association, job| {
+        job.command = shell::wayfix(&["run", "slam", "--format", "range-bearing", "--json"]);
+        job.command.args(["--association", association, "--log"]).arg(log);
+        let name = job_name(log, association);
         job.read = Box::new(move |line| {
             let nanoseconds = 1e3 * json_number(line, "step_mean_us")?;
             Some(Measurement { job: name.clone(), program: "wayfix".into(), nanoseconds })
@@ -102,7 +102,7 @@ fn python_peers(options: &Options) -> Vec<Job> {
         job("kalman numpy OpenCV filterpy", shell::command(&python, &["peers/opencv_filterpy_kalman.py"]));
     kalman.missing = pypi(&["numpy", "cv2", "filterpy"], "numpy opencv-python-headless filterpy");
     let mut jobs = vec![kalman];
-    jobs.extend(slam_jobs(options, "numpy", |log, job| {
+    jobs.extend(slam_jobs(options, "numpy", &KNOWN, |log, _, job| {
         job.command = shell::command(&python, &["peers/numpy_ekf_slam.py"]);
         job.command.arg(log);
         job.missing = pypi(&["numpy"], "numpy");
@@ -115,9 +115,9 @@ fn mrpt(options: &Options) -> Vec<Job> {
     let missing = build_mrpt(&build).err().map(|error| {
         format!("{error:#} (apt-get install --no-install-recommends libmrpt-slam-dev libmrpt-apps-dev cmake libeigen3-dev)")
     });
-    slam_jobs(options, "MRPT", |log, job| {
+    slam_jobs(options, "MRPT", &[&KNOWN[..], &UNKNOWN].concat(), |log, association, job| {
         job.command = shell::command(build.join("mrpt_ekf_slam"), &[]);
-        job.command.arg(log).arg("known");
+        job.command.arg(log).arg(association);
         job.missing.clone_from(&missing);
     })
 }
@@ -128,8 +128,13 @@ fn build_mrpt(build: &Path) -> Result<()> {
     shell::output(shell::command("cmake", &["--build"]).arg(build)).map(drop)
 }
 
-/// One job a log, completed by `finish`; a single skipped one when there are no logs.
-fn slam_jobs(options: &Options, program: &str, mut finish: impl FnMut(&Path, &mut Job)) -> Vec<Job> {
+/// One job a case, completed by `finish`; a single skipped one when there are no logs.
+fn slam_jobs(
+    options: &Options,
+    program: &str,
+    cases: &[SlamCase],
+    mut finish: impl FnMut(&Path, &str, &mut Job),
+) -> Vec<Job> {
     let Some(folder) = options.data.as_ref().map(|data| shell::root().join(data).join("range_bearing"))
     else {
         let mut skipped = job(format!("ekf_slam_step {program}"), Command::new("true"));
@@ -137,21 +142,21 @@ fn slam_jobs(options: &Options, program: &str, mut finish: impl FnMut(&Path, &mu
             Some("no logs: give --data DIR or WAYFIX_DATA, with range_bearing/slam_*.txt in it".into());
         return vec![skipped];
     };
-    let logs = SLAM_LOGS.map(|name| folder.join(name).with_extension("txt"));
-    logs.iter()
-        .map(|log| {
-            let mut job = job(format!("{} {program}", job_name(log)), Command::new("true"));
-            finish(log, &mut job);
-            if !log.is_file() {
-                job.missing = Some(format!("{} is not there", log.display()));
-            }
-            job
-        })
-        .collect()
+    let complete = |(name, association): &SlamCase| {
+        let log = folder.join(name).with_extension("txt");
+        let mut job = job(format!("{} {program}", job_name(&log, association)), Command::new("true"));
+        finish(&log, association, &mut job);
+        if !log.is_file() {
+            job.missing = Some(format!("{} is not there", log.display()));
+        }
+        job
+    };
+    cases.iter().map(complete).collect()
 }
 
-fn job_name(log: &Path) -> String {
-    format!("ekf_slam_step/{}", log.file_stem().unwrap_or_default().to_string_lossy())
+fn job_name(log: &Path, association: &str) -> String {
+    let name = format!("ekf_slam_step/{}", log.file_stem().unwrap_or_default().to_string_lossy());
+    if association == "known" { name } else { format!("{name}/{association}") }
 }
 
 /// The number behind `"key":` in a line of JSON.
@@ -179,7 +184,7 @@ mod tests {
         let options =
             Options { peers: false, data: Some(PathBuf::from("no-such-folder")), filter: String::new() };
         let jobs = slam_ours(&options);
-        assert_eq!(jobs.len(), SLAM_LOGS.len());
+        assert_eq!(jobs.len(), KNOWN.len() + UNKNOWN.len());
         assert!(
             jobs.iter().all(|job| job.missing.as_deref().is_some_and(|text| text.ends_with("is not there")))
         );
