@@ -1,1 +1,28 @@
 //! Kalman filters in linear, extended, unscented, square-root, information and switching forms.
+
+mod carry;
+mod check;
+mod error;
+mod filter;
+mod form;
+mod forms;
+mod gating;
+mod innovation;
+mod linear;
+mod linearize;
+mod product;
+mod update;
+
+pub use error::KalmanError;
+pub use filter::{ExtendedKalmanFilter, GaussianFilter};
+pub use form::Form;
+pub use forms::{
+    Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, PlainExtended, Sequential, SquareRoot, Unscented,
+};
+pub use gating::ChiSquaredGate;
+pub use innovation::Innovation;
+pub use linear::{KalmanFilter, LinearMotion, LinearSensor};
+pub use update::Update;
+
+/// The matrix library of every public signature, re-exported because its versions do not mix.
+pub use nalgebra;

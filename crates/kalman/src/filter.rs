@@ -1,0 +1,137 @@
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
+use wayfix_gaussian_core::Gaussian;
+
+use crate::{ChiSquaredGate, Extended, Form, Innovation, KalmanError, Update, gating::gated};
+
+/// A Gaussian filter: a motion model, a [`Form`], and what is believed now.
+///
+/// Sensors come with the measurements, so that one filter serves many of them.
+///
+/// ```
+/// use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+/// use wayfix_estimation_traits::{MotionModel, Pose2, SensorModel};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::ExtendedKalmanFilter;
+///
+/// /// Odometry increments in the body frame; the Jacobian is taken numerically.
+/// struct Odometry;
+/// impl MotionModel for Odometry {
+///     type State = Pose2<f64>;
+///     type Control = Vector3<f64>;
+///     fn propagate(&self, pose: &Pose2<f64>, step: &Vector3<f64>) -> Pose2<f64> {
+///         wayfix_estimation_traits::Manifold::retract(pose, step)
+///     }
+///     fn noise(&self, _: &Pose2<f64>, _: &Vector3<f64>) -> Matrix3<f64> {
+///         Matrix3::identity() * 1e-4
+///     }
+/// }
+/// /// A position fix.
+/// struct Fix;
+/// impl SensorModel for Fix {
+///     type State = Pose2<f64>;
+///     type Measurement = Vector2<f64>;
+///     fn expected(&self, pose: &Pose2<f64>) -> Vector2<f64> {
+///         pose.translation
+///     }
+///     fn noise(&self, _: &Pose2<f64>) -> Matrix2<f64> {
+///         Matrix2::identity() * 0.01
+///     }
+/// }
+/// let prior = Gaussian::new(Pose2::new(0.0, 0.0, 0.0), Matrix3::identity())?;
+/// let mut filter = ExtendedKalmanFilter::new(Odometry, Default::default(), prior)?;
+/// filter.predict(&Vector3::new(1.0, 0.0, 0.0))?;
+/// let innovation = filter.update(&Fix, &Vector2::new(1.2, 0.1))?;
+/// assert!(innovation.nis() < 1.0);
+/// assert!((filter.estimate().mean().x() - 1.2).abs() < 0.01);
+/// # Ok::<(), wayfix_kalman::KalmanError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct GaussianFilter<M: MotionModel, F: Form<M::State>>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    motion: M,
+    form: F,
+    belief: F::Belief,
+}
+
+/// [`GaussianFilter`] in [`Extended`] form.
+pub type ExtendedKalmanFilter<M> = GaussianFilter<M, Extended>;
+
+impl<M: MotionModel, F: Form<M::State>> GaussianFilter<M, F>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    /// A filter that starts from `prior`.
+    ///
+    /// # Errors
+    /// When the prior's covariance is not positive definite beyond rounding.
+    pub fn new(motion: M, form: F, prior: Gaussian<M::State>) -> Result<Self, KalmanError> {
+        let belief = form.believe(&prior)?;
+        Ok(Self { motion, form, belief })
+    }
+
+    /// What is believed now, as a Gaussian.
+    pub fn estimate(&self) -> Gaussian<M::State> {
+        self.form.gaussian(&self.belief)
+    }
+    /// What is believed now, as the form carries it.
+    pub fn belief(&self) -> &F::Belief {
+        &self.belief
+    }
+    /// The motion model.
+    pub fn motion(&self) -> &M {
+        &self.motion
+    }
+
+    /// Moves the belief by `control`.
+    ///
+    /// # Errors
+    /// When the model gives something unusable for this control; the filter is unchanged.
+    pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
+        self.belief = self.form.predict(&self.belief, &self.motion, control)?;
+        Ok(())
+    }
+
+    /// Corrects the belief by `measurement`.
+    ///
+    /// # Errors
+    /// When model or measurement are unusable; the filter is unchanged.
+    pub fn update<S>(
+        &mut self,
+        sensor: &S,
+        measurement: &S::Measurement,
+    ) -> Result<Innovation<M::State, S::Measurement>, KalmanError>
+    where
+        S: SensorModel<State = M::State>,
+        DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let (innovation, posterior) = self.form.update(&self.belief, sensor, measurement, |_| true)?;
+        if let Some(posterior) = posterior {
+            self.belief = posterior;
+        }
+        Ok(innovation)
+    }
+
+    /// Corrects the belief by `measurement` when there is one and `gate` lets it in.
+    ///
+    /// # Errors
+    /// When model or measurement are unusable; the filter is unchanged.
+    pub fn update_gated<S>(
+        &mut self,
+        sensor: &S,
+        measurement: Option<&S::Measurement>,
+        gate: &ChiSquaredGate,
+    ) -> Result<Update<M::State, S::Measurement>, KalmanError>
+    where
+        S: SensorModel<State = M::State>,
+        DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let (outcome, posterior) = gated(&self.form, &self.belief, sensor, measurement, gate)?;
+        if let Some(posterior) = posterior {
+            self.belief = posterior;
+        }
+        Ok(outcome)
+    }
+}

@@ -1,0 +1,68 @@
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
+use wayfix_gaussian_core::Gaussian;
+
+use crate::{
+    Form, Innovation,
+    carry::carried,
+    check,
+    error::Checked,
+    linearize::{linearize_motion, linearize_sensor},
+    product::{joseph, propagated_covariance},
+};
+
+/// The extended Kalman filter in the form of Joseph, on any manifold.
+///
+/// Predict: $`x = f(x, u),\; P = F P F^T + Q`$. Update: $`S = H P H^T + R,\; K = P H^T S^{-1},\; x = x ⊞ K y,\;
+/// P = (I - KH) P (I - KH)^T + K R K^T`$. On linear models it is the Kalman filter. [Bar-Shalom et al. 2001, §10.3]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extended;
+
+impl<X: Manifold> Form<X> for Extended
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    type Belief = Gaussian<X>;
+
+    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
+        check::positive_definite("prior", gaussian.covariance())?;
+        Ok(gaussian.clone())
+    }
+
+    fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
+        belief.clone()
+    }
+
+    fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>
+    where
+        M: MotionModel<State = X>,
+    {
+        let linear = linearize_motion(motion, belief.mean(), control)?;
+        let covariance = propagated_covariance(&linear.jacobian, belief.covariance(), &linear.noise)?;
+        Ok(Gaussian::from_parts_unchecked(linear.mean, covariance))
+    }
+
+    fn update<S>(
+        &self,
+        belief: &Gaussian<X>,
+        sensor: &S,
+        measurement: &S::Measurement,
+        admits: impl FnOnce(&Innovation<X, S::Measurement>) -> bool,
+    ) -> Checked<(Innovation<X, S::Measurement>, Option<Gaussian<X>>)>
+    where
+        S: SensorModel<State = X>,
+        DefaultAllocator: UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let prior = belief.covariance();
+        let linear = linearize_sensor(sensor, belief.mean(), measurement)?;
+        let innovation = Innovation::of_linearized(linear.residual, prior, &linear.jacobian, &linear.noise)?;
+        if !admits(&innovation) {
+            return Ok((innovation, None));
+        }
+        let gain = innovation.gain();
+        let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
+        let covariance = joseph(prior, &gain, &linear.jacobian, &linear.noise)?;
+        let covariance = carried(covariance, belief.mean(), &mean)?;
+        Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
+    }
+}

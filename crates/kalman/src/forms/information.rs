@@ -1,0 +1,122 @@
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, TangentMatrix, UpdateAlloc};
+use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
+
+use crate::{
+    Form, Innovation,
+    carry::transport,
+    check,
+    error::Checked,
+    linearize::{linearize_motion, linearize_sensor},
+};
+
+/// The information form: carries $`Λ = P^{-1}`$, so that measurements add up.
+///
+/// Update: $`Λ = Λ + H^T R^{-1} H`$; predict: $`Λ = (F Λ^{-1} F^T + Q)^{-1}`$. [Thrun et al. 2005, Table 3.5]
+/// Everything is solved with Cholesky factors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Information;
+
+/// A mean and the inverse of its covariance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InformationBelief<X: Manifold>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    mean: X,
+    information: TangentMatrix<X>,
+}
+
+impl<X: Manifold> InformationBelief<X>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    /// The mean.
+    pub fn mean(&self) -> &X {
+        &self.mean
+    }
+    /// $`Λ`$ in the tangent space at the mean.
+    pub fn information(&self) -> &TangentMatrix<X> {
+        &self.information
+    }
+}
+
+impl<X: Manifold> Form<X> for Information
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    type Belief = InformationBelief<X>;
+
+    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<InformationBelief<X>> {
+        let information = inverse("prior", gaussian.mean(), gaussian.covariance())?;
+        Ok(InformationBelief { mean: gaussian.mean().clone(), information })
+    }
+
+    fn gaussian(&self, belief: &InformationBelief<X>) -> Gaussian<X> {
+        let covariance = inverse("information", &belief.mean, &belief.information)
+            .expect("invariant: a belief's information is positive definite beyond rounding");
+        Gaussian::from_parts_unchecked(belief.mean.clone(), covariance)
+    }
+
+    fn predict<M>(&self, belief: &Self::Belief, motion: &M, control: &M::Control) -> Checked<Self::Belief>
+    where
+        M: MotionModel<State = X>,
+    {
+        let linear = linearize_motion(motion, &belief.mean, control)?;
+        let factor = cholesky("information", &belief.information)?;
+        // W = L⁻¹ Fᵀ, so that Wᵀ W = F Λ⁻¹ Fᵀ.
+        let mut whitened = linear.jacobian.transpose();
+        factor.l_dirty().solve_lower_triangular_mut(&mut whitened);
+        let covariance = whitened.transpose() * &whitened + linear.noise;
+        let information = inverse("predicted", &linear.mean, &covariance)?;
+        Ok(InformationBelief { mean: linear.mean, information })
+    }
+
+    fn update<S>(
+        &self,
+        belief: &Self::Belief,
+        sensor: &S,
+        measurement: &S::Measurement,
+        admits: impl FnOnce(&Innovation<X, S::Measurement>) -> bool,
+    ) -> Checked<(Innovation<X, S::Measurement>, Option<Self::Belief>)>
+    where
+        S: SensorModel<State = X>,
+        DefaultAllocator: UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let linear = linearize_sensor(sensor, &belief.mean, measurement)?;
+        let cross_covariance = cholesky("information", &belief.information)?.solve(&linear.jacobian.transpose());
+        let covariance = &linear.jacobian * &cross_covariance + &linear.noise;
+        let innovation = Innovation::new(linear.residual, covariance, cross_covariance)?;
+        if !admits(&innovation) {
+            return Ok((innovation, None));
+        }
+        let noise = cholesky("sensor noise", &linear.noise)?;
+        let weighted = linear.jacobian.transpose();
+        let mut information = &belief.information + &weighted * noise.solve(&linear.jacobian);
+        symmetrize(&mut information);
+        check::positive_definite("posterior information", &information)?;
+        let pull = weighted * noise.solve(innovation.residual());
+        let offset = cholesky("posterior information", &information)?.solve(&pull);
+        let mean = check::moved("posterior mean", &belief.mean, &offset)?;
+        // Information is carried by the inverse of what carries covariance: the chart the other way.
+        if let Some(back) = transport(&mean, &belief.mean) {
+            information = back.tr_mul(&information) * back;
+            symmetrize(&mut information);
+            check::positive_definite("posterior information", &information)?;
+        }
+        Ok((innovation, Some(InformationBelief { mean, information })))
+    }
+}
+
+/// The inverse of a positive definite matrix: what this form is about, and the one place where it is formed.
+fn inverse<X: Manifold>(what: &'static str, point: &X, matrix: &TangentMatrix<X>) -> Checked<TangentMatrix<X>>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    check::positive_definite(what, matrix)?;
+    let n = point.dim();
+    let mut inverse = cholesky(what, matrix)?.solve(&TangentMatrix::<X>::identity_generic(n, n));
+    symmetrize(&mut inverse);
+    check::positive_definite(what, &inverse)?;
+    Ok(inverse)
+}

@@ -1,0 +1,17 @@
+//! The forms a Gaussian filter can take.
+
+mod extended;
+mod information;
+mod iterated;
+mod plain;
+mod sequential;
+mod square_root;
+mod unscented;
+
+pub use extended::Extended;
+pub use information::{Information, InformationBelief};
+pub use iterated::IteratedExtended;
+pub use plain::PlainExtended;
+pub use sequential::Sequential;
+pub use square_root::{FactoredGaussian, SquareRoot};
+pub use unscented::Unscented;

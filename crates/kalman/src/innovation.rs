@@ -1,0 +1,129 @@
+use nalgebra::{DefaultAllocator, OMatrix, linalg::Cholesky};
+use wayfix_estimation_traits::{LogWeight, Manifold, Tangent, TangentMatrix, UpdateAlloc, to_f64};
+use wayfix_gaussian_core::cholesky;
+
+use crate::{check, error::Checked};
+
+/// What a measurement said beyond what was expected: everything a gate, a plot, a likelihood or a test needs.
+///
+/// $`y = z ⊟ h(x)`$ with covariance $`S`$ and cross-covariance $`C = \mathrm{cov}(x, z)`$ (which is $`P H^T`$ for a linearized sensor),
+/// always relative to the *predicted* state. [Bar-Shalom et al. 2001, §5.2.3]
+///
+/// ```
+/// use nalgebra::{Matrix1, Matrix1x2, Matrix2, Vector1, Vector2};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor};
+/// let prior = Gaussian::new(Vector2::new(0.0, 0.0), Matrix2::identity() * 3.0)?;
+/// let mut filter = KalmanFilter::new(LinearMotion::stationary(Matrix2::zeros())?, prior)?;
+/// let sensor = LinearSensor::new(Matrix1x2::new(1.0, 0.0), Matrix1::new(1.0))?;
+/// let innovation = filter.update(&sensor, &Vector1::new(2.0))?;
+/// assert_eq!(innovation.residual()[0], 2.0);
+/// assert_eq!(innovation.covariance()[0], 4.0);         // 3 of the prior + 1 of the sensor
+/// assert_eq!(innovation.nis(), 1.0);                   // 2² / 4
+/// assert_eq!(innovation.gain()[0], 0.75);              // 3 / 4
+/// # Ok::<(), wayfix_kalman::KalmanError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Innovation<X: Manifold, Z: Manifold<Scalar = X::Scalar>>
+where
+    DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
+{
+    residual: Tangent<Z>,
+    covariance: TangentMatrix<Z>,
+    cross_covariance: OMatrix<X::Scalar, X::Dim, Z::Dim>,
+    factor: Cholesky<X::Scalar, Z::Dim>,
+}
+
+impl<X: Manifold, Z: Manifold<Scalar = X::Scalar>> Innovation<X, Z>
+where
+    DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
+{
+    /// An innovation from its three parts.
+    ///
+    /// # Errors
+    /// When the sizes do not fit, a part is not finite, or the covariance is not positive definite.
+    pub fn new(
+        residual: Tangent<Z>,
+        covariance: TangentMatrix<Z>,
+        cross_covariance: OMatrix<X::Scalar, X::Dim, Z::Dim>,
+    ) -> Checked<Self> {
+        let m = residual.nrows();
+        check::shape("innovation covariance", (m, m), covariance.shape())?;
+        let factor = cholesky("innovation", &covariance)?;
+        Self::factored(residual, covariance, cross_covariance, factor)
+    }
+
+    /// With the factorization of the covariance at hand.
+    pub(crate) fn factored(
+        residual: Tangent<Z>,
+        covariance: TangentMatrix<Z>,
+        cross_covariance: OMatrix<X::Scalar, X::Dim, Z::Dim>,
+        factor: Cholesky<X::Scalar, Z::Dim>,
+    ) -> Checked<Self> {
+        check::dimension("cross-covariance", residual.nrows(), cross_covariance.ncols())?;
+        check::finite("residual", &residual)?;
+        check::finite("cross-covariance", &cross_covariance)?;
+        Ok(Self { residual, covariance, cross_covariance, factor })
+    }
+
+    /// $`y = z ⊟ h(x)`$.
+    pub fn residual(&self) -> &Tangent<Z> {
+        &self.residual
+    }
+    /// $`S`$, the covariance of the residual.
+    pub fn covariance(&self) -> &TangentMatrix<Z> {
+        &self.covariance
+    }
+    /// $`C = \mathrm{cov}(x, z)`$, state by measurement.
+    pub fn cross_covariance(&self) -> &OMatrix<X::Scalar, X::Dim, Z::Dim> {
+        &self.cross_covariance
+    }
+    /// The Cholesky factorization of $`S`$.
+    pub fn factor(&self) -> &Cholesky<X::Scalar, Z::Dim> {
+        &self.factor
+    }
+    /// Dimension of the measurement: degrees of freedom of [`nis`](Self::nis).
+    pub fn dim(&self) -> usize {
+        self.residual.nrows()
+    }
+
+    /// The Kalman gain $`K = C S^{-1}`$, by solving.
+    pub fn gain(&self) -> OMatrix<X::Scalar, X::Dim, Z::Dim> {
+        let mut transposed = self.cross_covariance.transpose();
+        self.factor.solve_mut(&mut transposed);
+        transposed.transpose()
+    }
+
+    /// The normalized innovation squared $`y^T S^{-1} y`$, chi-squared with [`dim`](Self::dim) degrees of freedom when all is well.
+    pub fn nis(&self) -> f64 {
+        to_f64(self.whitened().norm_squared())
+    }
+
+    /// $`\ln N(y; 0, S)`$, nats.
+    pub fn log_likelihood(&self) -> LogWeight {
+        let l = self.factor.l_dirty();
+        let half_log_determinant: f64 = (0..self.dim()).map(|i| to_f64(l[(i, i)]).ln()).sum();
+        -0.5 * (self.nis() + self.dim() as f64 * std::f64::consts::TAU.ln()) - half_log_determinant
+    }
+
+    /// $`L^{-1} y`$ with $`L L^T = S`$: independent unit normal components when all is well.
+    pub fn whitened(&self) -> Tangent<Z> {
+        let mut whitened = self.residual.clone();
+        // Cannot fail: the diagonal of a Cholesky factor is positive.
+        self.factor.l_dirty().solve_lower_triangular_mut(&mut whitened);
+        whitened
+    }
+
+    /// $`C = P H^T,\; S = H C + R`$ of a linearized sensor.
+    pub(crate) fn of_linearized(
+        residual: Tangent<Z>,
+        prior: &TangentMatrix<X>,
+        jacobian: &OMatrix<X::Scalar, Z::Dim, X::Dim>,
+        noise: &TangentMatrix<Z>,
+    ) -> Checked<Self> {
+        let cross_covariance = prior * jacobian.transpose();
+        let covariance = jacobian * &cross_covariance + noise;
+        let factor = cholesky("innovation", &covariance)?;
+        Ok(Self { residual, covariance, cross_covariance, factor })
+    }
+}

@@ -1,0 +1,177 @@
+use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, RealField};
+use wayfix_estimation_traits::{StateAlloc, UpdateAlloc};
+use wayfix_gaussian_core::Gaussian;
+
+use super::{LinearMotion, LinearSensor};
+use crate::{
+    ChiSquaredGate, Innovation, KalmanError, Update, check,
+    error::Checked,
+    gating::threshold,
+    product::{joseph, plain_difference, propagated_covariance},
+};
+
+/// The Kalman filter: linear motion, linear sensors, a Gaussian.
+///
+/// The same results as [`ExtendedKalmanFilter`](crate::ExtendedKalmanFilter) on the same models, faster, because the models' matrices were
+/// checked when they were built. [Kalman 1960]
+///
+/// ```
+/// use nalgebra::{Matrix1, Matrix1x2, Matrix2, Vector1, Vector2};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor};
+/// let motion = LinearMotion::new(Matrix2::new(1.0, 0.1, 0.0, 1.0), Matrix2::identity() * 1e-4)?;
+/// let sensor = LinearSensor::new(Matrix1x2::new(1.0, 0.0), Matrix1::new(0.01))?;
+/// let prior = Gaussian::new(Vector2::zeros(), Matrix2::identity())?;
+/// let mut filter = KalmanFilter::new(motion, prior)?;
+/// for k in 1..=100 {
+///     filter.predict(None)?;
+///     filter.update(&sensor, &Vector1::new(0.2 * f64::from(k)))?; // 2 m/s, every 0.1 s
+/// }
+/// assert!((filter.estimate().mean() - Vector2::new(20.0, 2.0)).norm() < 0.01);
+/// # Ok::<(), wayfix_kalman::KalmanError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct KalmanFilter<T: RealField + Copy, D: Dim>
+where
+    DefaultAllocator: StateAlloc<D>,
+{
+    motion: LinearMotion<T, D>,
+    estimate: Gaussian<OVector<T, D>>,
+}
+
+impl<T: RealField + Copy, D: Dim> KalmanFilter<T, D>
+where
+    DefaultAllocator: StateAlloc<D>,
+{
+    /// A filter that starts from `prior`.
+    ///
+    /// # Errors
+    /// When sizes do not fit or the prior's covariance is not positive definite beyond rounding.
+    pub fn new(motion: LinearMotion<T, D>, prior: Gaussian<OVector<T, D>>) -> Result<Self, KalmanError> {
+        check::dimension("prior", motion.transition().nrows(), prior.mean().nrows())?;
+        check::positive_definite("prior", prior.covariance())?;
+        Ok(Self { motion, estimate: prior })
+    }
+
+    /// What is believed now.
+    pub fn estimate(&self) -> &Gaussian<OVector<T, D>> {
+        &self.estimate
+    }
+    /// The motion model.
+    pub fn motion(&self) -> &LinearMotion<T, D> {
+        &self.motion
+    }
+
+    /// $`x = F x + u,\; P = F P F^T + Q`$; `None` for free motion.
+    ///
+    /// # Errors
+    /// When the displacement has the wrong size or something overflows; the filter is unchanged.
+    pub fn predict(&mut self, displacement: Option<&OVector<T, D>>) -> Result<(), KalmanError> {
+        let transition = self.motion.transition();
+        let mut mean = transition * self.estimate.mean();
+        if let Some(displacement) = displacement {
+            check::dimension("control", mean.nrows(), displacement.nrows())?;
+            mean += displacement;
+        }
+        check::finite("predicted mean", &mean)?;
+        let covariance = propagated_covariance(transition, self.estimate.covariance(), self.motion.noise())?;
+        self.estimate = Gaussian::from_parts_unchecked(mean, covariance);
+        Ok(())
+    }
+
+    /// Corrects by `measurement`, in the form of Joseph.
+    ///
+    /// # Errors
+    /// When the measurement is unusable; the filter is unchanged.
+    pub fn update<M: Dim>(
+        &mut self,
+        sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
+        measurement: &OVector<T, M>,
+    ) -> Result<Innovation<OVector<T, D>, OVector<T, M>>, KalmanError>
+    where
+        DefaultAllocator: UpdateAlloc<D, M>,
+    {
+        let innovation = self.innovation(sensor, measurement)?;
+        let gain = innovation.gain();
+        let covariance = joseph(self.estimate.covariance(), &gain, sensor.matrix(), sensor.noise())?;
+        self.accept(&gain, innovation.residual(), covariance)?;
+        Ok(innovation)
+    }
+
+    /// Corrects by `measurement` with $`P = P - K C^T`$: half the work of [`update`](Self::update), for well-conditioned problems.
+    ///
+    /// # Errors
+    /// When the measurement is unusable or rounding makes the difference indefinite; the filter is unchanged.
+    pub fn update_plain<M: Dim>(
+        &mut self,
+        sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
+        measurement: &OVector<T, M>,
+    ) -> Result<Innovation<OVector<T, D>, OVector<T, M>>, KalmanError>
+    where
+        DefaultAllocator: UpdateAlloc<D, M>,
+    {
+        let innovation = self.innovation(sensor, measurement)?;
+        let gain = innovation.gain();
+        let covariance = plain_difference(self.estimate.covariance(), &gain, innovation.cross_covariance())?;
+        self.accept(&gain, innovation.residual(), covariance)?;
+        Ok(innovation)
+    }
+
+    /// Corrects by `measurement` when there is one and `gate` lets it in, in the form of Joseph.
+    ///
+    /// # Errors
+    /// When the measurement is unusable; the filter is unchanged.
+    pub fn update_gated<M: Dim>(
+        &mut self,
+        sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
+        measurement: Option<&OVector<T, M>>,
+        gate: &ChiSquaredGate,
+    ) -> Result<Update<OVector<T, D>, OVector<T, M>>, KalmanError>
+    where
+        DefaultAllocator: UpdateAlloc<D, M>,
+    {
+        let Some(measurement) = measurement else { return Ok(Update::Missing) };
+        let innovation = self.innovation(sensor, measurement)?;
+        let threshold = threshold(gate, innovation.dim())?;
+        if innovation.nis() > threshold {
+            return Ok(Update::Rejected { innovation, threshold });
+        }
+        let innovation = self.update(sensor, measurement)?;
+        Ok(Update::Accepted { innovation })
+    }
+
+    /// What `measurement` would say, without using it.
+    ///
+    /// # Errors
+    /// When the measurement is unusable.
+    pub fn innovation<M: Dim>(
+        &self,
+        sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
+        measurement: &OVector<T, M>,
+    ) -> Result<Innovation<OVector<T, D>, OVector<T, M>>, KalmanError>
+    where
+        DefaultAllocator: UpdateAlloc<D, M>,
+    {
+        let (m, n) = sensor.matrix().shape();
+        check::dimension("state", n, self.estimate.mean().nrows())?;
+        check::dimension("measurement", m, measurement.nrows())?;
+        let residual = measurement - sensor.matrix() * self.estimate.mean();
+        check::finite("measurement", &residual)?;
+        Innovation::of_linearized(residual, self.estimate.covariance(), sensor.matrix(), sensor.noise())
+    }
+
+    fn accept<M: Dim>(
+        &mut self,
+        gain: &OMatrix<T, D, M>,
+        residual: &OVector<T, M>,
+        covariance: OMatrix<T, D, D>,
+    ) -> Checked
+    where
+        DefaultAllocator: UpdateAlloc<D, M>,
+    {
+        let mean = self.estimate.mean() + gain * residual;
+        check::finite("posterior mean", &mean)?;
+        self.estimate = Gaussian::from_parts_unchecked(mean, covariance);
+        Ok(())
+    }
+}

@@ -1,0 +1,9 @@
+//! Linear models and the Kalman filter proper.
+
+mod filter;
+mod motion;
+mod sensor;
+
+pub use filter::KalmanFilter;
+pub use motion::LinearMotion;
+pub use sensor::LinearSensor;

@@ -1,0 +1,73 @@
+use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, RealField};
+use wayfix_estimation_traits::{Manifold, SensorModel, UpdateAlloc};
+
+use crate::{KalmanError, check};
+
+/// $`z = H x + v,\; v ∼ N(0, R)`$ with constant $`H`$ and $`R`$, checked once.
+///
+/// The parameters are the vector types of state and measurement, inferred from the matrices.
+///
+/// ```
+/// use nalgebra::{Matrix1, Matrix1x2};
+/// use wayfix_kalman::LinearSensor;
+/// let position = LinearSensor::new(Matrix1x2::new(1.0, 0.0), Matrix1::new(0.25))?;
+/// assert_eq!(position.matrix()[(0, 0)], 1.0);
+/// assert!(LinearSensor::new(Matrix1x2::new(1.0, 0.0), Matrix1::new(0.0)).is_err()); // a perfect sensor is not a sensor
+/// # Ok::<(), wayfix_kalman::KalmanError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearSensor<X: Manifold, Z: Manifold<Scalar = X::Scalar>>
+where
+    DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
+{
+    matrix: OMatrix<X::Scalar, Z::Dim, X::Dim>,
+    noise: OMatrix<X::Scalar, Z::Dim, Z::Dim>,
+}
+
+impl<T: RealField + Copy, D: Dim, M: Dim> LinearSensor<OVector<T, D>, OVector<T, M>>
+where
+    DefaultAllocator: UpdateAlloc<D, M>,
+{
+    /// Measurement matrix $`H`$ and noise $`R`$ (positive definite).
+    ///
+    /// # Errors
+    /// When sizes do not fit, something is not finite, or $`R`$ is not symmetric positive definite.
+    pub fn new(matrix: OMatrix<T, M, D>, noise: OMatrix<T, M, M>) -> Result<Self, KalmanError> {
+        check::finite("measurement matrix", &matrix)?;
+        check::sensor_noise(&noise, matrix.nrows())?;
+        Ok(Self { matrix, noise })
+    }
+
+    /// $`H`$.
+    pub fn matrix(&self) -> &OMatrix<T, M, D> {
+        &self.matrix
+    }
+    /// $`R`$.
+    pub fn noise(&self) -> &OMatrix<T, M, M> {
+        &self.noise
+    }
+}
+
+impl<T: RealField + Copy, D: Dim, M: Dim> SensorModel for LinearSensor<OVector<T, D>, OVector<T, M>>
+where
+    DefaultAllocator: UpdateAlloc<D, M>,
+{
+    type State = OVector<T, D>;
+    type Measurement = OVector<T, M>;
+
+    fn expected(&self, state: &OVector<T, D>) -> OVector<T, M> {
+        let (m, n) = self.matrix.shape_generic();
+        if state.nrows() == n.value() {
+            &self.matrix * state
+        } else {
+            // A state of another size is not what this sensor sees; NaN tells the filter to refuse it.
+            OVector::from_element_generic(m, nalgebra::Const::<1>, T::zero() / T::zero())
+        }
+    }
+    fn jacobian(&self, _: &OVector<T, D>) -> OMatrix<T, M, D> {
+        self.matrix.clone()
+    }
+    fn noise(&self, _: &OVector<T, D>) -> OMatrix<T, M, M> {
+        self.noise.clone()
+    }
+}
