@@ -1,1 +1,40 @@
 //! Simulated worlds, robots and sensors with the usual sins; knows no estimator.
+//!
+//! A [`Simulation`] drives a robot along a [`route`] through a [`world`] and gives the log of its [`sensor`]s as
+//! [`Record`](wayfix_sensor_log::Record)s, truth included. Named, seeded set-ups are [`Scenario`]s; [`monobot`] is the
+//! one-dimensional robot on which filters are taken apart.
+//!
+//! * **The truth is nobody's model.** Two wheels with motors that lag, slip that hangs together in time and radii that are not as
+//!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
+//!   [`GaussianOdometry`](sensor::GaussianOdometry) and the default [`RangeBearing`](sensor::RangeBearing) match what an extended
+//!   Kalman filter assumes, for tests of its consistency.
+//! * **One stream of randomness per sin** ([`random::Streams`]): switching one on leaves the draws of the others as they were.
+//! * **The same bits on every machine**: transcendental functions come from `libm` ([`plane`], [`random`]).
+//! * **Yours plug in**: [`world::World`] and [`sensor::Sensor`] are the two places to extend (`examples/custom_sensor.rs`).
+//!
+//! ```
+//! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+//! use wayfix_scene_sim::Scenario;
+//! use wayfix_sensor_log::Data;
+//!
+//! let scenario = Scenario::named("office_velocity")?;
+//! let records = scenario.simulate(ChaCha8Rng::seed_from_u64(scenario.seed))?;
+//! assert!(records.iter().any(|record| matches!(record.data, Data::Velocity(_))));
+//! # Ok::<(), wayfix_scene_sim::SimError>(())
+//! ```
+
+mod check;
+pub mod drive;
+mod error;
+pub mod monobot;
+pub mod plane;
+pub mod random;
+pub mod route;
+mod scenario;
+pub mod sensor;
+mod simulation;
+pub mod world;
+
+pub use error::SimError;
+pub use scenario::{OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams};
+pub use simulation::Simulation;

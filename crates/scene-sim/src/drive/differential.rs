@@ -1,0 +1,94 @@
+use wayfix_estimation_traits::Pose2;
+
+use super::DriveParams;
+use crate::random::{GaussMarkov, Source, Streams};
+use crate::{SimError, plane};
+
+/// Two driven wheels on one axle: motors that lag, wheels that slip and are not as built.
+///
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_scene_sim::{drive::{DifferentialDrive, DriveParams}, random::Streams};
+/// let mut streams = Streams::new(ChaCha8Rng::seed_from_u64(1));
+/// let mut robot = DifferentialDrive::new(DriveParams::default(), Pose2::new(0.0, 0.0, 0.0))?;
+/// for _ in 0..1000 {
+///     robot.step(1e-3, 1.0, 0.0, &mut streams);
+/// }
+/// assert!((robot.pose().x() - 0.9).abs() < 1e-3); // 1 s at 1 m/s less the motors' lag of 0.1 s
+/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct DifferentialDrive {
+    params: DriveParams,
+    pose: Pose2<f64>,
+    /// Turning speeds of the left and right wheel, rad/s.
+    wheel_rates: [f64; 2],
+    /// How far each has turned since the start, radians.
+    wheel_angles: [f64; 2],
+    common_slip: GaussMarkov,
+    own_slips: [GaussMarkov; 2],
+}
+
+impl DifferentialDrive {
+    /// A robot at rest at `start`.
+    ///
+    /// # Errors
+    /// When the parameters have no meaning.
+    pub fn new(params: DriveParams, start: Pose2<f64>) -> Result<Self, SimError> {
+        params.validate()?;
+        let slip = GaussMarkov::new(params.slip.correlation_time_s);
+        Ok(Self {
+            params,
+            pose: start,
+            wheel_rates: [0.0; 2],
+            wheel_angles: [0.0; 2],
+            common_slip: slip.clone(),
+            own_slips: [slip.clone(), slip],
+        })
+    }
+
+    /// Lets `step_s` seconds pass under a commanded forward speed (m/s) and turning rate (rad/s).
+    pub fn step(&mut self, step_s: f64, linear: f64, angular: f64, streams: &mut Streams) {
+        self.follow_command(step_s, linear, angular);
+        let slips = self.slips(step_s, streams);
+        let true_radii = [self.params.left_radius_error, self.params.right_radius_error]
+            .map(|error| self.params.wheel_radius_m * (1.0 + error));
+        let true_track = self.params.track_m * (1.0 + self.params.track_error);
+        let [left, right] = [0, 1].map(|k| self.wheel_rates[k] * step_s * true_radii[k] * (1.0 - slips[k]));
+        self.pose = plane::advance(&self.pose, 0.5 * (left + right), (right - left) / true_track);
+        for (angle, rate) in self.wheel_angles.iter_mut().zip(self.wheel_rates) {
+            *angle += rate * step_s;
+        }
+    }
+
+    /// Where the robot truly is.
+    pub fn pose(&self) -> Pose2<f64> {
+        self.pose
+    }
+
+    /// How far the left and the right wheel have turned since the start, radians: what encoders count.
+    pub fn wheel_angles(&self) -> [f64; 2] {
+        self.wheel_angles
+    }
+
+    /// The controller knows the data sheet only.
+    fn follow_command(&mut self, step_s: f64, linear: f64, angular: f64) {
+        let half_track = 0.5 * self.params.track_m;
+        let wanted = [linear - half_track * angular, linear + half_track * angular]
+            .map(|ground_speed| ground_speed / self.params.wheel_radius_m);
+        let reached = 1.0 - libm::exp(-step_s / self.params.motor_lag_s);
+        for (rate, wanted) in self.wheel_rates.iter_mut().zip(wanted) {
+            *rate += reached * (wanted - *rate);
+        }
+    }
+
+    fn slips(&mut self, step_s: f64, streams: &mut Streams) -> [f64; 2] {
+        let rng = streams.of(Source::Slip);
+        let common = self.common_slip.advance(step_s, rng);
+        let (of_common, of_own) = (self.params.slip.shared.sqrt(), (1.0 - self.params.slip.shared).sqrt());
+        self.own_slips
+            .each_mut()
+            .map(|own| self.params.slip.sigma * (of_common * common + of_own * own.advance(step_s, rng)))
+    }
+}

@@ -1,0 +1,9 @@
+//! How the robot truly moves: two wheels, slip, and a driver that follows a route.
+
+mod differential;
+mod params;
+mod pursuit;
+
+pub use differential::DifferentialDrive;
+pub use params::{DriveParams, SlipParams};
+pub use pursuit::Pursuit;

@@ -1,0 +1,81 @@
+use crate::{SimError, check};
+
+/// A robot on two wheels: what its builder believes, and how it truly is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveParams {
+    /// Cruising speed, m/s; 0 stands still. Default 0.5.
+    pub speed_mps: f64,
+    /// Largest change of speed, m/s². Default 0.5.
+    pub acceleration_mps2: f64,
+    /// Wheel radius on the data sheet, metres. Default 0.05.
+    pub wheel_radius_m: f64,
+    /// Distance between the wheels on the data sheet, metres. Default 0.30.
+    pub track_m: f64,
+    /// By what share the true radius of the left wheel differs. Default 0.
+    pub left_radius_error: f64,
+    /// By what share the true radius of the right wheel differs. Default 0.
+    pub right_radius_error: f64,
+    /// By what share the true track differs. Default 0.
+    pub track_error: f64,
+    /// How fast the wheels come to the commanded speed: time constant, seconds; 0 at once. Default 0.1.
+    pub motor_lag_s: f64,
+    /// How far ahead on the route the driver looks, metres. Default 0.5.
+    pub lookahead_m: f64,
+    /// Slip of the wheels. Default none.
+    pub slip: SlipParams,
+}
+
+/// Share of a wheel's turning that does not become travel: a Gauss-Markov process per wheel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlipParams {
+    /// Standard deviation of the share. Default 0.
+    pub sigma: f64,
+    /// Correlation time, seconds. Default 1.
+    pub correlation_time_s: f64,
+    /// Correlation between the two wheels, in [0, 1]: both stand on the same floor. Default 0.
+    pub shared: f64,
+}
+
+impl Default for DriveParams {
+    fn default() -> Self {
+        Self {
+            speed_mps: 0.5,
+            acceleration_mps2: 0.5,
+            wheel_radius_m: 0.05,
+            track_m: 0.30,
+            left_radius_error: 0.0,
+            right_radius_error: 0.0,
+            track_error: 0.0,
+            motor_lag_s: 0.1,
+            lookahead_m: 0.5,
+            slip: SlipParams::default(),
+        }
+    }
+}
+
+impl Default for SlipParams {
+    fn default() -> Self {
+        Self { sigma: 0.0, correlation_time_s: 1.0, shared: 0.0 }
+    }
+}
+
+impl DriveParams {
+    /// Whether the numbers make a robot.
+    ///
+    /// # Errors
+    /// Names the first that does not.
+    pub fn validate(&self) -> Result<(), SimError> {
+        check::not_negative("speed (m/s)", self.speed_mps)?;
+        check::positive("acceleration (m/s²)", self.acceleration_mps2)?;
+        check::positive("wheel radius (m)", self.wheel_radius_m)?;
+        check::positive("track (m)", self.track_m)?;
+        check::relative_error("error of the left radius", self.left_radius_error)?;
+        check::relative_error("error of the right radius", self.right_radius_error)?;
+        check::relative_error("error of the track", self.track_error)?;
+        check::not_negative("motor lag (s)", self.motor_lag_s)?;
+        check::positive("lookahead (m)", self.lookahead_m)?;
+        check::not_negative("sigma of the slip", self.slip.sigma)?;
+        check::not_negative("correlation time of the slip (s)", self.slip.correlation_time_s)?;
+        check::share("shared part of the slip", self.slip.shared)
+    }
+}

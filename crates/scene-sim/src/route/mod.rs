@@ -1,0 +1,15 @@
+//! Where robots drive: straight lines and arcs end to end, and planners that lay them out.
+
+mod circle;
+mod lawn_mower;
+mod params;
+mod pieces;
+mod rounded_rectangle;
+mod waypoints;
+
+pub use circle::Circle;
+pub use lawn_mower::LawnMower;
+pub use params::RouteParams;
+pub use pieces::{Piece, Route};
+pub use rounded_rectangle::RoundedRectangle;
+pub use waypoints::Waypoints;

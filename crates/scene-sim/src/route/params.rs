@@ -1,0 +1,42 @@
+use rand::Rng;
+
+use super::{Circle, LawnMower, RoundedRectangle, Route, Waypoints};
+use crate::SimError;
+
+/// How to lay out a route.
+///
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_scene_sim::route::{RouteParams, Waypoints};
+/// let params = Waypoints { n_waypoints: 20, half_width_m: 5.0, turn_radius_m: 0.5 };
+/// let route = RouteParams::Waypoints(params).build(&mut ChaCha8Rng::seed_from_u64(1))?;
+/// assert!(!route.is_closed() && route.length_m() > 20.0);
+/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RouteParams {
+    /// Around a circle.
+    Circle(Circle),
+    /// Around a rectangle.
+    RoundedRectangle(RoundedRectangle),
+    /// There and back in rows.
+    LawnMower(LawnMower),
+    /// From one random point to the next.
+    Waypoints(Waypoints),
+}
+
+impl RouteParams {
+    /// Lays out the route; only random ones draw from `rng`.
+    ///
+    /// # Errors
+    /// When the parameters have no meaning.
+    pub fn build<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Route, SimError> {
+        match self {
+            Self::Circle(circle) => circle.route(),
+            Self::RoundedRectangle(rectangle) => rectangle.route(),
+            Self::LawnMower(rows) => rows.route(),
+            Self::Waypoints(waypoints) => waypoints.route(rng),
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Named, seeded set-ups: what fixtures are made of.
+
+mod catalogue;
+mod named;
+mod planar;
+
+pub use named::{Scenario, ScenarioParams};
+pub use planar::{OdometryParams, OtherRobotParams, PlanarParams};

@@ -1,0 +1,68 @@
+use rand_chacha::ChaCha8Rng;
+use wayfix_sensor_log::{Record, Stamp};
+
+use super::{PlanarParams, catalogue};
+use crate::SimError;
+use crate::monobot::MonobotParams;
+use crate::random::Streams;
+
+/// A set-up with a name and the seed that goes with it.
+///
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_scene_sim::Scenario;
+/// let scenario = Scenario::named("monobot")?;
+/// let records = scenario.simulate(ChaCha8Rng::seed_from_u64(scenario.seed))?;
+/// assert!(records.is_sorted_by_key(|record| record.stamp));
+/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Its name, also of its fixture.
+    pub name: &'static str,
+    /// What to seed the generator with.
+    pub seed: u64,
+    /// What happens.
+    pub params: ScenarioParams,
+}
+
+/// What kind of scene it is.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ScenarioParams {
+    /// A robot in the plane.
+    Planar(Box<PlanarParams>),
+    /// A robot on a line, one step every 100 ms.
+    Monobot(MonobotParams),
+}
+
+impl Scenario {
+    /// All of them, in the order in which reports list them.
+    pub fn all() -> Vec<Self> {
+        catalogue::all()
+    }
+
+    /// The one called `name`.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn named(name: &str) -> Result<Self, SimError> {
+        let found = Self::all().into_iter().find(|scenario| scenario.name == name);
+        found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
+    }
+
+    /// The log, in time order. Give it a generator seeded with [`seed`](Self::seed) for the log that goes by this name.
+    ///
+    /// # Errors
+    /// When the parameters have no meaning.
+    pub fn simulate(&self, rng: ChaCha8Rng) -> Result<Vec<Record>, SimError> {
+        let mut streams = Streams::new(rng);
+        match &self.params {
+            ScenarioParams::Planar(params) => params.simulate(&mut streams),
+            ScenarioParams::Monobot(params) => {
+                let run = params.simulate(&mut streams)?;
+                Ok(run.records(Stamp::from_nanoseconds(1_600_000_000_000_000_000), 100))
+            }
+        }
+    }
+}

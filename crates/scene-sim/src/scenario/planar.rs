@@ -1,0 +1,119 @@
+use nalgebra::Vector2;
+use wayfix_sensor_log::Record;
+
+use crate::drive::DriveParams;
+use crate::random::{Source, Streams, deviate};
+use crate::route::RouteParams;
+use crate::sensor::{
+    GaussianOdometry, GaussianOdometryParams, RangeBearing, RangeBearingParams, Sensor, WheelOdometry,
+    WheelOdometryParams,
+};
+use crate::world::{Layout, OtherRobot, Plan, PlanarWorld};
+use crate::{SimError, Simulation, check};
+
+/// Everything about one drive in the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanarParams {
+    /// Landmarks and walls.
+    pub layout: Layout,
+    /// Things with codes 1000, 1001, … that no table lists, anywhere among the landmarks; at most 1000.
+    pub n_unknown_codes: usize,
+    /// Robots that drive about; at most 100.
+    pub other_robots: Vec<OtherRobotParams>,
+    /// Where the robot drives.
+    pub route: RouteParams,
+    /// How it moves.
+    pub drive: DriveParams,
+    /// What it knows of its motion.
+    pub odometry: OdometryParams,
+    /// What it sees.
+    pub sensor: RangeBearingParams,
+    /// How long it drives, milliseconds.
+    pub duration_ms: u64,
+    /// Time from one true pose to the next, milliseconds.
+    pub truth_period_ms: u32,
+}
+
+/// A robot that is sighted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OtherRobotParams {
+    /// Its number.
+    pub id: u32,
+    /// Where it drives.
+    pub route: RouteParams,
+    /// How fast, m/s.
+    pub speed_mps: f64,
+}
+
+/// Which odometry the robot has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OdometryParams {
+    /// The textbook's.
+    Gaussian(GaussianOdometryParams),
+    /// Encoders.
+    Wheels(WheelOdometryParams),
+}
+
+impl PlanarParams {
+    /// The log, in time order.
+    ///
+    /// # Errors
+    /// When a parameter has no meaning or something finds no room.
+    pub fn simulate(&self, streams: &mut Streams) -> Result<Vec<Record>, SimError> {
+        let route = self.route.build(streams.of(Source::Route))?;
+        let plan = self.layout.build(&route, streams.of(Source::Landmarks))?;
+        let world = PlanarWorld {
+            unknown_codes: self.unknown_codes(&plan, streams)?,
+            other_robots: self.other_robots(streams)?,
+            plan,
+        };
+        let simulation = Simulation {
+            drive: self.drive,
+            duration_ms: self.duration_ms,
+            truth_period_ms: self.truth_period_ms,
+            ..Simulation::new(&world, route)
+        };
+        let looks: Box<dyn Sensor> = Box::new(RangeBearing::new(self.sensor)?);
+        simulation.run(&mut [self.odometry.instrument()?, looks], streams)
+    }
+
+    fn unknown_codes(
+        &self,
+        plan: &Plan,
+        streams: &mut Streams,
+    ) -> Result<Vec<(u32, Vector2<f64>)>, SimError> {
+        check::count("things with unknown codes", self.n_unknown_codes, 1000)?;
+        let rng = streams.of(Source::UnknownCodes);
+        let points = || plan.landmarks.iter().map(|l| Vector2::new(l.x, l.y));
+        let (low, high) = (points().reduce(|a, b| a.inf(&b)), points().reduce(|a, b| a.sup(&b)));
+        let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
+        let anywhere = |code| {
+            let x = deviate::uniform(low.x, high.x, rng);
+            let y = deviate::uniform(low.y, high.y, rng);
+            (code, Vector2::new(x, y))
+        };
+        Ok((1000..).take(self.n_unknown_codes).map(anywhere).collect())
+    }
+
+    fn other_robots(&self, streams: &mut Streams) -> Result<Vec<OtherRobot>, SimError> {
+        check::count("other robots", self.other_robots.len(), 100)?;
+        let rng = streams.of(Source::OtherRobots);
+        self.other_robots
+            .iter()
+            .map(|robot| {
+                check::not_negative("speed of another robot (m/s)", robot.speed_mps)?;
+                let route = robot.route.build(rng)?;
+                Ok(OtherRobot { id: robot.id, route, speed_mps: robot.speed_mps })
+            })
+            .collect()
+    }
+}
+
+impl OdometryParams {
+    fn instrument(&self) -> Result<Box<dyn Sensor>, SimError> {
+        Ok(match self {
+            Self::Gaussian(params) => Box::new(GaussianOdometry::new(*params)?),
+            Self::Wheels(params) => Box::new(WheelOdometry::new(*params)?),
+        })
+    }
+}

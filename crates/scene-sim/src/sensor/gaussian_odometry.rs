@@ -1,0 +1,73 @@
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::Data;
+
+use super::{Moment, Reading, Sensor};
+use crate::random::{Source, Streams, deviate};
+use crate::{SimError, check, plane};
+
+/// Increments of the true pose plus white Gaussian noise: the odometry that textbook filters assume.
+///
+/// With its defaults the noise of the shared range-bearing logs; for tests of a filter's consistency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaussianOdometryParams {
+    /// Time from one increment to the next, milliseconds. Default 500.
+    pub period_ms: u32,
+    /// σ of x and y of each increment, metres. Default 0.02.
+    pub sigma_m: f64,
+    /// σ of the turn of each increment, radians. Default 0.005.
+    pub sigma_rad: f64,
+}
+
+impl Default for GaussianOdometryParams {
+    fn default() -> Self {
+        Self { period_ms: 500, sigma_m: 0.02, sigma_rad: 0.005 }
+    }
+}
+
+impl GaussianOdometryParams {
+    /// Whether the numbers have a meaning.
+    ///
+    /// # Errors
+    /// Names the first that has none.
+    pub fn validate(&self) -> Result<(), SimError> {
+        check::period("period of the odometry (ms)", self.period_ms)?;
+        check::not_negative("σ of odometry increments (m)", self.sigma_m)?;
+        check::not_negative("σ of odometry turns (rad)", self.sigma_rad)
+    }
+}
+
+/// The instrument to [`GaussianOdometryParams`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaussianOdometry {
+    params: GaussianOdometryParams,
+    last: Option<Pose2<f64>>,
+}
+
+impl GaussianOdometry {
+    /// Odometry that has not begun yet.
+    ///
+    /// # Errors
+    /// When the parameters have no meaning.
+    pub fn new(params: GaussianOdometryParams) -> Result<Self, SimError> {
+        params.validate()?;
+        Ok(Self { params, last: None })
+    }
+}
+
+impl Sensor for GaussianOdometry {
+    fn period_ms(&self) -> u32 {
+        self.params.period_ms
+    }
+
+    fn sense(&mut self, moment: &Moment<'_>, streams: &mut Streams) -> Option<Reading> {
+        let last = self.last.replace(moment.pose)?;
+        let step = plane::relative(&last, &moment.pose);
+        let mut noise = |sigma: f64| sigma * deviate::normal(streams.of(Source::OdometryNoise));
+        let noisy = Pose2::new(
+            step.x() + noise(self.params.sigma_m),
+            step.y() + noise(self.params.sigma_m),
+            step.heading() + noise(self.params.sigma_rad),
+        );
+        Some(Reading { data: Data::OdometryIncrement(noisy), late_ms: 0 })
+    }
+}

@@ -1,0 +1,11 @@
+//! What robots measure with.
+
+mod gaussian_odometry;
+mod instrument;
+pub mod range_bearing;
+mod wheel_odometry;
+
+pub use gaussian_odometry::{GaussianOdometry, GaussianOdometryParams};
+pub use instrument::{Moment, Reading, Sensor};
+pub use range_bearing::{RangeBearing, RangeBearingParams};
+pub use wheel_odometry::{OdometryKind, WheelOdometry, WheelOdometryParams};

@@ -1,0 +1,62 @@
+use wayfix_sensor_log::{Sighting, Target};
+
+use super::RangeBearingParams;
+use crate::random::{Source, Streams, deviate};
+use crate::{SimError, check};
+
+/// Reports of things that are not there: a Poisson number a look, uniform in range and bearing over the view.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Clutter {
+    /// Mean number a look, at most 100. Default 0.
+    pub mean: f64,
+    /// What they pass for. Default nothing.
+    pub label: ClutterLabel,
+}
+
+/// What a false report passes for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ClutterLabel {
+    /// Nothing.
+    #[default]
+    Unlabelled,
+    /// One of the world's landmarks, anyone.
+    AnyLandmark,
+    /// A code that no table lists.
+    UnknownCode(u32),
+}
+
+impl Clutter {
+    pub(super) fn validate(&self) -> Result<(), SimError> {
+        check::not_negative("mean number of false detections", self.mean)?;
+        check::at_most("mean number of false detections", self.mean, 100.0, "at most 100")
+    }
+
+    /// The false reports of one look.
+    pub(super) fn draw(
+        &self,
+        params: &RangeBearingParams,
+        landmark_ids: &[u32],
+        streams: &mut Streams,
+    ) -> Vec<Sighting> {
+        let rng = streams.of(Source::Clutter);
+        let count = deviate::poisson(self.mean, rng);
+        (0..count)
+            .map(|_| {
+                let range = deviate::uniform(params.min_range_m, params.max_range_m, rng);
+                let bearing = deviate::uniform(-params.half_view(), params.half_view(), rng);
+                let idx = deviate::below(landmark_ids.len(), rng);
+                Sighting { target: self.label.target(landmark_ids.get(idx)), range, bearing }
+            })
+            .collect()
+    }
+}
+
+impl ClutterLabel {
+    fn target(self, any_landmark: Option<&u32>) -> Target {
+        match (self, any_landmark) {
+            (Self::AnyLandmark, Some(id)) => Target::Landmark(*id),
+            (Self::UnknownCode(code), _) => Target::UnknownCode(code),
+            (Self::Unlabelled | Self::AnyLandmark, _) => Target::Unlabelled,
+        }
+    }
+}

@@ -1,0 +1,133 @@
+use std::f64::consts::TAU;
+
+use super::{Clutter, DriftParams};
+use crate::random::Tail;
+use crate::{SimError, check};
+
+/// Everything about a range-bearing sensor. The default is honest: Gaussian noise of the shared range-bearing logs, no sins.
+///
+/// ```
+/// use wayfix_scene_sim::sensor::RangeBearingParams;
+/// let params = RangeBearingParams { outlier_share: 0.02, range_bias_m: f64::NAN, ..Default::default() };
+/// assert!(params.validate().is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RangeBearingParams {
+    /// Time from one look to the next, milliseconds. Default 500.
+    pub period_ms: u32,
+    /// Nearest range, metres. Default 0.1.
+    pub min_range_m: f64,
+    /// Farthest range, metres. Default 8.
+    pub max_range_m: f64,
+    /// Whole opening angle, symmetric about straight ahead, radians. Default 2π.
+    pub field_of_view_rad: f64,
+    /// Standard deviation of the white range error. Default 0.05 m, not growing.
+    pub range_noise: RangeSigma,
+    /// Standard deviation of the white bearing error, radians. Default 0.01.
+    pub bearing_sigma_rad: f64,
+    /// Shape of the white errors. Default Gaussian.
+    pub tail: Tail,
+    /// Added to every range, metres. Default 0.
+    pub range_bias_m: f64,
+    /// What every true range is multiplied with. Default 1.
+    pub range_scale: f64,
+    /// Added to every bearing, radians. Default 0.
+    pub bearing_bias_rad: f64,
+    /// Errors that hang together in time. Default none.
+    pub drift: DriftParams,
+    /// How late the stamp is, milliseconds. Default 0.
+    pub latency_ms: u32,
+    /// Share of sightings that are gross outliers. Default 0.
+    pub outlier_share: f64,
+    /// Share of looks of which nothing reaches the log. (A look that sees nothing is logged, empty.) Default 0.
+    pub dropout_share: f64,
+    /// Share of targets in view that are not reported. Default 0.
+    pub missed_share: f64,
+    /// Reports of things that are not there. Default none.
+    pub clutter: Clutter,
+    /// Share of landmark sightings under another landmark's identity. Default 0.
+    pub mislabelled_share: f64,
+    /// Whether the sensor tells things apart. Default true.
+    pub labelled: bool,
+}
+
+/// A standard deviation that grows with range.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct RangeSigma {
+    /// At range 0, metres.
+    pub constant_m: f64,
+    /// Growth, metres per metre.
+    pub per_metre: f64,
+}
+
+impl RangeSigma {
+    /// The standard deviation at `range` metres.
+    pub fn at(&self, range: f64) -> f64 {
+        self.constant_m + self.per_metre * range
+    }
+
+    pub(super) fn validate(&self) -> Result<(), SimError> {
+        check::not_negative("σ of range (m)", self.constant_m)?;
+        check::not_negative("growth of σ with range", self.per_metre)
+    }
+}
+
+impl Default for RangeBearingParams {
+    fn default() -> Self {
+        Self {
+            period_ms: 500,
+            min_range_m: 0.1,
+            max_range_m: 8.0,
+            field_of_view_rad: TAU,
+            range_noise: RangeSigma { constant_m: 0.05, per_metre: 0.0 },
+            bearing_sigma_rad: 0.01,
+            tail: Tail::Gaussian,
+            range_bias_m: 0.0,
+            range_scale: 1.0,
+            bearing_bias_rad: 0.0,
+            drift: DriftParams::default(),
+            latency_ms: 0,
+            outlier_share: 0.0,
+            dropout_share: 0.0,
+            missed_share: 0.0,
+            clutter: Clutter::default(),
+            mislabelled_share: 0.0,
+            labelled: true,
+        }
+    }
+}
+
+impl RangeBearingParams {
+    /// Whether the numbers make a sensor.
+    ///
+    /// # Errors
+    /// Names the first that does not.
+    pub fn validate(&self) -> Result<(), SimError> {
+        check::period("period of the looks (ms)", self.period_ms)?;
+        check::not_negative("nearest range (m)", self.min_range_m)?;
+        check::above(
+            "farthest range (m)",
+            self.max_range_m,
+            self.min_range_m,
+            "finite and above the nearest",
+        )?;
+        check::positive("field of view (rad)", self.field_of_view_rad)?;
+        self.range_noise.validate()?;
+        check::not_negative("σ of bearing (rad)", self.bearing_sigma_rad)?;
+        self.tail.validate()?;
+        check::finite("range bias (m)", self.range_bias_m)?;
+        check::positive("range scale", self.range_scale)?;
+        check::finite("bearing bias (rad)", self.bearing_bias_rad)?;
+        self.drift.validate()?;
+        check::share("share of outliers", self.outlier_share)?;
+        check::share("share of lost looks", self.dropout_share)?;
+        check::share("share of missed detections", self.missed_share)?;
+        self.clutter.validate()?;
+        check::share("share of mislabelled sightings", self.mislabelled_share)
+    }
+
+    /// Half the opening angle, at most π.
+    pub(super) fn half_view(&self) -> f64 {
+        (0.5 * self.field_of_view_rad).min(std::f64::consts::PI)
+    }
+}

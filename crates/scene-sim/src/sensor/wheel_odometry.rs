@@ -1,0 +1,117 @@
+use std::f64::consts::TAU;
+
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Data, Velocity};
+
+use super::{Moment, Reading, Sensor};
+use crate::random::{Source, Streams, deviate};
+use crate::{SimError, check, plane};
+
+/// In which form wheel odometry goes to the log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OdometryKind {
+    /// Mean velocity over a period, stamped at its beginning: holding it until the next retraces the motion.
+    Velocity,
+    /// Motion over a period, stamped at its end.
+    Increment,
+}
+
+/// Encoders on two wheels, evaluated with the data sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WheelOdometryParams {
+    /// Velocities or increments. Default increments.
+    pub kind: OdometryKind,
+    /// Length of a period, milliseconds. Default 100.
+    pub period_ms: u32,
+    /// Wheel radius believed, metres. Default 0.05.
+    pub wheel_radius_m: f64,
+    /// Track believed, metres. Default 0.30.
+    pub track_m: f64,
+    /// Encoder ticks per turn of a wheel; `None` measures angles exactly. Default 2000.
+    pub ticks_per_turn: Option<u32>,
+    /// σ of the white error of each wheel's travel, as a share of the travel. Default 0.
+    pub travel_noise: f64,
+}
+
+impl Default for WheelOdometryParams {
+    fn default() -> Self {
+        Self {
+            kind: OdometryKind::Increment,
+            period_ms: 100,
+            wheel_radius_m: 0.05,
+            track_m: 0.30,
+            ticks_per_turn: Some(2000),
+            travel_noise: 0.0,
+        }
+    }
+}
+
+impl WheelOdometryParams {
+    /// Whether the numbers have a meaning.
+    ///
+    /// # Errors
+    /// Names the first that has none.
+    pub fn validate(&self) -> Result<(), SimError> {
+        check::period("period of the odometry (ms)", self.period_ms)?;
+        check::positive("wheel radius of the odometry (m)", self.wheel_radius_m)?;
+        check::positive("track of the odometry (m)", self.track_m)?;
+        check::positive("encoder ticks per turn", self.ticks_per_turn.map_or(1.0, f64::from))?;
+        check::not_negative("σ of a wheel's travel", self.travel_noise)
+    }
+}
+
+/// The instrument to [`WheelOdometryParams`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct WheelOdometry {
+    params: WheelOdometryParams,
+    last: Option<[f64; 2]>,
+}
+
+impl WheelOdometry {
+    /// Encoders that have counted nothing yet.
+    ///
+    /// # Errors
+    /// When the parameters have no meaning.
+    pub fn new(params: WheelOdometryParams) -> Result<Self, SimError> {
+        params.validate()?;
+        Ok(Self { params, last: None })
+    }
+
+    /// What the encoder says for a wheel that has turned by `angle`.
+    fn counted(&self, angle: f64) -> f64 {
+        match self.params.ticks_per_turn {
+            None => angle,
+            Some(ticks) => {
+                let tick = TAU / f64::from(ticks);
+                (angle / tick).floor() * tick
+            }
+        }
+    }
+}
+
+impl Sensor for WheelOdometry {
+    fn period_ms(&self) -> u32 {
+        self.params.period_ms
+    }
+
+    fn sense(&mut self, moment: &Moment<'_>, streams: &mut Streams) -> Option<Reading> {
+        let now = moment.wheel_angles.map(|angle| self.counted(angle));
+        let last = self.last.replace(now)?;
+        let [left, right] = [0, 1].map(|k| {
+            let noise = self.params.travel_noise * deviate::normal(streams.of(Source::OdometryNoise));
+            (now[k] - last[k]) * self.params.wheel_radius_m * (1.0 + noise)
+        });
+        let (travel, turn) = (0.5 * (left + right), (right - left) / self.params.track_m);
+        let seconds = f64::from(self.params.period_ms) * 1e-3;
+        Some(match self.params.kind {
+            OdometryKind::Velocity => Reading {
+                data: Data::Velocity(Velocity { linear: travel / seconds, angular: turn / seconds }),
+                late_ms: -i64::from(self.params.period_ms),
+            },
+            OdometryKind::Increment => {
+                let step = plane::advance(&Pose2::new(0.0, 0.0, 0.0), travel, turn);
+                Reading { data: Data::OdometryIncrement(step), late_ms: 0 }
+            }
+        })
+    }
+}

@@ -1,0 +1,125 @@
+use wayfix_sensor_log::{Data, Record, Stamp};
+
+use crate::drive::{DifferentialDrive, DriveParams, Pursuit};
+use crate::random::Streams;
+use crate::route::Route;
+use crate::sensor::{Moment, Sensor};
+use crate::world::World;
+use crate::{SimError, check};
+
+/// The truth is integrated at 1 kHz: two orders finer than any log.
+const STEP_S: f64 = 1e-3;
+/// The longest drive, milliseconds: one day.
+const LONGEST_MS: u64 = 86_400_000;
+
+/// One robot on one route through one world.
+///
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_scene_sim::{Simulation, random::Streams, route::Circle, world::{Plan, PlanarWorld}};
+/// use wayfix_sensor_log::Data;
+///
+/// let world = PlanarWorld::new(Plan::default());
+/// let simulation = Simulation::new(&world, Circle { radius_m: 2.0 }.route()?);
+/// let records = simulation.run(&mut [], &mut Streams::new(ChaCha8Rng::seed_from_u64(1)))?;
+/// let Some(Data::TruePose(end)) = records.last().map(|r| &r.data) else { panic!("no truth") };
+/// assert!((end.translation.norm() - 2.0).abs() < 0.05); // pursuit cuts corners by about lookahead²/(8·radius)
+/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// ```
+#[derive(Clone)]
+pub struct Simulation<'a> {
+    /// What there is to see.
+    pub world: &'a dyn World,
+    /// Where the robot drives; it starts at rest at the beginning.
+    pub route: Route,
+    /// The robot. Default as [`DriveParams`].
+    pub drive: DriveParams,
+    /// How long it drives, milliseconds, at most a day. Default 60 000.
+    pub duration_ms: u64,
+    /// Time from one true pose in the log to the next, milliseconds. Default 100.
+    pub truth_period_ms: u32,
+    /// Stamp of the start. Default 1.6e9 s: on the clock of a robot's computer, so that who keeps stamps in too few bits notices.
+    pub start: Stamp,
+}
+
+impl<'a> Simulation<'a> {
+    /// The defaults, for a world and a route.
+    pub fn new(world: &'a dyn World, route: Route) -> Self {
+        Self {
+            world,
+            route,
+            drive: DriveParams::default(),
+            duration_ms: 60_000,
+            truth_period_ms: 100,
+            start: Stamp::from_nanoseconds(1_600_000_000_000_000_000),
+        }
+    }
+
+    /// Drives, and returns the log in time order; at the same stamp truth comes first, then `sensors` in their order.
+    ///
+    /// # Errors
+    /// When the parameters have no meaning; nothing is drawn from `streams` then.
+    pub fn run(
+        &self,
+        sensors: &mut [Box<dyn Sensor>],
+        streams: &mut Streams,
+    ) -> Result<Vec<Record>, SimError> {
+        self.validate(sensors)?;
+        let mut robot = DifferentialDrive::new(self.drive, self.route.at(0.0))?;
+        let mut driver = Pursuit::default();
+        let mut records = self.landmarks();
+        for milliseconds in 0..=self.duration_ms {
+            let moment = Moment {
+                milliseconds,
+                pose: robot.pose(),
+                wheel_angles: robot.wheel_angles(),
+                world: self.world,
+            };
+            self.log(&moment, sensors, streams, &mut records);
+            let (linear, angular) = driver.command(STEP_S, &self.route, &robot.pose(), &self.drive);
+            robot.step(STEP_S, linear, angular, streams);
+        }
+        records.sort_by_key(|record| record.stamp);
+        Ok(records)
+    }
+
+    fn validate(&self, sensors: &[Box<dyn Sensor>]) -> Result<(), SimError> {
+        if self.duration_ms > LONGEST_MS {
+            let what = "milliseconds of driving";
+            return Err(SimError::TooMany { what, limit: LONGEST_MS, got: self.duration_ms });
+        }
+        check::period("period of the true poses (ms)", self.truth_period_ms)?;
+        sensors.iter().try_for_each(|sensor| check::period("period of a sensor (ms)", sensor.period_ms()))
+    }
+
+    fn landmarks(&self) -> Vec<Record> {
+        let record = |landmark| Record { stamp: self.start, data: Data::TrueLandmark(landmark) };
+        self.world.landmarks().into_iter().map(record).collect()
+    }
+
+    /// Whatever is due at this moment.
+    fn log(
+        &self,
+        moment: &Moment<'_>,
+        sensors: &mut [Box<dyn Sensor>],
+        streams: &mut Streams,
+        records: &mut Vec<Record>,
+    ) {
+        let is_due = |period_ms: u32| moment.milliseconds.is_multiple_of(u64::from(period_ms));
+        if is_due(self.truth_period_ms) {
+            records.push(Record { stamp: self.stamp(moment, 0), data: Data::TruePose(moment.pose) });
+        }
+        for sensor in sensors.iter_mut().filter(|sensor| is_due(sensor.period_ms())) {
+            if let Some(reading) = sensor.sense(moment, streams) {
+                records.push(Record { stamp: self.stamp(moment, reading.late_ms), data: reading.data });
+            }
+        }
+    }
+
+    fn stamp(&self, moment: &Moment<'_>, late_ms: i64) -> Stamp {
+        let after_start = moment.milliseconds.saturating_add_signed(late_ms);
+        Stamp::from_nanoseconds(
+            self.start.nanoseconds().saturating_add(after_start.saturating_mul(1_000_000)),
+        )
+    }
+}

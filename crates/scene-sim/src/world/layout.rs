@@ -1,0 +1,56 @@
+use nalgebra::Vector2;
+use rand::Rng;
+use wayfix_sensor_log::TrueLandmark;
+
+use super::{CorridorLoop, Office, Roadside, UniformField, Wall};
+use crate::SimError;
+use crate::route::Route;
+
+/// The most landmarks a layout places.
+pub(super) const MOST_LANDMARKS: usize = 100_000;
+
+/// Landmarks and walls.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Plan {
+    /// Points that the robot may learn.
+    pub landmarks: Vec<TrueLandmark>,
+    /// What hides them.
+    pub walls: Vec<Wall>,
+}
+
+impl Plan {
+    /// Landmarks numbered from 0 in the order of `points`.
+    pub fn numbered(points: Vec<Vector2<f64>>, walls: Vec<Wall>) -> Self {
+        let landmarks = points.iter().zip(0..).map(|(p, id)| TrueLandmark { id, x: p.x, y: p.y }).collect();
+        Self { landmarks, walls }
+    }
+}
+
+/// A kind of place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Layout {
+    /// Landmarks anywhere in a square.
+    UniformField(UniformField),
+    /// A corridor that leads around a block.
+    CorridorLoop(CorridorLoop),
+    /// Rooms in rows and columns, with doors.
+    Office(Office),
+    /// Rocks along the robot's route.
+    Roadside(Roadside),
+}
+
+impl Layout {
+    /// Places landmarks and walls; `route` is where the robot is going to drive.
+    ///
+    /// # Errors
+    /// When the parameters have no meaning or landmarks find no room.
+    pub fn build<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Result<Plan, SimError> {
+        match self {
+            Self::UniformField(field) => field.plan(rng),
+            Self::CorridorLoop(corridor) => corridor.plan(rng),
+            Self::Office(office) => office.plan(rng),
+            Self::Roadside(rocks) => rocks.plan(route, rng),
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! What there is to see: landmarks, walls that hide them, other robots, things with unlisted codes.
+
+mod corridor;
+mod field;
+mod layout;
+mod office;
+mod planar;
+mod roadside;
+mod wall;
+
+pub use corridor::CorridorLoop;
+pub use field::UniformField;
+pub use layout::{Layout, Plan};
+pub use office::Office;
+pub use planar::{OtherRobot, PlanarWorld, World};
+pub use roadside::Roadside;
+pub use wall::Wall;

@@ -1,0 +1,80 @@
+use nalgebra::Vector2;
+use wayfix_sensor_log::{Target, TrueLandmark};
+
+use super::{Plan, Wall};
+use crate::route::Route;
+
+/// What sensors look at. Implement it to drive through a world of your own.
+///
+/// **Laws**: [`targets`](Self::targets) lists the same things in the same order at every time (errors that hang together in time
+/// belong to a place in this list), and nothing depends on anything but the arguments.
+pub trait World {
+    /// The surveyed landmarks: what the log gives as truth.
+    fn landmarks(&self) -> Vec<TrueLandmark>;
+
+    /// Everything that could be seen `seconds` after the start, wherever from, and where it is (metres).
+    fn targets(&self, seconds: f64) -> Vec<(Target, Vector2<f64>)>;
+
+    /// Whether something stands between `eye` and `point`. By default nothing does.
+    fn hides(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
+        let _ = (eye, point);
+        false
+    }
+}
+
+/// A world of points, walls and other robots.
+///
+/// ```
+/// use wayfix_scene_sim::world::{Plan, PlanarWorld, World};
+/// use wayfix_sensor_log::{Target, TrueLandmark};
+/// let plan = Plan { landmarks: vec![TrueLandmark { id: 7, x: 1.0, y: 2.0 }], walls: vec![] };
+/// let world = PlanarWorld::new(plan);
+/// assert_eq!(world.targets(0.0)[0].0, Target::Landmark(7));
+/// ```
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct PlanarWorld {
+    /// Landmarks and walls.
+    pub plan: Plan,
+    /// Things with a code that the log's own table does not list.
+    pub unknown_codes: Vec<(u32, Vector2<f64>)>,
+    /// Robots that drive about.
+    pub other_robots: Vec<OtherRobot>,
+}
+
+/// A robot that follows its route to the millimetre; beyond the end of an open route it drives straight on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherRobot {
+    /// Its number.
+    pub id: u32,
+    /// Where it drives.
+    pub route: Route,
+    /// How fast, m/s.
+    pub speed_mps: f64,
+}
+
+impl PlanarWorld {
+    /// A world of landmarks and walls only.
+    pub fn new(plan: Plan) -> Self {
+        Self { plan, unknown_codes: Vec::new(), other_robots: Vec::new() }
+    }
+}
+
+impl World for PlanarWorld {
+    fn landmarks(&self) -> Vec<TrueLandmark> {
+        self.plan.landmarks.clone()
+    }
+
+    fn targets(&self, seconds: f64) -> Vec<(Target, Vector2<f64>)> {
+        let landmarks = self.plan.landmarks.iter().map(|l| (Target::Landmark(l.id), Vector2::new(l.x, l.y)));
+        let codes = self.unknown_codes.iter().map(|(code, at)| (Target::UnknownCode(*code), *at));
+        let robots = self
+            .other_robots
+            .iter()
+            .map(|r| (Target::Robot(r.id), r.route.at(seconds * r.speed_mps).translation));
+        landmarks.chain(codes).chain(robots).collect()
+    }
+
+    fn hides(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
+        self.plan.walls.iter().any(|wall: &Wall| wall.hides(eye, point))
+    }
+}

@@ -1,0 +1,206 @@
+//! Parameters without a meaning are refused with their name and value; nothing panics.
+
+mod support;
+
+use support::{streams, world};
+use wayfix_estimation_traits::Pose2;
+use wayfix_scene_sim::drive::{DriveParams, SlipParams};
+use wayfix_scene_sim::monobot::MonobotParams;
+use wayfix_scene_sim::random::{Source, Tail};
+use wayfix_scene_sim::route::{Circle, LawnMower, Piece, RoundedRectangle, Route, Waypoints};
+use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
+use wayfix_scene_sim::sensor::{GaussianOdometryParams, RangeBearingParams, Sensor, WheelOdometryParams};
+use wayfix_scene_sim::sensor::{Moment, Reading};
+use wayfix_scene_sim::world::{CorridorLoop, Office, Roadside, UniformField};
+use wayfix_scene_sim::{Scenario, ScenarioParams, SimError, Simulation};
+
+const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, -1.0];
+
+#[track_caller]
+fn assert_refused(result: Result<(), SimError>, value: f64) {
+    let named = match &result {
+        Err(SimError::Parameter { value, .. }) => Some(value.to_bits()),
+        _ => None,
+    };
+    assert_eq!(named, Some(value.to_bits()), "{value} gave {result:?}");
+}
+
+#[test]
+fn sensor_parameters() {
+    let honest = RangeBearingParams::default();
+    for bad in BAD {
+        let sigma = RangeSigma { constant_m: bad, per_metre: 0.0 };
+        let growth = RangeSigma { constant_m: 0.1, per_metre: bad };
+        let drift = |correlation_time_s, bearing_sigma_rad| DriftParams {
+            correlation_time_s,
+            bearing_sigma_rad,
+            ..DriftParams::default()
+        };
+        for params in [
+            RangeBearingParams { min_range_m: bad, ..honest },
+            RangeBearingParams { max_range_m: bad, ..honest },
+            RangeBearingParams { field_of_view_rad: bad, ..honest },
+            RangeBearingParams { range_noise: sigma, ..honest },
+            RangeBearingParams { range_noise: growth, ..honest },
+            RangeBearingParams { bearing_sigma_rad: bad, ..honest },
+            RangeBearingParams { tail: Tail::StudentT { degrees_of_freedom: bad }, ..honest },
+            RangeBearingParams { range_scale: bad, ..honest },
+            RangeBearingParams { drift: drift(bad, 0.0), ..honest },
+            RangeBearingParams { drift: drift(1.0, bad), ..honest },
+            RangeBearingParams { outlier_share: bad, ..honest },
+            RangeBearingParams { dropout_share: bad, ..honest },
+            RangeBearingParams { missed_share: bad, ..honest },
+            RangeBearingParams { mislabelled_share: bad, ..honest },
+            RangeBearingParams { clutter: Clutter { mean: bad, label: ClutterLabel::Unlabelled }, ..honest },
+        ] {
+            assert_refused(params.validate(), bad);
+        }
+    }
+    assert_refused(RangeBearingParams { range_bias_m: f64::NAN, ..honest }.validate(), f64::NAN);
+    assert_refused(RangeBearingParams { bearing_bias_rad: f64::NAN, ..honest }.validate(), f64::NAN);
+    assert_refused(RangeBearingParams { outlier_share: 1.5, ..honest }.validate(), 1.5);
+    assert_refused(RangeBearingParams { period_ms: 0, ..honest }.validate(), 0.0);
+    let tail = Tail::StudentT { degrees_of_freedom: 2.0 };
+    assert_refused(RangeBearingParams { tail, ..honest }.validate(), 2.0);
+}
+
+#[test]
+fn drive_and_odometry_parameters() {
+    let good = DriveParams::default();
+    for bad in BAD {
+        for params in [
+            DriveParams { speed_mps: bad, ..good },
+            DriveParams { acceleration_mps2: bad, ..good },
+            DriveParams { wheel_radius_m: bad, ..good },
+            DriveParams { track_m: bad, ..good },
+            DriveParams { left_radius_error: bad, ..good },
+            DriveParams { right_radius_error: bad, ..good },
+            DriveParams { track_error: bad, ..good },
+            DriveParams { motor_lag_s: bad, ..good },
+            DriveParams { lookahead_m: bad, ..good },
+            DriveParams { slip: SlipParams { sigma: bad, ..good.slip }, ..good },
+            DriveParams { slip: SlipParams { correlation_time_s: bad, ..good.slip }, ..good },
+            DriveParams { slip: SlipParams { shared: bad, ..good.slip }, ..good },
+        ] {
+            assert_refused(params.validate(), bad);
+        }
+        let wheels = WheelOdometryParams::default();
+        assert_refused(WheelOdometryParams { wheel_radius_m: bad, ..wheels }.validate(), bad);
+        assert_refused(WheelOdometryParams { track_m: bad, ..wheels }.validate(), bad);
+        assert_refused(WheelOdometryParams { travel_noise: bad, ..wheels }.validate(), bad);
+        let gaussian = GaussianOdometryParams::default();
+        assert_refused(GaussianOdometryParams { sigma_m: bad, ..gaussian }.validate(), bad);
+        assert_refused(GaussianOdometryParams { sigma_rad: bad, ..gaussian }.validate(), bad);
+    }
+    let wheels = WheelOdometryParams::default();
+    assert_refused(WheelOdometryParams { ticks_per_turn: Some(0), ..wheels }.validate(), 0.0);
+    assert_refused(WheelOdometryParams { period_ms: 0, ..wheels }.validate(), 0.0);
+    assert_refused(
+        GaussianOdometryParams { period_ms: 0, ..GaussianOdometryParams::default() }.validate(),
+        0.0,
+    );
+}
+
+#[test]
+fn routes() {
+    let mut streams = streams(1);
+    let rng = streams.of(Source::Route);
+    for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+        let rectangle = RoundedRectangle { length_m: 9.0, width_m: 9.0, corner_radius_m: 1.0 };
+        let rows = LawnMower { n_rows: 2, row_length_m: 1.0, spacing_m: 1.0 };
+        let points = Waypoints { n_waypoints: 2, half_width_m: 5.0, turn_radius_m: 1.0 };
+        for route in [
+            Circle { radius_m: bad }.route(),
+            RoundedRectangle { length_m: bad, ..rectangle }.route(),
+            RoundedRectangle { width_m: bad, ..rectangle }.route(),
+            RoundedRectangle { corner_radius_m: bad, ..rectangle }.route(),
+            LawnMower { row_length_m: bad, ..rows }.route(),
+            LawnMower { spacing_m: bad, ..rows }.route(),
+            Waypoints { half_width_m: bad, ..points }.route(rng),
+            Waypoints { turn_radius_m: bad, ..points }.route(rng),
+        ] {
+            assert_refused(route.map(drop), bad);
+        }
+    }
+    let start = Pose2::new(0.0, 0.0, 0.0);
+    assert!(Route::open(start, vec![]).is_err());
+    let straight = Piece { length_m: 1.0, curvature_per_m: 0.0 };
+    assert_refused(Route::closed(start, vec![straight]).map(drop), 1.0);
+    assert!(Route::open(Pose2::new(f64::NAN, 0.0, 0.0), vec![straight]).is_err());
+    let cramped = Waypoints { n_waypoints: 2, half_width_m: 0.1, turn_radius_m: 1e3 };
+    let no_room = SimError::NoRoom { what: "waypoints", placed: 0, wanted: 2 };
+    assert_eq!(cramped.route(rng), Err(no_room));
+    assert!(matches!(
+        LawnMower { n_rows: usize::MAX, row_length_m: 1.0, spacing_m: 1.0 }.route(),
+        Err(SimError::TooMany { .. })
+    ));
+}
+
+#[test]
+fn worlds() {
+    let mut streams = streams(1);
+    let rng = streams.of(Source::Landmarks);
+    let route = Circle { radius_m: 2.0 }.route().expect("valid");
+    for bad in BAD {
+        let field = UniformField { n_landmarks: 2, half_width_m: 5.0, separation_m: 0.0 };
+        assert_refused(UniformField { half_width_m: bad, ..field }.plan(rng).map(drop), bad);
+        assert_refused(UniformField { separation_m: bad, ..field }.plan(rng).map(drop), bad);
+        let corridor = CorridorLoop { length_m: 20.0, width_m: 10.0, corridor_m: 2.0, spacing_m: 1.0 };
+        assert_refused(CorridorLoop { length_m: bad, ..corridor }.plan(rng).map(drop), bad);
+        assert_refused(CorridorLoop { corridor_m: bad, ..corridor }.plan(rng).map(drop), bad);
+        assert_refused(CorridorLoop { spacing_m: bad, ..corridor }.plan(rng).map(drop), bad);
+        let office = Office { n_columns: 2, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.1 };
+        assert_refused(Office { room_m: bad, ..office }.plan(rng).map(drop), bad);
+        assert_refused(Office { door_m: bad, ..office }.plan(rng).map(drop), bad);
+        assert_refused(Office { jitter_m: bad, ..office }.plan(rng).map(drop), bad);
+        let rocks = Roadside { n_landmarks: 2, clear_m: 1.0, verge_m: 1.0 };
+        assert_refused(Roadside { clear_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
+        assert_refused(Roadside { verge_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
+    }
+    let crowded = UniformField { n_landmarks: 100, half_width_m: 1.0, separation_m: 1.0 };
+    assert!(matches!(crowded.plan(rng), Err(SimError::NoRoom { wanted: 100, .. })));
+    let endless = Office { n_columns: usize::MAX, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.0 };
+    assert!(matches!(endless.plan(rng), Err(SimError::TooMany { .. })));
+    let tight = CorridorLoop { length_m: 20.0, width_m: 10.0, corridor_m: 2.0, spacing_m: 1e-300 };
+    assert!(matches!(tight.plan(rng), Err(SimError::TooMany { .. })));
+}
+
+#[test]
+fn simulations_scenarios_and_the_monobot() {
+    let nothing = world(&[]);
+    let simulation = Simulation::new(&nothing, Circle { radius_m: 2.0 }.route().expect("valid"));
+    let run = |simulation: Simulation<'_>| simulation.run(&mut [], &mut streams(1)).map(drop);
+    assert_refused(run(Simulation { truth_period_ms: 0, ..simulation.clone() }), 0.0);
+    let forever = run(Simulation { duration_ms: u64::MAX, ..simulation.clone() });
+    assert!(matches!(forever, Err(SimError::TooMany { got: u64::MAX, .. })));
+    assert_refused(simulation.run(&mut [Box::new(Stopped)], &mut streams(1)).map(drop), 0.0);
+
+    assert!(matches!(Scenario::named("nowhere"), Err(SimError::UnknownScenario { .. })));
+    for bad in BAD {
+        let motion = MonobotParams { motion_noise: bad, ..MonobotParams::default() };
+        assert_refused(motion.simulate(&mut streams(1)).map(drop), bad);
+        let range = MonobotParams { range_noise: bad, ..MonobotParams::default() };
+        assert_refused(range.simulate(&mut streams(1)).map(drop), bad);
+        let external = MonobotParams { external_sigma_m: bad, ..MonobotParams::default() };
+        assert_refused(external.simulate(&mut streams(1)).map(drop), bad);
+    }
+    let endless = MonobotParams { n_steps: usize::MAX, ..MonobotParams::default() };
+    assert!(matches!(endless.simulate(&mut streams(1)), Err(SimError::TooMany { .. })));
+
+    let mut scenario = Scenario::named("rough_known").expect("a known name");
+    let ScenarioParams::Planar(params) = &mut scenario.params else { panic!("planar") };
+    params.other_robots[0].speed_mps = f64::NAN;
+    assert_refused(params.simulate(&mut streams(1)).map(drop), f64::NAN);
+}
+
+/// A sensor whose clock stands still.
+struct Stopped;
+
+impl Sensor for Stopped {
+    fn period_ms(&self) -> u32 {
+        0
+    }
+    fn sense(&mut self, _: &Moment<'_>, _: &mut wayfix_scene_sim::random::Streams) -> Option<Reading> {
+        None
+    }
+}

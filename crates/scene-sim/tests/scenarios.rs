@@ -1,0 +1,64 @@
+//! Each named scenario holds what its name promises, and little enough of it to be stored.
+
+mod support;
+
+use std::collections::BTreeSet;
+
+use support::run;
+use wayfix_scene_sim::Scenario;
+use wayfix_sensor_log::{Data, Record, Sighting, Target};
+
+fn sightings(records: &[Record]) -> Vec<Sighting> {
+    let of = |record: &Record| match &record.data {
+        Data::Sightings(sightings) => sightings.clone(),
+        _ => vec![],
+    };
+    records.iter().flat_map(of).collect()
+}
+
+fn count(records: &[Record], is: fn(&Data) -> bool) -> usize {
+    records.iter().filter(|record| is(&record.data)).count()
+}
+
+fn seen_landmarks(records: &[Record]) -> usize {
+    let landmark = |s: &Sighting| match s.target {
+        Target::Landmark(id) => Some(id),
+        _ => None,
+    };
+    sightings(records).iter().filter_map(landmark).collect::<BTreeSet<_>>().len()
+}
+
+#[test]
+fn all_have_truth_sightings_and_a_bounded_size() {
+    for scenario in Scenario::all() {
+        let records = run(scenario.name, scenario.seed);
+        let (n_records, n_sightings) = (records.len(), sightings(&records).len());
+        println!("{}: {n_records} records, {n_sightings} sightings", scenario.name);
+        assert!(count(&records, |d| matches!(d, Data::TruePose(_))) > 100, "{}", scenario.name);
+        assert!(count(&records, |d| matches!(d, Data::TrueLandmark(_))) > 0, "{}", scenario.name);
+        // Fixtures are to stay below 1 MB each; a record takes about 100 bytes of MCAP and a sighting 60.
+        assert!(n_records * 100 + n_sightings * 60 < 1_000_000, "{}", scenario.name);
+    }
+}
+
+#[test]
+fn each_is_what_its_name_says() {
+    let records = run("loop_known", 1);
+    assert!(seen_landmarks(&records) >= 30);
+    assert_eq!(count(&records, |d| matches!(d, Data::OdometryIncrement(_))), 500);
+
+    let unlabelled = sightings(&run("loop_unlabelled", 2));
+    assert!(!unlabelled.is_empty() && unlabelled.iter().all(|s| s.target == Target::Unlabelled));
+
+    let office = run("office_velocity", 3);
+    assert!(count(&office, |d| matches!(d, Data::Velocity(_))) == 3000 && seen_landmarks(&office) == 15);
+    let kinds = |is: fn(&Target) -> bool| sightings(&office).iter().filter(|s| is(&s.target)).count();
+    assert!(kinds(|t| matches!(t, Target::Robot(2 | 3))) > 20);
+    assert!(kinds(|t| matches!(t, Target::UnknownCode(_))) > 20);
+
+    let rough = run("rough_known", 4);
+    assert!(count(&rough, |d| matches!(d, Data::Sightings(_))) < 481, "some looks are lost");
+
+    let long = run("long_loop", 5);
+    assert!(seen_landmarks(&long) >= 45);
+}
