@@ -2,7 +2,7 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GaussianError {
-    /// A covariance is not symmetric positive definite.
+    /// A covariance is not positive definite.
     #[error("{what} covariance is not positive definite (pivot {pivot} is {value:e})")]
     NotPositiveDefinite {
         /// Which covariance.
@@ -36,4 +36,85 @@ pub enum GaussianError {
         /// The size that came.
         got: usize,
     },
+    /// An index set names a coordinate that does not exist, or one twice.
+    #[error("index {index} is out of range or repeated (dimension {dimension})")]
+    Index {
+        /// The index.
+        index: usize,
+        /// The dimension of the state.
+        dimension: usize,
+    },
+    /// A list that must hold something is empty.
+    #[error("no {what}")]
+    Empty {
+        /// What there should be some of.
+        what: &'static str,
+    },
+    /// A parameter is outside its range.
+    #[error("{what} is {value}, must be {range}")]
+    Parameter {
+        /// Which one.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// The values it may take.
+        range: &'static str,
+    },
+    /// A weight is negative or NaN.
+    #[error("weight {index} is {value}")]
+    Weight {
+        /// Whose weight.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The weights are all zero: every hypothesis is dead, and nothing is left to normalize.
+    #[error("all {count} weights are zero")]
+    NoWeight {
+        /// How many there are.
+        count: usize,
+    },
+    /// An iteration stopped short; [`IterationError`] holds how far it came.
+    #[error("{what} did not converge in {iterations} iterations (last step {step:e})")]
+    NotConverged {
+        /// Which iteration.
+        what: &'static str,
+        /// How many steps it took.
+        iterations: usize,
+        /// Length of the last step.
+        step: f64,
+    },
+}
+
+/// Why an iteration on a manifold failed; with its last estimate when it came that far.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum IterationError<X> {
+    /// A step could not be taken.
+    #[error(transparent)]
+    Step(#[from] GaussianError),
+    /// The points are spread too far for a mean, or the budget was too small.
+    #[error("{what} did not converge in {iterations} iterations (last step {step:e})")]
+    NotConverged {
+        /// Which iteration.
+        what: &'static str,
+        /// The last estimate.
+        last: X,
+        /// How many steps it took.
+        iterations: usize,
+        /// Length of the last step.
+        step: f64,
+    },
+}
+
+/// Forgets the last estimate.
+impl<X> From<IterationError<X>> for GaussianError {
+    fn from(error: IterationError<X>) -> Self {
+        match error {
+            IterationError::Step(error) => error,
+            IterationError::NotConverged { what, iterations, step, .. } => {
+                Self::NotConverged { what, iterations, step }
+            }
+        }
+    }
 }

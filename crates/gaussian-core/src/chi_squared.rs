@@ -1,0 +1,89 @@
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::GaussianError;
+
+/// A gate on squared Mahalanobis distances: the quantile is computed once, each test is one comparison.
+///
+/// ```
+/// use wayfix_gaussian_core::ChiSquaredGate;
+/// let gate = ChiSquaredGate::from_probability(2, 0.95)?;
+/// assert!((gate.threshold() - 5.991464547107979).abs() < 1e-9); // scipy.stats.chi2.ppf(0.95, 2)
+/// assert!(gate.accepts(5.9) && !gate.accepts(6.0) && !gate.accepts(f64::NAN));
+/// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChiSquaredGate {
+    threshold: f64,
+}
+
+impl ChiSquaredGate {
+    /// The gate that lets `probability` of the true measurements of dimension `dof` through.
+    ///
+    /// # Errors
+    /// When `dof` is 0 or `probability` is not between 0 and 1 (both excluded).
+    pub fn from_probability(dof: usize, probability: f64) -> Result<Self, GaussianError> {
+        Ok(Self { threshold: quantile(dof, probability)? })
+    }
+    /// Whether a squared distance is inside. NaN is not.
+    pub fn accepts(&self, squared_distance: f64) -> bool {
+        squared_distance <= self.threshold
+    }
+    /// The largest squared distance inside.
+    pub fn threshold(&self) -> f64 {
+        self.threshold
+    }
+}
+
+/// Where the average of chi-squared values over several runs falls, if the filter is consistent.
+///
+/// Two-sided: $`[\,χ^2_{N n}(\tfrac{1-p}{2}),\; χ^2_{N n}(\tfrac{1+p}{2})\,] / N`$ for NEES or NIS of $`n`$ degrees of freedom averaged over
+/// $`N`$ **independent** runs. [Bar-Shalom et al. 2001, Sec. 5.4.2]
+///
+/// ```
+/// use wayfix_gaussian_core::ChiSquaredBand;
+/// let band = ChiSquaredBand::for_average(2, 50, 0.95)?;
+/// // scipy.stats.chi2.ppf([0.025, 0.975], 100) / 50
+/// assert!((band.low - 1.4844385495).abs() < 1e-8 && (band.high - 2.5912239437).abs() < 1e-8);
+/// assert!(band.contains(2.0));
+/// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChiSquaredBand {
+    /// Below it the covariance is too large: a pessimistic filter.
+    pub low: f64,
+    /// Above it the covariance is too small: an overconfident filter.
+    pub high: f64,
+}
+
+impl ChiSquaredBand {
+    /// The band that holds the average of `runs` values of `dof` degrees of freedom with `probability`.
+    ///
+    /// # Errors
+    /// When `dof` or `runs` is 0 or `probability` is not between 0 and 1 (both excluded).
+    pub fn for_average(dof: usize, runs: usize, probability: f64) -> Result<Self, GaussianError> {
+        check_probability(probability)?;
+        let total = dof.saturating_mul(runs);
+        let tail = 0.5 * (1.0 - probability);
+        let n = runs as f64;
+        Ok(Self { low: quantile(total, tail)? / n, high: quantile(total, 1.0 - tail)? / n })
+    }
+    /// Whether `average` is inside. NaN is not.
+    pub fn contains(&self, average: f64) -> bool {
+        (self.low..=self.high).contains(&average)
+    }
+}
+
+/// The value that a chi-squared variable of `dof` degrees of freedom stays below with `probability`.
+fn quantile(dof: usize, probability: f64) -> Result<f64, GaussianError> {
+    check_probability(probability)?;
+    let out_of_range =
+        |_| GaussianError::Parameter { what: "degrees of freedom", value: dof as f64, range: "at least 1" };
+    ChiSquared::new(dof as f64).map(|chi_squared| chi_squared.inverse_cdf(probability)).map_err(out_of_range)
+}
+
+pub(crate) fn check_probability(value: f64) -> Result<(), GaussianError> {
+    if value > 0.0 && value < 1.0 {
+        return Ok(());
+    }
+    Err(GaussianError::Parameter { what: "probability", value, range: "between 0 and 1, both excluded" })
+}
