@@ -1,7 +1,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::Format;
+use crate::{Format, LogEnd, Stamp};
 
 /// Why a log could not be opened or written, and what to do about it.
 #[derive(Debug, thiserror::Error)]
@@ -69,6 +69,45 @@ pub enum LogError {
         /// The file or folder.
         path: PathBuf,
     },
+    /// An MCAP file in which no message has a topic and schema that this crate reads.
+    #[error("{}: no message on a known topic; it has {}", path.display(), ignored.join(", "))]
+    NoKnownTopic {
+        /// The file.
+        path: PathBuf,
+        /// Topics and schemas that are there.
+        ignored: Vec<String>,
+    },
+    /// The file goes bad, or breaks off, before the first record.
+    #[error("{}: {end} before the first record", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// How it ends.
+        end: LogEnd,
+    },
+    /// A format that is read only.
+    #[error("{format} logs are read, not written; write one of range-bearing, tum, mcap")]
+    NotWritable {
+        /// The format.
+        format: Format,
+    },
+    /// A number that no log should hold.
+    #[error("{what} at {stamp} is not finite")]
+    NotFinite {
+        /// Kind of the record.
+        what: &'static str,
+        /// Its stamp.
+        stamp: Stamp,
+    },
+    /// A stamp beyond what Foxglove messages hold.
+    #[error("stamp {stamp} is beyond the year 2106")]
+    StampTooLate {
+        /// The stamp.
+        stamp: Stamp,
+    },
+    /// Writing an MCAP file failed.
+    #[error("MCAP output: {0}")]
+    McapOutput(Box<mcap::McapError>),
     /// A name that is no format.
     #[error("{name:?} is no log format; the formats are {}", Format::NAMES)]
     NoSuchFormat {
@@ -84,5 +123,11 @@ impl LogError {
             io::ErrorKind::IsADirectory => Self::IsADirectory { path: path.into() },
             _ => Self::Io { path: path.into(), source },
         }
+    }
+}
+
+impl From<mcap::McapError> for LogError {
+    fn from(error: mcap::McapError) -> Self {
+        Self::McapOutput(Box::new(error))
     }
 }

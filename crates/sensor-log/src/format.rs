@@ -4,11 +4,10 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 use std::str::FromStr;
 
+use mcap::MAGIC;
+
 use crate::LogError;
 use crate::text::{Lines, range_bearing, tum, utias};
-
-/// The first bytes of every MCAP file.
-const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// How a log is stored.
 ///
@@ -52,8 +51,8 @@ impl Format {
         }
         let mut head = Vec::new();
         let file = File::open(path).map_err(io)?;
-        (&file).take(MCAP_MAGIC.len() as u64).read_to_end(&mut head).map_err(io)?;
-        if head == MCAP_MAGIC {
+        (&file).take(MAGIC.len() as u64).read_to_end(&mut head).map_err(io)?;
+        if head == MAGIC {
             return Ok(Self::Mcap);
         }
         let rest = BufReader::new(head.as_slice().chain(file));

@@ -7,6 +7,9 @@
 //! | [`Format::Utias`] | a folder of the UTIAS multi-robot set | velocity, sightings, truth |
 //! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, sightings, truth |
 //! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
+//! | [`Format::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
+//!
+//! [`write()`] writes records in any of these formats but the first, [`McapWriter`] also what viewers draw, [`LogSummary`] says what a log holds.
 //!
 //! A bad row never stops the reading: it is left out, counted by kind, and the first few are named with file and line.
 //!
@@ -25,16 +28,23 @@
 mod error;
 mod format;
 mod log;
+mod mcap_log;
 mod open;
+mod planar;
 mod record;
 mod report;
 mod stamp;
+mod summary;
 mod text;
+mod write;
 
 pub use error::LogError;
 pub use format::Format;
 pub use log::{Log, LogMeta};
+pub use mcap_log::{Drawing, McapWriter, Shape, topics};
 pub use open::{OpenOptions, PoseKind, open};
 pub use record::{Data, Record, Sighting, Target, TrueLandmark, Velocity};
-pub use report::{Problem, ProblemKind, ReadReport};
+pub use report::{LogEnd, Problem, ProblemKind, ReadReport};
 pub use stamp::Stamp;
+pub use summary::{KindSummary, LogSummary};
+pub use write::{WriteReport, write};

@@ -1,12 +1,13 @@
+use std::fmt;
 use std::path::PathBuf;
 use std::vec;
 
+use crate::mcap_log::McapRecords;
 use crate::{Format, ReadReport, Record};
 
 /// An open log: an iterator over its records in time order, and what is known about it.
 ///
 /// Iterate by reference when the report is wanted afterwards: for streamed formats it is complete only at the end.
-#[derive(Debug)]
 pub struct Log {
     meta: LogMeta,
     records: Records,
@@ -25,14 +26,17 @@ pub struct LogMeta {
     pub robot: Option<u32>,
 }
 
-#[derive(Debug)]
 enum Records {
     Memory(vec::IntoIter<Record>),
+    Mcap { first: Option<Record>, rest: Box<McapRecords> },
 }
 
 impl Log {
     pub(crate) fn in_memory(meta: LogMeta, records: Vec<Record>, report: ReadReport) -> Self {
         Self { meta, records: Records::Memory(records.into_iter()), report }
+    }
+    pub(crate) fn streamed(meta: LogMeta, first: Record, rest: McapRecords, report: ReadReport) -> Self {
+        Self { meta, records: Records::Mcap { first: Some(first), rest: Box::new(rest) }, report }
     }
     /// Where the log comes from.
     pub fn meta(&self) -> &LogMeta {
@@ -54,6 +58,13 @@ impl Iterator for Log {
     fn next(&mut self) -> Option<Record> {
         match &mut self.records {
             Records::Memory(records) => records.next(),
+            Records::Mcap { first, rest } => first.take().or_else(|| rest.next(&mut self.report)),
         }
+    }
+}
+
+impl fmt::Debug for Log {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Log").field("meta", &self.meta).field("report", &self.report).finish_non_exhaustive()
     }
 }

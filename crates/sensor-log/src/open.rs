@@ -1,7 +1,8 @@
 use std::path::Path;
 
+use crate::mcap_log::McapRecords;
 use crate::text::{range_bearing, tum, utias};
-use crate::{Format, Log, LogError, LogMeta, ReadReport};
+use crate::{Format, Log, LogEnd, LogError, LogMeta, ReadReport};
 
 /// How to open a log. The default finds out what it can.
 #[derive(Clone, Debug, Default)]
@@ -26,8 +27,9 @@ pub enum PoseKind {
 
 /// Opens the log at `path`.
 ///
-/// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings.
-/// Text logs are read whole and sorted where rows go backwards (which is reported).
+/// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings (MCAP: the order of the file).
+/// Text logs are read whole and sorted where rows go backwards, which is reported. MCAP files are read chunk by chunk;
+/// what comes more than 256 records too late is left out, which is reported.
 ///
 /// # Errors
 /// When nothing usable is there: see [`LogError`]. Single bad rows are no error, they are in [`Log::report`].
@@ -48,8 +50,9 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Format::RangeBearing => range_bearing::read(path, &mut report)?,
         Format::Tum => tum::read(path, options.poses, &mut report)?,
         Format::Mcap => {
-            let reason = "MCAP is not read yet".to_owned();
-            return Err(LogError::NotThisFormat { path: path.into(), format, reason });
+            let mut records = McapRecords::open(path)?;
+            let first = records.next(&mut report).ok_or_else(|| nothing_in(path, format, &report))?;
+            return Ok(Log::streamed(meta, first, records, report));
         }
     };
     if records.is_empty() {
@@ -58,10 +61,16 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
     Ok(Log::in_memory(meta, records, report))
 }
 
-/// Nothing but bad rows means the wrong format, no rows at all an empty log.
+/// Why there is not a single record: damage, the wrong content, or an empty log.
 fn nothing_in(path: &Path, format: Format, report: &ReadReport) -> LogError {
-    match report.examples.first() {
-        Some(problem) => LogError::NotThisFormat { path: path.into(), format, reason: problem.to_string() },
-        None => LogError::Empty { path: path.into() },
+    let path = path.to_path_buf();
+    if report.end != LogEnd::Complete {
+        LogError::Damaged { path, end: report.end.clone() }
+    } else if let Some(problem) = report.examples.first() {
+        LogError::NotThisFormat { path, format, reason: problem.to_string() }
+    } else if !report.ignored.is_empty() {
+        LogError::NoKnownTopic { path, ignored: report.ignored.keys().cloned().collect() }
+    } else {
+        LogError::Empty { path }
     }
 }

@@ -31,6 +31,33 @@ pub enum Data {
     EstimatedPose(Pose2<f64>),
 }
 
+impl Data {
+    /// The kind of record, in words.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Velocity(_) => "velocity",
+            Self::OdometryIncrement(_) => "odometry increment",
+            Self::Sightings(_) => "sightings",
+            Self::TruePose(_) => "true pose",
+            Self::TrueLandmark(_) => "true landmark",
+            Self::EstimatedPose(_) => "estimated pose",
+        }
+    }
+
+    /// The kind, when one of its numbers is NaN or infinite.
+    pub(crate) fn check_finite(&self) -> Result<(), &'static str> {
+        let is_finite = match self {
+            Self::Velocity(velocity) => velocity.linear.is_finite() && velocity.angular.is_finite(),
+            Self::OdometryIncrement(pose) | Self::TruePose(pose) | Self::EstimatedPose(pose) => {
+                pose.is_finite()
+            }
+            Self::Sightings(look) => look.iter().all(|s| s.range.is_finite() && s.bearing.is_finite()),
+            Self::TrueLandmark(landmark) => landmark.x.is_finite() && landmark.y.is_finite(),
+        };
+        if is_finite { Ok(()) } else { Err(self.kind()) }
+    }
+}
+
 /// Planar body velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Velocity {

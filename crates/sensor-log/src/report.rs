@@ -15,6 +15,33 @@ pub struct ReadReport {
     pub problems: BTreeMap<ProblemKind, u64>,
     /// The first problems, in the order of the log.
     pub examples: Vec<Problem>,
+    /// Messages of topics that this crate does not read: `topic (schema)` and how many.
+    pub ignored: BTreeMap<String, u64>,
+    /// Whether the log ends as it should.
+    pub end: LogEnd,
+}
+
+/// How a log ends.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum LogEnd {
+    /// As it should; text logs always do.
+    #[default]
+    Complete,
+    /// It breaks off, as after a crash of the recorder. Everything up to the last whole message was read.
+    Truncated {
+        /// Bytes that are there.
+        file_bytes: u64,
+        /// Bytes that are missing, at least: the rest of the record that was being written and the end mark.
+        missing_bytes: u64,
+    },
+    /// It cannot be followed beyond some point. Everything before was read.
+    Damaged {
+        /// Where the reading stopped.
+        byte: u64,
+        /// Why.
+        reason: String,
+    },
 }
 
 /// One row or message that gave trouble.
@@ -48,6 +75,12 @@ pub enum ProblemKind {
     Inconsistent,
     /// Earlier than the row before it. Text logs are sorted, so it is kept.
     OutOfOrder,
+    /// Earlier than what a streamed log has already given out; left out.
+    TooLate,
+    /// A message that is not what its schema says; left out.
+    Undecodable,
+    /// A chunk of messages whose checksum or compression is wrong; left out.
+    DamagedChunk,
 }
 
 impl ReadReport {
@@ -59,6 +92,12 @@ impl ReadReport {
         *self.problems.entry(problem.kind).or_default() += 1;
         if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(problem);
+        }
+    }
+    pub(crate) fn ignore(&mut self, topic: &str) {
+        match self.ignored.get_mut(topic) {
+            Some(count) => *count += 1,
+            None => drop(self.ignored.insert(topic.to_owned(), 1)),
         }
     }
 }
@@ -76,7 +115,13 @@ impl fmt::Display for ReadReport {
         if unnamed > 0 {
             writeln!(f, "  … and {unnamed} more")?;
         }
-        Ok(())
+        for (topic, count) in &self.ignored {
+            writeln!(f, "ignored {topic}: {count} messages")?;
+        }
+        match &self.end {
+            LogEnd::Complete => Ok(()),
+            end => writeln!(f, "{end}"),
+        }
     }
 }
 
@@ -96,6 +141,21 @@ impl fmt::Display for ProblemKind {
             Self::Unrecognized => "not a row of this format",
             Self::Inconsistent => "inconsistent",
             Self::OutOfOrder => "out of time order",
+            Self::TooLate => "too late",
+            Self::Undecodable => "undecodable message",
+            Self::DamagedChunk => "damaged chunk",
         })
+    }
+}
+
+impl fmt::Display for LogEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Complete => f.write_str("the log is complete"),
+            Self::Truncated { file_bytes, missing_bytes } => {
+                write!(f, "the log breaks off after {file_bytes} bytes, at least {missing_bytes} are missing")
+            }
+            Self::Damaged { byte, reason } => write!(f, "the log is damaged at byte {byte}: {reason}"),
+        }
     }
 }

@@ -5,6 +5,7 @@ mod row;
 mod time_check;
 
 pub(crate) mod range_bearing;
+pub(crate) mod range_bearing_writer;
 pub(crate) mod tum;
 pub(crate) mod utias;
 

@@ -2,6 +2,7 @@
 //!
 //! A planar pose keeps x, y and the heading of the body's x axis.
 
+use std::io::{self, Write};
 use std::path::Path;
 
 use wayfix_estimation_traits::Pose2;
@@ -9,7 +10,8 @@ use wayfix_estimation_traits::Pose2;
 use super::Lines;
 use super::row::{RowError, columns, number, stamp};
 use super::time_check::TimeCheck;
-use crate::{Data, LogError, PoseKind, ProblemKind, ReadReport, Record};
+use crate::planar::{heading_of, quaternion_of};
+use crate::{Data, LogError, PoseKind, ProblemKind, ReadReport, Record, WriteReport};
 
 /// How far from 1 the norm of a quaternion may be; a few printed digits give 1e-3.
 const NORM_TOLERANCE: f64 = 0.05;
@@ -41,11 +43,29 @@ fn parse(row: &str, kind: PoseKind) -> Result<Record, RowError> {
     if (norm - 1.0).abs() > NORM_TOLERANCE {
         return Err(RowError::new(ProblemKind::Inconsistent, format!("quaternion of norm {norm}")));
     }
-    let heading = (2.0 * (qw * qz + qx * qy)).atan2(qw * qw + qx * qx - qy * qy - qz * qz);
-    let pose = Pose2::new(x, y, heading);
+    let pose = Pose2::new(x, y, heading_of([qx, qy, qz, qw]));
     let data = match kind {
         PoseKind::Estimated => Data::EstimatedPose(pose),
         PoseKind::True => Data::TruePose(pose),
     };
     Ok(Record { stamp, data })
+}
+
+/// Writes true and estimated poses alike; the format does not tell them apart.
+pub(crate) fn write(
+    out: &mut impl Write,
+    records: impl IntoIterator<Item = Record>,
+    report: &mut WriteReport,
+) -> io::Result<()> {
+    for record in records {
+        let (Data::TruePose(pose) | Data::EstimatedPose(pose)) = &record.data else {
+            report.leave_out(record.data.kind());
+            continue;
+        };
+        let (t, [x, y, z, w]) = (record.stamp.nanoseconds(), quaternion_of(pose.heading()));
+        let (seconds, rest) = (t / 1_000_000_000, t % 1_000_000_000);
+        writeln!(out, "{seconds}.{rest:09} {} {} 0 {x} {y} {z} {w}", pose.x(), pose.y())?;
+        report.records_written += 1;
+    }
+    Ok(())
 }

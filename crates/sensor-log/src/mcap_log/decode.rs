@@ -1,0 +1,132 @@
+//! Foxglove messages as records.
+
+use foxglove::messages::{self, Odometry, PointCloud, PoseInFrame, Timestamp};
+use prost::Message;
+use wayfix_estimation_traits::Pose2;
+
+use super::cloud::{self, Slot};
+use super::routes::Route;
+use crate::planar::heading_of;
+use crate::{Data, ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, Velocity};
+
+/// What is wrong with a message.
+pub(super) type Fault = (ProblemKind, String);
+
+/// The records in one message; a message without a stamp of its own takes the time at which it was logged.
+pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
+    match route {
+        Route::Velocity => {
+            let message: Odometry = decode(bytes)?;
+            Ok(vec![Record { stamp: stamp(message.timestamp, log_time)?, data: velocity(&message)? }])
+        }
+        Route::Increment => pose_record(bytes, log_time, Data::OdometryIncrement),
+        Route::TruePose => pose_record(bytes, log_time, Data::TruePose),
+        Route::EstimatedPose => pose_record(bytes, log_time, Data::EstimatedPose),
+        Route::Sightings => {
+            let cloud: PointCloud = decode(bytes)?;
+            Ok(vec![Record {
+                stamp: stamp(cloud.timestamp, log_time)?,
+                data: Data::Sightings(sightings(&cloud)?),
+            }])
+        }
+        Route::TrueLandmarks => {
+            let cloud: PointCloud = decode(bytes)?;
+            let stamp = stamp(cloud.timestamp, log_time)?;
+            let to_record = |landmark| Record { stamp, data: Data::TrueLandmark(landmark) };
+            Ok(landmarks(&cloud)?.into_iter().map(to_record).collect())
+        }
+    }
+}
+
+fn decode<M: Message + Default>(bytes: &[u8]) -> Result<M, Fault> {
+    M::decode(bytes).map_err(|error| (ProblemKind::Undecodable, error.to_string()))
+}
+
+fn stamp(timestamp: Option<Timestamp>, log_time: Stamp) -> Result<Stamp, Fault> {
+    let Some(timestamp) = timestamp else { return Ok(log_time) };
+    timestamp
+        .normalize()
+        .map(|timestamp| Stamp::from_nanoseconds(timestamp.total_nanos()))
+        .ok_or_else(|| (ProblemKind::BadStamp, "time stamp out of range".to_owned()))
+}
+
+fn velocity(message: &Odometry) -> Result<Data, Fault> {
+    let linear = message.linear_velocity.unwrap_or_default().x;
+    let angular = message.angular_velocity.unwrap_or_default().z;
+    finite([linear, angular])?;
+    Ok(Data::Velocity(Velocity { linear, angular }))
+}
+
+fn pose_record(
+    bytes: &[u8],
+    log_time: Stamp,
+    to_data: impl Fn(Pose2<f64>) -> Data,
+) -> Result<Vec<Record>, Fault> {
+    let message: PoseInFrame = decode(bytes)?;
+    let stamp = stamp(message.timestamp, log_time)?;
+    let pose = message.pose.ok_or_else(|| inconsistent("message without a pose"))?;
+    Ok(vec![Record { stamp, data: to_data(planar(&pose)?) }])
+}
+
+fn planar(pose: &messages::Pose) -> Result<Pose2<f64>, Fault> {
+    let position = pose.position.unwrap_or_default();
+    // A quaternion that is not there, or all zeros, means no rotation to most writers.
+    let q = pose.orientation.unwrap_or_default();
+    let heading = heading_of([q.x, q.y, q.z, q.w]);
+    finite([position.x, position.y, heading])?;
+    Ok(Pose2::new(position.x, position.y, heading))
+}
+
+fn sightings(cloud: &PointCloud) -> Result<Vec<Sighting>, Fault> {
+    let [range, bearing, kind, id] = slots(cloud, ["range", "bearing", "kind", "id"])?;
+    let read = |point: &[u8]| {
+        let target = target(kind.whole(point)?, id.whole(point)?)?;
+        Some(Sighting { target, range: range.float(point)?, bearing: bearing.float(point)? })
+    };
+    let look = read_points(cloud, read)?;
+    finite(look.iter().flat_map(|sighting| [sighting.range, sighting.bearing]))?;
+    Ok(look)
+}
+
+fn target(kind: u32, id: u32) -> Option<Target> {
+    match kind {
+        0 => Some(Target::Unlabelled),
+        1 => Some(Target::Landmark(id)),
+        2 => Some(Target::Robot(id)),
+        3 => Some(Target::UnknownCode(id)),
+        _ => None,
+    }
+}
+
+fn landmarks(cloud: &PointCloud) -> Result<Vec<TrueLandmark>, Fault> {
+    let [x, y, id] = slots(cloud, ["x", "y", "id"])?;
+    let read =
+        |point: &[u8]| Some(TrueLandmark { id: id.whole(point)?, x: x.float(point)?, y: y.float(point)? });
+    let landmarks = read_points(cloud, read)?;
+    finite(landmarks.iter().flat_map(|landmark| [landmark.x, landmark.y]))?;
+    Ok(landmarks)
+}
+
+fn slots<const N: usize>(cloud: &PointCloud, names: [&str; N]) -> Result<[Slot; N], Fault> {
+    let slots: Option<Vec<Slot>> = names.iter().map(|name| Slot::of(cloud, name)).collect();
+    slots
+        .and_then(|slots| slots.try_into().ok())
+        .ok_or_else(|| inconsistent(&format!("point cloud without the fields {names:?}")))
+}
+
+fn read_points<T>(cloud: &PointCloud, read: impl Fn(&[u8]) -> Option<T>) -> Result<Vec<T>, Fault> {
+    cloud::points(cloud)
+        .and_then(|points| points.map(read).collect())
+        .ok_or_else(|| inconsistent("point cloud whose bytes do not fit its fields"))
+}
+
+fn finite(numbers: impl IntoIterator<Item = f64>) -> Result<(), Fault> {
+    match numbers.into_iter().find(|number| !number.is_finite()) {
+        None => Ok(()),
+        Some(number) => Err((ProblemKind::NotFinite, format!("{number} is not finite"))),
+    }
+}
+
+fn inconsistent(reason: &str) -> Fault {
+    (ProblemKind::Inconsistent, reason.to_owned())
+}

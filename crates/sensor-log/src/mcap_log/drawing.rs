@@ -1,0 +1,111 @@
+use foxglove::messages::{
+    Color, LinePrimitive, Point3, Pose, SceneEntity, SceneUpdate, SpherePrimitive, TextPrimitive, Timestamp,
+    Vector3, line_primitive,
+};
+
+/// Points on the outline of an ellipse.
+const ELLIPSE_POINTS: usize = 48;
+/// Width of lines and size of letters, screen pixels.
+const LINE_PIXELS: f64 = 2.0;
+const TEXT_PIXELS: f64 = 12.0;
+
+/// Something to draw in a viewer; a later one with the same `id` replaces it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// Its identity within the topic.
+    pub id: String,
+    /// Red, green, blue and alpha in [0, 1].
+    pub color: [f64; 4],
+    /// What it looks like.
+    pub shape: Shape,
+}
+
+/// Planar shapes; metres and radians.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Shape {
+    /// The outline of an ellipse, for instance of a covariance.
+    Ellipse {
+        /// Centre.
+        center: [f64; 2],
+        /// Half the lengths of its axes.
+        semi_axes: [f64; 2],
+        /// Direction of the first axis.
+        angle: f64,
+    },
+    /// A line through points.
+    Path(Vec<[f64; 2]>),
+    /// A ball with a text beside it, for instance a landmark and its number.
+    Marker {
+        /// Centre.
+        position: [f64; 2],
+        /// Radius of the ball.
+        radius: f64,
+        /// The text; may be empty.
+        text: String,
+    },
+}
+
+pub(super) fn scene_update(timestamp: Timestamp, frame: &str, drawings: &[Drawing]) -> SceneUpdate {
+    let entities = drawings.iter().map(|drawing| entity(timestamp, frame, drawing)).collect();
+    SceneUpdate { entities, ..Default::default() }
+}
+
+fn entity(timestamp: Timestamp, frame: &str, drawing: &Drawing) -> SceneEntity {
+    let [r, g, b, a] = drawing.color;
+    let color = Color { r, g, b, a };
+    let mut entity = SceneEntity {
+        timestamp: Some(timestamp),
+        frame_id: frame.to_owned(),
+        id: drawing.id.clone(),
+        ..Default::default()
+    };
+    match &drawing.shape {
+        Shape::Ellipse { center, semi_axes, angle } => {
+            let outline = ellipse_outline(*center, *semi_axes, *angle);
+            entity.lines.push(line(line_primitive::Type::LineLoop, &outline, color));
+        }
+        Shape::Path(points) => entity.lines.push(line(line_primitive::Type::LineStrip, points, color)),
+        Shape::Marker { position: [x, y], radius, text } => {
+            let pose = Some(Pose { position: Some(Vector3 { x: *x, y: *y, z: 0.0 }), ..Default::default() });
+            let size = Some(Vector3 { x: 2.0 * radius, y: 2.0 * radius, z: 2.0 * radius });
+            entity.spheres.push(SpherePrimitive { pose, size, color: Some(color) });
+            if !text.is_empty() {
+                entity.texts.push(label(pose, text, color));
+            }
+        }
+    }
+    entity
+}
+
+fn ellipse_outline([x, y]: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Vec<[f64; 2]> {
+    let (sin, cos) = angle.sin_cos();
+    let point = |i: usize| {
+        let (s, c) = (std::f64::consts::TAU * i as f64 / ELLIPSE_POINTS as f64).sin_cos();
+        [x + cos * a * c - sin * b * s, y + sin * a * c + cos * b * s]
+    };
+    (0..ELLIPSE_POINTS).map(point).collect()
+}
+
+fn line(kind: line_primitive::Type, points: &[[f64; 2]], color: Color) -> LinePrimitive {
+    LinePrimitive {
+        r#type: kind.into(),
+        pose: Some(Pose::default()),
+        thickness: LINE_PIXELS,
+        scale_invariant: true,
+        points: points.iter().map(|[x, y]| Point3 { x: *x, y: *y, z: 0.0 }).collect(),
+        color: Some(color),
+        ..Default::default()
+    }
+}
+
+fn label(pose: Option<Pose>, text: &str, color: Color) -> TextPrimitive {
+    TextPrimitive {
+        pose,
+        billboard: true,
+        font_size: TEXT_PIXELS,
+        scale_invariant: true,
+        color: Some(color),
+        text: text.to_owned(),
+    }
+}

@@ -1,0 +1,39 @@
+/// Reads little-endian fields off the front of a slice; `None` where it is too short.
+///
+/// The general parser of the mcap crate reserves as many bytes as a string claims to have; this one borrows.
+pub(super) struct Fields<'a>(pub(super) &'a [u8]);
+
+impl<'a> Fields<'a> {
+    pub(super) fn u16(&mut self) -> Option<u16> {
+        self.array().map(u16::from_le_bytes)
+    }
+    pub(super) fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+    pub(super) fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+    /// A string: its length in 32 bits, then UTF-8.
+    pub(super) fn str(&mut self) -> Option<&'a str> {
+        let n_bytes = self.u32()? as usize;
+        let (bytes, rest) = self.0.split_at_checked(n_bytes)?;
+        self.0 = rest;
+        std::str::from_utf8(bytes).ok()
+    }
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (array, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*array)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_string_longer_than_the_record_is_none() {
+        let mut fields = Fields(b"\x07\x00\x02\x00\x00\x00hi\xff\xff\xff\xffx");
+        assert_eq!((fields.u16(), fields.str(), fields.str()), (Some(7), Some("hi"), None));
+    }
+}

@@ -1,0 +1,18 @@
+//! MCAP files with Foxglove protobuf messages.
+
+mod chunk;
+mod cloud;
+mod decode;
+mod drawing;
+mod encode;
+mod fields;
+mod frames;
+mod reader;
+mod reorder;
+mod routes;
+pub mod topics;
+mod writer;
+
+pub use drawing::{Drawing, Shape};
+pub(crate) use reader::McapRecords;
+pub use writer::McapWriter;

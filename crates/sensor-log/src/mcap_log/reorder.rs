@@ -1,0 +1,59 @@
+use std::collections::BTreeMap;
+
+use crate::{Data, Record, Stamp};
+
+/// Records held back so that one that comes late still finds its place.
+const WINDOW_RECORDS: usize = 256;
+/// Sightings held back at most, so that large messages do not fill the memory.
+const WINDOW_SIGHTINGS: usize = 1 << 20;
+
+/// Puts records that come slightly out of order back into it, with bounded memory.
+///
+/// Recorders write messages as they arrive; a camera's are older than an encoder's. Equal stamps keep the order of the file.
+#[derive(Debug, Default)]
+pub(super) struct Reorder {
+    held: BTreeMap<(Stamp, u64), Record>,
+    n_sightings: usize,
+    n_pushed: u64,
+    last_out: Stamp,
+}
+
+/// A record so late that later ones are already out; it is dropped.
+pub(super) struct TooLate {
+    pub(super) stamp: Stamp,
+    pub(super) last_out: Stamp,
+}
+
+impl Reorder {
+    pub(super) fn push(&mut self, record: Record) -> Result<(), TooLate> {
+        let stamp = record.stamp;
+        if stamp < self.last_out {
+            return Err(TooLate { stamp, last_out: self.last_out });
+        }
+        self.n_sightings += n_sightings(&record);
+        self.n_pushed += 1;
+        self.held.insert((stamp, self.n_pushed), record);
+        Ok(())
+    }
+
+    /// The earliest record once enough others are known.
+    pub(super) fn pop_ready(&mut self) -> Option<Record> {
+        let is_ready = self.held.len() > WINDOW_RECORDS || self.n_sightings > WINDOW_SIGHTINGS;
+        if is_ready { self.pop() } else { None }
+    }
+
+    /// The earliest record.
+    pub(super) fn pop(&mut self) -> Option<Record> {
+        let ((stamp, _), record) = self.held.pop_first()?;
+        self.last_out = stamp;
+        self.n_sightings -= n_sightings(&record);
+        Some(record)
+    }
+}
+
+fn n_sightings(record: &Record) -> usize {
+    match &record.data {
+        Data::Sightings(look) => look.len(),
+        _ => 0,
+    }
+}

@@ -1,0 +1,28 @@
+use super::topics;
+
+/// Which kind of record a channel carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Route {
+    Velocity,
+    Increment,
+    Sightings,
+    TruePose,
+    TrueLandmarks,
+    EstimatedPose,
+}
+
+impl Route {
+    /// The kind for a topic, when it has the schema that belongs there.
+    pub(super) fn of(topic: &str, schema: &str, encoding: &str) -> Option<Self> {
+        let (route, expected) = match topic {
+            topics::VELOCITY => (Self::Velocity, "foxglove.Odometry"),
+            topics::INCREMENT => (Self::Increment, "foxglove.PoseInFrame"),
+            topics::SIGHTINGS => (Self::Sightings, "foxglove.PointCloud"),
+            topics::TRUE_POSE => (Self::TruePose, "foxglove.PoseInFrame"),
+            topics::TRUE_LANDMARKS => (Self::TrueLandmarks, "foxglove.PointCloud"),
+            topics::ESTIMATED_POSE => (Self::EstimatedPose, "foxglove.PoseInFrame"),
+            _ => return None,
+        };
+        (schema == expected && encoding == "protobuf").then_some(route)
+    }
+}

@@ -1,0 +1,32 @@
+//! Where each kind of record lives in an MCAP file, and in which Foxglove schema.
+//!
+//! | topic | schema | frame | record |
+//! | --- | --- | --- | --- |
+//! | [`VELOCITY`] | `foxglove.Odometry`, the two velocities | [`BODY_FRAME`] in [`ODOMETRY_FRAME`] | [`Data::Velocity`](crate::Data::Velocity) |
+//! | [`INCREMENT`] | `foxglove.PoseInFrame`, new pose in the old body frame | [`BODY_FRAME`] | [`Data::OdometryIncrement`](crate::Data::OdometryIncrement) |
+//! | [`SIGHTINGS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Sightings`](crate::Data::Sightings) |
+//! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |
+//! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
+//! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
+//!
+//! `docs/adr/0002-mcap-topics.md` gives the reasons.
+
+/// Body velocities.
+pub const VELOCITY: &str = "/odom/velocity";
+/// Odometry increments.
+pub const INCREMENT: &str = "/odom/increment";
+/// Ranges and bearings.
+pub const SIGHTINGS: &str = "/sightings";
+/// Where the robot truly was.
+pub const TRUE_POSE: &str = "/truth/pose";
+/// Where the landmarks truly are.
+pub const TRUE_LANDMARKS: &str = "/truth/landmarks";
+/// Where some program thinks the robot was.
+pub const ESTIMATED_POSE: &str = "/estimate/pose";
+
+/// The fixed frame.
+pub const WORLD_FRAME: &str = "world";
+/// The frame that wheel odometry drifts in.
+pub const ODOMETRY_FRAME: &str = "odom";
+/// The robot: x forward, y left.
+pub const BODY_FRAME: &str = "base_link";

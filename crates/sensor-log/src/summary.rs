@@ -1,0 +1,146 @@
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use crate::{Data, Log, LogMeta, ReadReport, Stamp, Target};
+
+/// What a log holds; `Display` prints it for people.
+///
+/// ```
+/// use wayfix_sensor_log::{LogSummary, OpenOptions, open};
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("walk.txt");
+/// std::fs::write(&path, "O 1 0 0\nZ 7 2 0.1\nZ ? 3 0.2\nO 1 0 0\nZ 7 1 0.2\n")?;
+/// let summary = LogSummary::of(open(&path, &OpenOptions::default())?);
+/// assert_eq!(summary.kinds["odometry increment"].count, 2);
+/// assert_eq!(summary.landmarks_seen.iter().copied().collect::<Vec<_>>(), [7]);
+/// assert!((summary.duration_seconds() - 0.1).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LogSummary {
+    /// Where the log comes from.
+    pub meta: LogMeta,
+    /// Stamps of the first and the last record.
+    pub span: Option<(Stamp, Stamp)>,
+    /// How many records of each kind.
+    pub kinds: BTreeMap<&'static str, KindSummary>,
+    /// Single sightings, of anything.
+    pub n_sightings: u64,
+    /// Landmarks whose true position is given.
+    pub landmarks_surveyed: BTreeSet<u32>,
+    /// Landmarks that were sighted.
+    pub landmarks_seen: BTreeSet<u32>,
+    /// Robots that were sighted.
+    pub robots_seen: BTreeSet<u32>,
+    /// Codes that the log's own table does not list, and how often each was sighted.
+    pub unknown_codes: BTreeMap<u32, u64>,
+    /// Sightings that say nothing of what they are of.
+    pub n_unlabelled: u64,
+    /// What could not be read.
+    pub report: ReadReport,
+}
+
+/// Records of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KindSummary {
+    /// How many.
+    pub count: u64,
+    /// Stamp of the first.
+    pub first: Stamp,
+    /// Stamp of the last.
+    pub last: Stamp,
+}
+
+impl KindSummary {
+    /// Mean rate; `None` for records that all have the same stamp.
+    pub fn rate_hz(&self) -> Option<f64> {
+        let seconds = self.last.seconds_since(self.first);
+        (seconds > 0.0).then(|| (self.count - 1) as f64 / seconds)
+    }
+}
+
+impl LogSummary {
+    /// Reads the log to its end.
+    pub fn of(mut log: Log) -> Self {
+        let mut summary = Self {
+            meta: log.meta().clone(),
+            span: None,
+            kinds: BTreeMap::new(),
+            n_sightings: 0,
+            landmarks_surveyed: BTreeSet::new(),
+            landmarks_seen: BTreeSet::new(),
+            robots_seen: BTreeSet::new(),
+            unknown_codes: BTreeMap::new(),
+            n_unlabelled: 0,
+            report: ReadReport::default(),
+        };
+        for record in log.by_ref() {
+            summary.add(record.stamp, &record.data);
+        }
+        summary.report = log.report().clone();
+        summary
+    }
+
+    /// From the first record to the last, seconds.
+    pub fn duration_seconds(&self) -> f64 {
+        self.span.map_or(0.0, |(first, last)| last.seconds_since(first))
+    }
+
+    fn add(&mut self, stamp: Stamp, data: &Data) {
+        self.span = Some((self.span.map_or(stamp, |(first, _)| first), stamp));
+        let kind =
+            self.kinds.entry(data.kind()).or_insert(KindSummary { count: 0, first: stamp, last: stamp });
+        kind.count += 1;
+        kind.last = stamp;
+        match data {
+            Data::TrueLandmark(landmark) => drop(self.landmarks_surveyed.insert(landmark.id)),
+            Data::Sightings(look) => look.iter().for_each(|sighting| self.add_sighting(sighting.target)),
+            _ => {}
+        }
+    }
+
+    fn add_sighting(&mut self, target: Target) {
+        self.n_sightings += 1;
+        match target {
+            Target::Landmark(id) => drop(self.landmarks_seen.insert(id)),
+            Target::Robot(id) => drop(self.robots_seen.insert(id)),
+            Target::UnknownCode(code) => *self.unknown_codes.entry(code).or_default() += 1,
+            Target::Unlabelled => self.n_unlabelled += 1,
+        }
+    }
+}
+
+impl fmt::Display for LogSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.meta.source.display(), self.meta.format)?;
+        if let Some(robot) = self.meta.robot {
+            write!(f, ", robot {robot}")?;
+        }
+        writeln!(f, ", {:.1} s", self.duration_seconds())?;
+        for (kind, summary) in &self.kinds {
+            write!(f, "  {kind}: {}", summary.count)?;
+            match summary.rate_hz() {
+                Some(rate) => writeln!(f, " ({rate:.1} Hz)")?,
+                None => writeln!(f)?,
+            }
+        }
+        let (n_surveyed, n_seen) = (self.landmarks_surveyed.len(), self.landmarks_seen.len());
+        writeln!(
+            f,
+            "  landmarks: {n_surveyed} surveyed, {n_seen} sighted in {} sightings",
+            self.n_sightings
+        )?;
+        if !self.robots_seen.is_empty() {
+            writeln!(f, "  robots sighted: {:?}", self.robots_seen)?;
+        }
+        if !self.unknown_codes.is_empty() {
+            let n_sightings: u64 = self.unknown_codes.values().sum();
+            writeln!(f, "  unknown codes: {} in {n_sightings} sightings", self.unknown_codes.len())?;
+        }
+        if self.n_unlabelled > 0 {
+            writeln!(f, "  unlabelled sightings: {}", self.n_unlabelled)?;
+        }
+        write!(f, "{}", self.report)
+    }
+}

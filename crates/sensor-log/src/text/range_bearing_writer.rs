@@ -1,0 +1,85 @@
+use std::io::{self, Write};
+
+use wayfix_estimation_traits::{LieGroup, Pose2};
+
+use crate::{Data, Record, Sighting, Stamp, Target, WriteReport};
+
+/// Writes the records of one stamp as one step. The stamps themselves are lost: the format has none.
+///
+/// Every step gets an `O` line, if need be of no motion, so that the steps stay apart.
+pub(crate) fn write(
+    out: &mut impl Write,
+    records: impl IntoIterator<Item = Record>,
+    report: &mut WriteReport,
+) -> io::Result<()> {
+    let mut step = Step::default();
+    let mut step_stamp: Option<Stamp> = None;
+    for record in records {
+        if let Data::TrueLandmark(landmark) = &record.data {
+            writeln!(out, "L {} {} {}", landmark.id, landmark.x, landmark.y)?;
+            report.records_written += 1;
+            continue;
+        }
+        if step_stamp.is_some_and(|stamp| stamp != record.stamp) {
+            std::mem::take(&mut step).write(out)?;
+        }
+        match &record.data {
+            Data::TruePose(pose) => step.pose = Some(*pose),
+            Data::OdometryIncrement(increment) => step.add_motion(increment),
+            Data::Sightings(look) => {
+                step.look.extend(look.iter().filter(|sighting| report.can_write(sighting)))
+            }
+            other => {
+                report.leave_out(other.kind());
+                continue;
+            }
+        }
+        step_stamp = Some(record.stamp);
+        report.records_written += 1;
+    }
+    match step_stamp {
+        Some(_) => step.write(out),
+        None => Ok(()),
+    }
+}
+
+#[derive(Default)]
+struct Step {
+    pose: Option<Pose2<f64>>,
+    motion: Option<Pose2<f64>>,
+    look: Vec<Sighting>,
+}
+
+impl Step {
+    fn add_motion(&mut self, increment: &Pose2<f64>) {
+        self.motion = Some(self.motion.map_or(*increment, |motion| motion.compose(increment)));
+    }
+
+    fn write(self, out: &mut impl Write) -> io::Result<()> {
+        if let Some(pose) = self.pose {
+            writeln!(out, "P {} {} {}", pose.x(), pose.y(), pose.heading())?;
+        }
+        let motion = self.motion.unwrap_or_else(Pose2::identity);
+        writeln!(out, "O {} {} {}", motion.x(), motion.y(), motion.heading())?;
+        for Sighting { target, range, bearing } in self.look {
+            match target {
+                Target::Landmark(id) => writeln!(out, "Z {id} {range} {bearing}")?,
+                _ => writeln!(out, "Z ? {range} {bearing}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl WriteReport {
+    /// The format has no place for other robots and unknown codes.
+    fn can_write(&mut self, sighting: &Sighting) -> bool {
+        let what = match sighting.target {
+            Target::Landmark(_) | Target::Unlabelled => return true,
+            Target::Robot(_) => "sighting of a robot",
+            Target::UnknownCode(_) => "sighting of an unknown code",
+        };
+        self.leave_out(what);
+        false
+    }
+}

@@ -1,0 +1,93 @@
+use std::collections::BTreeMap;
+use std::fmt;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use crate::text::{range_bearing_writer, tum};
+use crate::{Format, LogError, McapWriter, Record};
+
+/// What was written and what the format has no place for.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct WriteReport {
+    /// Records that went into the file.
+    pub records_written: u64,
+    /// Kinds that were left out, and how often.
+    pub left_out: BTreeMap<&'static str, u64>,
+}
+
+impl WriteReport {
+    pub(crate) fn leave_out(&mut self, what: &'static str) {
+        *self.left_out.entry(what).or_default() += 1;
+    }
+}
+
+/// Writes records into the file at `path`, replacing what is there.
+///
+/// MCAP keeps everything; range-bearing text loses stamps, velocities, estimates and sightings of robots and unknown codes; TUM keeps
+/// poses only. The report counts what was left out.
+///
+/// ```
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_sensor_log::{Data, Format, OpenOptions, Record, Stamp, open, write};
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("log.mcap");
+/// let record = Record { stamp: Stamp::from_nanoseconds(7), data: Data::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
+/// write(&path, Format::Mcap, [record.clone()])?;
+/// assert_eq!(open(&path, &OpenOptions::default())?.read_all().0, [record]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the format is read only (UTIAS), a number is not finite, or the file cannot be written.
+pub fn write(
+    path: impl AsRef<Path>,
+    format: Format,
+    records: impl IntoIterator<Item = Record>,
+) -> Result<WriteReport, LogError> {
+    let path = path.as_ref();
+    let mut report = WriteReport::default();
+    match format {
+        Format::Utias => return Err(LogError::NotWritable { format }),
+        Format::Mcap => {
+            let mut writer = McapWriter::create(path)?;
+            for record in records {
+                writer.record(&record)?;
+                report.records_written += 1;
+            }
+            writer.finish()?;
+        }
+        Format::RangeBearing | Format::Tum => {
+            let io = |source| LogError::io(path, source);
+            let mut out = BufWriter::new(File::create(path).map_err(io)?);
+            let mut not_finite = None;
+            let finite = records.into_iter().map_while(|record| match record.data.check_finite() {
+                Ok(()) => Some(record),
+                Err(what) => {
+                    not_finite = Some(LogError::NotFinite { what, stamp: record.stamp });
+                    None
+                }
+            });
+            match format {
+                Format::Tum => tum::write(&mut out, finite, &mut report),
+                _ => range_bearing_writer::write(&mut out, finite, &mut report),
+            }
+            .and_then(|()| out.flush())
+            .map_err(io)?;
+            if let Some(error) = not_finite {
+                return Err(error);
+            }
+        }
+    }
+    Ok(report)
+}
+
+impl fmt::Display for WriteReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} records written", self.records_written)?;
+        for (what, count) in &self.left_out {
+            writeln!(f, "  left out, no place in this format: {what}, {count} times")?;
+        }
+        Ok(())
+    }
+}

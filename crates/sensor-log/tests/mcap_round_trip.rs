@@ -1,0 +1,189 @@
+//! What is written comes back.
+
+mod common;
+
+use std::io::Cursor;
+
+use proptest::prelude::*;
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{
+    Data, Format, LogEnd, LogError, McapWriter, OpenOptions, PoseKind, Record, Sighting, Stamp, Target,
+    TrueLandmark, Velocity, open, write,
+};
+
+/// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        -100.0..100.0,
+        any::<f64>().prop_filter("finite", |x| x.is_finite()),
+        Just(0.0),
+        Just(f64::MIN_POSITIVE / 4.0),
+        Just(f64::MAX),
+    ]
+    .prop_map(|x| x + 0.0)
+}
+
+fn pose() -> impl Strategy<Value = Pose2<f64>> {
+    // A subnormal heading cannot be halved.
+    let heading = prop_oneof![-10.0..10.0, -1e-9..1e-9, Just(std::f64::consts::PI)]
+        .prop_filter("not subnormal", |h: &f64| *h == 0.0 || h.is_normal());
+    (number(), number(), heading).prop_map(|(x, y, heading)| Pose2::new(x, y, heading))
+}
+
+fn target() -> impl Strategy<Value = Target> {
+    prop_oneof![
+        any::<u32>().prop_map(Target::Landmark),
+        any::<u32>().prop_map(Target::Robot),
+        any::<u32>().prop_map(Target::UnknownCode),
+        Just(Target::Unlabelled),
+    ]
+}
+
+fn data() -> impl Strategy<Value = Data> {
+    let sighting = (target(), number(), number()).prop_map(|(target, range, bearing)| Sighting {
+        target,
+        range,
+        bearing,
+    });
+    prop_oneof![
+        (number(), number()).prop_map(|(linear, angular)| Data::Velocity(Velocity { linear, angular })),
+        pose().prop_map(Data::OdometryIncrement),
+        prop::collection::vec(sighting, 0..8).prop_map(Data::Sightings),
+        pose().prop_map(Data::TruePose),
+        (any::<u32>(), number(), number()).prop_map(|(id, x, y)| Data::TrueLandmark(TrueLandmark {
+            id,
+            x,
+            y
+        })),
+        pose().prop_map(Data::EstimatedPose),
+    ]
+}
+
+/// Up to `max` records in time order, often several at one stamp.
+fn records(max: usize) -> impl Strategy<Value = Vec<Record>> {
+    let gap = prop_oneof![Just(0_u64), 1..3_000_000_000_u64];
+    (0..1_u64 << 60, prop::collection::vec((gap, data()), 1..=max)).prop_map(|(start, gaps)| {
+        let mut time = start;
+        gaps.into_iter()
+            .map(|(gap, data)| {
+                time += gap;
+                Record { stamp: Stamp::from_nanoseconds(time), data }
+            })
+            .collect()
+    })
+}
+
+fn to_bytes(records: &[Record]) -> Vec<u8> {
+    let mut file = Cursor::new(Vec::new());
+    let mut writer = McapWriter::new(&mut file).unwrap();
+    for record in records {
+        writer.record(record).unwrap();
+    }
+    writer.finish().unwrap();
+    file.into_inner()
+}
+
+/// Every bit of every number, which `==` does not compare for zeros.
+fn bits(record: &Record) -> (u64, String, Vec<u64>) {
+    let numbers = match &record.data {
+        Data::Velocity(velocity) => vec![velocity.linear, velocity.angular],
+        Data::OdometryIncrement(pose) | Data::TruePose(pose) | Data::EstimatedPose(pose) => {
+            vec![pose.x(), pose.y(), pose.heading()]
+        }
+        Data::Sightings(look) => {
+            look.iter().flat_map(|sighting| [sighting.range, sighting.bearing]).collect()
+        }
+        Data::TrueLandmark(landmark) => vec![landmark.x, landmark.y],
+        other => panic!("{other:?}"),
+    };
+    (
+        record.stamp.nanoseconds(),
+        format!("{:?}", record.data),
+        numbers.into_iter().map(f64::to_bits).collect(),
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+    #[test]
+    fn mcap_keeps_every_record_to_the_bit(records in records(40)) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.mcap");
+        write(&path, Format::Mcap, records.clone()).unwrap();
+        let (back, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
+        prop_assert_eq!(&report.end, &LogEnd::Complete);
+        prop_assert_eq!(report.n_problems(), 0);
+        prop_assert_eq!(back.iter().map(bits).collect::<Vec<_>>(), records.iter().map(bits).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn the_same_records_give_the_same_bytes(records in records(20)) {
+        prop_assert_eq!(to_bytes(&records), to_bytes(&records));
+    }
+
+    #[test]
+    fn tum_keeps_poses_to_the_bit_and_stamps_to_the_microsecond(records in records(20)) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("poses.txt");
+        let poses: Vec<Record> = records
+            .into_iter()
+            .filter(|record| matches!(record.data, Data::TruePose(_)))
+            .map(|record| Record { stamp: Stamp::from_nanoseconds(record.stamp.nanoseconds() % (1 << 60)), ..record })
+            .collect();
+        prop_assume!(!poses.is_empty());
+        write(&path, Format::Tum, poses.clone()).unwrap();
+        let options = OpenOptions { poses: PoseKind::True, ..Default::default() };
+        let (back, _) = open(&path, &options).unwrap().read_all();
+        prop_assert_eq!(back.len(), poses.len());
+        for (back, pose) in back.iter().zip(&poses) {
+            prop_assert_eq!(&back.data, &pose.data);
+            prop_assert!(back.stamp.seconds_since(pose.stamp).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn a_log_larger_than_a_chunk_comes_back_whole() {
+    let records = common::drive(3000);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mcap");
+    write(&path, Format::Mcap, records.clone()).unwrap();
+    assert!(std::fs::metadata(&path).unwrap().len() > 1 << 20, "several chunks of 256 KiB");
+    let log = open(&path, &OpenOptions::default()).unwrap();
+    assert_eq!(log.read_all().0, records);
+}
+
+#[test]
+fn range_bearing_keeps_what_it_has_a_place_for_and_says_what_not() {
+    let records = common::drive(20);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walk.txt");
+    let report = write(&path, Format::RangeBearing, records.clone()).unwrap();
+    assert_eq!(report.left_out.into_iter().collect::<Vec<_>>(), [("estimated pose", 20), ("velocity", 20)]);
+    let back: Vec<Data> = open(&path, &OpenOptions::default()).unwrap().map(|record| record.data).collect();
+    let kept: Vec<Data> = records
+        .into_iter()
+        .map(|record| record.data)
+        .filter(|data| !matches!(data, Data::EstimatedPose(_) | Data::Velocity(_)))
+        .collect();
+    assert_eq!(back, kept);
+}
+
+#[test]
+fn what_cannot_be_stored_is_refused() {
+    let record = |nanoseconds, linear| Record {
+        stamp: Stamp::from_nanoseconds(nanoseconds),
+        data: Data::Velocity(Velocity { linear, angular: 0.0 }),
+    };
+    let mut writer = McapWriter::new(Cursor::new(Vec::new())).unwrap();
+    assert!(matches!(
+        writer.record(&record(5, f64::NAN)),
+        Err(LogError::NotFinite { what: "velocity", stamp }) if stamp.nanoseconds() == 5
+    ));
+    assert!(matches!(writer.record(&record(u64::MAX, 1.0)), Err(LogError::StampTooLate { .. })));
+    assert!(matches!(write("nowhere", Format::Utias, []), Err(LogError::NotWritable { .. })));
+    let folder = tempfile::tempdir().unwrap();
+    let bad = Record { stamp: Stamp::default(), data: Data::TruePose(Pose2::new(f64::INFINITY, 0.0, 0.0)) };
+    let path = folder.path().join("poses.txt");
+    assert!(matches!(write(path, Format::Tum, [bad]), Err(LogError::NotFinite { .. })));
+}
