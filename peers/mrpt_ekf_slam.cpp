@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
   const std::string job = "ekf_slam_step/" + name + (association == "known" ? "" : "/" + association);
   std::printf("bench\t%s\tMRPT\t%.0f\n", job.c_str(), mean);
   std::sort(times.begin(), times.end());
-  std::printf("MRPT %x, %s: %zu landmarks, path RMSE %.4f m, NEES %.2f, median %.0f us, worst %.0f us\n", MRPT_VERSION,
-              association.c_str(), landmarks.size(), std::sqrt(squared_error / n), nees / (n - 1),
+  std::printf("MRPT %d.%d.%d, %s: %zu landmarks, path RMSE %.4f m, NEES %.2f, median %.0f us, worst %.0f us\n", MRPT_VERSION >> 8,
+              MRPT_VERSION >> 4 & 15, MRPT_VERSION & 15, association.c_str(), landmarks.size(), std::sqrt(squared_error / n), nees / (n - 1),
               times[times.size() / 2] / 1e3, times.back() / 1e3);
 }
