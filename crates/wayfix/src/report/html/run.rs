@@ -1,0 +1,119 @@
+use std::fmt::Write as _;
+
+use super::super::number::{duration, significant};
+use super::super::{Metric, Run};
+use super::{number_cell, table};
+use crate::plot::{Picture, escape};
+
+/// One run: pictures, figures, events, log.
+pub(super) fn article(run: &Run, anchor: &str) -> String {
+    let figures: String = run.figures.iter().filter(|picture| !picture.svg.is_empty()).map(figure).collect();
+    let figures =
+        if figures.is_empty() { figures } else { format!("<div class=\"figures\">\n{figures}</div>\n") };
+    format!(
+        "<article id=\"{anchor}\">\n<h3>{} <small>{}</small></h3>\n{}{figures}{}{}{}</article>\n",
+        escape(&run.name),
+        duration(run.seconds),
+        remarks(run),
+        metrics(run),
+        events(run),
+        log_link(run),
+    )
+}
+
+fn figure(picture: &Picture) -> String {
+    format!("<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n", escape(&picture.title), picture.svg)
+}
+
+fn remarks(run: &Run) -> String {
+    let error = run
+        .error
+        .iter()
+        .map(|error| format!("<p class=\"verdict fail\">Ended early: {}</p>\n", escape(error)));
+    error.chain(run.notes.iter().map(|note| format!("<p>{}</p>\n", escape(note)))).collect()
+}
+
+fn metrics(run: &Run) -> String {
+    let heads = [
+        ("figure", false),
+        ("ours", true),
+        ("unit", false),
+        ("low", true),
+        ("high", true),
+        ("paper", true),
+        ("best peer", true),
+        ("bound from", false),
+        ("pass", false),
+    ];
+    let rows: String = run.all_metrics().map(metric_row).collect();
+    if rows.is_empty() { rows } else { table(&format!("Figures of {}", run.name), &heads, &rows) }
+}
+
+fn metric_row(metric: &Metric) -> String {
+    let class = if metric.passes() { "" } else { " class=\"failed\"" };
+    let pass = match (metric.passes(), metric.is_bounded()) {
+        (false, _) => "<td class=\"fail\">✗ fail</td>",
+        (true, true) => "<td class=\"pass\">✓ pass</td>",
+        (true, false) => "<td></td>",
+    };
+    let numbers: String = [metric.low, metric.high, metric.paper].into_iter().map(number_cell).collect();
+    format!(
+        "<tr{class}><th scope=\"row\"><code>{}</code></th>{}<td>{}</td>{numbers}{}<td>{}</td>{pass}</tr>\n",
+        escape(&metric.name),
+        number_cell(Some(metric.value)),
+        escape(&metric.unit),
+        peer_cell(metric),
+        escape(metric.bound_source.as_deref().unwrap_or_default()),
+    )
+}
+
+fn peer_cell(metric: &Metric) -> String {
+    metric.peer.as_ref().map_or_else(
+        || "<td></td>".to_owned(),
+        |peer| {
+            let (value, name) = (significant(peer.value), escape(&peer.name));
+            format!("<td class=\"number\" data-value=\"{}\">{value} <small>{name}</small></td>", peer.value)
+        },
+    )
+}
+
+fn events(run: &Run) -> String {
+    let mut rows = String::new();
+    for (name, count) in &run.events {
+        let _ = writeln!(
+            rows,
+            "<tr><th scope=\"row\">{}</th>{}</tr>",
+            escape(name),
+            number_cell(Some(*count as f64))
+        );
+    }
+    if rows.is_empty() {
+        rows
+    } else {
+        table(&format!("Events of {}", run.name), &[("event", false), ("count", true)], &rows)
+    }
+}
+
+fn log_link(run: &Run) -> String {
+    let link = |log: &String| {
+        format!(
+            "<p><a href=\"{}\" download>{}</a>, the estimates for Foxglove and Rerun</p>\n",
+            as_reference(log),
+            escape(log)
+        )
+    };
+    run.log.as_ref().map_or_else(String::new, link)
+}
+
+/// A relative path as a reference: a colon or a quote in a file name is only a character.
+fn as_reference(path: &str) -> String {
+    let mut reference = String::new();
+    for byte in path.replace('\\', "/").bytes() {
+        if byte.is_ascii_alphanumeric() || b"/-_.~".contains(&byte) {
+            reference.push(char::from(byte));
+        } else {
+            let _ = write!(reference, "%{byte:02X}");
+        }
+    }
+    reference
+}
