@@ -106,8 +106,8 @@ fn rough_known() -> PlanarParams {
         }),
         drive: DriveParams {
             speed_mps: 0.8,
-            left_radius_error: 0.01,
-            right_radius_error: -0.005,
+            left_radius_error: 0.003,
+            right_radius_error: -0.001,
             track_error: 0.02,
             slip: SlipParams { sigma: 0.05, correlation_time_s: 1.0, shared: 0.6 },
             ..DriveParams::default()
@@ -163,8 +163,8 @@ fn long_loop() -> PlanarParams {
         }),
         drive: DriveParams {
             speed_mps: 0.8,
-            left_radius_error: 0.002,
-            right_radius_error: -0.001,
+            left_radius_error: 0.0005,
+            right_radius_error: -0.0003,
             track_error: 0.005,
             slip: SlipParams { sigma: 0.02, correlation_time_s: 1.0, shared: 0.5 },
             ..DriveParams::default()
