@@ -11,7 +11,9 @@ pub enum SlamError {
         what: &'static str,
     },
     /// A noise or covariance is not symmetric positive (semi)definite.
-    #[error("{what} is not a covariance: its smallest eigenvalue or pivot is {value:e}, its asymmetry {asymmetry:e}")]
+    #[error(
+        "{what} is not a covariance: its smallest eigenvalue or pivot is {value:e}, its asymmetry {asymmetry:e}"
+    )]
     NotACovariance {
         /// Which matrix.
         what: &'static str,

@@ -1,9 +1,9 @@
 use std::fmt;
 
-use nalgebra::{DefaultAllocator, DimName, OMatrix, OVector};
-use wayfix_estimation_traits::{Jacobian, Manifold, Pose2, TangentMatrix, numerical_jacobian};
+use nalgebra::{DefaultAllocator, DimName, OVector, allocator::Allocator};
+use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix, numerical_jacobian};
 
-use crate::{LandmarkDim, MeasurementDim, SlamAlloc};
+use crate::{LandmarkDim, MeasurementDim, RobotDim, RobotState, SlamAlloc};
 
 /// The identity of a landmark in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -34,31 +34,37 @@ pub struct Observation<Z> {
 /// observation as rejected.
 pub trait LandmarkModel
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<Self>, MeasurementDim<Self>>,
+    DefaultAllocator: SlamAlloc<RobotDim<Self>, LandmarkDim<Self>, MeasurementDim<Self>>,
 {
+    /// What is estimated of the robot: `Pose2`, or more.
+    type Robot: RobotState;
     /// What is in the map: `Vector2` for points.
     type Landmark: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
     /// What the sensor gives.
     type Measurement: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
 
     /// $`h(x_r, m)`$: the measurement to expect.
-    fn expected(&self, robot: &Pose2<f64>, landmark: &Self::Landmark) -> Self::Measurement;
+    fn expected(&self, robot: &Self::Robot, landmark: &Self::Landmark) -> Self::Measurement;
 
     /// $`∂h/∂x_r`$. By default a central difference.
-    fn robot_jacobian(&self, robot: &Pose2<f64>, landmark: &Self::Landmark) -> Jacobian<Self::Measurement, Pose2<f64>> {
+    fn robot_jacobian(
+        &self,
+        robot: &Self::Robot,
+        landmark: &Self::Landmark,
+    ) -> Jacobian<Self::Measurement, Self::Robot> {
         numerical_jacobian(|robot| self.expected(robot, landmark), robot)
     }
 
     /// $`∂h/∂m`$. By default a central difference.
     fn landmark_jacobian(
         &self,
-        robot: &Pose2<f64>,
+        robot: &Self::Robot,
         landmark: &Self::Landmark,
     ) -> Jacobian<Self::Measurement, Self::Landmark> {
         numerical_jacobian(|landmark| self.expected(robot, landmark), landmark)
     }
 
-    /// $`R`$ at a measurement: the expected one when correcting, the measured one when a landmark starts.
+    /// $`R`$ at a measurement, where it grows with distance.
     fn noise(&self, measurement: &Self::Measurement) -> TangentMatrix<Self::Measurement>;
 
     /// Whether the measurement can be used at all. By default: whether it is finite.
@@ -67,22 +73,25 @@ where
     }
 
     /// $`g(x_r, z)`$: a landmark from its first measurement.
-    fn initialize(&self, robot: &Pose2<f64>, measurement: &Self::Measurement) -> NewLandmark<Self::Landmark>;
+    fn initialize(
+        &self,
+        robot: &Self::Robot,
+        measurement: &Self::Measurement,
+    ) -> NewLandmark<Self::Landmark, Self::Robot>;
 }
 
 /// A landmark at its start: where it is given the robot, and how that depends on the robot.
 ///
 /// $`m = g(x_r, z)`$, $`P_{mm} = G_r P_{rr} G_r^T + N`$, $`P_{mr} = G_r P_{rr}`$.
 #[derive(Clone, Debug)]
-pub struct NewLandmark<L: Manifold<Scalar = f64>>
+pub struct NewLandmark<L: Manifold<Scalar = f64>, X: Manifold<Scalar = f64>>
 where
-    DefaultAllocator: nalgebra::allocator::Allocator<L::Dim, nalgebra::Const<3>>
-        + nalgebra::allocator::Allocator<L::Dim, L::Dim>,
+    DefaultAllocator: Allocator<L::Dim, X::Dim> + Allocator<L::Dim, L::Dim>,
 {
     /// $`g(x_r, z)`$.
     pub landmark: L,
     /// $`G_r = ∂g/∂x_r`$.
-    pub robot_jacobian: OMatrix<f64, L::Dim, nalgebra::Const<3>>,
+    pub robot_jacobian: Jacobian<L, X>,
     /// $`N`$: covariance of the landmark were the robot known. $`G_z R G_z^T`$ for a sensor that fixes the landmark at once; wider in
     /// the directions a single measurement leaves open.
     pub covariance: TangentMatrix<L>,
@@ -92,7 +101,7 @@ where
 #[derive(Clone, Debug, PartialEq)]
 pub struct Innovation<Z: Manifold<Scalar = f64>>
 where
-    DefaultAllocator: nalgebra::allocator::Allocator<Z::Dim> + nalgebra::allocator::Allocator<Z::Dim, Z::Dim>,
+    DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
     /// $`ν = z ⊟ h(x)`$.
     pub residual: OVector<f64, Z::Dim>,

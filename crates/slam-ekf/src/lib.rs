@@ -8,7 +8,8 @@
 //! associate    which landmark is each sighting of   O(k n)    [DataAssociation]
 //! gate         is it compatible with it             O(k)      [Outcome::Gated]
 //! correct      all accepted sightings together      O(k n²)   Joseph form, sparse H, lower triangle
-//! augment      certainly new ones enter the map     O(n)      [EkfSlam::insert]
+//! augment      certainly new ones enter the map     O(n)      tentative until confirmed
+//! forget       tentative ones not seen again        O(n²)     [Confirmation]
 //! ```
 //!
 //! A robot meets new kinds of landmarks through [`LandmarkModel`]: what to expect, how noisy, how to start. Everything else
@@ -26,17 +27,21 @@ mod filter;
 mod landmark;
 mod models;
 mod outcome;
+mod robot_state;
 
-pub use alloc::{LandmarkDim, MeasurementDim, SlamAlloc};
+pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
 pub use error::SlamError;
-pub use filter::{EkfSlam, LandmarkEstimate, PredictedSighting, SlamParams};
+pub use filter::{
+    Confirmation, EkfSlam, LandmarkEstimate, OutlierRule, PredictedSighting, SlamParams, UpdateOrder,
+};
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    IncrementMotion, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor, VelocityControl,
-    VelocityMotion,
+    IncrementMotion, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor,
+    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion,
 };
 pub use outcome::{Outcome, StepReport};
+pub use robot_state::RobotState;
 
 /// The matrix library of every public signature.
 pub use wayfix_estimation_traits::nalgebra;

@@ -16,6 +16,8 @@ where
         landmark: LandmarkId,
         /// What it said.
         innovation: Innovation<Z>,
+        /// Factor by which its noise was enlarged because it fits badly; 1 when it fits.
+        noise_scale: f64,
     },
     /// It was associated, but lies outside the gate: an outlier. The state is untouched.
     Gated {
@@ -31,8 +33,11 @@ where
         /// The landmark it started.
         landmark: LandmarkId,
     },
-    /// It may become a landmark when it is seen again.
-    Tentative,
+    /// It was so far from a tentative landmark that it started that landmark anew.
+    Restarted {
+        /// The landmark it started.
+        landmark: LandmarkId,
+    },
     /// It is neither certainly old nor certainly new, so nothing was done with it.
     Ambiguous,
     /// The sensor read no identity and the association needs one.

@@ -1,1 +1,7 @@
-fn main() {}
+//! The command `wayfix`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    wayfix::cli::main()
+}

@@ -1,7 +1,7 @@
 use nalgebra::DefaultAllocator;
 
 use super::{Association, DataAssociation};
-use crate::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, Observation, SlamAlloc};
+use crate::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, Observation, RobotDim, SlamAlloc};
 
 /// The sensor reads identities: bar codes, tags, a simulator.
 #[derive(Clone, Copy, Debug, Default)]
@@ -9,16 +9,18 @@ pub struct KnownIds;
 
 impl<M: LandmarkModel> DataAssociation<M> for KnownIds
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    fn associate(&mut self, filter: &EkfSlam<M>, observations: &[Observation<M::Measurement>]) -> Vec<Association> {
-        observations
-            .iter()
-            .map(|observation| match observation.label {
-                Some(id) if filter.knows(id) => Association::Matched(id),
-                Some(id) => Association::New(id),
-                None => Association::Unlabelled,
-            })
-            .collect()
+    fn associate(
+        &mut self,
+        filter: &EkfSlam<M>,
+        observations: &[Observation<M::Measurement>],
+    ) -> Vec<Association> {
+        let associate_one = |observation: &Observation<M::Measurement>| match observation.label {
+            Some(id) if filter.knows(id) => Association::Matched(id),
+            Some(id) => Association::New(id),
+            None => Association::Unlabelled,
+        };
+        observations.iter().map(associate_one).collect()
     }
 }

@@ -2,14 +2,15 @@
 
 mod known_ids;
 mod nearest_neighbour;
-mod tentative;
 
 use nalgebra::DefaultAllocator;
 
 pub use known_ids::KnownIds;
 pub use nearest_neighbour::{NearestNeighbour, NearestNeighbourParams};
 
-use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, SlamAlloc};
+use crate::{
+    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, RobotDim, SlamAlloc,
+};
 
 /// What an observation is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,8 +19,6 @@ pub enum Association {
     Matched(LandmarkId),
     /// Certainly none of the map: starts a landmark with this identity.
     New(LandmarkId),
-    /// Perhaps a new landmark; it has to be seen again.
-    Tentative,
     /// Neither certainly old nor certainly new.
     Ambiguous,
     /// No identity was read, and this rule needs one.
@@ -32,8 +31,12 @@ pub enum Association {
 /// filter gates afterwards, so a rule need not.
 pub trait DataAssociation<M: LandmarkModel>
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     /// Associates the usable observations of one look.
-    fn associate(&mut self, filter: &EkfSlam<M>, observations: &[Observation<M::Measurement>]) -> Vec<Association>;
+    fn associate(
+        &mut self,
+        filter: &EkfSlam<M>,
+        observations: &[Observation<M::Measurement>],
+    ) -> Vec<Association>;
 }

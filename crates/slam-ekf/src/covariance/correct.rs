@@ -55,7 +55,7 @@ fn times_block_diagonal(gain: &DMatrix<f64>, noise: &DMatrix<f64>) -> DMatrix<f6
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Matrix3;
+    use nalgebra::{Matrix2, Matrix2x3, Matrix3};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -70,20 +70,24 @@ mod tests {
     }
 
     /// A map of `n_landmarks` points with a random covariance, and `n_seen` of them observed.
-    fn random_problem(seed: u64, n_landmarks: usize, n_seen: usize) -> (JointCovariance, SparseJacobian, DMatrix<f64>) {
+    fn random_problem(
+        seed: u64,
+        n_landmarks: usize,
+        n_seen: usize,
+    ) -> (JointCovariance, SparseJacobian, DMatrix<f64>) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut uniform = || rng.random::<f64>() * 2.0 - 1.0;
         let mut covariance = JointCovariance::from_robot(&Matrix3::identity());
         for _ in 0..n_landmarks {
-            let jacobian = nalgebra::Matrix2x3::from_fn(|_, _| uniform());
-            covariance.append(&jacobian, &(nalgebra::Matrix2::identity() * 0.3));
+            let jacobian = Matrix2x3::from_fn(|_, _| uniform());
+            covariance.append(&jacobian, &(Matrix2::identity() * 0.3));
         }
         let mut jacobian = SparseJacobian::default();
         for seen in 0..n_seen {
             let offset = 3 + 2 * (seen * n_landmarks / n_seen);
             for _ in 0..2 {
                 let robot = [uniform(), uniform(), uniform()];
-                jacobian.push_row(robot, offset, [uniform(), uniform()].into_iter());
+                jacobian.push_row(robot, offset, [uniform(), uniform()]);
             }
         }
         (covariance, jacobian, DMatrix::identity(2 * n_seen, 2 * n_seen) * 0.01)
@@ -100,7 +104,10 @@ mod tests {
             let step = covariance.correct(&jacobian, &noise, &residual).unwrap();
             // Two formulas for one matrix of unit size: rounding grows with n and with the condition of S (about 1e3 here).
             let tolerance = 1e-11;
-            assert!((covariance.matrix() - expected).amax() < tolerance, "covariance of {n_landmarks}/{n_seen}");
+            assert!(
+                (covariance.matrix() - expected).amax() < tolerance,
+                "covariance of {n_landmarks}/{n_seen}"
+            );
             assert!((step - gain * residual).amax() < tolerance, "step of {n_landmarks}/{n_seen}");
             assert_eq!(covariance.matrix(), covariance.matrix().transpose());
         }

@@ -1,11 +1,11 @@
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DimName, Matrix3, OMatrix, Storage};
+use nalgebra::{
+    Const, DMatrix, DMatrixView, DMatrixViewMut, DefaultAllocator, DimName, OMatrix, OVector,
+    allocator::Allocator,
+};
 
-/// Dimension of the robot's block, which comes first.
-pub(crate) const ROBOT: usize = 3;
-
-/// A covariance that grows, in a storage that doubles, so that a new landmark seldom moves the matrix.
+/// A covariance that grows, in a storage that doubles, so that a new landmark seldom moves the matrix. The robot comes first.
 #[derive(Clone, Debug)]
 pub(crate) struct JointCovariance {
     storage: DMatrix<f64>,
@@ -13,10 +13,14 @@ pub(crate) struct JointCovariance {
 }
 
 impl JointCovariance {
-    pub(crate) fn from_robot(robot: &Matrix3<f64>) -> Self {
-        let mut storage = DMatrix::zeros(16, 16);
-        storage.fixed_view_mut::<3, 3>(0, 0).copy_from(robot);
-        Self { storage, dimension: ROBOT }
+    pub(crate) fn from_robot<R: DimName>(robot: &OMatrix<f64, R, R>) -> Self
+    where
+        DefaultAllocator: Allocator<R, R>,
+    {
+        let dimension = R::DIM;
+        let mut storage = DMatrix::zeros(2 * dimension + 8, 2 * dimension + 8);
+        storage.view_mut((0, 0), (dimension, dimension)).copy_from(robot);
+        Self { storage, dimension }
     }
 
     pub(crate) fn matrix(&self) -> DMatrixView<'_, f64> {
@@ -31,49 +35,71 @@ impl JointCovariance {
         self.storage.view((rows.start, columns.start), (rows.len(), columns.len()))
     }
 
-    pub(crate) fn robot(&self) -> Matrix3<f64> {
-        self.storage.fixed_view::<3, 3>(0, 0).into_owned()
+    pub(crate) fn robot<R: DimName>(&self) -> OMatrix<f64, R, R>
+    where
+        DefaultAllocator: Allocator<R, R>,
+    {
+        OMatrix::from_fn(|row, column| self.storage[(row, column)])
     }
 
     /// $`P_{rr} ← F P_{rr} F^T + Q,\; P_{rm} ← F P_{rm}`$, in O(n).
-    pub(crate) fn move_robot(&mut self, jacobian: &Matrix3<f64>, noise: &Matrix3<f64>) {
-        let robot = jacobian * self.robot() * jacobian.transpose() + noise;
-        for column in ROBOT..self.dimension {
-            let moved = jacobian * self.storage.fixed_view::<3, 1>(0, column);
-            self.storage.fixed_view_mut::<3, 1>(0, column).copy_from(&moved);
-            self.storage.fixed_view_mut::<1, 3>(column, 0).copy_from(&moved.transpose());
+    pub(crate) fn move_robot<R: DimName>(&mut self, jacobian: &OMatrix<f64, R, R>, noise: &OMatrix<f64, R, R>)
+    where
+        DefaultAllocator: Allocator<R, R> + Allocator<R>,
+    {
+        let robot = jacobian * self.robot::<R>() * jacobian.transpose() + noise;
+        for column in R::DIM..self.dimension {
+            let moved = jacobian * OVector::<f64, R>::from_fn(|row, _| self.storage[(row, column)]);
+            for row in 0..R::DIM {
+                self.storage[(row, column)] = moved[row];
+                self.storage[(column, row)] = moved[row];
+            }
         }
-        self.storage.fixed_view_mut::<3, 3>(0, 0).copy_from(&((robot + robot.transpose()) * 0.5));
+        let robot = (&robot + robot.transpose()) * 0.5;
+        self.storage.view_mut((0, 0), (R::DIM, R::DIM)).copy_from(&robot);
     }
 
     /// Appends a block that depends on the robot: $`P_{m·} = G P_{r·},\; P_{mm} = G P_{rr} G^T + N`$. Returns its offset.
-    pub(crate) fn append<L: DimName, SG, SN>(
+    pub(crate) fn append<L: DimName, R: DimName>(
         &mut self,
-        robot_jacobian: &nalgebra::Matrix<f64, L, nalgebra::Const<3>, SG>,
-        noise: &nalgebra::Matrix<f64, L, L, SN>,
+        robot_jacobian: &OMatrix<f64, L, R>,
+        noise: &OMatrix<f64, L, L>,
     ) -> usize
     where
-        SG: Storage<f64, L, nalgebra::Const<3>>,
-        SN: Storage<f64, L, L>,
-        nalgebra::DefaultAllocator: nalgebra::allocator::Allocator<L, L>
-            + nalgebra::allocator::Allocator<L, nalgebra::Const<3>>
-            + nalgebra::allocator::Allocator<nalgebra::Const<3>, L>
-            + nalgebra::allocator::Allocator<L>,
+        DefaultAllocator: Allocator<L, L>
+            + Allocator<L, R>
+            + Allocator<R, L>
+            + Allocator<R, R>
+            + Allocator<R>
+            + Allocator<L>,
     {
-        let (offset, rows) = (self.dimension, noise.nrows());
-        self.reserve(offset + rows);
+        let offset = self.dimension;
+        self.reserve(offset + L::DIM);
         for column in 0..offset {
-            let cross = robot_jacobian * self.storage.fixed_view::<3, 1>(0, column);
-            for row in 0..rows {
+            let cross =
+                robot_jacobian * OMatrix::<f64, R, Const<1>>::from_fn(|row, _| self.storage[(row, column)]);
+            for row in 0..L::DIM {
                 self.storage[(offset + row, column)] = cross[row];
                 self.storage[(column, offset + row)] = cross[row];
             }
         }
-        let own: OMatrix<f64, L, L> = robot_jacobian * self.robot() * robot_jacobian.transpose() + noise;
+        let own = robot_jacobian * self.robot::<R>() * robot_jacobian.transpose() + noise;
         let own = (&own + own.transpose()) * 0.5;
-        self.storage.view_mut((offset, offset), (rows, rows)).copy_from(&own);
-        self.dimension += rows;
+        self.storage.view_mut((offset, offset), (L::DIM, L::DIM)).copy_from(&own);
+        self.dimension += L::DIM;
         offset
+    }
+
+    /// Takes a block out: what is left is the marginal of the rest.
+    pub(crate) fn remove(&mut self, block: Range<usize>) {
+        let kept = |index: usize| if index < block.start { index } else { index + block.len() };
+        let dimension = self.dimension - block.len();
+        for column in 0..dimension {
+            for row in 0..dimension {
+                self.storage[(row, column)] = self.storage[(kept(row), kept(column))]; // sources lie behind: never yet overwritten
+            }
+        }
+        self.dimension = dimension;
     }
 
     fn reserve(&mut self, dimension: usize) {

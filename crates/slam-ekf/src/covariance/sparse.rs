@@ -2,8 +2,6 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DMatrixView, DVectorViewMut, Dyn, Storage};
 
-use super::joint::ROBOT;
-
 /// Rows of an observation Jacobian: each touches the robot and one landmark.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SparseJacobian {
@@ -13,17 +11,28 @@ pub(crate) struct SparseJacobian {
 
 #[derive(Clone, Debug)]
 struct Row {
-    robot: [f64; ROBOT],
+    robot: Range<usize>,
     offset: usize,
-    coefficients: Range<usize>,
+    landmark: Range<usize>,
 }
 
 impl SparseJacobian {
-    /// Adds one row: what it takes of the robot and of the landmark block at `offset` (nothing, for an anchor).
-    pub(crate) fn push_row(&mut self, robot: [f64; ROBOT], offset: usize, landmark: impl Iterator<Item = f64>) {
+    /// Adds one row: what it takes of the robot, and of the landmark block at `offset` (nothing, for an anchor).
+    pub(crate) fn push_row(
+        &mut self,
+        robot: impl IntoIterator<Item = f64>,
+        offset: usize,
+        landmark: impl IntoIterator<Item = f64>,
+    ) {
+        let robot = self.push(robot);
+        let landmark = self.push(landmark);
+        self.rows.push(Row { robot, offset, landmark });
+    }
+
+    fn push(&mut self, coefficients: impl IntoIterator<Item = f64>) -> Range<usize> {
         let start = self.coefficients.len();
-        self.coefficients.extend(landmark);
-        self.rows.push(Row { robot, offset, coefficients: start..self.coefficients.len() });
+        self.coefficients.extend(coefficients);
+        start..self.coefficients.len()
     }
 
     pub(crate) fn nrows(&self) -> usize {
@@ -63,8 +72,8 @@ impl SparseJacobian {
     }
 
     fn entries<'a>(&'a self, row: &'a Row) -> impl Iterator<Item = (usize, f64)> + 'a {
-        let landmark = self.coefficients[row.coefficients.clone()].iter().copied();
-        row.robot.iter().copied().enumerate().chain((row.offset..).zip(landmark))
+        let of = |range: &Range<usize>| self.coefficients[range.clone()].iter().copied();
+        (0..).zip(of(&row.robot)).chain((row.offset..).zip(of(&row.landmark)))
     }
 }
 

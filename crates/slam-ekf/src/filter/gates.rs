@@ -24,5 +24,6 @@ impl Gates {
 }
 
 fn quantile(degrees_of_freedom: usize, probability: f64) -> f64 {
-    ChiSquared::new(degrees_of_freedom as f64).map_or(0.0, |distribution| distribution.inverse_cdf(probability))
+    ChiSquared::new(degrees_of_freedom as f64)
+        .map_or(0.0, |distribution| distribution.inverse_cdf(probability))
 }

@@ -1,5 +1,6 @@
 //! The filter, one step of the algorithm a file.
 
+mod confirmation;
 mod gates;
 mod map;
 mod params;
@@ -8,6 +9,7 @@ mod sight;
 mod state;
 mod update;
 
-pub use params::SlamParams;
+pub use confirmation::Confirmation;
+pub use params::{OutlierRule, SlamParams, UpdateOrder};
 pub use sight::PredictedSighting;
 pub use state::{EkfSlam, LandmarkEstimate};

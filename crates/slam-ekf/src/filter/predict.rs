@@ -1,12 +1,12 @@
-use nalgebra::{DefaultAllocator, Matrix2, Matrix3, Vector3};
-use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
+use nalgebra::{DMatrix, DefaultAllocator, DimName, OMatrix, allocator::Allocator};
+use wayfix_estimation_traits::{Manifold, MotionModel, Tangent, TangentMatrix};
 
-use super::EkfSlam;
-use crate::{LandmarkDim, LandmarkModel, MeasurementDim, SlamAlloc, SlamError};
+use super::{EkfSlam, state::is_finite};
+use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, RobotState, SlamAlloc, SlamError};
 
 impl<M: LandmarkModel> EkfSlam<M>
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     /// Moves the robot: $`x_r ← f(x_r, u),\; P_{rr} ← F P_{rr} F^T + Q,\; P_{rm} ← F P_{rm}`$. Cost O(n).
     ///
@@ -14,22 +14,21 @@ where
     /// When the model gives anything that is not finite or a noise that is no covariance; nothing has changed then.
     pub fn predict<U: ?Sized>(
         &mut self,
-        motion: &impl MotionModel<State = Pose2<f64>, Control = U>,
+        motion: &impl MotionModel<State = M::Robot, Control = U>,
         control: &U,
     ) -> Result<(), SlamError> {
         let moved = motion.propagate(&self.robot, control);
         let (jacobian, noise) = (motion.jacobian(&self.robot, control), motion.noise(&self.robot, control));
-        if !moved.is_finite() {
-            return Err(SlamError::NotFinite { what: "propagated pose" });
+        if !is_finite(&moved) {
+            return Err(SlamError::NotFinite { what: "propagated robot state" });
         }
         if !jacobian.iter().all(|entry| entry.is_finite()) {
             return Err(SlamError::NotFinite { what: "motion Jacobian" });
         }
         check_covariance("motion noise", &noise)?;
 
-        let before = self.covariance.robot();
-        let robot = jacobian * before * jacobian.transpose() + noise;
-        if !robot.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {
+        let predicted = &jacobian * self.robot_covariance() * jacobian.transpose() + &noise;
+        if !predicted.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {
             return Err(SlamError::NotFinite { what: "predicted covariance" });
         }
         self.covariance.move_robot(&jacobian, &noise);
@@ -37,16 +36,11 @@ where
         Ok(())
     }
 
-    /// Steps the robot's mean by `delta` and turns its covariance into the new body frame.
-    ///
-    /// Without this the covariance would stay in the frame of the old heading. With it the filter is the same, number for number,
-    /// as one that keeps the robot's error in world coordinates.
-    pub(super) fn step_robot(&mut self, delta: &Vector3<f64>) {
-        self.robot = self.robot.retract(delta);
-        let (sin, cos) = delta.z.sin_cos();
-        let mut turn = Matrix3::identity();
-        turn.fixed_view_mut::<2, 2>(0, 0).copy_from(&Matrix2::new(cos, sin, -sin, cos));
-        self.covariance.move_robot(&turn, &Matrix3::zeros());
+    /// Steps the robot's mean and takes its covariance along into the tangent space there.
+    pub(super) fn step_robot(&mut self, step: &Tangent<M::Robot>) {
+        let transport = self.robot.transport(step);
+        self.robot = self.robot.retract(step);
+        self.covariance.move_robot(&transport, &TangentMatrix::<M::Robot>::zeros());
     }
 }
 
@@ -54,20 +48,34 @@ where
 const LARGEST_VARIANCE: f64 = 1e36;
 
 /// Refuses what is not symmetric positive semidefinite; zero variances are fine.
-pub(super) fn check_covariance(what: &'static str, matrix: &Matrix3<f64>) -> Result<(), SlamError> {
+pub(super) fn check_covariance<D: DimName>(
+    what: &'static str,
+    matrix: &OMatrix<f64, D, D>,
+) -> Result<(), SlamError>
+where
+    DefaultAllocator: Allocator<D, D>,
+{
     if !matrix.iter().all(|entry| entry.is_finite()) {
         return Err(SlamError::NotFinite { what });
     }
     let tolerance = 1e-9 * matrix.amax(); // entries that were computed with rounding
     let asymmetry = (matrix - matrix.transpose()).amax();
-    let value = if is_diagonal(matrix) { matrix.diagonal().min() } else { matrix.symmetric_eigenvalues().min() };
+    let value = smallest_eigenvalue(matrix);
     if asymmetry > tolerance || value < -tolerance {
         return Err(SlamError::NotACovariance { what, value, asymmetry });
     }
     Ok(())
 }
 
-/// The usual case, for which no eigenvalue needs to be iterated.
-fn is_diagonal(matrix: &Matrix3<f64>) -> bool {
-    (0..9).all(|i| i % 4 == 0 || matrix[i] == 0.0)
+/// Nothing to iterate in the usual case of a diagonal matrix.
+fn smallest_eigenvalue<D: DimName>(matrix: &OMatrix<f64, D, D>) -> f64
+where
+    DefaultAllocator: Allocator<D, D>,
+{
+    let diagonal = || (0..D::DIM).map(|i| matrix[(i, i)]);
+    let off_diagonal = matrix.norm_squared() - diagonal().map(|entry| entry * entry).sum::<f64>();
+    if off_diagonal == 0.0 {
+        return diagonal().fold(f64::INFINITY, f64::min);
+    }
+    DMatrix::from_fn(D::DIM, D::DIM, |row, column| matrix[(row, column)]).symmetric_eigenvalues().min()
 }

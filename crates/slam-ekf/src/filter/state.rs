@@ -1,10 +1,13 @@
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrixView, DefaultAllocator, Dim, Matrix3};
-use wayfix_estimation_traits::{Manifold, Pose2, TangentMatrix};
+use nalgebra::{DMatrixView, DefaultAllocator, DimName};
+use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
 use super::{SlamParams, gates::Gates};
-use crate::{LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, SlamAlloc, SlamError, covariance::JointCovariance};
+use crate::{
+    LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
+    covariance::JointCovariance,
+};
 
 /// EKF-SLAM over one kind of landmark.
 ///
@@ -17,9 +20,11 @@ use crate::{LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, SlamAlloc, S
 /// let mut slam = EkfSlam::new(RangeBearingSensor::default(), SlamParams::default(), Pose2::new(0.0, 0.0, 0.0))?;
 /// let seen = |range, bearing| [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(range, bearing) }];
 ///
-/// slam.update(&seen(2.0, 0.0), &mut KnownIds)?;                                     // a landmark two metres ahead
+/// let mut ids = KnownIds;
+///
+/// slam.update(&seen(2.0, 0.0), &mut ids)?;                                          // a landmark two metres ahead
 /// slam.predict(&IncrementMotion::default(), &Pose2::new(1.1, 0.0, 0.0))?;           // odometry: 1.1 m forward
-/// slam.update(&seen(1.0, 0.0), &mut KnownIds)?;                                     // but it is one metre away now
+/// slam.update(&seen(1.0, 0.0), &mut ids)?;                                          // but it is one metre away now
 ///
 /// assert!(slam.robot().x() > 1.0 && slam.robot().x() < 1.1);
 /// assert!((slam.landmark(LandmarkId(7)).unwrap().mean.x - 2.0).abs() < 0.1);
@@ -28,14 +33,17 @@ use crate::{LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, SlamAlloc, S
 #[derive(Clone, Debug)]
 pub struct EkfSlam<M: LandmarkModel>
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     pub(super) model: M,
+    pub(super) params: SlamParams,
     pub(super) gates: Gates,
-    pub(super) robot: Pose2<f64>,
+    pub(super) robot: M::Robot,
     pub(super) landmarks: BTreeMap<LandmarkId, Slot<M::Landmark>>,
     pub(super) anchors: BTreeMap<LandmarkId, M::Landmark>,
     pub(super) covariance: JointCovariance,
+    /// How many looks there were.
+    pub(super) look: usize,
 }
 
 /// A landmark and where its block starts in the covariance.
@@ -43,6 +51,9 @@ where
 pub(super) struct Slot<L> {
     pub(super) mean: L,
     pub(super) offset: usize,
+    pub(super) n_sightings: usize,
+    /// The look in which it was seen last.
+    pub(super) last_seen: usize,
 }
 
 /// What is known of one landmark.
@@ -61,14 +72,14 @@ where
 
 impl<M: LandmarkModel> EkfSlam<M>
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     /// An empty map around a robot whose pose is the origin of everything, known exactly.
     ///
     /// # Errors
     /// When a parameter is out of range or the pose is not finite.
-    pub fn new(model: M, params: SlamParams, start: Pose2<f64>) -> Result<Self, SlamError> {
-        Self::with_start_covariance(model, params, start, Matrix3::zeros())
+    pub fn new(model: M, params: SlamParams, start: M::Robot) -> Result<Self, SlamError> {
+        Self::with_start_covariance(model, params, start, TangentMatrix::<M::Robot>::zeros())
     }
 
     /// An empty map around a robot whose pose in a given world is uncertain.
@@ -78,38 +89,44 @@ where
     pub fn with_start_covariance(
         model: M,
         params: SlamParams,
-        start: Pose2<f64>,
-        covariance: Matrix3<f64>,
+        start: M::Robot,
+        covariance: TangentMatrix<M::Robot>,
     ) -> Result<Self, SlamError> {
-        if !start.is_finite() {
+        if !is_finite(&start) {
             return Err(SlamError::NotFinite { what: "start pose" });
         }
         super::predict::check_covariance("start covariance", &covariance)?;
         Ok(Self {
             model,
             gates: Gates::from_probability(params.validated()?.gate_probability),
+            params,
             robot: start,
             landmarks: BTreeMap::new(),
             anchors: BTreeMap::new(),
             covariance: JointCovariance::from_robot(&covariance),
+            look: 0,
         })
     }
 
-    /// The estimated pose.
-    pub fn robot(&self) -> &Pose2<f64> {
+    /// The estimated pose and what else is estimated of the robot.
+    pub fn robot(&self) -> &M::Robot {
         &self.robot
     }
-    /// Covariance of the pose in the body frame, `(x, y, θ)`.
-    pub fn robot_covariance(&self) -> Matrix3<f64> {
+    /// Covariance of the robot in its tangent space: body frame, `(x, y, θ, …)`.
+    pub fn robot_covariance(&self) -> TangentMatrix<M::Robot> {
         self.covariance.robot()
     }
     /// The joint covariance: robot first, then the landmarks in the order in which they came.
     pub fn covariance(&self) -> DMatrixView<'_, f64> {
         self.covariance.matrix()
     }
-    /// How many landmarks are in the state; anchors are not.
+    /// How many landmarks are confirmed; anchors are not among them.
     pub fn n_landmarks(&self) -> usize {
-        self.landmarks.len()
+        self.landmarks.values().filter(|slot| self.is_confirmed(slot)).count()
+    }
+    /// How many landmarks are in the state that still have to be confirmed.
+    pub fn n_tentative(&self) -> usize {
+        self.landmarks.len() - self.n_landmarks()
     }
     /// Whether a landmark or an anchor with this identity is in the map.
     pub fn knows(&self, id: LandmarkId) -> bool {
@@ -119,13 +136,14 @@ where
     pub fn model(&self) -> &M {
         &self.model
     }
-    /// One landmark of the state.
+    /// One landmark of the state, confirmed or not.
     pub fn landmark(&self, id: LandmarkId) -> Option<LandmarkEstimate<M::Landmark>> {
         self.landmarks.get(&id).map(|slot| self.estimate(id, slot))
     }
-    /// All landmarks of the state in the order of their identities.
+    /// All confirmed landmarks in the order of their identities.
     pub fn landmarks(&self) -> impl Iterator<Item = LandmarkEstimate<M::Landmark>> {
-        self.landmarks.iter().map(|(id, slot)| self.estimate(*id, slot))
+        let confirmed = self.landmarks.iter().filter(|(_, slot)| self.is_confirmed(slot));
+        confirmed.map(|(id, slot)| self.estimate(*id, slot))
     }
     /// The anchors in the order of their identities.
     pub fn anchors(&self) -> impl Iterator<Item = (LandmarkId, &M::Landmark)> {
@@ -137,9 +155,16 @@ where
     }
 
     pub(super) fn landmark_covariance(&self, slot: &Slot<M::Landmark>) -> TangentMatrix<M::Landmark> {
-        let dim = slot.mean.dim();
-        let block = slot.offset..slot.offset + dim.value();
+        let block = slot.offset..slot.offset + LandmarkDim::<M>::DIM;
         let view = self.covariance.block(block.clone(), block);
-        TangentMatrix::<M::Landmark>::from_fn_generic(dim, dim, |row, column| view[(row, column)])
+        TangentMatrix::<M::Landmark>::from_fn(|row, column| view[(row, column)])
     }
+}
+
+/// Points that are not finite are at no finite distance from themselves.
+pub(super) fn is_finite<X: Manifold<Scalar = f64>>(point: &X) -> bool
+where
+    DefaultAllocator: nalgebra::allocator::Allocator<X::Dim>,
+{
+    point.local(point).iter().all(|entry| entry.is_finite())
 }

@@ -1,89 +1,119 @@
 use std::collections::BTreeSet;
 
-use nalgebra::{DMatrix, DVector, DefaultAllocator, Vector3};
-use wayfix_estimation_traits::{Manifold, Tangent};
+use nalgebra::{DMatrix, DVector, DefaultAllocator};
+use wayfix_estimation_traits::{Manifold, Tangent, TangentMatrix};
 
 use super::{EkfSlam, PredictedSighting};
 use crate::{
-    Association, DataAssociation, Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, Outcome,
-    SlamAlloc, SlamError, StepReport, covariance::SparseJacobian,
+    Association, DataAssociation, Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim,
+    Observation, Outcome, OutlierRule, RobotDim, SlamAlloc, SlamError, StepReport,
+    covariance::SparseJacobian,
 };
 
 /// An observation that passed the gate, with what the correction needs of it.
 struct Accepted<M: LandmarkModel>
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     sighting: PredictedSighting<M>,
     innovation: Innovation<M::Measurement>,
+    noise: TangentMatrix<M::Measurement>,
 }
 
 impl<M: LandmarkModel> EkfSlam<M>
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     /// Corrects robot and map with everything one look of the sensor saw.
     ///
-    /// Observations are associated at the predicted state, gated one by one, and those that pass correct together; then new
-    /// landmarks start. Each observation's fate is in the report, in the order they came; one that cannot be used (not finite, twice the
+    /// Observations are associated at the predicted state, weighed one by one, and those that pass correct together; then new
+    /// landmarks start ([`UpdateOrder`](crate::UpdateOrder) can ask for one after the other). Each observation's fate is in the report, in the order they came; one that cannot be used (not finite, twice the
     /// same landmark, outside the gate) leaves the others alone.
     ///
     /// # Errors
-    /// When the joint innovation covariance is not positive definite; nothing has changed then.
+    /// When the innovation covariance is not positive definite; nothing has changed then in joint order.
     pub fn update(
         &mut self,
         observations: &[Observation<M::Measurement>],
         association: &mut impl DataAssociation<M>,
     ) -> Result<StepReport<M::Measurement>, SlamError> {
+        self.look += 1;
         let usable: Vec<usize> =
             (0..observations.len()).filter(|&i| self.model.is_usable(&observations[i].measurement)).collect();
         let candidates: Vec<_> = usable.iter().map(|&i| observations[i].clone()).collect();
         let associations = association.associate(self, &candidates);
+        let associated: Vec<_> = usable.into_iter().zip(associations).collect();
 
         let mut outcomes = vec![Outcome::Unusable; observations.len()];
-        let (mut accepted, mut new, mut taken) = (Vec::new(), Vec::new(), BTreeSet::new());
-        for (&i, association) in usable.iter().zip(associations) {
+        let mut taken = BTreeSet::new();
+        for batch in associated.chunks(self.params.order.batch_size(associated.len())) {
+            self.update_batch(observations, batch, &mut taken, &mut outcomes)?;
+        }
+        self.forget_unconfirmed();
+        Ok(StepReport { outcomes })
+    }
+
+    /// Observations that are linearized at the same state: weigh each, correct with all, start new landmarks.
+    fn update_batch(
+        &mut self,
+        observations: &[Observation<M::Measurement>],
+        batch: &[(usize, Association)],
+        taken: &mut BTreeSet<LandmarkId>,
+        outcomes: &mut [Outcome<M::Measurement>],
+    ) -> Result<(), SlamError> {
+        let (mut accepted, mut new) = (Vec::new(), Vec::new());
+        for &(i, association) in batch {
             let measurement = &observations[i].measurement;
             outcomes[i] = match association {
-                Association::Matched(id) | Association::New(id) if !taken.insert(id) => Outcome::Duplicate { landmark: id },
-                Association::Matched(id) => self.gate(id, measurement, &mut accepted),
-                Association::New(id) => {
-                    new.push((i, id));
-                    Outcome::Initialized { landmark: id }
+                Association::Matched(id) | Association::New(id) if !taken.insert(id) => {
+                    Outcome::Duplicate { landmark: id }
                 }
-                Association::Tentative => Outcome::Tentative,
+                Association::Matched(id) => self.weigh(id, measurement, &mut accepted),
+                Association::New(id) => Outcome::Initialized { landmark: id },
                 Association::Ambiguous => Outcome::Ambiguous,
                 Association::Unlabelled => Outcome::Unlabelled,
             };
+            if let Outcome::Initialized { landmark } | Outcome::Restarted { landmark } = outcomes[i] {
+                new.push((i, landmark));
+            }
         }
-
         self.correct(&accepted)?;
+        for Accepted { sighting, .. } in &accepted {
+            self.note_sighting(sighting.landmark);
+        }
         for (i, id) in new {
+            self.remove(id);
             if self.initialize(id, &observations[i].measurement).is_err() {
                 outcomes[i] = Outcome::Unusable;
             }
         }
-        Ok(StepReport { outcomes })
+        Ok(())
     }
 
-    /// Individual compatibility: the NIS against the chi-squared quantile.
-    fn gate(
+    /// Individual compatibility: the NIS against the chi-squared quantile, or a noise that grows with it.
+    fn weigh(
         &self,
         landmark: LandmarkId,
         measurement: &M::Measurement,
         accepted: &mut Vec<Accepted<M>>,
     ) -> Outcome<M::Measurement> {
-        let Some(sighting) = self.predicted_sighting(landmark) else {
+        let noise = self.model.noise(measurement);
+        let sighting = self.predicted_sighting(landmark);
+        let seen = sighting.and_then(|sighting| Some((sighting.innovation(measurement, &noise)?, sighting)));
+        let Some((innovation, sighting)) = seen else {
             return Outcome::Unusable;
         };
-        let innovation = sighting.innovation(measurement);
-        let threshold = self.gates.threshold(innovation.residual.len());
-        if innovation.nis <= threshold {
-            accepted.push(Accepted { sighting, innovation: innovation.clone() });
-            Outcome::Accepted { landmark, innovation }
-        } else {
-            Outcome::Gated { landmark, innovation, threshold }
+        let dimension = innovation.residual.len();
+        let threshold = self.gates.threshold(dimension);
+        if innovation.nis > threshold && self.is_tentative(landmark) {
+            return Outcome::Restarted { landmark };
         }
+        if innovation.nis > threshold && self.params.outliers == OutlierRule::Gate {
+            return Outcome::Gated { landmark, innovation, threshold };
+        }
+        let noise_scale = self.params.noise_scale(innovation.nis, dimension);
+        accepted.push(Accepted { sighting, innovation: innovation.clone(), noise: noise * noise_scale });
+        Outcome::Accepted { landmark, innovation, noise_scale }
     }
 
     /// All accepted observations at once: one joint linear correction, then the means step.
@@ -92,15 +122,16 @@ where
         if jacobian.nrows() == 0 {
             return Ok(());
         }
-        let step = self.covariance.correct(&jacobian, &noise, &residual).ok_or_else(|| SlamError::NotACovariance {
-            what: "joint innovation covariance",
-            value: noise.diagonal().min(),
-            asymmetry: (&noise - noise.transpose()).amax(),
+        let step = self.covariance.correct(&jacobian, &noise, &residual).ok_or_else(|| {
+            SlamError::NotACovariance {
+                what: "joint innovation covariance",
+                value: noise.diagonal().min(),
+                asymmetry: (&noise - noise.transpose()).amax(),
+            }
         })?;
-        self.step_robot(&Vector3::new(step[0], step[1], step[2]));
+        self.step_robot(&Tangent::<M::Robot>::from_fn(|row, _| step[row]));
         for slot in self.landmarks.values_mut() {
-            let dim = slot.mean.dim();
-            let delta = Tangent::<M::Landmark>::from_fn_generic(dim, nalgebra::Const::<1>, |row, _| step[slot.offset + row]);
+            let delta = Tangent::<M::Landmark>::from_fn(|row, _| step[slot.offset + row]);
             slot.mean = slot.mean.retract(&delta);
         }
         Ok(())
@@ -110,24 +141,24 @@ where
 /// The rows of all observations below each other.
 fn stack<M: LandmarkModel>(accepted: &[Accepted<M>]) -> (SparseJacobian, DMatrix<f64>, DVector<f64>)
 where
-    DefaultAllocator: SlamAlloc<LandmarkDim<M>, MeasurementDim<M>>,
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     let n_rows = accepted.iter().map(|accepted| accepted.innovation.residual.len()).sum();
     let mut jacobian = SparseJacobian::default();
     let (mut noise, mut residual) = (DMatrix::zeros(n_rows, n_rows), DVector::zeros(n_rows));
-    for Accepted { sighting, innovation } in accepted {
-        let (start, linear) = (jacobian.nrows(), &sighting.linearization);
+    for Accepted { sighting, innovation, noise: own_noise } in accepted {
+        let start = jacobian.nrows();
         let size = innovation.residual.len();
         for row in 0..size {
-            let robot = [linear.robot[(row, 0)], linear.robot[(row, 1)], linear.robot[(row, 2)]];
-            match &linear.landmark {
-                Some((offset, by_landmark)) => {
-                    jacobian.push_row(robot, *offset, by_landmark.row(row).iter().copied());
+            let robot = sighting.robot_jacobian.row(row);
+            match &sighting.landmark_jacobian {
+                Some((offset, landmark)) => {
+                    jacobian.push_row(robot.iter().copied(), *offset, landmark.row(row).iter().copied());
                 }
-                None => jacobian.push_row(robot, 0, std::iter::empty()),
+                None => jacobian.push_row(robot.iter().copied(), 0, []),
             }
         }
-        noise.view_mut((start, start), (size, size)).copy_from(&linear.noise);
+        noise.view_mut((start, start), (size, size)).copy_from(own_noise);
         residual.rows_mut(start, size).copy_from(&innovation.residual);
     }
     (jacobian, noise, residual)

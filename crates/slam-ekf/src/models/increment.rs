@@ -8,6 +8,11 @@ use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 ///
 /// The defaults are what `σ = 0.02 m, 0.005 rad` over a step of a quarter of a metre means.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct IncrementMotion {
     /// Variance along and across the motion per metre, m²/m.
     pub translation_variance_per_meter: f64,
@@ -22,7 +27,7 @@ impl Default for IncrementMotion {
         Self {
             translation_variance_per_meter: 0.02 * 0.02 / 0.25,
             heading_variance_per_meter: 0.005 * 0.005 / 0.25,
-            heading_variance_per_radian: 1e-4,
+            heading_variance_per_radian: 2e-5,
         }
     }
 }
@@ -44,8 +49,8 @@ impl MotionModel for IncrementMotion {
     fn noise(&self, _: &Pose2<f64>, increment: &Pose2<f64>) -> Matrix3<f64> {
         let distance = increment.translation.norm();
         let translation = self.translation_variance_per_meter * distance;
-        let heading =
-            self.heading_variance_per_meter * distance + self.heading_variance_per_radian * increment.heading().abs();
+        let heading = self.heading_variance_per_meter * distance
+            + self.heading_variance_per_radian * increment.heading().abs();
         Matrix3::from_diagonal(&Vector3::new(translation, translation, heading))
     }
 }

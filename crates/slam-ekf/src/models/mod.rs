@@ -3,9 +3,11 @@
 mod increment;
 mod range_bearing;
 mod relative_position;
+mod scaled;
 mod velocity;
 
 pub use increment::IncrementMotion;
 pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};
+pub use scaled::{ScaledMotion, ScaledPose, ScaledRangeBearingSensor};
 pub use velocity::{VelocityControl, VelocityMotion};

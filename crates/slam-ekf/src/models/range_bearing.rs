@@ -53,6 +53,11 @@ impl Manifold for RangeBearing {
 /// assert!((seen.range - 2.0).abs() < 1e-12 && seen.bearing.radians().abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct RangeBearingSensor {
     /// Standard deviation of the range at distance zero, m.
     pub range_sigma: f64,
@@ -70,6 +75,7 @@ impl Default for RangeBearingSensor {
 }
 
 impl LandmarkModel for RangeBearingSensor {
+    type Robot = Pose2<f64>;
     type Landmark = Vector2<f64>;
     type Measurement = RangeBearing;
 
@@ -102,7 +108,11 @@ impl LandmarkModel for RangeBearingSensor {
         measurement.range > 0.0 && measurement.range.is_finite() && measurement.bearing.radians().is_finite()
     }
 
-    fn initialize(&self, robot: &Pose2<f64>, measurement: &RangeBearing) -> NewLandmark<Vector2<f64>> {
+    fn initialize(
+        &self,
+        robot: &Pose2<f64>,
+        measurement: &RangeBearing,
+    ) -> NewLandmark<Vector2<f64>, Pose2<f64>> {
         let q = measurement.point();
         let rotation = robot.rotation_matrix();
         let (direction, across) = (q / measurement.range, Vector2::new(-q.y, q.x));
@@ -125,7 +135,9 @@ fn derivative_in_robot_frame(q: &Vector2<f64>) -> Matrix2<f64> {
     let squared = q.norm_squared();
     let range = squared.sqrt();
     Matrix2::new(
-        q.x / range, q.y / range, //
-        -q.y / squared, q.x / squared,
+        q.x / range,
+        q.y / range, //
+        -q.y / squared,
+        q.x / squared,
     )
 }

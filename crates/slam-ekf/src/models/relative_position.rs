@@ -8,12 +8,14 @@ pub type RelativePosition = Vector2<f64>;
 
 /// Point landmarks seen as a position in the robot frame: $`z = R^T (m - t)`$.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct RelativePositionSensor {
     /// Standard deviation of either coordinate, m.
     pub sigma: f64,
 }
 
 impl LandmarkModel for RelativePositionSensor {
+    type Robot = Pose2<f64>;
     type Landmark = Vector2<f64>;
     type Measurement = RelativePosition;
 
@@ -37,7 +39,11 @@ impl LandmarkModel for RelativePositionSensor {
         Matrix2::identity() * self.sigma.powi(2)
     }
 
-    fn initialize(&self, robot: &Pose2<f64>, measurement: &RelativePosition) -> NewLandmark<Vector2<f64>> {
+    fn initialize(
+        &self,
+        robot: &Pose2<f64>,
+        measurement: &RelativePosition,
+    ) -> NewLandmark<Vector2<f64>, Pose2<f64>> {
         let rotation = robot.rotation_matrix();
         let turned = rotation * Vector2::new(-measurement.y, measurement.x);
         NewLandmark {

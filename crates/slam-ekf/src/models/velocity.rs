@@ -12,30 +12,61 @@ pub struct VelocityControl {
     pub duration: f64,
 }
 
-impl VelocityControl {
-    /// The motion as an increment: an arc of constant curvature, $`\exp(v Δt, 0, ω Δt)`$.
-    pub fn increment(&self) -> Pose2<f64> {
-        Pose2::exp(&Vector3::new(self.linear * self.duration, 0.0, self.angular * self.duration))
-    }
-}
-
-/// Velocity commands: $`x' = x ∘ \exp(v Δt, 0, ω Δt)`$. [Thrun et al. 2005, section 5.3]
+/// Velocity commands: $`x' = x ∘ \exp(f v Δt, 0, ω Δt)`$, an arc of constant curvature. [Thrun et al. 2005, section 5.3]
 ///
-/// The noise is a random walk in distance and heading, $`\mathrm{var}(Δs) = σ_v^2 Δt`$, so that the result does not
-/// depend on how finely a log cuts time.
+/// $`f = \max(0.2, 1 - κ|ω|)`$ is what is left of the commanded speed in a turn; $`κ = 0`$ for a robot that drives as it is told.
+///
+/// The noise is a random walk, $`\mathrm{var}(Δs) = σ_v^2 Δt`$ and $`\mathrm{var}(Δθ) = (σ_ω^2 + σ_t^2 |ω|) Δt`$, so that the
+/// result does not depend on how finely a log cuts time. Turning errs in heading at the middle of the arc, hence a little sideways.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct VelocityMotion {
-    /// Standard deviation of the distance travelled in one second, m/√s.
+    /// Standard deviation of the distance driven in one second, m/√s.
     pub linear_sigma: f64,
-    /// Standard deviation of the sideways slip in one second, m/√s.
-    pub lateral_sigma: f64,
-    /// Standard deviation of the heading turned in one second, rad/√s.
+    /// Standard deviation of the heading after driving for one second, rad/√s.
     pub angular_sigma: f64,
+    /// Standard deviation of the heading after turning by one radian, rad/√rad.
+    pub turning_sigma: f64,
+    /// What the first two are multiplied with while there is no command to move.
+    pub standing_factor: f64,
+    /// κ: share of the forward speed that is lost per rad/s of turning, s/rad.
+    pub speed_loss_in_turns: f64,
 }
 
 impl Default for VelocityMotion {
     fn default() -> Self {
-        Self { linear_sigma: 0.02, lateral_sigma: 0.0, angular_sigma: 0.05 }
+        Self {
+            linear_sigma: 0.02,
+            angular_sigma: 0.02,
+            turning_sigma: 0.1,
+            standing_factor: 0.25,
+            speed_loss_in_turns: 0.0,
+        }
+    }
+}
+
+impl VelocityMotion {
+    /// The motion that a command makes, without noise.
+    pub fn increment(&self, control: &VelocityControl) -> Pose2<f64> {
+        Pose2::exp(&Vector3::new(self.distance(control), 0.0, control.angular * control.duration))
+    }
+
+    fn distance(&self, control: &VelocityControl) -> f64 {
+        let kept = (1.0 - self.speed_loss_in_turns * control.angular.abs()).max(0.2);
+        control.linear * kept * control.duration
+    }
+
+    fn variances(&self, control: &VelocityControl) -> (f64, f64) {
+        let standing = control.linear == 0.0 && control.angular == 0.0;
+        let factor = if standing { self.standing_factor } else { 1.0 };
+        let distance = (factor * self.linear_sigma).powi(2);
+        let heading =
+            (factor * self.angular_sigma).powi(2) + self.turning_sigma.powi(2) * control.angular.abs();
+        (distance * control.duration, heading * control.duration)
     }
 }
 
@@ -44,16 +75,20 @@ impl MotionModel for VelocityMotion {
     type Control = VelocityControl;
 
     fn propagate(&self, pose: &Pose2<f64>, control: &VelocityControl) -> Pose2<f64> {
-        pose.compose(&control.increment())
+        pose.compose(&self.increment(control))
     }
 
     fn jacobian(&self, _: &Pose2<f64>, control: &VelocityControl) -> Matrix3<f64> {
-        control.increment().inverse().adjoint()
+        self.increment(control).inverse().adjoint()
     }
 
     fn noise(&self, _: &Pose2<f64>, control: &VelocityControl) -> Matrix3<f64> {
-        let variances =
-            Vector3::new(self.linear_sigma.powi(2), self.lateral_sigma.powi(2), self.angular_sigma.powi(2));
-        Matrix3::from_diagonal(&(variances * control.duration))
+        let (distance_variance, heading_variance) = self.variances(control);
+        let (sin, cos) = (0.5 * control.angular * control.duration).sin_cos();
+        let half = 0.5 * self.distance(control);
+        let by_distance = Vector3::new(cos, -sin, 0.0); // direction of the middle of the arc, seen from its end
+        let by_heading = Vector3::new(half * sin, half * cos, 1.0);
+        by_distance * by_distance.transpose() * distance_variance
+            + by_heading * by_heading.transpose() * heading_variance
     }
 }

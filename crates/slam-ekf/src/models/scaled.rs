@@ -1,0 +1,107 @@
+use nalgebra::{Const, Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
+use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
+
+use super::{RangeBearing, RangeBearingSensor};
+use crate::{LandmarkModel, NewLandmark, RobotState};
+
+/// A pose together with the scale of the robot's range sensor, estimated on the way.
+///
+/// Tangent order `(x, y, θ, a)`, with $`e^a`$ what the sensor multiplies every range with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaledPose {
+    /// Where the robot is.
+    pub pose: Pose2<f64>,
+    /// $`a`$; 0 for a sensor that tells the truth.
+    pub log_range_scale: f64,
+}
+
+impl Manifold for ScaledPose {
+    type Scalar = f64;
+    type Dim = Const<4>;
+    fn dim(&self) -> Const<4> {
+        Const
+    }
+    fn retract(&self, delta: &Vector4<f64>) -> Self {
+        Self { pose: self.pose.retract(&delta.xyz()), log_range_scale: self.log_range_scale + delta.w }
+    }
+    fn local(&self, other: &Self) -> Vector4<f64> {
+        self.pose.local(&other.pose).push(other.log_range_scale - self.log_range_scale)
+    }
+}
+
+impl RobotState for ScaledPose {
+    fn transport(&self, step: &Vector4<f64>) -> Matrix4<f64> {
+        self.pose.transport(&step.xyz()).to_homogeneous()
+    }
+}
+
+/// Any motion of a pose; the scale stays what it is.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct ScaledMotion<M>(pub M);
+
+impl<M: MotionModel<State = Pose2<f64>>> MotionModel for ScaledMotion<M> {
+    type State = ScaledPose;
+    type Control = M::Control;
+
+    fn propagate(&self, state: &ScaledPose, control: &M::Control) -> ScaledPose {
+        ScaledPose { pose: self.0.propagate(&state.pose, control), ..*state }
+    }
+    fn jacobian(&self, state: &ScaledPose, control: &M::Control) -> Matrix4<f64> {
+        self.0.jacobian(&state.pose, control).to_homogeneous()
+    }
+    fn noise(&self, state: &ScaledPose, control: &M::Control) -> Matrix4<f64> {
+        let mut noise = Matrix4::zeros();
+        noise.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.0.noise(&state.pose, control));
+        noise
+    }
+}
+
+/// A range-bearing sensor whose ranges are all too long or too short by one unknown factor: $`r = e^a ‖q‖`$.
+///
+/// Triangulation by bearings along the path fixes the factor; with a start variance of zero it stays what it is.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct ScaledRangeBearingSensor(pub RangeBearingSensor);
+
+impl LandmarkModel for ScaledRangeBearingSensor {
+    type Robot = ScaledPose;
+    type Landmark = Vector2<f64>;
+    type Measurement = RangeBearing;
+
+    fn expected(&self, robot: &ScaledPose, landmark: &Vector2<f64>) -> RangeBearing {
+        let seen = self.0.expected(&robot.pose, landmark);
+        RangeBearing { range: seen.range * robot.log_range_scale.exp(), ..seen }
+    }
+
+    fn robot_jacobian(&self, robot: &ScaledPose, landmark: &Vector2<f64>) -> Matrix2x4<f64> {
+        let mut jacobian = self.0.robot_jacobian(&robot.pose, landmark).insert_column(3, 0.0);
+        jacobian.row_mut(0).scale_mut(robot.log_range_scale.exp());
+        jacobian.m14 = self.expected(robot, landmark).range;
+        jacobian
+    }
+
+    fn landmark_jacobian(&self, robot: &ScaledPose, landmark: &Vector2<f64>) -> Matrix2<f64> {
+        let mut jacobian = self.0.landmark_jacobian(&robot.pose, landmark);
+        jacobian.row_mut(0).scale_mut(robot.log_range_scale.exp());
+        jacobian
+    }
+
+    fn noise(&self, measurement: &RangeBearing) -> Matrix2<f64> {
+        self.0.noise(measurement)
+    }
+
+    fn is_usable(&self, measurement: &RangeBearing) -> bool {
+        self.0.is_usable(measurement)
+    }
+
+    fn initialize(
+        &self,
+        robot: &ScaledPose,
+        measurement: &RangeBearing,
+    ) -> NewLandmark<Vector2<f64>, ScaledPose> {
+        let range = measurement.range * (-robot.log_range_scale).exp();
+        let new = self.0.initialize(&robot.pose, &RangeBearing { range, ..*measurement });
+        let mut robot_jacobian = new.robot_jacobian.insert_column(3, 0.0);
+        robot_jacobian.set_column(3, &(robot.pose.translation - new.landmark));
+        NewLandmark { landmark: new.landmark, robot_jacobian, covariance: new.covariance }
+    }
+}

@@ -1,0 +1,49 @@
+//! The command line: one command a file.
+
+mod input;
+mod progress;
+mod run_slam;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Probabilistic robot localization on your logs.
+///
+/// Examples:
+///   wayfix info slam_100.txt                      what a log holds
+///   wayfix run slam --log slam_100.txt            trajectory and map, with figures where the log has truth
+///   wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results
+#[derive(Parser)]
+#[command(name = "wayfix", version, verbatim_doc_comment)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a system on a log.
+    #[command(subcommand)]
+    Run(Run),
+}
+
+#[derive(Subcommand)]
+enum Run {
+    /// EKF-SLAM: where the robot went and where the landmarks are.
+    Slam(run_slam::Arguments),
+}
+
+/// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
+pub fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Run(Run::Slam(arguments)) => run_slam::main(arguments),
+    };
+    match result {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

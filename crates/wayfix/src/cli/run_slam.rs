@@ -1,0 +1,87 @@
+use std::{path::PathBuf, process::ExitCode};
+
+use anyhow::Result;
+use wayfix_sensor_log::{Format, OpenOptions};
+
+use super::{input::read_toml, progress};
+use crate::{
+    report::{Run, RunSummary, table, table::TableStyle},
+    slam::{self, AssociationRule, Profile, SlamSystemParams},
+    system::Stopwatch,
+};
+
+/// EKF-SLAM on a log with odometry and range-bearing sightings of landmarks.
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// The log: an MCAP file, a folder of the UTIAS set, a text file of range-bearing lines.
+    #[arg(long)]
+    log: PathBuf,
+    /// How the log is stored: utias, range-bearing, mcap. Detected when not given.
+    #[arg(long)]
+    format: Option<Format>,
+    /// Which robot, in sets of several.
+    #[arg(long)]
+    robot: Option<u32>,
+    /// How sightings find their landmarks: by identity, or nearest neighbour with two thresholds. By default by identity where the
+    /// log has identities.
+    #[arg(long)]
+    association: Option<AssociationRule>,
+    /// Defaults of a kind of robot: generic, utias. By default utias for logs in that format, else generic.
+    #[arg(long)]
+    profile: Option<Profile>,
+    /// Parameters in a TOML file; those it does not name keep the defaults of the profile.
+    #[arg(long)]
+    params: Option<PathBuf>,
+    /// Folder for report.json, index.html and the estimates as MCAP. Nothing is written without it.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Print one JSON object instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Seed of every generator. EKF-SLAM draws nothing; the seed is passed on to the output.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };
+    let log = wayfix_sensor_log::open(&arguments.log, &options)?;
+    let profile = arguments.profile.unwrap_or(match log.meta().format {
+        Format::Utias => Profile::Utias,
+        _ => Profile::Generic,
+    });
+    let mut params = match &arguments.params {
+        Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?,
+        None => SlamSystemParams::of(profile),
+    };
+    params.association = arguments.association.or(params.association);
+    let (records, read) = log.read_all();
+    if read.n_problems() > 0 {
+        eprintln!("{read}");
+    }
+
+    let stopwatch = Stopwatch::start();
+    let bar = progress::bar(records.len(), "EKF-SLAM");
+    let mut slam = slam::run(&records, &params, || bar.inc(1))?;
+    bar.finish_and_clear();
+    for refusal in slam.events().refusals() {
+        eprintln!("refused {refusal}");
+    }
+    slam.events().add("log_problem", read.n_problems());
+
+    let (metrics, timings) = slam::metrics(&mut slam);
+    let run = Run {
+        name: arguments.log.display().to_string(),
+        metrics,
+        timings,
+        events: slam.events().counts(),
+        seconds: stopwatch.elapsed().as_secs_f64(),
+        ..Run::default()
+    };
+    if arguments.json {
+        println!("{}", serde_json::to_string(&RunSummary::new(&run, arguments.seed))?);
+    } else {
+        print!("{}", table::run(&run, TableStyle::of_stdout()));
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,11 @@
+//! Figures of a trajectory and a map against truth, as `docs/accuracy.md` defines them.
+
+mod alignment;
+mod landmarks;
+mod trajectory;
+mod truth;
+
+pub use alignment::{align, rms_distance};
+pub use landmarks::{Correspondence, landmark_errors};
+pub use trajectory::{Sample, TrajectoryErrors, trajectory_errors};
+pub use truth::TrueTrack;

@@ -1,0 +1,53 @@
+use nalgebra::{Matrix3, Vector2, linalg::Cholesky};
+use wayfix_estimation_traits::{Manifold, Pose2, wrap_angle};
+
+use super::{align, rms_distance};
+
+/// An estimated pose beside the true one.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// The estimate.
+    pub estimate: Pose2<f64>,
+    /// Its covariance in the body frame, `(x, y, θ)`.
+    pub covariance: Matrix3<f64>,
+    /// The truth.
+    pub truth: Pose2<f64>,
+}
+
+impl Sample {
+    /// Normalized estimation error squared, $`e^T P^{-1} e`$ with $`e`$ the truth seen from the estimate; chi-squared with three degrees
+    /// of freedom for an honest filter. `None` while some direction is known exactly.
+    pub fn nees(&self) -> Option<f64> {
+        let error = self.estimate.local(&self.truth);
+        let nees = error.dot(&Cholesky::new(self.covariance)?.solve(&error));
+        nees.is_finite().then_some(nees)
+    }
+}
+
+/// Errors of a trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrajectoryErrors {
+    /// Root mean square position error with the start pose given and no alignment, m.
+    pub ate_rmse: f64,
+    /// The same after the best rigid alignment of the whole path, m.
+    pub ate_aligned_rmse: f64,
+    /// Root mean square heading error without alignment, rad.
+    pub heading_rmse: f64,
+    /// Mean NEES over the samples that have one.
+    pub nees_mean: Option<f64>,
+}
+
+/// Errors over all samples; `None` when there are none.
+pub fn trajectory_errors(samples: &[Sample]) -> Option<TrajectoryErrors> {
+    let positions = samples.iter().map(|sample| (sample.estimate.translation, sample.truth.translation));
+    let identity = Pose2 { translation: Vector2::zeros(), ..Pose2::new(0.0, 0.0, 0.0) };
+    let squared_turns =
+        samples.iter().map(|sample| wrap_angle(sample.estimate.heading() - sample.truth.heading()).powi(2));
+    let nees: Vec<f64> = samples.iter().filter_map(Sample::nees).collect();
+    Some(TrajectoryErrors {
+        ate_rmse: rms_distance(positions.clone(), &identity)?,
+        ate_aligned_rmse: rms_distance(positions.clone(), &align(positions))?,
+        heading_rmse: (squared_turns.sum::<f64>() / samples.len() as f64).sqrt(),
+        nees_mean: (!nees.is_empty()).then(|| nees.iter().sum::<f64>() / nees.len() as f64),
+    })
+}

@@ -1,0 +1,84 @@
+use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_sensor_log::{Data, Record, Stamp};
+
+/// True poses over time.
+#[derive(Clone, Debug, Default)]
+pub struct TrueTrack {
+    poses: Vec<(Stamp, Pose2<f64>)>,
+}
+
+/// Motion capture and GPS lose sight of a robot; across a longer gap nobody knows where it was, s.
+const LONGEST_GAP: f64 = 0.5;
+
+impl TrueTrack {
+    /// The true poses among `records`; those that are not finite or go back in time are left out.
+    pub fn from_records(records: &[Record]) -> Self {
+        let mut poses: Vec<(Stamp, Pose2<f64>)> = Vec::new();
+        for record in records {
+            if let Data::TruePose(pose) = &record.data {
+                let later = poses.last().is_none_or(|(last, _)| *last < record.stamp);
+                if later && pose.is_finite() {
+                    poses.push((record.stamp, *pose));
+                }
+            }
+        }
+        Self { poses }
+    }
+
+    /// Last stamp with a true pose.
+    pub fn last_stamp(&self) -> Option<Stamp> {
+        self.poses.last().map(|(stamp, _)| *stamp)
+    }
+
+    /// The pose at `stamp`: interpolated linearly, headings along the shorter arc, never across more than half a second.
+    pub fn at(&self, stamp: Stamp) -> Option<Pose2<f64>> {
+        let after = self.poses.partition_point(|(known, _)| *known < stamp);
+        let (late, late_pose) = self.poses.get(after)?;
+        if *late == stamp {
+            return Some(*late_pose);
+        }
+        let (early, early_pose) = self.poses.get(after.checked_sub(1)?)?;
+        let gap = late.seconds_since(*early);
+        if gap > LONGEST_GAP {
+            return None;
+        }
+        let fraction = stamp.seconds_since(*early) / gap;
+        let position = early_pose.translation.lerp(&late_pose.translation, fraction);
+        let turn = early_pose.rotation.local(&late_pose.rotation) * fraction;
+        Some(Pose2 { translation: position, rotation: early_pose.rotation.retract(&turn) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track(rows: &[(u64, f64)]) -> TrueTrack {
+        let record = |&(milliseconds, heading): &(u64, f64)| Record {
+            stamp: Stamp::from_nanoseconds(milliseconds * 1_000_000),
+            data: Data::TruePose(Pose2::new(milliseconds as f64, 0.0, heading)),
+        };
+        TrueTrack::from_records(&rows.iter().map(record).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn interpolates_along_the_shorter_arc_and_not_across_gaps() {
+        let track = track(&[(0, 3.1), (100, -3.1), (1000, 0.0)]);
+        let at = |milliseconds: u64| track.at(Stamp::from_nanoseconds(milliseconds * 1_000_000));
+        let middle = at(50).unwrap();
+        assert!(
+            (middle.heading().abs() - std::f64::consts::PI).abs() < 1e-12
+                && (middle.x() - 50.0).abs() < 1e-12
+        );
+        assert_eq!(at(0).unwrap().heading(), 3.1);
+        assert_eq!(at(500), None);
+        assert_eq!(at(1000).unwrap().heading(), 0.0);
+        assert_eq!(at(1001), None);
+    }
+
+    #[test]
+    fn leaves_out_what_goes_back_in_time() {
+        let track = track(&[(0, 0.0), (200, 0.2), (100, 3.0), (300, 0.3)]);
+        assert!((track.at(Stamp::from_nanoseconds(100_000_000)).unwrap().heading() - 0.1).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,130 @@
+use std::collections::VecDeque;
+
+use wayfix_sensor_log::{Stamp, Velocity};
+use wayfix_slam_ekf::VelocityControl;
+
+use super::RobotParams;
+
+/// Velocity commands of the log, and the motion they make: later, and in shorter turns.
+///
+/// A command acts `command_delay` after its stamp. Around a change of commands the robot does, for `command_erosion`, whichever
+/// turns less: a base that takes commands in its own rhythm loses a little of every turn. With both zero a command simply
+/// holds until the next.
+#[derive(Clone, Debug)]
+pub(super) struct Commands {
+    delay: i128,
+    erosion: i128,
+    rows: VecDeque<(i128, Velocity)>,
+}
+
+const STANDING: Velocity = Velocity { linear: 0.0, angular: 0.0 };
+
+impl Commands {
+    pub(super) fn new(robot: &RobotParams) -> Self {
+        Self {
+            delay: nanoseconds(robot.command_delay),
+            erosion: nanoseconds(robot.command_erosion),
+            rows: VecDeque::new(),
+        }
+    }
+
+    /// Takes the next row of the log.
+    pub(super) fn push(&mut self, stamp: Stamp, velocity: Velocity) {
+        self.rows.push_back((stamp.nanoseconds().into(), velocity));
+    }
+
+    /// The motion between two times, cut where it changes.
+    pub(super) fn between(&self, from: Stamp, to: Stamp) -> Vec<VelocityControl> {
+        let (from, to) =
+            (i128::from(from.nanoseconds()) - self.delay, i128::from(to.nanoseconds()) - self.delay);
+        let changes = self.rows.iter().flat_map(|(stamp, _)| [*stamp, stamp + self.erosion]);
+        let mut cuts: Vec<i128> = changes.filter(|cut| (from..to).contains(cut)).collect();
+        cuts.extend([from, to]);
+        cuts.sort_unstable();
+        cuts.dedup();
+        let piece = |pair: &[i128]| {
+            let Velocity { linear, angular } = self.acting_at(pair[0]);
+            VelocityControl { linear, angular, duration: (pair[1] - pair[0]) as f64 * 1e-9 }
+        };
+        cuts.windows(2).map(piece).collect()
+    }
+
+    /// Forgets what no longer acts at `time` or later.
+    pub(super) fn forget_before(&mut self, time: Stamp) {
+        let horizon = i128::from(time.nanoseconds()) - self.delay - self.erosion;
+        while self.rows.get(1).is_some_and(|(successor, _)| *successor <= horizon) {
+            self.rows.pop_front();
+        }
+    }
+
+    /// What the robot does at a time of the log: of the rows in force within the erosion before it, the one that turns least.
+    fn acting_at(&self, time: i128) -> Velocity {
+        let until = self.rows.partition_point(|(stamp, _)| *stamp <= time);
+        let Some(newest) = until.checked_sub(1).map(|last| self.rows[last].1) else {
+            return STANDING;
+        };
+        let from = self.rows.partition_point(|(stamp, _)| *stamp <= time - self.erosion).saturating_sub(1);
+        let window = || self.rows.range(from..until).map(|(_, velocity)| *velocity);
+        if window().any(|row| row.angular > 0.0) && window().any(|row| row.angular < 0.0) {
+            return Velocity { angular: 0.0, ..newest };
+        }
+        window().fold(newest, |least, row| if row.angular.abs() < least.angular.abs() { row } else { least })
+    }
+}
+
+fn nanoseconds(seconds: f64) -> i128 {
+    (seconds * 1e9).round() as i128
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(milliseconds: u64) -> Stamp {
+        Stamp::from_nanoseconds(milliseconds * 1_000_000)
+    }
+
+    fn turn_of_100_ms(robot: RobotParams) -> Vec<VelocityControl> {
+        let mut commands = Commands::new(&robot);
+        for (milliseconds, angular) in [(0, 0.0), (100, 0.5), (200, 0.0)] {
+            commands.push(at(milliseconds), Velocity { linear: 0.1, angular });
+        }
+        commands.between(at(0), at(500))
+    }
+
+    fn turned(pieces: &[VelocityControl]) -> f64 {
+        pieces.iter().map(|piece| piece.angular * piece.duration).sum()
+    }
+
+    #[test]
+    fn a_command_holds_until_the_next() {
+        let pieces = turn_of_100_ms(RobotParams::default());
+        assert_eq!(pieces.len(), 3);
+        assert!((turned(&pieces) - 0.05).abs() < 1e-12);
+        assert!((pieces.iter().map(|piece| piece.duration).sum::<f64>() - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_delayed_command_acts_later_and_an_eroded_turn_is_shorter() {
+        let robot = RobotParams { command_delay: 0.15, command_erosion: 0.04, ..RobotParams::default() };
+        let pieces = turn_of_100_ms(robot);
+        assert!((turned(&pieces) - 0.5 * 0.06).abs() < 1e-12); // 40 ms of the 100 are lost
+        let before: f64 =
+            pieces.iter().take_while(|piece| piece.angular == 0.0).map(|piece| piece.duration).sum();
+        assert!((before - 0.29).abs() < 1e-12); // 100 ms + delay + erosion
+        assert_eq!(pieces[0].linear, 0.0); // stands until the first command acts
+    }
+
+    #[test]
+    fn forgets_only_what_no_longer_acts() {
+        let robot = RobotParams { command_delay: 0.15, command_erosion: 0.04, ..RobotParams::default() };
+        let mut commands = Commands::new(&robot);
+        for step in 0..100 {
+            commands.push(at(10 * step), Velocity { linear: 0.1, angular: step as f64 });
+        }
+        let expected = commands.between(at(900), at(990));
+        commands.forget_before(at(900));
+        assert!(commands.rows.len() < 40);
+        assert_eq!(commands.between(at(900), at(990)), expected);
+    }
+}

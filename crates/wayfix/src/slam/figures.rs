@@ -1,0 +1,36 @@
+use super::{Keyframe, SlamRun};
+use crate::{
+    evaluate::{Sample, landmark_errors, trajectory_errors},
+    report::Metric,
+};
+
+/// Figures that the log decides, then those that change from call to call. Names as in the contract of `docs/architecture.md`.
+pub fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
+    let samples: Vec<Sample> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    let mut metrics = Vec::new();
+    if let Some(errors) = trajectory_errors(&samples) {
+        metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
+        metrics.push(Metric::new("ate_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
+        metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
+        metrics.extend(errors.nees_mean.map(|nees| Metric::new("nees_mean", nees, "")));
+    }
+    if let Some((rmse, aligned)) =
+        landmark_errors(&run.landmarks(), &run.true_landmarks, run.correspondence())
+    {
+        metrics.push(Metric::new("landmark_rmse_m", rmse, "m"));
+        metrics.push(Metric::new("landmark_aligned_rmse_m", aligned, "m"));
+    }
+    let events = run.events();
+    let n_rejected =
+        ["gated", "duplicate", "unusable", "record_refused"].map(|name| events.get(name)).iter().sum::<u64>();
+    metrics.push(Metric::new("n_landmarks", run.system.filter().n_landmarks() as f64, ""));
+    metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
+    (metrics, timings(run.system.keyframes()))
+}
+
+fn timings(keyframes: &[Keyframe]) -> Vec<Metric> {
+    let steps = keyframes.iter().map(|keyframe| keyframe.step.as_secs_f64() * 1e6);
+    let (sum, max) = steps.fold((0.0, 0.0), |(sum, max): (f64, f64), step| (sum + step, max.max(step)));
+    let mean = sum / keyframes.len() as f64;
+    vec![Metric::new("step_mean_us", mean, "µs"), Metric::new("step_max_us", max, "µs")]
+}

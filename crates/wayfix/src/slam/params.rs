@@ -1,0 +1,149 @@
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+use wayfix_slam_ekf::{
+    Confirmation, IncrementMotion, NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams,
+    VelocityMotion,
+};
+
+/// Everything that can be set for EKF-SLAM on a log.
+///
+/// ```
+/// use wayfix::slam::{Profile, SlamSystemParams};
+/// let params = SlamSystemParams::from_toml("profile = 'utias'\n[filter]\ngate_probability = 0.99", Profile::Generic)?;
+/// assert_eq!(params.filter.gate_probability, 0.99);
+/// assert_eq!(params.velocity, SlamSystemParams::of(Profile::Utias).velocity); // not named in the file
+/// # Ok::<(), toml::de::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SlamSystemParams {
+    /// The robot whose defaults these are.
+    pub profile: Profile,
+    /// How sightings find their landmarks; when not given, by identity where the log has identities, else nearest neighbour.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub association: Option<AssociationRule>,
+    /// Timing and calibration of the robot.
+    pub robot: RobotParams,
+    /// Noise of the range-bearing sensor.
+    pub sensor: RangeBearingSensor,
+    /// Noise of velocity odometry.
+    pub velocity: VelocityMotion,
+    /// Noise of odometry increments.
+    pub increment: IncrementMotion,
+    /// Gate and outliers.
+    pub filter: SlamParams,
+    /// Thresholds of nearest neighbour.
+    pub nearest_neighbour: NearestNeighbourParams,
+    /// What a landmark must show that nearest neighbour found; takes the place of the filter's `confirmation` then.
+    pub nearest_neighbour_confirmation: Confirmation,
+}
+
+/// Timing and calibration of a robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotParams {
+    /// Time from the exposure of the sensor to the stamp of what it saw, s.
+    pub sensor_latency: f64,
+    /// Time from the stamp of a velocity command to the motion it makes, s.
+    pub command_delay: f64,
+    /// By how much a commanded turn is shorter than the log says, s.
+    pub command_erosion: f64,
+    /// Whether the sensor gives depth along its axis instead of distance.
+    pub range_is_depth: bool,
+    /// Standard deviation of the logarithm of the sensor's range scale, which is estimated; 0 when the scale is exact.
+    pub range_scale_sigma: f64,
+}
+
+/// A kind of robot and its defaults.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Profile {
+    /// Nothing is known of the robot: a good sensor (5 cm, 0.01 rad), odometry as it comes.
+    Generic,
+    /// The robots of the UTIAS set: iRobot Create with a monocular camera that reads bar codes.
+    Utias,
+}
+
+/// How sightings find their landmarks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum AssociationRule {
+    /// By the identity that the sensor reads.
+    Known,
+    /// Individual-compatibility nearest neighbour with two thresholds.
+    Nn,
+}
+
+impl SlamSystemParams {
+    /// The defaults of a kind of robot.
+    pub fn of(profile: Profile) -> Self {
+        match profile {
+            Profile::Generic => Self {
+                profile,
+                association: None,
+                robot: RobotParams::default(),
+                sensor: RangeBearingSensor::default(),
+                velocity: VelocityMotion::default(),
+                increment: IncrementMotion::default(),
+                filter: SlamParams::default(),
+                nearest_neighbour: NearestNeighbourParams::default(),
+                nearest_neighbour_confirmation: Confirmation { n_sightings: 3, ..Confirmation::default() },
+            },
+            // Measured as residuals against truth on set 7, robots 1-3; `docs/accuracy.md` has the figures behind each.
+            Profile::Utias => Self {
+                robot: RobotParams {
+                    sensor_latency: 0.04,
+                    command_delay: 0.15,
+                    command_erosion: 0.04,
+                    range_is_depth: true,
+                    range_scale_sigma: 0.04,
+                },
+                sensor: RangeBearingSensor {
+                    range_sigma: 0.01,
+                    range_sigma_per_meter: 0.03,
+                    bearing_sigma: 0.035,
+                },
+                velocity: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
+                filter: SlamParams {
+                    outliers: OutlierRule::StudentT,
+                    confirmation: Confirmation { n_sightings: 2, ..Confirmation::default() },
+                    ..SlamParams::default()
+                },
+                ..Self::of(Profile::Generic)
+            }
+            .named(profile),
+        }
+    }
+
+    /// Parameters from TOML text; what it does not name keeps the default of the profile it names, else of `profile`.
+    ///
+    /// # Errors
+    /// When the text is not TOML, a key is unknown or a value has the wrong type.
+    pub fn from_toml(text: &str, profile: Profile) -> Result<Self, toml::de::Error> {
+        #[derive(Deserialize)]
+        struct Named {
+            profile: Option<Profile>,
+        }
+        let named: Named = toml::from_str(text)?;
+        let defaults = Self::of(named.profile.unwrap_or(profile));
+        let mut values = toml::Table::try_from(&defaults).map_err(serde::de::Error::custom)?;
+        overlay(&mut values, toml::from_str(text)?);
+        values.try_into()
+    }
+
+    fn named(self, profile: Profile) -> Self {
+        Self { profile, ..self }
+    }
+}
+
+/// Puts the values of `upper` over those of `lower`, table by table.
+fn overlay(lower: &mut toml::Table, upper: toml::Table) {
+    for (key, value) in upper {
+        match (lower.get_mut(&key), value) {
+            (Some(toml::Value::Table(lower)), toml::Value::Table(upper)) => overlay(lower, upper),
+            (_, value) => {
+                lower.insert(key, value);
+            }
+        }
+    }
+}

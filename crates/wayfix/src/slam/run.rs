@@ -1,0 +1,117 @@
+use std::collections::BTreeMap;
+
+use anyhow::{Result, bail};
+use nalgebra::Vector2;
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Data, Record, Stamp, Target};
+
+use super::{AssociationRule, Keyframe, SlamSystem, SlamSystemParams};
+use crate::{
+    evaluate::{Correspondence, Sample, TrueTrack},
+    system::{Events, System, drive},
+};
+
+/// A log that went through EKF-SLAM, beside the truth that the log holds.
+pub struct SlamRun {
+    /// The system in its last state.
+    pub system: SlamSystem,
+    /// How sightings found their landmarks.
+    pub association: AssociationRule,
+    /// True poses, where the log has them.
+    pub truth: TrueTrack,
+    /// True landmarks, where the log has them.
+    pub true_landmarks: BTreeMap<u32, Vector2<f64>>,
+    /// Keyframes up to here are compared with truth: the last stamp that both odometry and truth have.
+    pub evaluated_until: Stamp,
+}
+
+/// Runs EKF-SLAM over the records of a log, calling `progress` after each.
+///
+/// The start pose is the truth at the first odometry record, else the origin; nothing else ties the run to the truth.
+///
+/// # Errors
+/// When there is no odometry or no sighting to work with, or a parameter is out of range.
+pub fn run(records: &[Record], params: &SlamSystemParams, progress: impl FnMut()) -> Result<SlamRun> {
+    let Some(start_stamp) = records.iter().find_map(odometry_stamp) else {
+        bail!(
+            "the log has no odometry: EKF-SLAM needs velocities or increments (`wayfix info` shows what a log holds)"
+        );
+    };
+    let association = match (params.association, has_identities(records)) {
+        (Some(rule), _) => rule,
+        (None, Some(true)) => AssociationRule::Known,
+        (None, Some(false)) => AssociationRule::Nn,
+        (None, None) => bail!(
+            "the log has no range-bearing sightings of landmarks (`wayfix info` shows what a log holds)"
+        ),
+    };
+    let truth = TrueTrack::from_records(records);
+    let start = truth.at(start_stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0));
+    let mut system = SlamSystem::new(params.clone(), association, start)?;
+    drive(&mut system, records, progress);
+    if system.keyframes().is_empty() {
+        let refused = system
+            .events()
+            .refusals()
+            .first()
+            .map(|refusal| format!("; first {refusal}"))
+            .unwrap_or_default();
+        bail!(
+            "nothing could be estimated: no look of the sensor after the first odometry could be used{refused}"
+        );
+    }
+    let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or(start_stamp);
+    let evaluated_until = truth.last_stamp().map_or(last_odometry, |stamp| stamp.min(last_odometry));
+    Ok(SlamRun { system, association, truth, true_landmarks: true_landmarks(records), evaluated_until })
+}
+
+impl SlamRun {
+    /// Keyframes with their true poses.
+    pub fn samples(&self) -> Vec<(Keyframe, Sample)> {
+        let sample = |keyframe: &Keyframe| {
+            let truth = self.truth.at(keyframe.stamp).filter(|_| keyframe.stamp <= self.evaluated_until)?;
+            Some((*keyframe, Sample { estimate: keyframe.pose, covariance: keyframe.covariance, truth }))
+        };
+        self.system.keyframes().iter().filter_map(sample).collect()
+    }
+    /// Estimated landmark positions.
+    pub fn landmarks(&self) -> BTreeMap<u32, Vector2<f64>> {
+        self.system.filter().landmarks().map(|landmark| (landmark.id.0, landmark.mean)).collect()
+    }
+    /// How estimated landmarks are compared with true ones.
+    pub fn correspondence(&self) -> Correspondence {
+        match self.association {
+            AssociationRule::Known => Correspondence::ById,
+            AssociationRule::Nn => Correspondence::Nearest,
+        }
+    }
+    /// What happened.
+    pub fn events(&mut self) -> &mut Events {
+        self.system.events()
+    }
+}
+
+fn odometry_stamp(record: &Record) -> Option<Stamp> {
+    matches!(record.data, Data::Velocity(_) | Data::OdometryIncrement(_)).then_some(record.stamp)
+}
+
+/// Whether any sighting of a landmark carries an identity; `None` when there are no such sightings.
+fn has_identities(records: &[Record]) -> Option<bool> {
+    let sightings = records.iter().flat_map(|record| match &record.data {
+        Data::Sightings(sightings) => sightings.as_slice(),
+        _ => &[],
+    });
+    sightings.fold(None, |found, sighting| match sighting.target {
+        Target::Landmark(_) => Some(true),
+        Target::Unlabelled => found.or(Some(false)),
+        _ => found,
+    })
+}
+
+fn true_landmarks(records: &[Record]) -> BTreeMap<u32, Vector2<f64>> {
+    let landmark = |record: &Record| match record.data {
+        Data::TrueLandmark(landmark) => Some((landmark.id, Vector2::new(landmark.x, landmark.y))),
+        _ => None,
+    };
+    records.iter().filter_map(landmark).collect()
+}

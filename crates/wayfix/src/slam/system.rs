@@ -1,0 +1,239 @@
+use std::time::Duration;
+
+use nalgebra::{Matrix3, Matrix4, Vector4};
+use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
+use wayfix_sensor_log::{Data, Record, Sighting, Stamp, Target, Velocity};
+use wayfix_slam_ekf::{
+    EkfSlam, KnownIds, LandmarkId, NearestNeighbour, Observation, Outcome, RangeBearing, ScaledMotion,
+    ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams, StepReport,
+};
+
+use super::{AssociationRule, SlamSystemParams, commands::Commands};
+use crate::system::{Events, Stopwatch, System};
+
+/// The estimate at the stamp of one look of the sensor, from everything up to it.
+#[derive(Clone, Copy, Debug)]
+pub struct Keyframe {
+    /// When.
+    pub stamp: Stamp,
+    /// Estimated pose.
+    pub pose: Pose2<f64>,
+    /// Its covariance in the body frame.
+    pub covariance: Matrix3<f64>,
+    /// Where odometry alone would put the robot.
+    pub dead_reckoning: Pose2<f64>,
+    /// Landmarks in the map.
+    pub n_landmarks: usize,
+    /// Sum and number of the NIS of what corrected.
+    pub nis: (f64, usize),
+    /// Computing time since the last keyframe.
+    pub step: Duration,
+}
+
+/// EKF-SLAM that takes records.
+pub struct SlamSystem {
+    params: SlamSystemParams,
+    filter: EkfSlam<ScaledRangeBearingSensor>,
+    association: Rule,
+    commands: Commands,
+    /// The time that the filter's state is at, once there was odometry.
+    time: Option<Stamp>,
+    dead_reckoning: Pose2<f64>,
+    keyframes: Vec<Keyframe>,
+    events: Events,
+    step: Duration,
+}
+
+enum Rule {
+    Known(KnownIds),
+    NearestNeighbour(NearestNeighbour),
+}
+
+impl SlamSystem {
+    /// A robot at `start` in an empty map.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub(super) fn new(
+        params: SlamSystemParams,
+        rule: AssociationRule,
+        start: Pose2<f64>,
+    ) -> Result<Self, SlamError> {
+        let association = match rule {
+            AssociationRule::Known => Rule::Known(KnownIds),
+            AssociationRule::Nn => Rule::NearestNeighbour(NearestNeighbour::new(params.nearest_neighbour)?),
+        };
+        let confirmation = match rule {
+            AssociationRule::Known => params.filter.confirmation,
+            AssociationRule::Nn => params.nearest_neighbour_confirmation,
+        };
+        let filter_params = SlamParams { confirmation, ..params.filter };
+        let sensor = ScaledRangeBearingSensor(params.sensor);
+        let state = ScaledPose { pose: start, log_range_scale: 0.0 };
+        let variances = Vector4::new(0.0, 0.0, 0.0, params.robot.range_scale_sigma.powi(2));
+        let covariance = Matrix4::from_diagonal(&variances);
+        Ok(Self {
+            filter: EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?,
+            association,
+            commands: Commands::new(&params.robot),
+            params,
+            time: None,
+            dead_reckoning: start,
+            keyframes: Vec::new(),
+            events: Events::default(),
+            step: Duration::ZERO,
+        })
+    }
+
+    /// The filter: robot, map, covariance.
+    pub fn filter(&self) -> &EkfSlam<ScaledRangeBearingSensor> {
+        &self.filter
+    }
+    /// One estimate for every look of the sensor at landmarks.
+    pub fn keyframes(&self) -> &[Keyframe] {
+        &self.keyframes
+    }
+
+    fn take_velocity(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
+        if !(velocity.linear.is_finite() && velocity.angular.is_finite()) {
+            return Err(format!(
+                "velocity ({} m/s, {} rad/s) is not finite",
+                velocity.linear, velocity.angular
+            ));
+        }
+        self.commands.push(stamp, velocity);
+        self.advance_to(self.exposure(stamp))
+    }
+
+    fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
+        let stopwatch = Stopwatch::start();
+        self.filter
+            .predict(&ScaledMotion(self.params.increment), increment)
+            .map_err(|error| error.to_string())?;
+        self.step += stopwatch.elapsed();
+        self.dead_reckoning = self.dead_reckoning.compose(increment);
+        self.time = Some(stamp);
+        Ok(())
+    }
+
+    fn take_sightings(&mut self, stamp: Stamp, sightings: &[Sighting]) -> Result<(), String> {
+        if self.time.is_none() {
+            self.events.count("before_first_odometry");
+            return Ok(());
+        }
+        let observations = self.observations(sightings);
+        if observations.is_empty() && !sightings.is_empty() {
+            return Ok(()); // a look at other robots only says nothing about landmarks
+        }
+        self.advance_to(self.exposure(stamp))?;
+        let stopwatch = Stopwatch::start();
+        let report = match &mut self.association {
+            Rule::Known(rule) => self.filter.update(&observations, rule),
+            Rule::NearestNeighbour(rule) => self.filter.update(&observations, rule),
+        };
+        self.step += stopwatch.elapsed();
+        let report = report.map_err(|error| error.to_string())?;
+        self.count(&report);
+        self.add_keyframe(stamp, &report);
+        Ok(())
+    }
+
+    /// When the sensor saw what has this stamp.
+    fn exposure(&self, stamp: Stamp) -> Stamp {
+        let latency = (self.params.robot.sensor_latency * 1e9) as u64;
+        Stamp::from_nanoseconds(stamp.nanoseconds().saturating_sub(latency))
+    }
+
+    /// Moves the robot on with its commands.
+    fn advance_to(&mut self, time: Stamp) -> Result<(), String> {
+        let from = *self.time.get_or_insert(time);
+        if time <= from {
+            return Ok(());
+        }
+        let stopwatch = Stopwatch::start();
+        for control in self.commands.between(from, time) {
+            self.filter
+                .predict(&ScaledMotion(self.params.velocity), &control)
+                .map_err(|error| error.to_string())?;
+            self.dead_reckoning = self.dead_reckoning.compose(&self.params.velocity.increment(&control));
+        }
+        self.step += stopwatch.elapsed();
+        self.commands.forget_before(time);
+        self.time = Some(time);
+        Ok(())
+    }
+
+    /// The filter is at the exposure of the last look; the keyframe says where the robot is at its stamp.
+    fn add_keyframe(&mut self, stamp: Stamp, report: &StepReport<RangeBearing>) {
+        let (mut state, mut covariance) = (*self.filter.robot(), self.filter.robot_covariance());
+        let motion = ScaledMotion(self.params.velocity);
+        for control in self.commands.between(self.time.unwrap_or(stamp), stamp) {
+            let jacobian = motion.jacobian(&state, &control);
+            covariance = jacobian * covariance * jacobian.transpose() + motion.noise(&state, &control);
+            state = motion.propagate(&state, &control);
+        }
+        self.keyframes.push(Keyframe {
+            stamp,
+            pose: state.pose,
+            covariance: covariance.fixed_view::<3, 3>(0, 0).into_owned(),
+            dead_reckoning: self.dead_reckoning,
+            n_landmarks: self.filter.n_landmarks(),
+            nis: report.innovations().fold((0.0, 0), |(sum, n), innovation| (sum + innovation.nis, n + 1)),
+            step: std::mem::take(&mut self.step),
+        });
+    }
+
+    /// What the sensor saw that can be a landmark; the rest is counted.
+    fn observations(&mut self, sightings: &[Sighting]) -> Vec<Observation<RangeBearing>> {
+        let mut observations = Vec::with_capacity(sightings.len());
+        for sighting in sightings {
+            let label = match sighting.target {
+                Target::Landmark(id) => Some(LandmarkId(id)),
+                Target::Unlabelled => None,
+                Target::Robot(_) => {
+                    self.events.count("robot_sighting");
+                    continue;
+                }
+                Target::UnknownCode(_) => {
+                    self.events.count("unknown_code");
+                    continue;
+                }
+            };
+            let depth_factor = if self.params.robot.range_is_depth { sighting.bearing.cos() } else { 1.0 };
+            let measurement = RangeBearing::new(sighting.range / depth_factor, sighting.bearing);
+            observations.push(Observation { label, measurement });
+        }
+        observations
+    }
+
+    fn count(&mut self, report: &StepReport<RangeBearing>) {
+        for outcome in &report.outcomes {
+            self.events.count(match outcome {
+                Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
+                Outcome::Accepted { .. } => "accepted",
+                Outcome::Gated { .. } => "gated",
+                Outcome::Initialized { .. } => "new_landmark",
+                Outcome::Restarted { .. } => "restarted_landmark",
+                Outcome::Ambiguous => "ambiguous",
+                Outcome::Unlabelled => "unlabelled",
+                Outcome::Duplicate { .. } => "duplicate",
+                Outcome::Unusable => "unusable",
+                _ => "other",
+            });
+        }
+    }
+}
+
+impl System for SlamSystem {
+    fn take(&mut self, record: &Record) -> Result<(), String> {
+        match &record.data {
+            Data::Velocity(velocity) => self.take_velocity(record.stamp, *velocity),
+            Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
+            Data::Sightings(sightings) => self.take_sightings(record.stamp, sightings),
+            _ => Ok(()),
+        }
+    }
+    fn events(&mut self) -> &mut Events {
+        &mut self.events
+    }
+}

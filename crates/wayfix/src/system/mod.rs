@@ -1,0 +1,24 @@
+//! One way through: records in time order → a [`System`] → estimates, events and figures.
+
+mod drive;
+mod events;
+mod stopwatch;
+
+pub use drive::drive;
+pub use events::{Events, Refusal};
+pub use stopwatch::Stopwatch;
+
+use wayfix_sensor_log::Record;
+
+/// An estimator behind a log: takes the records it understands, in time order, and counts what happens.
+///
+/// **Laws**: a record that cannot be used changes nothing and is counted with its reason; the same records give the same bits.
+pub trait System {
+    /// Takes one record.
+    ///
+    /// # Errors
+    /// Why the record was refused; the system is as it was before it.
+    fn take(&mut self, record: &Record) -> Result<(), String>;
+    /// What has happened so far.
+    fn events(&mut self) -> &mut Events;
+}
