@@ -33,6 +33,9 @@ pub enum KalmanError {
         /// Its sum.
         sum: f64,
     },
+    /// A bank or chain without models.
+    #[error("a bank needs at least one model")]
+    EmptyBank,
     /// Every model of a bank calls the measurement impossible.
     #[error("no model of the bank explains the measurement")]
     AllModelsImpossible,

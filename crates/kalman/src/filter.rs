@@ -1,8 +1,8 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
-use wayfix_gaussian_core::Gaussian;
+use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
-use crate::{ChiSquaredGate, Extended, Form, Innovation, KalmanError, Update, gating::gated};
+use crate::{Extended, Form, Innovation, KalmanError, Update, gating::gated};
 
 /// A Gaussian filter: a motion model, a [`Form`], and what is believed now.
 ///

@@ -1,24 +1,10 @@
 //! Gates between a form and its filter.
 
-use nalgebra::{DefaultAllocator, Dim};
+use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, SensorModel, StateAlloc, UpdateAlloc};
+use wayfix_gaussian_core::ChiSquaredGate;
 
 use crate::{Form, Update, error::Checked};
-
-/// stub
-#[derive(Clone, Copy, Debug)]
-pub struct ChiSquaredGate(f64);
-impl ChiSquaredGate {
-    /// stub
-    pub fn new(_p: f64) -> Checked<Self> {
-        Ok(Self(9.0))
-    }
-}
-
-/// The largest normalized innovation squared that passes for a measurement of dimension `dim`.
-pub(crate) fn threshold(gate: &ChiSquaredGate, _dim: usize) -> Checked<f64> {
-    Ok(gate.0)
-}
 
 /// Updates `belief` when there is a measurement and the gate lets it in.
 #[allow(clippy::type_complexity, reason = "the outcome for the caller and the belief for the filter")]
@@ -36,12 +22,11 @@ where
     DefaultAllocator: StateAlloc<X::Dim> + UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
 {
     let Some(measurement) = measurement else { return Ok((Update::Missing, None)) };
-    let threshold = threshold(gate, measurement.dim().value())?;
     let (innovation, posterior) =
-        form.update(belief, sensor, measurement, |innovation| innovation.nis() <= threshold)?;
+        form.update(belief, sensor, measurement, |innovation| gate.accepts(innovation.nis()))?;
     let outcome = match posterior {
         Some(_) => Update::Accepted { innovation },
-        None => Update::Rejected { innovation, threshold },
+        None => Update::Rejected { innovation, threshold: gate.threshold() },
     };
     Ok((outcome, posterior))
 }

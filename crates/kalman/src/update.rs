@@ -12,7 +12,7 @@ use crate::Innovation;
 /// let prior = Gaussian::new(Vector1::new(0.0), Matrix1::new(1.0))?;
 /// let mut filter = KalmanFilter::new(LinearMotion::stationary(Matrix1::new(0.0))?, prior)?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(1.0))?;
-/// let gate = ChiSquaredGate::new(0.99)?;
+/// let gate = ChiSquaredGate::from_probability(1, 0.99)?;
 /// let outcome = filter.update_gated(&sensor, Some(&Vector1::new(50.0)), &gate)?;
 /// match outcome {
 ///     Update::Rejected { innovation, threshold } => assert!(innovation.nis() > threshold),

@@ -1,12 +1,11 @@
 use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, RealField};
 use wayfix_estimation_traits::{StateAlloc, UpdateAlloc};
-use wayfix_gaussian_core::Gaussian;
+use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
 use super::{LinearMotion, LinearSensor};
 use crate::{
-    ChiSquaredGate, Innovation, KalmanError, Update, check,
+    Innovation, KalmanError, Update, check,
     error::Checked,
-    gating::threshold,
     product::{joseph, plain_difference, propagated_covariance},
 };
 
@@ -92,9 +91,7 @@ where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
         let innovation = self.innovation(sensor, measurement)?;
-        let gain = innovation.gain();
-        let covariance = joseph(self.estimate.covariance(), &gain, sensor.matrix(), sensor.noise())?;
-        self.accept(&gain, innovation.residual(), covariance)?;
+        self.correct(sensor, &innovation)?;
         Ok(innovation)
     }
 
@@ -132,11 +129,10 @@ where
     {
         let Some(measurement) = measurement else { return Ok(Update::Missing) };
         let innovation = self.innovation(sensor, measurement)?;
-        let threshold = threshold(gate, innovation.dim())?;
-        if innovation.nis() > threshold {
-            return Ok(Update::Rejected { innovation, threshold });
+        if !gate.accepts(innovation.nis()) {
+            return Ok(Update::Rejected { innovation, threshold: gate.threshold() });
         }
-        let innovation = self.update(sensor, measurement)?;
+        self.correct(sensor, &innovation)?;
         Ok(Update::Accepted { innovation })
     }
 
@@ -158,6 +154,19 @@ where
         let residual = measurement - sensor.matrix() * self.estimate.mean();
         check::finite("measurement", &residual)?;
         Innovation::of_linearized(residual, self.estimate.covariance(), sensor.matrix(), sensor.noise())
+    }
+
+    fn correct<M: Dim>(
+        &mut self,
+        sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
+        innovation: &Innovation<OVector<T, D>, OVector<T, M>>,
+    ) -> Checked
+    where
+        DefaultAllocator: UpdateAlloc<D, M>,
+    {
+        let gain = innovation.gain();
+        let covariance = joseph(self.estimate.covariance(), &gain, sensor.matrix(), sensor.noise())?;
+        self.accept(&gain, innovation.residual(), covariance)
     }
 
     fn accept<M: Dim>(

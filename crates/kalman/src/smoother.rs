@@ -1,0 +1,145 @@
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, TangentMatrix, UpdateAlloc};
+use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
+
+use crate::{
+    Extended, Form, Innovation, KalmanError, carry::carried, check, error::Checked, linearize::linearize_motion,
+    product::propagated_covariance,
+};
+
+/// The Rauch-Tung-Striebel smoother: filters forward in [`Extended`] form, then sends what came later back.
+///
+/// $`G = P F^T P_-^{-1},\; x^s = x ⊞ G (x^s_+ ⊟ x_-),\; P^s = (I - GF) P (I - GF)^T + G (Q + P^s_+) G^T`$; the last is the form of Joseph
+/// of the textbook's $`P + G (P^s_+ - P_-) G^T`$ and subtracts nothing. [Särkkä 2013, Eq. 8.6]
+/// On linear models it is the least-squares fit to all measurements at once.
+///
+/// ```
+/// use nalgebra::{Matrix1, Vector1};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::{LinearMotion, LinearSensor, RtsSmoother};
+/// let walk = LinearMotion::stationary(Matrix1::new(1.0))?;
+/// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(1.0))?;
+/// let mut smoother = RtsSmoother::new(Gaussian::new(Vector1::new(0.0), Matrix1::new(1.0))?)?;
+/// smoother.predict(&walk, &None)?;
+/// smoother.update(&sensor, &Vector1::new(3.0))?;
+/// let path = smoother.smoothed()?;
+/// // Start, step and sensor share the 3 metres equally: three unit variances in a row.
+/// assert!((path[0].mean()[0] - 1.0).abs() < 1e-15 && (path[1].mean()[0] - 2.0).abs() < 1e-15);
+/// # Ok::<(), wayfix_kalman::KalmanError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RtsSmoother<X: Manifold>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    transitions: Vec<Transition<X>>,
+    current: Gaussian<X>,
+}
+
+/// A step of the forward pass: the belief it started from and where it led.
+#[derive(Clone, Debug)]
+struct Transition<X: Manifold>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    filtered: Gaussian<X>,
+    predicted: Gaussian<X>,
+    jacobian: TangentMatrix<X>,
+    noise: TangentMatrix<X>,
+}
+
+impl<X: Manifold> RtsSmoother<X>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    /// A smoother whose first state is distributed as `prior`.
+    ///
+    /// # Errors
+    /// When the prior's covariance is not positive definite beyond rounding.
+    pub fn new(prior: Gaussian<X>) -> Result<Self, KalmanError> {
+        Ok(Self { transitions: Vec::new(), current: Extended.believe(&prior)? })
+    }
+
+    /// The filtered estimate of the last state.
+    pub fn filtered(&self) -> &Gaussian<X> {
+        &self.current
+    }
+
+    /// Adds a state after `control`.
+    ///
+    /// # Errors
+    /// When the model gives something unusable; the smoother is unchanged.
+    pub fn predict<M>(&mut self, motion: &M, control: &M::Control) -> Result<(), KalmanError>
+    where
+        M: MotionModel<State = X>,
+    {
+        let linear = linearize_motion(motion, self.current.mean(), control)?;
+        let covariance = propagated_covariance(&linear.jacobian, self.current.covariance(), &linear.noise)?;
+        let predicted = Gaussian::from_parts_unchecked(linear.mean, covariance);
+        let filtered = std::mem::replace(&mut self.current, predicted.clone());
+        self.transitions.push(Transition {
+            filtered,
+            predicted,
+            jacobian: linear.jacobian,
+            noise: linear.noise,
+        });
+        Ok(())
+    }
+
+    /// Corrects the last state by `measurement`; any number of times, or not at all.
+    ///
+    /// # Errors
+    /// When model or measurement are unusable; the smoother is unchanged.
+    pub fn update<S>(
+        &mut self,
+        sensor: &S,
+        measurement: &S::Measurement,
+    ) -> Result<Innovation<X, S::Measurement>, KalmanError>
+    where
+        S: SensorModel<State = X>,
+        DefaultAllocator: UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let (innovation, posterior) = Extended.update(&self.current, sensor, measurement, |_| true)?;
+        if let Some(posterior) = posterior {
+            self.current = posterior;
+        }
+        Ok(innovation)
+    }
+
+    /// Every state given every measurement, first to last.
+    ///
+    /// # Errors
+    /// When rounding makes a smoothed covariance indefinite.
+    pub fn smoothed(&self) -> Result<Vec<Gaussian<X>>, KalmanError> {
+        let mut path = vec![self.current.clone()];
+        let mut later = self.current.clone();
+        for transition in self.transitions.iter().rev() {
+            later = transition.smoothed(&later)?;
+            path.push(later.clone());
+        }
+        path.reverse();
+        Ok(path)
+    }
+}
+
+impl<X: Manifold> Transition<X>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    /// The state before this transition, given what is known of the state after it.
+    fn smoothed(&self, later: &Gaussian<X>) -> Checked<Gaussian<X>> {
+        let (filtered, f) = (self.filtered.covariance(), &self.jacobian);
+        let gain = cholesky("predicted", self.predicted.covariance())?.solve(&(f * filtered)).transpose();
+        // The later state as the forward pass saw it: in the tangent space at its prediction.
+        let (correction, later) = later.in_chart_at(self.predicted.mean())?.into_parts();
+        let n = self.filtered.dim();
+        let remainder = TangentMatrix::<X>::identity_generic(n, n) - &gain * f;
+        let mut covariance =
+            &remainder * filtered * remainder.transpose() + &gain * (&self.noise + later) * gain.transpose();
+        symmetrize(&mut covariance);
+        check::positive_definite("smoothed", &covariance)?;
+        let mean = check::moved("smoothed mean", self.filtered.mean(), &(gain * correction))?;
+        let covariance = carried(covariance, self.filtered.mean(), &mean)?;
+        Ok(Gaussian::from_parts_unchecked(mean, covariance))
+    }
+}

@@ -1,0 +1,139 @@
+use std::sync::Arc;
+
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
+use wayfix_gaussian_core::Gaussian;
+
+use crate::{Form, Innovation, KalmanError, check, error::Checked};
+
+/// A bank of filters for one state under different circumstances, of which one is active at a time.
+///
+/// Only the active filter moves; the others keep their state bit for bit. Which one that is, somebody else decides:
+/// [`JumpMarkov`](super::JumpMarkov) by the most probable histories, a particle filter by drawing an index for each particle.
+/// Clones share the models. [Schulz & Fox 2004, §III.A.3 and §V.B]
+///
+/// ```
+/// use nalgebra::{Matrix1, Vector1};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::{Extended, LinearMotion, LinearSensor, ModelBank};
+/// let brightness = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(100.0));
+/// let drift = LinearMotion::stationary(Matrix1::new(1.0))?;
+/// let mut bank = ModelBank::new(vec![drift.clone(), drift], Extended, &[brightness(40.0)?, brightness(160.0)?])?;
+/// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(25.0))?;
+/// bank.predict(&None)?;
+/// let candidates = bank.candidates(&sensor, &Vector1::new(150.0))?;
+/// assert!(candidates[1].innovation.log_likelihood() > candidates[0].innovation.log_likelihood());
+/// let bright = candidates.into_iter().nth(1).expect("two models");
+/// bank.activate(1, bright.belief);
+/// assert_eq!(bank.settled(0), Some(brightness(40.0)?)); // the dark one is as it was
+/// assert!((bank.settled(1).expect("two models").mean()[0] - 152.0).abs() < 0.1);
+/// # Ok::<(), wayfix_kalman::KalmanError>(())
+/// ```
+#[derive(Debug)]
+pub struct ModelBank<M: MotionModel, F: Form<M::State>>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    models: Arc<[M]>,
+    form: F,
+    settled: Vec<F::Belief>,
+    predicted: Vec<F::Belief>,
+}
+
+/// What one filter of a bank makes of a measurement: its innovation `I`, whose likelihood is the evidence for it, and the belief `B` it
+/// would have.
+#[derive(Clone, Debug)]
+pub struct Candidate<I, B> {
+    /// What the measurement says, seen from this model.
+    pub innovation: I,
+    /// The belief after the measurement, if this model is the active one.
+    pub belief: B,
+}
+
+impl<M: MotionModel, F: Form<M::State> + Clone> Clone for ModelBank<M, F>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    fn clone(&self) -> Self {
+        Self {
+            models: Arc::clone(&self.models),
+            form: self.form.clone(),
+            settled: self.settled.clone(),
+            predicted: self.predicted.clone(),
+        }
+    }
+}
+
+impl<M: MotionModel, F: Form<M::State>> ModelBank<M, F>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    /// One filter per model, each with its own prior.
+    ///
+    /// # Errors
+    /// When there are no models, not as many priors, or a prior is not positive definite.
+    pub fn new(models: Vec<M>, form: F, priors: &[Gaussian<M::State>]) -> Result<Self, KalmanError> {
+        if models.is_empty() {
+            return Err(KalmanError::EmptyBank);
+        }
+        check::dimension("bank of priors", models.len(), priors.len())?;
+        let settled = priors.iter().map(|prior| form.believe(prior)).collect::<Checked<Vec<_>>>()?;
+        Ok(Self { models: models.into(), form, predicted: settled.clone(), settled })
+    }
+
+    /// How many filters.
+    pub fn n_models(&self) -> usize {
+        self.models.len()
+    }
+
+    /// What filter `model` knew when it was last active; `None` when there is no such filter.
+    pub fn settled(&self, model: usize) -> Option<Gaussian<M::State>> {
+        self.settled.get(model).map(|belief| self.form.gaussian(belief))
+    }
+
+    /// What filter `model` knows now if it has been active since the last measurement; `None` when there is no such filter.
+    pub fn predicted(&self, model: usize) -> Option<Gaussian<M::State>> {
+        self.predicted.get(model).map(|belief| self.form.gaussian(belief))
+    }
+
+    /// Prepares every filter for being the active one: moves its prediction by `control`.
+    ///
+    /// # Errors
+    /// When a model gives something unusable; the bank is unchanged.
+    pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
+        let predict = |(belief, model)| self.form.predict(belief, model, control);
+        self.predicted = self.predicted.iter().zip(self.models.iter()).map(predict).collect::<Checked<Vec<_>>>()?;
+        Ok(())
+    }
+
+    /// What each filter makes of `measurement`. Nothing changes.
+    ///
+    /// # Errors
+    /// When model or measurement are unusable.
+    #[allow(clippy::type_complexity, reason = "the two parts of a candidate")]
+    pub fn candidates<S>(
+        &self,
+        sensor: &S,
+        measurement: &S::Measurement,
+    ) -> Result<Vec<Candidate<Innovation<M::State, S::Measurement>, F::Belief>>, KalmanError>
+    where
+        S: SensorModel<State = M::State>,
+        DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let candidate = |belief: &F::Belief| {
+            let (innovation, posterior) = self.form.update(belief, sensor, measurement, |_| true)?;
+            Ok(Candidate { innovation, belief: posterior.unwrap_or_else(|| belief.clone()) })
+        };
+        self.predicted.iter().map(candidate).collect()
+    }
+
+    /// Filter `model` has been the active one and knows `belief` now; the others fall back to what they knew.
+    ///
+    /// An index beyond the bank activates none.
+    pub fn activate(&mut self, model: usize, belief: F::Belief) {
+        if let Some(settled) = self.settled.get_mut(model) {
+            *settled = belief;
+        }
+        self.predicted = self.settled.clone();
+    }
+}

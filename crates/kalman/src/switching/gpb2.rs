@@ -1,0 +1,126 @@
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
+use wayfix_gaussian_core::Gaussian;
+
+use super::{
+    MarkovChain,
+    hypotheses::{Hypothesis, merged, model_probabilities},
+    imm::updated,
+};
+use crate::{Form, Innovation, KalmanError, check, error::Checked};
+
+/// The generalized pseudo-Bayesian filter of second order: every pair of last and present model is a hypothesis of its own until after
+/// the update, then those with the same present model are merged.
+///
+/// $`n^2`$ filter steps where [`Imm`](super::Imm) makes $`n`$, for a posterior that is exact one step longer.
+/// [Bar-Shalom et al. 2001, §11.6.5] Any [`Form`] and any manifold.
+///
+/// ```
+/// use nalgebra::{Matrix1, Vector1};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::{Gpb2, LinearMotion, LinearSensor, MarkovChain, Unscented};
+/// let models = vec![LinearMotion::stationary(Matrix1::new(1e-4))?, LinearMotion::stationary(Matrix1::new(1.0))?];
+/// let prior = Gaussian::new(Vector1::new(0.0), Matrix1::new(0.1))?;
+/// let mut filter = Gpb2::new(models, MarkovChain::sticky(2, 0.95)?, Unscented::default(), &prior)?;
+/// filter.predict(&None)?;
+/// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(0.01))?;
+/// assert_eq!(filter.update(&sensor, &Vector1::new(2.0))?.len(), 4); // one innovation per pair of models
+/// assert!(filter.model_probabilities()[1] > 0.9);
+/// # Ok::<(), wayfix_kalman::KalmanError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Gpb2<M: MotionModel, F: Form<M::State>>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    models: Vec<M>,
+    chain: MarkovChain,
+    form: F,
+    hypotheses: Vec<Hypothesis<F::Belief>>,
+}
+
+impl<M: MotionModel, F: Form<M::State>> Gpb2<M, F>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    /// A filter over `models`, all starting from `prior`.
+    ///
+    /// # Errors
+    /// When the chain is for another number of models or the prior is not positive definite.
+    pub fn new(
+        models: Vec<M>,
+        chain: MarkovChain,
+        form: F,
+        prior: &Gaussian<M::State>,
+    ) -> Result<Self, KalmanError> {
+        check::dimension("bank of models", chain.n_models(), models.len())?;
+        let belief = form.believe(prior)?;
+        let hypothesis =
+            |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
+        let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
+        Ok(Self { models, chain, form, hypotheses })
+    }
+
+    /// How probable each model is now.
+    pub fn model_probabilities(&self) -> Vec<f64> {
+        model_probabilities(&self.hypotheses, self.models.len())
+    }
+
+    /// What is believed whatever model is in force: all beliefs, moment-matched.
+    ///
+    /// # Errors
+    /// When the beliefs are spread so far over a manifold that they have no mean.
+    pub fn estimate(&self) -> Result<Gaussian<M::State>, KalmanError> {
+        merged(&self.form, self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
+    }
+
+    /// Moves the belief of every model by `control` with every model.
+    ///
+    /// # Errors
+    /// When a model gives something unusable; the filter is unchanged.
+    pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
+        // Pairs are left from a prediction without a measurement after it.
+        let mut pairs = Vec::with_capacity(self.models.len() * self.models.len());
+        for from in self.merged_by_model(&self.hypotheses)? {
+            for (model, motion) in self.models.iter().enumerate() {
+                let probability = from.probability * self.chain.probability(from.model, model);
+                if probability > 0.0 {
+                    let belief = self.form.predict(&from.belief, motion, control)?;
+                    pairs.push(Hypothesis { model, belief, probability });
+                }
+            }
+        }
+        self.hypotheses = pairs;
+        Ok(())
+    }
+
+    /// Corrects every hypothesis by `measurement`, weighs, and merges by model. Gives one innovation per hypothesis.
+    ///
+    /// # Errors
+    /// When model or measurement are unusable; the filter is unchanged.
+    pub fn update<S>(
+        &mut self,
+        sensor: &S,
+        measurement: &S::Measurement,
+    ) -> Result<Vec<Innovation<M::State, S::Measurement>>, KalmanError>
+    where
+        S: SensorModel<State = M::State>,
+        DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let (innovations, hypotheses) = updated(&self.form, &self.hypotheses, sensor, measurement)?;
+        self.hypotheses = self.merged_by_model(&hypotheses)?;
+        Ok(innovations)
+    }
+
+    /// One hypothesis per model that has any probability left.
+    fn merged_by_model(&self, hypotheses: &[Hypothesis<F::Belief>]) -> Checked<Vec<Hypothesis<F::Belief>>> {
+        let probabilities = model_probabilities(hypotheses, self.models.len());
+        let possible = probabilities.into_iter().enumerate().filter(|(_, probability)| *probability > 0.0);
+        let merge = |(model, probability)| {
+            let same = hypotheses.iter().filter(|h| h.model == model).map(|h| (h.probability, &h.belief));
+            let belief = self.form.believe(&merged(&self.form, same)?)?;
+            Ok(Hypothesis { model, belief, probability })
+        };
+        possible.map(merge).collect()
+    }
+}

@@ -1,0 +1,61 @@
+//! Weighted beliefs about which model is in force.
+
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{LogWeight, Manifold, StateAlloc};
+use wayfix_gaussian_core::{Gaussian, moment_matched};
+
+use crate::{Form, KalmanError, error::Checked};
+
+/// A belief under the assumption that `model` is in force, and how probable that is.
+#[derive(Clone, Debug)]
+pub(super) struct Hypothesis<B> {
+    pub(super) model: usize,
+    pub(super) belief: B,
+    pub(super) probability: f64,
+}
+
+/// Multiplies each probability by its likelihood and normalizes, in logarithms.
+pub(super) fn reweigh<B>(hypotheses: &mut [Hypothesis<B>], log_likelihoods: &[LogWeight]) -> Checked {
+    let logs: Vec<f64> =
+        hypotheses.iter().zip(log_likelihoods).map(|(hypothesis, log)| hypothesis.probability.ln() + log).collect();
+    for (hypothesis, probability) in hypotheses.iter_mut().zip(normalized(&logs)?) {
+        hypothesis.probability = probability;
+    }
+    Ok(())
+}
+
+/// Probabilities from unnormalized logarithms.
+pub(super) fn normalized(logs: &[LogWeight]) -> Checked<Vec<f64>> {
+    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if !largest.is_finite() {
+        return Err(KalmanError::AllModelsImpossible);
+    }
+    let sum: f64 = logs.iter().map(|log| (log - largest).exp()).sum();
+    Ok(logs.iter().map(|log| (log - largest).exp() / sum).collect())
+}
+
+/// The probability of each model.
+pub(super) fn model_probabilities<B>(hypotheses: &[Hypothesis<B>], n_models: usize) -> Vec<f64> {
+    let mut probabilities = vec![0.0; n_models];
+    for hypothesis in hypotheses {
+        probabilities[hypothesis.model] += hypothesis.probability;
+    }
+    probabilities
+}
+
+/// The one Gaussian with the moments of the weighted ones.
+pub(super) fn merged<'a, X, F>(
+    form: &F,
+    weighted: impl Iterator<Item = (f64, &'a F::Belief)>,
+) -> Checked<Gaussian<X>>
+where
+    X: Manifold,
+    F: Form<X>,
+    F::Belief: 'a,
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    // What has no weight says nothing, and must not spoil the mean by lying far away.
+    let (weights, components): (Vec<f64>, Vec<_>) =
+        weighted.filter(|(weight, _)| *weight > 0.0).map(|(weight, belief)| (weight, form.gaussian(belief))).unzip();
+    Ok(moment_matched(&weights, &components)?)
+}

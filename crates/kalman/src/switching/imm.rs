@@ -1,0 +1,152 @@
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
+use wayfix_gaussian_core::Gaussian;
+
+use super::{
+    MarkovChain,
+    hypotheses::{Hypothesis, merged, model_probabilities, reweigh},
+};
+use crate::{Form, Innovation, KalmanError, check, error::Checked};
+
+/// The interacting multiple model filter: one belief per model, mixed before every prediction.
+///
+/// Mix with $`μ_{i|j} ∝ π_{ij} μ_i`$, predict and update each model's belief, weigh by $`μ_j ∝ \bar μ_j N(y_j; 0, S_j)`$.
+/// [Blom & Bar-Shalom 1988] Any [`Form`] and any manifold; mixing matches moments.
+///
+/// ```
+/// use nalgebra::{Matrix1, Vector1};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::{Extended, Imm, LinearMotion, LinearSensor, MarkovChain};
+/// let still = LinearMotion::stationary(Matrix1::new(1e-4))?;
+/// let lively = LinearMotion::stationary(Matrix1::new(1.0))?;
+/// let prior = Gaussian::new(Vector1::new(0.0), Matrix1::new(0.1))?;
+/// let mut filter = Imm::new(vec![still, lively], MarkovChain::sticky(2, 0.95)?, Extended, &prior)?;
+/// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(0.01))?;
+/// for z in [0.0, 1.1, -0.6, 0.8] {
+///     filter.predict(&None)?;
+///     filter.update(&sensor, &Vector1::new(z))?;
+/// }
+/// assert!(filter.model_probabilities()[1] > 0.99);
+/// # Ok::<(), wayfix_kalman::KalmanError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Imm<M: MotionModel, F: Form<M::State>>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    models: Vec<M>,
+    chain: MarkovChain,
+    form: F,
+    hypotheses: Vec<Hypothesis<F::Belief>>,
+}
+
+impl<M: MotionModel, F: Form<M::State>> Imm<M, F>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    /// A filter over `models`, all starting from `prior`.
+    ///
+    /// # Errors
+    /// When the chain is for another number of models or the prior is not positive definite.
+    pub fn new(
+        models: Vec<M>,
+        chain: MarkovChain,
+        form: F,
+        prior: &Gaussian<M::State>,
+    ) -> Result<Self, KalmanError> {
+        check::dimension("bank of models", chain.n_models(), models.len())?;
+        let belief = form.believe(prior)?;
+        let hypothesis =
+            |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
+        let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
+        Ok(Self { models, chain, form, hypotheses })
+    }
+
+    /// How probable each model is now.
+    pub fn model_probabilities(&self) -> Vec<f64> {
+        model_probabilities(&self.hypotheses, self.models.len())
+    }
+
+    /// What is believed if `model` is in force; `None` when there is no such model.
+    pub fn belief_of(&self, model: usize) -> Option<Gaussian<M::State>> {
+        self.hypotheses.get(model).map(|hypothesis| self.form.gaussian(&hypothesis.belief))
+    }
+
+    /// What is believed whatever model is in force: all beliefs, moment-matched.
+    ///
+    /// # Errors
+    /// When the beliefs are spread so far over a manifold that they have no mean.
+    pub fn estimate(&self) -> Result<Gaussian<M::State>, KalmanError> {
+        merged(&self.form, self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
+    }
+
+    /// Mixes the beliefs and moves each by `control` with its own model.
+    ///
+    /// # Errors
+    /// When a model gives something unusable; the filter is unchanged.
+    pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
+        let probabilities = self.chain.after_a_step(&self.model_probabilities());
+        let predict = |(model, &probability): (usize, &f64)| {
+            let mixed = self.mixed_for(model, probability)?;
+            let belief = self.form.predict(&mixed, &self.models[model], control)?;
+            Ok(Hypothesis { model, belief, probability })
+        };
+        self.hypotheses = probabilities.iter().enumerate().map(predict).collect::<Checked<Vec<_>>>()?;
+        Ok(())
+    }
+
+    /// Corrects every belief by `measurement` and weighs the models. Gives one innovation per model.
+    ///
+    /// # Errors
+    /// When model or measurement are unusable; the filter is unchanged.
+    pub fn update<S>(
+        &mut self,
+        sensor: &S,
+        measurement: &S::Measurement,
+    ) -> Result<Vec<Innovation<M::State, S::Measurement>>, KalmanError>
+    where
+        S: SensorModel<State = M::State>,
+        DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
+    {
+        let (innovations, hypotheses) = updated(&self.form, &self.hypotheses, sensor, measurement)?;
+        self.hypotheses = hypotheses;
+        Ok(innovations)
+    }
+
+    /// The belief model `to` starts from: all beliefs, weighed by how probable it is that they lead to it.
+    fn mixed_for(&self, to: usize, probability: f64) -> Checked<F::Belief> {
+        if probability == 0.0 {
+            return Ok(self.hypotheses[to].belief.clone());
+        }
+        let weighted = self.hypotheses.iter().map(|h| (h.probability * self.chain.probability(h.model, to), &h.belief));
+        self.form.believe(&merged(&self.form, weighted)?)
+    }
+}
+
+/// Every hypothesis corrected and weighed by `measurement`.
+#[allow(clippy::type_complexity, reason = "innovations and the hypotheses they correct, one each")]
+pub(super) fn updated<X, F, S>(
+    form: &F,
+    hypotheses: &[Hypothesis<F::Belief>],
+    sensor: &S,
+    measurement: &S::Measurement,
+) -> Checked<(Vec<Innovation<X, S::Measurement>>, Vec<Hypothesis<F::Belief>>)>
+where
+    X: Manifold,
+    F: Form<X>,
+    S: SensorModel<State = X>,
+    DefaultAllocator: StateAlloc<X::Dim> + UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
+{
+    let mut innovations = Vec::with_capacity(hypotheses.len());
+    let mut corrected = hypotheses.to_vec();
+    for hypothesis in &mut corrected {
+        let (innovation, belief) = form.update(&hypothesis.belief, sensor, measurement, |_| true)?;
+        if let Some(belief) = belief {
+            hypothesis.belief = belief;
+        }
+        innovations.push(innovation);
+    }
+    let log_likelihoods: Vec<f64> = innovations.iter().map(Innovation::log_likelihood).collect();
+    reweigh(&mut corrected, &log_likelihoods)?;
+    Ok((innovations, corrected))
+}
