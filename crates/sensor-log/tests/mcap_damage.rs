@@ -1,11 +1,18 @@
 //! Logs that are cut short, damaged, hostile or of another program.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a panic is the verdict of a test, in its helpers too"
+)]
+
 mod common;
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Cursor;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
@@ -77,7 +84,9 @@ fn a_file_cut_anywhere_gives_a_prefix_and_says_what_is_missing() {
     let scratch = Scratch::new();
     for bytes in variants(&records) {
         let mut n_before = 0;
-        for n_bytes in 0..bytes.len() {
+        // A stride that is prime to the alignment of everything, and each of the bytes of the end mark.
+        let cuts = (0..bytes.len()).filter(|n_bytes| n_bytes % 13 == 0 || n_bytes + 60 > bytes.len());
+        for n_bytes in cuts {
             let n_records = match scratch.read(&bytes[..n_bytes]) {
                 Ok((prefix, report)) => {
                     assert_eq!(prefix, records[..prefix.len()], "cut at {n_bytes}");
@@ -108,9 +117,6 @@ fn a_file_cut_anywhere_gives_a_prefix_and_says_what_is_missing() {
 fn an_uncompressed_file_cut_inside_a_chunk_gives_every_whole_message() {
     let records = common::drive(50);
     let bytes = whole_file(&records);
-    // The message of the 30th step's velocity is whole, the one after it lacks its last byte.
-    let (_, report_whole) = Scratch::new().read(&bytes).unwrap();
-    assert_eq!(report_whole.rows_read, records.len() as u64);
     let ends = message_ends(&bytes);
     assert_eq!(ends.len(), records.len());
     for (n_whole, end) in ends.iter().enumerate().skip(1) {
@@ -150,8 +156,9 @@ fn a_chunk_with_a_wrong_checksum_is_left_out_and_the_next_one_read() {
         bytes[first_chunk + 9 + 24] ^= 1; // its checksum comes after two times and a size
         let (back, report) = Scratch::new().read(&bytes).unwrap();
         assert_eq!(report.problems[&ProblemKind::DamagedChunk], 1, "{report}");
-        // The channels were announced in the lost chunk; those messages cannot be understood.
+        // Channels are announced in the lost chunk only, so nothing on them can be understood; later ones can.
         assert!(back.len() < records.len());
+        assert!(back.iter().all(|record| records.contains(record)));
     }
 }
 
@@ -249,14 +256,14 @@ fn messages_with_numbers_that_are_none_are_counted() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
     #[test]
     fn flipped_bits_never_panic(
         flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8_u8), 1..6),
         variant in 0..4_usize,
     ) {
-        let records = common::drive(40);
-        let mut bytes = variants(&records)[variant].clone();
+        static VARIANTS: LazyLock<[Vec<u8>; 4]> = LazyLock::new(|| variants(&common::drive(40)));
+        let mut bytes = VARIANTS[variant].clone();
         for (index, bit) in flips {
             let at = index.index(bytes.len());
             bytes[at] ^= 1 << bit;

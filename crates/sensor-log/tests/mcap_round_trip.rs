@@ -1,5 +1,11 @@
 //! What is written comes back.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a panic is the verdict of a test, in its helpers too"
+)]
+
 mod common;
 
 use std::io::Cursor;
@@ -24,9 +30,7 @@ fn number() -> impl Strategy<Value = f64> {
 }
 
 fn pose() -> impl Strategy<Value = Pose2<f64>> {
-    // A subnormal heading cannot be halved.
-    let heading = prop_oneof![-10.0..10.0, -1e-9..1e-9, Just(std::f64::consts::PI)]
-        .prop_filter("not subnormal", |h: &f64| *h == 0.0 || h.is_normal());
+    let heading = prop_oneof![-10.0..10.0, -1e-9..1e-9, Just(std::f64::consts::PI)];
     (number(), number(), heading).prop_map(|(x, y, heading)| Pose2::new(x, y, heading))
 }
 

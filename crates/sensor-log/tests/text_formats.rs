@@ -10,7 +10,7 @@ use wayfix_sensor_log::{
 };
 
 fn write(folder: &Path, name: &str, text: &str) {
-    fs::write(folder.join(name), text).unwrap();
+    fs::write(folder.join(name), text).expect("the scratch folder is writable");
 }
 
 fn utias_set(folder: &Path, robots: &[u32]) {
@@ -25,7 +25,7 @@ fn utias_set(folder: &Path, robots: &[u32]) {
 }
 
 fn at(seconds: f64, data: Data) -> Record {
-    Record { stamp: Stamp::from_seconds(seconds).unwrap(), data }
+    Record { stamp: Stamp::from_seconds(seconds).expect("a time of this century"), data }
 }
 
 fn sighting(target: Target, range: f64, bearing: f64) -> Sighting {

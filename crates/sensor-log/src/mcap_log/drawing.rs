@@ -109,3 +109,22 @@ fn label(pose: Option<Pose>, text: &str, color: Color) -> TextPrimitive {
         text: text.to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_outline_lies_on_the_ellipse_and_its_first_point_on_the_first_axis() {
+        let (center, [a, b], angle) = ([1.0, -2.0], [3.0, 0.5], 2.0_f64);
+        let outline = ellipse_outline(center, [a, b], angle);
+        for [x, y] in &outline {
+            let (dx, dy) = (x - center[0], y - center[1]);
+            let along = dx * angle.cos() + dy * angle.sin();
+            let across = dy * angle.cos() - dx * angle.sin();
+            assert!(((along / a).powi(2) + (across / b).powi(2) - 1.0).abs() < 1e-12);
+        }
+        assert!((outline[0][0] - (center[0] + a * angle.cos())).abs() < 1e-12);
+        assert!((outline[0][1] - (center[1] + a * angle.sin())).abs() < 1e-12);
+    }
+}

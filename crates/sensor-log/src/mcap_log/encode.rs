@@ -61,7 +61,7 @@ pub(super) fn orientation(planar: &Pose2<f64>) -> messages::Quaternion {
 
 pub(super) fn sightings(timestamp: Timestamp, look: &[Sighting]) -> PointCloud {
     cloud::pack(timestamp, topics::BODY_FRAME, &SIGHTING_COLUMNS, look, |sighting, data| {
-        let (sin, cos) = sighting.bearing.sin_cos();
+        let (sin, cos) = libm::sincos(sighting.bearing);
         let (kind, id) = target_code(sighting.target);
         data.extend(sighting.range.to_le_bytes());
         data.extend(sighting.bearing.to_le_bytes());

@@ -27,7 +27,7 @@ pub(crate) fn write(
             Data::TruePose(pose) => step.pose = Some(*pose),
             Data::OdometryIncrement(increment) => step.add_motion(increment),
             Data::Sightings(look) => {
-                step.look.extend(look.iter().filter(|sighting| report.can_write(sighting)))
+                step.look.extend(look.iter().filter(|sighting| report.can_write(sighting)));
             }
             other => {
                 report.leave_out(other.kind());
