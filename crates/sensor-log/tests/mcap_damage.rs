@@ -1,10 +1,6 @@
 //! Logs that are cut short, damaged, hostile or of another program.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a panic is the verdict of a test, in its helpers too"
-)]
+#![expect(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
 mod common;
 

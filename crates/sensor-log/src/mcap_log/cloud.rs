@@ -2,7 +2,9 @@
 
 use foxglove::bytes::Bytes;
 use foxglove::messages::packed_element_field::NumericType;
-use foxglove::messages::{PackedElementField, PointCloud, Pose, Timestamp};
+use foxglove::messages::{PackedElementField, PointCloud, Timestamp};
+
+use super::encode;
 
 /// Name and type of one column; columns are packed without gaps.
 pub(super) type Column = (&'static str, NumericType);
@@ -28,7 +30,7 @@ pub(super) fn pack<T>(
     PointCloud {
         timestamp: Some(timestamp),
         frame_id: frame.to_owned(),
-        pose: Some(Pose::default()),
+        pose: Some(encode::identity()),
         point_stride: offset,
         fields,
         data: Bytes::from(data),

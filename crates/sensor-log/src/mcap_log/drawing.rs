@@ -2,6 +2,9 @@ use foxglove::messages::{
     Color, LinePrimitive, Point3, Pose, SceneEntity, SceneUpdate, SpherePrimitive, TextPrimitive, Timestamp,
     Vector3, line_primitive,
 };
+use wayfix_estimation_traits::Pose2;
+
+use super::encode;
 
 /// Points on the outline of an ellipse.
 const ELLIPSE_POINTS: usize = 48;
@@ -67,7 +70,7 @@ fn entity(timestamp: Timestamp, frame: &str, drawing: &Drawing) -> SceneEntity {
         }
         Shape::Path(points) => entity.lines.push(line(line_primitive::Type::LineStrip, points, color)),
         Shape::Marker { position: [x, y], radius, text } => {
-            let pose = Some(Pose { position: Some(Vector3 { x: *x, y: *y, z: 0.0 }), ..Default::default() });
+            let pose = Some(encode::pose(&Pose2::new(*x, *y, 0.0)));
             let size = Some(Vector3 { x: 2.0 * radius, y: 2.0 * radius, z: 2.0 * radius });
             entity.spheres.push(SpherePrimitive { pose, size, color: Some(color) });
             if !text.is_empty() {
@@ -90,7 +93,7 @@ fn ellipse_outline([x, y]: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Vec<[f64; 
 fn line(kind: line_primitive::Type, points: &[[f64; 2]], color: Color) -> LinePrimitive {
     LinePrimitive {
         r#type: kind.into(),
-        pose: Some(Pose::default()),
+        pose: Some(encode::identity()),
         thickness: LINE_PIXELS,
         scale_invariant: true,
         points: points.iter().map(|[x, y]| Point3 { x: *x, y: *y, z: 0.0 }).collect(),

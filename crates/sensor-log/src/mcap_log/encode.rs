@@ -50,6 +50,11 @@ pub(super) fn pose(planar: &Pose2<f64>) -> messages::Pose {
     messages::Pose { position: Some(position(planar)), orientation: Some(orientation(planar)) }
 }
 
+/// No translation and no rotation, spelled out: Rerun takes an empty pose for a broken one.
+pub(super) fn identity() -> messages::Pose {
+    pose(&Pose2::new(0.0, 0.0, 0.0))
+}
+
 pub(super) fn position(planar: &Pose2<f64>) -> Vector3 {
     Vector3 { x: planar.x(), y: planar.y(), z: 0.0 }
 }
