@@ -1,0 +1,104 @@
+//! Layouts put landmarks and walls where they say.
+
+mod support;
+
+use support::streams;
+use wayfix_estimation_traits::nalgebra::Vector2;
+use wayfix_scene_sim::random::Source;
+use wayfix_scene_sim::route::{Circle, Piece, Route};
+use wayfix_scene_sim::world::{
+    CorridorLoop, Office, OtherRobot, Plan, PlanarWorld, Roadside, UniformField, World,
+};
+use wayfix_sensor_log::{Target, TrueLandmark};
+
+const SEED: u64 = 11;
+
+fn points(plan: &Plan) -> Vec<Vector2<f64>> {
+    plan.landmarks.iter().map(|l| Vector2::new(l.x, l.y)).collect()
+}
+
+#[test]
+fn a_field_fills_its_square_and_keeps_landmarks_apart() {
+    let field = UniformField { n_landmarks: 100, half_width_m: 10.0, separation_m: 1.0 };
+    let plan = field.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
+    let points = points(&plan);
+    for (k, p) in points.iter().enumerate() {
+        assert!(p.amax() <= 10.0 && points[..k].iter().all(|q| (p - q).norm() >= 1.0), "{p:?}");
+    }
+    // A hundred uniform points leave a quadrant empty with probability 4 · 0.75^100 = 1e-12.
+    assert!(
+        [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
+            .iter()
+            .all(|(x, y)| points.iter().any(|p| p.x * x > 0.0 && p.y * y > 0.0))
+    );
+    assert!(plan.landmarks.iter().zip(0..).all(|(l, id)| l.id == id), "numbered in order");
+}
+
+#[test]
+fn a_corridor_hangs_landmarks_on_its_walls_and_hides_what_is_around_the_corner() {
+    let corridor = CorridorLoop { length_m: 20.0, width_m: 10.0, corridor_m: 2.0, spacing_m: 2.0 };
+    let plan = corridor.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
+    for p in points(&plan) {
+        let outer = (p.x.abs() - 11.0).max(p.y.abs() - 6.0);
+        let inner = (p.x.abs() - 9.0).max(p.y.abs() - 4.0);
+        assert!(outer.abs() < 1e-9 || inner.abs() < 1e-9, "{p:?} hangs in the air");
+    }
+    // Outer wall 2 (22 + 12) m, inner 2 (18 + 8) m, one landmark every 2 m.
+    assert_eq!(plan.landmarks.len(), 34 + 26);
+    let world = PlanarWorld::new(plan);
+    let at = Vector2::new;
+    assert!(world.hides(&at(0.0, -5.0), &at(0.0, 5.0)), "across the block");
+    assert!(!world.hides(&at(0.0, -5.0), &at(9.5, -5.0)), "along the corridor");
+    let own_side = points(&world.plan).into_iter().filter(|p| (p.y + 4.0).abs() < 1e-9 && p.x.abs() < 8.0);
+    assert!(
+        own_side.into_iter().all(|p| !world.hides(&at(p.x, -5.0), &p)),
+        "a landmark hides behind its own wall"
+    );
+}
+
+#[test]
+fn offices_have_posts_in_the_corners_and_doors_between_the_rooms() {
+    let office = Office { n_columns: 3, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.2 };
+    let plan = office.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
+    assert_eq!(plan.landmarks.len(), 4 * 3);
+    assert!(points(&plan).iter().all(|p| {
+        let from_corner = |offset: f64| (offset - (offset / 4.0).round() * 4.0).abs();
+        from_corner(p.x + 6.0) <= 0.2 && from_corner(p.y + 4.0) <= 0.2
+    }));
+    let world = PlanarWorld::new(plan);
+    let at = Vector2::new;
+    let (left, middle, above) = (at(-4.0, -2.0), at(0.0, -2.0), at(0.0, 2.0));
+    assert!(!world.hides(&left, &middle) && !world.hides(&middle, &above), "doors are open");
+    assert!(world.hides(&at(-4.0, -3.0), &at(0.0, -3.0)), "walls beside doors are not");
+    assert!(world.hides(&middle, &at(0.0, -5.0)), "nor are outer walls");
+}
+
+#[test]
+fn rocks_lie_on_both_verges_of_the_road() {
+    let road = Circle { radius_m: 20.0 }.route().expect("valid");
+    let rocks = Roadside { n_landmarks: 100, clear_m: 1.5, verge_m: 3.0 };
+    let plan = rocks.plan(&road, streams(SEED).of(Source::Landmarks)).expect("valid");
+    let offsets: Vec<f64> = points(&plan).iter().map(|p| p.norm() - 20.0).collect();
+    assert!(offsets.iter().all(|o| (1.5 - 1e-9..=4.5 + 1e-9).contains(&o.abs())));
+    // Binomial: 50 ± 5 on each side.
+    let outside = offsets.iter().filter(|o| **o > 0.0).count();
+    assert!((30..=70).contains(&outside), "{outside} of 100 outside");
+}
+
+#[test]
+fn other_robots_move_along_their_routes_and_targets_keep_their_order() {
+    let straight = Piece { length_m: 10.0, curvature_per_m: 0.0 };
+    let start = wayfix_estimation_traits::Pose2::new(1.0, 0.0, 0.0);
+    let route = Route::open(start, vec![straight]).expect("valid");
+    let landmark = TrueLandmark { id: 4, x: 0.0, y: 3.0 };
+    let world = PlanarWorld {
+        unknown_codes: vec![(99, Vector2::new(5.0, 5.0))],
+        other_robots: vec![OtherRobot { id: 2, route, speed_mps: 0.5 }],
+        ..PlanarWorld::new(Plan { landmarks: vec![landmark], walls: vec![] })
+    };
+    for seconds in [0.0, 6.0, 60.0] {
+        let kinds: Vec<Target> = world.targets(seconds).iter().map(|(target, _)| *target).collect();
+        assert_eq!(kinds, [Target::Landmark(4), Target::UnknownCode(99), Target::Robot(2)]);
+        assert!((world.targets(seconds)[2].1 - Vector2::new(1.0 + 0.5 * seconds, 0.0)).norm() < 1e-12);
+    }
+}
