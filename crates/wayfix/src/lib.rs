@@ -7,6 +7,7 @@ pub mod cli;
 pub mod evaluate;
 pub mod fixtures;
 pub mod plot;
+pub mod regress;
 pub mod report;
 pub mod slam;
 pub mod system;

@@ -1,14 +1,14 @@
 use nalgebra::DefaultAllocator;
 
 use super::{EkfSlam, state::Slot};
-use crate::{LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
+use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
 /// What a landmark must show before it counts.
 ///
 /// Until then it is tentative: it is in the state, so nothing that was seen is lost, but it does not count as part of the map, it leaves
 /// again when it is not seen in time, and it starts anew when a sighting says it is somewhere else. A false detection or a first
 /// sighting that was an outlier cannot stay.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -19,12 +19,15 @@ pub struct Confirmation {
     pub n_sightings: usize,
     /// Looks without it after which a tentative landmark is forgotten.
     pub patience: usize,
+    /// NIS above which a sighting contradicts a tentative landmark, which then starts anew. 13.8 is the 0.999 quantile for range and
+    /// bearing.
+    pub contradiction: f64,
 }
 
 impl Default for Confirmation {
-    /// At first sight.
+    /// Two sightings that agree.
     fn default() -> Self {
-        Self { n_sightings: 1, patience: 20 }
+        Self { n_sightings: 2, patience: 20, contradiction: 13.8155 }
     }
 }
 
@@ -36,8 +39,13 @@ where
         slot.n_sightings >= self.params.confirmation.n_sightings
     }
 
-    pub(super) fn is_tentative(&self, id: LandmarkId) -> bool {
-        self.landmarks.get(&id).is_some_and(|slot| !self.is_confirmed(slot))
+    pub(super) fn contradicts_its_start(
+        &self,
+        id: LandmarkId,
+        innovation: &Innovation<M::Measurement>,
+    ) -> bool {
+        let is_tentative = self.landmarks.get(&id).is_some_and(|slot| !self.is_confirmed(slot));
+        is_tentative && innovation.nis > self.params.confirmation.contradiction
     }
 
     pub(super) fn note_sighting(&mut self, id: LandmarkId) {

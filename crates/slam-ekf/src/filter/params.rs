@@ -11,10 +11,11 @@ use crate::SlamError;
 pub struct SlamParams {
     /// What happens to observations that fit badly.
     pub outliers: OutlierRule,
-    /// Probability with which the gate accepts a correct observation: a chi-squared quantile with the measurement's degrees of
-    /// freedom. 0.9999 (18.4 for range and bearing) loses one good observation in ten thousand.
+    /// Probability with which a correct observation fits well: a chi-squared quantile with the measurement's degrees of freedom.
+    /// 0.9999 (18.4 for range and bearing) doubts one good observation in ten thousand.
     pub gate_probability: f64,
-    /// Degrees of freedom of the Student-t distribution, when that is the rule; 4 has tails a gross outlier fits into.
+    /// Degrees of freedom of the Student-t distribution that badly fitting observations are taken to follow; 4 has tails that a
+    /// gross outlier fits into.
     pub student_t_degrees_of_freedom: f64,
     /// Whether observations of one look correct together.
     pub order: UpdateOrder,
@@ -26,11 +27,11 @@ pub struct SlamParams {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum OutlierRule {
-    /// Outside the gate they are rejected. A filter that is once too sure of itself can reject everything from then on.
+    /// They count less the worse they fit, and none is lost: the filter finds back when it was once too sure of itself.
     #[default]
-    Gate,
-    /// The noise is taken as Student-t: those that fit badly count less the worse they fit, and none is lost.
-    StudentT,
+    Downweight,
+    /// They are rejected. A filter that is once too sure of itself can reject everything from then on.
+    Reject,
 }
 
 /// Whether observations of one look correct together.
@@ -56,7 +57,7 @@ impl UpdateOrder {
 impl Default for SlamParams {
     fn default() -> Self {
         Self {
-            outliers: OutlierRule::Gate,
+            outliers: OutlierRule::default(),
             gate_probability: 0.9999,
             student_t_degrees_of_freedom: 4.0,
             order: UpdateOrder::Joint,
@@ -79,15 +80,13 @@ impl SlamParams {
         Ok(self)
     }
 
-    /// Factor on the noise of an observation with this NIS.
+    /// Factor on the noise of an observation whose NIS is beyond the threshold.
     ///
-    /// The Student-t log-likelihood has the same slope as a Gaussian whose covariance is larger by $`(ν + d^2) / (ν + m)`$; below
-    /// the average $`d^2 = m`$ the Gaussian is kept. [Lange, Little & Taylor 1989, section 3]
-    pub(super) fn noise_scale(&self, nis: f64, dimension: usize) -> f64 {
-        let (degrees, dimension) = (self.student_t_degrees_of_freedom, dimension as f64);
-        match self.outliers {
-            OutlierRule::StudentT if nis > dimension => (degrees + nis) / (degrees + dimension),
-            _ => 1.0,
-        }
+    /// The Student-t log-likelihood has the slope of a Gaussian whose covariance is larger by $`(ν + d^2) / (ν + m)`$
+    /// [Lange, Little & Taylor 1989, section 3]. Here it sets in at the threshold in place of $`m`$, so that observations that fit are
+    /// weighed as the Kalman filter does and nothing jumps.
+    pub(super) fn noise_scale(&self, nis: f64, threshold: f64) -> f64 {
+        let degrees = self.student_t_degrees_of_freedom;
+        ((degrees + nis) / (degrees + threshold)).max(1.0)
     }
 }

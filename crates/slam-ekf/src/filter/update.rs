@@ -103,15 +103,14 @@ where
         let Some((innovation, sighting)) = seen else {
             return Outcome::Unusable;
         };
-        let dimension = innovation.residual.len();
-        let threshold = self.gates.threshold(dimension);
-        if innovation.nis > threshold && self.is_tentative(landmark) {
+        let threshold = self.gates.threshold(innovation.residual.len());
+        if self.contradicts_its_start(landmark, &innovation) {
             return Outcome::Restarted { landmark };
         }
-        if innovation.nis > threshold && self.params.outliers == OutlierRule::Gate {
+        if innovation.nis > threshold && self.params.outliers == OutlierRule::Reject {
             return Outcome::Gated { landmark, innovation, threshold };
         }
-        let noise_scale = self.params.noise_scale(innovation.nis, dimension);
+        let noise_scale = self.params.noise_scale(innovation.nis, threshold);
         accepted.push(Accepted { sighting, innovation: innovation.clone(), noise: noise * noise_scale });
         Outcome::Accepted { landmark, innovation, noise_scale }
     }

@@ -1,7 +1,11 @@
 //! The command line: one command a file.
 
+mod convert;
+mod fixtures;
+mod info;
 mod input;
 mod progress;
+mod regress;
 mod run_slam;
 
 use std::process::ExitCode;
@@ -14,6 +18,7 @@ use clap::{Parser, Subcommand};
 ///   wayfix info slam_100.txt                      what a log holds
 ///   wayfix run slam --log slam_100.txt            trajectory and map, with figures where the log has truth
 ///   wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results
+///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
 struct Arguments {
@@ -26,6 +31,15 @@ enum Command {
     /// Run a system on a log.
     #[command(subcommand)]
     Run(Run),
+    /// Tell what a log holds.
+    Info(info::Arguments),
+    /// Write a log in another format.
+    Convert(convert::Arguments),
+    /// Run every system on the stored logs and judge the figures; ends with 1 when one is out of its bounds.
+    Regress(regress::Arguments),
+    /// Build or check the stored logs.
+    #[command(subcommand)]
+    Fixtures(fixtures::Command),
 }
 
 #[derive(Subcommand)]
@@ -38,6 +52,10 @@ enum Run {
 pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(Run::Slam(arguments)) => run_slam::main(arguments),
+        Command::Info(arguments) => info::main(arguments),
+        Command::Convert(arguments) => convert::main(arguments),
+        Command::Regress(arguments) => regress::main(arguments),
+        Command::Fixtures(command) => fixtures::main(command),
     };
     match result {
         Ok(code) => code,

@@ -1,12 +1,16 @@
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
-use anyhow::Result;
-use wayfix_sensor_log::{Format, OpenOptions};
+use anyhow::{Context, Result};
+use wayfix_sensor_log::{Format, LogMeta, OpenOptions};
 
 use super::{input::read_toml, progress};
 use crate::{
-    report::{Run, RunSummary, table, table::TableStyle},
-    slam::{self, AssociationRule, Profile, SlamSystemParams},
+    report::{Machine, Report, Run, RunSummary, Suite, table, table::TableStyle},
+    slam::{self, AssociationRule, EstimateLog, Profile, SlamSystemParams},
     system::Stopwatch,
 };
 
@@ -46,42 +50,68 @@ pub(super) struct Arguments {
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };
     let log = wayfix_sensor_log::open(&arguments.log, &options)?;
-    let profile = arguments.profile.unwrap_or(match log.meta().format {
-        Format::Utias => Profile::Utias,
-        _ => Profile::Generic,
-    });
-    let mut params = match &arguments.params {
-        Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?,
-        None => SlamSystemParams::of(profile),
-    };
-    params.association = arguments.association.or(params.association);
+    let params = params(&arguments, log.meta())?;
     let (records, read) = log.read_all();
     if read.n_problems() > 0 {
         eprintln!("{read}");
     }
 
     let stopwatch = Stopwatch::start();
+    let mut estimates = arguments.out.as_deref().map(open_estimates).transpose()?;
     let bar = progress::bar(records.len(), "EKF-SLAM");
-    let mut slam = slam::run(&records, &params, || bar.inc(1))?;
+    let mut index = 0;
+    let mut slam = slam::run(&records, &params, |system| {
+        if let Some(estimates) = &mut estimates {
+            estimates.observe(&records[index], system);
+        }
+        index += 1;
+        bar.inc(1);
+    })?;
     bar.finish_and_clear();
     for refusal in slam.events().refusals() {
         eprintln!("refused {refusal}");
     }
     slam.events().add("log_problem", read.n_problems());
 
-    let (metrics, timings) = slam::metrics(&mut slam);
-    let run = Run {
+    let mut run = Run {
         name: arguments.log.display().to_string(),
-        metrics,
-        timings,
-        events: slam.events().counts(),
         seconds: stopwatch.elapsed().as_secs_f64(),
-        ..Run::default()
+        ..slam::summarize(&mut slam)
     };
     if arguments.json {
         println!("{}", serde_json::to_string(&RunSummary::new(&run, arguments.seed))?);
     } else {
         print!("{}", table::run(&run, TableStyle::of_stdout()));
     }
+    if let (Some(out), Some(estimates)) = (&arguments.out, estimates) {
+        estimates.finish()?;
+        run.log = Some(ESTIMATES.to_owned());
+        run.figures = slam::pictures(&slam)?;
+        write_report(out, run, arguments.seed)?;
+    }
     Ok(ExitCode::SUCCESS)
+}
+
+const ESTIMATES: &str = "estimates.mcap";
+
+fn params(arguments: &Arguments, meta: &LogMeta) -> Result<SlamSystemParams> {
+    let profile = arguments.profile.unwrap_or(Profile::of_log(meta));
+    let mut params = match &arguments.params {
+        Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?,
+        None => SlamSystemParams::of(profile),
+    };
+    params.association = arguments.association.or(params.association);
+    Ok(params)
+}
+
+fn open_estimates(out: &Path) -> Result<EstimateLog> {
+    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    Ok(EstimateLog::create(&out.join(ESTIMATES))?)
+}
+
+fn write_report(out: &Path, run: Run, seed: u64) -> Result<()> {
+    let suites = vec![Suite { name: "slam".to_owned(), runs: vec![run] }];
+    Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
+    eprintln!("wrote {0}/index.html, {0}/report.json and {0}/{ESTIMATES}", out.display());
+    Ok(())
 }

@@ -1,4 +1,4 @@
-use nalgebra::{Matrix3, Vector2, linalg::Cholesky};
+use nalgebra::{Matrix3, Vector3, linalg::Cholesky};
 use wayfix_estimation_traits::{Manifold, Pose2, wrap_angle};
 
 use super::{align, rms_distance};
@@ -15,10 +15,15 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// The truth seen from the estimate, `(x, y, θ)` in the estimated body frame.
+    pub fn error(&self) -> Vector3<f64> {
+        self.estimate.local(&self.truth)
+    }
+
     /// Normalized estimation error squared, $`e^T P^{-1} e`$ with $`e`$ the truth seen from the estimate; chi-squared with three degrees
     /// of freedom for an honest filter. `None` while some direction is known exactly.
     pub fn nees(&self) -> Option<f64> {
-        let error = self.estimate.local(&self.truth);
+        let error = self.error();
         let nees = error.dot(&Cholesky::new(self.covariance)?.solve(&error));
         nees.is_finite().then_some(nees)
     }
@@ -40,7 +45,7 @@ pub struct TrajectoryErrors {
 /// Errors over all samples; `None` when there are none.
 pub fn trajectory_errors(samples: &[Sample]) -> Option<TrajectoryErrors> {
     let positions = samples.iter().map(|sample| (sample.estimate.translation, sample.truth.translation));
-    let identity = Pose2 { translation: Vector2::zeros(), ..Pose2::new(0.0, 0.0, 0.0) };
+    let identity = Pose2::new(0.0, 0.0, 0.0);
     let squared_turns =
         samples.iter().map(|sample| wrap_angle(sample.estimate.heading() - sample.truth.heading()).powi(2));
     let nees: Vec<f64> = samples.iter().filter_map(Sample::nees).collect();

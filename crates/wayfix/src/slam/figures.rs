@@ -1,11 +1,17 @@
 use super::{Keyframe, SlamRun};
 use crate::{
     evaluate::{Sample, landmark_errors, trajectory_errors},
-    report::Metric,
+    report::{Metric, Run},
 };
 
+/// The figures and events of a run, ready for the report.
+pub fn summarize(run: &mut SlamRun) -> Run {
+    let (metrics, timings) = metrics(run);
+    Run { metrics, timings, events: run.events().counts(), ..Run::default() }
+}
+
 /// Figures that the log decides, then those that change from call to call. Names as in the contract of `docs/architecture.md`.
-pub fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
+fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
     let samples: Vec<Sample> = run.samples().into_iter().map(|(_, sample)| sample).collect();
     let mut metrics = Vec::new();
     if let Some(errors) = trajectory_errors(&samples) {

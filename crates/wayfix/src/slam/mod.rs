@@ -1,12 +1,16 @@
 //! EKF-SLAM on a log: records → trajectory, map, figures, pictures, MCAP.
 
 mod commands;
+mod estimates;
 mod figures;
 mod params;
+mod pictures;
 mod run;
 mod system;
 
-pub use figures::metrics;
+pub use estimates::EstimateLog;
+pub use figures::summarize;
 pub use params::{AssociationRule, Profile, RobotParams, SlamSystemParams};
+pub use pictures::pictures;
 pub use run::{SlamRun, run};
 pub use system::{Keyframe, SlamSystem};

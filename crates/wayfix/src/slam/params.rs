@@ -1,5 +1,6 @@
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
+use wayfix_sensor_log::{Format, LogMeta};
 use wayfix_slam_ekf::{
     Confirmation, IncrementMotion, NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams,
     VelocityMotion,
@@ -64,6 +65,16 @@ pub enum Profile {
     Utias,
 }
 
+impl Profile {
+    /// The robot that recorded a log, as far as its format tells.
+    pub fn of_log(meta: &LogMeta) -> Self {
+        match meta.format {
+            Format::Utias => Self::Utias,
+            _ => Self::Generic,
+        }
+    }
+}
+
 /// How sightings find their landmarks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
@@ -105,8 +116,9 @@ impl SlamSystemParams {
                 },
                 velocity: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
                 filter: SlamParams {
-                    outliers: OutlierRule::StudentT,
-                    confirmation: Confirmation { n_sightings: 2, ..Confirmation::default() },
+                    // Errors hang together in time and have heavy tails: doubt begins at the average misfit, d² = 2.
+                    outliers: OutlierRule::Downweight,
+                    gate_probability: 0.632,
                     ..SlamParams::default()
                 },
                 ..Self::of(Profile::Generic)

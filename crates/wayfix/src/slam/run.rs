@@ -25,14 +25,18 @@ pub struct SlamRun {
     pub evaluated_until: Stamp,
 }
 
-/// Runs EKF-SLAM over the records of a log, calling `progress` after each.
+/// Runs EKF-SLAM over the records of a log and shows the system to `observe` after each.
 ///
-/// The start pose is the truth at the first odometry record, else the origin; nothing else ties the run to the truth.
+/// The start pose is the truth where odometry starts, else the origin; nothing else ties the run to the truth.
 ///
 /// # Errors
 /// When there is no odometry or no sighting to work with, or a parameter is out of range.
-pub fn run(records: &[Record], params: &SlamSystemParams, progress: impl FnMut()) -> Result<SlamRun> {
-    let Some(start_stamp) = records.iter().find_map(odometry_stamp) else {
+pub fn run(
+    records: &[Record],
+    params: &SlamSystemParams,
+    observe: impl FnMut(&SlamSystem),
+) -> Result<SlamRun> {
+    let Some(start_stamp) = start_stamp(records) else {
         bail!(
             "the log has no odometry: EKF-SLAM needs velocities or increments (`wayfix info` shows what a log holds)"
         );
@@ -47,8 +51,8 @@ pub fn run(records: &[Record], params: &SlamSystemParams, progress: impl FnMut()
     };
     let truth = TrueTrack::from_records(records);
     let start = truth.at(start_stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0));
-    let mut system = SlamSystem::new(params.clone(), association, start)?;
-    drive(&mut system, records, progress);
+    let mut system = SlamSystem::new(params.clone(), association, start_stamp, start)?;
+    drive(&mut system, records, observe);
     if system.keyframes().is_empty() {
         let refused = system
             .events()
@@ -57,7 +61,7 @@ pub fn run(records: &[Record], params: &SlamSystemParams, progress: impl FnMut()
             .map(|refusal| format!("; first {refusal}"))
             .unwrap_or_default();
         bail!(
-            "nothing could be estimated: no look of the sensor after the first odometry could be used{refused}"
+            "nothing could be estimated: no look of the sensor since the start of odometry could be used{refused}"
         );
     }
     let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or(start_stamp);
@@ -88,6 +92,17 @@ impl SlamRun {
     /// What happened.
     pub fn events(&mut self) -> &mut Events {
         self.system.events()
+    }
+}
+
+/// Where the known start is: at the first velocity, which holds from there on; for increments, which lead from an earlier pose to
+/// their stamp, at the last record before the first of them.
+fn start_stamp(records: &[Record]) -> Option<Stamp> {
+    let first = records.iter().find(|record| odometry_stamp(record).is_some())?;
+    let earlier = records.iter().map(|record| record.stamp).take_while(|stamp| *stamp < first.stamp).last();
+    match first.data {
+        Data::OdometryIncrement(_) => Some(earlier.unwrap_or(first.stamp)),
+        _ => Some(first.stamp),
     }
 }
 

@@ -36,8 +36,8 @@ pub struct SlamSystem {
     filter: EkfSlam<ScaledRangeBearingSensor>,
     association: Rule,
     commands: Commands,
-    /// The time that the filter's state is at, once there was odometry.
-    time: Option<Stamp>,
+    /// The time that the filter's state is at.
+    time: Stamp,
     dead_reckoning: Pose2<f64>,
     keyframes: Vec<Keyframe>,
     events: Events,
@@ -50,13 +50,14 @@ enum Rule {
 }
 
 impl SlamSystem {
-    /// A robot at `start` in an empty map.
+    /// A robot at `start` in an empty map, from `start_stamp` on.
     ///
     /// # Errors
     /// When a parameter is out of range.
     pub(super) fn new(
         params: SlamSystemParams,
         rule: AssociationRule,
+        start_stamp: Stamp,
         start: Pose2<f64>,
     ) -> Result<Self, SlamError> {
         let association = match rule {
@@ -77,7 +78,7 @@ impl SlamSystem {
             association,
             commands: Commands::new(&params.robot),
             params,
-            time: None,
+            time: start_stamp,
             dead_reckoning: start,
             keyframes: Vec::new(),
             events: Events::default(),
@@ -112,13 +113,13 @@ impl SlamSystem {
             .map_err(|error| error.to_string())?;
         self.step += stopwatch.elapsed();
         self.dead_reckoning = self.dead_reckoning.compose(increment);
-        self.time = Some(stamp);
+        self.time = stamp;
         Ok(())
     }
 
     fn take_sightings(&mut self, stamp: Stamp, sightings: &[Sighting]) -> Result<(), String> {
-        if self.time.is_none() {
-            self.events.count("before_first_odometry");
+        if stamp < self.time {
+            self.events.count("before_start");
             return Ok(());
         }
         let observations = self.observations(sightings);
@@ -146,12 +147,11 @@ impl SlamSystem {
 
     /// Moves the robot on with its commands.
     fn advance_to(&mut self, time: Stamp) -> Result<(), String> {
-        let from = *self.time.get_or_insert(time);
-        if time <= from {
+        if time <= self.time {
             return Ok(());
         }
         let stopwatch = Stopwatch::start();
-        for control in self.commands.between(from, time) {
+        for control in self.commands.between(self.time, time) {
             self.filter
                 .predict(&ScaledMotion(self.params.velocity), &control)
                 .map_err(|error| error.to_string())?;
@@ -159,7 +159,7 @@ impl SlamSystem {
         }
         self.step += stopwatch.elapsed();
         self.commands.forget_before(time);
-        self.time = Some(time);
+        self.time = time;
         Ok(())
     }
 
@@ -167,7 +167,7 @@ impl SlamSystem {
     fn add_keyframe(&mut self, stamp: Stamp, report: &StepReport<RangeBearing>) {
         let (mut state, mut covariance) = (*self.filter.robot(), self.filter.robot_covariance());
         let motion = ScaledMotion(self.params.velocity);
-        for control in self.commands.between(self.time.unwrap_or(stamp), stamp) {
+        for control in self.commands.between(self.time, stamp) {
             let jacobian = motion.jacobian(&state, &control);
             covariance = jacobian * covariance * jacobian.transpose() + motion.noise(&state, &control);
             state = motion.propagate(&state, &control);

@@ -2,8 +2,8 @@ use wayfix_sensor_log::{Record, Stamp};
 
 use super::System;
 
-/// Passes all records through a system and calls `progress` after each; records that go back in time are refused and counted.
-pub fn drive(system: &mut impl System, records: &[Record], mut progress: impl FnMut()) {
+/// Passes all records through a system and shows it to `observe` after each; records that go back in time are refused and counted.
+pub fn drive<S: System>(system: &mut S, records: &[Record], mut observe: impl FnMut(&S)) {
     let mut latest = Stamp::default();
     for (index, record) in records.iter().enumerate() {
         let taken = if record.stamp < latest {
@@ -15,6 +15,6 @@ pub fn drive(system: &mut impl System, records: &[Record], mut progress: impl Fn
         if let Err(reason) = taken {
             system.events().refuse(index, record.stamp, reason);
         }
-        progress();
+        observe(system);
     }
 }

@@ -1,0 +1,71 @@
+use std::{path::PathBuf, process::ExitCode};
+
+use anyhow::{Context, Result};
+
+use super::progress;
+use crate::{
+    regress::{Options, n_runs, regress},
+    report::{table, table::TableStyle},
+};
+
+/// Suites that there are.
+const SUITES: [&str; 1] = ["slam"];
+
+/// Run every system on the stored logs, and on public recordings where they are at hand, and judge the figures.
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// Suites to run; all by default.
+    #[arg(value_parser = SUITES)]
+    suites: Vec<String>,
+    /// Folder of public recordings (README, "Data"); also taken from WAYFIX_DATA. Without it only stored logs run.
+    #[arg(long, env = "WAYFIX_DATA")]
+    data: Option<PathBuf>,
+    /// Folder for report.json, index.html and an MCAP of the estimates of each run.
+    #[arg(long, default_value = "target/regress")]
+    out: PathBuf,
+    /// Folder of the stored logs and of the plans with the bounds.
+    #[arg(long, default_value = "fixtures")]
+    fixtures: PathBuf,
+    /// Seed of every generator.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Stored logs only.
+    #[arg(long)]
+    quick: bool,
+    /// Take the figures of the stored logs as right from now on; look at the change first.
+    #[arg(long)]
+    bless: bool,
+    /// Threads; all cores by default. The figures do not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let suites =
+        if arguments.suites.is_empty() { SUITES.map(str::to_owned).to_vec() } else { arguments.suites };
+    let options = Options {
+        suites,
+        fixtures: arguments.fixtures,
+        data: arguments.data,
+        out: arguments.out,
+        seed: arguments.seed,
+        quick: arguments.quick,
+        bless: arguments.bless,
+    };
+    let bar = progress::bar(n_runs(&options)?, "regress");
+    let done = |name: &str| {
+        bar.set_message(name.to_owned());
+        bar.inc(1);
+    };
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
+    let report = threads.context("cannot start the threads")?.install(|| regress(&options, &done))?;
+    bar.finish_and_clear();
+
+    report.write(&options.out)?;
+    print!("{}", table::report(&report, TableStyle::of_stdout()));
+    if options.data.is_none() && !options.quick {
+        println!("Public recordings were left out: no --data and no WAYFIX_DATA.");
+    }
+    println!("{0}/index.html  {0}/report.json", options.out.display());
+    Ok(if report.tally().all_pass() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}

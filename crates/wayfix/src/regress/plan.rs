@@ -1,0 +1,98 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result, ensure};
+use serde::Deserialize;
+
+use crate::{report::Metric, slam::Profile};
+
+/// What a suite runs and which bounds it must keep: a TOML file beside the stored logs.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plan {
+    /// In the order of the report.
+    pub run: Vec<PlannedRun>,
+}
+
+/// One log through one system.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannedRun {
+    /// Its name, unique in the suite.
+    pub name: String,
+    /// A stored log, relative to the folder of the plan.
+    pub log: Option<PathBuf>,
+    /// A public recording, relative to the folder given by `--data`.
+    pub data: Option<PathBuf>,
+    /// Which robot, in sets of several.
+    pub robot: Option<u32>,
+    /// How sightings find their landmarks.
+    pub association: Option<crate::slam::AssociationRule>,
+    /// The robot's defaults, when they are not those of the log's format.
+    pub profile: Option<Profile>,
+    /// A file of parameters, relative to the folder of the plan.
+    pub params: Option<PathBuf>,
+    /// A remark for the reader.
+    pub note: Option<String>,
+    /// Bounds and figures of others.
+    #[serde(default)]
+    pub bound: Vec<Bound>,
+}
+
+/// What a figure must keep, and beside whom it stands.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bound {
+    /// Name of the figure.
+    pub metric: String,
+    /// Smallest value that passes.
+    pub low: Option<f64>,
+    /// Largest value that passes.
+    pub high: Option<f64>,
+    /// What the paper reports.
+    pub paper: Option<f64>,
+    /// What another program reaches.
+    pub peer: Option<f64>,
+    /// Which program.
+    pub peer_name: Option<String>,
+    /// The argument, paper or peer that the bound comes from.
+    pub source: String,
+}
+
+impl Plan {
+    /// Reads the plan of a suite, `SUITE.toml` in the folder of the stored logs.
+    ///
+    /// # Errors
+    /// When it cannot be read, or a run names neither a stored log nor a recording.
+    pub fn read(folder: &Path, suite: &str) -> Result<Self> {
+        let path = folder.join(suite).with_extension("toml");
+        let text =
+            fs::read_to_string(&path).with_context(|| format!("cannot read the plan {}", path.display()))?;
+        let plan: Self =
+            toml::from_str(&text).with_context(|| format!("the plan {} is not usable", path.display()))?;
+        for run in &plan.run {
+            ensure!(run.log.is_some() != run.data.is_some(), "run {}: give either `log` or `data`", run.name);
+        }
+        Ok(plan)
+    }
+}
+
+impl PlannedRun {
+    /// Puts bounds and the figures of others to those of ours. A figure that is bounded and was not measured fails as NaN.
+    pub fn judge(&self, metrics: &mut Vec<Metric>) {
+        for bound in &self.bound {
+            let index = metrics.iter().position(|metric| metric.name == bound.metric).unwrap_or_else(|| {
+                metrics.push(Metric::new(&bound.metric, f64::NAN, ""));
+                metrics.len() - 1
+            });
+            let metric = &mut metrics[index];
+            (metric.low, metric.high, metric.paper) = (bound.low, bound.high, bound.paper);
+            metric.bound_source = Some(bound.source.clone());
+            if let Some(value) = bound.peer {
+                *metric = metric.clone().peer(bound.peer_name.clone().unwrap_or_default(), value);
+            }
+        }
+    }
+}
