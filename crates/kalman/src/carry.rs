@@ -19,7 +19,11 @@ where
 }
 
 /// $`J P J^T`$ at `to`, positive definite.
-pub(crate) fn carried<X: Manifold>(covariance: TangentMatrix<X>, from: &X, to: &X) -> Checked<TangentMatrix<X>>
+pub(crate) fn carried<X: Manifold>(
+    covariance: TangentMatrix<X>,
+    from: &X,
+    to: &X,
+) -> Checked<TangentMatrix<X>>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {

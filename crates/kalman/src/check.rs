@@ -18,11 +18,20 @@ pub(crate) fn shape(what: &'static str, expected: (usize, usize), got: (usize, u
 }
 
 /// Every entry is a finite number.
-pub(crate) fn finite<T: RealField + Copy, R: Dim, C: Dim>(what: &'static str, matrix: &OMatrix<T, R, C>) -> Checked
+#[inline]
+pub(crate) fn finite<T: RealField + Copy, R: Dim, C: Dim>(
+    what: &'static str,
+    matrix: &OMatrix<T, R, C>,
+) -> Checked
 where
     DefaultAllocator: Allocator<R, C>,
 {
-    if matrix.iter().all(ComplexField::is_finite) { Ok(()) } else { Err(GaussianError::NotFinite { what }.into()) }
+    // A slice: nalgebra's iterator walks strides, which costs more than the test.
+    if matrix.as_slice().iter().all(ComplexField::is_finite) {
+        Ok(())
+    } else {
+        Err(GaussianError::NotFinite { what }.into())
+    }
 }
 
 /// $`y ⊟ x`$, of the right size and finite.
@@ -51,6 +60,7 @@ where
 ///
 /// The strict test of a Cholesky factorization passes or fails by chance when a pivot is rounding; asking for a little more makes
 /// every other order of elimination agree. Only the lower triangle is read. NaN and infinities fail.
+#[inline]
 pub(crate) fn positive_definite<T, D>(what: &'static str, matrix: &OMatrix<T, D, D>) -> Checked
 where
     T: RealField + Copy,
@@ -60,21 +70,25 @@ where
     let n = matrix.nrows();
     let margin = T::default_epsilon() * nalgebra::convert(2.0 * n as f64);
     let mut schur = matrix.clone();
+    let mut columns = schur.as_mut_slice();
     for pivot in 0..n {
-        let value = schur[(pivot, pivot)];
+        // Columns of what is left to eliminate; the first is the pivot's.
+        let (column, rest) = columns.split_at_mut(n);
+        let value = column[pivot];
         let floor = margin * matrix[(pivot, pivot)];
         // Written so that NaN fails; an infinite pivot is not above its infinite floor.
         if !(value > floor && value > T::zero()) {
             return Err(refused_pivot(what, matrix, pivot, value));
         }
         let scale = value.recip();
-        for right in pivot + 1..n {
-            let factor = schur[(right, pivot)] * scale;
-            for row in right..n {
-                let product = factor * schur[(row, pivot)];
-                schur[(row, right)] -= product;
+        for (right, target) in rest.chunks_exact_mut(n).enumerate() {
+            let first = pivot + 1 + right;
+            let factor = column[first] * scale;
+            for (entry, eliminated) in target[first..].iter_mut().zip(&column[first..]) {
+                *entry -= factor * *eliminated;
             }
         }
+        columns = rest;
     }
     Ok(())
 }
@@ -150,7 +164,12 @@ where
 }
 
 #[cold]
-fn refused_pivot<T, D>(what: &'static str, matrix: &OMatrix<T, D, D>, pivot: usize, value: T) -> crate::KalmanError
+fn refused_pivot<T, D>(
+    what: &'static str,
+    matrix: &OMatrix<T, D, D>,
+    pivot: usize,
+    value: T,
+) -> crate::KalmanError
 where
     T: RealField + Copy,
     D: Dim,

@@ -1,8 +1,12 @@
-use nalgebra::{DefaultAllocator, OMatrix, linalg::Cholesky};
+use nalgebra::{ComplexField, DefaultAllocator, OMatrix, linalg::Cholesky};
 use wayfix_estimation_traits::{LogWeight, Manifold, Tangent, TangentMatrix, UpdateAlloc, to_f64};
 use wayfix_gaussian_core::cholesky;
 
-use crate::{check, error::Checked};
+use crate::{
+    check,
+    error::Checked,
+    product::{divide_by_factored, times, times_transpose},
+};
 
 /// What a measurement said beyond what was expected: everything a gate, a plot, a likelihood or a test needs.
 ///
@@ -88,10 +92,11 @@ where
     }
 
     /// The Kalman gain $`K = C S^{-1}`$, by solving.
+    #[inline]
     pub fn gain(&self) -> OMatrix<X::Scalar, X::Dim, Z::Dim> {
-        let mut transposed = self.cross_covariance.transpose();
-        self.factor.solve_mut(&mut transposed);
-        transposed.transpose()
+        let mut gain = self.cross_covariance.clone();
+        divide_by_factored(&mut gain, self.factor.l_dirty());
+        gain
     }
 
     /// The normalized innovation squared $`y^T S^{-1} y`$, chi-squared with [`dim`](Self::dim) degrees of freedom when all is well.
@@ -115,15 +120,22 @@ where
     }
 
     /// $`C = P H^T,\; S = H C + R`$ of a linearized sensor.
+    #[inline]
     pub(crate) fn of_linearized(
         residual: Tangent<Z>,
         prior: &TangentMatrix<X>,
         jacobian: &OMatrix<X::Scalar, Z::Dim, X::Dim>,
         noise: &TangentMatrix<Z>,
     ) -> Checked<Self> {
-        let cross_covariance = prior * jacobian.transpose();
-        let covariance = jacobian * &cross_covariance + noise;
-        let factor = cholesky("innovation", &covariance)?;
-        Ok(Self { residual, covariance, cross_covariance, factor })
+        let cross_covariance = times_transpose(prior, jacobian);
+        let mut covariance = times(jacobian, &cross_covariance);
+        covariance += noise;
+        match Cholesky::new(covariance.clone()) {
+            // Infinite pivots pass a factorization; `cholesky` knows them all.
+            Some(factor) if (0..residual.nrows()).all(|i| factor.l_dirty()[(i, i)].is_finite()) => {
+                Ok(Self { residual, covariance, cross_covariance, factor })
+            }
+            _ => Self::new(residual, covariance, cross_covariance),
+        }
     }
 }

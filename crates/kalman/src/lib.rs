@@ -1,4 +1,34 @@
 //! Kalman filters in linear, extended, unscented, square-root, information and switching forms.
+//!
+//! | You have | Take |
+//! | --- | --- |
+//! | matrices | [`KalmanFilter`] with [`LinearMotion`] and [`LinearSensor`] |
+//! | models of your own, on vectors, poses or angles | [`GaussianFilter`] with a [`Form`]: [`Extended`], [`IteratedExtended`], [`Unscented`] |
+//! | sharp sensors, vague priors or single precision | the form [`SquareRoot`] |
+//! | large measurements with little state, or small with much | the forms [`Information`], [`Sequential`] |
+//! | several measurements at once | [`Stacked`] sensors: the batch update |
+//! | a whole recording | [`RtsSmoother`] |
+//! | a target that switches behaviour | [`Imm`], [`Gpb2`] |
+//! | circumstances that switch, each with its own memory | [`ModelBank`], [`JumpMarkov`] |
+//! | doubts about your noise | [`Innovation::nis`], [`nees`], [`Consistency`] |
+//!
+//! Every update gives its [`Innovation`]; gated ones an [`Update`] that says what became of the measurement. After an error the filter is
+//! exactly as it was.
+//!
+//! ```
+//! use nalgebra::{Matrix1, Matrix1x2, Matrix2, Vector1, Vector2};
+//! use wayfix_gaussian_core::Gaussian;
+//! use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor};
+//!
+//! let motion = LinearMotion::new(Matrix2::new(1.0, 0.1, 0.0, 1.0), Matrix2::identity() * 1e-4)?;
+//! let sensor = LinearSensor::new(Matrix1x2::new(1.0, 0.0), Matrix1::new(0.01))?;
+//! let mut filter = KalmanFilter::new(motion, Gaussian::new(Vector2::zeros(), Matrix2::identity())?)?;
+//! filter.predict(None)?;
+//! let innovation = filter.update(&sensor, &Vector1::new(0.3))?;
+//! assert!(innovation.nis() < 1.0);
+//! assert!(filter.update(&sensor, &Vector1::new(f64::NAN)).is_err());
+//! # Ok::<(), wayfix_kalman::KalmanError>(())
+//! ```
 
 mod carry;
 mod check;
@@ -23,7 +53,8 @@ pub use error::KalmanError;
 pub use filter::{ExtendedKalmanFilter, GaussianFilter};
 pub use form::Form;
 pub use forms::{
-    Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, PlainExtended, Sequential, SquareRoot, Unscented,
+    Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, PlainExtended, Sequential,
+    SquareRoot, Unscented,
 };
 pub use innovation::Innovation;
 pub use linear::{KalmanFilter, LinearMotion, LinearSensor};

@@ -3,8 +3,8 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::{
-    Extended, Form, Innovation, KalmanError, carry::carried, check, error::Checked, linearize::linearize_motion,
-    product::propagated_covariance,
+    Extended, Form, Innovation, KalmanError, carry::carried, check, error::Checked,
+    linearize::linearize_motion, product::propagated_covariance,
 };
 
 /// The Rauch-Tung-Striebel smoother: filters forward in [`Extended`] form, then sends what came later back.
@@ -19,7 +19,7 @@ use crate::{
 /// use wayfix_kalman::{LinearMotion, LinearSensor, RtsSmoother};
 /// let walk = LinearMotion::stationary(Matrix1::new(1.0))?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(1.0))?;
-/// let mut smoother = RtsSmoother::new(Gaussian::new(Vector1::new(0.0), Matrix1::new(1.0))?)?;
+/// let mut smoother = RtsSmoother::new(Gaussian::new(Vector1::new(0.0_f64), Matrix1::new(1.0))?)?;
 /// smoother.predict(&walk, &None)?;
 /// smoother.update(&sensor, &Vector1::new(3.0))?;
 /// let path = smoother.smoothed()?;
@@ -74,7 +74,8 @@ where
         M: MotionModel<State = X>,
     {
         let linear = linearize_motion(motion, self.current.mean(), control)?;
-        let covariance = propagated_covariance(&linear.jacobian, self.current.covariance(), &linear.noise)?;
+        let covariance = propagated_covariance(&linear.jacobian, self.current.covariance(), &linear.noise);
+        check::positive_definite("predicted", &covariance)?;
         let predicted = Gaussian::from_parts_unchecked(linear.mean, covariance);
         let filtered = std::mem::replace(&mut self.current, predicted.clone());
         self.transitions.push(Transition {

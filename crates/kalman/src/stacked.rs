@@ -52,9 +52,14 @@ where
         let pieces = self.0.iter().zip(&other.0).map(|(from, to)| {
             // Parts of unlike size have no difference; NaN tells a filter to refuse them.
             let nan = nalgebra::zero::<Z::Scalar>() / nalgebra::zero();
-            if from.dim() == to.dim() { from.local(to) } else { Tangent::<Z>::repeat_generic(from.dim(), Const::<1>, nan) }
+            if from.dim() == to.dim() {
+                from.local(to)
+            } else {
+                Tangent::<Z>::repeat_generic(from.dim(), Const::<1>, nan)
+            }
         });
-        let entries: Vec<Z::Scalar> = pieces.flat_map(|piece| piece.iter().copied().collect::<Vec<_>>()).collect();
+        let entries: Vec<Z::Scalar> =
+            pieces.flat_map(|piece| piece.iter().copied().collect::<Vec<_>>()).collect();
         OVector::<Z::Scalar, Dyn>::from_vec(entries)
     }
 }

@@ -62,7 +62,10 @@ fn agrees<F: Form<Vector4<f64>>>(form: F) {
             estimate.mean(),
             expected.mean()
         );
-        assert!((estimate.covariance() - expected.covariance()).norm() < ROUNDING * scale, "covariance at {k}");
+        assert!(
+            (estimate.covariance() - expected.covariance()).norm() < ROUNDING * scale,
+            "covariance at {k}"
+        );
     }
 }
 
@@ -105,7 +108,10 @@ fn the_plain_update_is_the_update() {
         if let Some(z) = measurement(k) {
             filter.update_plain(&sensor, &z).unwrap();
         }
-        assert!((filter.estimate().covariance() - expected.covariance()).norm() < ROUNDING * expected.covariance().norm());
+        assert!(
+            (filter.estimate().covariance() - expected.covariance()).norm()
+                < ROUNDING * expected.covariance().norm()
+        );
     }
 }
 
@@ -121,7 +127,10 @@ fn dynamic_sizes_give_what_static_sizes_give() {
             filter.update(&sensor, &DVector::from_column_slice(z.as_slice())).unwrap();
         }
         let estimate = filter.estimate();
-        assert!((DVector::from_column_slice(expected.mean().as_slice()) - estimate.mean()).norm() < ROUNDING * expected.mean().norm().max(1.0));
+        assert!(
+            (DVector::from_column_slice(expected.mean().as_slice()) - estimate.mean()).norm()
+                < ROUNDING * expected.mean().norm().max(1.0)
+        );
         let covariance = DMatrix::from_column_slice(4, 4, expected.covariance().as_slice());
         assert!((covariance - estimate.covariance()).norm() < ROUNDING * expected.covariance().norm());
     }
@@ -150,7 +159,8 @@ fn single_precision_follows_double_precision() {
 fn a_measurement_of_any_size_serves_the_same_filter() {
     let mut filter = KalmanFilter::new(constant_velocity(0.5), track_prior(10.0)).unwrap();
     filter.update(&position_sensor(1.0), &Vector2::new(1.0, 2.0)).unwrap();
-    let speed = LinearSensor::new(nalgebra::RowVector4::new(0.0, 0.0, 1.0, 0.0), nalgebra::Matrix1::new(0.1)).unwrap();
+    let speed = LinearSensor::new(nalgebra::RowVector4::new(0.0, 0.0, 1.0, 0.0), nalgebra::Matrix1::new(0.1))
+        .unwrap();
     assert_eq!(filter.update(&speed, &nalgebra::Vector1::new(3.0)).unwrap().dim(), 1);
     assert!((filter.estimate().mean().local(&Vector4::new(0.9, 1.8, 2.97, 0.0))).norm() < 0.1);
 }

@@ -34,7 +34,8 @@ fn scene(seed: u64) -> Scene {
         let motion = constant_velocity(if is_lively(k) { LIVELY } else { QUIET });
         let noise = Gaussian::from_parts_unchecked(Vector4::zeros(), *motion.noise());
         state = motion.transition() * state + noise.sample(&mut rng);
-        let sensor_noise = Gaussian::from_sigmas(Vector2::zeros(), &Vector2::repeat(SENSOR_VARIANCE.sqrt())).unwrap();
+        let sensor_noise =
+            Gaussian::from_sigmas(Vector2::zeros(), &Vector2::repeat(SENSOR_VARIANCE.sqrt())).unwrap();
         states.push(state);
         measurements.push(state.xy() + sensor_noise.sample(&mut rng));
     }
@@ -172,7 +173,8 @@ fn with_one_model_both_are_the_kalman_filter() {
 /// Two steps with two models have few histories: enumerate them all with plain Kalman filters and Bayes' rule. GPB2 is exact there.
 #[test]
 fn gpb2_is_exact_over_two_steps() {
-    let (chain, measurements) = (MarkovChain::sticky(2, 0.9).unwrap(), [Vector2::new(0.4, -0.1), Vector2::new(1.5, 0.8)]);
+    let (chain, measurements) =
+        (MarkovChain::sticky(2, 0.9).unwrap(), [Vector2::new(0.4, -0.1), Vector2::new(1.5, 0.8)]);
     let mut filter = Gpb2::new(models(), chain.clone(), Extended, &track_prior(4.0)).unwrap();
     for z in &measurements {
         filter.predict(&None).unwrap();
@@ -186,10 +188,12 @@ fn gpb2_is_exact_over_two_steps() {
                 let mut plain = KalmanFilter::new(models()[first].clone(), track_prior(4.0)).unwrap();
                 plain.predict(None).unwrap();
                 let mut log = plain.update(&sensor(), &measurements[0]).unwrap().log_likelihood();
-                let mut plain = KalmanFilter::new(models()[second].clone(), plain.estimate().clone()).unwrap();
+                let mut plain =
+                    KalmanFilter::new(models()[second].clone(), plain.estimate().clone()).unwrap();
                 plain.predict(None).unwrap();
                 log += plain.update(&sensor(), &measurements[1]).unwrap().log_likelihood();
-                let weight = 0.5 * chain.probability(start, first) * chain.probability(first, second) * log.exp();
+                let weight =
+                    0.5 * chain.probability(start, first) * chain.probability(first, second) * log.exp();
                 weights[second] += weight;
                 mean += plain.estimate().mean() * weight;
                 total += weight;
@@ -239,7 +243,8 @@ fn poses_switch_too_and_their_headings_wrap() {
     {
         let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 3.0), &Vector3::new(0.1, 0.1, 0.1)).unwrap();
         let mut filter =
-            Imm::new(vec![Turning(0.0), Turning(0.1)], MarkovChain::sticky(2, 0.9).unwrap(), form, &prior).unwrap();
+            Imm::new(vec![Turning(0.0), Turning(0.1)], MarkovChain::sticky(2, 0.9).unwrap(), form, &prior)
+                .unwrap();
         let mut truth = Pose2::new(0.05, -0.05, 3.05);
         for k in 0..60 {
             truth = Turning(if k < 30 { 0.0 } else { 0.1 }).propagate(&truth, &0.5);
@@ -282,7 +287,8 @@ fn the_selected_light_is_the_one_that_is_on_and_the_other_is_untouched() {
             let dark = (30..60).contains(&k) || k >= 90;
             light.predict(&None).unwrap();
             // Every fifth image shows no colour.
-            let seen = (k % 5 != 4).then(|| Vector1::new(if dark { 52.0 } else { 148.0 }) + noise.sample(&mut rng));
+            let seen =
+                (k % 5 != 4).then(|| Vector1::new(if dark { 52.0 } else { 148.0 }) + noise.sample(&mut rng));
             light.update(&light_sensor(), seen.as_ref()).unwrap();
             assert_eq!(light.selected(), usize::from(dark), "step {k}");
             if !dark && k < 30 {

@@ -38,7 +38,8 @@ where
         M: MotionModel<State = X>,
     {
         let linear = linearize_motion(motion, belief.mean(), control)?;
-        let covariance = propagated_covariance(&linear.jacobian, belief.covariance(), &linear.noise)?;
+        let covariance = propagated_covariance(&linear.jacobian, belief.covariance(), &linear.noise);
+        check::positive_definite("predicted", &covariance)?;
         Ok(Gaussian::from_parts_unchecked(linear.mean, covariance))
     }
 
@@ -61,7 +62,8 @@ where
         }
         let gain = innovation.gain();
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
-        let covariance = joseph(prior, &gain, &linear.jacobian, &linear.noise)?;
+        let covariance = joseph(prior, &gain, &linear.jacobian, &linear.noise);
+        check::positive_definite("posterior", &covariance)?;
         let covariance = carried(covariance, belief.mean(), &mean)?;
         Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
     }

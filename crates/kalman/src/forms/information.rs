@@ -31,6 +31,11 @@ impl<X: Manifold> InformationBelief<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
+    /// Only what has a covariance is a belief: [`Form::gaussian`] cannot fail.
+    fn checked(mean: X, information: TangentMatrix<X>) -> Checked<Self> {
+        inverse("information", &mean, &information)?;
+        Ok(Self { mean, information })
+    }
     /// The mean.
     pub fn mean(&self) -> &X {
         &self.mean
@@ -49,12 +54,12 @@ where
 
     fn believe(&self, gaussian: &Gaussian<X>) -> Checked<InformationBelief<X>> {
         let information = inverse("prior", gaussian.mean(), gaussian.covariance())?;
-        Ok(InformationBelief { mean: gaussian.mean().clone(), information })
+        InformationBelief::checked(gaussian.mean().clone(), information)
     }
 
     fn gaussian(&self, belief: &InformationBelief<X>) -> Gaussian<X> {
         let covariance = inverse("information", &belief.mean, &belief.information)
-            .expect("invariant: a belief's information is positive definite beyond rounding");
+            .expect("invariant: InformationBelief::checked has inverted it before");
         Gaussian::from_parts_unchecked(belief.mean.clone(), covariance)
     }
 
@@ -69,7 +74,7 @@ where
         factor.l_dirty().solve_lower_triangular_mut(&mut whitened);
         let covariance = whitened.transpose() * &whitened + linear.noise;
         let information = inverse("predicted", &linear.mean, &covariance)?;
-        Ok(InformationBelief { mean: linear.mean, information })
+        InformationBelief::checked(linear.mean, information)
     }
 
     fn update<S>(
@@ -84,7 +89,8 @@ where
         DefaultAllocator: UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
     {
         let linear = linearize_sensor(sensor, &belief.mean, measurement)?;
-        let cross_covariance = cholesky("information", &belief.information)?.solve(&linear.jacobian.transpose());
+        let cross_covariance =
+            cholesky("information", &belief.information)?.solve(&linear.jacobian.transpose());
         let covariance = &linear.jacobian * &cross_covariance + &linear.noise;
         let innovation = Innovation::new(linear.residual, covariance, cross_covariance)?;
         if !admits(&innovation) {
@@ -102,9 +108,8 @@ where
         if let Some(back) = transport(&mean, &belief.mean) {
             information = back.tr_mul(&information) * back;
             symmetrize(&mut information);
-            check::positive_definite("posterior information", &information)?;
         }
-        Ok((innovation, Some(InformationBelief { mean, information })))
+        Ok((innovation, Some(InformationBelief::checked(mean, information)?)))
     }
 }
 

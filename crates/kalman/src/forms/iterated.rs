@@ -1,10 +1,12 @@
 use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, RealField};
-use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc, epsilon, to_f64};
+use wayfix_estimation_traits::{
+    Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc, epsilon, to_f64,
+};
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Extended, Form, Innovation, KalmanError, carry::carried, check, error::Checked, linearize::linearize_sensor,
-    product::joseph,
+    Extended, Form, Innovation, KalmanError, carry::carried, check, error::Checked,
+    linearize::linearize_sensor, product::joseph,
 };
 
 /// The iterated extended filter: the update relinearizes at its own result until it settles, which is Gauss-Newton on
@@ -70,13 +72,19 @@ where
             let (to_prior, prior) = belief.in_chart_at(&point)?.into_parts();
             // What would remain of the residual at the prior mean, by this linearization.
             let residual = &linear.residual - &linear.jacobian * &to_prior;
-            let fit = Innovation::<X, S::Measurement>::of_linearized(residual, &prior, &linear.jacobian, &linear.noise)?;
+            let fit = Innovation::<X, S::Measurement>::of_linearized(
+                residual,
+                &prior,
+                &linear.jacobian,
+                &linear.noise,
+            )?;
             let gain = fit.gain();
             let step = to_prior + &gain * fit.residual();
             last_step = in_sigmas(&step, &prior);
             let next = check::moved("iterate", &point, &step)?;
             if last_step <= self.tolerance.max(to_f64(epsilon::<X::Scalar>()).sqrt()) {
-                let covariance = joseph(&prior, &gain, &linear.jacobian, &linear.noise)?;
+                let covariance = joseph(&prior, &gain, &linear.jacobian, &linear.noise);
+                check::positive_definite("posterior", &covariance)?;
                 let covariance = carried(covariance, &point, &next)?;
                 return Ok((innovation, Some(Gaussian::from_parts_unchecked(next, covariance))));
             }

@@ -3,7 +3,8 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, U
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Extended, Form, Innovation, carry::carried, check, error::Checked, linearize::linearize_sensor, product::plain_difference,
+    Extended, Form, Innovation, carry::carried, check, error::Checked, linearize::linearize_sensor,
+    product::plain_difference,
 };
 
 /// The faster sibling of [`Extended`]: $`P = P - K C^T`$ instead of the form of Joseph.
@@ -52,7 +53,8 @@ where
         }
         let gain = innovation.gain();
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
-        let covariance = plain_difference(prior, &gain, innovation.cross_covariance())?;
+        let covariance = plain_difference(prior, &gain, innovation.cross_covariance());
+        check::positive_definite("posterior", &covariance)?;
         let covariance = carried(covariance, belief.mean(), &mean)?;
         Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
     }

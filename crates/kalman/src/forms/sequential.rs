@@ -51,8 +51,12 @@ where
         DefaultAllocator: UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
     {
         let linear = linearize_sensor(sensor, belief.mean(), measurement)?;
-        let innovation =
-            Innovation::of_linearized(linear.residual.clone(), belief.covariance(), &linear.jacobian, &linear.noise)?;
+        let innovation = Innovation::of_linearized(
+            linear.residual.clone(),
+            belief.covariance(),
+            &linear.jacobian,
+            &linear.noise,
+        )?;
         if !admits(&innovation) {
             return Ok((innovation, None));
         }

@@ -65,6 +65,7 @@ where
     ///
     /// # Errors
     /// When the displacement has the wrong size or something overflows; the filter is unchanged.
+    #[inline]
     pub fn predict(&mut self, displacement: Option<&OVector<T, D>>) -> Result<(), KalmanError> {
         let transition = self.motion.transition();
         let mut mean = transition * self.estimate.mean();
@@ -73,7 +74,8 @@ where
             mean += displacement;
         }
         check::finite("predicted mean", &mean)?;
-        let covariance = propagated_covariance(transition, self.estimate.covariance(), self.motion.noise())?;
+        let covariance = propagated_covariance(transition, self.estimate.covariance(), self.motion.noise());
+        check::positive_definite("predicted", &covariance)?;
         self.estimate = Gaussian::from_parts_unchecked(mean, covariance);
         Ok(())
     }
@@ -82,6 +84,7 @@ where
     ///
     /// # Errors
     /// When the measurement is unusable; the filter is unchanged.
+    #[inline]
     pub fn update<M: Dim>(
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
@@ -99,6 +102,7 @@ where
     ///
     /// # Errors
     /// When the measurement is unusable or rounding makes the difference indefinite; the filter is unchanged.
+    #[inline]
     pub fn update_plain<M: Dim>(
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
@@ -109,7 +113,7 @@ where
     {
         let innovation = self.innovation(sensor, measurement)?;
         let gain = innovation.gain();
-        let covariance = plain_difference(self.estimate.covariance(), &gain, innovation.cross_covariance())?;
+        let covariance = plain_difference(self.estimate.covariance(), &gain, innovation.cross_covariance());
         self.accept(&gain, innovation.residual(), covariance)?;
         Ok(innovation)
     }
@@ -140,6 +144,7 @@ where
     ///
     /// # Errors
     /// When the measurement is unusable.
+    #[inline]
     pub fn innovation<M: Dim>(
         &self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
@@ -156,6 +161,7 @@ where
         Innovation::of_linearized(residual, self.estimate.covariance(), sensor.matrix(), sensor.noise())
     }
 
+    #[inline(always)]
     fn correct<M: Dim>(
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
@@ -165,10 +171,11 @@ where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
         let gain = innovation.gain();
-        let covariance = joseph(self.estimate.covariance(), &gain, sensor.matrix(), sensor.noise())?;
+        let covariance = joseph(self.estimate.covariance(), &gain, sensor.matrix(), sensor.noise());
         self.accept(&gain, innovation.residual(), covariance)
     }
 
+    #[inline(always)]
     fn accept<M: Dim>(
         &mut self,
         gain: &OMatrix<T, D, M>,
@@ -178,6 +185,7 @@ where
     where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
+        check::positive_definite("posterior", &covariance)?;
         let mean = self.estimate.mean() + gain * residual;
         check::finite("posterior mean", &mean)?;
         self.estimate = Gaussian::from_parts_unchecked(mean, covariance);

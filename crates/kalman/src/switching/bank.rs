@@ -102,7 +102,8 @@ where
     /// When a model gives something unusable; the bank is unchanged.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
         let predict = |(belief, model)| self.form.predict(belief, model, control);
-        self.predicted = self.predicted.iter().zip(self.models.iter()).map(predict).collect::<Checked<Vec<_>>>()?;
+        self.predicted =
+            self.predicted.iter().zip(self.models.iter()).map(predict).collect::<Checked<Vec<_>>>()?;
         Ok(())
     }
 

@@ -55,8 +55,7 @@ where
     ) -> Result<Self, KalmanError> {
         check::dimension("bank of models", chain.n_models(), models.len())?;
         let belief = form.believe(prior)?;
-        let hypothesis =
-            |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
+        let hypothesis = |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
         let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
         Ok(Self { models, chain, form, hypotheses })
     }

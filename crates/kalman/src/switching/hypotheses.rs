@@ -16,8 +16,11 @@ pub(super) struct Hypothesis<B> {
 
 /// Multiplies each probability by its likelihood and normalizes, in logarithms.
 pub(super) fn reweigh<B>(hypotheses: &mut [Hypothesis<B>], log_likelihoods: &[LogWeight]) -> Checked {
-    let logs: Vec<f64> =
-        hypotheses.iter().zip(log_likelihoods).map(|(hypothesis, log)| hypothesis.probability.ln() + log).collect();
+    let logs: Vec<f64> = hypotheses
+        .iter()
+        .zip(log_likelihoods)
+        .map(|(hypothesis, log)| hypothesis.probability.ln() + log)
+        .collect();
     for (hypothesis, probability) in hypotheses.iter_mut().zip(normalized(&logs)?) {
         hypothesis.probability = probability;
     }
@@ -55,7 +58,9 @@ where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
     // What has no weight says nothing, and must not spoil the mean by lying far away.
-    let (weights, components): (Vec<f64>, Vec<_>) =
-        weighted.filter(|(weight, _)| *weight > 0.0).map(|(weight, belief)| (weight, form.gaussian(belief))).unzip();
+    let (weights, components): (Vec<f64>, Vec<_>) = weighted
+        .filter(|(weight, _)| *weight > 0.0)
+        .map(|(weight, belief)| (weight, form.gaussian(belief)))
+        .unzip();
     Ok(moment_matched(&weights, &components)?)
 }

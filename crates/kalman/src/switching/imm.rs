@@ -56,8 +56,7 @@ where
     ) -> Result<Self, KalmanError> {
         check::dimension("bank of models", chain.n_models(), models.len())?;
         let belief = form.believe(prior)?;
-        let hypothesis =
-            |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
+        let hypothesis = |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
         let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
         Ok(Self { models, chain, form, hypotheses })
     }
@@ -118,7 +117,8 @@ where
         if probability == 0.0 {
             return Ok(self.hypotheses[to].belief.clone());
         }
-        let weighted = self.hypotheses.iter().map(|h| (h.probability * self.chain.probability(h.model, to), &h.belief));
+        let weighted =
+            self.hypotheses.iter().map(|h| (h.probability * self.chain.probability(h.model, to), &h.belief));
         self.form.believe(&merged(&self.form, weighted)?)
     }
 }

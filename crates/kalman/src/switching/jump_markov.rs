@@ -111,7 +111,11 @@ where
     ///
     /// # Errors
     /// When the chain is for another number of models, or no history is to be kept.
-    pub fn new(bank: ModelBank<M, F>, chain: MarkovChain, params: JumpMarkovParams) -> Result<Self, KalmanError> {
+    pub fn new(
+        bank: ModelBank<M, F>,
+        chain: MarkovChain,
+        params: JumpMarkovParams,
+    ) -> Result<Self, KalmanError> {
         check::dimension("bank of models", chain.n_models(), bank.n_models())?;
         if params.n_histories == 0 {
             return Err(KalmanError::OutOfRange { what: "number of histories", value: 0.0 });
@@ -159,7 +163,9 @@ where
     /// How probable it is that each model is active now.
     pub fn model_probabilities(&self) -> Vec<f64> {
         (0..self.chain.n_models())
-            .map(|model| self.histories.iter().map(|history| history.probability * history.active[model]).sum())
+            .map(|model| {
+                self.histories.iter().map(|history| history.probability * history.active[model]).sum()
+            })
             .collect()
     }
 
@@ -167,7 +173,10 @@ where
     pub fn selected(&self) -> usize {
         let probabilities = self.model_probabilities();
         // The last of equals in reverse is the first.
-        (0..probabilities.len()).rev().max_by(|a, b| probabilities[*a].total_cmp(&probabilities[*b])).unwrap_or(0)
+        (0..probabilities.len())
+            .rev()
+            .max_by(|a, b| probabilities[*a].total_cmp(&probabilities[*b]))
+            .unwrap_or(0)
     }
 
     /// The models at the last measurements in the most probable history, oldest first.
@@ -222,7 +231,10 @@ where
             }
         }
         // A model that cannot be active has no evidence either way.
-        let evidence = joint.iter().zip(&prior).map(|(joint, prior)| if prior.is_finite() { joint - prior } else { *joint });
+        let evidence = joint
+            .iter()
+            .zip(&prior)
+            .map(|(joint, prior)| if prior.is_finite() { joint - prior } else { *joint });
         Ok((extensions, evidence.collect()))
     }
 

@@ -50,9 +50,7 @@ pub(crate) fn dynamic(
         matrix(motion.transition().as_slice(), 4, 4),
         matrix(motion.noise().as_slice(), 4, 4),
     );
-    let sensor = LinearSensor::new(
-        matrix(sensor.matrix().as_slice(), 2, 4),
-        matrix(sensor.noise().as_slice(), 2, 2),
-    );
+    let sensor =
+        LinearSensor::new(matrix(sensor.matrix().as_slice(), 2, 4), matrix(sensor.noise().as_slice(), 2, 2));
     (motion.unwrap(), sensor.unwrap())
 }

@@ -66,7 +66,8 @@ where
         let noise_factor = cholesky("sensor noise", &linear.noise)?.unpack();
         let array = rotated(noise_factor, &linear.jacobian, belief.factor.clone());
         check_factor("innovation", &array.innovation_factor)?;
-        let innovation = Innovation::of_factors(linear.residual, array.innovation_factor, &array.scaled_gain)?;
+        let innovation =
+            Innovation::of_factors(linear.residual, array.innovation_factor, &array.scaled_gain)?;
         if !admits(&innovation) {
             return Ok((innovation, None));
         }
