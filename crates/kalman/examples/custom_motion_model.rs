@@ -1,6 +1,6 @@
 //! A motion model and a sensor of your own, in any form, through the public interface only.
 //!
-//! A bicycle on the plane, steered by speed and steering angle, that sees where a lighthouse stands.
+//! A bicycle on the plane, steered by speed and steering angle, that sees where two lighthouses stand.
 //! `cargo run -p wayfix-kalman --example custom_motion_model`
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
@@ -53,7 +53,7 @@ impl SensorModel for Lighthouse {
 
 fn ride_along<F: Form<Pose2<f64>>>(name: &str, form: F) -> Result<(), KalmanError> {
     let bicycle = Bicycle { wheelbase: 1.1 };
-    let lighthouse = Lighthouse(Vector2::new(8.0, 6.0));
+    let lighthouses = [Lighthouse(Vector2::new(8.0, 6.0)), Lighthouse(Vector2::new(-5.0, 9.0))];
     let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.0), &Vector3::new(1.0, 1.0, 0.5))?;
     let mut truth = Pose2::new(0.6, -0.5, 0.3);
     let ride = Ride { speed: 3.0, steering: 0.1, seconds: 0.2 };
@@ -61,7 +61,9 @@ fn ride_along<F: Form<Pose2<f64>>>(name: &str, form: F) -> Result<(), KalmanErro
     for _ in 0..100 {
         truth = bicycle.propagate(&truth, &ride);
         filter.predict(&ride)?;
-        filter.update(&lighthouse, &lighthouse.expected(&truth))?;
+        for lighthouse in &lighthouses {
+            filter.update(lighthouse, &lighthouse.expected(&truth))?;
+        }
     }
     let error = filter.estimate().mean().local(&truth);
     println!("{name:>12}: {:.3} m and {:.4} rad off", error.xy().norm(), error.z.abs());

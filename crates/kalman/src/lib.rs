@@ -57,7 +57,7 @@ pub use forms::{
     SquareRoot, Unscented,
 };
 pub use innovation::Innovation;
-pub use linear::{KalmanFilter, LinearMotion, LinearSensor};
+pub use linear::{KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate};
 pub use observing::Observing;
 pub use smoother::RtsSmoother;
 pub use stacked::{Stack, Stacked};

@@ -9,6 +9,12 @@ use crate::{
     product::{joseph, plain_difference, propagated_covariance},
 };
 
+/// What a linear sensor says to a [`KalmanFilter`].
+pub type LinearInnovation<T, D, M> = Innovation<OVector<T, D>, OVector<T, M>>;
+
+/// What becomes of a gated measurement in a [`KalmanFilter`].
+pub type LinearUpdate<T, D, M> = Update<OVector<T, D>, OVector<T, M>>;
+
 /// The Kalman filter: linear motion, linear sensors, a Gaussian.
 ///
 /// The same results as [`ExtendedKalmanFilter`](crate::ExtendedKalmanFilter) on the same models, faster, because the models' matrices were
@@ -89,7 +95,7 @@ where
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
         measurement: &OVector<T, M>,
-    ) -> Result<Innovation<OVector<T, D>, OVector<T, M>>, KalmanError>
+    ) -> Result<LinearInnovation<T, D, M>, KalmanError>
     where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
@@ -107,7 +113,7 @@ where
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
         measurement: &OVector<T, M>,
-    ) -> Result<Innovation<OVector<T, D>, OVector<T, M>>, KalmanError>
+    ) -> Result<LinearInnovation<T, D, M>, KalmanError>
     where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
@@ -127,7 +133,7 @@ where
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
         measurement: Option<&OVector<T, M>>,
         gate: &ChiSquaredGate,
-    ) -> Result<Update<OVector<T, D>, OVector<T, M>>, KalmanError>
+    ) -> Result<LinearUpdate<T, D, M>, KalmanError>
     where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
@@ -149,7 +155,7 @@ where
         &self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
         measurement: &OVector<T, M>,
-    ) -> Result<Innovation<OVector<T, D>, OVector<T, M>>, KalmanError>
+    ) -> Result<LinearInnovation<T, D, M>, KalmanError>
     where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
@@ -165,7 +171,7 @@ where
     fn correct<M: Dim>(
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
-        innovation: &Innovation<OVector<T, D>, OVector<T, M>>,
+        innovation: &LinearInnovation<T, D, M>,
     ) -> Checked
     where
         DefaultAllocator: UpdateAlloc<D, M>,

@@ -4,6 +4,6 @@ mod filter;
 mod motion;
 mod sensor;
 
-pub use filter::KalmanFilter;
+pub use filter::{KalmanFilter, LinearInnovation, LinearUpdate};
 pub use motion::LinearMotion;
 pub use sensor::LinearSensor;

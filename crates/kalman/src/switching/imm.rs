@@ -98,6 +98,7 @@ where
     ///
     /// # Errors
     /// When model or measurement are unusable; the filter is unchanged.
+    #[allow(clippy::type_complexity, reason = "a list of innovations")]
     pub fn update<S>(
         &mut self,
         sensor: &S,

@@ -89,7 +89,7 @@ mod tests {
                 Err(KalmanError::NotStochastic { row: 2, .. })
             ));
         }
-        assert!(MarkovChain::new(&[half.clone()], &half).is_err());
+        assert!(MarkovChain::new(std::slice::from_ref(&half), &half).is_err());
         assert_eq!(MarkovChain::new(&[], &[]), Err(KalmanError::EmptyBank));
         assert!(MarkovChain::sticky(0, 0.5).is_err() && MarkovChain::sticky(2, f64::NAN).is_err());
         assert_eq!(MarkovChain::sticky(1, 0.9).unwrap().probability(0, 0), 1.0);

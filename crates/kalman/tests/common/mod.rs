@@ -1,5 +1,6 @@
 //! Models that several tests share.
 #![allow(dead_code, reason = "each test binary uses its own part")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot build its models has failed")]
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 use wayfix_gaussian_core::Gaussian;
