@@ -20,6 +20,10 @@ pub struct IncrementMotion {
     pub heading_variance_per_meter: f64,
     /// Heading variance per radian turned, rad²/rad.
     pub heading_variance_per_radian: f64,
+    /// Variance along and across the motion of every increment that is not zero, m²; for encoders with coarse ticks.
+    pub translation_variance_per_step: f64,
+    /// Heading variance of every increment that is not zero, rad².
+    pub heading_variance_per_step: f64,
 }
 
 impl Default for IncrementMotion {
@@ -28,6 +32,8 @@ impl Default for IncrementMotion {
             translation_variance_per_meter: 0.02 * 0.02 / 0.25,
             heading_variance_per_meter: 0.005 * 0.005 / 0.25,
             heading_variance_per_radian: 2e-5,
+            translation_variance_per_step: 0.0,
+            heading_variance_per_step: 0.0,
         }
     }
 }
@@ -47,10 +53,14 @@ impl MotionModel for IncrementMotion {
     }
 
     fn noise(&self, _: &Pose2<f64>, increment: &Pose2<f64>) -> Matrix3<f64> {
-        let distance = increment.translation.norm();
-        let translation = self.translation_variance_per_meter * distance;
+        let (distance, turn) = (increment.translation.norm(), increment.heading().abs());
+        if distance == 0.0 && turn == 0.0 {
+            return Matrix3::zeros();
+        }
+        let translation = self.translation_variance_per_meter * distance + self.translation_variance_per_step;
         let heading = self.heading_variance_per_meter * distance
-            + self.heading_variance_per_radian * increment.heading().abs();
+            + self.heading_variance_per_radian * turn
+            + self.heading_variance_per_step;
         Matrix3::from_diagonal(&Vector3::new(translation, translation, heading))
     }
 }

@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     /// log has identities.
     #[arg(long)]
     association: Option<AssociationRule>,
-    /// Defaults of a kind of robot: generic, utias. By default utias for logs in that format, else generic.
+    /// Defaults of a kind of robot. By default what the format of the log tells, else generic.
     #[arg(long)]
     profile: Option<Profile>,
     /// Parameters in a TOML file; those it does not name keep the defaults of the profile.

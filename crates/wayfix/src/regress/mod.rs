@@ -5,5 +5,5 @@ mod plan;
 mod runner;
 
 pub use blessed::Blessed;
-pub use plan::{Bound, Plan, PlannedRun};
+pub use plan::{Bound, Plan, PlannedMean, PlannedRun};
 pub use runner::{Options, n_runs, regress};

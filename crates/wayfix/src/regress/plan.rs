@@ -6,7 +6,10 @@ use std::{
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 
-use crate::{report::Metric, slam::Profile};
+use crate::{
+    report::{Metric, Run},
+    slam::{AssociationRule, Profile},
+};
 
 /// What a suite runs and which bounds it must keep: a TOML file beside the stored logs.
 #[derive(Clone, Debug, Deserialize)]
@@ -14,6 +17,24 @@ use crate::{report::Metric, slam::Profile};
 pub struct Plan {
     /// In the order of the report.
     pub run: Vec<PlannedRun>,
+    /// Means over runs; left out when one of them is.
+    #[serde(default)]
+    pub mean: Vec<PlannedMean>,
+}
+
+/// The mean of the figures of several runs.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannedMean {
+    /// Its name, unique in the suite.
+    pub name: String,
+    /// Names of the runs.
+    pub of: Vec<String>,
+    /// Which figures.
+    pub metrics: Vec<String>,
+    /// Bounds and figures of others.
+    #[serde(default)]
+    pub bound: Vec<Bound>,
 }
 
 /// One log through one system.
@@ -29,7 +50,7 @@ pub struct PlannedRun {
     /// Which robot, in sets of several.
     pub robot: Option<u32>,
     /// How sightings find their landmarks.
-    pub association: Option<crate::slam::AssociationRule>,
+    pub association: Option<AssociationRule>,
     /// The robot's defaults, when they are not those of the log's format.
     pub profile: Option<Profile>,
     /// A file of parameters, relative to the folder of the plan.
@@ -79,20 +100,37 @@ impl Plan {
     }
 }
 
-impl PlannedRun {
-    /// Puts bounds and the figures of others to those of ours. A figure that is bounded and was not measured fails as NaN.
-    pub fn judge(&self, metrics: &mut Vec<Metric>) {
-        for bound in &self.bound {
-            let index = metrics.iter().position(|metric| metric.name == bound.metric).unwrap_or_else(|| {
-                metrics.push(Metric::new(&bound.metric, f64::NAN, ""));
-                metrics.len() - 1
-            });
-            let metric = &mut metrics[index];
-            (metric.low, metric.high, metric.paper) = (bound.low, bound.high, bound.paper);
-            metric.bound_source = Some(bound.source.clone());
-            if let Some(value) = bound.peer {
-                *metric = metric.clone().peer(bound.peer_name.clone().unwrap_or_default(), value);
-            }
+impl PlannedMean {
+    /// The mean over `runs`; `None` when one of them did not run.
+    pub fn over(&self, runs: &[Run]) -> Option<Run> {
+        let members: Option<Vec<&Run>> =
+            self.of.iter().map(|name| runs.iter().find(|run| &run.name == name)).collect();
+        let members = members?;
+        let mean = |name: &String| {
+            let values = members.iter().map(|run| run.metrics.iter().find(|metric| &metric.name == name));
+            let sum: f64 = values.clone().map(|metric| metric.map_or(f64::NAN, |metric| metric.value)).sum();
+            let unit = values.flatten().next().map_or("", |metric| metric.unit.as_str());
+            Metric::new(name, sum / members.len() as f64, unit)
+        };
+        let mut metrics: Vec<Metric> = self.metrics.iter().map(mean).collect();
+        judge(&self.bound, &mut metrics);
+        let notes = vec![format!("Mean over {}.", self.of.join(", "))];
+        Some(Run { name: self.name.clone(), metrics, notes, ..Run::default() })
+    }
+}
+
+/// Puts bounds and the figures of others to those of ours. A figure that is bounded and was not measured fails as NaN.
+pub(super) fn judge(bounds: &[Bound], metrics: &mut Vec<Metric>) {
+    for bound in bounds {
+        let index = metrics.iter().position(|metric| metric.name == bound.metric).unwrap_or_else(|| {
+            metrics.push(Metric::new(&bound.metric, f64::NAN, ""));
+            metrics.len() - 1
+        });
+        let metric = &mut metrics[index];
+        (metric.low, metric.high, metric.paper) = (bound.low, bound.high, bound.paper);
+        metric.bound_source = Some(bound.source.clone());
+        if let Some(value) = bound.peer {
+            *metric = metric.clone().peer(bound.peer_name.clone().unwrap_or_default(), value);
         }
     }
 }

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 use wayfix_sensor_log::OpenOptions;
 
-use super::{Blessed, Plan, PlannedRun};
+use super::{Blessed, Plan, PlannedRun, plan::judge};
 use crate::{
     report::{Machine, Report, Run, Suite, commit},
     slam::{self, EstimateLog, Profile, SlamSystemParams},
@@ -81,6 +81,8 @@ fn run_suite(options: &Options, suite: &str, done: &(impl Fn(&str) + Sync)) -> R
         let changed = blessed.compare(run);
         run.metrics.extend(changed);
     }
+    let means: Vec<Run> = plan.mean.iter().filter_map(|mean| mean.over(&runs)).collect();
+    runs.extend(means);
     Ok(Suite { name: suite.to_owned(), runs })
 }
 
@@ -101,7 +103,7 @@ fn run_one(options: &Options, planned: &PlannedRun, log: &Path) -> Run {
         Ok(run) => run,
         Err(error) => Run { error: Some(format!("{error:#}")), ..Run::default() },
     };
-    planned.judge(&mut run.metrics);
+    judge(&planned.bound, &mut run.metrics);
     run.notes.extend(planned.note.clone());
     Run { name: planned.name.clone(), seconds: stopwatch.elapsed().as_secs_f64(), ..run }
 }

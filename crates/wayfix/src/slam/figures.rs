@@ -20,6 +20,14 @@ fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
         metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
         metrics.extend(errors.nees_mean.map(|nees| Metric::new("nees_mean", nees, "")));
     }
+    let dead_reckoning: Vec<Sample> = run
+        .samples()
+        .into_iter()
+        .map(|(keyframe, sample)| Sample { estimate: keyframe.dead_reckoning, ..sample })
+        .collect();
+    if let Some(errors) = trajectory_errors(&dead_reckoning) {
+        metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
+    }
     if let Some((rmse, aligned)) =
         landmark_errors(&run.landmarks(), &run.true_landmarks, run.correspondence())
     {

@@ -57,10 +57,13 @@ pub struct RobotParams {
 
 /// A kind of robot and its defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum Profile {
     /// Nothing is known of the robot: a good sensor (5 cm, 0.01 rad), odometry as it comes.
     Generic,
+    /// The simulated range-bearing logs for comparing programs: 0.02 m and 0.005 rad for every increment, 0.05 m and 0.01 rad
+    /// for every sighting.
+    RangeBearing,
     /// The robots of the UTIAS set: iRobot Create with a monocular camera that reads bar codes.
     Utias,
 }
@@ -70,6 +73,7 @@ impl Profile {
     pub fn of_log(meta: &LogMeta) -> Self {
         match meta.format {
             Format::Utias => Self::Utias,
+            Format::RangeBearing => Self::RangeBearing,
             _ => Self::Generic,
         }
     }
@@ -100,6 +104,17 @@ impl SlamSystemParams {
                 nearest_neighbour: NearestNeighbourParams::default(),
                 nearest_neighbour_confirmation: Confirmation { n_sightings: 3, ..Confirmation::default() },
             },
+            Profile::RangeBearing => Self {
+                increment: IncrementMotion {
+                    translation_variance_per_meter: 0.0,
+                    heading_variance_per_meter: 0.0,
+                    heading_variance_per_radian: 0.0,
+                    translation_variance_per_step: 0.02 * 0.02,
+                    heading_variance_per_step: 0.005 * 0.005,
+                },
+                ..Self::of(Profile::Generic)
+            }
+            .named(profile),
             // Measured as residuals against truth on set 7, robots 1-3; `docs/accuracy.md` has the figures behind each.
             Profile::Utias => Self {
                 robot: RobotParams {
