@@ -1,7 +1,7 @@
 use std::hint::black_box;
 
 /// Prints the best of 15 batches of `job`, each of `calls` calls.
-pub fn measure<O>(name: &str, program: &str, calls: u32, mut job: impl FnMut() -> O) {
+pub(crate) fn measure<O>(name: &str, program: &str, calls: u32, mut job: impl FnMut() -> O) {
     let mut best = f64::INFINITY;
     for _ in 0..15 {
         #[allow(clippy::disallowed_methods, reason = "a benchmark measures time")]

@@ -8,7 +8,7 @@ use wayfix_kalman::{
 use crate::harness::measure;
 
 /// Our filters on the jobs of `docs/performance.md`.
-pub fn run() {
+pub(crate) fn run() {
     fixed::<4, 2>("kalman 4/2", 20_000);
     fixed::<30, 30>("kalman 30/30", 300);
     dynamic(4, 2, "kalman 4/2 dynamic", 10_000);
@@ -20,7 +20,7 @@ pub fn run() {
 }
 
 /// The first half of the state moves with the second; the first entries are seen.
-pub fn transition(n: usize) -> DMatrix<f64> {
+pub(crate) fn transition(n: usize) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| {
         if i == j {
             1.0

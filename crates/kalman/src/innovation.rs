@@ -5,7 +5,7 @@ use wayfix_gaussian_core::cholesky;
 use crate::{
     check,
     error::Checked,
-    product::{divide_by_factored, times, times_transpose},
+    product::{divide_by_covariance, times, times_transpose},
 };
 
 /// What a measurement said beyond what was expected: everything a gate, a plot, a likelihood or a test needs.
@@ -95,7 +95,7 @@ where
     #[inline]
     pub fn gain(&self) -> OMatrix<X::Scalar, X::Dim, Z::Dim> {
         let mut gain = self.cross_covariance.clone();
-        divide_by_factored(&mut gain, self.factor.l_dirty());
+        divide_by_covariance(&mut gain, &self.covariance);
         gain
     }
 

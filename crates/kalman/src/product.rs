@@ -136,9 +136,11 @@ where
     product
 }
 
-/// $`C ← C (L L^T)^{-1}`$ by columns, reading the lower triangle of `factor`.
+/// $`C ← C S^{-1}`$ by columns, with $`S = L D L^T`$: no square roots, whose latency a small update would wait for.
+///
+/// The caller has established that $`S`$ is positive definite; its lower triangle is read.
 #[inline]
-pub(crate) fn divide_by_factored<T, D, M>(matrix: &mut OMatrix<T, D, M>, factor: &OMatrix<T, M, M>)
+pub(crate) fn divide_by_covariance<T, D, M>(matrix: &mut OMatrix<T, D, M>, covariance: &OMatrix<T, M, M>)
 where
     T: RealField + Copy,
     D: Dim,
@@ -146,34 +148,60 @@ where
     DefaultAllocator: Allocator<D, M> + Allocator<M, M>,
 {
     let (n, m) = matrix.shape();
+    if n == 0 || m == 0 {
+        return;
+    }
+    let unit_lower_over_pivots = inverted_pivots(covariance);
+    let factor = &unit_lower_over_pivots;
     let entries = matrix.as_mut_slice();
     // W Lᵀ = C: column j of W from those before it.
-    for j in 0..m {
+    for j in 1..m {
         let (before, rest) = entries.split_at_mut(j * n);
-        for (k, column) in before.chunks_exact(n.max(1)).enumerate() {
+        for (k, column) in before.chunks_exact(n).enumerate() {
             subtract(&mut rest[..n], column, factor[(j, k)]);
         }
-        divide(&mut rest[..n], factor[(j, j)]);
     }
-    // K L = W: column j of K from those after it.
+    for (j, column) in entries.chunks_exact_mut(n).enumerate() {
+        column.iter_mut().for_each(|entry| *entry *= factor[(j, j)]);
+    }
+    // K L = W D⁻¹: column j of K from those after it.
     for j in (0..m).rev() {
         let (before, after) = entries.split_at_mut((j + 1) * n);
-        for (k, column) in after.chunks_exact(n.max(1)).enumerate() {
+        for (k, column) in after.chunks_exact(n).enumerate() {
             subtract(&mut before[j * n..], column, factor[(j + 1 + k, j)]);
         }
-        divide(&mut before[j * n..], factor[(j, j)]);
     }
 }
 
+/// $`L`$ of $`S = L D L^T`$, with $`D^{-1}`$ in place of its unit diagonal.
+#[inline]
+fn inverted_pivots<T, M>(covariance: &OMatrix<T, M, M>) -> OMatrix<T, M, M>
+where
+    T: RealField + Copy,
+    M: Dim,
+    DefaultAllocator: Allocator<M, M>,
+{
+    let mut factor = covariance.clone();
+    let m = factor.nrows();
+    let mut columns = factor.as_mut_slice();
+    for pivot in 0..m {
+        let (column, rest) = columns.split_at_mut(m);
+        let inverse = column[pivot].recip();
+        for (right, target) in rest.chunks_exact_mut(m).enumerate() {
+            let first = pivot + 1 + right;
+            let multiple = column[first] * inverse;
+            subtract(&mut target[first..], &column[first..], multiple);
+        }
+        column[pivot] = inverse;
+        column[pivot + 1..].iter_mut().for_each(|entry| *entry *= inverse);
+        columns = rest;
+    }
+    factor
+}
+
+#[inline]
 fn subtract<T: RealField + Copy>(target: &mut [T], column: &[T], factor: T) {
     for (entry, other) in target.iter_mut().zip(column) {
         *entry -= *other * factor;
-    }
-}
-
-fn divide<T: RealField + Copy>(target: &mut [T], pivot: T) {
-    let scale = pivot.recip();
-    for entry in target {
-        *entry *= scale;
     }
 }

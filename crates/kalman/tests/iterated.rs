@@ -1,4 +1,5 @@
 //! The iterated update: a minimum it reaches, a refusal that says how far it came, and a state that is better than one linearization.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot build its models has failed")]
 
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel, Pose2, SensorModel};

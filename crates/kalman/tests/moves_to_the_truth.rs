@@ -1,4 +1,5 @@
 //! Law 3 of `BayesFilter`, for every form: measurements that pin the state down move the estimate to it.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot build its models has failed")]
 
 use nalgebra::{Matrix1, Matrix3, Vector2, Vector3};
 use wayfix_estimation_traits::{
@@ -105,7 +106,7 @@ fn every_form_moves_to_the_truth() {
 
 #[test]
 fn analytic_jacobians_are_the_numerical_ones() {
-    for heading in [-3.1, -1.0, 0.0, 2.0, 3.14] {
+    for heading in [-3.1, -1.0, 0.0, 2.0, 3.1] {
         for step in [Vector3::new(0.3, -0.1, 0.2), Vector3::new(-0.2, 0.4, -1.3), Vector3::zeros()] {
             let pose = Pose2::new(1.0, -2.0, heading);
             let numerical = numerical_jacobian(|x: &Pose2<f64>| Odometry.propagate(x, &step), &pose);
