@@ -38,7 +38,7 @@ const GAP: f64 = 1e-7;
 ///
 /// $`Σ^{-1} = \sum ω_i Σ_i^{-1}`$, $`Σ^{-1} μ = \sum ω_i Σ_i^{-1} μ_i`$ with $`\sum ω_i = 1`$ chosen by `criterion`, a convex problem.
 /// [Julier & Uhlmann 1997; Niehsen 2002 for many]
-/// The weights come by the multiplicative iteration of optimal design, whose gap to the optimum is known. [Yu 2010, Eq. 2]
+/// The weights come by the multiplicative iteration of optimal design, whose gap to the optimum is known. [Yu 2010]
 /// On manifolds the weights are found in the tangent space at the first mean, the mean by Gauss-Newton.
 ///
 /// ```
@@ -136,7 +136,7 @@ where
         if gap <= reachable {
             break;
         }
-        // The exponents for which each step is known to improve. [Yu 2010, Thm. 2]
+        // The exponents for which each step is known to improve. [Yu 2010]
         let power = match criterion {
             IntersectionCriterion::Determinant => 1.0,
             IntersectionCriterion::Trace => 0.5,

@@ -1,4 +1,20 @@
-//! Gaussians over manifolds, mixtures, covariance intersection, gating.
+//! Gaussians over manifolds and what one does with them: fuse, transform, compare, mix, gate, draw.
+//!
+//! [`Gaussian<X>`](Gaussian) holds any [`Manifold`](wayfix_estimation_traits::Manifold): vectors of static or dynamic size, angles, poses,
+//! `f32` or `f64`. Numbers about distributions (distances, densities, divergences) are `f64`, logarithms in nats.
+//!
+//! | to | use |
+//! | --- | --- |
+//! | fuse independent estimates, or ones that may share news | [`Gaussian::product`], [`covariance_intersection`] |
+//! | send one through a function | [`Gaussian::affine`], [`Gaussian::linearized`], [`UnscentedTransform`] |
+//! | compare | [`Gaussian::mahalanobis_squared`], [`Gaussian::kl_divergence`], [`Gaussian::bhattacharyya_distance`] |
+//! | take parts | [`Gaussian::marginal`], [`Gaussian::conditional`] |
+//! | keep several hypotheses | [`Mixture`], [`moment_matched`] |
+//! | decide | [`ChiSquaredGate`], [`ChiSquaredBand`] |
+//! | draw random points, or pictures | [`Gaussian::sampler`], [`CovarianceEllipse`] |
+//! | turn models for Kalman filters into models for particles | [`GaussianMotion`], [`GaussianLikelihood`] |
+//!
+//! Covariances are checked where they come in ([`Gaussian::new`]) and solved by Cholesky factors.
 
 mod chart;
 mod chi_squared;
@@ -12,6 +28,7 @@ mod error;
 mod gaussian;
 mod index_set;
 mod merge;
+mod mixture;
 mod model_adapters;
 mod product;
 mod sample;
@@ -28,6 +45,7 @@ pub use ellipse::CovarianceEllipse;
 pub use error::{GaussianError, IterationError};
 pub use gaussian::Gaussian;
 pub use merge::moment_matched;
+pub use mixture::{Mixture, log_sum_exp};
 pub use model_adapters::{GaussianLikelihood, GaussianMotion};
 pub use sample::Sampler;
 pub use sigma_points::{SigmaPoints, UnscentedParams};

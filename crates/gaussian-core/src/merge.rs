@@ -6,7 +6,7 @@ use crate::{Gaussian, GaussianError, IterationError, symmetrize, weighted_mean};
 /// The one Gaussian with the mean and covariance of a weighted sum of Gaussians.
 ///
 /// $`\bar μ = \sum w_i μ_i`$, $`\bar Σ = \sum w_i (Σ_i + d_i d_i^T)`$ with $`d_i = μ_i ⊟ \bar μ`$, each covariance carried to the tangent space
-/// at the mean. Weights need not be normalized. [Runnalls 2007, Eqs. 2-4]
+/// at the mean. Weights need not be normalized. [Runnalls 2007]
 ///
 /// ```
 /// use nalgebra::Vector1;

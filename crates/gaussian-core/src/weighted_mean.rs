@@ -5,7 +5,7 @@ use crate::{GaussianError, IterationError, gaussian::check_dimension};
 
 const MAX_ITERATIONS: usize = 100;
 
-/// The weighted mean of points on a manifold: where $`\sum_i w_i (x_i ⊟ \bar x) = 0`$. [Hertzberg et al. 2013, Alg. 1]
+/// The weighted mean of points on a manifold: where $`\sum_i w_i (x_i ⊟ \bar x) = 0`$. [Hertzberg et al. 2013]
 ///
 /// Weights need not be normalized and may be negative (sigma points), but their sum is positive.
 ///

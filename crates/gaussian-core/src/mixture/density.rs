@@ -1,0 +1,64 @@
+use nalgebra::DefaultAllocator;
+use rand::{Rng, RngExt, distr::Distribution};
+use rand_distr::StandardNormal;
+use wayfix_estimation_traits::{LogWeight, Manifold, StateAlloc};
+
+use super::{Mixture, log_sum_exp};
+use crate::{Gaussian, GaussianError, IterationError, moment_matched};
+
+impl<X: Manifold> Mixture<X>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    /// $`\log \sum_i w_i N(x; μ_i, Σ_i)`$ in nats; finite far out, where the density itself underflows.
+    ///
+    /// ```
+    /// use nalgebra::Vector1;
+    /// use wayfix_gaussian_core::{Gaussian, Mixture};
+    /// let standard = Gaussian::from_sigmas(Vector1::new(0.0_f64), &Vector1::new(1.0))?;
+    /// let mixture = Mixture::from_weights(vec![(2.0, standard.clone()), (1.0, standard.clone())])?;
+    /// let far = Vector1::new(1e3);
+    /// assert!((mixture.log_density(&far)? - standard.log_density(&far)?).abs() < 1e-9);
+    /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Gaussian::log_density`].
+    pub fn log_density(&self, point: &X) -> Result<LogWeight, GaussianError> {
+        let terms: Result<Vec<_>, _> = (self.components.iter().zip(&self.log_weights))
+            .map(|(component, log_weight)| component.log_density(point).map(|density| log_weight + density))
+            .collect();
+        Ok(log_sum_exp(&terms?))
+    }
+
+    /// The one Gaussian with the same mean and covariance.
+    ///
+    /// # Errors
+    /// When the components are spread all round a manifold and have no mean.
+    pub fn moments(&self) -> Result<Gaussian<X>, IterationError<X>> {
+        moment_matched(&self.weights(), &self.components)
+    }
+}
+
+/// A component drawn by weight, then a point drawn from it.
+impl<X: Manifold> Distribution<X> for Mixture<X>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+    StandardNormal: Distribution<X::Scalar>,
+{
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> X {
+        let mut left: f64 = rng.random();
+        let mut chosen = 0;
+        for (index, log_weight) in self.log_weights.iter().enumerate() {
+            let weight = log_weight.exp();
+            if weight > 0.0 {
+                chosen = index; // rounding of the sum must not pick a component of weight zero
+                if left < weight {
+                    break;
+                }
+                left -= weight;
+            }
+        }
+        self.components[chosen].sample(rng)
+    }
+}

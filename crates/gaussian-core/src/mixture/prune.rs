@@ -1,0 +1,51 @@
+use nalgebra::DefaultAllocator;
+use wayfix_estimation_traits::{Manifold, StateAlloc};
+
+use super::Mixture;
+use crate::GaussianError;
+
+impl<X: Manifold> Mixture<X>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    /// Drops components of weight below `least`, and normalizes.
+    ///
+    /// ```
+    /// use nalgebra::Vector1;
+    /// use wayfix_gaussian_core::{Gaussian, Mixture};
+    /// let at = |x: f64| Gaussian::from_sigmas(Vector1::new(x), &Vector1::new(1.0));
+    /// let mixture = Mixture::from_weights(vec![(0.7, at(0.0)?), (0.2, at(1.0)?), (0.1, at(2.0)?)])?;
+    /// assert_eq!(mixture.clone().prune(0.15)?.len(), 2);
+    /// assert_eq!(mixture.cap(1)?.components()[0].mean()[0], 0.0);
+    /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`GaussianError::NoWeight`] when none is left.
+    pub fn prune(self, least: f64) -> Result<Self, GaussianError> {
+        let count = self.len();
+        let mut kept = self.into_log_weighted();
+        kept.retain(|(log_weight, _)| log_weight.exp() >= least);
+        if kept.is_empty() { Err(GaussianError::NoWeight { count }) } else { Self::from_log_weights(kept) }
+    }
+
+    /// Keeps the `most` heaviest components, earlier ones among equals, in their order, and normalizes.
+    ///
+    /// # Errors
+    /// When `most` is 0.
+    pub fn cap(self, most: usize) -> Result<Self, GaussianError> {
+        check_most(most)?;
+        let mut ranked: Vec<usize> = (0..self.len()).collect();
+        ranked.sort_by(|&i, &j| self.log_weights[j].total_cmp(&self.log_weights[i]).then(i.cmp(&j)));
+        ranked.truncate(most);
+        let all = self.into_log_weighted().into_iter().enumerate();
+        Self::from_log_weights(
+            all.filter(|(i, _)| ranked.contains(i)).map(|(_, weighted)| weighted).collect(),
+        )
+    }
+}
+
+/// A mixture cannot be reduced to nothing.
+pub(super) fn check_most(most: usize) -> Result<(), GaussianError> {
+    if most > 0 { Ok(()) } else { Err(GaussianError::Empty { what: "components to keep" }) }
+}
