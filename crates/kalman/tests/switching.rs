@@ -185,7 +185,7 @@ fn gpb2_is_exact_over_two_steps() {
     let (mut mean, mut total) = (Vector4::zeros(), 0.0);
     for start in 0..2 {
         for first in 0..2 {
-            for second in 0..2 {
+            for (second, total_of_second) in weights.iter_mut().enumerate() {
                 let mut plain = KalmanFilter::new(models()[first].clone(), track_prior(4.0)).unwrap();
                 plain.predict(None).unwrap();
                 let mut log = plain.update(&sensor(), &measurements[0]).unwrap().log_likelihood();
@@ -195,7 +195,7 @@ fn gpb2_is_exact_over_two_steps() {
                 log += plain.update(&sensor(), &measurements[1]).unwrap().log_likelihood();
                 let weight =
                     0.5 * chain.probability(start, first) * chain.probability(first, second) * log.exp();
-                weights[second] += weight;
+                *total_of_second += weight;
                 mean += plain.estimate().mean() * weight;
                 total += weight;
             }
@@ -339,8 +339,8 @@ fn all_histories_kept_are_the_exact_posterior() {
         }
     }
     let total = last[0] + last[1];
-    for model in 0..2 {
-        assert!((light.model_probabilities()[model] - last[model] / total).abs() < 1e-12);
+    for (found, weight) in light.model_probabilities().iter().zip(last) {
+        assert!((found - weight / total).abs() < 1e-12);
     }
     assert_eq!(light.most_probable_history(), best.1);
 }
