@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     /// Parameters in a TOML file; those it does not name keep the defaults of the profile.
     #[arg(long)]
     params: Option<PathBuf>,
-    /// Folder for report.json, index.html and the estimates as MCAP. Nothing is written without it.
+    /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP. Nothing is written without it.
     #[arg(long)]
     out: Option<PathBuf>,
     /// Print one JSON object instead of a table.
@@ -110,8 +110,12 @@ fn open_estimates(out: &Path) -> Result<EstimateLog> {
 }
 
 fn write_report(out: &Path, run: Run, seed: u64) -> Result<()> {
+    for (number, figure) in run.figures.iter().enumerate() {
+        let path = out.join(format!("figure-{}.svg", number + 1));
+        fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;
+    }
     let suites = vec![Suite { name: "slam".to_owned(), runs: vec![run] }];
     Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
-    eprintln!("wrote {0}/index.html, {0}/report.json and {0}/{ESTIMATES}", out.display());
+    eprintln!("wrote index.html, report.json, {ESTIMATES} and the figures as SVG to {}", out.display());
     Ok(())
 }
