@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix1, Matrix3, Vector2, Vector3};
 use wayfix_estimation_traits::{
-    Angle, BayesFilter, Manifold, MotionModel, Pose2, SensorModel, numerical_jacobian,
+    Angle, BayesFilter, Manifold, MotionModel, Pose2, SensorModel, laws, numerical_jacobian,
 };
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
@@ -12,6 +12,7 @@ use wayfix_kalman::{
 };
 
 /// Body-frame increments.
+#[derive(Clone)]
 struct Odometry;
 impl MotionModel for Odometry {
     type State = Pose2<f64>;
@@ -102,6 +103,34 @@ fn every_form_moves_to_the_truth() {
     moves(SquareRoot);
     moves(Information);
     moves(Unscented::default());
+}
+
+/// The law suite itself: one true pose seen again and again, what must be refused, and no trace of it.
+fn obeys<F: Form<Pose2<f64>> + Clone>(form: F) {
+    let truth = Pose2::new(0.3, -0.2, 3.1);
+    let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 2.9), &Vector3::new(0.3, 0.3, 0.2)).unwrap();
+    let filter = Observing::new(GaussianFilter::new(Odometry, form, prior).unwrap(), landmarks());
+    let good = Some(landmarks().expected(&truth));
+    let bad = [Some(Stack(vec![Angle::new(f64::NAN); 4])), Some(Stack(vec![Angle::new(0.0); 3]))];
+    let trial = laws::FilterTrial {
+        measurements: &[&good; 20],
+        error: |estimate: &Gaussian<Pose2<f64>>| estimate.mean().local(&truth).norm(),
+        bound: 0.01,
+        refused_measurements: &[&bad[0], &bad[1]],
+        refused_controls: &[&Vector3::new(f64::NAN, 0.0, 0.0), &Vector3::new(0.0, f64::INFINITY, 0.0)],
+    };
+    laws::filter(&filter, &trial).unwrap();
+}
+
+#[test]
+fn every_form_obeys_the_laws_of_filters() {
+    obeys(Extended);
+    obeys(PlainExtended);
+    obeys(IteratedExtended::default());
+    obeys(Sequential);
+    obeys(SquareRoot);
+    obeys(Information);
+    obeys(Unscented::default());
 }
 
 #[test]
