@@ -1,6 +1,6 @@
 /// A recursive filter: predict with a control, correct with a measurement, ask for the estimate.
 ///
-/// **Laws** ([`laws::filter`](crate::laws::filter) checks the last):
+/// **Laws** ([`laws::filter`](fn@crate::laws::filter) checks them):
 /// 1. after an `Err` the filter is exactly as it was before the call,
 /// 2. the same calls give the same bits,
 /// 3. measurements that pin the state down move the estimate to it. (A published filter computed its gain and never applied it.)

@@ -43,7 +43,7 @@ pub struct Not<A>(A);
 /// See [`always`].
 #[derive(Clone, Copy, Debug)]
 pub struct Always;
-/// See [`never`].
+/// See [`never()`].
 #[derive(Clone, Copy, Debug)]
 pub struct Never;
 /// See [`every_n`].

@@ -1,6 +1,8 @@
 //! Figures by numpy 2 and scipy 1 (`scipy.stats`, `scipy.optimize.minimize_scalar`, plain `numpy.linalg.inv` and `det`),
 //! for the two Gaussians below and the point (2, 0, 1). They share no code with us.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::Angle;
 use wayfix_gaussian_core::{

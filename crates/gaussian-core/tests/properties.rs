@@ -1,5 +1,7 @@
 //! What holds for every Gaussian, tried on random ones.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, Vector3, dvector};
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Manifold, Pose2};

@@ -1,7 +1,21 @@
 //! Law suites: run them on your own types.
 //!
 //! Each suite returns the first [`Violation`] with numbers instead of panicking, so that it serves in tests
-//! (`laws::manifold(&points).unwrap()`) and in tools.
+//! (`laws::manifold(&points).unwrap()`) and in tools. `examples/custom_state.rs` runs them on a state of its own.
 
+mod check;
+mod filter;
+mod jacobian;
+mod lie_group;
+mod manifold;
+mod models;
+mod samplers;
+mod tangents;
 mod violation;
+
+pub use filter::{FilterTrial, filter};
+pub use lie_group::lie_group;
+pub use manifold::{manifold, periodic};
+pub use models::{motion, sensor};
+pub use samplers::{likelihood, sample_motion};
 pub use violation::Violation;
