@@ -40,6 +40,8 @@ mod motion;
 mod policy;
 mod pose2;
 mod pose3;
+#[cfg(feature = "sampling")]
+mod sample_motion;
 mod scalar;
 mod sensor;
 
@@ -49,12 +51,14 @@ pub use bayes_filter::BayesFilter;
 pub use derivative::numerical_jacobian;
 pub use lie_group::LieGroup;
 pub use manifold::{Jacobian, Manifold, Tangent, TangentMatrix};
-pub use motion::{MotionModel, SampleMotion};
+pub use motion::MotionModel;
 pub use policy::{
     Always, And, EveryN, Never, Not, Or, Policy, PolicyExt, When, always, every_n, never, when,
 };
 pub use pose2::Pose2;
 pub use pose3::Pose3;
+#[cfg(feature = "sampling")]
+pub use sample_motion::SampleMotion;
 pub use scalar::{epsilon, to_f64};
 pub use sensor::{LikelihoodModel, LogWeight, SensorModel};
 

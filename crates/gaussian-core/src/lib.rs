@@ -27,11 +27,12 @@ mod ellipse;
 mod error;
 mod gaussian;
 mod index_set;
+mod likelihood;
 mod merge;
 mod mixture;
-mod model_adapters;
 mod product;
-mod sample;
+#[cfg(feature = "sampling")]
+mod sampling;
 mod sigma_points;
 mod transform;
 mod unscented;
@@ -44,10 +45,11 @@ pub use covariance_intersection::{Intersection, IntersectionCriterion, covarianc
 pub use ellipse::CovarianceEllipse;
 pub use error::{GaussianError, IterationError};
 pub use gaussian::Gaussian;
+pub use likelihood::GaussianLikelihood;
 pub use merge::moment_matched;
 pub use mixture::{Mixture, log_sum_exp};
-pub use model_adapters::{GaussianLikelihood, GaussianMotion};
-pub use sample::Sampler;
+#[cfg(feature = "sampling")]
+pub use sampling::{GaussianMotion, Sampler};
 pub use sigma_points::{SigmaPoints, UnscentedParams};
 pub use unscented::{UnscentedTransform, weighted_moments};
 pub use weighted_mean::weighted_mean;

@@ -7,15 +7,19 @@ mod check;
 mod filter;
 mod jacobian;
 mod lie_group;
+mod likelihood;
 mod manifold;
 mod models;
-mod samplers;
+#[cfg(feature = "sampling")]
+mod sample_motion;
 mod tangents;
 mod violation;
 
 pub use filter::{FilterTrial, filter};
 pub use lie_group::lie_group;
+pub use likelihood::likelihood;
 pub use manifold::{manifold, periodic};
 pub use models::{motion, sensor};
-pub use samplers::{likelihood, sample_motion};
+#[cfg(feature = "sampling")]
+pub use sample_motion::sample_motion;
 pub use violation::Violation;

@@ -3,7 +3,8 @@ use rand::{Rng, distr::Distribution};
 use rand_distr::StandardNormal;
 use wayfix_estimation_traits::{Manifold, StateAlloc, Tangent, TangentMatrix};
 
-use crate::{Gaussian, covariance::semidefinite_factor};
+use super::semidefinite_factor::semidefinite_factor;
+use crate::Gaussian;
 
 /// $`x = μ ⊞ L n`$ with $`L L^T = Σ`$ and $`n ∼ N(0, I)`$.
 ///
@@ -59,7 +60,7 @@ where
 }
 
 /// $`L n`$ with $`n ∼ N(0, I)`$.
-pub(crate) fn sample_tangent<X: Manifold, R: Rng + ?Sized>(
+pub(super) fn sample_tangent<X: Manifold, R: Rng + ?Sized>(
     factor: &TangentMatrix<X>,
     dim: X::Dim,
     rng: &mut R,

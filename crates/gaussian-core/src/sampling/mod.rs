@@ -1,0 +1,9 @@
+//! Random points, for those who have a generator: feature `sampling`.
+
+mod gaussian;
+mod mixture;
+mod motion;
+mod semidefinite_factor;
+
+pub use gaussian::Sampler;
+pub use motion::GaussianMotion;
