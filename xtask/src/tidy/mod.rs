@@ -64,7 +64,8 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     findings.extend(links::check(&sources, &paths));
     findings.extend(size::lengths(&sources));
     findings.extend(size::weights(&files::weights(&paths)));
-    let kalman_tree = ["tree", "--locked", "-p", "wayfix-kalman", "-e", "normal", "--prefix", "none"];
+    let linked = "normal,no-proc-macro";
+    let kalman_tree = ["tree", "--locked", "-p", "wayfix-kalman", "-e", linked, "--prefix", "none"];
     findings.extend(size::tree("wayfix-kalman", &shell::output(&mut shell::command("cargo", &kalman_tree))?));
     let metadata = ["metadata", "--locked", "--format-version", "1"];
     findings.extend(msrv::check(&sources, &shell::output(&mut shell::command("cargo", &metadata))?));

@@ -48,7 +48,7 @@ pub(super) fn weights(files: &[(String, u64)]) -> Vec<Finding> {
         .collect()
 }
 
-/// Too many crates in what `cargo tree --prefix none` prints for `package`.
+/// Too many linked crates (macros run at compile time and are not counted) in what `cargo tree --prefix none` prints for `package`.
 pub(super) fn tree(package: &str, listing: &str) -> Vec<Finding> {
     // A crate that came before is listed again with a star.
     let crates: BTreeSet<_> =
@@ -56,7 +56,7 @@ pub(super) fn tree(package: &str, listing: &str) -> Vec<Finding> {
     if crates.len() <= TOO_MANY {
         return Vec::new();
     }
-    let what = format!("`cargo tree -p {package} -e normal` lists {} crates", crates.len());
+    let what = format!("`cargo tree -p {package} -e normal,no-proc-macro` lists {} crates", crates.len());
     vec![Finding::new(
         "Cargo.lock",
         0,
