@@ -66,3 +66,8 @@ pub use update::Update;
 
 /// The matrix library of every public signature, re-exported because its versions do not mix.
 pub use nalgebra;
+
+/// The code on the first page of the repository.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
