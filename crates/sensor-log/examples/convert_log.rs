@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use wayfix_sensor_log::{Format, OpenOptions, open, write};
+use wayfix_sensor_log::{Format, OpenOptions, convert, open};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -13,9 +13,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let format: Format = format.parse()?;
     let robot = robot.first().map(|robot| robot.parse()).transpose()?;
-    let mut log = open(input, &OpenOptions { robot, ..Default::default() })?;
-    print!("{}", write(output, format, log.by_ref())?);
-    print!("{}", log.report());
+    let log = open(input, &OpenOptions { robot, ..Default::default() })?;
+    let (read, written) = convert(log, output, format)?;
+    print!("{read}{written}");
 
     let back = open(output, &OpenOptions { format: Some(format), ..Default::default() })?;
     println!("{} records come back", back.count());

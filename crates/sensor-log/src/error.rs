@@ -21,6 +21,20 @@ pub enum LogError {
         /// What the system says.
         source: io::Error,
     },
+    /// A file cannot be made where it was asked for.
+    #[error("{}: cannot be written: {source}", path.display())]
+    NotCreated {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The output would replace the log that is read.
+    #[error("{}: is the log that is being read; write to another file", path.display())]
+    SameFile {
+        /// The file.
+        path: PathBuf,
+    },
     /// A folder where a file belongs.
     #[error("{}: is a folder without RobotN_*.dat files; give a log file, or the folder of a UTIAS set", path.display())]
     IsADirectory {

@@ -9,7 +9,8 @@
 //! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
 //! | [`Format::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
 //!
-//! [`write()`] writes records in any of these formats but the first, [`McapWriter`] also what viewers draw, [`LogSummary`] says what a log holds.
+//! [`write()`] writes records in any of these formats but the first, [`convert()`] a whole log, [`McapWriter`] also what viewers draw;
+//! [`LogSummary`] says what a log holds.
 //!
 //! A bad row never stops the reading: it is left out, counted by kind, and the first few are named with file and line.
 //!
@@ -25,6 +26,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod convert;
 mod error;
 mod format;
 mod log;
@@ -38,6 +40,7 @@ mod summary;
 mod text;
 mod write;
 
+pub use convert::convert;
 pub use error::LogError;
 pub use format::Format;
 pub use log::{Log, LogMeta};

@@ -20,10 +20,19 @@ pub struct Log {
 pub struct LogMeta {
     /// How it is stored.
     pub format: Format,
+    /// How it was stored before it was [converted](crate::convert), where it says so.
+    pub origin: Option<Format>,
     /// The file or folder.
     pub source: PathBuf,
     /// The robot whose records these are, in sets of several robots.
     pub robot: Option<u32>,
+}
+
+impl LogMeta {
+    /// The format in which the records were first stored, as far as it is known.
+    pub fn first_format(&self) -> Format {
+        self.origin.unwrap_or(self.format)
+    }
 }
 
 enum Records {

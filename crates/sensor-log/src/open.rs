@@ -39,7 +39,7 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Some(format) => format,
         None => Format::detect(path)?,
     };
-    let mut meta = LogMeta { format, source: path.into(), robot: None };
+    let mut meta = LogMeta { format, origin: None, source: path.into(), robot: None };
     let mut report = ReadReport::default();
     let records = match format {
         Format::Utias => {
@@ -52,6 +52,7 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Format::Mcap => {
             let mut records = McapRecords::open(path)?;
             let first = records.next(&mut report).ok_or_else(|| nothing_in(path, format, &report))?;
+            meta.origin = records.origin();
             return Ok(Log::streamed(meta, first, records, report));
         }
     };

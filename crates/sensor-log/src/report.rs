@@ -88,6 +88,10 @@ impl ReadReport {
     pub fn n_problems(&self) -> u64 {
         self.problems.values().sum()
     }
+    /// Whether all of the log was read: no problem, and an end where it should be.
+    pub fn is_clean(&self) -> bool {
+        self.n_problems() == 0 && self.end == LogEnd::Complete
+    }
     pub(crate) fn add(&mut self, problem: Problem) {
         *self.problems.entry(problem.kind).or_default() += 1;
         if self.examples.len() < MAX_EXAMPLES {

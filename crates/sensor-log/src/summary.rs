@@ -114,33 +114,70 @@ impl LogSummary {
 impl fmt::Display for LogSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.meta.source.display(), self.meta.format)?;
+        if let Some(origin) = self.meta.origin {
+            write!(f, " converted from {origin}")?;
+        }
         if let Some(robot) = self.meta.robot {
             write!(f, ", robot {robot}")?;
         }
         writeln!(f, ", {:.1} s", self.duration_seconds())?;
         for (kind, summary) in &self.kinds {
-            write!(f, "  {kind}: {}", summary.count)?;
+            write!(f, "  {kind:20} {:7} records", summary.count)?;
             match summary.rate_hz() {
-                Some(rate) => writeln!(f, " ({rate:.1} Hz)")?,
+                Some(rate) => writeln!(f, " {rate:8.1} Hz")?,
                 None => writeln!(f)?,
             }
         }
-        let (n_surveyed, n_seen) = (self.landmarks_surveyed.len(), self.landmarks_seen.len());
-        writeln!(
-            f,
-            "  landmarks: {n_surveyed} surveyed, {n_seen} sighted in {} sightings",
-            self.n_sightings
-        )?;
+        if self.n_sightings > 0 {
+            writeln!(f, "  seen {} times: {}", self.n_sightings, self.what_was_seen().join("; "))?;
+        }
+        write!(f, "{}", self.report)
+    }
+}
+
+impl LogSummary {
+    fn what_was_seen(&self) -> Vec<String> {
+        let mut seen = Vec::new();
+        if !self.landmarks_seen.is_empty() {
+            let n_surveyed = self.landmarks_seen.intersection(&self.landmarks_surveyed).count();
+            let n_seen = self.landmarks_seen.len();
+            seen.push(format!("{n_seen} landmarks with identity, {n_surveyed} of them with true position"));
+        }
+        if self.n_unlabelled > 0 {
+            seen.push(format!("{} times something without identity", self.n_unlabelled));
+        }
         if !self.robots_seen.is_empty() {
-            writeln!(f, "  robots sighted: {:?}", self.robots_seen)?;
+            let robots: Vec<String> = self.robots_seen.iter().map(u32::to_string).collect();
+            seen.push(format!("robots {}", robots.join(", ")));
         }
         if !self.unknown_codes.is_empty() {
             let n_sightings: u64 = self.unknown_codes.values().sum();
-            writeln!(f, "  unknown codes: {} in {n_sightings} sightings", self.unknown_codes.len())?;
+            seen.push(format!("{} unknown codes ({n_sightings} times)", self.unknown_codes.len()));
         }
-        if self.n_unlabelled > 0 {
-            writeln!(f, "  unlabelled sightings: {}", self.n_unlabelled)?;
-        }
-        write!(f, "{}", self.report)
+        seen
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{OpenOptions, open};
+
+    #[test]
+    fn a_person_reads_what_the_log_holds_and_where_it_errs() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("walk.txt");
+        std::fs::write(&path, "L 7 1 1\nO 1 0 0\nZ 7 2 0.1\nZ 8 2 0.1\nO 1 0 0\nZ ? 3 0.2\nZ 7 far 0\n")
+            .unwrap();
+        let text = LogSummary::of(open(&path, &OpenOptions::default()).unwrap()).to_string();
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        assert!(lines[0].ends_with("walk.txt: range-bearing, 0.1 s"), "{text}");
+        assert_eq!(lines[1], "odometry increment         2 records     10.0 Hz");
+        let seen = "seen 3 times: 2 landmarks with identity, 1 of them with true position; 1 times something without identity";
+        assert_eq!(lines[4], seen);
+        assert_eq!(
+            lines[5..],
+            ["6 rows read, 1 problems", "not a number: 1", "walk.txt:7: \"far\" is not a number"]
+        );
     }
 }

@@ -45,12 +45,24 @@ pub fn write(
     format: Format,
     records: impl IntoIterator<Item = Record>,
 ) -> Result<WriteReport, LogError> {
-    let path = path.as_ref();
+    write_from(path.as_ref(), format, None, records)
+}
+
+/// Writes records that were first stored in the format `origin`.
+pub(crate) fn write_from(
+    path: &Path,
+    format: Format,
+    origin: Option<Format>,
+    records: impl IntoIterator<Item = Record>,
+) -> Result<WriteReport, LogError> {
     let mut report = WriteReport::default();
     match format {
         Format::Utias => return Err(LogError::NotWritable { format }),
         Format::Mcap => {
             let mut writer = McapWriter::create(path)?;
+            if let Some(origin) = origin {
+                writer.origin(origin)?;
+            }
             for record in records {
                 writer.record(&record)?;
                 report.records_written += 1;
@@ -59,7 +71,9 @@ pub fn write(
         }
         Format::RangeBearing | Format::Tum => {
             let io = |source| LogError::io(path, source);
-            let mut out = BufWriter::new(File::create(path).map_err(io)?);
+            let file = File::create(path);
+            let file = file.map_err(|source| LogError::NotCreated { path: path.into(), source })?;
+            let mut out = BufWriter::new(file);
             let mut not_finite = None;
             let finite = records.into_iter().map_while(|record| match record.data.check_finite() {
                 Ok(()) => Some(record),

@@ -14,7 +14,7 @@ use proptest::prelude::*;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
     Data, Format, LogEnd, LogError, McapWriter, OpenOptions, PoseKind, Record, Sighting, Stamp, Target,
-    TrueLandmark, Velocity, open, write,
+    TrueLandmark, Velocity, convert, open, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -190,4 +190,42 @@ fn what_cannot_be_stored_is_refused() {
     let bad = Record { stamp: Stamp::default(), data: Data::TruePose(Pose2::new(f64::INFINITY, 0.0, 0.0)) };
     let path = folder.path().join("poses.txt");
     assert!(matches!(write(path, Format::Tum, [bad]), Err(LogError::NotFinite { .. })));
+}
+
+#[test]
+fn converting_keeps_where_the_records_come_from_even_in_a_file_cut_short() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let open_at = |name| open(at(name), &OpenOptions::default()).unwrap();
+    write(at("walk.txt"), Format::RangeBearing, common::drive(20)).unwrap();
+    convert(open_at("walk.txt"), at("first.mcap"), Format::Mcap).unwrap();
+    convert(open_at("first.mcap"), at("second.mcap"), Format::Mcap).unwrap();
+    let bytes = std::fs::read(at("first.mcap")).unwrap();
+    assert_eq!(std::fs::read(at("second.mcap")).unwrap(), bytes);
+    std::fs::write(at("cut.mcap"), &bytes[..bytes.len() / 2]).unwrap();
+    for name in ["first.mcap", "cut.mcap"] {
+        let meta = open_at(name).meta().clone();
+        assert_eq!((meta.format, meta.origin), (Format::Mcap, Some(Format::RangeBearing)));
+        assert_eq!(meta.first_format(), Format::RangeBearing);
+    }
+
+    write(at("plain.mcap"), Format::Mcap, common::drive(20)).unwrap();
+    convert(open_at("plain.mcap"), at("copy.mcap"), Format::Mcap).unwrap();
+    assert_eq!(std::fs::read(at("copy.mcap")).unwrap(), std::fs::read(at("plain.mcap")).unwrap());
+    assert_eq!(open_at("copy.mcap").meta().origin, None);
+}
+
+#[test]
+fn a_log_is_not_replaced_while_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mcap");
+    write(&path, Format::Mcap, common::drive(20)).unwrap();
+    let before = std::fs::read(&path).unwrap();
+    let again = folder.path().join(".").join("log.mcap");
+    let error = convert(open(&path, &OpenOptions::default()).unwrap(), again, Format::Mcap).unwrap_err();
+    assert!(matches!(error, LogError::SameFile { .. }));
+    assert_eq!(std::fs::read(&path).unwrap(), before);
+    let error =
+        convert(open(&path, &OpenOptions::default()).unwrap(), folder.path(), Format::Tum).unwrap_err();
+    assert!(matches!(error, LogError::NotCreated { .. }), "{error}");
 }

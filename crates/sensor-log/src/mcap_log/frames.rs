@@ -8,6 +8,9 @@ use crate::LogEnd;
 /// No sane writer makes larger chunks or messages; a damaged length must not fill the memory.
 pub(super) const MAX_RECORD_BYTES: usize = 128 << 20;
 
+/// Metadata beyond this is not ours; it is passed over.
+const MAX_METADATA_BYTES: u64 = 1 << 16;
+
 /// Opcode and length before each record.
 const HEAD_BYTES: usize = 9;
 /// What ends a file that is whole: the footer record and the magic.
@@ -24,7 +27,7 @@ pub(super) struct Frames<R> {
 
 /// One step through the file.
 pub(super) enum Frame {
-    /// A chunk, schema, channel or message, whole.
+    /// A chunk, schema, channel, message or metadata, whole.
     Record { opcode: u8, body: Vec<u8> },
     /// The beginning of a chunk after which the file breaks off.
     CutChunk { body: Vec<u8>, end: LogEnd },
@@ -69,6 +72,7 @@ impl<R: Read> Frames<R> {
             op::CHUNK | op::SCHEMA | op::CHANNEL | op::MESSAGE if !self.seen_data_end => {
                 self.keep(opcode, length)
             }
+            op::METADATA if length <= MAX_METADATA_BYTES => self.keep(opcode, length),
             _ => self.pass_over(opcode, length),
         }
     }

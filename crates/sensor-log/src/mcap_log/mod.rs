@@ -7,6 +7,7 @@ mod drawing;
 mod encode;
 mod fields;
 mod frames;
+mod origin;
 mod reader;
 mod reorder;
 mod routes;

@@ -10,6 +10,7 @@ use super::chunk::ChunkRecords;
 use super::decode;
 use super::fields::Fields;
 use super::frames::{Frame, Frames};
+use super::origin;
 use super::reorder::Reorder;
 use super::routes::Route;
 use crate::format::shortened;
@@ -37,6 +38,11 @@ impl McapRecords {
         }
         let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Self { frames: Frames::new(reader), chunk: None, messages: Messages::new(file) })
+    }
+
+    /// The format that the records come from, when it was announced so far.
+    pub(crate) fn origin(&self) -> Option<Format> {
+        self.messages.origin
     }
 
     /// The next record in time order; trouble goes into the report.
@@ -84,11 +90,12 @@ impl McapRecords {
     }
 }
 
-/// Schemas, channels and messages, wherever in the file they are.
+/// Schemas, channels, messages and metadata, wherever in the file they are.
 struct Messages {
     file: String,
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
+    origin: Option<Format>,
     n_messages: u64,
     reorder: Reorder,
 }
@@ -105,6 +112,7 @@ impl Messages {
             file,
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
+            origin: None,
             n_messages: 0,
             reorder: Reorder::default(),
         }
@@ -115,6 +123,10 @@ impl Messages {
             op::SCHEMA => self.schema(Fields(body)),
             op::CHANNEL => self.channel(Fields(body)),
             op::MESSAGE => self.message(Fields(body), report),
+            op::METADATA => {
+                self.origin = self.origin.or(origin::decode(body));
+                Some(())
+            }
             _ => Some(()),
         };
         if understood.is_none() {

@@ -9,6 +9,8 @@
 //! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
 //! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
 //!
+//! A metadata record `wayfix` with the key `origin` names the format that the records come from, when it was another one.
+//!
 //! `docs/adr/0002-mcap-topics.md` gives the reasons.
 
 /// Body velocities.

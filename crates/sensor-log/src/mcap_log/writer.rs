@@ -10,8 +10,8 @@ use mcap::records::MessageHeader;
 use wayfix_estimation_traits::Pose2;
 
 use super::drawing::scene_update;
-use super::{Drawing, encode, topics};
-use crate::{Data, LogError, Record, Stamp, TrueLandmark};
+use super::{Drawing, encode, origin, topics};
+use crate::{Data, Format, LogError, Record, Stamp, TrueLandmark};
 
 /// Messages are flushed in chunks of about this size: a crash loses no more.
 const CHUNK_BYTES: u64 = 256 << 10;
@@ -52,7 +52,7 @@ impl McapWriter<BufWriter<File>> {
     /// When it cannot be created.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, LogError> {
         let path = path.as_ref();
-        let file = File::create(path).map_err(|source| LogError::io(path, source))?;
+        let file = File::create(path).map_err(|source| LogError::NotCreated { path: path.into(), source })?;
         Self::new(BufWriter::new(file))
     }
 }
@@ -74,6 +74,16 @@ impl<W: Write + Seek> McapWriter<W> {
             landmarks: Vec::new(),
             landmarks_stamp: Stamp::default(),
         })
+    }
+
+    /// Says which format the records come from; reading gives it back as [`LogMeta::origin`](crate::LogMeta::origin).
+    ///
+    /// Call it before anything else is written: readers that stream meet it in time only there.
+    ///
+    /// # Errors
+    /// When the output fails.
+    pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
+        Ok(self.writer.write_metadata(&origin::encode(origin))?)
     }
 
     /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).

@@ -1,0 +1,40 @@
+use std::fs;
+use std::path::Path;
+
+use crate::write::write_from;
+use crate::{Format, Log, LogError, ReadReport, WriteReport};
+
+/// Writes what is left of a log into the file at `path`, replacing what is there, and tells what could not be read and not be written.
+///
+/// Records pass through one by one, so the memory does not grow with the log. An MCAP file keeps where its records come from
+/// ([`LogMeta::origin`](crate::LogMeta::origin)), so that a program can go on treating them as what they were.
+///
+/// ```
+/// use wayfix_sensor_log::{Format, OpenOptions, convert, open};
+/// # let folder = tempfile::tempdir()?;
+/// # let (text, mcap) = (folder.path().join("walk.txt"), folder.path().join("walk.mcap"));
+/// std::fs::write(&text, "O 1 0 0\nZ 7 2 0.1\n")?;
+/// let (read, written) = convert(open(&text, &OpenOptions::default())?, &mcap, Format::Mcap)?;
+/// assert_eq!((read.rows_read, written.records_written), (2, 2));
+/// assert_eq!(open(&mcap, &OpenOptions::default())?.meta().origin, Some(Format::RangeBearing));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When `path` is the log itself; else as [`write`](crate::write()).
+pub fn convert(
+    mut log: Log,
+    path: impl AsRef<Path>,
+    format: Format,
+) -> Result<(ReadReport, WriteReport), LogError> {
+    let path = path.as_ref();
+    // What is not there yet has no canonical path and cannot be the log.
+    let canonical = |path: &Path| fs::canonicalize(path).ok();
+    if canonical(path).is_some_and(|target| canonical(&log.meta().source) == Some(target)) {
+        return Err(LogError::SameFile { path: path.into() });
+    }
+    // An MCAP file of unknown origin says nothing about where its records come from.
+    let origin = Some(log.meta().first_format()).filter(|format| *format != Format::Mcap);
+    let written = write_from(path, format, origin, log.by_ref())?;
+    Ok((log.report().clone(), written))
+}

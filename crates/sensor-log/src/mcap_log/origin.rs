@@ -1,0 +1,56 @@
+//! Which format the records of an MCAP file come from: a metadata record, since no message has a place for it.
+//!
+//! It stands before the first message, so that a reader meets it even in a file that breaks off.
+
+use std::collections::BTreeMap;
+
+use mcap::records::Metadata;
+
+use super::fields::Fields;
+use crate::Format;
+
+const NAME: &str = "wayfix";
+const KEY: &str = "origin";
+
+pub(super) fn encode(origin: Format) -> Metadata {
+    Metadata { name: NAME.to_owned(), metadata: BTreeMap::from([(KEY.to_owned(), origin.to_string())]) }
+}
+
+/// The origin in the body of a metadata record; `None` in those of other programs and for formats of later versions.
+pub(super) fn decode(body: &[u8]) -> Option<Format> {
+    let mut fields = Fields(body);
+    if fields.str()? != NAME {
+        return None;
+    }
+    let n_bytes = fields.u32()? as usize;
+    let mut pairs = Fields(fields.0.get(..n_bytes)?);
+    while let (Some(key), Some(value)) = (pairs.str(), pairs.str()) {
+        if key == KEY {
+            return value.parse().ok();
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn body(name: &str, pairs: &[(&str, &str)]) -> Vec<u8> {
+        let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
+        let map: Vec<u8> = pairs.iter().flat_map(|(key, value)| [text(key), text(value)].concat()).collect();
+        [text(name), (map.len() as u32).to_le_bytes().to_vec(), map].concat()
+    }
+
+    #[test]
+    fn the_key_is_found_among_others_and_nothing_is_made_up() {
+        assert_eq!(decode(&body("wayfix", &[("a", "b"), ("origin", "utias")])), Some(Format::Utias));
+        assert_eq!(decode(&body("wayfix", &[("origin", "a format of the future")])), None);
+        assert_eq!(decode(&body("wayfix", &[("a", "origin")])), None);
+        assert_eq!(decode(&body("another program", &[("origin", "utias")])), None);
+        let whole = body("wayfix", &[("origin", "tum")]);
+        for n_bytes in 0..whole.len() {
+            assert_eq!(decode(&whole[..n_bytes]), None, "cut after {n_bytes} bytes");
+        }
+    }
+}
