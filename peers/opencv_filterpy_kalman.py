@@ -81,7 +81,7 @@ def main():
         for name, module, make in programs:
             if importlib.util.find_spec(module):
                 took = nanoseconds(make(*model(states, measurements), z), repeats=2000)
-                print(f"bench\tkalman_{states}x{measurements}\t{name}\t{took:.0f}", flush=True)
+                print(f"bench\tkalman {states}/{measurements}\t{name}\t{took:.0f}", flush=True)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ pub(super) struct Job {
 }
 
 pub(super) fn all(options: &Options) -> Result<Vec<Job>> {
-    let mut jobs = crate_benches()?;
+    let mut jobs = crate_benches(options)?;
     jobs.extend(slam_ours(options));
     if options.peers {
         jobs.extend(rust_peers()?);
@@ -40,9 +40,11 @@ fn job(name: impl Into<String>, command: Command) -> Job {
     Job { name: name.into(), command, missing: None, read: Box::new(parse_line) }
 }
 
-/// `benches/` of every crate.
-fn crate_benches() -> Result<Vec<Job>> {
-    let crates = crates_with("benches")?;
+/// `benches/` of every crate; those that have peers are measured by the peers' program, in the same run.
+fn crate_benches(options: &Options) -> Result<Vec<Job>> {
+    let with_peers = if options.peers { crates_with("peers/Cargo.toml")? } else { Vec::new() };
+    let mut crates = crates_with("benches")?;
+    crates.retain(|folder| !with_peers.contains(folder));
     Ok(crates
         .iter()
         .map(|folder| {
