@@ -33,8 +33,7 @@ pub fn convert(
     if canonical(path).is_some_and(|target| canonical(&log.meta().source) == Some(target)) {
         return Err(LogError::SameFile { path: path.into() });
     }
-    // An MCAP file of unknown origin says nothing about where its records come from.
-    let origin = Some(log.meta().first_format()).filter(|format| *format != Format::Mcap);
+    let origin = log.meta().first_format();
     let written = write_from(path, format, origin, log.by_ref())?;
     Ok((log.report().clone(), written))
 }

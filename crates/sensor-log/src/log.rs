@@ -29,7 +29,7 @@ pub struct LogMeta {
 }
 
 impl LogMeta {
-    /// The format in which the records were first stored, as far as it is known.
+    /// The format in which the records were first stored, as far as it is known; MCAP when nothing else is.
     pub fn first_format(&self) -> Format {
         self.origin.unwrap_or(self.format)
     }

@@ -45,14 +45,14 @@ pub fn write(
     format: Format,
     records: impl IntoIterator<Item = Record>,
 ) -> Result<WriteReport, LogError> {
-    write_from(path.as_ref(), format, None, records)
+    write_from(path.as_ref(), format, format, records)
 }
 
 /// Writes records that were first stored in the format `origin`.
 pub(crate) fn write_from(
     path: &Path,
     format: Format,
-    origin: Option<Format>,
+    origin: Format,
     records: impl IntoIterator<Item = Record>,
 ) -> Result<WriteReport, LogError> {
     let mut report = WriteReport::default();
@@ -60,9 +60,7 @@ pub(crate) fn write_from(
         Format::Utias => return Err(LogError::NotWritable { format }),
         Format::Mcap => {
             let mut writer = McapWriter::create(path)?;
-            if let Some(origin) = origin {
-                writer.origin(origin)?;
-            }
+            writer.origin(origin)?;
             for record in records {
                 writer.record(&record)?;
                 report.records_written += 1;

@@ -78,12 +78,16 @@ impl<W: Write + Seek> McapWriter<W> {
 
     /// Says which format the records come from; reading gives it back as [`LogMeta::origin`](crate::LogMeta::origin).
     ///
-    /// Call it before anything else is written: readers that stream meet it in time only there.
+    /// Call it before anything else is written: readers that stream meet it in time only there. MCAP as the origin leaves no trace,
+    /// since the file itself says so.
     ///
     /// # Errors
     /// When the output fails.
     pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
-        Ok(self.writer.write_metadata(&origin::encode(origin))?)
+        if origin != Format::Mcap {
+            self.writer.write_metadata(&origin::encode(origin))?;
+        }
+        Ok(())
     }
 
     /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).

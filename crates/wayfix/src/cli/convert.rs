@@ -3,23 +3,35 @@ use std::{path::PathBuf, process::ExitCode};
 use anyhow::{Result, bail};
 use wayfix_sensor_log::{Format, OpenOptions};
 
-/// Write a log in another format. MCAP keeps everything; what the others have no place for is counted.
+use super::output::{print, tell};
+
+/// Write a log in another format.
+///
+/// MCAP keeps everything, and where the records come from; Foxglove and Rerun open it. What the other formats have no place for is
+/// left out and counted: range-bearing text has no stamps and velocities, TUM has poses only.
 #[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log to read.
+    /// The log to read: a file, or the folder of a UTIAS set.
     input: PathBuf,
     /// The file to write: .mcap, .txt (range-bearing lines) or .tum (poses).
     output: PathBuf,
-    /// How the input is stored. Detected when not given.
-    #[arg(long)]
+    /// How the input is stored: utias, range-bearing, tum or mcap [default: found out by looking].
+    #[arg(long, value_name = "FORMAT")]
     from: Option<Format>,
-    /// How to store the output. By default what its ending says.
-    #[arg(long)]
+    /// How to store the output: mcap, range-bearing or tum [default: what its ending says].
+    #[arg(long, value_name = "FORMAT")]
     to: Option<Format>,
     /// Which robot, in sets of several.
-    #[arg(long)]
+    #[arg(long, value_name = "N")]
     robot: Option<u32>,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix convert slam_100.txt slam_100.mcap
+  wayfix convert MRCLAM_Dataset7 robot3.mcap --robot 3
+  wayfix convert results/estimates.mcap path.tum";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let extension = arguments.output.extension().and_then(|extension| extension.to_str());
@@ -34,11 +46,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         ),
     };
     let options = OpenOptions { format: arguments.from, robot: arguments.robot, ..OpenOptions::default() };
-    let (records, read) = wayfix_sensor_log::open(&arguments.input, &options)?.read_all();
-    if read.n_problems() > 0 {
-        eprintln!("{read}");
+    let log = wayfix_sensor_log::open(&arguments.input, &options)?;
+    let (read, written) = wayfix_sensor_log::convert(log, &arguments.output, format)?;
+    if !read.is_clean() {
+        tell(read);
     }
-    let written = wayfix_sensor_log::write(&arguments.output, format, records)?;
-    println!("{written}");
+    print(written)?;
     Ok(ExitCode::SUCCESS)
 }

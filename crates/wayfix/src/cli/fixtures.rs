@@ -2,6 +2,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::Result;
 
+use super::output::print;
 use crate::fixtures;
 
 #[derive(clap::Subcommand)]
@@ -25,7 +26,7 @@ pub(super) fn main(command: Command) -> Result<ExitCode> {
         Command::Check(arguments) => (fixtures::check(&arguments.folder)?, "same"),
     };
     for log in stored {
-        println!("{verb} {} ({} bytes)", log.path.display(), log.n_bytes);
+        print(format!("{verb} {} ({} bytes)\n", log.path.display(), log.n_bytes))?;
     }
     Ok(ExitCode::SUCCESS)
 }

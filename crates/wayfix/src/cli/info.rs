@@ -3,21 +3,39 @@ use std::{path::PathBuf, process::ExitCode};
 use anyhow::Result;
 use wayfix_sensor_log::{Format, LogSummary, OpenOptions};
 
-/// Tell what a log holds: records, rates, landmarks, robots, problems.
+use super::output::print;
+
+/// Tell what a log holds: kinds of records and their rates, landmarks, robots, what could not be read.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// The log.
+    /// The log: a file, or the folder of a UTIAS set.
     path: PathBuf,
-    /// How it is stored: utias, range-bearing, tum, mcap. Detected when not given.
+    /// How it is stored: utias, range-bearing, tum or mcap [default: found out by looking].
     #[arg(long)]
     format: Option<Format>,
     /// Which robot, in sets of several.
-    #[arg(long)]
+    #[arg(long, value_name = "N")]
     robot: Option<u32>,
 }
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };
-    print!("{}", LogSummary::of(wayfix_sensor_log::open(&arguments.path, &options)?));
+    let summary = LogSummary::of(wayfix_sensor_log::open(&arguments.path, &options)?);
+    print(format!("{summary}{}\n", usable_for(&summary)))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// What `wayfix run` can do with a log, or what it lacks.
+fn usable_for(summary: &LogSummary) -> &'static str {
+    let has = |kinds: &[&str]| kinds.iter().any(|kind| summary.kinds.contains_key(kind));
+    let sees_landmarks = !summary.landmarks_seen.is_empty() || summary.n_unlabelled > 0;
+    match (has(&["velocity", "odometry increment"]), sees_landmarks, has(&["true pose"])) {
+        (true, true, true) => "usable for `wayfix run slam`, with figures of accuracy",
+        (true, true, false) => {
+            "usable for `wayfix run slam`; without true poses there are no figures of accuracy"
+        }
+        (false, true, _) => "not usable for `wayfix run slam`: no odometry (velocities or increments)",
+        (true, false, _) => "not usable for `wayfix run slam`: no sightings of landmarks",
+        (false, false, _) => "not usable for `wayfix run slam`: neither odometry nor sightings of landmarks",
+    }
 }

@@ -4,6 +4,7 @@ mod convert;
 mod fixtures;
 mod info;
 mod input;
+mod output;
 mod progress;
 mod regress;
 mod run_slam;
@@ -26,16 +27,14 @@ struct Arguments {
     command: Command,
 }
 
+/// What an argument structure says of itself is its help; the groups say it here.
 #[derive(Subcommand)]
 enum Command {
     /// Run a system on a log.
     #[command(subcommand)]
     Run(Run),
-    /// Tell what a log holds.
     Info(info::Arguments),
-    /// Write a log in another format.
     Convert(convert::Arguments),
-    /// Run every system on the stored logs and judge the figures; ends with 1 when one is out of its bounds.
     Regress(regress::Arguments),
     /// Build or check the stored logs.
     #[command(subcommand)]
@@ -44,7 +43,6 @@ enum Command {
 
 #[derive(Subcommand)]
 enum Run {
-    /// EKF-SLAM: where the robot went and where the landmarks are.
     Slam(run_slam::Arguments),
 }
 
@@ -60,7 +58,7 @@ pub fn main() -> ExitCode {
     match result {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            output::tell(format!("error: {error:#}"));
             ExitCode::FAILURE
         }
     }

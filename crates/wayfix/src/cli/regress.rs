@@ -2,7 +2,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result};
 
-use super::progress;
+use super::{output::print, progress};
 use crate::{
     regress::{Options, n_runs, regress},
     report::{table, table::TableStyle},
@@ -12,22 +12,25 @@ use crate::{
 const SUITES: [&str; 1] = ["slam"];
 
 /// Run every system on the stored logs, and on public recordings where they are at hand, and judge the figures.
+///
+/// Each figure has bounds, and each bound a source: a paper, another program, or an argument (fixtures/SUITE.toml). Ends with 0 when
+/// every figure is within its bounds, else with 1. OUT/index.html shows trajectories, maps and figures.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// Suites to run; all by default.
-    #[arg(value_parser = SUITES)]
+    #[arg(value_name = "SUITE", value_parser = SUITES)]
     suites: Vec<String>,
     /// Folder of public recordings (README, "Data"); also taken from WAYFIX_DATA. Without it only stored logs run.
-    #[arg(long, env = "WAYFIX_DATA")]
+    #[arg(long, value_name = "DIR", env = "WAYFIX_DATA")]
     data: Option<PathBuf>,
     /// Folder for report.json, index.html and an MCAP of the estimates of each run.
-    #[arg(long, default_value = "target/regress")]
+    #[arg(long, value_name = "DIR", default_value = "target/regress")]
     out: PathBuf,
     /// Folder of the stored logs and of the plans with the bounds.
-    #[arg(long, default_value = "fixtures")]
+    #[arg(long, value_name = "DIR", default_value = "fixtures")]
     fixtures: PathBuf,
     /// Seed of every generator.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Stored logs only.
     #[arg(long)]
@@ -35,8 +38,8 @@ pub(super) struct Arguments {
     /// Take the figures of the stored logs as right from now on; look at the change first.
     #[arg(long)]
     bless: bool,
-    /// Threads; all cores by default. The figures do not depend on it.
-    #[arg(long)]
+    /// Threads [default: one a core]. The figures do not depend on it.
+    #[arg(long, value_name = "N")]
     threads: Option<usize>,
 }
 
@@ -62,10 +65,10 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     bar.finish_and_clear();
 
     report.write(&options.out)?;
-    print!("{}", table::report(&report, TableStyle::of_stdout()));
+    print(table::report(&report, TableStyle::of_stdout()))?;
     if options.data.is_none() && !options.quick {
-        println!("Public recordings were left out: no --data and no WAYFIX_DATA.");
+        print("Public recordings were left out: no --data and no WAYFIX_DATA.\n")?;
     }
-    println!("{0}/index.html  {0}/report.json", options.out.display());
+    print(format!("{0}/index.html  {0}/report.json\n", options.out.display()))?;
     Ok(if report.tally().all_pass() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

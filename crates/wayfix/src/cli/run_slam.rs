@@ -5,90 +5,120 @@ use std::{
 };
 
 use anyhow::{Context, Result};
-use wayfix_sensor_log::{Format, LogMeta, OpenOptions};
+use wayfix_sensor_log::{Format, LogEnd, LogMeta, OpenOptions, ReadReport, Record};
 
-use super::{input::read_toml, progress};
+use super::{
+    input::read_toml,
+    output::{print, tell},
+    progress,
+};
 use crate::{
     report::{Machine, Report, Run, RunSummary, Suite, table, table::TableStyle},
-    slam::{self, AssociationRule, EstimateLog, Profile, SlamSystemParams},
+    slam::{self, AssociationRule, EstimateLog, Profile, SlamRun, SlamSystemParams},
     system::Stopwatch,
 };
 
-/// EKF-SLAM on a log with odometry and range-bearing sightings of landmarks.
+/// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing sightings.
+///
+/// Where the log holds true poses, the run starts at the first of them and the figures tell how far it strays: `ate_rmse_m` as it is,
+/// `ate_aligned_rmse_m` after the best rigid fit of the path, `landmark_…` the same for the map, `nees_mean` how sure the filter is
+/// (3 when it is honest; far above: too sure of itself). Without truth these figures are absent.
+///
+/// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
+/// It ends with 1 when nothing could be done, with 2 when the command line is wrong.
 #[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log: an MCAP file, a folder of the UTIAS set, a text file of range-bearing lines.
-    #[arg(long)]
+    /// The log: an MCAP file, the folder of a UTIAS set, or a text file of range-bearing lines.
+    #[arg(long, value_name = "PATH")]
     log: PathBuf,
-    /// How the log is stored: utias, range-bearing, mcap. Detected when not given.
+    /// How the log is stored: utias, range-bearing or mcap [default: found out by looking].
     #[arg(long)]
     format: Option<Format>,
     /// Which robot, in sets of several.
-    #[arg(long)]
+    #[arg(long, value_name = "N")]
     robot: Option<u32>,
-    /// How sightings find their landmarks: by identity, or nearest neighbour with two thresholds. By default by identity where the
-    /// log has identities.
-    #[arg(long)]
+    /// How sightings find their landmarks [default: known where the log has identities, else nn].
+    #[arg(long, value_name = "RULE")]
     association: Option<AssociationRule>,
-    /// Defaults of a kind of robot. By default what the format of the log tells, else generic.
+    /// The kind of robot whose noise and timing are the defaults [default: by the format of the log, else generic].
     #[arg(long)]
     profile: Option<Profile>,
-    /// Parameters in a TOML file; those it does not name keep the defaults of the profile.
-    #[arg(long)]
+    /// A TOML file of parameters.
+    ///
+    /// What it does not name keeps the default of the profile. `--print-params` shows all of them.
+    #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP. Nothing is written without it.
+    /// Print the parameters that would be used, as TOML, and end: a file to start from.
     #[arg(long)]
+    print_params: bool,
+    /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP.
+    ///
+    /// It is created where need be. Nothing is written without it.
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print one JSON object instead of a table.
+    ///
+    /// `{"metrics": {name: number}, "events": {name: count}, "seed": n}`; units are in the names.
     #[arg(long)]
     json: bool,
-    /// Seed of every generator. EKF-SLAM draws nothing; the seed is passed on to the output.
-    #[arg(long, default_value_t = 1)]
+    /// Seed of every generator.
+    ///
+    /// EKF-SLAM draws nothing; the seed is passed on to the output.
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run slam --log slam_100.txt                                    figures as a table
+  wayfix run slam --log slam_100.txt --association nn --json            identities not used
+  wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results         results/index.html
+  wayfix run slam --log my.mcap --print-params > my.toml                a file to edit, for
+  wayfix run slam --log my.mcap --params my.toml
+
+A file of parameters names what differs from the defaults, for instance
+  [sensor]
+  range_sigma = 0.10      # m
+  bearing_sigma = 0.03    # rad";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };
     let log = wayfix_sensor_log::open(&arguments.log, &options)?;
     let params = params(&arguments, log.meta())?;
+    if arguments.print_params {
+        print(toml::to_string(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let origin = log.meta().first_format();
     let (records, read) = log.read_all();
-    if read.n_problems() > 0 {
-        eprintln!("{read}");
+    if !read.is_clean() {
+        tell(&read);
     }
 
     let stopwatch = Stopwatch::start();
-    let mut estimates = arguments.out.as_deref().map(open_estimates).transpose()?;
-    let bar = progress::bar(records.len(), "EKF-SLAM");
-    let mut index = 0;
-    let mut slam = slam::run(&records, &params, |system| {
-        if let Some(estimates) = &mut estimates {
-            estimates.observe(&records[index], system);
-        }
-        index += 1;
-        bar.inc(1);
-    })?;
-    bar.finish_and_clear();
-    for refusal in slam.events().refusals() {
-        eprintln!("refused {refusal}");
-    }
-    slam.events().add("log_problem", read.n_problems());
+    let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut slam = run(&records, &params, estimates.as_mut())?;
+    tell_refusals(&mut slam);
+    count_problems(&mut slam, &read);
 
     let mut run = Run {
         name: arguments.log.display().to_string(),
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..slam::summarize(&mut slam)
     };
-    if arguments.json {
-        println!("{}", serde_json::to_string(&RunSummary::new(&run, arguments.seed))?);
+    let figures = if arguments.json {
+        serde_json::to_string(&RunSummary::new(&run, arguments.seed))? + "\n"
     } else {
-        print!("{}", table::run(&run, TableStyle::of_stdout()));
-    }
+        table::run(&run, TableStyle::of_stdout())
+    };
     if let (Some(out), Some(estimates)) = (&arguments.out, estimates) {
         estimates.finish()?;
         run.log = Some(ESTIMATES.to_owned());
         run.figures = slam::pictures(&slam)?;
         write_report(out, run, arguments.seed)?;
     }
+    print(figures)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -97,16 +127,54 @@ const ESTIMATES: &str = "estimates.mcap";
 fn params(arguments: &Arguments, meta: &LogMeta) -> Result<SlamSystemParams> {
     let profile = arguments.profile.unwrap_or(Profile::of_log(meta));
     let mut params = match &arguments.params {
-        Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?,
+        Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?
+            .validated()
+            .with_context(|| format!("parameters in {} are not usable", path.display()))?,
         None => SlamSystemParams::of(profile),
     };
     params.association = arguments.association.or(params.association);
     Ok(params)
 }
 
-fn open_estimates(out: &Path) -> Result<EstimateLog> {
+fn open_estimates(out: &Path, origin: Format) -> Result<EstimateLog> {
     fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-    Ok(EstimateLog::create(&out.join(ESTIMATES))?)
+    let mut estimates = EstimateLog::create(&out.join(ESTIMATES))?;
+    estimates.origin(origin)?;
+    Ok(estimates)
+}
+
+fn run(
+    records: &[Record],
+    params: &SlamSystemParams,
+    mut estimates: Option<&mut EstimateLog>,
+) -> Result<SlamRun> {
+    let bar = progress::bar(records.len(), "EKF-SLAM");
+    let mut remaining = records.iter();
+    let slam = slam::run(records, params, |system| {
+        if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
+            estimates.observe(record, system);
+        }
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    slam
+}
+
+fn tell_refusals(slam: &mut SlamRun) {
+    for refusal in slam.events().refusals() {
+        tell(format!("refused {refusal}"));
+    }
+    let n_unlisted = slam.events().n_unlisted();
+    if n_unlisted > 0 {
+        tell(format!("refused … and {n_unlisted} more"));
+    }
+}
+
+fn count_problems(slam: &mut SlamRun, read: &ReadReport) {
+    slam.events().add("log_problem", read.n_problems());
+    if read.end != LogEnd::Complete {
+        slam.events().count("log_incomplete");
+    }
 }
 
 fn write_report(out: &Path, run: Run, seed: u64) -> Result<()> {
@@ -116,6 +184,6 @@ fn write_report(out: &Path, run: Run, seed: u64) -> Result<()> {
     }
     let suites = vec![Suite { name: "slam".to_owned(), runs: vec![run] }];
     Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
-    eprintln!("wrote index.html, report.json, {ESTIMATES} and the figures as SVG to {}", out.display());
+    tell(format!("wrote index.html, report.json, {ESTIMATES} and the figures as SVG to {}", out.display()));
     Ok(())
 }

@@ -3,7 +3,7 @@ use std::{fs::File, io::BufWriter, path::Path};
 use nalgebra::Matrix2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{Drawing, LogError, McapWriter, Record, Shape, topics};
+use wayfix_sensor_log::{Drawing, Format, LogError, McapWriter, Record, Shape, topics};
 
 use super::{Keyframe, SlamSystem};
 
@@ -29,6 +29,14 @@ impl EstimateLog {
     /// When it cannot be created.
     pub fn create(path: &Path) -> Result<Self, LogError> {
         Ok(Self { writer: McapWriter::create(path)?, n_written: 0, path: Vec::new(), failure: None })
+    }
+
+    /// Says which format the records of the log come from; before the first of them.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
+        self.writer.origin(origin)
     }
 
     /// Writes a record of the log and what the system made of it. A failure is kept until [`finish`](Self::finish).

@@ -3,8 +3,10 @@
 mod commands;
 mod estimates;
 mod figures;
+mod in_sequence;
 mod params;
 mod pictures;
+mod ranges;
 mod run;
 mod system;
 

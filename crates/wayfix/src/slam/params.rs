@@ -69,9 +69,9 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// The robot that recorded a log, as far as its format tells.
+    /// The robot that recorded a log, as far as the format tells that it was first stored in.
     pub fn of_log(meta: &LogMeta) -> Self {
-        match meta.format {
+        match meta.first_format() {
             Format::Utias => Self::Utias,
             Format::RangeBearing => Self::RangeBearing,
             _ => Self::Generic,
@@ -145,7 +145,8 @@ impl SlamSystemParams {
     /// Parameters from TOML text; what it does not name keeps the default of the profile it names, else of `profile`.
     ///
     /// # Errors
-    /// When the text is not TOML, a key is unknown or a value has the wrong type.
+    /// When the text is not TOML, a key is unknown or a value has the wrong type. Ranges are checked by
+    /// [`validated`](Self::validated).
     pub fn from_toml(text: &str, profile: Profile) -> Result<Self, toml::de::Error> {
         #[derive(Deserialize)]
         struct Named {
@@ -171,6 +172,52 @@ fn overlay(lower: &mut toml::Table, upper: toml::Table) {
             (_, value) => {
                 lower.insert(key, value);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_changes_what_it_names_and_nothing_else() {
+        let text = "association = 'nn'\n[robot]\ncommand_delay = 0.2\n[filter.confirmation]\npatience = 7";
+        let params = SlamSystemParams::from_toml(text, Profile::Utias).unwrap();
+        let mut expected = SlamSystemParams::of(Profile::Utias);
+        expected.association = Some(AssociationRule::Nn);
+        expected.robot.command_delay = 0.2;
+        expected.filter.confirmation.patience = 7;
+        assert_eq!(params, expected);
+    }
+
+    #[test]
+    fn the_profile_of_the_file_goes_before_that_of_the_log() {
+        let params = SlamSystemParams::from_toml("profile = 'range-bearing'", Profile::Utias).unwrap();
+        assert_eq!(params, SlamSystemParams::of(Profile::RangeBearing));
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named() {
+        let error = |text| SlamSystemParams::from_toml(text, Profile::Generic).unwrap_err().to_string();
+        for (text, named) in [
+            ("[sensor]\nrange_sigm = 1.0", "`range_sigm`"),
+            ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
+            ("sensor = 3", "`sensor`"),
+            ("[filter]\noutliers = 'ignore'", "`filter.outliers`"),
+            ("[filter.confirmation]\nn_sightings = -1", "`filter.confirmation.n_sightings`"),
+            ("[sensor", "line 1"),
+        ] {
+            assert!(error(text).contains(named), "{text}: {}", error(text));
+        }
+    }
+
+    #[test]
+    fn parameters_survive_being_written() {
+        for profile in [Profile::Generic, Profile::RangeBearing, Profile::Utias] {
+            let params = SlamSystemParams::of(profile);
+            let text = toml::to_string(&params).unwrap();
+            assert_eq!(SlamSystemParams::from_toml(&text, Profile::Generic).unwrap(), params);
         }
     }
 }

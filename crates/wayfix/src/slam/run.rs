@@ -30,7 +30,7 @@ pub struct SlamRun {
 /// The start pose is the truth where odometry starts, else the origin; nothing else ties the run to the truth.
 ///
 /// # Errors
-/// When there is no odometry or no sighting to work with, or a parameter is out of range.
+/// When there is no odometry, no sighting, or none that can be used, or a parameter is out of range.
 pub fn run(
     records: &[Record],
     params: &SlamSystemParams,
@@ -49,19 +49,17 @@ pub fn run(
             "the log has no range-bearing sightings of landmarks (`wayfix info` shows what a log holds)"
         ),
     };
+    if association == AssociationRule::Known && has_identities(records) == Some(false) {
+        bail!("no sighting carries an identity: use nearest neighbour (--association nn)");
+    }
     let truth = TrueTrack::from_records(records);
     let start = truth.at(start_stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0));
     let mut system = SlamSystem::new(params.clone(), association, start_stamp, start)?;
     drive(&mut system, records, observe);
-    if system.keyframes().is_empty() {
-        let refused = system
-            .events()
-            .refusals()
-            .first()
-            .map(|refusal| format!("; first {refusal}"))
-            .unwrap_or_default();
+    if !has_used_a_sighting(system.events()) {
         bail!(
-            "nothing could be estimated: no look of the sensor since the start of odometry could be used{refused}"
+            "nothing could be estimated: no sighting since the start of odometry was of use{}",
+            why(system.events())
         );
     }
     let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or(start_stamp);
@@ -92,6 +90,21 @@ impl SlamRun {
     /// What happened.
     pub fn events(&mut self) -> &mut Events {
         self.system.events()
+    }
+}
+
+fn has_used_a_sighting(events: &Events) -> bool {
+    ["new_landmark", "accepted", "accepted_with_less_weight"].iter().any(|name| events.get(name) > 0)
+}
+
+/// The first refusal, or else what happened to the sightings.
+fn why(events: &Events) -> String {
+    let counts = || events.counts().into_iter().map(|(name, n)| format!("{name} {n}")).collect::<Vec<_>>();
+    match events.refusals() {
+        [first, rest @ ..] => {
+            format!("; {first} (and {} more records)", rest.len() as u64 + events.n_unlisted())
+        }
+        [] => format!(" ({})", counts().join(", ")),
     }
 }
 

@@ -1,4 +1,7 @@
-use std::time::Duration;
+use std::{
+    mem::{Discriminant, discriminant},
+    time::Duration,
+};
 
 use nalgebra::{Matrix3, Matrix4, Vector4};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
@@ -8,7 +11,7 @@ use wayfix_slam_ekf::{
     ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams, StepReport,
 };
 
-use super::{AssociationRule, SlamSystemParams, commands::Commands};
+use super::{AssociationRule, SlamSystemParams, commands::Commands, in_sequence::InSequence};
 use crate::system::{Events, Stopwatch, System};
 
 /// The estimate at the stamp of one look of the sensor, from everything up to it.
@@ -36,6 +39,8 @@ pub struct SlamSystem {
     filter: EkfSlam<ScaledRangeBearingSensor>,
     association: Rule,
     commands: Commands,
+    /// Velocities or increments: whichever came first.
+    odometry: Option<Discriminant<Data>>,
     /// The time that the filter's state is at.
     time: Stamp,
     dead_reckoning: Pose2<f64>,
@@ -43,6 +48,9 @@ pub struct SlamSystem {
     events: Events,
     step: Duration,
 }
+
+/// No robot is faster, m/s and rad/s; a command in force moves the robot until the next, so it must not be nonsense.
+const FASTEST: f64 = 1e3;
 
 enum Rule {
     Known(KnownIds),
@@ -60,6 +68,7 @@ impl SlamSystem {
         start_stamp: Stamp,
         start: Pose2<f64>,
     ) -> Result<Self, SlamError> {
+        let params = params.validated()?;
         let association = match rule {
             AssociationRule::Known => Rule::Known(KnownIds),
             AssociationRule::Nn => Rule::NearestNeighbour(NearestNeighbour::new(params.nearest_neighbour)?),
@@ -77,6 +86,7 @@ impl SlamSystem {
             filter: EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?,
             association,
             commands: Commands::new(&params.robot),
+            odometry: None,
             params,
             time: start_stamp,
             dead_reckoning: start,
@@ -96,10 +106,10 @@ impl SlamSystem {
     }
 
     fn take_velocity(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
-        if !(velocity.linear.is_finite() && velocity.angular.is_finite()) {
+        if !(velocity.linear.abs() <= FASTEST && velocity.angular.abs() <= FASTEST) {
+            let Velocity { linear, angular } = velocity;
             return Err(format!(
-                "velocity ({} m/s, {} rad/s) is not finite",
-                velocity.linear, velocity.angular
+                "velocity ({linear} m/s, {angular} rad/s) is beyond {FASTEST} or not finite"
             ));
         }
         self.commands.push(stamp, velocity);
@@ -134,9 +144,15 @@ impl SlamSystem {
         };
         self.step += stopwatch.elapsed();
         let report = report.map_err(|error| error.to_string())?;
-        self.count(&report);
+        self.count(&observations, &report);
         self.add_keyframe(stamp, &report);
         Ok(())
+    }
+
+    /// A log may tell of the same motion twice, as velocities and as increments; the first kind moves the robot.
+    fn moves_by(&mut self, odometry: &Data) -> bool {
+        let kind = discriminant(odometry);
+        *self.odometry.get_or_insert(kind) == kind
     }
 
     /// When the sensor saw what has this stamp.
@@ -145,18 +161,17 @@ impl SlamSystem {
         Stamp::from_nanoseconds(stamp.nanoseconds().saturating_sub(latency))
     }
 
-    /// Moves the robot on with its commands.
+    /// Moves the robot on with its commands; all of them or none.
     fn advance_to(&mut self, time: Stamp) -> Result<(), String> {
         if time <= self.time {
             return Ok(());
         }
         let stopwatch = Stopwatch::start();
-        for control in self.commands.between(self.time, time) {
-            self.filter
-                .predict(&ScaledMotion(self.params.velocity), &control)
-                .map_err(|error| error.to_string())?;
-            self.dead_reckoning = self.dead_reckoning.compose(&self.params.velocity.increment(&control));
-        }
+        let controls = self.commands.between(self.time, time);
+        let motion = InSequence(self.params.velocity);
+        let moved = self.filter.predict(&ScaledMotion(motion), controls.as_slice());
+        moved.map_err(|error| error.to_string())?;
+        self.dead_reckoning = motion.propagate(&self.dead_reckoning, &controls);
         self.step += stopwatch.elapsed();
         self.commands.forget_before(time);
         self.time = time;
@@ -165,16 +180,15 @@ impl SlamSystem {
 
     /// The filter is at the exposure of the last look; the keyframe says where the robot is at its stamp.
     fn add_keyframe(&mut self, stamp: Stamp, report: &StepReport<RangeBearing>) {
-        let (mut state, mut covariance) = (*self.filter.robot(), self.filter.robot_covariance());
-        let motion = ScaledMotion(self.params.velocity);
-        for control in self.commands.between(self.time, stamp) {
-            let jacobian = motion.jacobian(&state, &control);
-            covariance = jacobian * covariance * jacobian.transpose() + motion.noise(&state, &control);
-            state = motion.propagate(&state, &control);
-        }
+        let state = self.filter.robot();
+        let motion = ScaledMotion(InSequence(self.params.velocity));
+        let controls = self.commands.between(self.time, stamp);
+        let jacobian = motion.jacobian(state, &controls);
+        let covariance =
+            jacobian * self.filter.robot_covariance() * jacobian.transpose() + motion.noise(state, &controls);
         self.keyframes.push(Keyframe {
             stamp,
-            pose: state.pose,
+            pose: motion.propagate(state, &controls).pose,
             covariance: covariance.fixed_view::<3, 3>(0, 0).into_owned(),
             dead_reckoning: self.dead_reckoning,
             n_landmarks: self.filter.n_landmarks(),
@@ -206,27 +220,46 @@ impl SlamSystem {
         observations
     }
 
-    fn count(&mut self, report: &StepReport<RangeBearing>) {
-        for outcome in &report.outcomes {
-            self.events.count(match outcome {
-                Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
-                Outcome::Accepted { .. } => "accepted",
-                Outcome::Gated { .. } => "gated",
-                Outcome::Initialized { .. } => "new_landmark",
-                Outcome::Restarted { .. } => "restarted_landmark",
-                Outcome::Ambiguous => "ambiguous",
-                Outcome::Unlabelled => "unlabelled",
-                Outcome::Duplicate { .. } => "duplicate",
-                Outcome::Unusable => "unusable",
-                _ => "other",
-            });
+    fn count(&mut self, observations: &[Observation<RangeBearing>], report: &StepReport<RangeBearing>) {
+        for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
+            let name = event_name(outcome);
+            match outcome {
+                Outcome::Unusable => {
+                    let (range, bearing) = (measurement.range, measurement.bearing.radians());
+                    let reason = format!("a range of {range} m at {bearing} rad is not usable");
+                    self.events.refuse(name, reason);
+                }
+                Outcome::Duplicate { landmark } => {
+                    self.events.refuse(name, format!("landmark {landmark} a second time in one look"));
+                }
+                _ => self.events.count(name),
+            }
         }
+    }
+}
+
+fn event_name(outcome: &Outcome<RangeBearing>) -> &'static str {
+    match outcome {
+        Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
+        Outcome::Accepted { .. } => "accepted",
+        Outcome::Gated { .. } => "gated",
+        Outcome::Initialized { .. } => "new_landmark",
+        Outcome::Restarted { .. } => "restarted_landmark",
+        Outcome::Ambiguous => "ambiguous",
+        Outcome::Unlabelled => "unlabelled",
+        Outcome::Duplicate { .. } => "duplicate",
+        Outcome::Unusable => "unusable",
+        _ => "other",
     }
 }
 
 impl System for SlamSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
+            Data::Velocity(_) | Data::OdometryIncrement(_) if !self.moves_by(&record.data) => {
+                self.events.count("second_odometry");
+                Ok(())
+            }
             Data::Velocity(velocity) => self.take_velocity(record.stamp, *velocity),
             Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
             Data::Sightings(sightings) => self.take_sightings(record.stamp, sightings),

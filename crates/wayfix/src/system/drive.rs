@@ -6,15 +6,79 @@ use super::System;
 pub fn drive<S: System>(system: &mut S, records: &[Record], mut observe: impl FnMut(&S)) {
     let mut latest = Stamp::default();
     for (index, record) in records.iter().enumerate() {
+        system.events().at_record(index, record.stamp);
         let taken = if record.stamp < latest {
-            Err(format!("time goes back by {:.6} s", latest.seconds_since(record.stamp)))
+            Err(format!("time goes back by {:.9} s", latest.seconds_since(record.stamp)))
         } else {
             latest = record.stamp;
             system.take(record)
         };
         if let Err(reason) = taken {
-            system.events().refuse(index, record.stamp, reason);
+            system.events().refuse("record_refused", reason);
         }
         observe(system);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use wayfix_sensor_log::{Data, Velocity};
+
+    use super::*;
+    use crate::system::Events;
+
+    /// Takes velocities forward, refuses the others.
+    #[derive(Default)]
+    struct OneWay {
+        taken: Vec<u64>,
+        events: Events,
+    }
+
+    impl System for OneWay {
+        fn take(&mut self, record: &Record) -> Result<(), String> {
+            match record.data {
+                Data::Velocity(velocity) if velocity.linear < 0.0 => Err("backwards".to_owned()),
+                _ => {
+                    self.taken.push(record.stamp.nanoseconds());
+                    Ok(())
+                }
+            }
+        }
+        fn events(&mut self) -> &mut Events {
+            &mut self.events
+        }
+    }
+
+    fn record(nanoseconds: u64, linear: f64) -> Record {
+        let data = Data::Velocity(Velocity { linear, angular: 0.0 });
+        Record { stamp: Stamp::from_nanoseconds(nanoseconds), data }
+    }
+
+    #[test]
+    fn what_goes_back_in_time_never_reaches_the_system_and_every_refusal_names_its_record() {
+        let mut system = OneWay::default();
+        let records = [record(10, 1.0), record(20, 1.0), record(15, 1.0), record(20, 1.0), record(30, -1.0)];
+        let mut n_observed = 0;
+        drive(&mut system, &records, |_| n_observed += 1);
+        assert_eq!(system.taken, [10, 20, 20]);
+        assert_eq!(n_observed, records.len());
+        assert_eq!(system.events.get("record_refused"), 2);
+        let refused: Vec<String> = system.events.refusals().iter().map(ToString::to_string).collect();
+        assert_eq!(
+            refused,
+            [
+                "record 2 at 0.000000015 s: time goes back by 0.000000005 s",
+                "record 4 at 0.000000030 s: backwards"
+            ]
+        );
+    }
+
+    #[test]
+    fn the_first_twenty_refusals_are_listed_and_the_rest_counted() {
+        let mut system = OneWay::default();
+        let records: Vec<Record> = (0..50).map(|stamp| record(stamp, -1.0)).collect();
+        drive(&mut system, &records, |_| {});
+        assert_eq!((system.events.refusals().len(), system.events.n_unlisted()), (20, 30));
+        assert_eq!(system.events.get("record_refused"), 50);
     }
 }

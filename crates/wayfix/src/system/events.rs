@@ -2,14 +2,27 @@ use std::{collections::BTreeMap, fmt};
 
 use wayfix_sensor_log::Stamp;
 
-/// How often each kind of event happened, and the first records that were refused.
+/// How often each kind of event happened, and the first records that could not be used.
+///
+/// ```
+/// use wayfix::system::Events;
+/// use wayfix_sensor_log::Stamp;
+/// let mut events = Events::default();
+/// events.at_record(7, Stamp::from_nanoseconds(5_000_000_000));
+/// events.count("accepted");
+/// events.refuse("unusable", "range 0 m".to_owned());
+/// assert_eq!((events.get("accepted"), events.get("unusable")), (1, 1));
+/// assert_eq!(events.refusals()[0].to_string(), "record 7 at 5.000000000 s: range 0 m");
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Events {
     counts: BTreeMap<&'static str, u64>,
     refusals: Vec<Refusal>,
+    n_refusals: u64,
+    record: (usize, Stamp),
 }
 
-/// A record that the system could not use.
+/// A record, or one of its sightings, that the system could not use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
     /// Its place among the log's records, from 0.
@@ -24,6 +37,10 @@ pub struct Refusal {
 const MOST_LISTED: usize = 20;
 
 impl Events {
+    /// Tells which record the events from now on belong to.
+    pub fn at_record(&mut self, index: usize, stamp: Stamp) {
+        self.record = (index, stamp);
+    }
     /// Counts an event.
     pub fn count(&mut self, name: &'static str) {
         self.add(name, 1);
@@ -32,10 +49,12 @@ impl Events {
     pub fn add(&mut self, name: &'static str, n: u64) {
         *self.counts.entry(name).or_default() += n;
     }
-    /// Counts a record that could not be used.
-    pub fn refuse(&mut self, index: usize, stamp: Stamp, reason: String) {
-        self.count("record_refused");
+    /// Counts an event, and lists the record with the reason why it, or a part of it, could not be used.
+    pub fn refuse(&mut self, name: &'static str, reason: String) {
+        self.count(name);
+        self.n_refusals += 1;
         if self.refusals.len() < MOST_LISTED {
+            let (index, stamp) = self.record;
             self.refusals.push(Refusal { index, stamp, reason });
         }
     }
@@ -50,6 +69,10 @@ impl Events {
     /// The first refusals.
     pub fn refusals(&self) -> &[Refusal] {
         &self.refusals
+    }
+    /// Refusals that are not listed any more.
+    pub fn n_unlisted(&self) -> u64 {
+        self.n_refusals - self.refusals.len() as u64
     }
 }
 
