@@ -147,8 +147,8 @@ impl LogSummary {
             seen.push(format!("{} times something without identity", self.n_unlabelled));
         }
         if !self.robots_seen.is_empty() {
-            let robots: Vec<String> = self.robots_seen.iter().map(u32::to_string).collect();
-            seen.push(format!("robots {}", robots.join(", ")));
+            let robots: Vec<String> = self.robots_seen.iter().map(|robot| format!("robot {robot}")).collect();
+            seen.push(robots.join(", "));
         }
         if !self.unknown_codes.is_empty() {
             let n_sightings: u64 = self.unknown_codes.values().sum();

@@ -161,7 +161,7 @@ fn a_chunk_with_a_wrong_checksum_is_left_out_and_the_next_one_read() {
 #[test]
 fn lengths_beyond_reason_are_an_error_at_once() {
     for (opcode, claimed) in
-        [(0x06_u8, u64::from(u32::MAX)), (0x05, u64::MAX), (0x03, 1 << 40), (0x04, 1 << 30)]
+        [(0x06_u8, u64::from(u32::MAX)), (0x05, u64::MAX), (0x03, 1 << 40), (0x04, 1 << 30), (0x7f, 1 << 60)]
     {
         let mut bytes = b"\x89MCAP0\r\n".to_vec();
         bytes.push(opcode);

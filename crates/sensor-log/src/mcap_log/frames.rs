@@ -8,6 +8,9 @@ use crate::LogEnd;
 /// No sane writer makes larger chunks or messages; a damaged length must not fill the memory.
 pub(super) const MAX_RECORD_BYTES: usize = 128 << 20;
 
+/// What is passed over may be an attachment of any size, but no file is larger than this.
+const MAX_FILE_BYTES: u64 = 1 << 50;
+
 /// Metadata beyond this is not ours; it is passed over.
 const MAX_METADATA_BYTES: u64 = 1 << 16;
 
@@ -73,6 +76,9 @@ impl<R: Read> Frames<R> {
                 self.keep(opcode, length)
             }
             op::METADATA if length <= MAX_METADATA_BYTES => self.keep(opcode, length),
+            _ if length > MAX_FILE_BYTES => {
+                Ok(Some(self.damaged(format!("record of kind {opcode} claims {length} bytes"))))
+            }
             _ => self.pass_over(opcode, length),
         }
     }

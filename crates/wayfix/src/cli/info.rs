@@ -7,6 +7,7 @@ use super::output::print;
 
 /// Tell what a log holds: kinds of records and their rates, landmarks, robots, what could not be read.
 #[derive(clap::Args)]
+#[command(after_long_help = FORMATS)]
 pub(super) struct Arguments {
     /// The log: a file, or the folder of a UTIAS set.
     path: PathBuf,
@@ -17,6 +18,20 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N")]
     robot: Option<u32>,
 }
+
+const FORMATS: &str = "\
+Formats:
+  utias          a folder with Barcodes.dat and RobotN_{Odometry,Measurement,Groundtruth}.dat
+  range-bearing  text without stamps, a step every 0.1 s, each in the order P, O, Z
+                   L id x y              a true landmark, m
+                   P x y heading         the true pose, m and rad
+                   O dx dy dheading      motion since the last step, in the robot frame before it
+                   Z id range bearing    a sighting, m and rad, 0 ahead, counter-clockwise; id ? when unknown
+                 L and P are for figures only and may be absent.
+  tum            t x y z qx qy qz qw lines: poses only
+  mcap           Foxglove protobuf messages on /odom/velocity (Odometry) or /odom/increment (PoseInFrame),
+                 /sightings (PointCloud with range, bearing, kind, id), /truth/pose (PoseInFrame),
+                 /truth/landmarks (PointCloud with x, y, id)";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };

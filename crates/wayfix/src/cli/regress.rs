@@ -20,7 +20,8 @@ pub(super) struct Arguments {
     /// Suites to run; all by default.
     #[arg(value_name = "SUITE", value_parser = SUITES)]
     suites: Vec<String>,
-    /// Folder of public recordings (README, "Data"); also taken from WAYFIX_DATA. Without it only stored logs run.
+    /// Folder of public recordings: utias_mrclam/MRCLAM_Dataset7, range_bearing/slam_100.txt and others (docs/accuracy.md). Without it
+    /// only stored logs run.
     #[arg(long, value_name = "DIR", env = "WAYFIX_DATA")]
     data: Option<PathBuf>,
     /// Folder for report.json, index.html and an MCAP of the estimates of each run.

@@ -20,9 +20,12 @@ use crate::{
 
 /// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing sightings.
 ///
-/// Where the log holds true poses, the run starts at the first of them and the figures tell how far it strays: `ate_rmse_m` as it is,
-/// `ate_aligned_rmse_m` after the best rigid fit of the path, `landmark_…` the same for the map, `nees_mean` how sure the filter is
-/// (3 when it is honest; far above: too sure of itself). Without truth these figures are absent.
+/// Where the log holds true poses, the run starts at the true pose where odometry starts, and the figures tell how far it strays:
+/// `ate_rmse_m` as it is, `ate_aligned_rmse_m` after the best rigid fit of the path, `landmark_…` the same for the map, `nees_mean`
+/// how sure the filter is (3 when it is honest; far above: too sure of itself). Without truth these figures are absent.
+///
+/// `n_rejected` counts what the filter refused: outside the gate, twice in one look, not usable, back in time. `step_…_us` is computing
+/// time a look of the sensor.
 ///
 /// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
 /// It ends with 1 when nothing could be done, with 2 when the command line is wrong.
@@ -161,10 +164,11 @@ fn run(
 }
 
 fn tell_refusals(slam: &mut SlamRun) {
-    for refusal in slam.events().refusals() {
+    let events = slam.events();
+    for refusal in events.refusals() {
         tell(format!("refused {refusal}"));
     }
-    let n_unlisted = slam.events().n_unlisted();
+    let n_unlisted = events.n_refusals() - events.refusals().len() as u64;
     if n_unlisted > 0 {
         tell(format!("refused … and {n_unlisted} more"));
     }

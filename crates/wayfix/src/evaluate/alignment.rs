@@ -40,3 +40,59 @@ pub fn rms_distance(
     });
     (n > 0).then(|| (sum / n as f64).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    use super::*;
+
+    const SEED: u64 = 11;
+
+    fn cloud(n: usize) -> Vec<Vector2<f64>> {
+        let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+        (0..n).map(|_| Vector2::new(rng.random_range(-9.0..9.0), rng.random_range(-9.0..9.0))).collect()
+    }
+
+    fn residual(estimated: &[Vector2<f64>], truth: &[Vector2<f64>], motion: &Pose2<f64>) -> f64 {
+        rms_distance(estimated.iter().copied().zip(truth.iter().copied()), motion).unwrap()
+    }
+
+    #[test]
+    fn a_rigid_motion_is_found_exactly() {
+        let estimated = cloud(20);
+        for heading in [0.0, 1e-9, 0.7, -2.5, 3.1, std::f64::consts::PI] {
+            let motion = Pose2::new(3.0, -40.0, heading);
+            let truth: Vec<_> = estimated.iter().map(|point| motion.transform(point)).collect();
+            let found = align(estimated.iter().copied().zip(truth.iter().copied()));
+            assert!(residual(&estimated, &truth, &found) < 1e-12, "heading {heading}");
+        }
+    }
+
+    #[test]
+    fn a_mirror_image_is_turned_as_well_as_can_be_but_never_mirrored() {
+        let truth = cloud(20);
+        let mirrored: Vec<_> = truth.iter().map(|point| Vector2::new(point.x, -point.y)).collect();
+        let found = align(mirrored.iter().copied().zip(truth.iter().copied()));
+        let ours = residual(&mirrored, &truth, &found);
+        assert!(ours > 1.0, "a reflection would bring it to 0");
+        // Every other rotation about the centroids, in steps of a milliradian, is worse.
+        let center = |points: &[Vector2<f64>]| points.iter().sum::<Vector2<f64>>() / points.len() as f64;
+        for step in 0..6283 {
+            let rotation = Pose2::new(0.0, 0.0, 1e-3 * f64::from(step));
+            let translation = center(&truth) - rotation.transform(&center(&mirrored));
+            let other = Pose2 { translation, ..rotation };
+            assert!(residual(&mirrored, &truth, &other) >= ours - 1e-12, "step {step}");
+        }
+    }
+
+    #[test]
+    fn few_points_align_as_far_as_they_tell() {
+        assert_eq!(align(std::iter::empty()), Pose2::new(0.0, 0.0, 0.0));
+        assert_eq!(rms_distance(std::iter::empty(), &Pose2::new(0.0, 0.0, 0.0)), None);
+        let (estimated, truth) = (Vector2::new(1.0, 2.0), Vector2::new(-3.0, 5.0));
+        let found = align(std::iter::once((estimated, truth)));
+        assert_eq!((found.transform(&estimated), found.heading()), (truth, 0.0));
+    }
+}

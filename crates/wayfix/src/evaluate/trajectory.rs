@@ -56,3 +56,35 @@ pub fn trajectory_errors(samples: &[Sample]) -> Option<TrajectoryErrors> {
         nees_mean: (!nees.is_empty()).then(|| nees.iter().sum::<f64>() / nees.len() as f64),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_a_path_that_is_shifted_and_turned_by_known_amounts() {
+        let covariance = Matrix3::from_diagonal(&Vector3::new(0.04, 0.04, 0.01));
+        let sample = |x: f64| Sample {
+            estimate: Pose2::new(x, 0.3, 3.1),
+            covariance,
+            truth: Pose2::new(x, 0.0, -3.1),
+        };
+        let errors = trajectory_errors(&[sample(0.0), sample(1.0), sample(2.0)]).unwrap();
+        let turn = 2.0 * (std::f64::consts::PI - 3.1); // across ±π, not 6.2
+        assert!((errors.ate_rmse - 0.3).abs() < 1e-12);
+        assert!(errors.ate_aligned_rmse < 1e-12);
+        assert!((errors.heading_rmse - turn).abs() < 1e-12);
+        // (0.3 / 0.2)² from the position, in whatever direction of the body, since its covariance is round; the rest from the heading.
+        let nees = 2.25 + (turn / 0.1).powi(2);
+        assert!((errors.nees_mean.unwrap() - nees).abs() < 1e-9, "{errors:?}, not {nees}");
+    }
+
+    #[test]
+    fn a_pose_known_exactly_has_no_nees_and_no_pose_no_errors() {
+        let pose = Pose2::new(1.0, 2.0, 3.0);
+        let sample = Sample { estimate: pose, covariance: Matrix3::zeros(), truth: pose };
+        assert_eq!(sample.nees(), None);
+        assert_eq!(trajectory_errors(&[sample]).unwrap().nees_mean, None);
+        assert_eq!(trajectory_errors(&[]), None);
+    }
+}

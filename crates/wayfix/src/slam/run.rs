@@ -97,15 +97,13 @@ fn has_used_a_sighting(events: &Events) -> bool {
     ["new_landmark", "accepted", "accepted_with_less_weight"].iter().any(|name| events.get(name) > 0)
 }
 
-/// The first refusal, or else what happened to the sightings.
+/// The first refusal and how many there were, or else what happened to the sightings.
 fn why(events: &Events) -> String {
-    let counts = || events.counts().into_iter().map(|(name, n)| format!("{name} {n}")).collect::<Vec<_>>();
-    match events.refusals() {
-        [first, rest @ ..] => {
-            format!("; {first} (and {} more records)", rest.len() as u64 + events.n_unlisted())
-        }
-        [] => format!(" ({})", counts().join(", ")),
-    }
+    let Some(first) = events.refusals().first() else {
+        let counts: Vec<String> = events.counts().iter().map(|(name, n)| format!("{name} {n}")).collect();
+        return format!(" ({})", counts.join(", "));
+    };
+    format!("; the first of {} refusals: {first}", events.n_refusals())
 }
 
 /// Where the known start is: at the first velocity, which holds from there on; for increments, which lead from an earlier pose to

@@ -78,7 +78,7 @@ mod tests {
         let mut system = OneWay::default();
         let records: Vec<Record> = (0..50).map(|stamp| record(stamp, -1.0)).collect();
         drive(&mut system, &records, |_| {});
-        assert_eq!((system.events.refusals().len(), system.events.n_unlisted()), (20, 30));
+        assert_eq!((system.events.refusals().len(), system.events.n_refusals()), (20, 50));
         assert_eq!(system.events.get("record_refused"), 50);
     }
 }

@@ -70,9 +70,9 @@ impl Events {
     pub fn refusals(&self) -> &[Refusal] {
         &self.refusals
     }
-    /// Refusals that are not listed any more.
-    pub fn n_unlisted(&self) -> u64 {
-        self.n_refusals - self.refusals.len() as u64
+    /// How many refusals there were, listed or not.
+    pub fn n_refusals(&self) -> u64 {
+        self.n_refusals
     }
 }
 
