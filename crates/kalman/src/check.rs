@@ -18,7 +18,7 @@ pub(crate) fn shape(what: &'static str, expected: (usize, usize), got: (usize, u
 }
 
 /// Every entry is a finite number.
-#[inline]
+#[inline(always)]
 pub(crate) fn finite<T: RealField + Copy, R: Dim, C: Dim>(
     what: &'static str,
     matrix: &OMatrix<T, R, C>,
@@ -161,6 +161,21 @@ where
         }
     }
     Ok(l)
+}
+
+/// Why a covariance that no factorization takes is refused.
+#[cold]
+pub(crate) fn refused<T, D>(what: &'static str, matrix: &OMatrix<T, D, D>) -> crate::KalmanError
+where
+    T: RealField + Copy,
+    D: Dim,
+    DefaultAllocator: Allocator<D, D>,
+{
+    match check_covariance(what, matrix) {
+        Err(error) => error.into(),
+        // Only the rounding of another factorization let it pass.
+        Ok(()) => refused_pivot(what, matrix, 0, matrix[(0, 0)]),
+    }
 }
 
 #[cold]

@@ -1,11 +1,12 @@
-use nalgebra::{ComplexField, DefaultAllocator, OMatrix, linalg::Cholesky};
+use nalgebra::{ComplexField, DefaultAllocator, OMatrix};
 use wayfix_estimation_traits::{LogWeight, Manifold, Tangent, TangentMatrix, UpdateAlloc, to_f64};
-use wayfix_gaussian_core::cholesky;
+use wayfix_gaussian_core::check_covariance;
 
 use crate::{
     check,
     error::Checked,
-    product::{divide_by_covariance, times, times_transpose},
+    ldl::Ldl,
+    product::{times, times_transpose},
 };
 
 /// What a measurement said beyond what was expected: everything a gate, a plot, a likelihood or a test needs.
@@ -35,7 +36,7 @@ where
     residual: Tangent<Z>,
     covariance: TangentMatrix<Z>,
     cross_covariance: OMatrix<X::Scalar, X::Dim, Z::Dim>,
-    factor: Cholesky<X::Scalar, Z::Dim>,
+    ldl: Ldl<X::Scalar, Z::Dim>,
 }
 
 impl<X: Manifold, Z: Manifold<Scalar = X::Scalar>> Innovation<X, Z>
@@ -53,8 +54,9 @@ where
     ) -> Checked<Self> {
         let m = residual.nrows();
         check::shape("innovation covariance", (m, m), covariance.shape())?;
-        let factor = cholesky("innovation", &covariance)?;
-        Self::factored(residual, covariance, cross_covariance, factor)
+        check_covariance("innovation", &covariance)?;
+        let ldl = Ldl::new(&covariance).ok_or_else(|| check::refused("innovation", &covariance))?;
+        Self::factored(residual, covariance, cross_covariance, ldl)
     }
 
     /// With the factorization of the covariance at hand.
@@ -62,12 +64,12 @@ where
         residual: Tangent<Z>,
         covariance: TangentMatrix<Z>,
         cross_covariance: OMatrix<X::Scalar, X::Dim, Z::Dim>,
-        factor: Cholesky<X::Scalar, Z::Dim>,
+        ldl: Ldl<X::Scalar, Z::Dim>,
     ) -> Checked<Self> {
         check::dimension("cross-covariance", residual.nrows(), cross_covariance.ncols())?;
         check::finite("residual", &residual)?;
         check::finite("cross-covariance", &cross_covariance)?;
-        Ok(Self { residual, covariance, cross_covariance, factor })
+        Ok(Self { residual, covariance, cross_covariance, ldl })
     }
 
     /// $`y = z ⊟ h(x)`$.
@@ -82,20 +84,16 @@ where
     pub fn cross_covariance(&self) -> &OMatrix<X::Scalar, X::Dim, Z::Dim> {
         &self.cross_covariance
     }
-    /// The Cholesky factorization of $`S`$.
-    pub fn factor(&self) -> &Cholesky<X::Scalar, Z::Dim> {
-        &self.factor
-    }
     /// Dimension of the measurement: degrees of freedom of [`nis`](Self::nis).
     pub fn dim(&self) -> usize {
         self.residual.nrows()
     }
 
     /// The Kalman gain $`K = C S^{-1}`$, by solving.
-    #[inline]
+    #[inline(always)]
     pub fn gain(&self) -> OMatrix<X::Scalar, X::Dim, Z::Dim> {
         let mut gain = self.cross_covariance.clone();
-        divide_by_covariance(&mut gain, &self.covariance);
+        self.ldl.divide(&mut gain);
         gain
     }
 
@@ -106,21 +104,22 @@ where
 
     /// $`\ln N(y; 0, S)`$, nats.
     pub fn log_likelihood(&self) -> LogWeight {
-        let l = self.factor.l_dirty();
-        let half_log_determinant: f64 = (0..self.dim()).map(|i| to_f64(l[(i, i)]).ln()).sum();
-        -0.5 * (self.nis() + self.dim() as f64 * std::f64::consts::TAU.ln()) - half_log_determinant
+        let log_determinant: f64 = (0..self.dim()).map(|k| -to_f64(self.ldl.inverse_pivot(k)).ln()).sum();
+        -0.5 * (self.nis() + self.dim() as f64 * std::f64::consts::TAU.ln() + log_determinant)
     }
 
-    /// $`L^{-1} y`$ with $`L L^T = S`$: independent unit normal components when all is well.
+    /// $`D^{-1/2} L^{-1} y`$ with $`L D L^T = S`$: independent unit normal components when all is well.
     pub fn whitened(&self) -> Tangent<Z> {
         let mut whitened = self.residual.clone();
-        // Cannot fail: the diagonal of a Cholesky factor is positive.
-        self.factor.l_dirty().solve_lower_triangular_mut(&mut whitened);
+        self.ldl.whiten(&mut whitened);
+        for k in 0..whitened.nrows() {
+            whitened[k] *= ComplexField::sqrt(self.ldl.inverse_pivot(k));
+        }
         whitened
     }
 
     /// $`C = P H^T,\; S = H C + R`$ of a linearized sensor.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of_linearized(
         residual: Tangent<Z>,
         prior: &TangentMatrix<X>,
@@ -130,12 +129,9 @@ where
         let cross_covariance = times_transpose(prior, jacobian);
         let mut covariance = times(jacobian, &cross_covariance);
         covariance += noise;
-        match Cholesky::new(covariance.clone()) {
-            // Infinite pivots pass a factorization; `cholesky` knows them all.
-            Some(factor) if (0..residual.nrows()).all(|i| factor.l_dirty()[(i, i)].is_finite()) => {
-                Ok(Self { residual, covariance, cross_covariance, factor })
-            }
-            _ => Self::new(residual, covariance, cross_covariance),
+        match Ldl::new(&covariance) {
+            Some(ldl) => Ok(Self { residual, covariance, cross_covariance, ldl }),
+            None => Err(check::refused("innovation", &covariance)),
         }
     }
 }

@@ -31,6 +31,7 @@
 //! ```
 
 mod carry;
+mod certificate;
 mod check;
 mod consistency;
 mod error;
@@ -39,6 +40,7 @@ mod form;
 mod forms;
 mod gating;
 mod innovation;
+mod ldl;
 mod linear;
 mod linearize;
 mod observing;

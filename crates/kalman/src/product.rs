@@ -8,7 +8,7 @@ use wayfix_gaussian_core::symmetrize;
 
 /// $`F P F^T + Q`$. Like the others here it is exactly symmetric, and the caller checks that it is positive definite: matrices in a
 /// `Result` are copied, and small filters spend a third of their time copying.
-#[inline]
+#[inline(always)]
 pub(crate) fn propagated_covariance<T, D>(
     jacobian: &OMatrix<T, D, D>,
     covariance: &OMatrix<T, D, D>,
@@ -19,14 +19,19 @@ where
     D: Dim,
     DefaultAllocator: Allocator<D, D>,
 {
-    symmetric(times_transpose(&times(jacobian, covariance), jacobian) + noise)
+    let left = times(jacobian, covariance);
+    symmetric_sum(noise, T::one(), &left, jacobian)
 }
 
 /// $`(I - KH) P (I - KH)^T + K R K^T`$: the form of Joseph, right for any gain and kind to rounding.
-#[inline]
+///
+/// In two passes that never form $`I - KH`$: $`M = P - K C^T`$ with $`C = P H^T`$, then $`M + (K R - M H^T) K^T`$, which takes out of every observed
+/// direction what rounding left in it.
+#[inline(always)]
 pub(crate) fn joseph<T, D, M>(
     prior: &OMatrix<T, D, D>,
     gain: &OMatrix<T, D, M>,
+    cross_covariance: &OMatrix<T, D, M>,
     jacobian: &OMatrix<T, M, D>,
     noise: &OMatrix<T, M, M>,
 ) -> OMatrix<T, D, D>
@@ -36,15 +41,13 @@ where
     M: Dim,
     DefaultAllocator: UpdateAlloc<D, M>,
 {
-    let (n, _) = prior.shape_generic();
-    let remainder = OMatrix::identity_generic(n, n) - times(gain, jacobian);
-    symmetric(
-        times_transpose(&times(&remainder, prior), &remainder) + times_transpose(&times(gain, noise), gain),
-    )
+    let first = prior - times_transpose(gain, cross_covariance);
+    let rest = times(gain, noise) - times_transpose(&first, jacobian);
+    symmetric_sum(&first, T::one(), &rest, gain)
 }
 
 /// $`P - K C^T`$: the textbook difference, half the work of [`joseph`] and less forgiving.
-#[inline]
+#[inline(always)]
 pub(crate) fn plain_difference<T, D, M>(
     prior: &OMatrix<T, D, D>,
     gain: &OMatrix<T, D, M>,
@@ -56,29 +59,53 @@ where
     M: Dim,
     DefaultAllocator: UpdateAlloc<D, M>,
 {
-    symmetric(prior - times_transpose(gain, cross_covariance))
+    symmetric_sum(prior, -T::one(), gain, cross_covariance)
 }
 
-/// $`(P + P^T)/2`$; by whole matrices where they are small, since entry by entry stalls the vector units.
-fn symmetric<T, D>(mut matrix: OMatrix<T, D, D>) -> OMatrix<T, D, D>
+/// `base + sign · A Bᵀ`, where the product is symmetric up to rounding and the result is exactly: the lower triangle is computed, the
+/// upper one copied.
+#[inline(always)]
+fn symmetric_sum<T, D, K>(
+    base: &OMatrix<T, D, D>,
+    sign: T,
+    a: &OMatrix<T, D, K>,
+    b: &OMatrix<T, D, K>,
+) -> OMatrix<T, D, D>
 where
     T: RealField + Copy,
     D: Dim,
-    DefaultAllocator: Allocator<D, D>,
+    K: Dim,
+    DefaultAllocator: Allocator<D, D> + Allocator<D, K> + Allocator<K, D>,
 {
-    if matrix.nrows() < PACKED {
-        let half = nalgebra::convert::<f64, T>(0.5);
-        return (&matrix + matrix.transpose()) * half;
+    let (n, inner) = a.shape();
+    if n >= PACKED {
+        let mut sum = times_transpose(a, b) * sign + base;
+        symmetrize(&mut sum);
+        return sum;
     }
-    symmetrize(&mut matrix);
-    matrix
+    let mut sum = base.clone();
+    let (entries, a, b) = (sum.as_mut_slice(), a.as_slice(), b.as_slice());
+    for column in 0..n {
+        for k in 0..inner {
+            let factor = sign * b[column + k * n];
+            for row in column..n {
+                entries[row + column * n] += a[row + k * n] * factor;
+            }
+        }
+    }
+    for column in 1..n {
+        for row in 0..column {
+            entries[row + column * n] = entries[column + row * n];
+        }
+    }
+    sum
 }
 
 /// From this many rows on, the packed kernels of matrixmultiply beat nalgebra's loops, measured on x86-64.
 const PACKED: usize = 12;
 
 /// $`A B`$.
-#[inline]
+#[inline(always)]
 pub(crate) fn times<T, R, C, K>(a: &OMatrix<T, R, K>, b: &OMatrix<T, K, C>) -> OMatrix<T, R, C>
 where
     T: RealField + Copy,
@@ -104,7 +131,7 @@ where
 }
 
 /// $`A B^T`$, without forming the transpose of a large $`B`$.
-#[inline]
+#[inline(always)]
 pub(crate) fn times_transpose<T, R, C, K>(a: &OMatrix<T, R, K>, b: &OMatrix<T, C, K>) -> OMatrix<T, R, C>
 where
     T: RealField + Copy,
@@ -134,74 +161,4 @@ where
         T::zero(),
     );
     product
-}
-
-/// $`C ← C S^{-1}`$ by columns, with $`S = L D L^T`$: no square roots, whose latency a small update would wait for.
-///
-/// The caller has established that $`S`$ is positive definite; its lower triangle is read.
-#[inline]
-pub(crate) fn divide_by_covariance<T, D, M>(matrix: &mut OMatrix<T, D, M>, covariance: &OMatrix<T, M, M>)
-where
-    T: RealField + Copy,
-    D: Dim,
-    M: Dim,
-    DefaultAllocator: Allocator<D, M> + Allocator<M, M>,
-{
-    let (n, m) = matrix.shape();
-    if n == 0 || m == 0 {
-        return;
-    }
-    let unit_lower_over_pivots = inverted_pivots(covariance);
-    let factor = &unit_lower_over_pivots;
-    let entries = matrix.as_mut_slice();
-    // W Lᵀ = C: column j of W from those before it.
-    for j in 1..m {
-        let (before, rest) = entries.split_at_mut(j * n);
-        for (k, column) in before.chunks_exact(n).enumerate() {
-            subtract(&mut rest[..n], column, factor[(j, k)]);
-        }
-    }
-    for (j, column) in entries.chunks_exact_mut(n).enumerate() {
-        column.iter_mut().for_each(|entry| *entry *= factor[(j, j)]);
-    }
-    // K L = W D⁻¹: column j of K from those after it.
-    for j in (0..m).rev() {
-        let (before, after) = entries.split_at_mut((j + 1) * n);
-        for (k, column) in after.chunks_exact(n).enumerate() {
-            subtract(&mut before[j * n..], column, factor[(j + 1 + k, j)]);
-        }
-    }
-}
-
-/// $`L`$ of $`S = L D L^T`$, with $`D^{-1}`$ in place of its unit diagonal.
-#[inline]
-fn inverted_pivots<T, M>(covariance: &OMatrix<T, M, M>) -> OMatrix<T, M, M>
-where
-    T: RealField + Copy,
-    M: Dim,
-    DefaultAllocator: Allocator<M, M>,
-{
-    let mut factor = covariance.clone();
-    let m = factor.nrows();
-    let mut columns = factor.as_mut_slice();
-    for pivot in 0..m {
-        let (column, rest) = columns.split_at_mut(m);
-        let inverse = column[pivot].recip();
-        for (right, target) in rest.chunks_exact_mut(m).enumerate() {
-            let first = pivot + 1 + right;
-            let multiple = column[first] * inverse;
-            subtract(&mut target[first..], &column[first..], multiple);
-        }
-        column[pivot] = inverse;
-        column[pivot + 1..].iter_mut().for_each(|entry| *entry *= inverse);
-        columns = rest;
-    }
-    factor
-}
-
-#[inline]
-fn subtract<T: RealField + Copy>(target: &mut [T], column: &[T], factor: T) {
-    for (entry, other) in target.iter_mut().zip(column) {
-        *entry -= *other * factor;
-    }
 }

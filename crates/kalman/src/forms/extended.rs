@@ -62,7 +62,7 @@ where
         }
         let gain = innovation.gain();
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
-        let covariance = joseph(prior, &gain, &linear.jacobian, &linear.noise);
+        let covariance = joseph(prior, &gain, innovation.cross_covariance(), &linear.jacobian, &linear.noise);
         check::positive_definite("posterior", &covariance)?;
         let covariance = carried(covariance, belief.mean(), &mean)?;
         Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))

@@ -83,7 +83,8 @@ where
             last_step = in_sigmas(&step, &prior);
             let next = check::moved("iterate", &point, &step)?;
             if last_step <= self.tolerance.max(to_f64(epsilon::<X::Scalar>()).sqrt()) {
-                let covariance = joseph(&prior, &gain, &linear.jacobian, &linear.noise);
+                let covariance =
+                    joseph(&prior, &gain, fit.cross_covariance(), &linear.jacobian, &linear.noise);
                 check::positive_definite("posterior", &covariance)?;
                 let covariance = carried(covariance, &point, &next)?;
                 return Ok((innovation, Some(Gaussian::from_parts_unchecked(next, covariance))));

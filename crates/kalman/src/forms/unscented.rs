@@ -2,7 +2,7 @@ use nalgebra::{DefaultAllocator, Dim, OMatrix};
 use wayfix_estimation_traits::{
     Manifold, MotionModel, SensorModel, StateAlloc, Tangent, TangentMatrix, UpdateAlloc,
 };
-use wayfix_gaussian_core::{Gaussian, SigmaPoints, UnscentedParams, cholesky, symmetrize, weighted_mean};
+use wayfix_gaussian_core::{Gaussian, SigmaPoints, UnscentedParams, symmetrize, weighted_mean};
 
 use crate::{Extended, Form, Innovation, carry::carried, check, error::Checked};
 
@@ -122,8 +122,7 @@ where
             cross_covariance.ger(nalgebra::convert::<f64, X::Scalar>(*weight), state, seen, nalgebra::one());
         }
         symmetrize(&mut covariance);
-        let factor = cholesky("innovation", &covariance)?;
-        Innovation::factored(residual, covariance, cross_covariance, factor)
+        Innovation::new(residual, covariance, cross_covariance)
     }
 
     /// $`\sum w (χ - K ζ)(χ - K ζ)^T + K R K^T`$.

@@ -4,7 +4,9 @@ use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
 use super::{LinearMotion, LinearSensor};
 use crate::{
-    Innovation, KalmanError, Update, check,
+    Innovation, KalmanError, Update,
+    certificate::Floor,
+    check,
     error::Checked,
     product::{joseph, plain_difference, propagated_covariance},
 };
@@ -42,6 +44,7 @@ where
 {
     motion: LinearMotion<T, D>,
     estimate: Gaussian<OVector<T, D>>,
+    floor: Floor<T>,
 }
 
 impl<T: RealField + Copy, D: Dim> KalmanFilter<T, D>
@@ -55,7 +58,7 @@ where
     pub fn new(motion: LinearMotion<T, D>, prior: Gaussian<OVector<T, D>>) -> Result<Self, KalmanError> {
         check::dimension("prior", motion.transition().nrows(), prior.mean().nrows())?;
         check::positive_definite("prior", prior.covariance())?;
-        Ok(Self { motion, estimate: prior })
+        Ok(Self { motion, estimate: prior, floor: T::zero() })
     }
 
     /// What is believed now.
@@ -71,7 +74,7 @@ where
     ///
     /// # Errors
     /// When the displacement has the wrong size or something overflows; the filter is unchanged.
-    #[inline]
+    #[inline(always)]
     pub fn predict(&mut self, displacement: Option<&OVector<T, D>>) -> Result<(), KalmanError> {
         let transition = self.motion.transition();
         let mut mean = transition * self.estimate.mean();
@@ -80,8 +83,12 @@ where
             mean += displacement;
         }
         check::finite("predicted mean", &mean)?;
-        let covariance = propagated_covariance(transition, self.estimate.covariance(), self.motion.noise());
-        check::positive_definite("predicted", &covariance)?;
+        let prior = self.estimate.covariance();
+        let covariance = propagated_covariance(transition, prior, self.motion.noise());
+        self.floor = match self.motion.certificate().after(prior.trace()) {
+            Some(floor) => floor,
+            None => proved_by_elimination("predicted", &covariance)?,
+        };
         self.estimate = Gaussian::from_parts_unchecked(mean, covariance);
         Ok(())
     }
@@ -90,7 +97,7 @@ where
     ///
     /// # Errors
     /// When the measurement is unusable; the filter is unchanged.
-    #[inline]
+    #[inline(always)]
     pub fn update<M: Dim>(
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
@@ -108,7 +115,7 @@ where
     ///
     /// # Errors
     /// When the measurement is unusable or rounding makes the difference indefinite; the filter is unchanged.
-    #[inline]
+    #[inline(always)]
     pub fn update_plain<M: Dim>(
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
@@ -120,7 +127,7 @@ where
         let innovation = self.innovation(sensor, measurement)?;
         let gain = innovation.gain();
         let covariance = plain_difference(self.estimate.covariance(), &gain, innovation.cross_covariance());
-        self.accept(&gain, innovation.residual(), covariance)?;
+        self.accept(sensor, &gain, innovation.residual(), covariance)?;
         Ok(innovation)
     }
 
@@ -150,7 +157,7 @@ where
     ///
     /// # Errors
     /// When the measurement is unusable.
-    #[inline]
+    #[inline(always)]
     pub fn innovation<M: Dim>(
         &self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
@@ -176,14 +183,16 @@ where
     where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
+        let (prior, cross_covariance) = (self.estimate.covariance(), innovation.cross_covariance());
         let gain = innovation.gain();
-        let covariance = joseph(self.estimate.covariance(), &gain, sensor.matrix(), sensor.noise());
-        self.accept(&gain, innovation.residual(), covariance)
+        let covariance = joseph(prior, &gain, cross_covariance, sensor.matrix(), sensor.noise());
+        self.accept(sensor, &gain, innovation.residual(), covariance)
     }
 
     #[inline(always)]
     fn accept<M: Dim>(
         &mut self,
+        sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
         gain: &OMatrix<T, D, M>,
         residual: &OVector<T, M>,
         covariance: OMatrix<T, D, D>,
@@ -191,10 +200,27 @@ where
     where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
-        check::positive_definite("posterior", &covariance)?;
         let mean = self.estimate.mean() + gain * residual;
         check::finite("posterior mean", &mean)?;
+        self.floor = match sensor.certificate().after(self.floor, self.estimate.covariance().trace()) {
+            Some(floor) => floor,
+            None => proved_by_elimination("posterior", &covariance)?,
+        };
         self.estimate = Gaussian::from_parts_unchecked(mean, covariance);
         Ok(())
     }
+}
+
+/// Positive definite, but by how much nobody knows.
+#[cold]
+#[inline(never)]
+fn proved_by_elimination<T: RealField + Copy, D: Dim>(
+    what: &'static str,
+    covariance: &OMatrix<T, D, D>,
+) -> Checked<Floor<T>>
+where
+    DefaultAllocator: StateAlloc<D>,
+{
+    check::positive_definite(what, covariance)?;
+    Ok(T::zero())
 }

@@ -1,7 +1,7 @@
 use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, RealField};
 use wayfix_estimation_traits::{MotionModel, StateAlloc};
 
-use crate::{KalmanError, check};
+use crate::{KalmanError, certificate::MotionCertificate, check};
 
 /// $`x_k = F x_{k-1} + u_k + w_k,\; w_k ∼ N(0, Q)`$ with constant $`F`$ and $`Q`$, checked once.
 ///
@@ -21,6 +21,7 @@ where
 {
     transition: OMatrix<T, D, D>,
     noise: OMatrix<T, D, D>,
+    certificate: MotionCertificate<T>,
 }
 
 impl<T: RealField + Copy, D: Dim> LinearMotion<T, D>
@@ -36,7 +37,8 @@ where
         check::dimension("transition matrix", n, transition.ncols())?;
         check::finite("transition matrix", &transition)?;
         check::motion_noise(&noise, n)?;
-        Ok(Self { transition, noise })
+        let certificate = MotionCertificate::new(&transition, &noise);
+        Ok(Self { transition, noise, certificate })
     }
 
     /// A random walk: $`F = I`$.
@@ -55,6 +57,9 @@ where
     /// $`Q`$.
     pub fn noise(&self) -> &OMatrix<T, D, D> {
         &self.noise
+    }
+    pub(crate) fn certificate(&self) -> &MotionCertificate<T> {
+        &self.certificate
     }
 }
 

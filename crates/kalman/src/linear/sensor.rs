@@ -1,7 +1,7 @@
 use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, RealField};
 use wayfix_estimation_traits::{Manifold, SensorModel, UpdateAlloc};
 
-use crate::{KalmanError, check};
+use crate::{KalmanError, certificate::SensorCertificate, check};
 
 /// $`z = H x + v,\; v ∼ N(0, R)`$ with constant $`H`$ and $`R`$, checked once.
 ///
@@ -22,6 +22,7 @@ where
 {
     matrix: OMatrix<X::Scalar, Z::Dim, X::Dim>,
     noise: OMatrix<X::Scalar, Z::Dim, Z::Dim>,
+    certificate: SensorCertificate<X::Scalar>,
 }
 
 impl<T: RealField + Copy, D: Dim, M: Dim> LinearSensor<OVector<T, D>, OVector<T, M>>
@@ -35,7 +36,8 @@ where
     pub fn new(matrix: OMatrix<T, M, D>, noise: OMatrix<T, M, M>) -> Result<Self, KalmanError> {
         check::finite("measurement matrix", &matrix)?;
         check::sensor_noise(&noise, matrix.nrows())?;
-        Ok(Self { matrix, noise })
+        let certificate = SensorCertificate::new(&matrix, &noise);
+        Ok(Self { matrix, noise, certificate })
     }
 
     /// $`H`$.
@@ -45,6 +47,9 @@ where
     /// $`R`$.
     pub fn noise(&self) -> &OMatrix<T, M, M> {
         &self.noise
+    }
+    pub(crate) fn certificate(&self) -> &SensorCertificate<T> {
+        &self.certificate
     }
 }
 

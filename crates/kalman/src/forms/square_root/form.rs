@@ -1,4 +1,4 @@
-use nalgebra::{DefaultAllocator, Dim, OMatrix, RealField, linalg::Cholesky};
+use nalgebra::{DefaultAllocator, Dim, OMatrix, RealField};
 use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
 use wayfix_gaussian_core::{Gaussian, GaussianError, cholesky};
 
@@ -154,6 +154,6 @@ where
         let transposed = innovation_factor.transpose();
         let cross_covariance = scaled_gain * &transposed;
         let covariance = &innovation_factor * transposed;
-        Self::factored(residual, covariance, cross_covariance, Cholesky::pack_dirty(innovation_factor))
+        Self::factored(residual, covariance, cross_covariance, crate::ldl::Ldl::from_root(&innovation_factor))
     }
 }
