@@ -122,9 +122,10 @@ fn run_slam(options: &Options, planned: &PlannedRun, path: &Path) -> Result<Run>
     };
     params.association = planned.association.or(params.association);
 
-    let (records, read) = log.read_all();
     let file_name = format!("{}.mcap", planned.name);
     let mut estimates = EstimateLog::create(&options.out.join(&file_name))?;
+    estimates.origin(log.meta().first_format())?;
+    let (records, read) = log.read_all();
     let mut index = 0;
     let mut slam = slam::run(&records, &params, |system| {
         estimates.observe(&records[index], system);
