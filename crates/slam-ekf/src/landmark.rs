@@ -3,7 +3,7 @@ use std::fmt;
 use nalgebra::{DefaultAllocator, DimName, OVector, allocator::Allocator};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix, numerical_jacobian};
 
-use crate::{LandmarkDim, MeasurementDim, RobotDim, RobotState, SlamAlloc};
+use crate::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 /// The identity of a landmark in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -30,14 +30,14 @@ pub struct Observation<Z> {
 ///
 /// **Laws**: the Jacobians are the derivatives of [`expected`](Self::expected) in tangent coordinates (body frame for the robot);
 /// [`noise`](Self::noise) is symmetric positive definite; `expected(robot, initialize(robot, z).landmark)` is `z` for every `z` the sensor can
-/// give. Where a model is undefined (a bearing to where the robot stands) it returns non-finite numbers and the filter counts the
+/// give; [`laws::landmark_model`](crate::laws::landmark_model) checks them. Where a model is undefined (a bearing to where the robot stands) it returns non-finite numbers and the filter counts the
 /// observation as rejected.
 pub trait LandmarkModel
 where
     DefaultAllocator: SlamAlloc<RobotDim<Self>, LandmarkDim<Self>, MeasurementDim<Self>>,
 {
     /// What is estimated of the robot: `Pose2`, or more.
-    type Robot: RobotState;
+    type Robot: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
     /// What is in the map: `Vector2` for points.
     type Landmark: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
     /// What the sensor gives.

@@ -7,13 +7,14 @@
 //! predict      x_r ← f(x_r, u)                      O(n)      [predict]
 //! associate    which landmark is each sighting of   O(k n)    [DataAssociation]
 //! gate         is it compatible with it             O(k)      [Outcome::Gated]
-//! correct      all accepted sightings together      O(k n²)   Joseph form, sparse H, lower triangle
+//! correct      all accepted sightings together      O(k n²)   sparse H, lower triangle, never indefinite
 //! augment      certainly new ones enter the map     O(n)      tentative until confirmed
 //! forget       tentative ones not seen again        O(n²)     [Confirmation]
 //! ```
 //!
 //! A robot meets new kinds of landmarks through [`LandmarkModel`]: what to expect, how noisy, how to start. Everything else
-//! is the same for points, walls or radio beacons (`examples/range_only.rs`).
+//! is the same for points, walls or radio beacons (`examples/range_only.rs`); [`laws`] checks a model of your own.
+//! `examples/slam_in_a_loop.rs` is a whole filter in six steps.
 //!
 //! [Andrade-Cetto 2003, section 2; Dissanayake et al. 2001]
 //!
@@ -25,9 +26,9 @@ mod covariance;
 mod error;
 mod filter;
 mod landmark;
+pub mod laws;
 mod models;
 mod outcome;
-mod robot_state;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
@@ -41,7 +42,6 @@ pub use models::{
     ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion,
 };
 pub use outcome::{Outcome, StepReport};
-pub use robot_state::RobotState;
 
 /// The matrix library of every public signature.
 pub use wayfix_estimation_traits::nalgebra;

@@ -47,7 +47,8 @@ where
         /// The landmark.
         landmark: LandmarkId,
     },
-    /// NaN, infinite, or a measurement the model cannot use (a range that is not positive).
+    /// NaN, infinite, or a measurement the model cannot use (a range that is not positive, a noise that is no covariance, a landmark
+    /// that cannot start or cannot be seen from here).
     Unusable,
 }
 

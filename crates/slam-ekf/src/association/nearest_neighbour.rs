@@ -64,10 +64,11 @@ impl NearestNeighbour {
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
         while filter.knows(LandmarkId(self.next_id)) {
-            self.next_id += 1;
+            self.next_id = self.next_id.wrapping_add(1);
         }
-        self.next_id += 1;
-        LandmarkId(self.next_id - 1)
+        let free = LandmarkId(self.next_id);
+        self.next_id = self.next_id.wrapping_add(1);
+        free
     }
 }
 

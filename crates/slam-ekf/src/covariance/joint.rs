@@ -5,6 +5,8 @@ use nalgebra::{
     allocator::Allocator,
 };
 
+use super::ROUNDING;
+
 /// A covariance that grows, in a storage that doubles, so that a new landmark seldom moves the matrix. The robot comes first.
 #[derive(Clone, Debug)]
 pub(crate) struct JointCovariance {
@@ -55,7 +57,7 @@ impl JointCovariance {
                 self.storage[(column, row)] = moved[row];
             }
         }
-        let robot = (&robot + robot.transpose()) * 0.5;
+        let robot = (&robot + robot.transpose()) * 0.5 + self.rounding(jacobian);
         self.storage.view_mut((0, 0), (R::DIM, R::DIM)).copy_from(&robot);
     }
 
@@ -84,7 +86,7 @@ impl JointCovariance {
             }
         }
         let own = robot_jacobian * self.robot::<R>() * robot_jacobian.transpose() + noise;
-        let own = (&own + own.transpose()) * 0.5;
+        let own = (&own + own.transpose()) * 0.5 + self.rounding(robot_jacobian);
         self.storage.view_mut((offset, offset), (L::DIM, L::DIM)).copy_from(&own);
         self.dimension += L::DIM;
         offset
@@ -100,6 +102,20 @@ impl JointCovariance {
             }
         }
         self.dimension = dimension;
+    }
+
+    /// What a product $`J P_{rr} J^T`$ may have lost by rounding, where far away and sure of the way are added up.
+    fn rounding<D: DimName, R: DimName>(&self, jacobian: &OMatrix<f64, D, R>) -> OMatrix<f64, D, D>
+    where
+        DefaultAllocator: Allocator<D, D> + Allocator<D, R>,
+    {
+        let deviation =
+            |row: usize, state: usize| jacobian[(row, state)].abs() * self.storage[(state, state)].sqrt();
+        let largest_variance =
+            |row: usize| (0..R::DIM).map(|state| deviation(row, state)).sum::<f64>().powi(2);
+        OMatrix::<f64, D, D>::from_fn(
+            |row, column| if row == column { ROUNDING * largest_variance(row) } else { 0.0 },
+        )
     }
 
     fn reserve(&mut self, dimension: usize) {

@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DMatrixView, DVectorViewMut, Dyn, Storage};
+use nalgebra::{DMatrix, DMatrixView, DVector};
 
 /// Rows of an observation Jacobian: each touches the robot and one landmark.
 #[derive(Clone, Debug, Default)]
@@ -39,19 +39,8 @@ impl SparseJacobian {
         self.rows.len()
     }
 
-    /// $`P H^T`$, reading only the lower triangle of `P`.
-    pub(super) fn lower_times_transpose(&self, p: &DMatrixView<'_, f64>) -> DMatrix<f64> {
-        let mut product = DMatrix::zeros(p.nrows(), self.nrows());
-        for (row, mut column) in self.rows.iter().zip(product.column_iter_mut()) {
-            for (state, coefficient) in self.entries(row) {
-                add_symmetric_column(&mut column.as_view_mut(), coefficient, p, state);
-            }
-        }
-        product
-    }
-
-    /// $`P H^T`$ of a full symmetric `P`.
-    pub(super) fn symmetric_times_transpose(&self, p: &DMatrixView<'_, f64>) -> DMatrix<f64> {
+    /// $`P H^T`$ of a symmetric `P`.
+    pub(super) fn times_transpose(&self, p: &DMatrixView<'_, f64>) -> DMatrix<f64> {
         let mut product = DMatrix::zeros(p.nrows(), self.nrows());
         for (row, mut column) in self.rows.iter().zip(product.column_iter_mut()) {
             for (state, coefficient) in self.entries(row) {
@@ -62,12 +51,17 @@ impl SparseJacobian {
     }
 
     /// $`H X`$.
-    pub(super) fn times<S: Storage<f64, Dyn, Dyn>>(
-        &self,
-        x: &nalgebra::Matrix<f64, Dyn, Dyn, S>,
-    ) -> DMatrix<f64> {
+    pub(super) fn times(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(self.nrows(), x.ncols(), |r, c| {
             self.entries(&self.rows[r]).map(|(state, coefficient)| coefficient * x[(state, c)]).sum()
+        })
+    }
+
+    /// $`(\sum_i |h_i| \sqrt{P_{ii}})^2`$ of each row: what its variance would be if nothing cancelled.
+    pub(super) fn largest_variances(&self, p: &DMatrixView<'_, f64>) -> DVector<f64> {
+        let deviation = |(state, coefficient): (usize, f64)| coefficient.abs() * p[(state, state)].sqrt();
+        DVector::from_fn(self.nrows(), |row, _| {
+            self.entries(&self.rows[row]).map(deviation).sum::<f64>().powi(2)
         })
     }
 
@@ -75,18 +69,4 @@ impl SparseJacobian {
         let of = |range: &Range<usize>| self.coefficients[range.clone()].iter().copied();
         (0..).zip(of(&row.robot)).chain((row.offset..).zip(of(&row.landmark)))
     }
-}
-
-/// `column += coefficient · P[:, state]`, where only the lower triangle of `P` counts.
-fn add_symmetric_column(
-    column: &mut DVectorViewMut<'_, f64>,
-    coefficient: f64,
-    p: &DMatrixView<'_, f64>,
-    state: usize,
-) {
-    let n = p.nrows();
-    for above in 0..state {
-        column[above] += coefficient * p[(state, above)];
-    }
-    column.rows_mut(state, n - state).axpy(coefficient, &p.column(state).rows(state, n - state), 1.0);
 }

@@ -9,16 +9,16 @@ const PANEL: usize = 64;
 /// Columns solved one by one between two matrix products.
 const SOLVE_PANEL: usize = 24;
 
-/// `P ← P + sign · A Bᵀ` on the lower triangle, where the product is known to be symmetric.
-pub(super) fn add_to_lower(p: &mut DMatrixViewMut<'_, f64>, sign: f64, a: &DMatrix<f64>, b: &DMatrix<f64>) {
+/// `P ← P − W Wᵀ` on the lower triangle.
+pub(super) fn subtract_square_from_lower(p: &mut DMatrixViewMut<'_, f64>, w: &DMatrix<f64>) {
     let n = p.nrows();
-    let b_transposed = b.transpose();
+    let w_transposed = w.transpose();
     for panel in panels(n, PANEL) {
         let below = n - panel.start;
         p.view_mut((panel.start, panel.start), (below, panel.len())).gemm(
-            sign,
-            &a.rows(panel.start, below),
-            &b_transposed.columns(panel.start, panel.len()),
+            -1.0,
+            &w.rows(panel.start, below),
+            &w_transposed.columns(panel.start, panel.len()),
             1.0,
         );
     }

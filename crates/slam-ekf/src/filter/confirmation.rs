@@ -39,13 +39,16 @@ where
         slot.n_sightings >= self.params.confirmation.n_sightings
     }
 
+    pub(super) fn is_tentative(&self, id: LandmarkId) -> bool {
+        self.landmarks.get(&id).is_some_and(|slot| !self.is_confirmed(slot))
+    }
+
     pub(super) fn contradicts_its_start(
         &self,
         id: LandmarkId,
         innovation: &Innovation<M::Measurement>,
     ) -> bool {
-        let is_tentative = self.landmarks.get(&id).is_some_and(|slot| !self.is_confirmed(slot));
-        is_tentative && innovation.nis > self.params.confirmation.contradiction
+        self.is_tentative(id) && innovation.nis > self.params.confirmation.contradiction
     }
 
     pub(super) fn note_sighting(&mut self, id: LandmarkId) {

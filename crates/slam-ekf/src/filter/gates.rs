@@ -1,29 +1,23 @@
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use wayfix_gaussian_core::{ChiSquaredGate, GaussianError};
+
+use crate::SlamError;
 
 /// Chi-squared quantiles of one probability, computed once: a filter asks for them with every observation.
 #[derive(Clone, Debug)]
-pub(super) struct Gates {
-    probability: f64,
-    quantiles: [f64; LARGEST],
-}
-
-/// Measurements of more dimensions than a spatial pose are computed when they are asked for.
-const LARGEST: usize = 6;
+pub(super) struct Gates(Vec<f64>);
 
 impl Gates {
-    pub(super) fn from_probability(probability: f64) -> Self {
-        Self { probability, quantiles: std::array::from_fn(|i| quantile(i + 1, probability)) }
+    /// Thresholds for measurements of up to `largest` dimensions.
+    pub(super) fn from_probability(probability: f64, largest: usize) -> Result<Self, SlamError> {
+        let threshold = |dof| ChiSquaredGate::from_probability(dof, probability).map(|gate| gate.threshold());
+        let thresholds: Result<_, GaussianError> = (1..=largest).map(threshold).collect();
+        let range = "between 0 and 1, exclusive";
+        let out_of_range = |_| SlamError::Parameter { name: "gate_probability", value: probability, range };
+        thresholds.map(Self).map_err(out_of_range)
     }
 
-    pub(super) fn threshold(&self, degrees_of_freedom: usize) -> f64 {
-        match degrees_of_freedom.checked_sub(1).and_then(|i| self.quantiles.get(i)) {
-            Some(&quantile) => quantile,
-            None => quantile(degrees_of_freedom, self.probability),
-        }
+    /// For measurements of this dimension; 0, which nothing passes, beyond those that were asked for.
+    pub(super) fn threshold(&self, dimension: usize) -> f64 {
+        dimension.checked_sub(1).and_then(|index| self.0.get(index)).copied().unwrap_or(0.0)
     }
-}
-
-fn quantile(degrees_of_freedom: usize, probability: f64) -> f64 {
-    ChiSquared::new(degrees_of_freedom as f64)
-        .map_or(0.0, |distribution| distribution.inverse_cdf(probability))
 }

@@ -1,8 +1,9 @@
-use nalgebra::{DefaultAllocator, DimName, linalg::Cholesky};
-use wayfix_estimation_traits::{Jacobian, TangentMatrix};
+use nalgebra::{DefaultAllocator, DimName, allocator::Allocator, linalg::Cholesky};
+use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
 use super::{
     EkfSlam,
+    predict::{LARGEST_VARIANCE, check_covariance},
     state::{Slot, is_finite},
 };
 use crate::{
@@ -24,11 +25,11 @@ where
         covariance: TangentMatrix<M::Landmark>,
     ) -> Result<(), SlamError> {
         let robot_jacobian = Jacobian::<M::Landmark, M::Robot>::zeros();
-        self.append(
-            id,
-            NewLandmark { landmark, robot_jacobian, covariance },
-            self.params.confirmation.n_sightings,
-        )
+        let known = NewLandmark { landmark, robot_jacobian, covariance };
+        self.check_free(id)?;
+        self.check_start(&known)?;
+        self.append(id, known, self.params.confirmation.n_sightings);
+        Ok(())
     }
 
     /// Puts an anchor into the map: a landmark whose place in the world is known exactly.
@@ -39,7 +40,8 @@ where
     /// # Errors
     /// When the identity is taken or the landmark is not finite.
     pub fn add_anchor(&mut self, id: LandmarkId, landmark: M::Landmark) -> Result<(), SlamError> {
-        self.check_new(id, &landmark)?;
+        self.check_free(id)?;
+        check_finite(&landmark)?;
         self.anchors.insert(id, landmark);
         Ok(())
     }
@@ -57,43 +59,48 @@ where
         true
     }
 
-    /// Starts a landmark from its first measurement.
-    pub(super) fn initialize(
-        &mut self,
-        id: LandmarkId,
-        measurement: &M::Measurement,
-    ) -> Result<(), SlamError> {
-        self.append(id, self.model.initialize(&self.robot, measurement), 1)
+    /// Starts a landmark from one measurement, in place of a tentative one with the same identity. An error leaves that one as it was.
+    pub(super) fn start(&mut self, id: LandmarkId, measurement: &M::Measurement) -> Result<(), SlamError> {
+        let new = self.model.initialize(&self.robot, measurement);
+        self.check_start(&new)?;
+        if self.is_tentative(id) {
+            self.remove(id);
+        }
+        self.check_free(id)?;
+        self.append(id, new, 1);
+        Ok(())
     }
 
-    fn append(
-        &mut self,
-        id: LandmarkId,
-        new: NewLandmark<M::Landmark, M::Robot>,
-        n_sightings: usize,
-    ) -> Result<(), SlamError> {
-        self.check_new(id, &new.landmark)?;
-        if !new.robot_jacobian.iter().chain(new.covariance.iter()).all(|entry| entry.is_finite()) {
-            return Err(SlamError::NotFinite { what: "new landmark" });
-        }
-        let asymmetry = (&new.covariance - new.covariance.transpose()).amax();
-        let definite = Cholesky::new(new.covariance.clone()).is_some();
-        if !definite || asymmetry > 1e-9 * new.covariance.amax() {
-            let value = new.covariance.diagonal().min();
-            return Err(SlamError::NotACovariance { what: "landmark covariance", value, asymmetry });
-        }
+    fn append(&mut self, id: LandmarkId, new: NewLandmark<M::Landmark, M::Robot>, n_sightings: usize) {
         let offset = self.covariance.append(&new.robot_jacobian, &new.covariance);
         self.landmarks.insert(id, Slot { mean: new.landmark, offset, n_sightings, last_seen: self.look });
-        Ok(())
     }
 
-    fn check_new(&self, id: LandmarkId, landmark: &M::Landmark) -> Result<(), SlamError> {
-        if self.landmarks.contains_key(&id) || self.anchors.contains_key(&id) {
-            return Err(SlamError::LandmarkExists(id));
+    fn check_free(&self, id: LandmarkId) -> Result<(), SlamError> {
+        if self.knows(id) { Err(SlamError::LandmarkExists(id)) } else { Ok(()) }
+    }
+
+    /// A landmark may start where nothing is certain, but must be somewhere, and its covariance must be one.
+    fn check_start(&self, new: &NewLandmark<M::Landmark, M::Robot>) -> Result<(), SlamError> {
+        let NewLandmark { landmark, robot_jacobian, covariance } = new;
+        check_finite(landmark)?;
+        let what = "landmark covariance";
+        check_covariance(what, covariance)?;
+        if Cholesky::new(covariance.clone()).is_none() {
+            let value = covariance.diagonal().min();
+            return Err(SlamError::NotACovariance { what, value, asymmetry: 0.0 });
         }
-        if !is_finite(landmark) {
-            return Err(SlamError::NotFinite { what: "landmark" });
+        let joint = robot_jacobian * self.robot_covariance() * robot_jacobian.transpose() + covariance;
+        if !joint.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {
+            return Err(SlamError::NotFinite { what });
         }
         Ok(())
     }
+}
+
+fn check_finite<L: Manifold<Scalar = f64>>(landmark: &L) -> Result<(), SlamError>
+where
+    DefaultAllocator: Allocator<L::Dim>,
+{
+    if is_finite(landmark) { Ok(()) } else { Err(SlamError::NotFinite { what: "landmark" }) }
 }

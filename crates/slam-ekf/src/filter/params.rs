@@ -68,14 +68,15 @@ impl Default for SlamParams {
 
 impl SlamParams {
     pub(super) fn validated(self) -> Result<Self, SlamError> {
-        let (gate, degrees) = (self.gate_probability, self.student_t_degrees_of_freedom);
-        if !(gate > 0.0 && gate < 1.0) {
-            let range = "between 0 and 1, exclusive";
-            return Err(SlamError::Parameter { name: "gate_probability", value: gate, range });
-        }
+        let degrees = self.student_t_degrees_of_freedom;
         if !(degrees > 0.0 && degrees.is_finite()) {
             let range = "positive";
             return Err(SlamError::Parameter { name: "student_t_degrees_of_freedom", value: degrees, range });
+        }
+        let contradiction = self.confirmation.contradiction;
+        if contradiction.is_nan() || contradiction <= 0.0 {
+            let range = "positive";
+            return Err(SlamError::Parameter { name: "contradiction", value: contradiction, range });
         }
         Ok(self)
     }

@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DefaultAllocator, DimName, OMatrix, allocator::Allocator
 use wayfix_estimation_traits::{Manifold, MotionModel, Tangent, TangentMatrix};
 
 use super::{EkfSlam, state::is_finite};
-use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, RobotState, SlamAlloc, SlamError};
+use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError};
 
 impl<M: LandmarkModel> EkfSlam<M>
 where
@@ -37,17 +37,22 @@ where
     }
 
     /// Steps the robot's mean and takes its covariance along into the tangent space there.
+    ///
+    /// Without the second half the covariance would stay in the frame of the old heading. With it the filter is the same, number for
+    /// number, as one that keeps the robot's error in world coordinates.
     pub(super) fn step_robot(&mut self, step: &Tangent<M::Robot>) {
-        let transport = self.robot.transport(step);
-        self.robot = self.robot.retract(step);
+        let corrected = self.robot.retract(step);
+        let transport = self.robot.chart_jacobian(&corrected);
+        self.robot = corrected;
         self.covariance.move_robot(&transport, &TangentMatrix::<M::Robot>::zeros());
     }
 }
 
 /// Beyond this a variance says nothing (1e15 km²) and its products would overflow.
-const LARGEST_VARIANCE: f64 = 1e36;
+pub(super) const LARGEST_VARIANCE: f64 = 1e36;
 
-/// Refuses what is not symmetric positive semidefinite; zero variances are fine.
+/// Refuses what is not symmetric positive semidefinite; zero variances are fine. Rounding is allowed for in correlations, so that a
+/// variance in square kilometres does not hide a negative one in square millimetres.
 pub(super) fn check_covariance<D: DimName>(
     what: &'static str,
     matrix: &OMatrix<f64, D, D>,
@@ -58,13 +63,32 @@ where
     if !matrix.iter().all(|entry| entry.is_finite()) {
         return Err(SlamError::NotFinite { what });
     }
-    let tolerance = 1e-9 * matrix.amax(); // entries that were computed with rounding
     let asymmetry = (matrix - matrix.transpose()).amax();
-    let value = smallest_eigenvalue(matrix);
-    if asymmetry > tolerance || value < -tolerance {
-        return Err(SlamError::NotACovariance { what, value, asymmetry });
+    let smallest_variance = (0..D::DIM).map(|i| matrix[(i, i)]).fold(f64::INFINITY, f64::min);
+    if smallest_variance < 0.0 {
+        return Err(SlamError::NotACovariance { what, value: smallest_variance, asymmetry });
     }
-    Ok(())
+    let correlations = correlations(matrix);
+    let lopsided = (&correlations - correlations.transpose()).amax();
+    let value = smallest_eigenvalue(&correlations);
+    // Infinite correlations, of what does not vary at all, fail both.
+    if lopsided <= 1e-9 && value >= -1e-12 {
+        Ok(())
+    } else {
+        Err(SlamError::NotACovariance { what, value, asymmetry })
+    }
+}
+
+/// $`ρ_{ij} = P_{ij} / \sqrt{P_{ii} P_{jj}}`$, and 0 for 0/0.
+fn correlations<D: DimName>(matrix: &OMatrix<f64, D, D>) -> OMatrix<f64, D, D>
+where
+    DefaultAllocator: Allocator<D, D>,
+{
+    let deviation = |i: usize| matrix[(i, i)].sqrt();
+    OMatrix::from_fn(|row, column| match matrix[(row, column)] {
+        0.0 => 0.0,
+        covariance => covariance / deviation(row) / deviation(column),
+    })
 }
 
 /// Nothing to iterate in the usual case of a diagonal matrix.
@@ -72,10 +96,12 @@ fn smallest_eigenvalue<D: DimName>(matrix: &OMatrix<f64, D, D>) -> f64
 where
     DefaultAllocator: Allocator<D, D>,
 {
-    let diagonal = || (0..D::DIM).map(|i| matrix[(i, i)]);
-    let off_diagonal = matrix.norm_squared() - diagonal().map(|entry| entry * entry).sum::<f64>();
-    if off_diagonal == 0.0 {
-        return diagonal().fold(f64::INFINITY, f64::min);
+    let entries = || (0..D::DIM).flat_map(|row| (0..D::DIM).map(move |column| (row, column)));
+    if entries().all(|(row, column)| row == column || matrix[(row, column)] == 0.0) {
+        return entries().map(|(i, _)| matrix[(i, i)]).fold(f64::INFINITY, f64::min);
+    }
+    if !matrix.iter().all(|entry| entry.is_finite()) {
+        return f64::NAN;
     }
     DMatrix::from_fn(D::DIM, D::DIM, |row, column| matrix[(row, column)]).symmetric_eigenvalues().min()
 }

@@ -18,8 +18,11 @@ where
     pub covariance: TangentMatrix<M::Measurement>,
     pub(super) robot_jacobian: Jacobian<M::Measurement, M::Robot>,
     /// Where the landmark's block starts and the derivative by it; `None` for anchors.
-    pub(super) landmark_jacobian: Option<(usize, Jacobian<M::Measurement, M::Landmark>)>,
+    pub(super) landmark_jacobian: Option<Block<Jacobian<M::Measurement, M::Landmark>>>,
 }
+
+/// Columns of the observation Jacobian, and where in the state they start.
+type Block<J> = (usize, J);
 
 impl<M: LandmarkModel> PredictedSighting<M>
 where

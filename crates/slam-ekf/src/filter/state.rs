@@ -98,7 +98,7 @@ where
         super::predict::check_covariance("start covariance", &covariance)?;
         Ok(Self {
             model,
-            gates: Gates::from_probability(params.validated()?.gate_probability),
+            gates: Gates::from_probability(params.validated()?.gate_probability, MeasurementDim::<M>::DIM)?,
             params,
             robot: start,
             landmarks: BTreeMap::new(),

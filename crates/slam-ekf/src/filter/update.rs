@@ -3,7 +3,10 @@ use std::collections::BTreeSet;
 use nalgebra::{DMatrix, DVector, DefaultAllocator};
 use wayfix_estimation_traits::{Manifold, Tangent, TangentMatrix};
 
-use super::{EkfSlam, PredictedSighting};
+use super::{
+    EkfSlam, PredictedSighting,
+    predict::{LARGEST_VARIANCE, check_covariance},
+};
 use crate::{
     Association, DataAssociation, Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim,
     Observation, Outcome, OutlierRule, RobotDim, SlamAlloc, SlamError, StepReport,
@@ -15,6 +18,8 @@ struct Accepted<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
+    /// Which of the look's observations.
+    index: usize,
     sighting: PredictedSighting<M>,
     innovation: Innovation<M::Measurement>,
     noise: TangentMatrix<M::Measurement>,
@@ -27,27 +32,32 @@ where
     /// Corrects robot and map with everything one look of the sensor saw.
     ///
     /// Observations are associated at the predicted state, weighed one by one, and those that pass correct together; then new
-    /// landmarks start ([`UpdateOrder`](crate::UpdateOrder) can ask for one after the other). Each observation's fate is in the report, in the order they came; one that cannot be used (not finite, twice the
-    /// same landmark, outside the gate) leaves the others alone.
+    /// landmarks start ([`UpdateOrder`](crate::UpdateOrder) can ask for one after the other). Each observation's fate is in the report,
+    /// in the order they came; one that cannot be used (not finite, twice the same landmark, outside the gate, a noise that is no
+    /// covariance) leaves the others alone.
     ///
     /// # Errors
-    /// When the innovation covariance is not positive definite; nothing has changed then in joint order.
+    /// When the association breaks its law and does not say of every usable observation what it is of; nothing has changed then.
     pub fn update(
         &mut self,
         observations: &[Observation<M::Measurement>],
         association: &mut impl DataAssociation<M>,
     ) -> Result<StepReport<M::Measurement>, SlamError> {
-        self.look += 1;
         let usable: Vec<usize> =
             (0..observations.len()).filter(|&i| self.model.is_usable(&observations[i].measurement)).collect();
         let candidates: Vec<_> = usable.iter().map(|&i| observations[i].clone()).collect();
         let associations = association.associate(self, &candidates);
+        let (expected, got) = (candidates.len(), associations.len());
+        if expected != got {
+            return Err(SlamError::Dimension { what: "list of associations", expected, got });
+        }
         let associated: Vec<_> = usable.into_iter().zip(associations).collect();
 
+        self.look += 1;
         let mut outcomes = vec![Outcome::Unusable; observations.len()];
         let mut taken = BTreeSet::new();
         for batch in associated.chunks(self.params.order.batch_size(associated.len())) {
-            self.update_batch(observations, batch, &mut taken, &mut outcomes)?;
+            self.update_batch(observations, batch, &mut taken, &mut outcomes);
         }
         self.forget_unconfirmed();
         Ok(StepReport { outcomes })
@@ -60,7 +70,7 @@ where
         batch: &[(usize, Association)],
         taken: &mut BTreeSet<LandmarkId>,
         outcomes: &mut [Outcome<M::Measurement>],
-    ) -> Result<(), SlamError> {
+    ) {
         let (mut accepted, mut new) = (Vec::new(), Vec::new());
         for &(i, association) in batch {
             let measurement = &observations[i].measurement;
@@ -68,7 +78,7 @@ where
                 Association::Matched(id) | Association::New(id) if !taken.insert(id) => {
                     Outcome::Duplicate { landmark: id }
                 }
-                Association::Matched(id) => self.weigh(id, measurement, &mut accepted),
+                Association::Matched(id) => self.weigh(id, i, measurement, &mut accepted),
                 Association::New(id) => Outcome::Initialized { landmark: id },
                 Association::Ambiguous => Outcome::Ambiguous,
                 Association::Unlabelled => Outcome::Unlabelled,
@@ -77,27 +87,33 @@ where
                 new.push((i, landmark));
             }
         }
-        self.correct(&accepted)?;
-        for Accepted { sighting, .. } in &accepted {
-            self.note_sighting(sighting.landmark);
+        let corrected = self.correct(&accepted).is_some();
+        for Accepted { index, sighting, .. } in &accepted {
+            if corrected {
+                self.note_sighting(sighting.landmark);
+            } else {
+                outcomes[*index] = Outcome::Unusable;
+            }
         }
         for (i, id) in new {
-            self.remove(id);
-            if self.initialize(id, &observations[i].measurement).is_err() {
+            if self.start(id, &observations[i].measurement).is_err() {
                 outcomes[i] = Outcome::Unusable;
             }
         }
-        Ok(())
     }
 
     /// Individual compatibility: the NIS against the chi-squared quantile, or a noise that grows with it.
     fn weigh(
         &self,
         landmark: LandmarkId,
+        index: usize,
         measurement: &M::Measurement,
         accepted: &mut Vec<Accepted<M>>,
     ) -> Outcome<M::Measurement> {
         let noise = self.model.noise(measurement);
+        if check_covariance("measurement noise", &noise).is_err() {
+            return Outcome::Unusable;
+        }
         let sighting = self.predicted_sighting(landmark);
         let seen = sighting.and_then(|sighting| Some((sighting.innovation(measurement, &noise)?, sighting)));
         let Some((innovation, sighting)) = seen else {
@@ -111,29 +127,28 @@ where
             return Outcome::Gated { landmark, innovation, threshold };
         }
         let noise_scale = self.params.noise_scale(innovation.nis, threshold);
-        accepted.push(Accepted { sighting, innovation: innovation.clone(), noise: noise * noise_scale });
+        let noise = noise * noise_scale;
+        if noise.amax() >= LARGEST_VARIANCE {
+            return Outcome::Gated { landmark, innovation, threshold }; // so far out that it would weigh nothing
+        }
+        accepted.push(Accepted { index, sighting, innovation: innovation.clone(), noise });
         Outcome::Accepted { landmark, innovation, noise_scale }
     }
 
-    /// All accepted observations at once: one joint linear correction, then the means step.
-    fn correct(&mut self, accepted: &[Accepted<M>]) -> Result<(), SlamError> {
-        let (jacobian, noise, residual) = stack(accepted);
-        if jacobian.nrows() == 0 {
-            return Ok(());
+    /// All accepted observations at once: one joint linear correction, then the means step. `None`, and nothing changed, when their
+    /// innovation covariance is not positive definite.
+    fn correct(&mut self, accepted: &[Accepted<M>]) -> Option<()> {
+        if accepted.is_empty() {
+            return Some(());
         }
-        let step = self.covariance.correct(&jacobian, &noise, &residual).ok_or_else(|| {
-            SlamError::NotACovariance {
-                what: "joint innovation covariance",
-                value: noise.diagonal().min(),
-                asymmetry: (&noise - noise.transpose()).amax(),
-            }
-        })?;
+        let (jacobian, noise, residual) = stack(accepted);
+        let step = self.covariance.correct(&jacobian, &noise, &residual)?;
         self.step_robot(&Tangent::<M::Robot>::from_fn(|row, _| step[row]));
         for slot in self.landmarks.values_mut() {
             let delta = Tangent::<M::Landmark>::from_fn(|row, _| step[slot.offset + row]);
             slot.mean = slot.mean.retract(&delta);
         }
-        Ok(())
+        Some(())
     }
 }
 
@@ -145,7 +160,7 @@ where
     let n_rows = accepted.iter().map(|accepted| accepted.innovation.residual.len()).sum();
     let mut jacobian = SparseJacobian::default();
     let (mut noise, mut residual) = (DMatrix::zeros(n_rows, n_rows), DVector::zeros(n_rows));
-    for Accepted { sighting, innovation, noise: own_noise } in accepted {
+    for Accepted { sighting, innovation, noise: own_noise, .. } in accepted {
         let start = jacobian.nrows();
         let size = innovation.residual.len();
         for row in 0..size {

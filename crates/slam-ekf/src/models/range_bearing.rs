@@ -115,9 +115,8 @@ impl LandmarkModel for RangeBearingSensor {
     ) -> NewLandmark<Vector2<f64>, Pose2<f64>> {
         let q = measurement.point();
         let rotation = robot.rotation_matrix();
-        let (direction, across) = (q / measurement.range, Vector2::new(-q.y, q.x));
-        let measurement_jacobian = rotation * Matrix2::from_columns(&[direction, across]);
-        let turned = rotation * across;
+        let by_measurement = placement_jacobian(robot, measurement);
+        let turned = by_measurement.column(1).into_owned(); // turning the robot moves the point as turning the bearing does
         NewLandmark {
             landmark: robot.transform(&q),
             robot_jacobian: Matrix2x3::from_columns(&[
@@ -125,9 +124,15 @@ impl LandmarkModel for RangeBearingSensor {
                 rotation.column(1).into_owned(),
                 turned,
             ]),
-            covariance: measurement_jacobian * self.noise(measurement) * measurement_jacobian.transpose(),
+            covariance: by_measurement * self.noise(measurement) * by_measurement.transpose(),
         }
     }
+}
+
+/// $`∂m/∂(r, b)`$ of a point placed by one measurement.
+pub(super) fn placement_jacobian(robot: &Pose2<f64>, measurement: &RangeBearing) -> Matrix2<f64> {
+    let q = measurement.point();
+    robot.rotation_matrix() * Matrix2::from_columns(&[q / measurement.range, Vector2::new(-q.y, q.x)])
 }
 
 /// $`∂(r, b)/∂q`$.

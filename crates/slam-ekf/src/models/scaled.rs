@@ -1,8 +1,8 @@
 use nalgebra::{Const, Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
 
-use super::{RangeBearing, RangeBearingSensor};
-use crate::{LandmarkModel, NewLandmark, RobotState};
+use super::{RangeBearing, RangeBearingSensor, range_bearing::placement_jacobian};
+use crate::{LandmarkModel, NewLandmark};
 
 /// A pose together with the scale of the robot's range sensor, estimated on the way.
 ///
@@ -27,11 +27,8 @@ impl Manifold for ScaledPose {
     fn local(&self, other: &Self) -> Vector4<f64> {
         self.pose.local(&other.pose).push(other.log_range_scale - self.log_range_scale)
     }
-}
-
-impl RobotState for ScaledPose {
-    fn transport(&self, step: &Vector4<f64>) -> Matrix4<f64> {
-        self.pose.transport(&step.xyz()).to_homogeneous()
+    fn chart_jacobian(&self, at: &Self) -> Matrix4<f64> {
+        self.pose.chart_jacobian(&at.pose).to_homogeneous()
     }
 }
 
@@ -98,10 +95,14 @@ impl LandmarkModel for ScaledRangeBearingSensor {
         robot: &ScaledPose,
         measurement: &RangeBearing,
     ) -> NewLandmark<Vector2<f64>, ScaledPose> {
-        let range = measurement.range * (-robot.log_range_scale).exp();
-        let new = self.0.initialize(&robot.pose, &RangeBearing { range, ..*measurement });
+        let shrinkage = (-robot.log_range_scale).exp();
+        let true_to_scale = RangeBearing { range: measurement.range * shrinkage, ..*measurement };
+        let new = self.0.initialize(&robot.pose, &true_to_scale);
         let mut robot_jacobian = new.robot_jacobian.insert_column(3, 0.0);
         robot_jacobian.set_column(3, &(robot.pose.translation - new.landmark));
-        NewLandmark { landmark: new.landmark, robot_jacobian, covariance: new.covariance }
+        let mut by_measurement = placement_jacobian(&robot.pose, &true_to_scale);
+        by_measurement.column_mut(0).scale_mut(shrinkage);
+        let covariance = by_measurement * self.noise(measurement) * by_measurement.transpose();
+        NewLandmark { landmark: new.landmark, robot_jacobian, covariance }
     }
 }

@@ -1,0 +1,166 @@
+//! The law suite of [`LandmarkModel`]: run it on your own kinds of landmarks.
+
+use nalgebra::{DefaultAllocator, linalg::Cholesky};
+use wayfix_estimation_traits::{Jacobian, Manifold, SensorModel, TangentMatrix, laws};
+
+pub use wayfix_estimation_traits::laws::Violation;
+
+use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
+
+/// The laws of [`LandmarkModel`], at every pair of a robot and a landmark that sees it.
+///
+/// 1. Both Jacobians are the derivatives of `expected`, and the noise is symmetric positive definite.
+/// 2. `expected(robot, initialize(robot, z).landmark)` is `z`.
+/// 3. The robot Jacobian of `initialize` is the derivative of its landmark, and its covariance is symmetric positive definite.
+/// 4. A new landmark is no surer than the measurement: $`H_m N H_m^T ⪰ R`$.
+///
+/// A model whose single measurement does not place a landmark says so by landmarks that are not finite; it is held to the first law only.
+///
+/// ```
+/// use nalgebra::Vector2;
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_slam_ekf::{RangeBearingSensor, laws};
+/// let robots = [Pose2::new(0.0, 0.0, 0.0), Pose2::new(1.0, -2.0, 3.1)];
+/// laws::landmark_model(&RangeBearingSensor::default(), &robots, &[Vector2::new(4.0, 1.0)])?;
+/// # Ok::<(), laws::Violation>(())
+/// ```
+///
+/// # Errors
+/// The first law that does not hold, and where.
+pub fn landmark_model<M: LandmarkModel>(
+    model: &M,
+    robots: &[M::Robot],
+    landmarks: &[M::Landmark],
+) -> Result<(), Violation>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    for robot in robots {
+        for landmark in landmarks {
+            let at = |law: &str| {
+                let place = format!("({law}, robot {robot:?}, landmark {landmark:?})");
+                move |violation: Violation| Violation { case: place, ..violation }
+            };
+            let robot_sees = SeenByRobot { model, landmark };
+            laws::sensor(&robot_sees, std::slice::from_ref(robot)).map_err(at("law 1, by the robot"))?;
+            let landmark_is_seen = SeenAtLandmark { model, robot };
+            laws::sensor(&landmark_is_seen, std::slice::from_ref(landmark))
+                .map_err(at("law 1, by the landmark"))?;
+            initialization(model, robot, &model.expected(robot, landmark)).map_err(at("initialize"))?;
+        }
+    }
+    Ok(())
+}
+
+fn initialization<M: LandmarkModel>(
+    model: &M,
+    robot: &M::Robot,
+    seen: &M::Measurement,
+) -> Result<(), Violation>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    let new = model.initialize(robot, seen);
+    if !new.landmark.local(&new.landmark).iter().all(|entry| entry.is_finite()) {
+        return Ok(());
+    }
+    let missed = seen.local(&model.expected(robot, &new.landmark)).norm();
+    let size = 1.0 + new.robot_jacobian.amax();
+    within("expected(initialize(z)) = z (law 2)", missed, 1e-12 * size)?; // some thousand roundings
+
+    laws::sensor(&Placed { model, seen }, std::slice::from_ref(robot))?;
+
+    let jacobian = model.landmark_jacobian(robot, &new.landmark);
+    let seen_again = &jacobian * &new.covariance * jacobian.transpose();
+    let is_honest = Cholesky::new(seen_again - model.noise(seen) * (1.0 - 1e-6)).is_some(); // equal up to rounding
+    within(
+        "a new landmark is no surer than the measurement (law 4)",
+        if is_honest { 0.0 } else { f64::INFINITY },
+        0.0,
+    )
+}
+
+fn within(law: &'static str, error: f64, tolerance: f64) -> Result<(), Violation> {
+    if error <= tolerance { Ok(()) } else { Err(Violation { law, case: String::new(), error, tolerance }) }
+}
+
+/// The model as a sensor of the robot, for one landmark.
+struct SeenByRobot<'a, M: LandmarkModel>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    model: &'a M,
+    landmark: &'a M::Landmark,
+}
+
+impl<M: LandmarkModel> SensorModel for SeenByRobot<'_, M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    type State = M::Robot;
+    type Measurement = M::Measurement;
+
+    fn expected(&self, robot: &M::Robot) -> M::Measurement {
+        self.model.expected(robot, self.landmark)
+    }
+    fn jacobian(&self, robot: &M::Robot) -> Jacobian<M::Measurement, M::Robot> {
+        self.model.robot_jacobian(robot, self.landmark)
+    }
+    fn noise(&self, robot: &M::Robot) -> TangentMatrix<M::Measurement> {
+        self.model.noise(&self.expected(robot))
+    }
+}
+
+/// The model as a sensor of the landmark, for one robot.
+struct SeenAtLandmark<'a, M: LandmarkModel>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    model: &'a M,
+    robot: &'a M::Robot,
+}
+
+impl<M: LandmarkModel> SensorModel for SeenAtLandmark<'_, M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    type State = M::Landmark;
+    type Measurement = M::Measurement;
+
+    fn expected(&self, landmark: &M::Landmark) -> M::Measurement {
+        self.model.expected(self.robot, landmark)
+    }
+    fn jacobian(&self, landmark: &M::Landmark) -> Jacobian<M::Measurement, M::Landmark> {
+        self.model.landmark_jacobian(self.robot, landmark)
+    }
+    fn noise(&self, landmark: &M::Landmark) -> TangentMatrix<M::Measurement> {
+        self.model.noise(&self.expected(landmark))
+    }
+}
+
+/// The start of a landmark as a function of the robot, with the landmark's covariance for its noise.
+struct Placed<'a, M: LandmarkModel>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    model: &'a M,
+    seen: &'a M::Measurement,
+}
+
+impl<M: LandmarkModel> SensorModel for Placed<'_, M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    type State = M::Robot;
+    type Measurement = M::Landmark;
+
+    fn expected(&self, robot: &M::Robot) -> M::Landmark {
+        self.model.initialize(robot, self.seen).landmark
+    }
+    fn jacobian(&self, robot: &M::Robot) -> Jacobian<M::Landmark, M::Robot> {
+        self.model.initialize(robot, self.seen).robot_jacobian
+    }
+    fn noise(&self, robot: &M::Robot) -> TangentMatrix<M::Landmark> {
+        self.model.initialize(robot, self.seen).covariance
+    }
+}
