@@ -1,0 +1,136 @@
+//! Every model of the crate obeys its laws, and the suite catches one that does not.
+
+#![allow(clippy::unwrap_used, reason = "a model that breaks a law fails the test")]
+
+use std::f64::consts::PI;
+
+use nalgebra::{Matrix2, Matrix2x3, Vector2};
+use wayfix_estimation_traits::{Pose2, laws as general};
+use wayfix_slam_ekf::{
+    IncrementMotion, LandmarkModel, NewLandmark, RangeBearing, RangeBearingSensor, RelativePositionSensor,
+    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion, laws,
+};
+
+fn poses() -> Vec<Pose2<f64>> {
+    let headings = [0.0, 0.5, -2.0, PI - 1e-4, -PI + 1e-4];
+    headings
+        .iter()
+        .enumerate()
+        .map(|(i, heading)| Pose2::new(i as f64 - 2.0, 0.3 * i as f64, *heading))
+        .collect()
+}
+
+fn scaled(poses: &[Pose2<f64>]) -> Vec<ScaledPose> {
+    let pair = |(pose, log_range_scale): (&Pose2<f64>, f64)| ScaledPose { pose: *pose, log_range_scale };
+    poses.iter().zip([0.0, 0.05, -0.1, 0.3, 1e-8]).map(pair).collect()
+}
+
+/// None where a robot stands, and none straight behind one: the bearing jumps there.
+fn landmarks() -> Vec<Vector2<f64>> {
+    vec![Vector2::new(4.0, 1.0), Vector2::new(-3.3, 6.0), Vector2::new(0.1, -0.7)]
+}
+
+#[test]
+fn of_every_landmark_model() {
+    let sensor = RangeBearingSensor { range_sigma: 0.1, range_sigma_per_meter: 0.02, bearing_sigma: 0.01 };
+    laws::landmark_model(&sensor, &poses(), &landmarks()).unwrap();
+    laws::landmark_model(&RelativePositionSensor { sigma: 0.1 }, &poses(), &landmarks()).unwrap();
+    laws::landmark_model(&ScaledRangeBearingSensor(sensor), &scaled(&poses()), &landmarks()).unwrap();
+}
+
+#[test]
+fn of_the_scaled_pose() {
+    general::manifold(&scaled(&poses())).unwrap();
+}
+
+#[test]
+fn of_every_motion() {
+    let increments = [Pose2::new(0.3, -0.1, 0.2), Pose2::new(0.0, 0.0, -3.0), Pose2::new(0.0, 0.0, 0.0)];
+    let cases: Vec<_> =
+        poses().into_iter().flat_map(|pose| increments.iter().map(move |u| (pose, u))).collect();
+    let with_steps = IncrementMotion {
+        translation_variance_per_step: 1e-4,
+        heading_variance_per_step: 1e-5,
+        ..Default::default()
+    };
+    general::motion(&IncrementMotion::default(), &cases).unwrap();
+    general::motion(&with_steps, &cases).unwrap();
+
+    let control = |linear, angular| VelocityControl { linear, angular, duration: 0.4 };
+    let controls = [control(0.5, 0.0), control(0.3, -0.7), control(0.0, 0.0), control(-0.2, 2.0)];
+    let cases: Vec<_> =
+        poses().into_iter().flat_map(|pose| controls.iter().map(move |u| (pose, u))).collect();
+    let lossy = VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() };
+    general::motion(&lossy, &cases).unwrap();
+    let cases: Vec<_> =
+        scaled(&poses()).into_iter().flat_map(|state| controls.iter().map(move |u| (state, u))).collect();
+    general::motion(&ScaledMotion(lossy), &cases).unwrap();
+}
+
+/// A range-bearing sensor with one mistake.
+#[derive(Clone, Copy)]
+enum Wrong {
+    /// Turning left moves what is seen to the left.
+    Turn,
+    /// The landmark moves the other way.
+    Push,
+    /// New landmarks appear on the other side.
+    Mirrored,
+    /// New landmarks do not know that they turn with the robot.
+    Unturned,
+    /// New landmarks are twice as sure as the measurement.
+    Sure,
+    /// The noise is indefinite.
+    Noise,
+}
+
+const GOOD: RangeBearingSensor =
+    RangeBearingSensor { range_sigma: 0.1, range_sigma_per_meter: 0.02, bearing_sigma: 0.01 };
+
+impl LandmarkModel for Wrong {
+    type Robot = Pose2<f64>;
+    type Landmark = Vector2<f64>;
+    type Measurement = RangeBearing;
+
+    fn expected(&self, robot: &Pose2<f64>, landmark: &Vector2<f64>) -> RangeBearing {
+        GOOD.expected(robot, landmark)
+    }
+    fn robot_jacobian(&self, robot: &Pose2<f64>, landmark: &Vector2<f64>) -> Matrix2x3<f64> {
+        let mut jacobian = GOOD.robot_jacobian(robot, landmark);
+        jacobian.m23 = if matches!(self, Self::Turn) { 1.0 } else { jacobian.m23 };
+        jacobian
+    }
+    fn landmark_jacobian(&self, robot: &Pose2<f64>, landmark: &Vector2<f64>) -> Matrix2<f64> {
+        GOOD.landmark_jacobian(robot, landmark) * if matches!(self, Self::Push) { -1.0 } else { 1.0 }
+    }
+    fn noise(&self, measurement: &RangeBearing) -> Matrix2<f64> {
+        GOOD.noise(measurement) * if matches!(self, Self::Noise) { -1.0 } else { 1.0 }
+    }
+    fn initialize(&self, robot: &Pose2<f64>, seen: &RangeBearing) -> NewLandmark<Vector2<f64>, Pose2<f64>> {
+        let seen = match self {
+            Self::Mirrored => RangeBearing::new(seen.range, -seen.bearing.radians()),
+            _ => *seen,
+        };
+        let mut new = GOOD.initialize(robot, &seen);
+        match self {
+            Self::Unturned => new.robot_jacobian.set_column(2, &Vector2::zeros()),
+            Self::Sure => new.covariance *= 0.25,
+            _ => {}
+        }
+        new
+    }
+}
+
+#[test]
+fn mistakes_are_caught_by_the_law_they_break() {
+    let law = |wrong: Wrong| {
+        let violation = laws::landmark_model(&wrong, &poses(), &landmarks()).unwrap_err();
+        (violation.law, violation.case)
+    };
+    assert!(law(Wrong::Turn).1.contains("by the robot") && law(Wrong::Turn).0.contains("derivative"));
+    assert!(law(Wrong::Push).1.contains("by the landmark") && law(Wrong::Push).0.contains("derivative"));
+    assert!(law(Wrong::Mirrored).0.contains("law 2"));
+    assert!(law(Wrong::Unturned).1.contains("initialize") && law(Wrong::Unturned).0.contains("derivative"));
+    assert!(law(Wrong::Sure).0.contains("law 4"));
+    assert!(law(Wrong::Noise).0.contains("positive definite"));
+}
