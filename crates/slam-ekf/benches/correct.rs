@@ -29,11 +29,11 @@ fn main() {
     }
 }
 
-/// What the correction of `n` states by `m` rows needs: one product on one triangle, two triangular solves, one factorization. What is
+/// What the correction of `n` states by `m` rows needs: one product on one triangle, one triangular solve, one factorization. What is
 /// done beyond that, in panels that stick out of the triangle and in copies, counts as lost.
 fn multiply_adds(n: usize, m: usize) -> f64 {
     let (n, m) = (n as f64, m as f64);
-    0.5 * n * n * m + 2.0 * (0.5 * n * m * m) + m * m * m / 6.0
+    0.5 * n * n * m + 0.5 * n * m * m + m * m * m / 6.0
 }
 
 /// A map that has settled: every landmark seen twice from where the robot stands.

@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVector, linalg::Cholesky};
 
 use super::{
     JointCovariance, ROUNDING, SparseJacobian,
-    triangular::{mirror_lower, solve_right, solve_right_transposed, subtract_square_from_lower},
+    triangular::{mirror_lower, solve_right_transposed, subtract_square_from_lower},
 };
 
 impl JointCovariance {
@@ -27,9 +27,7 @@ impl JointCovariance {
         }
         let l = Cholesky::new(innovation_covariance)?.unpack();
         solve_right_transposed(&mut whitened, &l);
-        let mut gain = whitened.clone();
-        solve_right(&mut gain, &l);
-        let step = gain * residual;
+        let step = &whitened * l.solve_lower_triangular(residual)?; // K ν = W L⁻¹ ν without ever forming the gain
         if !step.iter().all(|entry| entry.is_finite()) || !whitened.norm_squared().is_finite() {
             return None;
         }

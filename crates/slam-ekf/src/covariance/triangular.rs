@@ -1,4 +1,4 @@
-//! Blocked kernels on the lower triangle: the whole cost of a large map is in these three loops.
+//! Blocked kernels on the lower triangle: the whole cost of a large map is in these loops.
 
 use std::ops::Range;
 
@@ -47,24 +47,6 @@ pub(super) fn solve_right_transposed(x: &mut DMatrix<f64>, l: &DMatrix<f64>) {
             for earlier in 0..column {
                 let factor = l[(panel.start + column, panel.start + earlier)];
                 let (from, mut to) = open.columns_range_pair_mut(earlier, column);
-                to.axpy(-factor, &from, 1.0);
-            }
-            open.column_mut(column).unscale_mut(l[(panel.start + column, panel.start + column)]);
-        }
-    }
-}
-
-/// `X ← X L⁻¹` for a lower-triangular `L`.
-pub(super) fn solve_right(x: &mut DMatrix<f64>, l: &DMatrix<f64>) {
-    let m = l.ncols();
-    let panels: Vec<Range<usize>> = panels(m, SOLVE_PANEL).collect();
-    for panel in panels.into_iter().rev() {
-        let (mut open, done) = x.columns_range_pair_mut(panel.clone(), panel.end..m);
-        open.gemm(-1.0, &done, &l.view((panel.end, panel.start), (m - panel.end, panel.len())), 1.0);
-        for column in (0..panel.len()).rev() {
-            for later in column + 1..panel.len() {
-                let factor = l[(panel.start + later, panel.start + column)];
-                let (mut to, from) = open.columns_range_pair_mut(column, later);
                 to.axpy(-factor, &from, 1.0);
             }
             open.column_mut(column).unscale_mut(l[(panel.start + column, panel.start + column)]);
