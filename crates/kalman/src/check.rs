@@ -34,6 +34,13 @@ where
     }
 }
 
+/// Between $`ε^4`$ and $`ε^{-4}`$: products and sums of squares of this size have lost nothing to underflow or overflow on their way.
+#[inline(always)]
+pub(crate) fn is_moderate<T: RealField + Copy>(product: T) -> bool {
+    let smallest = T::default_epsilon().powi(4);
+    product >= smallest && product <= smallest.recip()
+}
+
 /// $`y ⊟ x`$, of the right size and finite.
 pub(crate) fn difference<X: Manifold>(what: &'static str, from: &X, to: &X) -> Checked<Tangent<X>>
 where

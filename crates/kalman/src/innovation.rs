@@ -1,4 +1,4 @@
-use nalgebra::{ComplexField, DefaultAllocator, OMatrix};
+use nalgebra::{ComplexField, DefaultAllocator, OMatrix, linalg::Cholesky};
 use wayfix_estimation_traits::{LogWeight, Manifold, Tangent, TangentMatrix, UpdateAlloc, to_f64};
 use wayfix_gaussian_core::check_covariance;
 
@@ -83,6 +83,10 @@ where
     /// $`C = \mathrm{cov}(x, z)`$, state by measurement.
     pub fn cross_covariance(&self) -> &OMatrix<X::Scalar, X::Dim, Z::Dim> {
         &self.cross_covariance
+    }
+    /// The Cholesky factorization $`G G^T = S`$, for solving with $`S`$.
+    pub fn factor(&self) -> Cholesky<X::Scalar, Z::Dim> {
+        Cholesky::pack_dirty(self.ldl.root())
     }
     /// Dimension of the measurement: degrees of freedom of [`nis`](Self::nis).
     pub fn dim(&self) -> usize {

@@ -2,6 +2,8 @@
 
 use nalgebra::{DefaultAllocator, Dim, OMatrix, OVector, RealField, allocator::Allocator};
 
+use crate::check::is_moderate;
+
 /// The factorization, with $`D^{-1}`$ in place of the unit diagonal of $`L`$.
 #[derive(Clone, Debug)]
 pub(crate) struct Ldl<T: RealField + Copy, M: Dim>(OMatrix<T, M, M>)
@@ -15,11 +17,15 @@ where
     /// Factors the lower triangle; `None` when a pivot is not a positive finite number.
     #[inline(always)]
     pub(crate) fn new(covariance: &OMatrix<T, M, M>) -> Option<Self> {
+        if covariance.nrows() == 2 {
+            return Self::of_two(covariance).or_else(|| Self::by_elimination(covariance));
+        }
+        Self::by_elimination(covariance)
+    }
+
+    fn by_elimination(covariance: &OMatrix<T, M, M>) -> Option<Self> {
         let mut factor = covariance.clone();
         let m = factor.nrows();
-        if m == 2 {
-            return Self::of_two(factor);
-        }
         let mut columns = factor.as_mut_slice();
         for pivot in 0..m {
             let (column, rest) = columns.split_at_mut(m);
@@ -39,17 +45,23 @@ where
         Some(Self(factor))
     }
 
-    /// Both divisions at once: $`1/d_2 = s_{11} / \det S`$ does not wait for $`1/d_1`$.
+    /// Both divisions at once: $`1/d_2 = s_{11} / \det S`$ does not wait for $`1/d_1`$. `None` when the determinant is not worth trusting.
     #[inline(always)]
-    fn of_two(mut factor: OMatrix<T, M, M>) -> Option<Self> {
-        let (first, off, second) = (factor[(0, 0)], factor[(1, 0)], factor[(1, 1)]);
-        let determinant = first * second - off * off;
+    fn of_two(covariance: &OMatrix<T, M, M>) -> Option<Self> {
+        let (first, off, second) = (covariance[(0, 0)], covariance[(1, 0)], covariance[(1, 1)]);
+        let product = first * second;
+        let determinant = product - off * off;
         let (inverse, second_inverse) = (first.recip(), first / determinant);
-        let usable =
-            first > T::zero() && determinant > T::zero() && inverse > T::zero() && second_inverse.is_finite();
+        let usable = is_moderate(product)
+            && determinant > T::zero()
+            && inverse > T::zero()
+            && inverse.is_finite()
+            && second_inverse > T::zero()
+            && second_inverse.is_finite();
         if !usable {
             return None;
         }
+        let mut factor = covariance.clone();
         factor[(0, 0)] = inverse;
         factor[(1, 0)] = off * inverse;
         factor[(1, 1)] = second_inverse;
@@ -65,6 +77,17 @@ where
             factor[(k, k)] = inverse * inverse;
         }
         Self(factor)
+    }
+
+    /// $`G = L D^{1/2}`$, in the lower triangle.
+    pub(crate) fn root(&self) -> OMatrix<T, M, M> {
+        let mut root = self.0.clone();
+        for k in 0..root.nrows() {
+            let diagonal = self.0[(k, k)].sqrt().recip();
+            root.column_mut(k).scale_mut(diagonal);
+            root[(k, k)] = diagonal;
+        }
+        root
     }
 
     /// $`1/d_k`$.

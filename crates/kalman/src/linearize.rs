@@ -62,7 +62,9 @@ where
     let jacobian = sensor.jacobian(state);
     check::shape("sensor Jacobian", (m, n), jacobian.shape())?;
     check::finite("sensor Jacobian", &jacobian)?;
-    let noise = sensor.noise(state);
+    let mut noise = sensor.noise(state);
     check::sensor_noise(&noise, m)?;
+    // The form of Joseph wants it exactly symmetric; only this triangle was checked.
+    noise.fill_upper_triangle_with_lower_triangle();
     Ok(LinearizedSensor { residual, jacobian, noise })
 }

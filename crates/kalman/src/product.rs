@@ -162,3 +162,92 @@ where
     );
     product
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix2, Matrix2x4, Matrix4, SMatrix, convert};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::{check, ldl::Ldl};
+
+    /// The form of Joseph as textbooks write it: the oracle of the two passes.
+    fn textbook<T: RealField + Copy>(
+        prior: &Matrix4<T>,
+        gain: &SMatrix<T, 4, 2>,
+        jacobian: &Matrix2x4<T>,
+        noise: &Matrix2<T>,
+    ) -> Matrix4<T> {
+        let remainder = Matrix4::identity() - gain * jacobian;
+        let sum = remainder * prior * remainder.transpose() + gain * noise * gain.transpose();
+        (sum + sum.transpose()) * convert::<f64, T>(0.5)
+    }
+
+    #[test]
+    fn two_passes_are_the_textbook_product_for_any_gain() {
+        let mut rng = ChaCha8Rng::seed_from_u64(12);
+        for case in 0..2000 {
+            let mut uniform = || rng.random_range(-1.0..1.0);
+            let root = Matrix4::<f64>::from_fn(|_, _| uniform());
+            let mut prior = root * root.transpose();
+            prior.fill_upper_triangle_with_lower_triangle();
+            let noise = Matrix2::new(1.0 + uniform(), 0.0, 0.0, 1.0 + uniform());
+            let jacobian = Matrix2x4::from_fn(|_, _| uniform());
+            let gain = SMatrix::<f64, 4, 2>::from_fn(|_, _| uniform());
+            let cross = prior * jacobian.transpose();
+            let found = joseph(&prior, &gain, &cross, &jacobian, &noise);
+            let expected = textbook(&prior, &gain, &jacobian, &noise);
+            // Sums of some 20 products, each below (1 + ‖K‖‖H‖)² ‖P‖ + ‖K‖² ‖R‖.
+            let size = (1.0 + gain.norm() * jacobian.norm()).powi(2) * prior.norm()
+                + gain.norm_squared() * noise.norm();
+            assert!((found - expected).norm() < 20.0 * f64::EPSILON * size, "case {case}");
+            assert_eq!(found, found.transpose());
+        }
+    }
+
+    /// How many of 2000 predictions and of 2000 corrections of a diffuse prior by a nearly perfect sensor (`tests/breakdown.rs`) are refused.
+    fn refused<T: RealField + Copy>(
+        form: impl Fn(&Matrix4<T>, &SMatrix<T, 4, 2>, &SMatrix<T, 4, 2>, &Matrix2x4<T>, &Matrix2<T>) -> Matrix4<T>,
+    ) -> [usize; 2] {
+        let mut transition = Matrix4::<T>::identity();
+        transition[(0, 2)] = convert(0.1);
+        transition[(1, 3)] = convert(0.1);
+        let (jacobian, noise) = (Matrix2x4::identity(), Matrix2::identity() * convert::<f64, T>(1e-10));
+        let mut covariance = Matrix4::identity() * convert::<f64, T>(1e8);
+        let mut refused = [0, 0];
+        for _ in 0..2000 {
+            let predicted = propagated_covariance(&transition, &covariance, &Matrix4::zeros());
+            match check::positive_definite("predicted", &predicted) {
+                Ok(()) => covariance = predicted,
+                Err(_) => refused[0] += 1,
+            }
+            let cross = covariance * jacobian.transpose();
+            let ldl = Ldl::new(&(jacobian * cross + noise)).expect("a positive definite prior");
+            let mut gain = cross;
+            ldl.divide(&mut gain);
+            let posterior = form(&covariance, &gain, &cross, &jacobian, &noise);
+            match check::positive_definite("posterior", &posterior) {
+                Ok(()) => covariance = posterior,
+                Err(_) => refused[1] += 1,
+            }
+        }
+        refused
+    }
+
+    #[test]
+    fn two_passes_break_down_no_sooner_than_the_textbook_product() {
+        fn compare<T: RealField + Copy>() {
+            let two_passes = refused::<T>(|p, k, c, h, r| joseph(p, k, c, h, r));
+            let product = refused::<T>(|p, k, _, h, r| textbook(p, k, h, r));
+            let plain = refused::<T>(|p, k, c, _, _| plain_difference(p, k, c));
+            assert!(
+                two_passes[0] <= product[0] && two_passes[1] <= product[1],
+                "{two_passes:?}, {product:?}"
+            );
+            assert!(plain[1] > 0, "too easy a problem");
+        }
+        compare::<f64>();
+        compare::<f32>();
+    }
+}

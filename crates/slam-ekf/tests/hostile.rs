@@ -259,7 +259,7 @@ fn an_ill_treated_filter_keeps_a_covariance() {
     let mut seed = 0;
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for outliers in [OutlierRule::Downweight, OutlierRule::Reject] {
-            let confirmation = Confirmation { patience: 5, ..Confirmation::default() };
+            let confirmation = Confirmation { patience: Some(5), ..Confirmation::default() };
             let params = SlamParams { order, outliers, confirmation, ..SlamParams::default() };
             tallies.push(ill_treat(params, || KnownIds, seed));
             let nearest = || NearestNeighbour::new(NearestNeighbourParams::default()).unwrap();

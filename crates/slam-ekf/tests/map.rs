@@ -107,7 +107,7 @@ fn what_is_removed_leaves_the_marginal_of_the_rest() {
 
 #[test]
 fn a_false_first_sighting_is_replaced_and_what_is_not_seen_again_is_forgotten() {
-    let confirmation = Confirmation { n_sightings: 2, patience: 3, ..Confirmation::default() };
+    let confirmation = Confirmation { n_sightings: 2, patience: Some(3), ..Confirmation::default() };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });
     let mut look = |observations: &[Observation<RangeBearing>]| {
         slam.update(observations, &mut KnownIds).unwrap().outcomes

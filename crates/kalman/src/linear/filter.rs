@@ -56,9 +56,14 @@ where
     /// # Errors
     /// When sizes do not fit or the prior's covariance is not positive definite beyond rounding.
     pub fn new(motion: LinearMotion<T, D>, prior: Gaussian<OVector<T, D>>) -> Result<Self, KalmanError> {
-        check::dimension("prior", motion.transition().nrows(), prior.mean().nrows())?;
-        check::positive_definite("prior", prior.covariance())?;
-        Ok(Self { motion, estimate: prior, floor: T::zero() })
+        let n = motion.transition().nrows();
+        let (mean, mut covariance) = prior.into_parts();
+        check::dimension("prior", n, mean.nrows())?;
+        check::shape("prior covariance", (n, n), covariance.shape())?;
+        check::positive_definite("prior", &covariance)?;
+        // No certificate looks at the other triangle of an unchecked Gaussian.
+        covariance.fill_upper_triangle_with_lower_triangle();
+        Ok(Self { motion, estimate: Gaussian::from_parts_unchecked(mean, covariance), floor: T::zero() })
     }
 
     /// What is believed now.

@@ -32,11 +32,12 @@ where
     ///
     /// # Errors
     /// When sizes do not fit, something is not finite, or $`Q`$ is not symmetric positive semidefinite.
-    pub fn new(transition: OMatrix<T, D, D>, noise: OMatrix<T, D, D>) -> Result<Self, KalmanError> {
+    pub fn new(transition: OMatrix<T, D, D>, mut noise: OMatrix<T, D, D>) -> Result<Self, KalmanError> {
         let n = transition.nrows();
         check::dimension("transition matrix", n, transition.ncols())?;
         check::finite("transition matrix", &transition)?;
         check::motion_noise(&noise, n)?;
+        noise.fill_upper_triangle_with_lower_triangle();
         let certificate = MotionCertificate::new(&transition, &noise);
         Ok(Self { transition, noise, certificate })
     }

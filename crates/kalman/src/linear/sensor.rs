@@ -33,9 +33,10 @@ where
     ///
     /// # Errors
     /// When sizes do not fit, something is not finite, or $`R`$ is not symmetric positive definite.
-    pub fn new(matrix: OMatrix<T, M, D>, noise: OMatrix<T, M, M>) -> Result<Self, KalmanError> {
+    pub fn new(matrix: OMatrix<T, M, D>, mut noise: OMatrix<T, M, M>) -> Result<Self, KalmanError> {
         check::finite("measurement matrix", &matrix)?;
         check::sensor_noise(&noise, matrix.nrows())?;
+        noise.fill_upper_triangle_with_lower_triangle();
         let certificate = SensorCertificate::new(&matrix, &noise);
         Ok(Self { matrix, noise, certificate })
     }

@@ -5,7 +5,7 @@ use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, 
 
 /// What a landmark must show before it counts.
 ///
-/// Until then it is tentative: it is in the state, so nothing that was seen is lost, but it does not count as part of the map, it leaves
+/// Until then it is tentative: it is in the state, so nothing that was seen is lost, but it does not count as part of the map, it can leave
 /// again when it is not seen in time, and it starts anew when a sighting says it is somewhere else. A false detection or a first
 /// sighting that was an outlier cannot stay.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,8 +17,10 @@ use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, 
 pub struct Confirmation {
     /// Looks in which it must be seen, the first included; 1 takes every landmark at first sight.
     pub n_sightings: usize,
-    /// Looks without it after which a tentative landmark is forgotten.
-    pub patience: usize,
+    /// Looks without it after which a tentative landmark is forgotten; never, when not given. Identities that are read need no such
+    /// end, landmarks that association made up do.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub patience: Option<usize>,
     /// NIS above which a sighting contradicts a tentative landmark, which then starts anew. 13.8 is the 0.999 quantile for range and
     /// bearing.
     pub contradiction: f64,
@@ -27,7 +29,7 @@ pub struct Confirmation {
 impl Default for Confirmation {
     /// Two sightings that agree.
     fn default() -> Self {
-        Self { n_sightings: 2, patience: 20, contradiction: 13.8155 }
+        Self { n_sightings: 2, patience: None, contradiction: 13.8155 }
     }
 }
 
@@ -60,8 +62,10 @@ where
 
     /// Forgets tentative landmarks that were not seen again in time.
     pub(super) fn forget_unconfirmed(&mut self) {
-        let is_overdue =
-            |slot: &Slot<M::Landmark>| self.look - slot.last_seen > self.params.confirmation.patience;
+        let Some(patience) = self.params.confirmation.patience else {
+            return;
+        };
+        let is_overdue = |slot: &Slot<M::Landmark>| self.look - slot.last_seen > patience;
         let overdue: Vec<LandmarkId> = self
             .landmarks
             .iter()

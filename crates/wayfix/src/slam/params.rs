@@ -102,7 +102,11 @@ impl SlamSystemParams {
                 increment: IncrementMotion::default(),
                 filter: SlamParams::default(),
                 nearest_neighbour: NearestNeighbourParams::default(),
-                nearest_neighbour_confirmation: Confirmation { n_sightings: 3, ..Confirmation::default() },
+                nearest_neighbour_confirmation: Confirmation {
+                    n_sightings: 3,
+                    patience: Some(20),
+                    ..Confirmation::default()
+                },
             },
             Profile::RangeBearing => Self {
                 increment: IncrementMotion {
@@ -187,7 +191,7 @@ mod tests {
         let mut expected = SlamSystemParams::of(Profile::Utias);
         expected.association = Some(AssociationRule::Nn);
         expected.robot.command_delay = 0.2;
-        expected.filter.confirmation.patience = 7;
+        expected.filter.confirmation.patience = Some(7);
         assert_eq!(params, expected);
     }
 
