@@ -35,8 +35,13 @@ pub(crate) struct SensorCertificate<T> {
     spread: T,
 }
 
-/// Covers the constants of the error bounds (at most $`γ_{2n+6}`$ a product, twice for symmetrizing, and what the elimination asks for
-/// beyond zero) with room to spare.
+/// Covers the counted roundings, with room to spare for terms of second order.
+///
+/// Prediction, in units of $`ε (‖F‖_F^2 \operatorname{tr} P + \operatorname{tr} Q)`$: two products and a sum $`2n + 3`$, what the elimination
+/// behind $`P`$ may have overlooked $`n + 1`$, what the next one asks for beyond zero $`3n + 3`$; together at most $`13n`$.
+/// Correction, in units of $`ε τ`$ with $`g = hτ`$ and $`s = \operatorname{tr} R / λ_{\min}(R)`$, where $`2\sqrt g \le 1 + g`$: errors of $`C`$
+/// $`n (1 + g)`$, of $`S`$ and its factors $`(2n + 3m + 2)(g + s)`$, of each pass $`2 (n + m + 1)(1 + g) + m s`$, and the elimination's
+/// $`3n + 3`$; for both passes less than $`16 (n + m)(2 + s + 2g)`$.
 const SAFETY: f64 = 16.0;
 
 impl<T: RealField + Copy> MotionCertificate<T> {
