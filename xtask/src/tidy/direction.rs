@@ -4,18 +4,19 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const MAY_KNOW: [(&str, &[&str]); 11] = [
+const MAY_KNOW: [(&str, &[&str]); 12] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
     ("particle", &["estimation-traits", "gaussian-core"]),
     ("line-extract", &["estimation-traits", "gaussian-core"]),
     ("slam-ekf", &["estimation-traits", "gaussian-core", "kalman", "line-extract"]),
-    ("color-model", &["estimation-traits", "gaussian-core", "kalman", "particle"]),
+    ("color-map", &["estimation-traits"]),
+    ("color-model", &["estimation-traits", "gaussian-core", "kalman", "particle", "color-map"]),
     ("condensation", &["estimation-traits", "gaussian-core", "particle"]),
     ("appearance-cml", &["estimation-traits", "gaussian-core"]),
     ("sensor-log", &["estimation-traits"]),
-    ("scene-sim", &["estimation-traits", "sensor-log"]),
+    ("scene-sim", &["estimation-traits", "sensor-log", "color-map"]),
 ];
 
 /// The application and the tasks may know every library.

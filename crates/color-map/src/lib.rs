@@ -1,0 +1,1 @@
+//! Maps of coloured surfaces and what a camera should see of them.

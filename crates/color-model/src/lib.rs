@@ -1,0 +1,1 @@
+//! Colours under unknown light: adaptive colour models, and localization in coloured maps.

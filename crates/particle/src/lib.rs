@@ -1,0 +1,1 @@
+//! Particle filters: resampling, KLD-sampling, auxiliary and Rao-Blackwellised particles, injection.
