@@ -4,12 +4,9 @@ use anyhow::{Context, Result};
 
 use super::{output::print, progress};
 use crate::{
-    regress::{Options, n_runs, regress},
+    regress::{Options, n_runs, regress, suites},
     report::{table, table::TableStyle},
 };
-
-/// Suites that there are.
-const SUITES: [&str; 1] = ["slam"];
 
 /// Run every system on the stored logs, and on public recordings where they are at hand, and judge the figures.
 ///
@@ -18,7 +15,7 @@ const SUITES: [&str; 1] = ["slam"];
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// Suites to run; all by default.
-    #[arg(value_name = "SUITE", value_parser = SUITES)]
+    #[arg(value_name = "SUITE", value_parser = suites::names())]
     suites: Vec<String>,
     /// Folder of public recordings: utias_mrclam/MRCLAM_Dataset7, range_bearing/slam_100.txt and others (docs/accuracy.md). Without it
     /// only stored logs run.
@@ -33,7 +30,7 @@ pub(super) struct Arguments {
     /// Seed of every generator.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Stored logs only.
+    /// Stored logs and short experiments only.
     #[arg(long)]
     quick: bool,
     /// Take the figures of the stored logs as right from now on; look at the change first.
@@ -45,10 +42,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let suites =
-        if arguments.suites.is_empty() { SUITES.map(str::to_owned).to_vec() } else { arguments.suites };
+    let all = || suites::names().into_iter().map(str::to_owned).collect();
     let options = Options {
-        suites,
+        suites: if arguments.suites.is_empty() { all() } else { arguments.suites },
         fixtures: arguments.fixtures,
         data: arguments.data,
         out: arguments.out,

@@ -4,12 +4,9 @@ use std::{
 };
 
 use anyhow::{Context, Result, ensure};
-use serde::Deserialize;
+use serde::{Deserialize, de::DeserializeOwned};
 
-use crate::{
-    report::{Metric, Run},
-    slam::{AssociationRule, Profile},
-};
+use crate::report::{Metric, Run};
 
 /// What a suite runs and which bounds it must keep: a TOML file beside the stored logs.
 #[derive(Clone, Debug, Deserialize)]
@@ -37,9 +34,8 @@ pub struct PlannedMean {
     pub bound: Vec<Bound>,
 }
 
-/// One log through one system.
+/// One log, or one experiment that makes its own, through one system.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PlannedRun {
     /// Its name, unique in the suite.
     pub name: String,
@@ -47,19 +43,17 @@ pub struct PlannedRun {
     pub log: Option<PathBuf>,
     /// A public recording, relative to the folder given by `--data`.
     pub data: Option<PathBuf>,
-    /// Which robot, in sets of several.
-    pub robot: Option<u32>,
-    /// How sightings find their landmarks.
-    pub association: Option<AssociationRule>,
-    /// The robot's defaults, when they are not those of the log's format.
-    pub profile: Option<Profile>,
-    /// A file of parameters, relative to the folder of the plan.
-    pub params: Option<PathBuf>,
+    /// Too long for `--quick`.
+    #[serde(default)]
+    pub slow: bool,
     /// A remark for the reader.
     pub note: Option<String>,
     /// Bounds and figures of others.
     #[serde(default)]
     pub bound: Vec<Bound>,
+    /// All other keys: what the suite wants to know.
+    #[serde(flatten)]
+    settings: toml::Table,
 }
 
 /// What a figure must keep, and beside whom it stands.
@@ -86,7 +80,7 @@ impl Plan {
     /// Reads the plan of a suite, `SUITE.toml` in the folder of the stored logs.
     ///
     /// # Errors
-    /// When it cannot be read, or a run names neither a stored log nor a recording.
+    /// When it cannot be read, or a run names both a stored log and a recording.
     pub fn read(folder: &Path, suite: &str) -> Result<Self> {
         let path = folder.join(suite).with_extension("toml");
         let text =
@@ -94,9 +88,20 @@ impl Plan {
         let plan: Self =
             toml::from_str(&text).with_context(|| format!("the plan {} is not usable", path.display()))?;
         for run in &plan.run {
-            ensure!(run.log.is_some() != run.data.is_some(), "run {}: give either `log` or `data`", run.name);
+            ensure!(run.log.is_none() || run.data.is_none(), "run {}: `log` or `data`, not both", run.name);
         }
         Ok(plan)
+    }
+}
+
+impl PlannedRun {
+    /// What the suite wants to know of the run.
+    ///
+    /// # Errors
+    /// When a key is unknown or its value is of another kind.
+    pub fn settings<T: DeserializeOwned>(&self) -> Result<T> {
+        let settings = self.settings.clone().try_into();
+        settings.with_context(|| format!("the settings of run {} are not usable", self.name))
     }
 }
 

@@ -1,16 +1,11 @@
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::PathBuf};
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
-use wayfix_sensor_log::OpenOptions;
 
-use super::{Blessed, Plan, PlannedRun, plan::judge};
+use super::{Blessed, Job, Plan, PlannedRun, plan::judge, suites};
 use crate::{
     report::{Machine, Report, Run, Suite, commit},
-    slam::{self, EstimateLog, Profile, SlamSystemParams},
     system::Stopwatch,
 };
 
@@ -27,7 +22,7 @@ pub struct Options {
     pub out: PathBuf,
     /// Seed of every generator.
     pub seed: u64,
-    /// Stored logs only.
+    /// Stored logs and short experiments only.
     pub quick: bool,
     /// Take the figures of the stored logs as right from now on.
     pub bless: bool,
@@ -52,19 +47,19 @@ pub fn regress(options: &Options, done: &(impl Fn(&str) + Sync)) -> Result<Repor
 pub fn n_runs(options: &Options) -> Result<usize> {
     let count = |suite: &String| {
         let plan = Plan::read(&options.fixtures, suite)?;
-        Ok(plan.run.iter().filter(|planned| locate(options, planned).is_some()).count())
+        Ok(plan.run.iter().filter(|planned| job(options, planned).is_some()).count())
     };
     options.suites.iter().map(count).sum()
 }
 
 fn run_suite(options: &Options, suite: &str, done: &(impl Fn(&str) + Sync)) -> Result<Suite> {
     let plan = Plan::read(&options.fixtures, suite)?;
-    let located = plan.run.iter().filter_map(|planned| Some((planned, locate(options, planned)?)));
-    let mut runs: Vec<Run> = located
-        .collect::<Vec<_>>()
+    let jobs: Vec<Job<'_>> = plan.run.iter().filter_map(|planned| job(options, planned)).collect();
+    let run = suites::named(suite)?;
+    let mut runs: Vec<Run> = jobs
         .par_iter()
-        .map(|(planned, log)| {
-            let run = run_one(options, planned, log);
+        .map(|job| {
+            let run = run_one(job, run);
             done(&run.name);
             run
         })
@@ -72,7 +67,7 @@ fn run_suite(options: &Options, suite: &str, done: &(impl Fn(&str) + Sync)) -> R
 
     let blessed_path = options.fixtures.join(format!("{suite}-figures.json"));
     let stored: Vec<&str> =
-        plan.run.iter().filter(|run| run.log.is_some()).map(|run| run.name.as_str()).collect();
+        plan.run.iter().filter(|run| run.data.is_none()).map(|run| run.name.as_str()).collect();
     if options.bless {
         Blessed::write(&blessed_path, runs.iter().filter(|run| stored.contains(&run.name.as_str())))?;
     }
@@ -86,52 +81,24 @@ fn run_suite(options: &Options, suite: &str, done: &(impl Fn(&str) + Sync)) -> R
     Ok(Suite { name: suite.to_owned(), runs })
 }
 
-/// Where the log of a run is; `None` for recordings that are not at hand or not asked for.
-fn locate(options: &Options, planned: &PlannedRun) -> Option<PathBuf> {
-    match (&planned.log, &planned.data) {
+/// A run with what it needs; `None` for recordings that are not at hand and for what is not asked for.
+fn job<'a>(options: &'a Options, planned: &'a PlannedRun) -> Option<Job<'a>> {
+    let path = match (&planned.log, &planned.data) {
+        _ if options.quick && (planned.slow || planned.data.is_some()) => return None,
         (Some(log), _) => Some(options.fixtures.join(log)),
-        (None, Some(data)) if !options.quick => {
-            options.data.as_ref().map(|folder| folder.join(data)).filter(|path| path.exists())
-        }
-        _ => None,
-    }
+        (None, Some(data)) => Some(options.data.as_ref()?.join(data)).filter(|path| path.exists()),
+        (None, None) => None,
+    };
+    (planned.data.is_none() || path.is_some()).then_some(Job { options, planned, path })
 }
 
-fn run_one(options: &Options, planned: &PlannedRun, log: &Path) -> Run {
+fn run_one(job: &Job<'_>, run: suites::Runner) -> Run {
     let stopwatch = Stopwatch::start();
-    let mut run = match run_slam(options, planned, log) {
+    let mut run = match run(job) {
         Ok(run) => run,
         Err(error) => Run { error: Some(format!("{error:#}")), ..Run::default() },
     };
-    judge(&planned.bound, &mut run.metrics);
-    run.notes.extend(planned.note.clone());
-    Run { name: planned.name.clone(), seconds: stopwatch.elapsed().as_secs_f64(), ..run }
-}
-
-fn run_slam(options: &Options, planned: &PlannedRun, path: &Path) -> Result<Run> {
-    let log = wayfix_sensor_log::open(path, &OpenOptions { robot: planned.robot, ..OpenOptions::default() })?;
-    let profile = planned.profile.unwrap_or(Profile::of_log(log.meta()));
-    let mut params = match &planned.params {
-        Some(file) => {
-            let file = options.fixtures.join(file);
-            let text =
-                fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
-            SlamSystemParams::from_toml(&text, profile)?
-        }
-        None => SlamSystemParams::of(profile),
-    };
-    params.association = planned.association.or(params.association);
-
-    let file_name = format!("{}.mcap", planned.name);
-    let mut estimates = EstimateLog::create(&options.out.join(&file_name))?;
-    estimates.origin(log.meta().first_format())?;
-    let (records, read) = log.read_all();
-    let mut index = 0;
-    let mut slam = slam::run(&records, &params, |system| {
-        estimates.observe(&records[index], system);
-        index += 1;
-    })?;
-    estimates.finish()?;
-    slam.events().add("log_problem", read.n_problems());
-    Ok(Run { log: Some(file_name), figures: slam::pictures(&slam)?, ..slam::summarize(&mut slam) })
+    judge(&job.planned.bound, &mut run.metrics);
+    run.notes.extend(job.planned.note.clone());
+    Run { name: job.planned.name.clone(), seconds: stopwatch.elapsed().as_secs_f64(), ..run }
 }

@@ -1,0 +1,45 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result};
+
+use super::{Options, PlannedRun};
+
+/// A run of a plan with what it needs.
+#[derive(Clone, Debug)]
+pub struct Job<'a> {
+    /// What was asked for on the command line.
+    pub options: &'a Options,
+    /// The run.
+    pub planned: &'a PlannedRun,
+    /// Where its log is, when it has one.
+    pub path: Option<PathBuf>,
+}
+
+impl Job<'_> {
+    /// Where its log is.
+    ///
+    /// # Errors
+    /// When the plan names none.
+    pub fn log(&self) -> Result<&PathBuf> {
+        self.path.as_ref().with_context(|| format!("run {}: give `log` or `data`", self.planned.name))
+    }
+
+    /// Name and place of the estimates that the run writes beside the report.
+    pub fn estimates(&self) -> (String, PathBuf) {
+        let name = format!("{}.mcap", self.planned.name);
+        let path = self.options.out.join(&name);
+        (name, path)
+    }
+
+    /// A file beside the plan, as text.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub fn read(&self, file: &Path) -> Result<String> {
+        let path = self.options.fixtures.join(file);
+        fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+    }
+}

@@ -1,0 +1,23 @@
+//! The suites: how a planned run of each goes through its system.
+
+mod slam;
+
+use anyhow::{Context, Result};
+
+use super::Job;
+use crate::report::Run;
+
+/// Does one run.
+pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
+
+const SUITES: [(&str, Runner); 1] = [("slam", slam::run)];
+
+/// All suites, in the order of the report.
+pub fn names() -> Vec<&'static str> {
+    SUITES.iter().map(|(name, _)| *name).collect()
+}
+
+pub(super) fn named(name: &str) -> Result<Runner> {
+    let found = SUITES.iter().find(|(known, _)| *known == name).map(|(_, runner)| *runner);
+    found.with_context(|| format!("there is no suite {name}; there are {}", names().join(", ")))
+}
