@@ -1,0 +1,163 @@
+/// Why shapes do not make a map. `shape` is the offender's place in the list.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapError {
+    /// More colours than a label image tells apart.
+    #[error("{got} colours, at most {limit} are possible")]
+    TooManyColors {
+        /// The largest number possible.
+        limit: usize,
+        /// The number given.
+        got: usize,
+    },
+    /// Two colours have one name.
+    #[error("two colours are called {name:?}")]
+    DuplicateColor {
+        /// The name.
+        name: String,
+    },
+    /// A shape has a colour that the map does not have.
+    #[error("shape {shape} has colour {color}, but there are {n_colors} colours")]
+    UnknownColor {
+        /// Which shape.
+        shape: usize,
+        /// Its colour.
+        color: u8,
+        /// How many the map has.
+        n_colors: usize,
+    },
+    /// A map file names a colour that it does not list.
+    #[error("no colour is called {name:?}")]
+    UnknownColorName {
+        /// The name.
+        name: String,
+    },
+    /// A length or coordinate has no meaning.
+    #[error("shape {shape}: {what} is {value}, must be {must}")]
+    Value {
+        /// Which shape.
+        shape: usize,
+        /// Which of its numbers, with its unit.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// A polygon of fewer than three corners.
+    #[error("polygon {shape} has {got} vertices, at least 3 are needed")]
+    TooFewVertices {
+        /// Which shape.
+        shape: usize,
+        /// Its corners.
+        got: usize,
+    },
+    /// A polygon without width.
+    #[error("polygon {shape} is degenerate: {area_m2:e} m² within {perimeter_m} m")]
+    Degenerate {
+        /// Which shape.
+        shape: usize,
+        /// Its area.
+        area_m2: f64,
+        /// The way around it.
+        perimeter_m: f64,
+    },
+    /// A corner that does not lie on the plane of its polygon.
+    #[error("polygon {shape} is not flat: vertex {vertex} is {distance_m:e} m off its plane")]
+    NotPlanar {
+        /// Which shape.
+        shape: usize,
+        /// Which corner.
+        vertex: usize,
+        /// How far off.
+        distance_m: f64,
+    },
+    /// A polygon with a corner on the outer side of one of its own edges.
+    #[error("polygon {shape} is not convex: vertex {vertex} is {distance_m:e} m outside one of its edges")]
+    NotConvex {
+        /// Which shape.
+        shape: usize,
+        /// Which corner.
+        vertex: usize,
+        /// How far outside.
+        distance_m: f64,
+    },
+    /// A post without bands.
+    #[error("post {shape} has no bands")]
+    NoBands {
+        /// Which shape.
+        shape: usize,
+    },
+    /// A band of a post that is empty or begins below the end of the one before it.
+    #[error(
+        "post {shape}: band {band} from {from_m} m to {to_m} m, but it must go up and begin at {least_m} m or above"
+    )]
+    BandOrder {
+        /// Which shape.
+        shape: usize,
+        /// Which band.
+        band: usize,
+        /// Where it begins.
+        from_m: f64,
+        /// Where it ends.
+        to_m: f64,
+        /// Where the one before it ends.
+        least_m: f64,
+    },
+    /// Two posts that stand in each other, seen from above.
+    #[error("posts {first} and {second} are {distance_m} m apart, at least {least_m} m is needed")]
+    PostsOverlap {
+        /// The earlier one.
+        first: usize,
+        /// The later one.
+        second: usize,
+        /// Between their centres.
+        distance_m: f64,
+        /// The smallest distance that keeps them apart.
+        least_m: f64,
+    },
+    /// The surfaces cut each other into more pieces than a view can be sorted from.
+    #[error("the surfaces cut each other into more than {limit} pieces")]
+    TooManyPieces {
+        /// The largest number possible.
+        limit: usize,
+    },
+}
+
+/// Why there is no view. Nothing was emitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// A number of the camera has no meaning.
+    #[error("camera: {what} is {value}, must be {must}")]
+    Camera {
+        /// Which number, with its unit.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// A number of the pose has no meaning.
+    #[error("camera pose: {what} is {value}, must be {must}")]
+    Pose {
+        /// Which number, with its unit.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// Labels of another size than the image.
+    #[error("a label image of {width}x{height} has {expected} pixels, got {got}")]
+    Size {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Their product.
+        expected: usize,
+        /// The number of labels that came.
+        got: usize,
+    },
+}

@@ -1,0 +1,89 @@
+use super::{Decal, Extent, Layer, Prism, check};
+use crate::{ColorId, MapError, Shape};
+
+/// A map of coloured surfaces, checked once.
+///
+/// Polygons may touch and pierce each other and posts may stand in them: every view is sorted exactly. Only posts must keep clear of
+/// each other, seen from above.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use wayfix_color_map::{ColorId, ColorMap, MapError, Shape};
+///
+/// let corner = |x, y| Vector3::new(x, y, 0.0);
+/// let carpet = |color| Shape::Polygon { color, vertices: vec![corner(0.0, 0.0), corner(4.0, 0.0), corner(0.0, 3.0)] };
+/// let map = ColorMap::new(vec!["green".into()], vec![carpet(ColorId(0))])?;
+/// assert_eq!(map.color_named("green"), Some(ColorId(0)));
+/// assert_eq!(map.extent().unwrap().max, Vector3::new(4.0, 3.0, 0.0));
+///
+/// let unknown = ColorMap::new(vec!["green".into()], vec![carpet(ColorId(7))]);
+/// assert_eq!(unknown.unwrap_err(), MapError::UnknownColor { shape: 0, color: 7, n_colors: 1 });
+/// # Ok::<(), MapError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ColorMap {
+    colors: Vec<String>,
+    shapes: Vec<Shape>,
+    extent: Option<Extent>,
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) posts: Vec<Prism>,
+}
+
+impl ColorMap {
+    /// A map of these shapes; a shape's [`ColorId`] is a place in `colors`.
+    ///
+    /// # Errors
+    /// See [`MapError`]: unknown, too many or equally named colours; polygons with too few corners, without width, not flat or not
+    /// convex (1e-6 m are tolerated); posts without radius, with bands out of order, or standing in each other; numbers that are NaN or
+    /// beyond 1e6 m.
+    pub fn new(colors: Vec<String>, shapes: Vec<Shape>) -> Result<Self, MapError> {
+        check::colors(&colors)?;
+        let (mut layers, mut posts) = (Vec::new(), Vec::new());
+        for (i, shape) in shapes.iter().enumerate() {
+            match shape {
+                Shape::Polygon { color, vertices } => {
+                    check::color(i, *color, colors.len())?;
+                    let plane = check::polygon(i, vertices)?;
+                    let decal = Decal { shape: i, color: *color, vertices: vertices.clone() };
+                    Layer::sort_in(&mut layers, plane, decal);
+                }
+                Shape::Post { x, y, radius, bands } => {
+                    check::post(i, *x, *y, *radius, bands)?;
+                    bands.iter().try_for_each(|band| check::color(i, band.color, colors.len()))?;
+                    posts.push(Prism::new(i, *x, *y, *radius, bands));
+                }
+            }
+        }
+        check::posts_apart(&posts)?;
+        let extent = Extent::of(&shapes);
+        Ok(Self { colors, shapes, extent, layers, posts })
+    }
+
+    /// The names of the colours.
+    pub fn colors(&self) -> &[String] {
+        &self.colors
+    }
+
+    /// The colour of this name.
+    pub fn color_named(&self, name: &str) -> Option<ColorId> {
+        let index = self.colors.iter().position(|color| color == name)?;
+        u8::try_from(index).ok().map(ColorId)
+    }
+
+    /// The shapes, as given.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// The upright box that the map fills; none if it has no shape.
+    pub fn extent(&self) -> Option<Extent> {
+        self.extent
+    }
+}
+
+/// Equal colours and shapes: the rest follows from them.
+impl PartialEq for ColorMap {
+    fn eq(&self, other: &Self) -> bool {
+        self.colors == other.colors && self.shapes == other.shapes
+    }
+}

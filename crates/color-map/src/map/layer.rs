@@ -1,0 +1,50 @@
+use nalgebra::Vector3;
+
+use super::Plane;
+use crate::ColorId;
+
+/// Polygons closer than this to a common plane lie on it, metres.
+pub(crate) const FLAT: f64 = 1e-6;
+
+/// All polygons on one plane, in map order: later ones on top.
+#[derive(Clone, Debug)]
+pub(crate) struct Layer {
+    pub(crate) plane: Plane,
+    pub(crate) decals: Vec<Decal>,
+}
+
+/// A polygon on a plane.
+#[derive(Clone, Debug)]
+pub(crate) struct Decal {
+    pub(crate) shape: usize,
+    pub(crate) color: ColorId,
+    /// Counter-clockwise seen from where the plane's normal points to.
+    pub(crate) vertices: Vec<Vector3<f64>>,
+}
+
+impl Layer {
+    /// Puts a polygon with its own plane on the first layer it lies on, or on a new one.
+    pub(crate) fn sort_in(layers: &mut Vec<Self>, plane: Plane, mut decal: Decal) {
+        let lies_on = |layer: &Self| decal.vertices.iter().all(|v| layer.plane.distance(v).abs() <= FLAT);
+        let index = layers.iter().position(lies_on).unwrap_or_else(|| {
+            layers.push(Self { plane, decals: Vec::new() });
+            layers.len() - 1
+        });
+        let layer = &mut layers[index];
+        if layer.plane.normal.dot(&plane.normal) < 0.0 {
+            decal.vertices.reverse();
+        }
+        for vertex in &mut decal.vertices {
+            *vertex = layer.plane.foot(vertex);
+        }
+        layer.decals.push(decal);
+    }
+}
+
+impl Decal {
+    /// Whether a point of the plane lies on the polygon.
+    pub(crate) fn contains(&self, normal: &Vector3<f64>, point: &Vector3<f64>) -> bool {
+        let next = self.vertices.iter().cycle().skip(1);
+        self.vertices.iter().zip(next).all(|(a, b)| normal.cross(&(b - a)).dot(&(point - a)) >= 0.0)
+    }
+}

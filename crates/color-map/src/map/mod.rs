@@ -1,0 +1,18 @@
+//! The map: validated shapes, and the same sorted for casting and projecting.
+
+mod cast;
+mod check;
+mod color_map;
+mod extent;
+#[cfg(feature = "serde")]
+mod file;
+mod layer;
+mod plane;
+mod prism;
+
+pub use cast::Hit;
+pub use color_map::ColorMap;
+pub use extent::Extent;
+pub(crate) use layer::{Decal, Layer};
+pub(crate) use plane::{HAIR, Plane};
+pub(crate) use prism::Prism;

@@ -1,0 +1,24 @@
+use nalgebra::Vector3;
+
+/// What counts as no distance, metres: a surface whose plane passes the eye this closely is seen edge-on, that is not at all, and
+/// surfaces that reach less than this through a plane do not reach through it.
+pub(crate) const HAIR: f64 = 1e-9;
+
+/// $`n^T x = d`$ with a unit normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Plane {
+    pub(crate) normal: Vector3<f64>,
+    pub(crate) offset: f64,
+}
+
+impl Plane {
+    /// Signed distance, positive on the side the normal points to.
+    pub(crate) fn distance(&self, point: &Vector3<f64>) -> f64 {
+        self.normal.dot(point) - self.offset
+    }
+
+    /// The plane's point next to `point`.
+    pub(crate) fn foot(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        point - self.normal * self.distance(point)
+    }
+}
