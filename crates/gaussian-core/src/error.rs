@@ -50,6 +50,22 @@ pub enum GaussianError {
         /// What there should be some of.
         what: &'static str,
     },
+    /// A list is too short for what is to be learned from it.
+    #[error("{got} {what}, need at least {needed}")]
+    TooFew {
+        /// What there should be more of.
+        what: &'static str,
+        /// How many are enough.
+        needed: usize,
+        /// How many there are.
+        got: usize,
+    },
+    /// Nothing is known of a coordinate.
+    #[error("coordinate {coordinate} is never observed")]
+    Unobserved {
+        /// Which one.
+        coordinate: usize,
+    },
     /// A parameter is outside its range.
     #[error("{what} is {value}, must be {range}")]
     Parameter {

@@ -75,7 +75,7 @@ impl<T: RealField + Copy> Gaussian<DVector<T>> {
 }
 
 /// The indices below `dimension` that are not in `indices`, which are in range and differ.
-fn complement(indices: &[usize], dimension: usize) -> Result<Vec<usize>, GaussianError> {
+pub(crate) fn complement(indices: &[usize], dimension: usize) -> Result<Vec<usize>, GaussianError> {
     let mut taken = vec![false; dimension];
     for &index in indices {
         match taken.get_mut(index) {

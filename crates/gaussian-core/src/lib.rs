@@ -10,6 +10,7 @@
 //! | compare | [`Gaussian::mahalanobis_squared`], [`Gaussian::kl_divergence`], [`Gaussian::bhattacharyya_distance`] |
 //! | take parts | [`Gaussian::marginal`], [`Gaussian::conditional`] |
 //! | keep several hypotheses | [`Mixture`], [`moment_matched`] |
+//! | learn one from groups, each seen in part | [`fit_hierarchical`] |
 //! | decide | [`ChiSquaredGate`], [`ChiSquaredBand`] |
 //! | draw random points, or pictures | [`Gaussian::sampler`], [`CovarianceEllipse`] |
 //! | turn models for Kalman filters into models for particles | [`GaussianMotion`], [`GaussianLikelihood`] |
@@ -26,6 +27,7 @@ mod divergence;
 mod ellipse;
 mod error;
 mod gaussian;
+mod hierarchical;
 mod index_set;
 mod likelihood;
 mod merge;
@@ -45,6 +47,9 @@ pub use covariance_intersection::{Intersection, IntersectionCriterion, covarianc
 pub use ellipse::CovarianceEllipse;
 pub use error::{GaussianError, IterationError};
 pub use gaussian::Gaussian;
+pub use hierarchical::{
+    GroupEvidence, HierarchicalFit, HierarchicalParams, InverseWishart, MeanPrior, fit_hierarchical,
+};
 pub use likelihood::GaussianLikelihood;
 pub use merge::moment_matched;
 pub use mixture::{Mixture, log_sum_exp};
