@@ -1,0 +1,68 @@
+use std::sync::Arc;
+
+/// A particle whose state is sampled in part, $`x`$, and carried in closed form for the rest, $`p(c | x, z)`$. [Doucet et al. 2000]
+///
+/// The conditional part may be anything that can be cloned: a Kalman filter, a bank of them, a table. It is shared by all descendants until one
+/// of them changes it, so resampling copies no filter.
+///
+/// ```
+/// use wayfix_particle::{ParticleSet, RaoBlackwell, Systematic};
+/// use rand::SeedableRng;
+/// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+/// let mut particles = ParticleSet::new(vec![RaoBlackwell::new(0_u8, vec![0.0; 1000])])?;
+/// particles.resample(&Systematic, 100, &mut rng)?; // one vector, a hundred owners
+/// let [first, second] = &particles.states()[..2] else { unreachable!() };
+/// assert!(first.shares_conditional_with(second));
+///
+/// let mut changed = first.clone();
+/// changed.conditional_mut()[0] = 1.0; // now it has its own
+/// assert_eq!((changed.conditional()[0], first.conditional()[0]), (1.0, 0.0));
+/// # Ok::<(), wayfix_particle::ParticleError>(())
+/// ```
+#[derive(Debug, PartialEq)]
+pub struct RaoBlackwell<X, C> {
+    /// The sampled part.
+    pub sampled: X,
+    conditional: Arc<C>,
+}
+
+/// Clones the sampled part; the conditional one is shared.
+impl<X: Clone, C> Clone for RaoBlackwell<X, C> {
+    fn clone(&self) -> Self {
+        Self { sampled: self.sampled.clone(), conditional: Arc::clone(&self.conditional) }
+    }
+}
+
+impl<X, C> RaoBlackwell<X, C> {
+    /// A particle with a conditional part of its own.
+    pub fn new(sampled: X, conditional: C) -> Self {
+        Self::from_shared(sampled, Arc::new(conditional))
+    }
+    /// A particle that shares its conditional part from the start, as all do that come from one prior.
+    pub fn from_shared(sampled: X, conditional: Arc<C>) -> Self {
+        Self { sampled, conditional }
+    }
+    /// The conditional part.
+    pub fn conditional(&self) -> &C {
+        &self.conditional
+    }
+    /// The conditional part with its owners.
+    pub fn shared_conditional(&self) -> &Arc<C> {
+        &self.conditional
+    }
+    /// Replaces the conditional part of this particle alone.
+    pub fn set_conditional(&mut self, conditional: Arc<C>) {
+        self.conditional = conditional;
+    }
+    /// The conditional part for changing: copied first when others share it.
+    pub fn conditional_mut(&mut self) -> &mut C
+    where
+        C: Clone,
+    {
+        Arc::make_mut(&mut self.conditional)
+    }
+    /// Whether both hold the very same conditional part.
+    pub fn shares_conditional_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.conditional, &other.conditional)
+    }
+}

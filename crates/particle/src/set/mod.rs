@@ -1,0 +1,12 @@
+//! The weighted particles, and what one does with all of them at once.
+
+mod advance;
+mod moments;
+mod normalize;
+mod particle_set;
+mod propagate;
+mod resample;
+mod reweigh;
+
+pub use moments::Moments;
+pub use particle_set::ParticleSet;
