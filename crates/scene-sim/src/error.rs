@@ -38,4 +38,10 @@ pub enum SimError {
         /// The name asked for.
         name: String,
     },
+    /// The shapes do not make a map.
+    #[error(transparent)]
+    Map(#[from] wayfix_color_map::MapError),
+    /// The numbers do not make a camera.
+    #[error(transparent)]
+    View(#[from] wayfix_color_map::ViewError),
 }

@@ -26,6 +26,7 @@
 mod check;
 pub mod drive;
 mod error;
+pub mod league;
 pub mod monobot;
 pub mod plane;
 pub mod random;
@@ -33,6 +34,7 @@ pub mod route;
 mod scenario;
 pub mod sensor;
 mod simulation;
+pub mod space;
 pub mod world;
 
 pub use error::SimError;
