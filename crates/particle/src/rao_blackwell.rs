@@ -1,4 +1,10 @@
+use std::collections::BTreeSet;
 use std::sync::Arc;
+
+use rand::Rng;
+use wayfix_estimation_traits::LogWeight;
+
+use crate::{ChunkRng, ParticleError, ParticleSet};
 
 /// A particle whose state is sampled in part, $`x`$, and carried in closed form for the rest, $`p(c | x, z)`$. [Doucet et al. 2000]
 ///
@@ -64,5 +70,36 @@ impl<X, C> RaoBlackwell<X, C> {
     /// Whether both hold the very same conditional part.
     pub fn shares_conditional_with(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.conditional, &other.conditional)
+    }
+}
+
+impl<X: Clone + Send, C: Clone + Send + Sync> ParticleSet<RaoBlackwell<X, C>> {
+    /// One Rao-Blackwellised step: `sample` moves the sampled part, `condition` predicts and corrects the conditional part given it, and
+    /// returns how likely the measurement was, $`\log p(z_k | x_{1:k}, z_{1:k-1})`$: the particle's weight.
+    ///
+    /// Short for [`advance_with`](ParticleSet::advance_with), which also takes working memory and other proposals.
+    ///
+    /// # Errors
+    /// As [`advance_with`](ParticleSet::advance_with); all particles are as they were.
+    pub fn sample_and_condition<E, R>(
+        &mut self,
+        sample: impl Fn(&X, &mut ChunkRng) -> X + Sync,
+        condition: impl Fn(&X, &mut C) -> Result<LogWeight, E> + Sync,
+        rng: &mut R,
+    ) -> Result<(), E>
+    where
+        E: From<ParticleError> + Send,
+        R: Rng + ?Sized,
+    {
+        let step = |(): &mut (), particle: &mut RaoBlackwell<X, C>, rng: &mut ChunkRng| {
+            particle.sampled = sample(&particle.sampled, rng);
+            condition(&particle.sampled, Arc::make_mut(&mut particle.conditional))
+        };
+        self.advance_with(|| (), step, rng)
+    }
+
+    /// How many conditional parts there are in memory; fewer than particles after resampling.
+    pub fn n_conditionals(&self) -> usize {
+        self.states().iter().map(|particle| Arc::as_ptr(&particle.conditional)).collect::<BTreeSet<_>>().len()
     }
 }

@@ -1,3 +1,5 @@
+use wayfix_estimation_traits::LogWeight;
+
 use super::{ParticleSet, particle_set::equal_log_weights};
 use crate::{Evidence, ParticleError, Weights};
 
@@ -8,15 +10,7 @@ impl<X> ParticleSet<X> {
     /// [`ParticleError::NoWeight`] when every particle is impossible. The weights stay as they are; whether to forget the measurement
     /// ([`forget_weights`](Self::forget_weights)) or to start again is the caller's decision.
     pub fn normalize(&mut self) -> Result<Evidence, ParticleError> {
-        let (weights, log_sum) = Weights::with_log_sum(&self.log_weights)?;
-        for log_weight in &mut self.log_weights {
-            *log_weight -= log_sum;
-        }
-        Ok(Evidence {
-            log_likelihood: log_sum,
-            effective_sample_size: weights.effective_sample_size(),
-            n_particles: self.n_particles(),
-        })
+        normalize(&mut self.log_weights)
     }
 
     /// Gives every particle the same weight, whatever it was.
@@ -27,4 +21,18 @@ impl<X> ParticleSet<X> {
         self.log_weights = equal_log_weights(self.n_particles())?;
         Ok(())
     }
+}
+
+/// Leaves log weights alone when it fails.
+pub(super) fn normalize(log_weights: &mut [LogWeight]) -> Result<Evidence, ParticleError> {
+    let (weights, log_sum) = Weights::with_log_sum(log_weights)?;
+    for log_weight in log_weights {
+        *log_weight -= log_sum;
+    }
+    let n_particles = weights.as_slice().len();
+    Ok(Evidence {
+        log_likelihood: log_sum,
+        effective_sample_size: weights.effective_sample_size(),
+        n_particles,
+    })
 }

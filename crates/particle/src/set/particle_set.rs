@@ -28,8 +28,8 @@ use crate::{
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticleSet<X> {
-    pub(super) states: Vec<X>,
-    pub(super) log_weights: Vec<LogWeight>,
+    pub(crate) states: Vec<X>,
+    pub(crate) log_weights: Vec<LogWeight>,
 }
 
 impl<X> ParticleSet<X> {

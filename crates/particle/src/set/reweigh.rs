@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::LogWeight;
 
-use super::ParticleSet;
-use crate::{ParticleError, chunks::map_chunks, memory::filled, weights::check_log_weights};
+use super::{ParticleSet, normalize::normalize};
+use crate::{Evidence, ParticleError, chunks::map_chunks, memory::filled, weights::check_log_weights};
 
 impl<X: Send> ParticleSet<X> {
     /// Multiplies every weight by a likelihood: $`\log w_i ← \log w_i + \log p(z | x_i)`$.
@@ -17,7 +17,20 @@ impl<X: Send> ParticleSet<X> {
 
     /// [`reweigh`](Self::reweigh) with something that `prepare` makes once a chunk of particles: a curried model, working memory.
     ///
-    /// What a likelihood leaves in it must not matter to the next particle.
+    /// What a likelihood leaves in it must not matter to the next particle. Memory that is dear to make may come out of a pool of the
+    /// caller's.
+    ///
+    /// ```
+    /// use wayfix_particle::ParticleSet;
+    /// let mut particles = ParticleSet::new(vec![1.0, 2.0])?;
+    /// particles.reweigh_with(Vec::new, |terms, x| {
+    ///     terms.clear();
+    ///     terms.extend([1.0, 1.5].map(|z: f64| -0.5 * (z - x).powi(2)));
+    ///     terms.iter().sum()
+    /// })?;
+    /// assert_eq!(*particles.heaviest(), 1.0);
+    /// # Ok::<(), wayfix_particle::ParticleError>(())
+    /// ```
     ///
     /// # Errors
     /// As [`reweigh`](Self::reweigh).
@@ -26,6 +39,31 @@ impl<X: Send> ParticleSet<X> {
         prepare: impl Fn() -> S + Sync,
         log_likelihood: impl Fn(&mut S, &X) -> LogWeight + Sync,
     ) -> Result<(), ParticleError> {
+        self.log_weights = self.weighed(prepare, log_likelihood)?;
+        Ok(())
+    }
+
+    /// [`reweigh_with`](Self::reweigh_with) and [`normalize`](Self::normalize), all or nothing: a measurement that no particle explains
+    /// leaves the weights as they were before it.
+    ///
+    /// # Errors
+    /// As [`reweigh`](Self::reweigh), and [`ParticleError::NoWeight`] when every particle is impossible.
+    pub fn correct_with<S>(
+        &mut self,
+        prepare: impl Fn() -> S + Sync,
+        log_likelihood: impl Fn(&mut S, &X) -> LogWeight + Sync,
+    ) -> Result<Evidence, ParticleError> {
+        let mut log_weights = self.weighed(prepare, log_likelihood)?;
+        let evidence = normalize(&mut log_weights)?;
+        self.log_weights = log_weights;
+        Ok(evidence)
+    }
+
+    fn weighed<S>(
+        &mut self,
+        prepare: impl Fn() -> S + Sync,
+        log_likelihood: impl Fn(&mut S, &X) -> LogWeight + Sync,
+    ) -> Result<Vec<LogWeight>, ParticleError> {
         let mut increments = filled(self.n_particles(), 0.0)?;
         map_chunks(&mut self.states, &mut increments, |_, states, increments| {
             let mut prepared = prepare();
@@ -33,8 +71,7 @@ impl<X: Send> ParticleSet<X> {
                 *increment = log_likelihood(&mut prepared, state);
             }
         });
-        self.log_weights = added(&self.log_weights, &increments)?;
-        Ok(())
+        added(&self.log_weights, &increments)
     }
 }
 
