@@ -1,0 +1,134 @@
+use nalgebra::Vector3;
+
+use super::view::ImagePoint;
+
+/// A line flatter than this, rows a column, is level: across the widest image it changes by less than a rounding error of a row.
+const LEVEL: f64 = 1e-16;
+
+/// Where a convex thing lies in each row, as the lines around it leave it.
+///
+/// Every line is a bound of its own: a row's left end is the largest of the bounds to the left. So the bound that two neighbours share is the
+/// same number for both. Lines are asked only in rows that their edge reaches, with one row to spare: there, one of the others is the tighter one.
+#[derive(Clone, Debug)]
+pub(super) struct Outline {
+    n_columns: f64,
+    /// Of the image's pixels.
+    row_centers: Vec<f64>,
+    edges: Vec<Edge>,
+    /// Rows that were traced.
+    rows: std::ops::Range<usize>,
+    left: Vec<f64>,
+    right: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    /// Positive inside: $`a u + b v + c`$.
+    line: Vector3<f64>,
+    top: f64,
+    bottom: f64,
+}
+
+impl Outline {
+    pub(super) fn new(width: u32, height: u32) -> Self {
+        let rows = height as usize;
+        Self {
+            n_columns: f64::from(width),
+            row_centers: (0..height).map(|row| f64::from(row) + 0.5).collect(),
+            edges: Vec::new(),
+            rows: 0..0,
+            left: vec![0.0; rows],
+            right: vec![0.0; rows],
+        }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.edges.clear();
+    }
+
+    /// Adds an edge between `ends`, on the line through `line`; the inside is to its left in a picture with rows going up.
+    pub(super) fn add(&mut self, ends: (&ImagePoint, &ImagePoint), line: (&ImagePoint, &ImagePoint)) {
+        if let Some((top, bottom)) = ends.0.rows_to(ends.1) {
+            let line = line.0.pixel.cross(&line.1.pixel);
+            self.edges.push(Edge { line, top, bottom });
+        }
+    }
+
+    /// Finds the left and right ends in all rows.
+    pub(super) fn trace(&mut self) {
+        let (top, bottom) = self.edges.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(top, bottom), e| {
+            (top.min(e.top), bottom.max(e.bottom))
+        });
+        self.rows = self.rows_between(top, bottom);
+        self.left[self.rows.clone()].fill(0.0);
+        self.right[self.rows.clone()].fill(self.n_columns);
+        for i in 0..self.edges.len() {
+            self.bound(self.edges[i]);
+        }
+    }
+
+    /// Row, first column and one past the last column of every row that is not empty.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        self.rows.clone().filter_map(|row| {
+            let start = self.first_center_from(self.left[row]);
+            let end = self.first_center_from(self.right[row]);
+            (start < end).then_some((row, start, end))
+        })
+    }
+
+    fn bound(&mut self, Edge { line, top, bottom }: Edge) {
+        let (a, b, c) = (line.x, line.y, line.z);
+        if a.abs() <= LEVEL * b.abs() {
+            return self.bound_rows(b, c);
+        }
+        let (at_zero, slope) = (-c / a, -b / a);
+        let rows = self.rows_between(top - 1.0, bottom + 1.0);
+        let rows = rows.start.max(self.rows.start)..rows.end.min(self.rows.end);
+        if rows.is_empty() {
+            return;
+        }
+        let centers = &self.row_centers[rows.clone()];
+        if a > 0.0 {
+            for (left, row) in self.left[rows].iter_mut().zip(centers) {
+                let u = at_zero + slope * row;
+                *left = if u > *left { u } else { *left };
+            }
+        } else {
+            for (right, row) in self.right[rows].iter_mut().zip(centers) {
+                let u = at_zero + slope * row;
+                *right = if u < *right { u } else { *right };
+            }
+        }
+    }
+
+    /// Leaves the rows where $`b v + c > 0`$.
+    fn bound_rows(&mut self, b: f64, c: f64) {
+        let Some(last) = self.row_centers.len().checked_sub(1) else { return };
+        let split = (-c / b - 0.5).ceil();
+        let split = if split > last as f64 { last + 1 } else { split.max(0.0) as usize };
+        if b > 0.0 {
+            self.rows.start = self.rows.start.max(split);
+        } else if b < 0.0 {
+            self.rows.end = self.rows.end.min(split);
+        } else if c < 0.0 {
+            self.rows.end = self.rows.start;
+        }
+        self.rows.end = self.rows.end.max(self.rows.start);
+    }
+
+    /// Rows of the image whose centres may lie between two rows, both included.
+    fn rows_between(&self, top: f64, bottom: f64) -> std::ops::Range<usize> {
+        let height = self.row_centers.len() as f64;
+        let start = (top - 0.5).clamp(0.0, height) as usize;
+        let end = (bottom + 1.0).clamp(0.0, height) as usize;
+        start..end.max(start)
+    }
+
+    /// The first column whose centre is at `u` or to the right of it.
+    fn first_center_from(&self, u: f64) -> usize {
+        let edge = u.clamp(0.0, self.n_columns) - 0.5;
+        // `f64::ceil` is a call on processors without SSE 4.1.
+        let below = edge as i32;
+        (below + i32::from(f64::from(below) < edge)) as usize
+    }
+}
