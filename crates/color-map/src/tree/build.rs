@@ -13,12 +13,12 @@ use crate::{
 
 /// Most pieces before a map is refused.
 const MAX_PIECES: usize = 200_000;
-/// About so many facets are looked at to choose a plane.
+/// About so many pieces are looked at to choose a plane.
 const LOOKS: usize = 20_000;
-/// A post in two pieces is drawn face by face, which is worth some cut polygons.
-const CUT_SOLID: usize = 8;
-/// One cut polygon is worth some imbalance.
+/// A cut polygon costs as much as this imbalance.
 const CUT_FACET: usize = 4;
+/// A post in two pieces is drawn face by face. That costs more than any imbalance.
+const CUT_SOLID: usize = 1 << 20;
 
 /// What has to be sorted into one subtree.
 #[derive(Default)]
@@ -46,13 +46,13 @@ impl Tree {
         tree.nodes.push(Node::Leaf { solids: Vec::new() });
         let mut open = vec![(tree.root, all)];
         while let Some((slot, heap)) = open.pop() {
-            let Some(layer) = best_plane(&heap, layers, prisms, &tree.points) else {
+            let Some(cut) = best_cut(&heap, layers, prisms, &tree.points) else {
                 tree.nodes[slot] = Node::Leaf { solids: heap.solids };
                 continue;
             };
-            let plane = layers[layer].plane;
+            let plane = cut.plane;
             let before = heap.facets.len() + heap.solids.len();
-            let (facets, sides) = part(heap, layer, &plane, prisms, &mut tree.points);
+            let (facets, sides) = part(heap, &cut, prisms, &mut tree.points);
             n_pieces +=
                 facets.len() + sides.iter().map(|s| s.facets.len() + s.solids.len()).sum::<usize>() - before;
             if n_pieces > MAX_PIECES {
@@ -69,50 +69,90 @@ impl Tree {
     }
 }
 
-/// The layer whose plane cuts least and, among those, halves best. None if no facet is left.
-fn best_plane(heap: &Heap, layers: &[Layer], prisms: &[Prism], points: &[Vector3<f64>]) -> Option<usize> {
-    let mut candidates: Vec<usize> = heap.facets.iter().map(|(layer, _)| *layer).collect();
-    candidates.sort_unstable();
-    candidates.dedup();
-    let n_looks = (LOOKS / heap.facets.len().max(1)).max(4);
-    let stride = candidates.len().div_ceil(n_looks).max(1);
-    candidates
-        .into_iter()
-        .step_by(stride)
-        .min_by_key(|&layer| cost(heap, layer, &layers[layer].plane, prisms, points))
+/// A plane to sort by.
+struct Cut {
+    plane: Plane,
+    /// The layer that lies on it, if one does.
+    layer: Option<usize>,
 }
 
-fn cost(heap: &Heap, layer: usize, plane: &Plane, prisms: &[Prism], points: &[Vector3<f64>]) -> usize {
-    let (mut cuts, mut front, mut back) = (0, 0_usize, 0_usize);
-    for (_, facet) in heap.facets.iter().filter(|(own, _)| *own != layer) {
-        let sides = facet.edges.iter().map(|edge| sign(plane.distance(&points[edge.corner])));
-        let (least, most) = sides.fold((0, 0), |(least, most), s| (s.min(least), s.max(most)));
-        cuts += if least < 0 && most > 0 { CUT_FACET } else { 0 };
-        front += usize::from(least >= 0);
-        back += usize::from(least < 0);
+/// The plane that cuts least and, among those, halves best. None if no facet is left.
+///
+/// It is that of a layer, unless this would cut a post and a face of a post cuts nothing.
+fn best_cut(heap: &Heap, layers: &[Layer], prisms: &[Prism], points: &[Vector3<f64>]) -> Option<Cut> {
+    let n_looks = (LOOKS / (heap.facets.len() + heap.solids.len()).max(1)).max(4);
+    let mut on_layers: Vec<usize> = heap.facets.iter().map(|(layer, _)| *layer).collect();
+    on_layers.sort_unstable();
+    on_layers.dedup();
+    let on_layers = on_layers.into_iter().map(|i| Cut { plane: layers[i].plane, layer: Some(i) });
+    let (cost, cut) = cheapest(on_layers.collect(), n_looks, |cut| cut.price(heap, prisms, points).total())?;
+    if cost < CUT_SOLID {
+        return Some(cut);
     }
-    for solid in &heap.solids {
-        let (least, most) = reach(&prisms[solid.prism], plane);
-        cuts += if least < 0 && most > 0 { CUT_SOLID * CUT_FACET } else { 0 };
+    let faces = heap.solids.iter().flat_map(|solid| {
+        let prism = &prisms[solid.prism];
+        prism
+            .sides
+            .iter()
+            .copied()
+            .chain([prism.top(), prism.bottom()])
+            .map(|plane| Cut { plane, layer: None })
+    });
+    let clean = cheapest(faces.collect(), n_looks, |cut| {
+        let price = cut.price(heap, prisms, points);
+        if price.cuts == 0 && price.front > 0 && price.back > 0 { price.total() } else { usize::MAX }
+    });
+    match clean {
+        Some((clean_cost, face)) if clean_cost < usize::MAX => Some(face),
+        _ => Some(cut),
     }
-    cuts + front.abs_diff(back)
 }
 
-/// What lies on the layer itself, the topmost decal first, and what is in front of and behind its plane.
-fn part(
-    heap: Heap,
-    layer: usize,
-    plane: &Plane,
-    prisms: &[Prism],
-    points: &mut Vec<Vector3<f64>>,
-) -> (Vec<Facet>, [Heap; 2]) {
+/// The best of some evenly chosen ones.
+fn cheapest(cuts: Vec<Cut>, n_looks: usize, cost: impl Fn(&Cut) -> usize) -> Option<(usize, Cut)> {
+    let stride = cuts.len().div_ceil(n_looks).max(1);
+    cuts.into_iter().step_by(stride).map(|cut| (cost(&cut), cut)).min_by_key(|(cost, _)| *cost)
+}
+
+struct Price {
+    cuts: usize,
+    front: usize,
+    back: usize,
+}
+
+impl Price {
+    fn total(&self) -> usize {
+        self.cuts + self.front.abs_diff(self.back)
+    }
+}
+
+impl Cut {
+    fn price(&self, heap: &Heap, prisms: &[Prism], points: &[Vector3<f64>]) -> Price {
+        let mut price = Price { cuts: 0, front: 0, back: 0 };
+        let mut count = |(least, most): (i8, i8), cut: usize| {
+            price.cuts += if least < 0 && most > 0 { cut } else { 0 };
+            price.front += usize::from(least >= 0);
+            price.back += usize::from(least < 0);
+        };
+        for (_, facet) in heap.facets.iter().filter(|(own, _)| Some(*own) != self.layer) {
+            count(facet.reach(&self.plane, points), CUT_FACET);
+        }
+        for solid in &heap.solids {
+            count(reach(&prisms[solid.prism], &self.plane), CUT_SOLID);
+        }
+        price
+    }
+}
+
+/// What lies on the cut's layer, the topmost decal first, and what is in front of and behind the plane.
+fn part(heap: Heap, cut: &Cut, prisms: &[Prism], points: &mut Vec<Vector3<f64>>) -> (Vec<Facet>, [Heap; 2]) {
     let (mut on_it, mut front, mut back) = (Vec::new(), Heap::default(), Heap::default());
     for (own, facet) in heap.facets {
-        if own == layer {
+        if Some(own) == cut.layer {
             on_it.push(facet);
             continue;
         }
-        match facet.split(plane, points) {
+        match facet.split(&cut.plane, points) {
             Side::Front(facet) => front.facets.push((own, facet)),
             Side::Back(facet) => back.facets.push((own, facet)),
             Side::Both(near, far) => {
@@ -122,7 +162,7 @@ fn part(
         }
     }
     for solid in heap.solids {
-        match split_solid(solid, plane, prisms, points) {
+        match split_solid(solid, &cut.plane, prisms, points) {
             Side::Front(solid) => front.solids.push(solid),
             Side::Back(solid) => back.solids.push(solid),
             Side::Both(near, far) => {

@@ -43,20 +43,21 @@ impl Facet {
         Self { color, edges: (0..n).map(edge).collect() }
     }
 
-    /// Signs of the corners' distances from a plane; nearer than a hair is on it.
-    fn signs(&self, plane: &Plane, points: &[Vector3<f64>]) -> Vec<i8> {
-        self.edges.iter().map(|edge| sign(plane.distance(&points[edge.corner]))).collect()
+    /// Signs of the least and the largest distance of its corners from a plane.
+    pub(super) fn reach(&self, plane: &Plane, points: &[Vector3<f64>]) -> (i8, i8) {
+        let signs = self.edges.iter().map(|edge| sign(plane.distance(&points[edge.corner])));
+        signs.fold((1, -1), |(least, most), sign| (sign.min(least), sign.max(most)))
     }
 
     /// Sorts it to the front or the back of a plane, or cuts it. New corners are added to `points`.
     pub(super) fn split(self, plane: &Plane, points: &mut Vec<Vector3<f64>>) -> Side<Self> {
-        let signs = self.signs(plane, points);
-        if !signs.contains(&-1) {
-            return Side::Front(self);
+        match self.reach(plane, points) {
+            (0.., _) => return Side::Front(self),
+            (_, ..=0) => return Side::Back(self),
+            _ => {}
         }
-        if !signs.contains(&1) {
-            return Side::Back(self);
-        }
+        let signs: Vec<i8> =
+            self.edges.iter().map(|edge| sign(plane.distance(&points[edge.corner]))).collect();
         let n = self.edges.len();
         let (mut front, mut back) = (Vec::with_capacity(n + 1), Vec::with_capacity(n + 1));
         // The edge along the plane gets its line below, when both its ends are known.
