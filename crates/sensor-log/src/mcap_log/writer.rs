@@ -9,6 +9,7 @@ use mcap::WriteOptions;
 use mcap::records::MessageHeader;
 use wayfix_estimation_traits::Pose2;
 
+use super::camera;
 use super::drawing::scene_update;
 use super::{Drawing, encode, origin, topics};
 use crate::{Data, Format, LogError, Record, Stamp, TrueLandmark};
@@ -122,6 +123,17 @@ impl<W: Write + Seek> McapWriter<W> {
                 self.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)
             }
             Data::TrueLandmark(_) => Ok(()),
+            Data::CameraInfo(info) => {
+                self.message(topics::CAMERA_INFO, stamp, &camera::encode_info(timestamp, info))
+            }
+            Data::CameraMount(pose) => {
+                self.message(topics::CAMERA_MOUNT, stamp, &camera::encode_mount(timestamp, pose))?;
+                self.message(topics::CAMERA_OPTICAL, stamp, &camera::encode_optical(timestamp))
+            }
+            Data::Image(image) => self.message(topics::IMAGE, stamp, &camera::encode_image(timestamp, image)),
+            Data::TrueLabels(image) => {
+                self.message(topics::TRUE_LABELS, stamp, &camera::encode_image(timestamp, image))
+            }
         }
     }
 
