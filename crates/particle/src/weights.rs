@@ -21,7 +21,9 @@ impl Weights {
     /// [`ParticleError::LogWeight`] for NaN and positive infinity, [`ParticleError::NoWeight`] when all are $`-∞`$,
     /// [`ParticleError::NoParticles`] for an empty list.
     pub fn from_log(log_weights: &[LogWeight]) -> Result<Self, ParticleError> {
-        Self::with_log_sum(log_weights).map(|(weights, _)| weights)
+        let mut weights = Self::placeholder();
+        weights.assign_log(log_weights)?;
+        Ok(weights)
     }
 
     /// Plain weights, scaled to add up to one.
@@ -41,14 +43,19 @@ impl Weights {
         Ok(Self(weights))
     }
 
-    /// The weights and $`\log \sum_i e^{l_i}`$.
-    pub(crate) fn with_log_sum(log_weights: &[LogWeight]) -> Result<(Self, f64), ParticleError> {
+    /// No weights at all, which only [`assign_log`](Self::assign_log) may meet.
+    pub(crate) fn placeholder() -> Self {
+        Self(vec![])
+    }
+
+    /// [`from_log`](Self::from_log) into memory that is there already; $`\log \sum_i e^{l_i}`$.
+    pub(crate) fn assign_log(&mut self, log_weights: &[LogWeight]) -> Result<f64, ParticleError> {
         check_log_weights(log_weights)?;
         let largest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         check_some_weight(log_weights.len(), largest > f64::NEG_INFINITY)?;
-        let mut weights: Vec<f64> = log_weights.iter().map(|l| (l - largest).exp()).collect();
-        let sum = normalize(&mut weights);
-        Ok((Self(weights), largest + sum.ln()))
+        self.0.clear();
+        self.0.extend(log_weights.iter().map(|l| (l - largest).exp()));
+        Ok(largest + normalize(&mut self.0).ln())
     }
 
     /// The weights, in the order of the particles.

@@ -91,7 +91,7 @@ where
         candidates.propagate_with(
             || (motion.likely(control), sensor.given(measurement)),
             |(likely, log_likelihood), candidate, _| {
-                candidate.promise = log_likelihood(&likely(&candidate.state))
+                candidate.promise = log_likelihood(&likely(&candidate.state));
             },
             rng,
         );
@@ -106,9 +106,9 @@ where
             || sensor.given(measurement),
             |log_likelihood, candidate| log_likelihood(&candidate.state) - candidate.promise,
         )?;
-        let ParticleSet { states, log_weights } = candidates;
+        let ParticleSet { states, log_weights, .. } = candidates;
         let states = states.into_iter().map(|candidate| candidate.state).collect();
-        self.particles = ParticleSet { states, log_weights };
+        self.particles = ParticleSet::from_parts(states, log_weights);
         let log_likelihood = first_stage.log_likelihood + second_stage.log_likelihood;
         Ok(Evidence { log_likelihood, ..second_stage })
     }

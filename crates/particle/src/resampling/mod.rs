@@ -3,6 +3,7 @@
 mod multinomial;
 mod resampler;
 mod residual;
+mod spread;
 mod stratified;
 mod systematic;
 mod walk;

@@ -1,6 +1,6 @@
 use rand::Rng;
 
-use super::{Multinomial, Resampler};
+use super::{Multinomial, Resampler, spread::expand};
 use crate::Weights;
 
 /// $`⌊n w_i⌋`$ children for certain, the remaining ones drawn by what is left of the weights. [Liu & Chen 1998]
@@ -19,20 +19,24 @@ pub struct Residual;
 impl Resampler for Residual {
     fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], rng: &mut R) {
         let n = ancestors.len();
-        let mut rest = Vec::with_capacity(weights.as_slice().len());
-        let mut filled = 0;
-        for (index, share) in weights.as_slice().iter().enumerate() {
-            let expected = share * n as f64;
-            // 49 × (1/49) rounds to just below 1, and its child is certain all the same.
-            let certain = ((expected * (1.0 + 4.0 * f64::EPSILON)) as usize).min(n - filled);
-            ancestors[filled..filled + certain].fill(index);
-            filled += certain;
-            rest.push((expected - certain as f64).max(0.0));
-        }
+        let expected = || weights.as_slice().iter().map(|share| share * n as f64);
+        // 49 × (1/49) rounds to just below 1, and its child is certain all the same.
+        let mut children: Vec<usize> =
+            expected().map(|count| (count * (1.0 + 4.0 * f64::EPSILON)) as i64 as usize).collect();
+        let rest =
+            expected().zip(&children).map(|(count, certain)| (count - *certain as f64).max(0.0)).collect();
         // No rest at all means that every child was certain.
         if let Ok(rest) = Weights::from_linear(rest) {
-            Multinomial.fill(&rest, &mut ancestors[filled..], rng);
+            let drawn = &mut ancestors[..n.saturating_sub(children.iter().sum())];
+            Multinomial.fill(&rest, drawn, rng);
+            drawn.iter().for_each(|ancestor| children[*ancestor] += 1);
         }
-        ancestors.sort_unstable();
+        let mut end = 0;
+        let ends = children.iter().map(|count| {
+            end += count;
+            end
+        });
+        let filled = expand(ends, ancestors);
+        ancestors[filled..].fill(weights.last_positive());
     }
 }

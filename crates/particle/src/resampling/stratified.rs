@@ -1,9 +1,6 @@
-use rand::Rng;
+use rand::{Rng, RngExt as _};
 
-use super::{
-    Resampler,
-    walk::{open_closed, walk},
-};
+use super::{Resampler, spread::spread};
 use crate::Weights;
 
 /// One random point in each of $`n`$ equal strata. [Kitagawa 1996]
@@ -20,8 +17,14 @@ use crate::Weights;
 pub struct Stratified;
 
 impl Resampler for Stratified {
+    /// Of the points $`k + 1 - v_k`$ those of all whole strata below $`n C`$ lie up to it, and perhaps the one of its own stratum.
     fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], rng: &mut R) {
-        let n = ancestors.len();
-        walk(weights, (0..n).map(|stratum| (stratum as f64 + open_closed(rng)) / n as f64), ancestors);
+        let offsets: Vec<f64> = ancestors.iter().map(|_| rng.random()).collect();
+        let points_up_to = |scaled: f64| {
+            let stratum = scaled as i64 as usize;
+            let own = offsets.get(stratum).is_some_and(|offset| scaled - stratum as f64 + offset >= 1.0);
+            stratum + usize::from(own)
+        };
+        spread(weights, points_up_to, ancestors);
     }
 }

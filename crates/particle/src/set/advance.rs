@@ -1,7 +1,7 @@
 use rand::Rng;
 use wayfix_estimation_traits::LogWeight;
 
-use super::{ParticleSet, reweigh::added};
+use super::{ParticleSet, reweigh::add};
 use crate::{
     ParticleError,
     chunks::{ChunkRng, Streams, map_chunks},
@@ -40,7 +40,8 @@ impl<X: Clone + Send> ParticleSet<X> {
         })
         .into_iter()
         .collect::<Result<(), E>>()?;
-        self.log_weights = added(&self.log_weights, &increments)?;
+        add(&self.log_weights, &mut increments)?;
+        self.log_weights = increments;
         self.states = states;
         Ok(())
     }

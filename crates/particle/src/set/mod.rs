@@ -7,6 +7,7 @@ mod particle_set;
 mod propagate;
 mod resample;
 mod reweigh;
+mod workspace;
 
 pub use moments::Moments;
 pub use particle_set::ParticleSet;

@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::LogWeight;
 
-use super::{ParticleSet, particle_set::equal_log_weights};
+use super::ParticleSet;
 use crate::{Evidence, ParticleError, Weights};
 
 impl<X> ParticleSet<X> {
@@ -10,22 +10,22 @@ impl<X> ParticleSet<X> {
     /// [`ParticleError::NoWeight`] when every particle is impossible. The weights stay as they are; whether to forget the measurement
     /// ([`forget_weights`](Self::forget_weights)) or to start again is the caller's decision.
     pub fn normalize(&mut self) -> Result<Evidence, ParticleError> {
-        normalize(&mut self.log_weights)
+        normalize(&mut self.log_weights, &mut self.workspace.weights)
     }
 
     /// Gives every particle the same weight, whatever it was.
-    ///
-    /// # Errors
-    /// [`ParticleError::TooMany`] when memory runs out.
-    pub fn forget_weights(&mut self) -> Result<(), ParticleError> {
-        self.log_weights = equal_log_weights(self.n_particles())?;
-        Ok(())
+    pub fn forget_weights(&mut self) {
+        let log_share = -(self.n_particles() as f64).ln();
+        self.log_weights.fill(log_share);
     }
 }
 
-/// Leaves log weights alone when it fails.
-pub(super) fn normalize(log_weights: &mut [LogWeight]) -> Result<Evidence, ParticleError> {
-    let (weights, log_sum) = Weights::with_log_sum(log_weights)?;
+/// In place, with memory for the plain weights; leaves log weights alone when it fails.
+pub(super) fn normalize(
+    log_weights: &mut [LogWeight],
+    weights: &mut Weights,
+) -> Result<Evidence, ParticleError> {
+    let log_sum = weights.assign_log(log_weights)?;
     for log_weight in log_weights {
         *log_weight -= log_sum;
     }

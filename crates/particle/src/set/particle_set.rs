@@ -1,6 +1,7 @@
 use rand::Rng;
 use wayfix_estimation_traits::LogWeight;
 
+use super::workspace::Workspace;
 use crate::{
     ParticleError, Weights,
     memory::{filled, with_room},
@@ -30,6 +31,7 @@ use crate::{
 pub struct ParticleSet<X> {
     pub(crate) states: Vec<X>,
     pub(crate) log_weights: Vec<LogWeight>,
+    pub(super) workspace: Workspace<X>,
 }
 
 impl<X> ParticleSet<X> {
@@ -39,7 +41,7 @@ impl<X> ParticleSet<X> {
     /// [`ParticleError::NoParticles`] when there are none.
     pub fn new(states: Vec<X>) -> Result<Self, ParticleError> {
         let log_weights = equal_log_weights(states.len())?;
-        Ok(Self { states, log_weights })
+        Ok(Self::from_parts(states, log_weights))
     }
 
     /// Particles with log weights in nats, which need not be normalized.
@@ -54,7 +56,7 @@ impl<X> ParticleSet<X> {
             return Err(ParticleError::NoParticles);
         }
         check_log_weights(&log_weights)?;
-        Ok(Self { states, log_weights })
+        Ok(Self::from_parts(states, log_weights))
     }
 
     /// `n` particles of equal weight from a prior.
@@ -69,7 +71,12 @@ impl<X> ParticleSet<X> {
         let log_weights = equal_log_weights(n)?;
         let mut states = with_room(n)?;
         states.extend((0..n).map(|_| draw(rng)));
-        Ok(Self { states, log_weights })
+        Ok(Self::from_parts(states, log_weights))
+    }
+
+    /// The caller vouches for equal lengths, at least one, and log weights that are neither NaN nor positive infinity.
+    pub(crate) fn from_parts(states: Vec<X>, log_weights: Vec<LogWeight>) -> Self {
+        Self { states, log_weights, workspace: Workspace::default() }
     }
 
     /// How many particles there are; never 0.

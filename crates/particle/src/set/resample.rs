@@ -1,7 +1,10 @@
 use rand::Rng;
 
-use super::{ParticleSet, particle_set::equal_log_weights};
-use crate::{ParticleError, Resampler, memory::with_room};
+use super::ParticleSet;
+use crate::{
+    ParticleError, Resampler,
+    memory::{reserve, resize},
+};
 
 impl<X: Clone> ParticleSet<X> {
     /// Replaces the particles by `n` children, drawn by weight; all weights are equal then. The weights need not be normalized.
@@ -17,14 +20,23 @@ impl<X: Clone> ParticleSet<X> {
         resampler: &S,
         n: usize,
         rng: &mut R,
-    ) -> Result<Vec<usize>, ParticleError> {
-        let weights = self.weights()?;
-        let log_weights = equal_log_weights(n)?;
-        let mut children = with_room(n)?;
-        let ancestors = resampler.ancestors(&weights, n, rng)?;
-        children.extend(ancestors.iter().map(|&ancestor| self.states[ancestor].clone()));
-        self.states = children;
-        self.log_weights = log_weights;
-        Ok(ancestors)
+    ) -> Result<&[usize], ParticleError> {
+        if n == 0 {
+            return Err(ParticleError::NoParticles);
+        }
+        let Self { states, log_weights, workspace } = self;
+        workspace.weights.assign_log(log_weights)?;
+        reserve(log_weights, n)?;
+        reserve(&mut workspace.states, n)?;
+        resize(&mut workspace.ancestors, n, 0)?;
+        resampler.fill(&workspace.weights, &mut workspace.ancestors, rng);
+
+        let children = workspace.ancestors.iter().map(|&ancestor| states[ancestor].clone());
+        workspace.states.extend(children);
+        std::mem::swap(states, &mut workspace.states);
+        workspace.states.clear();
+        log_weights.clear();
+        log_weights.resize(n, -(n as f64).ln());
+        Ok(&workspace.ancestors)
     }
 }

@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::LogWeight;
 
 use super::{ParticleSet, normalize::normalize};
-use crate::{Evidence, ParticleError, chunks::map_chunks, memory::filled, weights::check_log_weights};
+use crate::{Evidence, ParticleError, chunks::map_chunks, memory::resize, weights::check_log_weights};
 
 impl<X: Send> ParticleSet<X> {
     /// Multiplies every weight by a likelihood: $`\log w_i ← \log w_i + \log p(z | x_i)`$.
@@ -39,7 +39,8 @@ impl<X: Send> ParticleSet<X> {
         prepare: impl Fn() -> S + Sync,
         log_likelihood: impl Fn(&mut S, &X) -> LogWeight + Sync,
     ) -> Result<(), ParticleError> {
-        self.log_weights = self.weighed(prepare, log_likelihood)?;
+        self.weigh(prepare, log_likelihood)?;
+        std::mem::swap(&mut self.log_weights, &mut self.workspace.log_weights);
         Ok(())
     }
 
@@ -53,36 +54,36 @@ impl<X: Send> ParticleSet<X> {
         prepare: impl Fn() -> S + Sync,
         log_likelihood: impl Fn(&mut S, &X) -> LogWeight + Sync,
     ) -> Result<Evidence, ParticleError> {
-        let mut log_weights = self.weighed(prepare, log_likelihood)?;
-        let evidence = normalize(&mut log_weights)?;
-        self.log_weights = log_weights;
+        self.weigh(prepare, log_likelihood)?;
+        let workspace = &mut self.workspace;
+        let evidence = normalize(&mut workspace.log_weights, &mut workspace.weights)?;
+        std::mem::swap(&mut self.log_weights, &mut workspace.log_weights);
         Ok(evidence)
     }
 
-    fn weighed<S>(
+    /// The new log weights, in the workspace.
+    fn weigh<S>(
         &mut self,
         prepare: impl Fn() -> S + Sync,
         log_likelihood: impl Fn(&mut S, &X) -> LogWeight + Sync,
-    ) -> Result<Vec<LogWeight>, ParticleError> {
-        let mut increments = filled(self.n_particles(), 0.0)?;
-        map_chunks(&mut self.states, &mut increments, |_, states, increments| {
+    ) -> Result<(), ParticleError> {
+        let weighed = &mut self.workspace.log_weights;
+        resize(weighed, self.states.len(), 0.0)?;
+        map_chunks(&mut self.states, weighed, |_, states, weighed| {
             let mut prepared = prepare();
-            for (state, increment) in states.iter().zip(increments) {
-                *increment = log_likelihood(&mut prepared, state);
+            for (state, log_weight) in states.iter().zip(weighed) {
+                *log_weight = log_likelihood(&mut prepared, state);
             }
         });
-        added(&self.log_weights, &increments)
+        add(&self.log_weights, weighed)
     }
 }
 
-/// The sums, if all of them are log weights.
-pub(super) fn added(
-    log_weights: &[LogWeight],
-    increments: &[LogWeight],
-) -> Result<Vec<LogWeight>, ParticleError> {
-    check_log_weights(increments)?;
-    let sums: Vec<LogWeight> =
-        log_weights.iter().zip(increments).map(|(l, increment)| l + increment).collect();
-    check_log_weights(&sums)?;
-    Ok(sums)
+/// Adds the old log weights to the increments; whether the sums are log weights.
+pub(super) fn add(log_weights: &[LogWeight], increments: &mut [LogWeight]) -> Result<(), ParticleError> {
+    for (increment, log_weight) in increments.iter_mut().zip(log_weights) {
+        *increment += log_weight;
+    }
+    // An increment of NaN or infinity does not become finite by adding.
+    check_log_weights(increments)
 }
