@@ -44,4 +44,16 @@ pub enum SimError {
     /// The numbers do not make a camera.
     #[error(transparent)]
     View(#[from] wayfix_color_map::ViewError),
+    /// A picture cannot be encoded.
+    #[error("a picture cannot be encoded: {reason}")]
+    Picture {
+        /// What the codec says.
+        reason: String,
+    },
+}
+
+impl From<wayfix_sensor_log::ImageError> for SimError {
+    fn from(error: wayfix_sensor_log::ImageError) -> Self {
+        Self::Picture { reason: error.to_string() }
+    }
 }

@@ -10,9 +10,12 @@ mod field;
 mod illuminant;
 mod light;
 mod picture;
+mod records;
 mod robot;
 mod things;
+mod training;
 mod venue;
+mod yuv;
 
 pub use backdrop::{Backdrop, Hall, Seen};
 pub use drive::{Frame, LeagueDrive, LeagueParams};
@@ -22,4 +25,5 @@ pub use light::{Lamp, Lamps, LightField, Rgb};
 pub use picture::{CameraParams, Chroma, Form, Photographer, Picture, Scene, Skin, Surface};
 pub use robot::{GaitOdometryParams, HeadParams, Legged, RobotParams, SwayParams, WalkParams};
 pub use things::Things;
+pub use training::{ColorMeans, TrainingParams, TrainingVenue};
 pub use venue::{Lighting, Venue};

@@ -1,8 +1,9 @@
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{Record, Stamp};
 
-use super::{PlanarParams, catalogue};
+use super::{PlanarParams, catalogue, league};
 use crate::SimError;
+use crate::league::LeagueParams;
 use crate::monobot::MonobotParams;
 use crate::random::Streams;
 
@@ -34,6 +35,8 @@ pub enum ScenarioParams {
     Planar(Box<PlanarParams>),
     /// A robot on a line, one step every 100 ms.
     Monobot(MonobotParams),
+    /// A robot with a camera on the field of the four-legged league.
+    League(Box<LeagueParams>),
 }
 
 impl Scenario {
@@ -42,12 +45,18 @@ impl Scenario {
         catalogue::all()
     }
 
+    /// Those with a camera on the field of the four-legged league: `color_dark` (D1), `color_bright` (D2), `color_switching` (S) and
+    /// `color_kidnapped` (K). All four are in one hall, which is none of the training venues.
+    pub fn in_color() -> Vec<Self> {
+        league::all()
+    }
+
     /// The one called `name`.
     ///
     /// # Errors
     /// When there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
-        let found = Self::all().into_iter().find(|scenario| scenario.name == name);
+        let found = Self::all().into_iter().chain(Self::in_color()).find(|scenario| scenario.name == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
     }
 
@@ -59,6 +68,7 @@ impl Scenario {
         let mut streams = Streams::new(rng);
         match &self.params {
             ScenarioParams::Planar(params) => params.simulate(&mut streams),
+            ScenarioParams::League(params) => params.simulate(streams),
             ScenarioParams::Monobot(params) => {
                 let run = params.simulate(&mut streams)?;
                 Ok(run.records(Stamp::from_nanoseconds(1_600_000_000_000_000_000), 100))

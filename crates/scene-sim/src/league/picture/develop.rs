@@ -1,7 +1,7 @@
 use rand::Rng;
 
 use super::camera::{CameraParams, Chroma};
-use crate::league::Rgb;
+use crate::league::{Rgb, yuv};
 use crate::random::deviate::quick_normal;
 
 /// Entries of the table of the response.
@@ -30,7 +30,7 @@ impl Developer {
             let seen = self.mixed(&(light + stray).component_mul(lens));
             seen.component_mul(&gains).map(|signal| self.grey_value(signal, rng))
         });
-        self.share_chroma(grey.map(to_yuv).collect())
+        self.share_chroma(grey.map(|rgb| yuv::from_rgb(&rgb)).collect())
     }
 
     /// The filters before the pixels are not those of the primaries.
@@ -68,7 +68,7 @@ impl Developer {
                     }
                 }
             }
-            bytes.extend(to_rgb(own.x, sum.y / count, sum.z / count));
+            bytes.extend(yuv::to_rgb(own.x, sum.y / count, sum.z / count));
         }
         bytes
     }
@@ -84,17 +84,4 @@ fn lens(params: &CameraParams) -> Vec<Rgb> {
         Rgb::repeat(1.0) - params.vignetting * corner
     };
     (0..height).flat_map(|row| (0..width).map(move |column| through(column, row))).collect()
-}
-
-/// ITU-R BT.601 in full range, U and V about 0.
-fn to_yuv(rgb: Rgb) -> Rgb {
-    let y = 0.299 * rgb.x + 0.587 * rgb.y + 0.114 * rgb.z;
-    Rgb::new(y, (rgb.z - y) / 1.772, (rgb.x - y) / 1.402)
-}
-
-fn to_rgb(y: f64, u: f64, v: f64) -> [u8; 3] {
-    let red = y + 1.402 * v;
-    let blue = y + 1.772 * u;
-    let green = (y - 0.299 * red - 0.114 * blue) / 0.587;
-    [red, green, blue].map(|value| (value + 0.5) as u8)
 }
