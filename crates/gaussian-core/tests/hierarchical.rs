@@ -11,6 +11,8 @@ use wayfix_gaussian_core::{
 };
 
 const D: usize = 6;
+/// What the hyperprior of the covariance is worth here.
+const PSEUDO_GROUPS: f64 = 15.0;
 
 fn normal(rng: &mut ChaCha8Rng, n: usize) -> DVector<f64> {
     DVector::from_fn(n, |_, _| rng.sample(StandardNormal))
@@ -47,7 +49,7 @@ fn draw_groups(prior: &Gaussian<DVector<f64>>, n: usize, rng: &mut ChaCha8Rng) -
 }
 
 fn hyperprior(variance: f64) -> Option<InverseWishart> {
-    Some(InverseWishart::from_mode(&DMatrix::from_diagonal_element(D, D, variance), D as f64 + 2.0).unwrap())
+    Some(InverseWishart::from_mode(&DMatrix::from_diagonal_element(D, D, variance), PSEUDO_GROUPS).unwrap())
 }
 
 #[test]
@@ -78,7 +80,6 @@ fn a_known_prior_is_recovered_within_sampling_error() {
     const GROUPS: usize = 300;
     let truth = known_prior(7);
     let prior = hyperprior(4.0);
-    let pseudo_groups = 2.0 * D as f64 + 3.0;
     let fits: Vec<_> = (0..SETS)
         .map(|seed| {
             let groups = draw_groups(&truth, GROUPS, &mut ChaCha8Rng::seed_from_u64(100 + seed as u64));
@@ -98,7 +99,7 @@ fn a_known_prior_is_recovered_within_sampling_error() {
         within(fits.iter().map(|fit| fit.mean()[i]).collect(), truth.mean()[i], 0.0);
         for j in 0..=i {
             let scale = (truth.covariance()[(i, i)] * truth.covariance()[(j, j)]).sqrt();
-            let bias = scale * (pseudo_groups + 1.0) / GROUPS as f64;
+            let bias = scale * (PSEUDO_GROUPS + 1.0) / GROUPS as f64;
             within(
                 fits.iter().map(|fit| fit.covariance()[(i, j)]).collect(),
                 truth.covariance()[(i, j)],
@@ -131,7 +132,7 @@ fn exact_complete_observations_give_the_sample_moments() {
     let prior = hyperprior(2.0).unwrap();
     let params = HierarchicalParams { covariance_prior: Some(prior.clone()), ..Default::default() };
     let fit = fit_hierarchical(&groups, &params).unwrap();
-    let expected = (scatter + prior.scale()) / (20.0 + prior.degrees_of_freedom() + D as f64 + 1.0);
+    let expected = (scatter + prior.scale()) / (20.0 + PSEUDO_GROUPS);
     assert!((fit.gaussian.covariance() - expected).amax() < 1e-12);
 }
 
@@ -184,7 +185,7 @@ fn both_hyperpriors_speak_where_no_group_does() {
     let fit = fit_hierarchical(&[GroupEvidence::new(D)], &params).unwrap();
     assert_eq!(fit.gaussian.mean(), &DVector::from_element(D, 3.0));
     // Ψ / (ν + d + 2): N(m, Σ/κ) adds one |Σ|^(-1/2).
-    let (groups, mode) = (2.0 * D as f64 + 3.0, 4.0);
+    let (groups, mode) = (PSEUDO_GROUPS, 4.0);
     assert!((fit.gaussian.covariance()[(2, 2)] - mode * groups / (groups + 1.0)).abs() < 1e-14);
 }
 
