@@ -1,1 +1,20 @@
 //! Colours under unknown light: adaptive colour models, and localization in coloured maps.
+
+mod background;
+mod error;
+mod frame;
+mod lighting;
+mod likelihood;
+mod localizer;
+mod yuv;
+
+pub use background::Background;
+pub use error::ColorModelError;
+pub use frame::{Frame, PixelSums};
+pub use lighting::{ColorDensity, ColorMeans, Drift, LightingBank, LightingFilter, LightingParams, Unseen};
+pub use likelihood::{PixelParams, PixelView, SpanView, SumDensity, ViewLikelihood, gather};
+pub use localizer::{
+    CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,
+    OdometryNoise, OdometryStep, PoseEstimate, Start, surroundings,
+};
+pub use yuv::{YuvImage, YuvStandard};
