@@ -50,6 +50,13 @@ impl Prism {
         Vector3::new(x, y, z)
     }
 
+    /// Centre and radius of a ball around it.
+    pub(crate) fn ball(&self) -> (Vector3<f64>, f64) {
+        let half = 0.5 * (self.to - self.from);
+        let radius = (self.corner_radius * self.corner_radius + half * half).sqrt();
+        (Vector3::new(self.x, self.y, self.from + half), radius)
+    }
+
     /// The upper end, outward.
     pub(crate) fn top(&self) -> Plane {
         Plane { normal: Vector3::z(), offset: self.to }

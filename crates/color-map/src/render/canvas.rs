@@ -6,47 +6,50 @@ use crate::{Camera, ColorId, Span, map::Prism, tree::Facet};
 pub(super) struct Canvas {
     outline: Outline,
     coverage: Coverage,
+    corners: Vec<ImagePoint>,
 }
 
 impl Canvas {
     pub(super) fn new(camera: &Camera) -> Self {
         let (width, height) = (camera.width(), camera.height());
-        Self { outline: Outline::new(width, height), coverage: Coverage::new(width, height) }
+        Self {
+            outline: Outline::new(width, height),
+            coverage: Coverage::new(width, height),
+            corners: Vec::new(),
+        }
     }
 
     pub(super) fn clear(&mut self) {
         self.coverage.clear();
     }
 
-    /// Draws a facet whose corners are in `points`; from the front its corners go counter-clockwise.
+    /// Draws a facet, seen from the front or from the back of its plane.
     pub(super) fn facet(
         &mut self,
         facet: &Facet,
         from_front: bool,
-        points: &[ImagePoint],
+        view: &View,
         emit: &mut impl FnMut(Span),
     ) {
-        let outside = facet.edges.iter().fold(u8::MAX, |bits, edge| bits & points[edge.corner].outside);
-        if outside != 0 {
+        if view.misses(&facet.center, facet.radius) {
             return;
         }
+        self.corners.clear();
+        self.corners.extend(facet.edges.iter().map(|edge| view.point(&edge.corner)));
         self.outline.clear();
-        let mut corner = &points[facet.edges[facet.edges.len() - 1].corner];
-        let mut line = facet.edges[facet.edges.len() - 1].line;
-        for edge in &facet.edges {
-            let next = &points[edge.corner];
-            let (a, b) = (&points[line.0], &points[line.1]);
+        let ends = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
+        for (edge, (corner, next)) in facet.edges.iter().zip(ends) {
+            let whole = edge.whole.map(|(a, b)| (view.point(&a), view.point(&b)));
+            let (a, b) = whole.as_ref().map_or((corner, next), |(a, b)| (a, b));
             self.outline.add((corner, next), if from_front { (b, a) } else { (a, b) });
-            (corner, line) = (next, edge.line);
         }
         self.fill(facet.color, emit);
     }
 
     /// Draws a whole prism.
     pub(super) fn prism(&mut self, prism: &Prism, view: &View, emit: &mut impl FnMut(Span)) {
-        if silhouette::trace(prism, view, &mut self.outline) {
-            self.fill(prism.color, emit);
-        }
+        silhouette::trace(prism, view, &mut self.outline);
+        self.fill(prism.color, emit);
     }
 
     fn fill(&mut self, color: ColorId, emit: &mut impl FnMut(Span)) {

@@ -20,8 +20,7 @@ impl Coverage {
     /// Covers the columns `start..end` of a row and tells the runs of those that were free.
     pub(super) fn claim(&mut self, row: usize, start: usize, end: usize, free: impl FnMut(usize, usize)) {
         let words = &mut self.words[row * self.words_per_row..][..self.words_per_row];
-        bits::runs_of_zeros(words, start, end, free);
-        bits::set(words, start, end);
+        bits::claim(words, start, end, free);
     }
 }
 

@@ -5,6 +5,9 @@ use super::view::ImagePoint;
 /// A line flatter than this, rows a column, is level: across the widest image it changes by less than a rounding error of a row.
 const LEVEL: f64 = 1e-16;
 
+/// 1.5 · 2⁵², where doubles are the whole numbers.
+const INTEGERS: f64 = 6_755_399_441_055_744.0;
+
 /// Where a convex thing lies in each row, as the lines around it leave it.
 ///
 /// Every line is a bound of its own: a row's left end is the largest of the bounds to the left. So the bound that two neighbours share is the
@@ -69,9 +72,10 @@ impl Outline {
 
     /// Row, first column and one past the last column of every row that is not empty.
     pub(super) fn rows(&self) -> impl Iterator<Item = (usize, usize, usize)> {
-        self.rows.clone().filter_map(|row| {
-            let start = self.first_center_from(self.left[row]);
-            let end = self.first_center_from(self.right[row]);
+        let rows = self.rows.clone();
+        let ends = self.left[rows.clone()].iter().zip(&self.right[rows.clone()]);
+        rows.zip(ends).filter_map(|(row, (&left, &right))| {
+            let (start, end) = (self.first_center_from(left), self.first_center_from(right));
             (start < end).then_some((row, start, end))
         })
     }
@@ -126,9 +130,11 @@ impl Outline {
 
     /// The first column whose centre is at `u` or to the right of it.
     fn first_center_from(&self, u: f64) -> usize {
+        // Rounding up, without the calls of `f64::ceil` and the checks of `as` on a processor of the plain kind: a sum with `INTEGERS` has
+        // no bits left for a fraction, and its lowest ones are the whole number.
         let edge = u.clamp(0.0, self.n_columns) - 0.5;
-        // `f64::ceil` is a call on processors without SSE 4.1.
-        let below = edge as i32;
-        (below + i32::from(f64::from(below) < edge)) as usize
+        let rounded = (edge + INTEGERS) - INTEGERS;
+        let up = if rounded < edge { rounded + 1.0 } else { rounded };
+        (up + INTEGERS).to_bits() as u32 as usize
     }
 }

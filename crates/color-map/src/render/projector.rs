@@ -1,14 +1,8 @@
 use std::sync::Arc;
 
-use nalgebra::Vector3;
 use wayfix_estimation_traits::Pose3;
 
-use super::{
-    canvas::Canvas,
-    margin::Margin,
-    pose,
-    view::{ImagePoint, View},
-};
+use super::{canvas::Canvas, margin::Margin, pose, view::View};
 use crate::{
     Camera, ColorMap, LabelImage, Span, ViewError,
     map::{HAIR, Prism},
@@ -45,8 +39,8 @@ pub struct Projector {
     map: Arc<ColorMap>,
     camera: Camera,
     canvas: Canvas,
-    points: Vec<ImagePoint>,
     todo: Vec<Step>,
+    standing: Vec<Standing>,
     /// Made when it is first asked for.
     margin: Option<Margin>,
 }
@@ -60,10 +54,27 @@ enum Step {
     Facets(usize, bool),
 }
 
+/// A solid of a leaf and what says whether another one may hide it: only one that is less.
+#[derive(Clone, Copy, Debug)]
+struct Standing {
+    /// Power of the eye's foot with respect to the prism's circle.
+    power: f64,
+    /// Between the eye's height and those of the solid: for bands of one post.
+    gap: f64,
+    solid: usize,
+}
+
 impl Projector {
     /// For one map and camera.
     pub fn new(map: Arc<ColorMap>, camera: Camera) -> Self {
-        Self { map, camera, canvas: Canvas::new(&camera), points: Vec::new(), todo: Vec::new(), margin: None }
+        Self {
+            map,
+            camera,
+            canvas: Canvas::new(&camera),
+            todo: Vec::new(),
+            standing: Vec::new(),
+            margin: None,
+        }
     }
 
     /// The map.
@@ -84,11 +95,9 @@ impl Projector {
     /// [`ViewError::Pose`] if the pose is not finite, farther than 1e6 m away, or its quaternion not of unit length. Nothing is emitted then.
     pub fn spans(&mut self, camera_pose: &Pose3<f64>, emit: &mut impl FnMut(Span)) -> Result<(), ViewError> {
         pose::check(camera_pose)?;
-        let Self { map, camera, canvas, points, todo, .. } = self;
+        let Self { map, camera, canvas, todo, standing, .. } = self;
         let view = View::new(camera, camera_pose);
         let tree = &map.tree;
-        points.clear();
-        points.extend(tree.points.iter().map(|point| view.point(point)));
         canvas.clear();
         todo.clear();
         todo.push(Step::Tree(tree.root));
@@ -97,7 +106,7 @@ impl Projector {
                 Step::Tree(index) => index,
                 Step::Facets(index, from_front) => {
                     if let Node::Split { facets, .. } = &tree.nodes[index] {
-                        facets.iter().for_each(|facet| canvas.facet(facet, from_front, points, emit));
+                        facets.iter().for_each(|facet| canvas.facet(facet, from_front, &view, emit));
                     }
                     continue;
                 }
@@ -112,7 +121,12 @@ impl Projector {
                     }
                     todo.push(Step::Tree(*near));
                 }
-                Node::Leaf { solids } => leaf(solids, &map.prisms, &view, points, canvas, emit),
+                Node::Leaf { solids } => {
+                    sort_by_distance(solids, &map.prisms, &view, standing);
+                    for Standing { solid, .. } in standing.iter() {
+                        draw_solid(&solids[*solid], &map.prisms, &view, canvas, emit);
+                    }
+                }
             }
         }
         Ok(())
@@ -159,36 +173,37 @@ impl Projector {
     }
 }
 
-/// Draws what stands where no plane is, the nearest first.
-fn leaf(
-    solids: &[Solid],
+/// The solids of a leaf that are in view, the nearest first.
+fn sort_by_distance(solids: &[Solid], prisms: &[Prism], view: &View, standing: &mut Vec<Standing>) {
+    standing.clear();
+    for (solid, Solid { prism, .. }) in solids.iter().enumerate() {
+        let prism = &prisms[*prism];
+        let (center, radius) = prism.ball();
+        if view.misses(&center, radius) {
+            continue;
+        }
+        let (x, y) = (view.eye.x - prism.x, view.eye.y - prism.y);
+        standing.push(Standing {
+            power: x * x + y * y - prism.corner_radius * prism.corner_radius,
+            gap: (prism.from - view.eye.z).max(view.eye.z - prism.to).max(0.0),
+            solid,
+        });
+    }
+    standing.sort_unstable_by(|a, b| a.power.total_cmp(&b.power).then(a.gap.total_cmp(&b.gap)));
+}
+
+fn draw_solid(
+    solid: &Solid,
     prisms: &[Prism],
     view: &View,
-    points: &[ImagePoint],
     canvas: &mut Canvas,
     emit: &mut impl FnMut(Span),
 ) {
-    let mut order: Vec<&Solid> = solids.iter().collect();
-    order.sort_by(|a, b| {
-        let (a, b) = (rank(&prisms[a.prism], &view.eye), rank(&prisms[b.prism], &view.eye));
-        a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
-    });
-    for solid in order {
-        let Some(faces) = &solid.faces else {
-            canvas.prism(&prisms[solid.prism], view, emit);
-            continue;
-        };
-        for Face { plane, facet } in faces {
-            if plane.distance(&view.eye) > HAIR {
-                canvas.facet(facet, true, points, emit);
-            }
-        }
+    let Some(faces) = &solid.faces else {
+        return canvas.prism(&prisms[solid.prism], view, emit);
+    };
+    // Those of a convex thing that look at the eye do not hide each other.
+    for Face { facet, .. } in faces.iter().filter(|face| face.plane.distance(&view.eye) > HAIR) {
+        canvas.facet(facet, true, view, emit);
     }
-}
-
-/// Smaller is in front: the power of the eye's foot with respect to the prism's circle, and above each other the distance in height.
-fn rank(prism: &Prism, eye: &Vector3<f64>) -> (f64, f64) {
-    let (x, y) = (eye.x - prism.x, eye.y - prism.y);
-    let power = x * x + y * y - prism.corner_radius * prism.corner_radius;
-    (power, (prism.from - eye.z).max(eye.z - prism.to).max(0.0))
 }

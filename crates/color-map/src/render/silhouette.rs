@@ -1,20 +1,13 @@
 //! The outline of a convex solid: the edges between a face that looks at the eye and one that does not.
 
-use nalgebra::Vector3;
-
 use super::{
     outline::Outline,
     view::{ImagePoint, View},
 };
 use crate::map::{HAIR, Prism, SIDES};
 
-/// Puts a prism's silhouette on the outline; false if it is out of view.
-pub(super) fn trace(prism: &Prism, view: &View, outline: &mut Outline) -> bool {
-    let half = 0.5 * (prism.to - prism.from);
-    let center = Vector3::new(prism.x, prism.y, prism.from + half);
-    if view.misses(&center, (prism.corner_radius * prism.corner_radius + half * half).sqrt()) {
-        return false;
-    }
+/// Puts a prism's silhouette on the outline.
+pub(super) fn trace(prism: &Prism, view: &View, outline: &mut Outline) {
     let lower: [ImagePoint; SIDES] = std::array::from_fn(|k| view.point(&prism.corner(k, prism.from)));
     let upper: [ImagePoint; SIDES] = std::array::from_fn(|k| view.point(&prism.corner(k, prism.to)));
     let side: [bool; SIDES] = std::array::from_fn(|k| prism.sides[k].distance(&view.eye) > HAIR);
@@ -42,5 +35,4 @@ pub(super) fn trace(prism: &Prism, view: &View, outline: &mut Outline) -> bool {
             _ => {}
         }
     }
-    true
 }

@@ -11,8 +11,6 @@ use crate::Camera;
 pub(super) struct View {
     pub(super) eye: Vector3<f64>,
     matrix: Matrix3<f64>,
-    width: f64,
-    height: f64,
     /// Unit normals of the planes through the eye and the image's sides and of that across the axis, inward.
     frustum: [Vector3<f64>; 5],
 }
@@ -24,12 +22,7 @@ pub(super) struct ImagePoint {
     pub(super) pixel: Vector3<f64>,
     /// Row; of no meaning behind the camera.
     pub(super) row: f64,
-    /// One bit for each plane of the frustum that the point is outside of.
-    pub(super) outside: u8,
 }
-
-/// The bit for points that are not in front of the camera.
-const BEHIND: u8 = 1 << 4;
 
 impl View {
     pub(super) fn new(camera: &Camera, pose: &Pose3<f64>) -> Self {
@@ -40,18 +33,12 @@ impl View {
         let (width, height) = (f64::from(camera.width()), f64::from(camera.height()));
         let [u, v, w] = [0, 1, 2].map(|i| matrix.row(i).transpose());
         let frustum = [u, w * width - u, v, w * height - v, w].map(|normal| normal.normalize());
-        Self { eye: pose.translation, matrix, width, height, frustum }
+        Self { eye: pose.translation, matrix, frustum }
     }
 
     pub(super) fn point(&self, world: &Vector3<f64>) -> ImagePoint {
         let pixel = self.matrix * (world - self.eye);
-        let (u, v, w) = (pixel.x, pixel.y, pixel.z);
-        let outside = u8::from(u < 0.0)
-            | u8::from(u > w * self.width) << 1
-            | u8::from(v < 0.0) << 2
-            | u8::from(v > w * self.height) << 3
-            | u8::from(w <= 0.0) << 4;
-        ImagePoint { pixel, row: v / w, outside }
+        ImagePoint { pixel, row: pixel.y / pixel.z }
     }
 
     /// Whether a ball is wholly outside the image.
@@ -63,7 +50,7 @@ impl View {
 
 impl ImagePoint {
     fn is_behind(&self) -> bool {
-        self.outside & BEHIND != 0
+        self.pixel.z <= 0.0
     }
 
     /// Rows that the visible part of the edge between two points reaches; none if all of it is behind the camera.

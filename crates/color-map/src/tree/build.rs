@@ -1,10 +1,8 @@
 //! Choosing planes and sorting the rest to their sides.
 
-use nalgebra::Vector3;
-
 use super::{
     Face, Facet, Node, Solid, Tree,
-    facet::{Side, sign},
+    facet::{Side, reach},
 };
 use crate::{
     MapError,
@@ -31,11 +29,11 @@ struct Heap {
 impl Tree {
     /// Sorts all surfaces of a map.
     pub(crate) fn build(layers: &[Layer], prisms: &[Prism]) -> Result<Self, MapError> {
-        let mut tree = Self { nodes: Vec::new(), root: 0, points: Vec::new() };
+        let mut tree = Self { nodes: Vec::new(), root: 0 };
         let mut all = Heap::default();
         for (i, layer) in layers.iter().enumerate() {
             for decal in &layer.decals {
-                let facet = Facet::new(decal.color, decal.vertices.iter().copied(), &mut tree.points);
+                let facet = Facet::new(decal.color, decal.vertices.iter().copied());
                 all.facets.push((i, facet));
             }
         }
@@ -46,13 +44,13 @@ impl Tree {
         tree.nodes.push(Node::Leaf { solids: Vec::new() });
         let mut open = vec![(tree.root, all)];
         while let Some((slot, heap)) = open.pop() {
-            let Some(cut) = best_cut(&heap, layers, prisms, &tree.points) else {
+            let Some(cut) = best_cut(&heap, layers, prisms) else {
                 tree.nodes[slot] = Node::Leaf { solids: heap.solids };
                 continue;
             };
             let plane = cut.plane;
             let before = heap.facets.len() + heap.solids.len();
-            let (facets, sides) = part(heap, &cut, prisms, &mut tree.points);
+            let (facets, sides) = part(heap, &cut, prisms);
             n_pieces +=
                 facets.len() + sides.iter().map(|s| s.facets.len() + s.solids.len()).sum::<usize>() - before;
             if n_pieces > MAX_PIECES {
@@ -79,13 +77,13 @@ struct Cut {
 /// The plane that cuts least and, among those, halves best. None if no facet is left.
 ///
 /// It is that of a layer, unless this would cut a post and a face of a post cuts nothing.
-fn best_cut(heap: &Heap, layers: &[Layer], prisms: &[Prism], points: &[Vector3<f64>]) -> Option<Cut> {
+fn best_cut(heap: &Heap, layers: &[Layer], prisms: &[Prism]) -> Option<Cut> {
     let n_looks = (LOOKS / (heap.facets.len() + heap.solids.len()).max(1)).max(4);
     let mut on_layers: Vec<usize> = heap.facets.iter().map(|(layer, _)| *layer).collect();
     on_layers.sort_unstable();
     on_layers.dedup();
     let on_layers = on_layers.into_iter().map(|i| Cut { plane: layers[i].plane, layer: Some(i) });
-    let (cost, cut) = cheapest(on_layers.collect(), n_looks, |cut| cut.price(heap, prisms, points).total())?;
+    let (cost, cut) = cheapest(on_layers.collect(), n_looks, |cut| cut.price(heap, prisms).total())?;
     if cost < CUT_SOLID {
         return Some(cut);
     }
@@ -99,7 +97,7 @@ fn best_cut(heap: &Heap, layers: &[Layer], prisms: &[Prism], points: &[Vector3<f
             .map(|plane| Cut { plane, layer: None })
     });
     let clean = cheapest(faces.collect(), n_looks, |cut| {
-        let price = cut.price(heap, prisms, points);
+        let price = cut.price(heap, prisms);
         if price.cuts == 0 && price.front > 0 && price.back > 0 { price.total() } else { usize::MAX }
     });
     match clean {
@@ -127,7 +125,7 @@ impl Price {
 }
 
 impl Cut {
-    fn price(&self, heap: &Heap, prisms: &[Prism], points: &[Vector3<f64>]) -> Price {
+    fn price(&self, heap: &Heap, prisms: &[Prism]) -> Price {
         let mut price = Price { cuts: 0, front: 0, back: 0 };
         let mut count = |(least, most): (i8, i8), cut: usize| {
             price.cuts += if least < 0 && most > 0 { cut } else { 0 };
@@ -135,24 +133,24 @@ impl Cut {
             price.back += usize::from(least < 0);
         };
         for (_, facet) in heap.facets.iter().filter(|(own, _)| Some(*own) != self.layer) {
-            count(facet.reach(&self.plane, points), CUT_FACET);
+            count(facet.reach(&self.plane), CUT_FACET);
         }
         for solid in &heap.solids {
-            count(reach(&prisms[solid.prism], &self.plane), CUT_SOLID);
+            count(prism_reach(&prisms[solid.prism], &self.plane), CUT_SOLID);
         }
         price
     }
 }
 
 /// What lies on the cut's layer, the topmost decal first, and what is in front of and behind the plane.
-fn part(heap: Heap, cut: &Cut, prisms: &[Prism], points: &mut Vec<Vector3<f64>>) -> (Vec<Facet>, [Heap; 2]) {
+fn part(heap: Heap, cut: &Cut, prisms: &[Prism]) -> (Vec<Facet>, [Heap; 2]) {
     let (mut on_it, mut front, mut back) = (Vec::new(), Heap::default(), Heap::default());
     for (own, facet) in heap.facets {
         if Some(own) == cut.layer {
             on_it.push(facet);
             continue;
         }
-        match facet.split(&cut.plane, points) {
+        match facet.split(&cut.plane) {
             Side::Front(facet) => front.facets.push((own, facet)),
             Side::Back(facet) => back.facets.push((own, facet)),
             Side::Both(near, far) => {
@@ -162,7 +160,7 @@ fn part(heap: Heap, cut: &Cut, prisms: &[Prism], points: &mut Vec<Vector3<f64>>)
         }
     }
     for solid in heap.solids {
-        match split_solid(solid, &cut.plane, prisms, points) {
+        match split_solid(solid, &cut.plane, prisms) {
             Side::Front(solid) => front.solids.push(solid),
             Side::Back(solid) => back.solids.push(solid),
             Side::Both(near, far) => {
@@ -175,9 +173,9 @@ fn part(heap: Heap, cut: &Cut, prisms: &[Prism], points: &mut Vec<Vector3<f64>>)
     (on_it, [front, back])
 }
 
-fn split_solid(solid: Solid, plane: &Plane, prisms: &[Prism], points: &mut Vec<Vector3<f64>>) -> Side<Solid> {
+fn split_solid(solid: Solid, plane: &Plane, prisms: &[Prism]) -> Side<Solid> {
     let prism = &prisms[solid.prism];
-    let (least, most) = reach(prism, plane);
+    let (least, most) = prism_reach(prism, plane);
     if least >= 0 {
         return Side::Front(solid);
     }
@@ -185,8 +183,8 @@ fn split_solid(solid: Solid, plane: &Plane, prisms: &[Prism], points: &mut Vec<V
         return Side::Back(solid);
     }
     let (mut near, mut far) = (Vec::new(), Vec::new());
-    for Face { plane: own, facet } in solid.faces.unwrap_or_else(|| faces(prism, points)) {
-        match facet.split(plane, points) {
+    for Face { plane: own, facet } in solid.faces.unwrap_or_else(|| faces(prism)) {
+        match facet.split(plane) {
             Side::Front(facet) => near.push(Face { plane: own, facet }),
             Side::Back(facet) => far.push(Face { plane: own, facet }),
             Side::Both(front, back) => {
@@ -199,32 +197,20 @@ fn split_solid(solid: Solid, plane: &Plane, prisms: &[Prism], points: &mut Vec<V
     Side::Both(part(near), part(far))
 }
 
-/// Signs of the least and the largest distance of a prism's corners from a plane.
-fn reach(prism: &Prism, plane: &Plane) -> (i8, i8) {
-    let corners = (0..SIDES).flat_map(|k| [prism.corner(k, prism.from), prism.corner(k, prism.to)]);
-    corners
-        .map(|corner| sign(plane.distance(&corner)))
-        .fold((1, -1), |(least, most), s| (s.min(least), s.max(most)))
+fn prism_reach(prism: &Prism, plane: &Plane) -> (i8, i8) {
+    reach((0..SIDES).flat_map(|k| [prism.corner(k, prism.from), prism.corner(k, prism.to)]), plane)
 }
 
-fn faces(prism: &Prism, points: &mut Vec<Vector3<f64>>) -> Vec<Face> {
-    let mut facet = |corners: Vec<Vector3<f64>>| Facet::new(prism.color, corners, points);
+fn faces(prism: &Prism) -> Vec<Face> {
+    let (from, to) = (prism.from, prism.to);
+    let face = |plane, corners: Vec<_>| Face { plane, facet: Facet::new(prism.color, corners) };
     let mut faces = vec![
-        Face { plane: prism.top(), facet: facet((0..SIDES).map(|k| prism.corner(k, prism.to)).collect()) },
-        Face {
-            plane: prism.bottom(),
-            facet: facet((0..SIDES).rev().map(|k| prism.corner(k, prism.from)).collect()),
-        },
+        face(prism.top(), (0..SIDES).map(|k| prism.corner(k, to)).collect()),
+        face(prism.bottom(), (0..SIDES).rev().map(|k| prism.corner(k, from)).collect()),
     ];
     faces.extend(prism.sides.iter().enumerate().map(|(k, &plane)| {
-        let corner = |k, z| prism.corner(k, z);
-        let corners = vec![
-            corner(k, prism.from),
-            corner(k + 1, prism.from),
-            corner(k + 1, prism.to),
-            corner(k, prism.to),
-        ];
-        Face { plane, facet: facet(corners) }
+        let corners = [(k, from), (k + 1, from), (k + 1, to), (k, to)];
+        face(plane, corners.map(|(k, z)| prism.corner(k, z)).to_vec())
     }));
     faces
 }

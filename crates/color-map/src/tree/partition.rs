@@ -1,5 +1,3 @@
-use nalgebra::Vector3;
-
 use super::Facet;
 use crate::map::Plane;
 
@@ -8,8 +6,6 @@ use crate::map::Plane;
 pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     pub(crate) root: usize,
-    /// Corners of the facets, and points that lines go through.
-    pub(crate) points: Vec<Vector3<f64>>,
 }
 
 #[derive(Clone, Debug)]
