@@ -1,6 +1,7 @@
 //! Colours under unknown light: adaptive colour models, and localization in coloured maps.
 
 mod background;
+mod classify;
 mod error;
 mod frame;
 mod lighting;
@@ -9,6 +10,7 @@ mod localizer;
 mod yuv;
 
 pub use background::Background;
+pub use classify::{Classifier, LookUpTable};
 pub use error::ColorModelError;
 pub use frame::{Frame, PixelSums};
 pub use lighting::{ColorDensity, ColorMeans, Drift, LightingBank, LightingFilter, LightingParams, Unseen};
