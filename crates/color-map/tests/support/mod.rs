@@ -42,3 +42,11 @@ pub(crate) fn first_difference(
     let i = a.pixels().iter().zip(b.pixels()).position(|(a, b)| a != b)?;
     Some((i % a.width() as usize, i / a.width() as usize, a.pixels()[i], b.pixels()[i]))
 }
+
+/// Any size, also a single pixel, and an axis anywhere, also beside the image.
+pub(crate) fn random_camera<R: Rng + ?Sized>(rng: &mut R) -> Camera {
+    let (width, height) = (rng.random_range(1..140), rng.random_range(1..80));
+    let (fx, fy) = (rng.random_range(20.0..200.0), rng.random_range(20.0..200.0));
+    let mut axis = |side: u32| f64::from(side) * rng.random_range(-0.2..1.2);
+    Camera::new(width, height, fx, fy, axis(width), axis(height)).expect("a valid camera")
+}
