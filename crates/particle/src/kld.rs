@@ -65,7 +65,7 @@ impl KldSampling {
     }
 
     /// How many particles `n_bins` occupied bins ask for, within the bounds:
-    /// $`n = \frac{k-1}{2ε} \Big(1 - \frac{2}{9(k-1)} + \sqrt{\frac{2}{9(k-1)}} \, z_{1-δ}\Big)^3`$. [Fox 2003, Eq. 7]
+    /// $`n = \frac{k-1}{2ε} \Big(1 - \frac{2}{9(k-1)} + \sqrt{\frac{2}{9(k-1)}} \, z_{1-δ}\Big)^3`$. [Fox 2003]
     pub fn required(&self, n_bins: usize) -> usize {
         let KldParams { epsilon, min, max, .. } = self.params;
         if n_bins < 2 {

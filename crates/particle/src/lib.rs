@@ -12,7 +12,7 @@
 //! | to how many particles? | [`ParticleSet::kld_size`] with [`KldSampling`] |
 //! | resample | [`ParticleSet::resample`] by [`Systematic`], [`Stratified`], [`Residual`], [`Multinomial`] or your own [`Resampler`] |
 //! | is the robot lost? | [`InjectionMonitor`], [`ParticleSet::inject`] |
-//! | where is it? | [`ParticleSet::moments`], [`ParticleSet::heaviest`] |
+//! | where is it? | [`ParticleSet::moments`], [`ParticleSet::expectation`], [`ParticleSet::heaviest`] |
 //!
 //! [`BootstrapFilter`] and [`AuxiliaryFilter`] put the steps together for models that implement
 //! [`SampleMotion`](wayfix_estimation_traits::SampleMotion) and [`LikelihoodModel`](wayfix_estimation_traits::LikelihoodModel).

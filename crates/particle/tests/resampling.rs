@@ -95,7 +95,7 @@ fn multinomial_counts_pass_pearsons_test() {
     assert!(band.contains(pearson), "{pearson} is not in {band:?}");
 }
 
-/// [Douc, Cappé & Moulines 2005, Sec. 3]
+/// [Douc, Cappé & Moulines 2005]
 #[test]
 fn counts_stay_as_close_to_expectation_as_each_scheme_promises() {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
@@ -115,7 +115,7 @@ fn counts_stay_as_close_to_expectation_as_each_scheme_promises() {
 }
 
 /// Stratified and residual draws never estimate a mean worse than multinomial ones, whose variance is known in closed form.
-/// [Douc, Cappé & Moulines 2005, Sec. 3.2-3.3]
+/// [Douc, Cappé & Moulines 2005]
 #[test]
 fn variances_come_in_the_order_of_the_theorems() {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);

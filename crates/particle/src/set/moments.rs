@@ -18,6 +18,22 @@ where
 }
 
 impl<X> ParticleSet<X> {
+    /// $`E[f] ≈ \sum_i w_i f(x_i)`$; of an indicator, the probability that it is 1.
+    ///
+    /// ```
+    /// let heights = wayfix_particle::ParticleSet::new(vec![1.0, 2.0, 6.0, 7.0])?;
+    /// assert_eq!(heights.expectation(|x| *x)?, 4.0);
+    /// assert_eq!(heights.expectation(|x| f64::from(*x > 1.5))?, 0.75); // the probability to be above 1.5
+    /// # Ok::<(), wayfix_particle::ParticleError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ParticleError::NoWeight`] when every particle is impossible.
+    pub fn expectation(&self, function: impl Fn(&X) -> f64) -> Result<f64, ParticleError> {
+        let weights = self.weights()?;
+        Ok(weights.as_slice().iter().zip(&self.states).map(|(weight, state)| weight * function(state)).sum())
+    }
+
     /// Weighted mean and covariance of what `part` takes from each particle: the whole state, or its pose.
     ///
     /// ```
