@@ -7,6 +7,7 @@ mod frame;
 mod lighting;
 mod likelihood;
 mod localizer;
+mod prior;
 mod yuv;
 
 pub use background::Background;
@@ -14,9 +15,12 @@ pub use classify::{Classifier, LookUpTable};
 pub use error::ColorModelError;
 pub use frame::{Frame, PixelSums};
 pub use lighting::{ColorDensity, ColorMeans, Drift, LightingBank, LightingFilter, LightingParams, Unseen};
-pub use likelihood::{PixelParams, PixelView, SpanView, SumDensity, ViewLikelihood, gather};
+pub use likelihood::{PixelLight, PixelParams, PixelView, SpanView, SumDensity, ViewLikelihood, gather};
 pub use localizer::{
     CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,
     OdometryNoise, OdometryStep, PoseEstimate, Start, surroundings,
+};
+pub use prior::{
+    KMeans, LightingPriors, PixelSpread, PriorError, PriorParams, TrainingVenue, k_means, learn_priors, split_by_brightness,
 };
 pub use yuv::{YuvImage, YuvStandard};
