@@ -44,9 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })?;
         report(&format!("field view to inner spans {width}x{height}"), &poses, |pose| {
             let mut sum = 0;
-            projector.inner_spans(pose, 1, &mut |span| {
-                sum += usize::from(span.end - span.start) * span.color.index()
-            })?;
+            projector.inner_spans(pose, 1, &mut |span| add(&mut sum, span))?;
             Ok(sum)
         })?;
     }

@@ -1,5 +1,4 @@
 //! Leaving out the pixels near an edge, against its definition.
-#![cfg(feature = "serde")]
 
 mod support;
 

@@ -25,7 +25,7 @@ pub(super) fn runs_of_ones(words: &[u64], start: usize, end: usize, run: impl Fn
 /// The words that hold the columns `start..end`, which must not be empty, with ones there.
 fn masks(start: usize, end: usize) -> impl Iterator<Item = (usize, u64)> {
     let (first, last) = (start / BITS, (end - 1) / BITS);
-    (first..=last).map(move |index| {
+    (first..last + 1).map(move |index| {
         let from = if index == first { u64::MAX << (start % BITS) } else { u64::MAX };
         let to = if index == last { u64::MAX >> (BITS - 1 - (end - 1) % BITS) } else { u64::MAX };
         (index, from & to)

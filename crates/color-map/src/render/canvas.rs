@@ -36,6 +36,9 @@ impl Canvas {
         }
         self.corners.clear();
         self.corners.extend(facet.edges.iter().map(|edge| view.point(&edge.corner)));
+        if view.is_beside(&self.corners) {
+            return;
+        }
         self.outline.clear();
         let ends = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
         for (edge, (corner, next)) in facet.edges.iter().zip(ends) {

@@ -11,7 +11,7 @@ const INTEGERS: f64 = 6_755_399_441_055_744.0;
 /// Where a convex thing lies in each row, as the lines around it leave it.
 ///
 /// Every line is a bound of its own: a row's left end is the largest of the bounds to the left. So the bound that two neighbours share is the
-/// same number for both. Lines are asked only in rows that their edge reaches, with one row to spare: there, one of the others is the tighter one.
+/// same number for both. A line is asked only in rows that its edge reaches: elsewhere, one of the others is the tighter one.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
     n_columns: f64,
@@ -22,6 +22,9 @@ pub(super) struct Outline {
     rows: std::ops::Range<usize>,
     left: Vec<f64>,
     right: Vec<f64>,
+    /// The same as columns.
+    starts: Vec<u32>,
+    ends: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +45,8 @@ impl Outline {
             rows: 0..0,
             left: vec![0.0; rows],
             right: vec![0.0; rows],
+            starts: vec![0; rows],
+            ends: vec![0; rows],
         }
     }
 
@@ -68,16 +73,17 @@ impl Outline {
         for i in 0..self.edges.len() {
             self.bound(self.edges[i]);
         }
+        let rows = self.rows.clone();
+        first_centers_from(&self.left[rows.clone()], self.n_columns, &mut self.starts[rows.clone()]);
+        first_centers_from(&self.right[rows.clone()], self.n_columns, &mut self.ends[rows]);
     }
 
     /// Row, first column and one past the last column of every row that is not empty.
     pub(super) fn rows(&self) -> impl Iterator<Item = (usize, usize, usize)> {
-        let rows = self.rows.clone();
-        let ends = self.left[rows.clone()].iter().zip(&self.right[rows.clone()]);
-        rows.zip(ends).filter_map(|(row, (&left, &right))| {
-            let (start, end) = (self.first_center_from(left), self.first_center_from(right));
-            (start < end).then_some((row, start, end))
-        })
+        let ends = self.starts[self.rows.clone()].iter().zip(&self.ends[self.rows.clone()]);
+        let rows = self.rows.clone().zip(ends);
+        rows.filter(|(_, (start, end))| start < end)
+            .map(|(row, (&start, &end))| (row, start as usize, end as usize))
     }
 
     fn bound(&mut self, Edge { line, top, bottom }: Edge) {
@@ -85,8 +91,9 @@ impl Outline {
         if a.abs() <= LEVEL * b.abs() {
             return self.bound_rows(b, c);
         }
-        let (at_zero, slope) = (-c / a, -b / a);
-        let rows = self.rows_between(top - 1.0, bottom + 1.0);
+        let scale = -1.0 / a;
+        let (at_zero, slope) = (c * scale, b * scale);
+        let rows = self.rows_between(top, bottom);
         let rows = rows.start.max(self.rows.start)..rows.end.min(self.rows.end);
         if rows.is_empty() {
             return;
@@ -120,21 +127,23 @@ impl Outline {
         self.rows.end = self.rows.end.max(self.rows.start);
     }
 
-    /// Rows of the image whose centres may lie between two rows, both included.
+    /// Rows of the image whose centres lie between two rows, both included, and up to one more at either end.
     fn rows_between(&self, top: f64, bottom: f64) -> std::ops::Range<usize> {
         let height = self.row_centers.len() as f64;
         let start = (top - 0.5).clamp(0.0, height) as usize;
         let end = (bottom + 1.0).clamp(0.0, height) as usize;
         start..end.max(start)
     }
+}
 
-    /// The first column whose centre is at `u` or to the right of it.
-    fn first_center_from(&self, u: f64) -> usize {
-        // Rounding up, without the calls of `f64::ceil` and the checks of `as` on a processor of the plain kind: a sum with `INTEGERS` has
-        // no bits left for a fraction, and its lowest ones are the whole number.
-        let edge = u.clamp(0.0, self.n_columns) - 0.5;
+/// For every `u` the first column whose centre is there or to the right of it.
+fn first_centers_from(us: &[f64], n_columns: f64, columns: &mut [u32]) {
+    for (column, u) in columns.iter_mut().zip(us) {
+        // Rounding up, in a way that a plain processor does for several at once: a sum with `INTEGERS` has no bits left for a fraction, and
+        // its lowest ones are the whole number.
+        let edge = u.clamp(0.0, n_columns) - 0.5;
         let rounded = (edge + INTEGERS) - INTEGERS;
-        let up = if rounded < edge { rounded + 1.0 } else { rounded };
-        (up + INTEGERS).to_bits() as u32 as usize
+        let up = rounded + if rounded < edge { 1.0 } else { 0.0 };
+        *column = (up + INTEGERS).to_bits() as u32;
     }
 }

@@ -11,6 +11,7 @@ use crate::Camera;
 pub(super) struct View {
     pub(super) eye: Vector3<f64>,
     matrix: Matrix3<f64>,
+    n_columns: f64,
     /// Unit normals of the planes through the eye and the image's sides and of that across the axis, inward.
     frustum: [Vector3<f64>; 5],
 }
@@ -33,12 +34,18 @@ impl View {
         let (width, height) = (f64::from(camera.width()), f64::from(camera.height()));
         let [u, v, w] = [0, 1, 2].map(|i| matrix.row(i).transpose());
         let frustum = [u, w * width - u, v, w * height - v, w].map(|normal| normal.normalize());
-        Self { eye: pose.translation, matrix, frustum }
+        Self { eye: pose.translation, matrix, n_columns: width, frustum }
     }
 
     pub(super) fn point(&self, world: &Vector3<f64>) -> ImagePoint {
         let pixel = self.matrix * (world - self.eye);
         ImagePoint { pixel, row: pixel.y / pixel.z }
+    }
+
+    /// Whether all points lie on the outer side of the image's left border, or of its right one.
+    pub(super) fn is_beside(&self, points: &[ImagePoint]) -> bool {
+        points.iter().all(|p| p.pixel.x < 0.0)
+            || points.iter().all(|p| p.pixel.x > p.pixel.z * self.n_columns)
     }
 
     /// Whether a ball is wholly outside the image.
