@@ -21,7 +21,7 @@
 //! * Weights are logarithms in nats. $`-∞`$ is an impossible particle; NaN and positive infinity are refused with the index of the particle.
 //!   When no particle is possible, that is an error ([`ParticleError::NoWeight`]) and never a silent start from equal weights.
 //! * A call that fails leaves the particles as they were.
-//! * Every function that draws takes a generator. What runs on all particles gives each chunk of 64 a ChaCha8 stream: the seed is 32
+//! * Every function that draws takes a generator. What runs on all particles gives each chunk of 32 a ChaCha8 stream: the seed is 32
 //!   bytes of the caller's generator, the stream number that of the chunk. Results are the same bits for any number of threads, with the
 //!   feature `parallel` and without.
 //!

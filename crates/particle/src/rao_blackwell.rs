@@ -77,7 +77,10 @@ impl<X: Clone + Send, C: Clone + Send + Sync> ParticleSet<RaoBlackwell<X, C>> {
     /// One Rao-Blackwellised step: `sample` moves the sampled part, `condition` predicts and corrects the conditional part given it, and
     /// returns how likely the measurement was, $`\log p(z_k | x_{1:k}, z_{1:k-1})`$: the particle's weight.
     ///
-    /// Short for [`advance_with`](ParticleSet::advance_with), which also takes working memory and other proposals.
+    /// Short for [`advance_with`](ParticleSet::advance_with), which also takes working memory and other proposals. Until all particles have
+    /// succeeded the old conditional parts are kept, so each is copied. Where that is too dear, weigh by
+    /// [`reweigh_with`](ParticleSet::reweigh_with) first and change the conditional parts in place by
+    /// [`propagate_with`](ParticleSet::propagate_with) after resampling: then only shared ones are.
     ///
     /// # Errors
     /// As [`advance_with`](ParticleSet::advance_with); all particles are as they were.

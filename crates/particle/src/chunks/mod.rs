@@ -2,7 +2,6 @@
 
 #[cfg(feature = "parallel")]
 mod parallel;
-#[cfg(any(test, not(feature = "parallel")))]
 mod sequential;
 mod streams;
 
@@ -13,6 +12,6 @@ pub(crate) use sequential::map_chunks;
 pub use streams::ChunkRng;
 pub(crate) use streams::Streams;
 
-/// Particles a chunk. Changing it changes the random numbers every particle gets, but no distribution: small enough that a thousand particles
+/// Particles a chunk. Changing it changes the random numbers every particle gets, but no distribution: small enough that a hundred particles
 /// keep several threads busy, large enough that setting up a stream (some 100 ns) does not count.
-pub(crate) const CHUNK: usize = 64;
+pub(crate) const CHUNK: usize = 32;

@@ -1,6 +1,6 @@
 use rayon::prelude::*;
 
-use super::CHUNK;
+use super::{CHUNK, sequential};
 
 /// As the sequential form, with chunks shared out over the threads of the current pool.
 pub(crate) fn map_chunks<X: Send, T: Send>(
@@ -8,6 +8,10 @@ pub(crate) fn map_chunks<X: Send, T: Send>(
     numbers: &mut [f64],
     job: impl Fn(usize, &mut [X], &mut [f64]) -> T + Sync,
 ) -> Vec<T> {
+    if states.len() <= CHUNK {
+        // Waking another thread costs more than it helps.
+        return sequential::map_chunks(states, numbers, job);
+    }
     states
         .par_chunks_mut(CHUNK)
         .zip(numbers.par_chunks_mut(CHUNK))
@@ -18,7 +22,6 @@ pub(crate) fn map_chunks<X: Send, T: Send>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::sequential;
     use super::*;
 
     #[test]

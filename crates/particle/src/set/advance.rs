@@ -1,11 +1,11 @@
 use rand::Rng;
 use wayfix_estimation_traits::LogWeight;
 
-use super::{ParticleSet, reweigh::add};
+use super::{ParticleSet, reweigh::add, workspace::Workspace};
 use crate::{
     ParticleError,
     chunks::{ChunkRng, Streams, map_chunks},
-    memory::filled,
+    memory::{reserve, resize},
 };
 
 impl<X: Clone + Send> ParticleSet<X> {
@@ -28,10 +28,14 @@ impl<X: Clone + Send> ParticleSet<X> {
         E: From<ParticleError> + Send,
         R: Rng + ?Sized,
     {
-        let mut increments = filled(self.n_particles(), 0.0)?;
-        let mut states = self.states.clone();
         let streams = Streams::from_generator(rng);
-        map_chunks(&mut states, &mut increments, |chunk, states, increments| {
+        let Self { states, log_weights, workspace: Workspace { states: advanced, log_weights: weighed, .. } } =
+            self;
+        advanced.clear();
+        reserve(advanced, states.len())?;
+        advanced.extend_from_slice(states);
+        resize(weighed, states.len(), 0.0)?;
+        let stepped: Result<(), E> = map_chunks(advanced, weighed, |chunk, states, increments| {
             let (mut prepared, mut rng) = (prepare(), streams.stream(chunk));
             for (state, increment) in states.iter_mut().zip(increments) {
                 *increment = step(&mut prepared, state, &mut rng)?;
@@ -39,10 +43,13 @@ impl<X: Clone + Send> ParticleSet<X> {
             Ok(())
         })
         .into_iter()
-        .collect::<Result<(), E>>()?;
-        add(&self.log_weights, &mut increments)?;
-        self.log_weights = increments;
-        self.states = states;
-        Ok(())
+        .collect();
+        let outcome = stepped.and_then(|()| Ok(add(log_weights, weighed)?));
+        if outcome.is_ok() {
+            std::mem::swap(states, advanced);
+            std::mem::swap(log_weights, weighed);
+        }
+        advanced.clear();
+        outcome
     }
 }

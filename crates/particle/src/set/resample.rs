@@ -15,7 +15,7 @@ impl<X: Clone> ParticleSet<X> {
     /// # Errors
     /// [`ParticleError::NoWeight`] when every particle is impossible, [`ParticleError::NoParticles`] for `n = 0`,
     /// [`ParticleError::TooMany`] when they do not fit into memory. The particles are as they were.
-    pub fn resample<S: Resampler + ?Sized, R: Rng + ?Sized>(
+    pub fn resample<S: Resampler, R: Rng + ?Sized>(
         &mut self,
         resampler: &S,
         n: usize,
@@ -27,6 +27,7 @@ impl<X: Clone> ParticleSet<X> {
         let Self { states, log_weights, workspace } = self;
         workspace.weights.assign_log(log_weights)?;
         reserve(log_weights, n)?;
+        workspace.states.clear();
         reserve(&mut workspace.states, n)?;
         resize(&mut workspace.ancestors, n, 0)?;
         resampler.fill(&workspace.weights, &mut workspace.ancestors, rng);
