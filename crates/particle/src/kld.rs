@@ -4,7 +4,7 @@ use std::hash::{BuildHasherDefault, DefaultHasher, Hash};
 use rand::{Rng, RngExt as _};
 use statrs::distribution::{ContinuousCDF as _, Normal};
 
-use crate::{ParticleError, ParticleSet};
+use crate::{ParticleError, ParticleSet, Weights};
 
 /// How well the particles must stand for the posterior.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,10 +76,41 @@ impl KldSampling {
         let chi_squared = degrees * (1.0 - share + share.sqrt() * self.z).powi(3);
         ((chi_squared / (2.0 * epsilon)).ceil() as usize).clamp(min, max)
     }
+
+    /// Draws indices by weight and counts their bins until the number drawn is enough for the bins seen; that number. [Fox 2003]
+    pub fn sample_size<K: Hash + Eq, R: Rng + ?Sized>(
+        &self,
+        weights: &Weights,
+        bin: impl Fn(usize) -> K,
+        rng: &mut R,
+    ) -> usize {
+        let last = weights.last_positive();
+        let mut sum = 0.0;
+        let cumulative: Vec<f64> = weights
+            .as_slice()
+            .iter()
+            .map(|weight| {
+                sum += weight;
+                sum
+            })
+            .collect();
+        // The standard hasher with its fixed key: no crate creates randomness, not even that of hash tables.
+        let mut occupied = HashSet::<K, BuildHasherDefault<DefaultHasher>>::default();
+        let (mut drawn, mut required) = (0, self.params.min);
+        while drawn < required {
+            let point: f64 = rng.random();
+            let ancestor = cumulative.partition_point(|sum| *sum <= point).min(last);
+            if occupied.insert(bin(ancestor)) {
+                required = self.required(occupied.len());
+            }
+            drawn += 1;
+        }
+        required
+    }
 }
 
 impl<X> ParticleSet<X> {
-    /// How many particles the posterior needs: draws by weight and counts bins until the number drawn is enough for the bins seen.
+    /// How many particles the posterior needs, by [`KldSampling::sample_size`].
     ///
     /// `bin` says where a state belongs, for instance its [`grid_cell`]. The draws only count; [`resample`](Self::resample) with the result,
     /// by any scheme.
@@ -105,27 +136,7 @@ impl<X> ParticleSet<X> {
         rng: &mut R,
     ) -> Result<usize, ParticleError> {
         let weights = self.weights()?;
-        let last = weights.last_positive();
-        let cumulative: Vec<f64> = weights
-            .as_slice()
-            .iter()
-            .scan(0.0, |sum, weight| {
-                *sum += weight;
-                Some(*sum)
-            })
-            .collect();
-        // The standard hasher with its fixed key: no crate creates randomness, not even that of hash tables.
-        let mut occupied = HashSet::<K, BuildHasherDefault<DefaultHasher>>::default();
-        let (mut drawn, mut required) = (0, kld.params.min);
-        while drawn < required {
-            let point: f64 = rng.random();
-            let ancestor = cumulative.partition_point(|sum| *sum <= point).min(last);
-            if occupied.insert(bin(&self.states()[ancestor])) {
-                required = kld.required(occupied.len());
-            }
-            drawn += 1;
-        }
-        Ok(required)
+        Ok(kld.sample_size(&weights, |i| bin(&self.states()[i]), rng))
     }
 }
 

@@ -16,7 +16,8 @@
 //!
 //! [`BootstrapFilter`] and [`AuxiliaryFilter`] put the steps together for models that implement
 //! [`SampleMotion`](wayfix_estimation_traits::SampleMotion) and [`LikelihoodModel`](wayfix_estimation_traits::LikelihoodModel).
-//! [`RaoBlackwell`] particles carry a part of the state in closed form and share it until it changes.
+//! [`RaoBlackwell`] particles carry a part of the state in closed form and share it until it changes;
+//! [`ParticleSet::sample_and_condition`] moves and weighs them, [`map_conditionals`] changes what they share.
 //!
 //! * Weights are logarithms in nats. $`-∞`$ is an impossible particle; NaN and positive infinity are refused with the index of the particle.
 //!   When no particle is possible, that is an error ([`ParticleError::NoWeight`]) and never a silent start from equal weights.
@@ -64,7 +65,7 @@ pub use evidence::{EssBelow, Evidence, ess_below};
 pub use filters::{AuxiliaryFilter, BootstrapFilter, LikelyMotion, Seeded};
 pub use injection::{InjectionMonitor, InjectionParams};
 pub use kld::{KldParams, KldSampling, grid_cell};
-pub use rao_blackwell::RaoBlackwell;
+pub use rao_blackwell::{RaoBlackwell, map_conditionals};
 pub use resampling::{Multinomial, Resampler, Residual, Stratified, Systematic};
 pub use set::{Moments, ParticleSet};
 pub use weights::Weights;

@@ -1,4 +1,4 @@
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet, btree_map::Entry};
 use std::sync::Arc;
 
 use rand::Rng;
@@ -71,6 +71,38 @@ impl<X, C> RaoBlackwell<X, C> {
     pub fn shares_conditional_with(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.conditional, &other.conditional)
     }
+}
+
+/// Changes conditional parts by what does not depend on the sampled parts, a drift say: once for all particles that share one, and they go on
+/// sharing it.
+///
+/// ```
+/// use wayfix_particle::{ParticleSet, RaoBlackwell, map_conditionals};
+/// let mut particles = ParticleSet::new(vec![RaoBlackwell::new((), 1.0); 50])?;
+/// map_conditionals(particles.states_mut(), |variance| Ok::<_, std::convert::Infallible>(variance + 0.5)).unwrap();
+/// assert_eq!((particles.n_conditionals(), *particles.states()[49].conditional()), (1, 1.5));
+/// # Ok::<(), wayfix_particle::ParticleError>(())
+/// ```
+///
+/// # Errors
+/// The first of `step`; all particles are as they were.
+pub fn map_conditionals<X, C, E>(
+    particles: &mut [RaoBlackwell<X, C>],
+    mut step: impl FnMut(&C) -> Result<C, E>,
+) -> Result<(), E> {
+    let mut changed = BTreeMap::new();
+    for particle in &*particles {
+        if let Entry::Vacant(entry) = changed.entry(Arc::as_ptr(&particle.conditional)) {
+            entry.insert(Arc::new(step(&particle.conditional)?));
+        }
+    }
+    // No old part is let go before all are replaced: a new one in its place in memory would be taken for it.
+    let replaced: Vec<Arc<C>> =
+        particles.iter().map(|particle| Arc::clone(&changed[&Arc::as_ptr(&particle.conditional)])).collect();
+    for (particle, conditional) in particles.iter_mut().zip(replaced) {
+        particle.conditional = conditional;
+    }
+    Ok(())
 }
 
 impl<X: Clone + Send, C: Clone + Send + Sync> ParticleSet<RaoBlackwell<X, C>> {

@@ -13,7 +13,7 @@ use rand::{RngExt as _, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_gaussian_core::{Gaussian, log_sum_exp};
 use wayfix_kalman::{KalmanError, KalmanFilter, LinearMotion, LinearSensor};
-use wayfix_particle::{ChunkRng, ParticleError, ParticleSet, RaoBlackwell, Systematic};
+use wayfix_particle::{ChunkRng, ParticleError, ParticleSet, RaoBlackwell, Systematic, map_conditionals};
 
 type Conditional = KalmanFilter<f64, U1>;
 type Sensor = LinearSensor<Vector1<f64>, Vector1<f64>>;
@@ -236,6 +236,17 @@ fn resampling_shares_ancestors_and_only_a_change_copies() {
         distinct.iter().map(|particle| Arc::strong_count(particle.shared_conditional()) - 1).sum()
     };
     assert_eq!(owners, 1000);
+
+    let refused = map_conditionals(particles.states_mut(), |_| Err(StepError::Kalman));
+    assert!(refused.is_err() && particles.n_conditionals() == ancestors.len());
+    let mut steps = 0;
+    let step = |_: &Counted<'_>| {
+        steps += 1;
+        Ok::<_, StepError>(Counted::new(&copies, &alive))
+    };
+    map_conditionals(particles.states_mut(), step).unwrap();
+    assert_eq!(steps, ancestors.len(), "one step for all that share");
+    assert_eq!((particles.n_conditionals(), read(&alive)), (ancestors.len(), ancestors.len()));
 
     let shared = 1000 - ancestors.len();
     particles.propagate(

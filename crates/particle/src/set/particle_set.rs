@@ -87,6 +87,10 @@ impl<X> ParticleSet<X> {
     pub fn states(&self) -> &[X] {
         &self.states
     }
+    /// The states, for changing them in place. Weights stay.
+    pub fn states_mut(&mut self) -> &mut [X] {
+        &mut self.states
+    }
     /// The log weights in nats, in the order of the states.
     pub fn log_weights(&self) -> &[LogWeight] {
         &self.log_weights
