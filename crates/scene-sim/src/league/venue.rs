@@ -3,11 +3,11 @@ use rand::Rng;
 
 use super::{CameraParams, Hall, Lamp, Lamps, N_COLORS, Rgb, black_body};
 use crate::SimError;
-use crate::random::deviate::{below, normal, uniform};
+use crate::random::deviate::{below, chance, normal, uniform};
 
 /// Reflectances of the map colours, in their order, before a venue's own pots of paint.
 const PAINTS: [[f64; 3]; N_COLORS] =
-    [[0.045, 0.20, 0.075], [0.80, 0.80, 0.77], [0.78, 0.58, 0.045], [0.10, 0.44, 0.68], [0.80, 0.20, 0.42]];
+    [[0.045, 0.20, 0.075], [0.80, 0.80, 0.77], [0.78, 0.58, 0.045], [0.14, 0.45, 0.67], [0.80, 0.25, 0.45]];
 /// The colour temperatures a camera's fixed white balances are made for, kelvin.
 const WHITE_BALANCES_K: [f64; 3] = [2800.0, 4300.0, 5600.0];
 
@@ -38,9 +38,10 @@ pub enum Lighting {
 impl Venue {
     /// One more venue of the world in which all of them are.
     ///
-    /// Four or six panels of one kind (2900 to 6000 K, scattered a little, somewhat green or magenta) hang 2.4 to 3.4 m high in two
-    /// rows; paints differ by about a tenth in each primary, the carpet by more. The camera has the nearest of three white balances, and a
-    /// gain that puts white at 0.6 to 0.85 of full scale on average over the field.
+    /// Four or six panels (2700 to 6500 K, every one a little different, somewhat green or magenta together) hang 2.4 to 3.4 m high in two
+    /// rows; a paint differs by about 4 % as a whole (the carpet by 12 %) and 5 % in each primary. The camera has one of three fixed white
+    /// balances, mostly the nearest, else the next; a gain that puts white at 0.65 to 1.1 of full scale on average over the field; and
+    /// filters that leave colours as pale as robots saw them then.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -54,7 +55,7 @@ impl Venue {
     /// Passes on what the camera says; its numbers are sound, so it has nothing to say.
     pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Result<Self, SimError> {
         let paints = paints(rng);
-        let kelvin = uniform(2900.0, 6000.0, rng);
+        let kelvin = uniform(2700.0, 6500.0, rng);
         let lamps = lamps(kelvin, rng);
         let window = black_body(uniform(3000.0, 7500.0, rng)) * uniform(0.01, 0.035, rng);
         let around = uniform(0.25, 0.45, rng);
@@ -81,26 +82,26 @@ impl Venue {
 }
 
 fn paints<R: Rng + ?Sized>(rng: &mut R) -> [Rgb; N_COLORS] {
-    let carpet = libm::exp(0.2 * normal(rng));
+    let carpet = libm::exp(0.12 * normal(rng));
     let mut index = 0;
     PAINTS.map(|paint| {
-        let whole = if index == 0 { carpet } else { libm::exp(0.06 * normal(rng)) };
+        let whole = if index == 0 { carpet } else { libm::exp(0.04 * normal(rng)) };
         index += 1;
         Rgb::from(paint)
-            .map(|r| (r * whole * libm::exp(0.08 * normal(rng)) + uniform(0.0, 0.02, rng)).min(0.9))
+            .map(|r| (r * whole * libm::exp(0.05 * normal(rng)) + uniform(0.0, 0.02, rng)).min(0.9))
     })
 }
 
 fn lamps<R: Rng + ?Sized>(kelvin: f64, rng: &mut R) -> Vec<Lamp> {
     let per_row = 2 + below(2, rng);
     let (height, tint) = (uniform(2.4, 3.4, rng), libm::exp(0.04 * normal(rng)));
-    let (spread, aside) = (uniform(1.0, 1.8, rng), uniform(0.6, 1.3, rng));
+    let (spread, aside) = (uniform(1.0, 1.8, rng), uniform(0.65, 1.1, rng));
     let mut lamps = Vec::new();
     for row in [-1.0, 1.0] {
         for k in 0..per_row {
             let along = 2.0 * k as f64 / (per_row - 1) as f64 - 1.0;
             let color =
-                black_body(kelvin * libm::exp(0.03 * normal(rng))).component_mul(&Rgb::new(1.0, tint, 1.0));
+                black_body(kelvin * libm::exp(0.15 * normal(rng))).component_mul(&Rgb::new(1.0, tint, 1.0));
             let position = Vector3::new(
                 spread * along + 0.15 * normal(rng),
                 row * aside + 0.1 * normal(rng),
@@ -148,18 +149,20 @@ fn camera<R: Rng + ?Sized>(
     bright: &Lamps,
     rng: &mut R,
 ) -> Result<CameraParams, SimError> {
-    let off = |preset: &f64| (1.0 / preset - 1.0 / kelvin).abs();
-    let preset = WHITE_BALANCES_K.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(kelvin);
+    let off = |preset: f64| (1.0 / preset - 1.0 / kelvin).abs();
+    let mut presets = WHITE_BALANCES_K;
+    presets.sort_by(|a, b| off(*a).total_cmp(&off(*b)));
+    let preset = presets[usize::from(chance(0.35, rng))];
     let illuminant = black_body(preset);
     let white_balance = illuminant.map(|channel| 1.0 / channel.max(0.15));
     let white = paints[1].component_mul(&mean_irradiance(bright)).component_mul(&white_balance);
-    let level = uniform(0.6, 0.85, rng);
+    let level = uniform(0.65, 1.1, rng);
     let own = CameraParams::ers7()?;
     Ok(CameraParams {
         gain: level / white.y,
         white_balance,
         vignetting: own.vignetting * uniform(0.8, 1.2, rng),
-        crosstalk: uniform(0.03, 0.07, rng),
+        crosstalk: uniform(0.12, 0.17, rng),
         gamma: uniform(0.45, 0.6, rng),
         ..own
     })

@@ -1,8 +1,9 @@
 use super::{Scenario, ScenarioParams};
 use crate::league::{LeagueParams, Lighting};
 
-/// The hall of all four.
-const HALL: u64 = 2003;
+/// The hall of all four. Of twenty it is the one whose light is least like what the others lead one to expect, and still a clear picture: what a
+/// prior is worth shows there.
+const HALL: u64 = 2034;
 
 pub(super) fn all() -> Vec<Scenario> {
     let league =

@@ -60,6 +60,23 @@ impl Scenario {
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
     }
 
+    /// The same with other draws of everything, and on the four-legged league's field in a hall of its own: light that nobody has seen.
+    ///
+    /// ```
+    /// use wayfix_scene_sim::{Scenario, ScenarioParams};
+    /// let scenario = Scenario::named("color_dark")?.with_seed(100);
+    /// let ScenarioParams::League(params) = &scenario.params else { panic!("the league") };
+    /// assert_eq!((scenario.seed, params.venue_seed), (100, None));
+    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// ```
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        if let ScenarioParams::League(params) = &mut self.params {
+            params.venue_seed = None;
+        }
+        self
+    }
+
     /// The log, in time order. Give it a generator seeded with [`seed`](Self::seed) for the log that goes by this name.
     ///
     /// # Errors

@@ -16,10 +16,11 @@ const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, -1.0];
 
 #[track_caller]
 fn assert_refused<T>(result: Result<T, SimError>, value: f64) {
-    match result {
-        Err(SimError::Parameter { value: named, .. }) => assert_eq!(named.to_bits(), value.to_bits()),
-        other => panic!("{value} gave {:?}", other.err()),
-    }
+    let named = match result {
+        Err(SimError::Parameter { value, .. }) => Some(value.to_bits()),
+        _ => None,
+    };
+    assert_eq!(named, Some(value.to_bits()), "{value} is not named");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::league::{CameraParams, Frame, LeagueDrive, LeagueParams, Lighting, Venue};
 use wayfix_scene_sim::random::Source;
+use wayfix_sensor_log::Data;
 
 use crate::support::{deviation, honest, mean, streams};
 
@@ -108,15 +109,31 @@ fn a_kidnapped_robot_is_elsewhere_and_its_odometry_does_not_know() {
 
 #[test]
 fn odometry_comes_between_the_frames() {
-    let start = Some(Pose2::new(0.3, -0.2, 1.0));
-    let frames = frames(&LeagueParams { n_frames: 5, start, ..LeagueParams::default() }, 1);
+    let start = Pose2::new(0.3, -0.2, 1.0);
+    let frames = frames(&LeagueParams { n_frames: 5, start: Some(start), ..LeagueParams::default() }, 1);
     assert_eq!(frames[0].odometry, None);
-    assert!(
-        (frames[0].pose.translation - start.expect("given").translation).norm() < 1e-12,
-        "it rests at first"
-    );
+    assert!((frames[0].pose.translation - start.translation).norm() < 1e-12, "it rests at first");
     for pair in frames.windows(2) {
         let when = pair[1].odometry.expect("after the first").0;
         assert!(pair[0].milliseconds < when && when < pair[1].milliseconds);
+    }
+}
+
+#[test]
+fn the_log_has_its_records_in_order_and_labels_where_asked_for() {
+    let params = LeagueParams { n_frames: 9, n_labelled: 3, ..LeagueParams::default() };
+    let records = params.simulate(streams(1)).expect("sound parameters");
+    assert!(records.is_sorted_by_key(|record| record.stamp));
+    let kinds: Vec<&str> = records.iter().map(|record| record.data.kind()).collect();
+    assert_eq!(kinds[..3], ["camera info", "true pose", "camera mount"]);
+    let count = |kind| kinds.iter().filter(|&&k| k == kind).count();
+    assert_eq!((count("image"), count("true labels"), count("odometry increment")), (9, 3, 8));
+    for pair in records.windows(2) {
+        if let (Data::TrueLabels(labels), Data::Image(image)) = (&pair[0].data, &pair[1].data) {
+            let (labels, image) = (labels.decode_gray().expect("PNG"), image.decode_rgb().expect("JPEG"));
+            assert_eq!((labels.width, labels.height), (image.width, image.height));
+            assert_eq!(pair[0].stamp, pair[1].stamp);
+            assert!(labels.pixels.iter().all(|&label| label <= 5));
+        }
     }
 }

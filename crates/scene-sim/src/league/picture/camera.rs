@@ -18,15 +18,15 @@ pub struct CameraParams {
     pub white_balance_drift: f64,
     /// Correlation time of that drift, seconds. Default 20.
     pub white_balance_correlation_s: f64,
-    /// Share of red, green and blue lost in the corners of the picture. Default (0.42, 0.36, 0.20): corners are dark and bluish.
+    /// Share of red, green and blue lost in the corners of the picture. Default (0.58, 0.50, 0.18): corners are dark and bluish.
     pub vignetting: Rgb,
     /// Share of each channel that comes from either of the others. Default 0.05.
     pub crosstalk: f64,
     /// Stray light: share of the picture's mean that every pixel gets. Default 0.015.
     pub flare: f64,
-    /// Electrons at full scale: shot noise has σ = √(signal / electrons). Default 3000.
+    /// Electrons at full scale: shot noise has σ = √(signal / electrons). Default 4000.
     pub full_well: f64,
-    /// Read noise, σ as a share of full scale. Default 0.004.
+    /// Read noise, σ as a share of full scale. Default 0.003.
     pub read_noise: f64,
     /// Exponent of the response, signal to grey value. Default 0.5.
     pub gamma: f64,
@@ -58,11 +58,11 @@ impl CameraParams {
             white_balance: Rgb::repeat(1.0),
             white_balance_drift: 0.02,
             white_balance_correlation_s: 20.0,
-            vignetting: Rgb::new(0.42, 0.36, 0.20),
+            vignetting: Rgb::new(0.58, 0.50, 0.18),
             crosstalk: 0.05,
             flare: 0.015,
-            full_well: 3000.0,
-            read_noise: 0.004,
+            full_well: 4000.0,
+            read_noise: 0.003,
             gamma: 0.5,
             chroma: Chroma::default(),
             jpeg_quality: 88,

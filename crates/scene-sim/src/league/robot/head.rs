@@ -3,7 +3,7 @@ use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
 use super::HeadParams;
-use crate::random::deviate::{below, chance, normal, uniform};
+use crate::random::deviate::{chance, normal, uniform};
 use crate::{plane, space};
 
 /// Where the robot looks.
@@ -15,6 +15,8 @@ pub(super) struct Head {
     rates: Vector2<f64>,
     target: Target,
     left_s: f64,
+    /// How often it has looked at each landmark.
+    n_looks: Vec<u32>,
     /// Constant errors of pan, tilt and roll.
     biases: [f64; 3],
 }
@@ -40,6 +42,7 @@ impl Head {
             rates: Vector2::zeros(),
             target: Target::Angles(Vector2::zeros()),
             left_s: 0.0,
+            n_looks: Vec::new(),
             biases: [(); 3].map(|()| params.bias_rad * normal(rng)),
         }
     }
@@ -96,16 +99,23 @@ impl Head {
         Vector2::new(angles.x.clamp(-pan, pan), angles.y.clamp(TILT_LIMITS_RAD[0], TILT_LIMITS_RAD[1]))
     }
 
-    /// One of the landmarks in reach or the carpet; with none in reach, to one side.
-    fn choose<R: Rng + ?Sized>(&self, body: &Pose2<f64>, landmarks: &[Vector3<f64>], rng: &mut R) -> Target {
+    /// The landmark in reach that it has looked at least, or the carpet; with none in reach, to one side.
+    fn choose<R: Rng + ?Sized>(
+        &mut self,
+        body: &Pose2<f64>,
+        landmarks: &[Vector3<f64>],
+        rng: &mut R,
+    ) -> Target {
         let (down, aside) = (chance(self.params.down_share, rng), uniform(-1.0, 1.0, rng));
-        let in_reach: Vec<&Vector3<f64>> = landmarks
-            .iter()
-            .filter(|at| plane::range_and_bearing(body, &at.xy()).1.abs() < self.params.pan_limit_rad)
-            .collect();
-        let chosen = below(in_reach.len(), rng);
-        match in_reach.get(chosen) {
-            Some(&&at) if !down => Target::Point(at),
+        self.n_looks.resize(landmarks.len(), 0);
+        let in_reach =
+            |at: &Vector3<f64>| plane::range_and_bearing(body, &at.xy()).1.abs() < self.params.pan_limit_rad;
+        let candidates = self.n_looks.iter_mut().zip(landmarks).filter(|(_, at)| in_reach(at));
+        match candidates.min_by_key(|(n_looks, _)| **n_looks) {
+            Some((n_looks, at)) if !down => {
+                *n_looks += 1;
+                Target::Point(*at)
+            }
             _ => Target::Angles(Vector2::new(aside, if down { 0.5 } else { AIM_BELOW_RAD })),
         }
     }

@@ -17,13 +17,13 @@ pub struct RobotParams {
 /// Where it goes: from one random point of the field to the next, forwards or sideways, with turns and rests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkParams {
-    /// Speed, m/s; 0 never leaves its place. Default 0.2.
+    /// Speed, m/s; 0 never leaves its place. Default 0.25.
     pub speed_mps: f64,
-    /// Turning rate, rad/s. Default 0.8.
+    /// Turning rate, rad/s. Default 1.
     pub turn_radps: f64,
     /// How fast it comes to a speed: time constant, seconds. Default 0.15.
     pub lag_s: f64,
-    /// Mean length of a rest, seconds. Default 1.
+    /// Mean length of a rest, seconds. Default 0.5.
     pub rest_s: f64,
     /// Share of ways that it walks without turning that way first. Default 0.25.
     pub sideways_share: f64,
@@ -36,9 +36,9 @@ pub struct WalkParams {
 pub struct SwayParams {
     /// Length of one stride, seconds. Default 0.5.
     pub stride_s: f64,
-    /// Amplitude of the roll at full speed, radians. Default 1.2°.
+    /// Amplitude of the roll at full speed, radians. Default 1°.
     pub roll_rad: f64,
-    /// Amplitude of the pitch at full speed, radians. Default 0.8°.
+    /// Amplitude of the pitch at full speed, radians. Default 0.7°.
     pub pitch_rad: f64,
     /// Amplitude of the height at full speed, metres. Default 0.004.
     pub height_m: f64,
@@ -53,15 +53,15 @@ pub struct HeadParams {
     pub speed_radps: f64,
     /// Furthest pan to either side, radians. Default 88°.
     pub pan_limit_rad: f64,
-    /// How long it looks at one thing on average, seconds. Default 0.6.
+    /// How long it looks at one thing on average, seconds. Default 0.5.
     pub dwell_s: f64,
     /// Share of looks that go to the carpet ahead instead of a landmark. Default 0.15.
     pub down_share: f64,
     /// Resolution of the reported angles, radians; 0 for none. Default 0.25°.
     pub quantum_rad: f64,
-    /// How old reported angles are, seconds. Default 0.012.
+    /// How old reported angles are, seconds. Default 0.008.
     pub lag_s: f64,
-    /// σ of the constant error of pan, tilt and roll of the camera, radians. Default 0.5°.
+    /// σ of the constant error of pan, tilt and roll of the camera, radians. Default 0.35°.
     pub bias_rad: f64,
 }
 
@@ -87,28 +87,28 @@ impl Default for RobotParams {
         let degrees = f64::to_radians;
         Self {
             walk: WalkParams {
-                speed_mps: 0.2,
-                turn_radps: 0.8,
+                speed_mps: 0.25,
+                turn_radps: 1.0,
                 lag_s: 0.15,
-                rest_s: 1.0,
+                rest_s: 0.5,
                 sideways_share: 0.25,
                 margin_m: 0.35,
             },
             sway: SwayParams {
                 stride_s: 0.5,
-                roll_rad: degrees(1.2),
-                pitch_rad: degrees(0.8),
+                roll_rad: degrees(1.0),
+                pitch_rad: degrees(0.7),
                 height_m: 0.004,
                 unsteady_rad: degrees(0.3),
             },
             head: HeadParams {
                 speed_radps: 2.0,
                 pan_limit_rad: degrees(88.0),
-                dwell_s: 0.6,
+                dwell_s: 0.5,
                 down_share: 0.15,
                 quantum_rad: degrees(0.25),
-                lag_s: 0.012,
-                bias_rad: degrees(0.5),
+                lag_s: 0.008,
+                bias_rad: degrees(0.35),
             },
             odometry: GaitOdometryParams {
                 step_scale: [0.8, 1.1],

@@ -30,6 +30,8 @@ enum Task {
 
 /// It has arrived when this close, metres.
 const ARRIVED_M: f64 = 0.05;
+/// Ways shorter than this are not worth it, metres.
+const WORTH_M: f64 = 1.2;
 /// It has turned when this close, radians.
 const TURNED_RAD: f64 = 0.1;
 
@@ -83,8 +85,7 @@ impl Walker {
                 still
             }
             Task::Rest { .. } => {
-                let (to, sideways) =
-                    (spot(self.params.margin_m, rng), chance(self.params.sideways_share, rng));
+                let (to, sideways) = (self.elsewhere(rng), chance(self.params.sideways_share, rng));
                 self.task = if sideways { Task::Walk { to, sideways } } else { Task::Turn { to } };
                 still
             }
@@ -97,6 +98,18 @@ impl Walker {
             }
             Task::Walk { to, sideways } => self.walk(to, sideways, rng),
         }
+    }
+
+    /// Far enough to be worth the way, if luck will have it.
+    fn elsewhere<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector2<f64> {
+        let mut to = spot(self.params.margin_m, rng);
+        for _ in 0..10 {
+            if (to - self.pose.translation).norm() > WORTH_M {
+                break;
+            }
+            to = spot(self.params.margin_m, rng);
+        }
+        to
     }
 
     fn walk<R: Rng + ?Sized>(
