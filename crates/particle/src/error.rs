@@ -43,6 +43,14 @@ pub enum ParticleError {
         /// How many there are.
         count: usize,
     },
+    /// A resampler chose an ancestor that does not exist.
+    #[error("ancestor {ancestor} of {n_particles} particles")]
+    Ancestor {
+        /// The one it chose.
+        ancestor: usize,
+        /// How many there are.
+        n_particles: usize,
+    },
     /// A motion led to a state that is not finite.
     #[error("state {index} is not finite")]
     State {

@@ -1,12 +1,11 @@
 //! Bad input gets a typed error, and nothing changes.
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its particles has failed")]
 
-use rand::SeedableRng;
+use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Angle;
 use wayfix_particle::{
-    ChunkRng, Multinomial, ParticleError, ParticleSet, Resampler as _, Residual, Stratified, Systematic,
-    Weights,
+    ChunkRng, Multinomial, ParticleError, ParticleSet, Resampler, Residual, Stratified, Systematic, Weights,
 };
 
 const BAD: [f64; 2] = [f64::NAN, f64::INFINITY];
@@ -49,6 +48,20 @@ fn more_particles_than_memory_are_refused() {
     assert_eq!(set, particles());
     let weights = Weights::from_linear(vec![1.0]).unwrap();
     assert_eq!(Stratified.ancestors(&weights, requested, &mut rng()), Err(too_many));
+}
+
+#[test]
+fn a_resampler_that_invents_ancestors_is_refused() {
+    struct OffByOne;
+    impl Resampler for OffByOne {
+        fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], _: &mut R) {
+            ancestors.fill(weights.as_slice().len());
+        }
+    }
+    let mut set = particles();
+    let refused = ParticleError::Ancestor { ancestor: 200, n_particles: 200 };
+    assert_eq!(set.resample(&OffByOne, 10, &mut rng()), Err(refused));
+    assert_eq!(set, particles());
 }
 
 #[test]

@@ -14,7 +14,8 @@ impl<X: Clone> ParticleSet<X> {
     ///
     /// # Errors
     /// [`ParticleError::NoWeight`] when every particle is impossible, [`ParticleError::NoParticles`] for `n = 0`,
-    /// [`ParticleError::TooMany`] when they do not fit into memory. The particles are as they were.
+    /// [`ParticleError::TooMany`] when they do not fit into memory, [`ParticleError::Ancestor`] when the resampler breaks its laws. The
+    /// particles are as they were.
     pub fn resample<S: Resampler, R: Rng + ?Sized>(
         &mut self,
         resampler: &S,
@@ -31,6 +32,10 @@ impl<X: Clone> ParticleSet<X> {
         reserve(&mut workspace.states, n)?;
         resize(&mut workspace.ancestors, n, 0)?;
         resampler.fill(&workspace.weights, &mut workspace.ancestors, rng);
+        let n_particles = states.len();
+        if let Some(&ancestor) = workspace.ancestors.iter().find(|ancestor| **ancestor >= n_particles) {
+            return Err(ParticleError::Ancestor { ancestor, n_particles });
+        }
 
         let children = workspace.ancestors.iter().map(|&ancestor| states[ancestor].clone());
         workspace.states.extend(children);
