@@ -4,51 +4,12 @@ use rand_chacha::rand_core::SeedableRng;
 use wayfix_estimation_traits::{Pose2, Pose3};
 
 use super::{
-    Legged, Lighting, Photographer, Picture, Rgb, RobotParams, Scene, Surface, Things, Venue, field_map,
+    LeagueParams, Legged, Lighting, Photographer, Picture, Rgb, Scene, Surface, Things, Venue, field_map,
     landmarks,
 };
+use crate::SimError;
 use crate::random::deviate::uniform;
 use crate::random::{GaussMarkov, Source, Streams};
-use crate::{SimError, check};
-
-/// One drive over the field with the camera running.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LeagueParams {
-    /// Number of frames, at most 100 000. Default 280.
-    pub n_frames: usize,
-    /// Time from one to the next, milliseconds; longer than the exposure. Default 100.
-    pub period_ms: u32,
-    /// Which venue: the one that this seed gives, or with `None` one that belongs to the seed of the drive. Default `None`.
-    pub venue_seed: Option<u64>,
-    /// The light from the frame on, in the order of the frames. Default bright from frame 0 on; so it is before the first.
-    pub lights: Vec<(usize, Lighting)>,
-    /// Where the robot starts; `None` for anywhere on the field. Default `None`.
-    pub start: Option<Pose2<f64>>,
-    /// Before which frames somebody lifts the robot and puts it elsewhere, 1 m away at least. Default none.
-    pub kidnaps: Vec<usize>,
-    /// The robot.
-    pub robot: RobotParams,
-    /// Whether there are robots, a ball and a referee that no map lists. Default true.
-    pub with_things: bool,
-    /// How many frames of the log get labels. Default 12.
-    pub n_labelled: usize,
-}
-
-impl Default for LeagueParams {
-    fn default() -> Self {
-        Self {
-            n_frames: 280,
-            period_ms: 100,
-            venue_seed: None,
-            lights: vec![(0, Lighting::Bright)],
-            start: None,
-            kidnaps: Vec::new(),
-            robot: RobotParams::default(),
-            with_things: true,
-            n_labelled: 12,
-        }
-    }
-}
 
 /// What happens at one frame, truth included.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,7 +65,6 @@ impl LeagueDrive {
     /// # Errors
     /// When a parameter has no meaning.
     pub fn new(params: &LeagueParams, mut streams: Streams) -> Result<Self, SimError> {
-        check::count("frames", params.n_frames, 100_000)?;
         let venue = match params.venue_seed {
             Some(seed) => Venue::draw(Streams::new(ChaCha8Rng::seed_from_u64(seed)).of(Source::Venue))?,
             None => Venue::draw(streams.of(Source::Venue))?,
@@ -117,15 +77,7 @@ impl LeagueDrive {
     /// # Errors
     /// When a parameter has no meaning.
     pub fn in_venue(params: &LeagueParams, venue: Venue, mut streams: Streams) -> Result<Self, SimError> {
-        check::count("frames", params.n_frames, 100_000)?;
-        let exposure = f64::from(venue.camera.exposure_ms);
-        let period = f64::from(params.period_ms);
-        check::above("period of the frames (ms)", period, exposure + 2.0, "2 ms longer than the exposure")?;
-        if let Some(start) = params.start {
-            check::finite("start (m)", start.x())?;
-            check::finite("start (m)", start.y())?;
-            check::finite("start (rad)", start.heading())?;
-        }
+        params.validate(&venue.camera)?;
         let robot = Legged::new(params.robot, params.start, landmarks(), &mut streams)?;
         let photographer = Photographer::new(venue.camera)?;
         let drift = GaussMarkov::new(venue.camera.white_balance_correlation_s);

@@ -110,6 +110,12 @@ fn drives() {
         );
     }
     assert_refused(LeagueDrive::new(&LeagueParams { period_ms: 12, ..default.clone() }, streams(1)), 12.0);
+    assert_refused(
+        LeagueDrive::new(&LeagueParams { period_ms: 60_001, ..default.clone() }, streams(1)),
+        60_001.0,
+    );
+    let labels = LeagueParams { n_frames: 3, n_labelled: 4, ..default.clone() }.simulate(streams(1));
+    assert!(matches!(labels, Err(SimError::TooMany { limit: 3, got: 4, .. })));
     let many = LeagueDrive::new(&LeagueParams { n_frames: 100_001, ..default.clone() }, streams(1));
     assert!(matches!(many, Err(SimError::TooMany { got: 100_001, .. })));
     let none = LeagueParams { n_frames: 0, ..default };
