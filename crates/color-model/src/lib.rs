@@ -11,16 +11,20 @@ mod prior;
 mod yuv;
 
 pub use background::Background;
-pub use classify::{Classifier, LookUpTable};
+pub use classify::{Blob, Classifier, LookUpTable, find_blobs};
 pub use error::ColorModelError;
 pub use frame::{Frame, PixelSums};
-pub use lighting::{ColorDensity, ColorMeans, Drift, LightingBank, LightingFilter, LightingParams, Unseen};
+pub use lighting::{
+    Choice, ColorDensity, ColorMeans, Drift, Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker,
+    LightingBank, LightingFilter, LightingParams, Unseen,
+};
 pub use likelihood::{PixelLight, PixelParams, PixelView, SpanView, SumDensity, ViewLikelihood, gather};
 pub use localizer::{
     CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,
-    OdometryNoise, OdometryStep, PoseEstimate, Start, surroundings,
+    OdometryNoise, OdometryStep, PoseEstimate, Start,
 };
 pub use prior::{
-    KMeans, LightingPriors, PixelSpread, PriorError, PriorParams, TrainingVenue, k_means, learn_priors, split_by_brightness,
+    KMeans, LightingPriors, PixelSpread, PriorError, PriorParams, TrainingVenue, k_means, learn_priors,
+    split_by_brightness,
 };
 pub use yuv::{YuvImage, YuvStandard};

@@ -42,7 +42,12 @@ impl SumDensity {
 
     /// $`\ln N(c; μ, S)`$ of one pixel.
     pub fn log(&self, pixel: [u8; 3]) -> f64 {
-        let from_mean = Vector3::from(pixel.map(f64::from)) - self.mean;
+        self.log_at(&Vector3::from(pixel.map(f64::from)))
+    }
+
+    /// $`\ln N(c; μ, S)`$ of any point of the colour space.
+    pub fn log_at(&self, color: &Vector3<f64>) -> f64 {
+        let from_mean = color - self.mean;
         self.log_peak - 0.5 * from_mean.dot(&(self.information * from_mean))
     }
 

@@ -1,4 +1,4 @@
-use wayfix_color_map::ColorId;
+use nalgebra::Vector3;
 use wayfix_estimation_traits::LogWeight;
 
 use super::{PixelParams, params::Region};
@@ -29,15 +29,22 @@ impl JointLikelihood {
         params: &PixelParams,
         n_pixels: usize,
     ) -> LogWeight {
-        let scatter = |sums: &PixelSums| Region::new(sums, log_scatter(sums, filter));
+        let noise = filter.params().pixel_noise + params.unevenness(filter);
+        let scatter = |sums: &PixelSums| Region::new(sums, log_scatter(sums, &noise));
         let within = params.log_likelihood(n_pixels, sums.iter().map(scatter));
         let tempering = params.independent_pixels / n_pixels.max(1) as f64;
-        within + self.log_innovation(sums, filter, tempering)
+        within + self.log_innovation(sums, filter, &noise, tempering)
     }
 
     /// $`\ln N(\bar v; μ, Σ + R + ν/βn) - \ln N(0; 0, ν/βn)`$ over the colours that are seen.
-    fn log_innovation(&mut self, sums: &[PixelSums], filter: &LightingFilter, tempering: f64) -> f64 {
-        let (pixel, of_mean) = (filter.params().pixel_noise, filter.params().mean_noise);
+    fn log_innovation(
+        &mut self,
+        sums: &[PixelSums],
+        filter: &LightingFilter,
+        pixel: &Vector3<f64>,
+        tempering: f64,
+    ) -> f64 {
+        let of_mean = filter.params().mean_noise;
         self.rows.clear();
         self.residuals.clear();
         self.noises.clear();
@@ -65,12 +72,11 @@ impl JointLikelihood {
 }
 
 /// $`\sum_c \ln N(c; \bar c, ν)`$ about the pixels' own mean.
-fn log_scatter(sums: &PixelSums, filter: &LightingFilter) -> f64 {
+fn log_scatter(sums: &PixelSums, noise: &Vector3<f64>) -> f64 {
     let Some(mean) = sums.mean() else { return 0.0 };
-    let noise = filter.params().pixel_noise;
     let scatter = sums.scatter_about(&mean).diagonal();
     let log_peak = -1.5 * std::f64::consts::TAU.ln() - 0.5 * noise.iter().map(|v| v.ln()).sum::<f64>();
-    sums.count() as f64 * log_peak - 0.5 * scatter.component_div(&noise).sum()
+    sums.count() as f64 * log_peak - 0.5 * scatter.component_div(noise).sum()
 }
 
 /// $`-\tfrac{1}{2} (\ln |S| + r^T S^{-1} r)`$ of a covariance given as the rows of its lower triangle, by Cholesky in place.

@@ -8,9 +8,9 @@ mod span;
 mod view;
 
 pub use density::SumDensity;
+pub(crate) use joint::JointLikelihood;
 pub use params::{PixelLight, PixelParams};
 pub use pixel::PixelView;
-pub(crate) use joint::JointLikelihood;
 pub(crate) use span::log_likelihood;
 pub use span::{SpanView, gather};
 pub use view::ViewLikelihood;

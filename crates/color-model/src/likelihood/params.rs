@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use crate::{ColorModelError, PixelSums};
+use crate::{ColorModelError, LightingFilter, PixelSums};
 
 /// Whether pixels share the light that is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,7 +15,11 @@ pub enum PixelLight {
 
 /// How the pixels of an image are weighed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct PixelParams {
     /// Whether pixels share the light that is not known.
     pub light: PixelLight,
@@ -27,10 +31,10 @@ pub struct PixelParams {
     /// The worst that the pixels of one colour can count on average, nats a pixel below the background: a hidden surface does not make a
     /// pose impossible. Infinite for the pixel product as it is in the paper.
     pub floor: f64,
-    /// How far a colour differs over one image and over the field, which the lighting model does not know: standard deviation of Y, and of U
-    /// and V, levels. Added to what the lighting filter says.
+    /// How far a colour differs over one image and over the field, which the lighting model does not know: standard deviation of Y as a share of
+    /// the light's mean Y, since shade and vignetting multiply the light. Added to what the lighting filter says.
     pub uneven_brightness: f64,
-    /// See [`uneven_brightness`](Self::uneven_brightness).
+    /// The same of U and of V, as a share of the light's mean Y.
     pub uneven_chroma: f64,
     /// Pixels left out at both ends of each span, where a small error of the pose changes the label.
     pub edge_margin: u16,
@@ -38,7 +42,15 @@ pub struct PixelParams {
 
 impl Default for PixelParams {
     fn default() -> Self {
-        Self { light: PixelLight::Common, independent_pixels: 200.0, outlier_share: 0.05, floor: 10.0, uneven_brightness: 8.0, uneven_chroma: 5.0, edge_margin: 0 }
+        Self {
+            light: PixelLight::Common,
+            independent_pixels: 60.0,
+            outlier_share: 0.3,
+            floor: 3.0,
+            uneven_brightness: 0.12,
+            uneven_chroma: 0.03,
+            edge_margin: 1,
+        }
     }
 }
 
@@ -66,9 +78,10 @@ impl Region {
 }
 
 impl PixelParams {
-    /// The variances of `uneven_…`.
-    pub(crate) fn unevenness(&self) -> Vector3<f64> {
-        let [y, uv] = [self.uneven_brightness, self.uneven_chroma].map(|sigma| sigma * sigma);
+    /// The variances of `uneven_…` in the light of one filter.
+    pub(crate) fn unevenness(&self, filter: &LightingFilter) -> Vector3<f64> {
+        let brightness = filter.mean().iter().step_by(3).sum::<f64>() / filter.n_colors() as f64;
+        let [y, uv] = [self.uneven_brightness, self.uneven_chroma].map(|share| (share * brightness).powi(2));
         Vector3::new(y, uv, uv)
     }
 

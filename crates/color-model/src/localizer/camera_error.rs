@@ -28,7 +28,11 @@ impl CameraError {
 
 /// Standard deviations of [`CameraError`], and how long an error lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct CameraNoise {
     /// Of roll, radians.
     pub roll: f64,

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use rand::{Rng, distr::Distribution};
-use wayfix_color_map::{Camera, ColorMap};
+use wayfix_color_map::{Camera, ColorId, ColorMap};
 use wayfix_estimation_traits::{Pose2, Pose3, SampleMotion};
 use wayfix_particle::{RaoBlackwell, Weights};
 
@@ -28,7 +28,7 @@ pub struct ColorLocalizer {
     map: Arc<ColorMap>,
     camera: Camera,
     area: Area,
-    background: Background,
+    background: Option<Background>,
     params: LocalizerParams,
     particles: Vec<ColorParticle>,
     weights: Weights,
@@ -55,8 +55,8 @@ impl ColorLocalizer {
             return Err(ColorModelError::Dimension { what: "colours of the lighting bank", expected, got });
         }
         let area = Area::of(&map)?;
-        let light = Arc::new(Light::new(light, &params.pixels.unevenness())?);
-        let mut particle = |body: Pose2<f64>, rng: &mut R| {
+        let light = Arc::new(Light::new(light, &params.pixels)?);
+        let particle = |body: Pose2<f64>, rng: &mut R| {
             RaoBlackwell::from_shared(
                 CameraLocation { body, error: params.camera.sample(rng) },
                 Arc::clone(&light),
@@ -72,14 +72,13 @@ impl ColorLocalizer {
             }
         };
         let weights = Weights::from_linear(vec![1.0; particles.len()])?;
-        let background = Background::Uniform;
         let fitness = Fitness::default();
-        Ok(Self { map, camera, area, background, params, particles, weights, seconds: 0.0, fitness })
+        Ok(Self { map, camera, area, background: None, params, particles, weights, seconds: 0.0, fitness })
     }
 
-    /// The same with a background learned from images instead of a uniform one.
+    /// The same with a background learned from images; without, it is made of a uniform one and of the colours of each frame.
     pub fn with_background(self, background: Background) -> Self {
-        Self { background, ..self }
+        Self { background: Some(background), ..self }
     }
 
     /// The particles' weighted body poses.
@@ -131,8 +130,8 @@ impl ColorLocalizer {
     ) -> Result<FrameOutcome, ColorModelError> {
         self.check(image, mount)?;
         let mut particles = self.particles.clone();
-        predict_light(&mut particles, self.seconds, &self.params.pixels.unevenness())?;
-        let look = Palette::of(&particles, self.weights.as_slice())?.look(image, &self.background)?;
+        predict_light(&mut particles, self.seconds, &self.params.pixels)?;
+        let look = Palette::of(&particles, self.weights.as_slice())?.look(image, self.background.as_ref())?;
         for particle in &mut particles {
             particle.sampled.error = self.params.camera.after(&particle.sampled.error, self.seconds, rng);
         }
@@ -140,7 +139,7 @@ impl ColorLocalizer {
         let weighing =
             Weighing { map: &self.map, camera: self.camera, frame, mount, pixels: &self.params.pixels };
         let views = weighing.views(&particles);
-        let weighed = Weighed::new(&particles, &self.weights, &views, rng)?;
+        let weighed = Weighed::new(&particles, &self.weights, &views, self.params.least_effective, rng)?;
 
         let estimate = dominant_cluster(&weighed.poses(&particles)).ok_or(ColorModelError::NoPose)?;
         let temper = self.params.pixels.independent_pixels / frame.n_pixels() as f64;
@@ -148,14 +147,25 @@ impl ColorLocalizer {
         let mut fitness = self.fitness;
         fitness.observe(fit, &self.params);
 
-        let renewal = Renewal { params: &self.params, area: &self.area, suspicion: fitness.suspicion() };
-        let relight =
-            Relight { views: &views, members: &weighed.members, min_pixels: self.params.min_pixels, unevenness: self.params.pixels.unevenness() };
+        let renewal = Renewal {
+            params: &self.params,
+            area: &self.area,
+            suspicion: fitness.suspicion(),
+            estimate: estimate.pose.mean(),
+        };
+        let relight = Relight {
+            views: &views,
+            members: &weighed.members,
+            min_pixels: self.params.min_pixels,
+            withheld: self.params.withheld.map(|color| ColorId(color as u8)),
+            pixels: &self.params.pixels,
+        };
         let renewed = renewal.renew(&particles, &weighed.weights, &relight, rng)?;
 
         let outcome = FrameOutcome {
             fix: self.fix(&estimate),
             estimate,
+            tempering: weighed.tempering,
             effective_particles: weighed.weights.effective_sample_size(),
             n_particles: renewed.particles.len(),
             log_evidence_per_pixel: weighed.log_evidence / temper / frame.n_pixels() as f64,

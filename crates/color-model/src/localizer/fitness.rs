@@ -5,6 +5,7 @@ use super::LocalizerParams;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Fitness {
     averages: Option<(f64, f64)>,
+    suspicion: f64,
 }
 
 impl Fitness {
@@ -12,11 +13,16 @@ impl Fitness {
         let fit = fit.clamp(0.0, 1.0);
         let (slow, fast) = self.averages.unwrap_or((fit, fit));
         let follow = |average: f64, rate: f64| average + rate * (fit - average);
-        self.averages = Some((follow(slow, params.slow_rate), follow(fast, params.fast_rate)));
+        let (slow, fast) = (follow(slow, params.slow_rate), follow(fast, params.fast_rate));
+        self.averages = Some((slow, fast));
+        let fell = if slow > 0.0 { (1.0 - fast / slow).max(0.0) } else { 1.0 };
+        let is_low = if params.lost_fit > 0.0 { 2.0 - 2.0 * fast / params.lost_fit } else { 0.0 };
+        // A fit varies by a few hundredths from frame to frame.
+        self.suspicion = if fell < 0.1 { 0.0 } else { fell }.max(is_low.clamp(0.0, 1.0));
     }
 
     /// How far the short-term average fell below the long-term one, 0 to 1.
     pub(crate) fn suspicion(&self) -> f64 {
-        self.averages.map_or(0.0, |(slow, fast)| if slow > 0.0 { (1.0 - fast / slow).max(0.0) } else { 0.0 })
+        self.suspicion
     }
 }

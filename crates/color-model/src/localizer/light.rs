@@ -1,7 +1,7 @@
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use wayfix_color_map::ColorId;
 
-use crate::{ColorDensity, ColorModelError, LightingBank, SumDensity};
+use crate::{ColorDensity, ColorModelError, LightingBank, PixelParams, SumDensity};
 
 /// A particle's knowledge of the light: a bank of filters, and its colours' densities ready for weighing.
 ///
@@ -15,13 +15,14 @@ pub(crate) struct Light {
 }
 
 impl Light {
-    pub(crate) fn new(bank: LightingBank, unevenness: &Vector3<f64>) -> Result<Self, ColorModelError> {
+    pub(crate) fn new(bank: LightingBank, pixels: &PixelParams) -> Result<Self, ColorModelError> {
         let n_colors = bank.n_colors();
         let densities = (0..bank.n_members())
             .flat_map(|member| (0..n_colors).map(move |color| (member, ColorId(color as u8))))
             .map(|(member, color)| {
-                let ColorDensity { mean, covariance } = bank.member(member).color(color);
-                let covariance = covariance + Matrix3::from_diagonal(unevenness);
+                let filter = bank.member(member);
+                let ColorDensity { mean, covariance } = filter.color(color);
+                let covariance = covariance + Matrix3::from_diagonal(&pixels.unevenness(filter));
                 SumDensity::new(&ColorDensity { mean, covariance })
             })
             .collect::<Result<_, _>>()?;

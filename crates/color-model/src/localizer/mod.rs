@@ -13,7 +13,7 @@ mod particle;
 mod relight;
 mod renewal;
 mod start;
-pub mod surroundings;
+mod surroundings;
 mod weigh;
 mod weighed;
 

@@ -16,7 +16,11 @@ pub struct OdometryStep {
 ///
 /// The defaults are for legged robots, whose paws slip: a fifth of the way, a fifth of the turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct OdometryNoise {
     /// Metres per metre walked, along and across.
     pub translation_per_metre: f64,

@@ -9,6 +9,8 @@ pub struct FrameOutcome {
     pub fix: Fix,
     /// Effective number of particles after weighing.
     pub effective_particles: f64,
+    /// Power of the likelihood that left enough of them effective: below 1 while particles are too coarse for what the frame tells.
+    pub tempering: f64,
     /// Number of particles after the frame.
     pub n_particles: usize,
     /// Log of the mean likelihood ratio to the background, nats a pixel of the image, before tempering.

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_color_map::ColorId;
 
-use super::particle::ColorParticle;
+use super::{particle::ColorParticle, surroundings::Surroundings};
 use crate::{Background, ColorDensity, ColorModelError, Frame, SumDensity, YuvImage};
 
 /// All map colours under all lights that the particles think of: tells pixels that some map colour may explain from outliers.
@@ -32,13 +32,20 @@ impl Palette {
         Ok(Self { densities })
     }
 
-    pub(crate) fn look(&self, image: &YuvImage, background: &Background) -> Result<Look, ColorModelError> {
-        let surroundings = super::surroundings::Surroundings::of(image);
+    pub(crate) fn look(
+        &self,
+        image: &YuvImage,
+        background: Option<&Background>,
+    ) -> Result<Look, ColorModelError> {
+        let surroundings = Surroundings::of(image);
+        let nats_of = |pixel| {
+            background.map_or_else(|| surroundings.nats(pixel), |learned| -learned.log_density(pixel))
+        };
         let mut memo = Memo::default();
         let mut explainable = 0.0;
         let frame = Frame::with_background(image, |pixel| {
             let best = memo.get(pixel, |pixel| self.best(pixel));
-            let nats = surroundings.nats(pixel);
+            let nats = nats_of(pixel);
             (best + nats > 0.0).then(|| {
                 explainable += best + nats;
                 nats

@@ -3,7 +3,11 @@ use crate::{ColorModelError, PixelParams};
 
 /// What [`ColorLocalizer`](crate::ColorLocalizer) is tuned by.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct LocalizerParams {
     /// How pixels are weighed.
     pub pixels: PixelParams,
@@ -21,15 +25,20 @@ pub struct LocalizerParams {
     pub resample_below: f64,
     /// Fewest pixels from which the mean of a colour is taken.
     pub min_pixels: u64,
-    /// Passes of weighing within a frame: all but the last are softened, and followed by resampling and a small step, so that a few hundred
-    /// particles find the narrow peak that six degrees of freedom make. 1 is the paper's filter.
-    pub n_passes: usize,
+    /// A colour whose means the lighting filter never learns from, by its place in the map: what the other colours tell of it is seen then.
+    pub withheld: Option<usize>,
+    /// Share of the effective particles that a frame has to leave: its likelihood is softened until it does.
+    pub least_effective: f64,
     /// Fewest labelled pixels, as a share of the image, of which the best particle must see for a frame to say anything.
     pub min_view: f64,
     /// How the long-term and the short-term average of the fit follow a frame's: rates of augmented Monte Carlo localization.
     pub slow_rate: f64,
     /// See [`slow_rate`](Self::slow_rate).
     pub fast_rate: f64,
+    /// Share of particles injected whenever particles are resampled.
+    pub min_injected: f64,
+    /// Fit below which a robot is lost: it counts as fully suspicious at half of it.
+    pub lost_fit: f64,
     /// Largest share of particles injected in a frame.
     pub max_injected: f64,
 }
@@ -40,15 +49,18 @@ impl Default for LocalizerParams {
             pixels: PixelParams::default(),
             odometry: OdometryNoise::default(),
             camera: CameraNoise::default(),
-            min_particles: 300,
+            min_particles: 500,
             max_particles: 1000,
             max_particles_lost: 5000,
             resample_below: 0.5,
             min_pixels: 30,
-            n_passes: 1,
+            withheld: None,
+            least_effective: 0.1,
             min_view: 0.02,
             slow_rate: 0.02,
             fast_rate: 0.3,
+            min_injected: 0.0,
+            lost_fit: 0.3,
             max_injected: 0.3,
         }
     }
@@ -63,12 +75,14 @@ impl LocalizerParams {
         check("fewest particles", self.min_particles as f64, 1.0, f64::MAX)?;
         check("most particles", self.max_particles as f64, self.min_particles as f64, f64::MAX)?;
         check("most particles lost", self.max_particles_lost as f64, self.max_particles as f64, f64::MAX)?;
-        check("passes", self.n_passes as f64, 1.0, f64::MAX)?;
+        check("least effective share", self.least_effective, 0.0, 1.0)?;
         check("resample below", self.resample_below, 0.0, 1.0)?;
         check("smallest view", self.min_view, 0.0, 1.0)?;
         check("slow rate", self.slow_rate, 0.0, self.fast_rate)?;
         check("fast rate", self.fast_rate, 0.0, 1.0)?;
-        check("largest injection", self.max_injected, 0.0, 1.0)
+        check("least injection", self.min_injected, 0.0, self.max_injected)?;
+        check("fit of a lost robot", self.lost_fit, 0.0, 1.0)?;
+        check("largest injection", self.max_injected, 0.0, 0.9)
     }
 }
 

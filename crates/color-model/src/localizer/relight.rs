@@ -1,13 +1,17 @@
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use wayfix_color_map::ColorId;
 use wayfix_particle::RaoBlackwell;
 
 use super::{light::Light, particle::ColorParticle, weigh::Views};
-use crate::{ColorMeans, ColorModelError, PixelSums};
+use crate::{ColorMeans, ColorModelError, PixelParams, PixelSums};
 
 /// Lets the light of every particle drift for `seconds`. Particles that share a light go on sharing it.
-pub(crate) fn predict_light(particles: &mut [ColorParticle], seconds: f64, unevenness: &Vector3<f64>) -> Result<(), ColorModelError> {
+pub(crate) fn predict_light(
+    particles: &mut [ColorParticle],
+    seconds: f64,
+    pixels: &PixelParams,
+) -> Result<(), ColorModelError> {
     let mut last: Option<(Arc<Light>, Arc<Light>)> = None;
     for particle in particles {
         let shared = particle.shared_conditional();
@@ -16,7 +20,7 @@ pub(crate) fn predict_light(particles: &mut [ColorParticle], seconds: f64, uneve
             _ => {
                 let mut bank = shared.bank.clone();
                 bank.predict(seconds)?;
-                let predicted = Arc::new(Light::new(bank, unevenness)?);
+                let predicted = Arc::new(Light::new(bank, pixels)?);
                 last = Some((Arc::clone(shared), Arc::clone(&predicted)));
                 predicted
             }
@@ -33,7 +37,10 @@ pub(crate) struct Relight<'a> {
     pub(crate) members: &'a [usize],
     /// Fewest pixels from which the mean of a colour is taken.
     pub(crate) min_pixels: u64,
-    pub(crate) unevenness: Vector3<f64>,
+    /// The colour that nothing is learned of.
+    pub(crate) withheld: Option<ColorId>,
+    /// How pixels are weighed.
+    pub(crate) pixels: &'a PixelParams,
 }
 
 impl Relight<'_> {
@@ -53,9 +60,11 @@ impl Relight<'_> {
 
     /// The switching Kalman filter's update with the colour means that a particle sees. A light that cannot take them stays as it was.
     fn seen(&self, light: &Arc<Light>, particle: usize) -> Arc<Light> {
-        let means = means(self.views.sums(particle), self.min_pixels);
+        let seen = means(self.views.sums(particle), self.min_pixels);
+        let means = self.withheld.map_or_else(|| seen.clone(), |color| seen.without(color));
         let mut bank = light.bank.clone();
-        let updated = bank.update_member(self.members[particle], &means).and_then(|_| Light::new(bank, &self.unevenness));
+        let updated =
+            bank.update_member(self.members[particle], &means).and_then(|_| Light::new(bank, self.pixels));
         updated.map_or_else(|_| Arc::clone(light), Arc::new)
     }
 }

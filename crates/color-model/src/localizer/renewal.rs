@@ -1,7 +1,8 @@
 use std::collections::BTreeSet;
 
+use nalgebra::Vector3;
 use rand::{Rng, RngExt};
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_particle::{RaoBlackwell, Resampler, Systematic, Weights};
 
 use super::{
@@ -18,6 +19,8 @@ pub(crate) struct Renewal<'a> {
     pub(crate) area: &'a Area,
     /// Of having been carried away, 0 to 1.
     pub(crate) suspicion: f64,
+    /// Where the robot seems to be.
+    pub(crate) estimate: &'a Pose2<f64>,
 }
 
 /// The next generation.
@@ -35,24 +38,35 @@ impl Renewal<'_> {
         relight: &Relight,
         rng: &mut R,
     ) -> Result<Renewed, ColorModelError> {
-        let share = self.suspicion.min(self.params.max_injected);
+        let share = self.suspicion.clamp(self.params.min_injected, self.params.max_injected);
         let n_wanted = self.n_wanted(particles, weights, rng)?;
         let n_injected = (share * n_wanted as f64) as usize;
         let is_poor = weights.effective_sample_size() < self.params.resample_below * particles.len() as f64;
-        if n_injected == 0 && !is_poor && particles.len() <= 2 * n_wanted {
+        if self.suspicion == 0.0 && !is_poor && particles.len() <= 2 * n_wanted {
             let all: Vec<usize> = (0..particles.len()).collect();
             let particles = relight.descendants(particles, &all);
-            return Ok(Renewed { particles, weights: weights.clone(), n_injected });
+            return Ok(Renewed { particles, weights: weights.clone(), n_injected: 0 });
         }
         let ancestors = Systematic.ancestors(weights, n_wanted - n_injected, rng)?;
         let mut renewed = relight.descendants(particles, &ancestors);
         for _ in 0..n_injected {
             let light = renewed[rng.random_range(0..ancestors.len())].shared_conditional().clone();
-            let (body, error) = (self.area.sample(rng), self.params.camera.sample(rng));
+            let (body, error) = (self.newcomer(rng), self.params.camera.sample(rng));
             renewed.push(RaoBlackwell::from_shared(CameraLocation { body, error }, light));
         }
         let weights = Weights::from_linear(vec![1.0; renewed.len()])?;
         Ok(Renewed { particles: renewed, weights, n_injected })
+    }
+
+    /// A pose to try: near the estimate, in case it is a little off, or anywhere, in case the robot was carried away.
+    fn newcomer<R: Rng + ?Sized>(&self, rng: &mut R) -> Pose2<f64> {
+        let mut pose = self.area.sample(rng);
+        if rng.random::<bool>() {
+            let mut within = |reach: f64| reach * (2.0 * rng.random::<f64>() - 1.0);
+            pose = self.estimate.retract(&Vector3::new(within(0.6), within(0.6), within(0.6)));
+            self.area.clamp(&mut pose);
+        }
+        pose
     }
 
     /// As many particles as keep the sampling error within its bound, for as many cells as they occupy. [Fox 2003, Eq. 7]

@@ -87,7 +87,9 @@ impl Weighing<'_> {
             let light = particle.conditional();
             let n_pixels = self.frame.n_pixels();
             let value = match self.pixels.light {
-                PixelLight::Common => joint.log_likelihood(sums, light.bank.member(member), self.pixels, n_pixels),
+                PixelLight::Common => {
+                    joint.log_likelihood(sums, light.bank.member(member), self.pixels, n_pixels)
+                }
                 PixelLight::Each => log_likelihood(sums, light.member(member), self.pixels, n_pixels),
             };
             *log_likelihood_of = if seen && !value.is_nan() { value } else { f64::NEG_INFINITY };
@@ -95,7 +97,10 @@ impl Weighing<'_> {
     }
 
     fn scratch(&self) -> Scratch {
-        Scratch { projector: Projector::new(Arc::clone(self.map), self.camera), joint: JointLikelihood::new() }
+        Scratch {
+            projector: Projector::new(Arc::clone(self.map), self.camera),
+            joint: JointLikelihood::new(),
+        }
     }
 
     #[cfg(not(feature = "parallel"))]

@@ -14,6 +14,8 @@ pub(crate) struct Weighed {
     pub(crate) log_evidence: f64,
     /// Mean log-likelihood over the weighed particles, nats.
     pub(crate) mean_log_likelihood: f64,
+    /// The exponent of the likelihoods that left enough particles effective, at most 1.
+    pub(crate) tempering: f64,
     n_members: usize,
 }
 
@@ -27,6 +29,7 @@ impl Weighed {
         particles: &[ColorParticle],
         prior: &Weights,
         views: &Views,
+        least_effective: f64,
         rng: &mut R,
     ) -> Result<Self, ColorModelError> {
         let draws: Vec<(usize, f64)> = particles
@@ -34,15 +37,18 @@ impl Weighed {
             .enumerate()
             .map(|(at, particle)| draw_member(&particle.conditional().bank, views.by_member(at), rng))
             .collect();
+        let log_likelihoods: Vec<f64> = draws.iter().map(|(_, log_likelihood)| *log_likelihood).collect();
+        let least = least_effective * prior.effective_sample_size();
+        let (weights, tempering) = softened(&log_likelihoods, prior, least)?;
         let log_weights: Vec<f64> =
-            draws.iter().zip(prior.as_slice()).map(|((_, l), w)| l + w.ln()).collect();
-        let weights = Weights::from_log(&log_weights)?;
+            log_likelihoods.iter().zip(prior.as_slice()).map(|(l, w)| l + w.ln()).collect();
         let weighed = || draws.iter().zip(weights.as_slice()).filter(|(_, weight)| **weight > 0.0);
         let mean_log_likelihood = weighed().map(|((_, l), w)| l * w).sum();
         Ok(Self {
             log_evidence: wayfix_gaussian_core::log_sum_exp(&log_weights),
             members: draws.iter().map(|(member, _)| *member).collect(),
             mean_log_likelihood,
+            tempering,
             n_members: views.n_members(),
             weights,
         })
@@ -62,6 +68,28 @@ impl Weighed {
         }
         probabilities
     }
+}
+
+/// Weights under the largest power of the likelihood, up to 1, that leaves `least` effective particles.
+///
+/// A few particles spread over a field are too coarse for a likelihood as narrow as an image's: the nearest would take all the weight, near
+/// or not. Softened, they move together over some frames; once they are as close as the likelihood is wide, the power is 1.
+fn softened(log_likelihoods: &[f64], prior: &Weights, least: f64) -> Result<(Weights, f64), ColorModelError> {
+    let weights = |power: f64| {
+        let log_weight = |(l, w): (&f64, &f64)| if *l == f64::NEG_INFINITY { *l } else { power * l + w.ln() };
+        Weights::from_log(&log_likelihoods.iter().zip(prior.as_slice()).map(log_weight).collect::<Vec<_>>())
+    };
+    let full = weights(1.0)?;
+    if full.effective_sample_size() >= least {
+        return Ok((full, 1.0));
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..12 {
+        let middle = 0.5 * (low + high);
+        let enough = weights(middle)?.effective_sample_size() >= least;
+        *(if enough { &mut low } else { &mut high }) = middle;
+    }
+    Ok((weights(low)?, low))
 }
 
 /// The member drawn, and the log-likelihood that all members sum to.
