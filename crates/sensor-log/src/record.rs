@@ -102,6 +102,13 @@ pub struct CameraInfo {
     pub cy: f64,
 }
 
+impl CameraInfo {
+    /// Whether it has pixels and both focal lengths are positive.
+    pub(crate) fn sees(&self) -> bool {
+        self.width > 0 && self.height > 0 && self.fx > 0.0 && self.fy > 0.0
+    }
+}
+
 /// One range and bearing to one thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sighting {

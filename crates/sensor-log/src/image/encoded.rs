@@ -21,7 +21,7 @@ pub struct EncodedImage {
 }
 
 /// How an image is compressed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum ImageFormat {
     /// JPEG, with loss.

@@ -1,3 +1,7 @@
+use image::ExtendedColorType;
+
+use super::ImageFormat;
+
 /// Why an image could not be encoded or decoded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -24,7 +28,31 @@ pub enum ImageError {
         /// Rows.
         height: u32,
     },
-    /// The codec refuses: damaged, of another format than it says, or larger than allowed.
-    #[error("{0}")]
+    /// The header claims more pixels than are decoded.
+    #[error("{width} x {height} pixels are more than the {max} that are decoded")]
+    TooLarge {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Pixels that are decoded at most.
+        max: u64,
+    },
+    /// The file breaks off before its end mark.
+    #[error("the image breaks off after {n_bytes} bytes")]
+    CutShort {
+        /// Bytes that are there.
+        n_bytes: usize,
+    },
+    /// An image that holds no labels.
+    #[error("labels are 8-bit grey PNG, this is {} with pixels {color:?}", format.name())]
+    NotLabels {
+        /// How it is compressed.
+        format: ImageFormat,
+        /// What its pixels are.
+        color: ExtendedColorType,
+    },
+    /// The codec refuses: damaged, or of another format than it says.
+    #[error("{}", .0.to_string().trim_end())]
     Codec(image::ImageError),
 }

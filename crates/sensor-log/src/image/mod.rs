@@ -4,6 +4,9 @@ mod decode;
 mod encode;
 mod encoded;
 mod error;
+mod summary;
+mod whole;
 
 pub use encoded::{DecodedImage, EncodedImage, ImageFormat};
 pub use error::ImageError;
+pub use summary::ImageSummary;

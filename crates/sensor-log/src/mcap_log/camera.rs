@@ -2,12 +2,35 @@
 
 use foxglove::bytes::Bytes;
 use foxglove::messages::{self, CameraCalibration, CompressedImage, FrameTransform, Timestamp};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 use wayfix_estimation_traits::Pose3;
 
 use super::decode::{Fault, decode, finite, inconsistent, stamp};
 use super::topics;
-use crate::{CameraInfo, Data, EncodedImage, ImageFormat, Record, Stamp};
+use crate::format::shortened;
+use crate::planar::NORM_TOLERANCE;
+use crate::{CameraInfo, Data, EncodedImage, ImageFormat, LogError, Record, Stamp};
+
+/// How far the norm of a unit quaternion in doubles strays from one after a few products.
+const ROUNDING: f64 = 1e-12;
+
+/// What would not come back is not written.
+pub(super) fn check(record: &Record) -> Result<(), LogError> {
+    let stamp = record.stamp;
+    match &record.data {
+        Data::CameraInfo(info) if !info.sees() => {
+            let CameraInfo { width, height, fx, fy, .. } = *info;
+            Err(LogError::BadCamera { width, height, fx, fy, stamp })
+        }
+        Data::Image(image) | Data::TrueLabels(image)
+            if ImageFormat::of_bytes(&image.bytes) != Some(image.format) =>
+        {
+            let (what, n_bytes) = (record.data.kind(), image.bytes.len());
+            Err(LogError::NotAnImage { what, format: image.format, n_bytes, stamp })
+        }
+        _ => Ok(()),
+    }
+}
 
 pub(super) fn encode_info(timestamp: Timestamp, info: &CameraInfo) -> CameraCalibration {
     let CameraInfo { width, height, fx, fy, cx, cy } = *info;
@@ -57,11 +80,22 @@ pub(super) fn encode_image(timestamp: Timestamp, image: &EncodedImage) -> Compre
 pub(super) fn info(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
     let message: CameraCalibration = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;
-    let &[fx, _, cx, _, fy, cy, ..] = message.k.as_slice() else {
+    let &[fx, skew, cx, _, fy, cy, _, _, _] = message.k.as_slice() else {
         return Err(inconsistent(&format!("camera matrix K of {} numbers, not 9", message.k.len())));
     };
     finite([fx, fy, cx, cy])?;
     let info = CameraInfo { width: message.width, height: message.height, fx, fy, cx, cy };
+    if !info.sees() {
+        let CameraInfo { width, height, .. } = info;
+        return Err(inconsistent(&format!("{width} x {height} pixels, focal lengths {fx} and {fy}")));
+    }
+    // Points would be taken for seen where they are not.
+    if skew != 0.0 || message.d.iter().any(|coefficient| *coefficient != 0.0) {
+        let (model, d) = (shortened(&message.distortion_model), &message.d[..message.d.len().min(8)]);
+        let reason =
+            format!("not a pinhole camera: skew {skew}, distortion {model:?} {d:?}; rectify the images");
+        return Err(inconsistent(&reason));
+    }
     Ok(vec![Record { stamp, data: Data::CameraInfo(info) }])
 }
 
@@ -73,11 +107,14 @@ pub(super) fn mount(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault>
     finite([t.x, t.y, t.z])?;
     finite(quaternion.coords.iter().copied())?;
     let norm = quaternion.norm();
-    // A quaternion of norm one stays as it is to the bit; one that is not there means no rotation to most writers.
-    let rotation = match norm {
-        0.0 => UnitQuaternion::identity(),
-        _ if (norm - 1.0).abs() < 1e-12 => UnitQuaternion::new_unchecked(quaternion),
-        _ => UnitQuaternion::new_normalize(quaternion),
+    let rotation = if quaternion.coords == Vector4::zeros() {
+        UnitQuaternion::identity() // one that is not there means no rotation to most writers
+    } else if (norm - 1.0).abs() > NORM_TOLERANCE {
+        return Err(inconsistent(&format!("quaternion of norm {norm}")));
+    } else if (norm - 1.0).abs() > ROUNDING {
+        UnitQuaternion::new_normalize(quaternion)
+    } else {
+        UnitQuaternion::new_unchecked(quaternion) // it stays what it was, to the bit
     };
     let pose = Pose3 { translation: Vector3::new(t.x, t.y, t.z), rotation };
     Ok(vec![Record { stamp, data: Data::CameraMount(pose) }])
@@ -94,7 +131,7 @@ pub(super) fn image(
     let Some(format) = ImageFormat::of_bytes(&message.data) else {
         return Err(inconsistent(&format!(
             "image called {:?} is neither JPEG nor PNG ({} bytes)",
-            message.format,
+            shortened(&message.format),
             message.data.len()
         )));
     };

@@ -25,6 +25,7 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
         Route::EstimatedPose => pose_record(bytes, log_time, Data::EstimatedPose),
         Route::CameraInfo => camera::info(bytes, log_time),
         Route::CameraMount => camera::mount(bytes, log_time),
+        Route::CameraOptical => Ok(Vec::new()),
         Route::Image => camera::image(bytes, log_time, Data::Image),
         Route::TrueLabels => camera::image(bytes, log_time, Data::TrueLabels),
         Route::Sightings => {

@@ -11,6 +11,8 @@ pub(super) enum Route {
     EstimatedPose,
     CameraInfo,
     CameraMount,
+    /// Known, and nothing to read: the turn is always the same.
+    CameraOptical,
     Image,
     TrueLabels,
 }
@@ -27,6 +29,7 @@ impl Route {
             topics::ESTIMATED_POSE => (Self::EstimatedPose, "foxglove.PoseInFrame"),
             topics::CAMERA_INFO => (Self::CameraInfo, "foxglove.CameraCalibration"),
             topics::CAMERA_MOUNT => (Self::CameraMount, "foxglove.FrameTransform"),
+            topics::CAMERA_OPTICAL => (Self::CameraOptical, "foxglove.FrameTransform"),
             topics::IMAGE => (Self::Image, "foxglove.CompressedImage"),
             topics::TRUE_LABELS => (Self::TrueLabels, "foxglove.CompressedImage"),
             _ => return None,

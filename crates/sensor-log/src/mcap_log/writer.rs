@@ -94,10 +94,12 @@ impl<W: Write + Seek> McapWriter<W> {
     /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).
     ///
     /// # Errors
-    /// When a number is not finite, the stamp is beyond the year 2106, or the output fails.
+    /// When a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says, the stamp
+    /// is beyond the year 2106, or the output fails.
     pub fn record(&mut self, record: &Record) -> Result<(), LogError> {
         let stamp = record.stamp;
         record.data.check_finite().map_err(|what| LogError::NotFinite { what, stamp })?;
+        camera::check(record)?;
         if let Data::TrueLandmark(landmark) = record.data {
             if stamp != self.landmarks_stamp {
                 self.flush_landmarks()?;
