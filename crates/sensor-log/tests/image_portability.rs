@@ -1,8 +1,9 @@
-//! Decoded pixels do not depend on the machine.
+//! Decoded pixels do not depend on the processor's vector instructions.
 //!
 //! The JPEG decoder (zune-jpeg 0.5.15) picks its code for AVX2, Neon or neither when it runs. The digests below are what it gives when it is built
 //! with neither (`default-features = false, features = ["std"]`), so this test fails on a machine where vector instructions give other bits.
-//! Of 26 733 files with one flipped bit each, made from the same images, AVX2 and plain code also agreed on all.
+//! Measured once beside it: of 26 733 copies with one flipped bit, outside the bytes 151 to 169 where most have their size, 1754 were errors
+//! in both builds and all others gave the same bits with AVX2 as without.
 
 use std::fs;
 
