@@ -17,8 +17,8 @@ impl Fitness {
         self.averages = Some((slow, fast));
         let fell = if slow > 0.0 { (1.0 - fast / slow).max(0.0) } else { 1.0 };
         let is_low = if params.lost_fit > 0.0 { 2.0 - 2.0 * fast / params.lost_fit } else { 0.0 };
-        // A fit varies by a few hundredths from frame to frame.
-        self.suspicion = if fell < 0.1 { 0.0 } else { fell }.max(is_low.clamp(0.0, 1.0));
+        // A fit varies by a third from view to view, and newcomers cost a softened filter its place.
+        self.suspicion = if fell < 0.4 { 0.0 } else { fell }.max(is_low.clamp(0.0, 1.0));
     }
 
     /// How far the short-term average fell below the long-term one, 0 to 1.

@@ -39,7 +39,8 @@ pub struct LocalizerParams {
     pub min_injected: f64,
     /// Fit below which a robot is lost: it counts as fully suspicious at half of it.
     pub lost_fit: f64,
-    /// Largest share of particles injected in a frame.
+    /// Largest share of particles injected in a frame. 0 by default: on simulated drives uniform newcomers found false optima more often than
+    /// the robot.
     pub max_injected: f64,
 }
 
@@ -61,7 +62,7 @@ impl Default for LocalizerParams {
             fast_rate: 0.3,
             min_injected: 0.0,
             lost_fit: 0.3,
-            max_injected: 0.3,
+            max_injected: 0.0,
         }
     }
 }

@@ -23,6 +23,10 @@ pub(crate) struct Renewal<'a> {
     pub(crate) estimate: &'a Pose2<f64>,
 }
 
+/// What all newcomers of a frame weigh together: little, so that they take over only where they explain frames much better. At equal weight
+/// a softened likelihood would let the mass of them win by number.
+const NEWCOMERS_WEIGHT: f64 = 0.01;
+
 /// The next generation.
 pub(crate) struct Renewed {
     pub(crate) particles: Vec<ColorParticle>,
@@ -54,7 +58,10 @@ impl Renewal<'_> {
             let (body, error) = (self.newcomer(rng), self.params.camera.sample(rng));
             renewed.push(RaoBlackwell::from_shared(CameraLocation { body, error }, light));
         }
-        let weights = Weights::from_linear(vec![1.0; renewed.len()])?;
+        let each = NEWCOMERS_WEIGHT / n_injected.max(1) as f64;
+        let mut weights = vec![(1.0 - NEWCOMERS_WEIGHT) / ancestors.len() as f64; ancestors.len()];
+        weights.resize(renewed.len(), each);
+        let weights = Weights::from_linear(weights)?;
         Ok(Renewed { particles: renewed, weights, n_injected })
     }
 
