@@ -1,3 +1,4 @@
+use wayfix_gaussian_core::GaussianError;
 use wayfix_kalman::KalmanError;
 use wayfix_particle::ParticleError;
 
@@ -28,12 +29,6 @@ pub enum ColorModelError {
         what: &'static str,
         /// The number.
         value: f64,
-    },
-    /// A covariance that is none.
-    #[error("{what} is not positive definite")]
-    NotPositiveDefinite {
-        /// Whose covariance.
-        what: &'static str,
     },
     /// A colour's density with a mean that is not finite or a covariance that is not positive definite.
     #[error("the density of a colour has no peak: mean not finite or covariance not positive definite")]
@@ -80,6 +75,9 @@ pub enum ColorModelError {
         /// How many there are.
         n_members: usize,
     },
+    /// A mean or covariance is none.
+    #[error(transparent)]
+    Gaussian(#[from] GaussianError),
     /// A filter refuses.
     #[error(transparent)]
     Kalman(#[from] KalmanError),

@@ -1,6 +1,9 @@
 use nalgebra::Vector3;
 use wayfix_color_map::ColorId;
 
+use super::filter::check_value;
+use crate::ColorModelError;
+
 /// What one image says of the light: the mean YUV of every map colour in it, $`\bar v`$ of [Schulz & Fox 2004, Eq. 3]; colours that it does not
 /// show are missing.
 ///
@@ -30,12 +33,12 @@ impl ColorMeans {
 
     /// The mean of a colour, if it was seen.
     pub fn mean(&self, color: ColorId) -> Option<Vector3<f64>> {
-        self.colors.get(usize::from(color.0)).and_then(|(mean, _)| *mean)
+        self.colors.get(color.index()).and_then(|(mean, _)| *mean)
     }
 
     /// How many pixels of a colour were seen.
     pub fn n_pixels(&self, color: ColorId) -> u64 {
-        self.colors.get(usize::from(color.0)).map_or(0, |(_, n)| *n)
+        self.colors.get(color.index()).map_or(0, |(_, n)| *n)
     }
 
     /// The colours that were seen, with their means.
@@ -48,9 +51,18 @@ impl ColorMeans {
     /// The same as if `color` had not been seen.
     pub fn without(&self, color: ColorId) -> Self {
         let mut without = self.clone();
-        if let Some(seen) = without.colors.get_mut(usize::from(color.0)) {
+        if let Some(seen) = without.colors.get_mut(color.index()) {
             *seen = (None, 0);
         }
         without
+    }
+
+    pub(super) fn check(&self, n_colors: usize) -> Result<(), ColorModelError> {
+        let (expected, got) = (n_colors, self.n_colors());
+        if expected != got {
+            return Err(ColorModelError::Dimension { what: "colours of an image", expected, got });
+        }
+        let mut means = self.colors.iter().filter_map(|(mean, _)| *mean);
+        means.try_for_each(|mean| mean.iter().try_for_each(|value| check_value("mean of a colour", *value)))
     }
 }

@@ -6,10 +6,12 @@ mod drift;
 mod filter;
 mod means;
 mod params;
+mod tracker;
 mod update;
 
-pub use bank::LightingBank;
+pub use bank::{Choice, LightingBank};
 pub use density::ColorDensity;
 pub use filter::LightingFilter;
 pub use means::ColorMeans;
 pub use params::{Drift, LightingParams, Unseen};
+pub use tracker::{Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker};

@@ -26,7 +26,7 @@ pub struct LightingParams {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Drift {
     /// $`Σ ← Σ + R\,Δt`$ with a diagonal $`R`$ (Y, U, V), the same for all colours, per second. [Schulz & Fox 2004, Eq. 6] Unseen colours
-    /// become arbitrarily uncertain.
+    /// become ever more uncertain, beyond what any venue looks like; correlations fade.
     RandomWalk(Vector3<f64>),
     /// An Ornstein-Uhlenbeck process back to the prior with this time constant, seconds: $`θ ← μ_0 + a (θ - μ_0)`$,
     /// $`Σ ← a^2 Σ + (1 - a^2) Σ_0`$, $`a = e^{-Δt/τ}`$. Colours drift together as they vary together from venue to venue, and
@@ -59,22 +59,25 @@ impl Default for LightingParams {
 }
 
 impl LightingParams {
+    /// The largest variance that number `i` of the state may have: a billion times that of an image's mean. There a look leaves a billionth of
+    /// the covariance, which is seven digits above rounding.
+    pub(super) fn widest(&self, i: usize) -> f64 {
+        1e9 * self.mean_noise[i % 3]
+    }
+
     pub(super) fn check(&self) -> Result<(), ColorModelError> {
-        let positive = |what, value: f64| {
-            if value > 0.0 && value < f64::MAX {
+        let within = |what, value: f64, least: f64| {
+            if value >= least && value <= 1e12 {
                 Ok(())
             } else {
                 Err(ColorModelError::OutOfRange { what, value })
             }
         };
-        self.pixel_noise.iter().try_for_each(|v| positive("variance of a pixel", *v))?;
-        self.mean_noise.iter().try_for_each(|v| positive("variance of an image's mean", *v))?;
+        self.pixel_noise.iter().try_for_each(|v| within("variance of a pixel", *v, 1e-12))?;
+        self.mean_noise.iter().try_for_each(|v| within("variance of an image's mean", *v, 1e-12))?;
         match self.drift {
-            Drift::TowardsPrior(seconds) => positive("time constant of the drift (s)", seconds),
-            Drift::RandomWalk(rate) => match rate.iter().find(|rate| !(**rate >= 0.0 && rate.is_finite())) {
-                Some(&value) => Err(ColorModelError::OutOfRange { what: "drift rate", value }),
-                None => Ok(()),
-            },
+            Drift::TowardsPrior(seconds) => within("time constant of the drift (s)", seconds, 1e-12),
+            Drift::RandomWalk(rate) => rate.iter().try_for_each(|v| within("drift rate", *v, 0.0)),
         }
     }
 }
