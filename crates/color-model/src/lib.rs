@@ -20,8 +20,8 @@ pub use lighting::{
 };
 pub use likelihood::{PixelLight, PixelParams, PixelView, SpanView, SumDensity, ViewLikelihood, gather};
 pub use localizer::{
-    CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome, LocalizerParams,
-    OdometryNoise, OdometryStep, PoseEstimate, Start,
+    AcquisitionParams, CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome,
+    LocalizerParams, OdometryNoise, OdometryStep, PoseEstimate, Start,
 };
 pub use prior::{
     KMeans, LightingPriors, PixelSpread, PriorError, PriorParams, TrainingVenue, k_means, learn_priors,

@@ -70,6 +70,39 @@ impl LightingBank {
         Ok(Self { chain: Arc::new(chain), predicted: settled.clone(), settled, active: None })
     }
 
+    /// What is known of the light when it is not known which of these weighted banks is right: each member's mixture, matched in mean and
+    /// covariance; the active one is the one that is active in most of the weight.
+    ///
+    /// # Errors
+    /// When there is no weight, or the banks differ in their members.
+    pub fn merged<'a>(
+        weighted: impl Iterator<Item = (f64, &'a Self)> + Clone,
+    ) -> Result<Self, ColorModelError> {
+        let refused = ColorModelError::NotFinite { what: "weight of lighting banks" };
+        let mut merged = weighted.clone().next().ok_or(refused.clone())?.1.clone();
+        let n_members = merged.n_members();
+        if let Some((_, other)) = weighted.clone().find(|(_, bank)| bank.n_members() != n_members) {
+            let got = other.n_members();
+            return Err(ColorModelError::Dimension {
+                what: "members of lighting banks",
+                expected: n_members,
+                got,
+            });
+        }
+        for member in 0..n_members {
+            let filters = weighted.clone().map(|(weight, bank)| (weight, &*bank.settled[member]));
+            merged.settled[member] = Arc::new(LightingFilter::merged(filters).ok_or(refused.clone())?);
+        }
+        merged.predicted = merged.settled.clone();
+        let active_weight = |member: usize| -> f64 {
+            weighted.clone().filter(|(_, bank)| bank.active == Some(member)).map(|(weight, _)| weight).sum()
+        };
+        merged.active = (0..n_members)
+            .filter(|member| active_weight(*member) > 0.0)
+            .max_by(|a, b| active_weight(*a).total_cmp(&active_weight(*b)));
+        Ok(merged)
+    }
+
     /// How many filters.
     pub fn n_members(&self) -> usize {
         self.settled.len()

@@ -68,6 +68,30 @@ impl LightingFilter {
         &self.prior
     }
 
+    /// What is known when it is not known which of these filters is right: the mixture's mean and covariance.
+    ///
+    /// `None` without any weight, or for filters of different dimensions.
+    pub(super) fn merged<'a>(weighted: impl Iterator<Item = (f64, &'a Self)> + Clone) -> Option<Self> {
+        let total: f64 = weighted.clone().map(|(weight, _)| weight).sum();
+        let mut merged = weighted.clone().next()?.1.clone();
+        let n = merged.mean.len();
+        if weighted.clone().any(|(_, filter)| filter.mean.len() != n) || !(total > 0.0 && total.is_finite()) {
+            return None;
+        }
+        let (origin, mut shift, mut products) =
+            (merged.mean.clone(), DVector::zeros(n), DMatrix::zeros(n, n));
+        for (weight, filter) in weighted {
+            let from_origin = &filter.mean - &origin;
+            shift.axpy(weight / total, &from_origin, 1.0);
+            products.ger(weight / total, &from_origin, &from_origin, 1.0);
+            products += &filter.covariance * (weight / total);
+        }
+        products.ger(-1.0, &shift, &shift, 1.0);
+        merged.mean = origin + shift;
+        merged.covariance = products;
+        Some(merged)
+    }
+
     /// How many colours.
     pub fn n_colors(&self) -> usize {
         self.mean.len() / 3

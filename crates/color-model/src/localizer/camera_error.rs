@@ -65,7 +65,7 @@ impl CameraNoise {
         self.mixed(&CameraError::default(), 0.0, rng)
     }
 
-    fn mixed<R: Rng + ?Sized>(&self, error: &CameraError, rho: f64, rng: &mut R) -> CameraError {
+    pub(crate) fn mixed<R: Rng + ?Sized>(&self, error: &CameraError, rho: f64, rng: &mut R) -> CameraError {
         let fresh = (1.0 - rho * rho).sqrt();
         let deviates = Vector4::from_fn(|_, _| fresh * rng.sample::<f64, _>(StandardNormal));
         let sigmas = Vector3::new(self.roll, self.tilt, self.pan);

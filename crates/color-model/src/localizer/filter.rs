@@ -7,13 +7,14 @@ use wayfix_particle::{RaoBlackwell, Weights};
 
 use super::{
     Fix, FrameOutcome, LocalizerParams, OdometryStep, PoseEstimate, Start,
+    acquisition::Search,
     estimate::dominant_cluster,
     fitness::Fitness,
     light::Light,
     palette::Palette,
     particle::{CameraLocation, ColorParticle},
     relight::{Relight, predict_light},
-    renewal::Renewal,
+    renewal::{Renewal, Renewed},
     start::Area,
     weigh::Weighing,
     weighed::Weighed,
@@ -34,6 +35,7 @@ pub struct ColorLocalizer {
     weights: Weights,
     seconds: f64,
     fitness: Fitness,
+    n_updates: usize,
 }
 
 impl ColorLocalizer {
@@ -65,7 +67,9 @@ impl ColorLocalizer {
         let particles: Vec<ColorParticle> = match start {
             Start::Near(about) => {
                 let about = about.sampler();
-                (0..params.max_particles).map(|_| particle(about.sample(rng), rng)).collect()
+                (0..params.max_particles.max(params.acquisition.n_particles))
+                    .map(|_| particle(about.sample(rng), rng))
+                    .collect()
             }
             Start::Anywhere => {
                 (0..params.max_particles_lost).map(|_| particle(area.sample(rng), rng)).collect()
@@ -73,7 +77,18 @@ impl ColorLocalizer {
         };
         let weights = Weights::from_linear(vec![1.0; particles.len()])?;
         let fitness = Fitness::default();
-        Ok(Self { map, camera, area, background: None, params, particles, weights, seconds: 0.0, fitness })
+        Ok(Self {
+            map,
+            camera,
+            area,
+            background: None,
+            params,
+            particles,
+            weights,
+            seconds: 0.0,
+            fitness,
+            n_updates: 0,
+        })
     }
 
     /// The same with a background learned from images; without, it is made of a uniform one and of the colours of each frame.
@@ -138,8 +153,20 @@ impl ColorLocalizer {
         let frame = &look.frame;
         let weighing =
             Weighing { map: &self.map, camera: self.camera, frame, mount, pixels: &self.params.pixels };
+        let is_acquiring = self.n_updates < self.params.acquisition.n_frames;
+        let mut prior = self.weights.clone();
+        if is_acquiring {
+            let search = Search {
+                params: &self.params.acquisition,
+                weighing: &weighing,
+                camera: &self.params.camera,
+                area: &self.area,
+                is_first: self.n_updates == 0,
+            };
+            (particles, prior) = search.run(particles, &prior, rng)?;
+        }
         let views = weighing.views(&particles);
-        let weighed = Weighed::new(&particles, &self.weights, &views, self.params.least_effective, rng)?;
+        let weighed = Weighed::new(&particles, &prior, &views, self.params.least_effective, rng)?;
 
         let estimate = dominant_cluster(&weighed.poses(&particles)).ok_or(ColorModelError::NoPose)?;
         let temper = self.params.pixels.independent_pixels / frame.n_pixels() as f64;
@@ -152,6 +179,7 @@ impl ColorLocalizer {
             area: &self.area,
             suspicion: fitness.suspicion(),
             estimate: estimate.pose.mean(),
+            least: if is_acquiring { self.params.acquisition.n_particles } else { self.params.min_particles },
         };
         let relight = Relight {
             views: &views,
@@ -160,10 +188,13 @@ impl ColorLocalizer {
             withheld: self.params.withheld.map(|color| ColorId(color as u8)),
             pixels: &self.params.pixels,
         };
-        let renewed = renewal.renew(&particles, &weighed.weights, &relight, rng)?;
+        let mut renewed = renewal.renew(&particles, &weighed.weights, &relight, rng)?;
+        if is_acquiring {
+            self.share_light(&mut renewed)?;
+        }
 
         let outcome = FrameOutcome {
-            fix: self.fix(&estimate),
+            fix: self.fix(&estimate, &fitness),
             estimate,
             tempering: weighed.tempering,
             effective_particles: weighed.weights.effective_sample_size(),
@@ -176,7 +207,17 @@ impl ColorLocalizer {
         };
         (self.particles, self.weights) = (renewed.particles, renewed.weights);
         (self.fitness, self.seconds) = (fitness, 0.0);
+        self.n_updates += 1;
         Ok(outcome)
+    }
+
+    /// Gives all particles the mixture of their lights.
+    fn share_light(&self, renewed: &mut Renewed) -> Result<(), ColorModelError> {
+        let banks = renewed.particles.iter().map(|particle| &particle.conditional().bank);
+        let bank = LightingBank::merged(renewed.weights.as_slice().iter().copied().zip(banks))?;
+        let light = Arc::new(Light::new(bank, &self.params.pixels)?);
+        renewed.particles.iter_mut().for_each(|particle| particle.set_conditional(Arc::clone(&light)));
+        Ok(())
     }
 
     fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {
@@ -192,8 +233,14 @@ impl ColorLocalizer {
         Ok(())
     }
 
-    fn fix(&self, estimate: &PoseEstimate) -> Fix {
-        let narrow = estimate.position_sigma() < 0.3 && estimate.heading_sigma() < 0.3;
-        if estimate.share > 0.5 && narrow { Fix::Tracking } else { Fix::Ambiguous }
+    fn fix(&self, estimate: &PoseEstimate, fitness: &Fitness) -> Fix {
+        let is_narrow = estimate.position_sigma() < 0.3 && estimate.heading_sigma() < 0.3;
+        if fitness.recent() < self.params.lost_fit {
+            Fix::Lost
+        } else if estimate.share > 0.5 && is_narrow && self.n_updates >= self.params.acquisition.n_frames {
+            Fix::Tracking
+        } else {
+            Fix::Ambiguous
+        }
     }
 }

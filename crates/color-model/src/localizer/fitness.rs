@@ -21,6 +21,11 @@ impl Fitness {
         self.suspicion = if fell < 0.4 { 0.0 } else { fell }.max(is_low.clamp(0.0, 1.0));
     }
 
+    /// The short-term average of the fit; 1 before the first frame.
+    pub(crate) fn recent(&self) -> f64 {
+        self.averages.map_or(1.0, |(_, fast)| fast)
+    }
+
     /// How far the short-term average fell below the long-term one, 0 to 1.
     pub(crate) fn suspicion(&self) -> f64 {
         self.suspicion

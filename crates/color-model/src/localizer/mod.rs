@@ -1,5 +1,6 @@
 //! Where the robot is and what the light is, at once: the Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV].
 
+mod acquisition;
 mod camera_error;
 mod estimate;
 mod filter;
@@ -17,6 +18,7 @@ mod surroundings;
 mod weigh;
 mod weighed;
 
+pub use acquisition::AcquisitionParams;
 pub use camera_error::{CameraError, CameraNoise};
 pub use estimate::PoseEstimate;
 pub use filter::ColorLocalizer;

@@ -1,4 +1,4 @@
-use super::{CameraNoise, OdometryNoise};
+use super::{AcquisitionParams, CameraNoise, OdometryNoise};
 use crate::{ColorModelError, PixelParams};
 
 /// What [`ColorLocalizer`](crate::ColorLocalizer) is tuned by.
@@ -15,6 +15,8 @@ pub struct LocalizerParams {
     pub odometry: OdometryNoise,
     /// How far the camera is from where the joints say.
     pub camera: CameraNoise,
+    /// How the robot is looked for at first.
+    pub acquisition: AcquisitionParams,
     /// Fewest particles.
     pub min_particles: usize,
     /// Most particles while the robot knows where it is.
@@ -50,13 +52,14 @@ impl Default for LocalizerParams {
             pixels: PixelParams::default(),
             odometry: OdometryNoise::default(),
             camera: CameraNoise::default(),
+            acquisition: AcquisitionParams::default(),
             min_particles: 500,
             max_particles: 1000,
             max_particles_lost: 5000,
             resample_below: 0.5,
             min_pixels: 30,
             withheld: None,
-            least_effective: 0.1,
+            least_effective: 0.2,
             min_view: 0.02,
             slow_rate: 0.02,
             fast_rate: 0.3,
@@ -70,7 +73,9 @@ impl Default for LocalizerParams {
 impl LocalizerParams {
     pub(crate) fn check(&self) -> Result<(), ColorModelError> {
         self.pixels.check()?;
-        for (what, value) in self.odometry.values().into_iter().chain(self.camera.values()) {
+        for (what, value) in
+            self.odometry.values().into_iter().chain(self.camera.values()).chain(self.acquisition.values())
+        {
             check(what, value, 0.0, f64::MAX)?;
         }
         check("fewest particles", self.min_particles as f64, 1.0, f64::MAX)?;

@@ -21,6 +21,8 @@ pub(crate) struct Renewal<'a> {
     pub(crate) suspicion: f64,
     /// Where the robot seems to be.
     pub(crate) estimate: &'a Pose2<f64>,
+    /// Fewest particles.
+    pub(crate) least: usize,
 }
 
 /// What all newcomers of a frame weigh together: little, so that they take over only where they explain frames much better. At equal weight
@@ -87,7 +89,7 @@ impl Renewal<'_> {
             if self.suspicion > 0.0 { self.params.max_particles_lost } else { self.params.max_particles };
         let drawn = Systematic.ancestors(weights, most, rng)?;
         let cells: BTreeSet<_> = drawn.iter().map(|&at| cell(&particles[at].sampled.body)).collect();
-        Ok(kld_bound(cells.len()).clamp(self.params.min_particles, most))
+        Ok(kld_bound(cells.len()).clamp(self.least, most.max(self.least)))
     }
 }
 

@@ -4,6 +4,7 @@
 //! [`experiments`] are those of the paper, for `wayfix regress color`.
 
 mod estimates;
+pub mod experiments;
 mod figures;
 mod labels;
 mod map;

@@ -62,6 +62,10 @@ pub struct FrameResult {
     pub effective_particles: f64,
     /// Number of particles.
     pub n_particles: usize,
+    /// Share of what the image could be explained by at best that the estimate explains.
+    pub fit: f64,
+    /// Log of the mean likelihood ratio to the background, nats a pixel.
+    pub log_evidence_per_pixel: f64,
     /// Probability of each light of the bank.
     pub light_probabilities: Vec<f64>,
     /// Classified pixels, where the log has true labels.
@@ -177,6 +181,8 @@ impl ColorSystem {
             odometry: self.odometry,
             effective_particles: outcome.effective_particles,
             n_particles: outcome.n_particles,
+            fit: outcome.fit,
+            log_evidence_per_pixel: outcome.log_evidence_per_pixel,
             light_probabilities: outcome.light_probabilities,
             labelled,
             step,

@@ -1,5 +1,6 @@
 //! The suites: how a planned run of each goes through its system.
 
+mod color;
 mod slam;
 
 use anyhow::{Context, Result};
@@ -10,7 +11,7 @@ use crate::report::Run;
 /// Does one run.
 pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
 
-const SUITES: [(&str, Runner); 1] = [("slam", slam::run)];
+const SUITES: [(&str, Runner); 2] = [("color", color::run), ("slam", slam::run)];
 
 /// All suites, in the order of the report.
 pub fn names() -> Vec<&'static str> {

@@ -1,0 +1,51 @@
+use std::sync::Arc;
+
+use anyhow::Result;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use rayon::prelude::*;
+use wayfix_color_map::ColorMap;
+use wayfix_color_model::LightingBank;
+use wayfix_scene_sim::league::{LeagueParams, Lighting};
+use wayfix_scene_sim::random::Streams;
+
+use crate::{
+    color::{ColorSystemParams, run, summarize},
+    evaluate::MeanInterval,
+    report::{Metric, Run},
+};
+
+/// The drive of the stored logs in halls that were not picked: means over halls with 95 % intervals.
+///
+/// # Errors
+/// When a log cannot be simulated or no image used.
+pub fn other_halls(
+    seeds: impl IntoIterator<Item = u64>,
+    lighting: Lighting,
+    map: &Arc<ColorMap>,
+    bank: &LightingBank,
+    params: &ColorSystemParams,
+) -> Result<Run> {
+    let seeds: Vec<u64> = seeds.into_iter().collect();
+    let runs: Vec<Run> = seeds
+        .par_iter()
+        .map(|&seed| {
+            let drive = LeagueParams { lights: vec![(0, lighting)], ..LeagueParams::default() };
+            let records = drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?;
+            let mut run = run(&records, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
+            Ok(summarize(&mut run))
+        })
+        .collect::<Result<_>>()?;
+    let value = |run: &Run, name: &str| run.metrics.iter().find(|m| m.name == name).map(|m| m.value);
+    let mut metrics = vec![Metric::new("n_halls", seeds.len() as f64, "")];
+    let names = ["classification_rate", "position_mean_m", "heading_mean_deg", "odometry_position_mean_m"];
+    for (name, unit) in names.into_iter().zip(["", "m", "°", "m"]) {
+        let values: Vec<f64> = runs.iter().filter_map(|run| value(run, name)).collect();
+        if let Some(mean) = MeanInterval::of(&values) {
+            metrics.push(Metric::new(name, mean.mean, unit));
+            metrics.push(Metric::new(&format!("{name}_ci95"), mean.half_width, unit));
+        }
+    }
+    let worst = runs.iter().filter_map(|run| value(run, "position_mean_m")).fold(0.0, f64::max);
+    metrics.push(Metric::new("worst_hall_position_mean_m", worst, "m"));
+    Ok(Run { metrics, ..Run::default() })
+}

@@ -1,0 +1,149 @@
+use std::{ops::Range, path::PathBuf, sync::Arc};
+
+use anyhow::Result;
+use serde::Deserialize;
+use wayfix_color_map::ColorMap;
+use wayfix_scene_sim::{Scenario, ScenarioParams, league::Lighting};
+use wayfix_sensor_log::{OpenOptions, Record};
+
+use super::super::Job;
+use crate::{
+    color::{self, ColorEstimateLog, ColorSystemParams, experiments, priors},
+    report::Run,
+    system::System,
+};
+
+/// What the plan says of a run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    /// What is done.
+    #[serde(default)]
+    experiment: Experiment,
+    /// The map, relative to the folder of the plan.
+    #[serde(default = "field")]
+    map: PathBuf,
+    /// A file of parameters, relative to the folder of the plan.
+    params: Option<PathBuf>,
+    /// How many halls, for experiments over many.
+    #[serde(default = "hundred")]
+    n_seeds: u64,
+    /// The same with `--quick`.
+    #[serde(default = "ten")]
+    n_seeds_quick: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Experiment {
+    /// A log through the localizer.
+    #[default]
+    Localize,
+    /// Each colour withheld in turn, joint prior against independent.
+    Withheld,
+    /// Jump Markov, IMM, GPB2 and a single filter while lights are switched.
+    Switching,
+    /// From anywhere, in many halls.
+    GlobalStart,
+    /// Carried away, in many halls.
+    Kidnapped,
+    /// The drive of the log in halls that were not picked.
+    OtherHallsDark,
+    /// The same in bright light.
+    OtherHallsBright,
+    /// Frame time against the number of particles.
+    FrameTime,
+    /// Recorded images of the middle-size league.
+    Venues,
+}
+
+fn field() -> PathBuf {
+    "four-legged-field.toml".into()
+}
+
+fn hundred() -> u64 {
+    100
+}
+
+fn ten() -> u64 {
+    10
+}
+
+/// An experiment with the localizer.
+pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+    let settings: Settings = job.planned.settings()?;
+    if let Experiment::Venues = settings.experiment {
+        return color::venues::run(job.log()?);
+    }
+    let map = Arc::new(color::read_map(&job.options.fixtures.join(&settings.map))?);
+    let params: ColorSystemParams = match &settings.params {
+        Some(file) => toml::from_str(&job.read(file)?)?,
+        None => ColorSystemParams::default(),
+    };
+    let (learned, seed) = (priors::built_in()?, job.options.seed);
+    let bank = priors::bank(&learned, &params)?;
+    let seeds = settings.seeds(job);
+    match settings.experiment {
+        Experiment::Localize => localize(job, map, &params),
+        Experiment::Withheld => experiments::withheld(&records(job)?, &map, &learned, &params, seed),
+        Experiment::Switching => {
+            let single = priors::bank(&priors::learn_from_simulation(1)?, &params)?;
+            experiments::switching(&records(job)?, &switches(job), &map, &bank, &single, &params, seed)
+        }
+        Experiment::GlobalStart => Ok(experiments::global_start(seeds, &map, &bank, &params)?.report()?),
+        Experiment::Kidnapped => Ok(experiments::kidnapped(seeds, &map, &bank, &params)?.report()?),
+        Experiment::OtherHallsDark => experiments::other_halls(seeds, Lighting::Dark, &map, &bank, &params),
+        Experiment::OtherHallsBright => {
+            experiments::other_halls(seeds, Lighting::Bright, &map, &bank, &params)
+        }
+        Experiment::FrameTime => experiments::frame_time(&records(job)?, &map, &bank, &params, seed),
+        Experiment::Venues => color::venues::run(job.log()?),
+    }
+}
+
+impl Settings {
+    /// Seeds beside those of the stored logs and of the training venues.
+    fn seeds(&self, job: &Job<'_>) -> Range<u64> {
+        const FIRST: u64 = 10_000;
+        let n = if job.options.quick { self.n_seeds_quick } else { self.n_seeds };
+        let first = FIRST + 1000 * job.options.seed;
+        first..first + n
+    }
+}
+
+fn records(job: &Job<'_>) -> Result<Vec<Record>> {
+    Ok(wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all().0)
+}
+
+/// The frames at which the light of a stored log changes.
+fn switches(job: &Job<'_>) -> Vec<usize> {
+    let name = job.planned.log.as_ref().and_then(|log| log.file_stem()).and_then(|stem| stem.to_str());
+    match name.and_then(|name| Scenario::named(name).ok()).map(|scenario| scenario.params) {
+        Some(ScenarioParams::League(drive)) => {
+            drive.lights.iter().map(|(frame, _)| *frame).filter(|frame| *frame > 0).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn localize(job: &Job<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Result<Run> {
+    let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
+    let (name, path) = job.estimates();
+    let mut estimates = ColorEstimateLog::create(&path, log.meta().first_format())?;
+    let (records, read) = log.read_all();
+    let bank = priors::bank(&priors::built_in()?, params)?;
+    let mut remaining = records.iter();
+    let mut run = color::run(&records, map, bank, params, None, job.options.seed, |system| {
+        if let Some(record) = remaining.next() {
+            estimates.observe(record, system);
+        }
+    })?;
+    estimates.finish()?;
+    run.system.events().add("log_problem", read.n_problems());
+    let mut figures = color::pictures(&run)?;
+    figures.push(color::film(&mut run, &records, FILM_FRAMES)?);
+    Ok(Run { log: Some(name), figures, ..color::summarize(&mut run) })
+}
+
+/// Frames of the film strip.
+const FILM_FRAMES: usize = 5;
