@@ -8,11 +8,14 @@
 //! | --- | --- | --- |
 //! | what does this ray hit | [`ColorMap::cast`] | every plane and post of the map |
 //! | which pixels of a view have which colour | [`Projector::spans`] | the map's corners and the image's spans, never its pixels |
-//! | the same, without the pixels near an edge | [`Projector::inner_spans`] | |
-//! | the same, as an image | [`Projector::labels`] | |
+//! | the same, without the pixels near an edge | [`Projector::inner_spans`] | some words of bits a row and colour more |
+//! | the same, as an image | [`Projector::labels`] | the image |
 //!
 //! World: metres, z up, the carpet at z = 0. Camera: x forward along the optical axis, y left, z up (REP 103). Image: column $`u`$ to the
 //! right, row $`v`$ down, pixel (i, j) covers [i, i+1) × [j, j+1) and sees what the ray through its centre sees.
+//!
+//! With the feature `serde`, maps are files (TOML, JSON): `colors = ["green", …]`, any number of `[[polygon]]` with `color` and `vertices`,
+//! and of `[[post]]` with `x`, `y`, `radius` and `bands = [{ color, from, to }, …]`; `tests/field.toml` is one.
 //!
 //! ```
 //! use std::sync::Arc;

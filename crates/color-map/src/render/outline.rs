@@ -114,9 +114,7 @@ impl Outline {
 
     /// Leaves the rows where $`b v + c > 0`$.
     fn bound_rows(&mut self, b: f64, c: f64) {
-        let Some(last) = self.row_centers.len().checked_sub(1) else { return };
-        let split = (-c / b - 0.5).ceil();
-        let split = if split > last as f64 { last + 1 } else { split.max(0.0) as usize };
+        let split = (-c / b - 0.5).ceil().clamp(0.0, self.row_centers.len() as f64) as usize;
         if b > 0.0 {
             self.rows.start = self.rows.start.max(split);
         } else if b < 0.0 {
