@@ -74,6 +74,9 @@ pub struct Bound {
     pub peer_name: Option<String>,
     /// The argument, paper or peer that the bound comes from.
     pub source: String,
+    /// Not enforced yet: the report says so beside the figure.
+    #[serde(default)]
+    pub open: bool,
 }
 
 impl Plan {
@@ -132,8 +135,15 @@ pub(super) fn judge(bounds: &[Bound], metrics: &mut Vec<Metric>) {
             metrics.len() - 1
         });
         let metric = &mut metrics[index];
-        (metric.low, metric.high, metric.paper) = (bound.low, bound.high, bound.paper);
-        metric.bound_source = Some(bound.source.clone());
+        metric.paper = bound.paper;
+        if bound.open {
+            let wanted = [bound.low.map(|low| format!("at least {low}")), bound.high.map(|high| format!("at most {high}"))];
+            let wanted: Vec<String> = wanted.into_iter().flatten().collect();
+            metric.bound_source = Some(format!("open, wanted {}: {}", wanted.join(" and "), bound.source));
+        } else {
+            (metric.low, metric.high) = (bound.low, bound.high);
+            metric.bound_source = Some(bound.source.clone());
+        }
         if let Some(value) = bound.peer {
             *metric = metric.clone().peer(bound.peer_name.clone().unwrap_or_default(), value);
         }
