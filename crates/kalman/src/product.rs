@@ -151,8 +151,8 @@ where
         b.as_slice(),
         Dyn(inner.value()),
         Dyn(columns.value()),
-        column_stride,
         row_stride,
+        column_stride,
     );
     DMatrixViewMut::from_slice(product.as_mut_slice(), rows.value(), columns.value()).gemm(
         T::one(),
@@ -165,7 +165,7 @@ where
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix2, Matrix2x4, Matrix4, SMatrix, convert};
+    use nalgebra::{DMatrix, Matrix2, Matrix2x4, Matrix4, SMatrix, convert};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -203,6 +203,21 @@ mod tests {
                 + gain.norm_squared() * noise.norm();
             assert!((found - expected).norm() < 20.0 * f64::EPSILON * size, "case {case}");
             assert_eq!(found, found.transpose());
+        }
+    }
+
+    #[test]
+    fn packed_products_are_the_plain_ones() {
+        let mut rng = ChaCha8Rng::seed_from_u64(13);
+        for _ in 0..200 {
+            let [rows, inner, columns] = std::array::from_fn(|_| rng.random_range(1..2 * PACKED));
+            let mut uniform = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-1.0..1.0));
+            let (a, b) = (uniform(rows, inner), uniform(inner, columns));
+            let expected = &a * &b;
+            // Sums of at most 24 products of numbers below 1.
+            assert!((times(&a, &b) - &expected).amax() < 24.0 * 24.0 * f64::EPSILON, "{rows} {inner} {columns}");
+            let transposed = times_transpose(&a, &b.transpose());
+            assert!((transposed - expected).amax() < 24.0 * 24.0 * f64::EPSILON, "{rows} {inner} {columns}");
         }
     }
 
