@@ -211,11 +211,15 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(13);
         for _ in 0..200 {
             let [rows, inner, columns] = std::array::from_fn(|_| rng.random_range(1..2 * PACKED));
-            let mut uniform = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-1.0..1.0));
+            let mut uniform =
+                |rows, columns| DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-1.0..1.0));
             let (a, b) = (uniform(rows, inner), uniform(inner, columns));
             let expected = &a * &b;
             // Sums of at most 24 products of numbers below 1.
-            assert!((times(&a, &b) - &expected).amax() < 24.0 * 24.0 * f64::EPSILON, "{rows} {inner} {columns}");
+            assert!(
+                (times(&a, &b) - &expected).amax() < 24.0 * 24.0 * f64::EPSILON,
+                "{rows} {inner} {columns}"
+            );
             let transposed = times_transpose(&a, &b.transpose());
             assert!((transposed - expected).amax() < 24.0 * 24.0 * f64::EPSILON, "{rows} {inner} {columns}");
         }

@@ -137,7 +137,10 @@ pub(super) fn judge(bounds: &[Bound], metrics: &mut Vec<Metric>) {
         let metric = &mut metrics[index];
         metric.paper = bound.paper;
         if bound.open {
-            let wanted = [bound.low.map(|low| format!("at least {low}")), bound.high.map(|high| format!("at most {high}"))];
+            let wanted = [
+                bound.low.map(|low| format!("at least {low}")),
+                bound.high.map(|high| format!("at most {high}")),
+            ];
             let wanted: Vec<String> = wanted.into_iter().flatten().collect();
             metric.bound_source = Some(format!("open, wanted {}: {}", wanted.join(" and "), bound.source));
         } else {
