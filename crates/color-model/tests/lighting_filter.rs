@@ -30,18 +30,18 @@ fn scalar_updates_are_the_joint_update_of_the_general_filter() {
         let mut ours = filter(prior.clone(), params);
         let seconds = 0.04;
         let walk = DVector::from_fn(3 * n_colors, |i, _| [4.0, 1.0, 1.0][i % 3] * seconds);
-        let motion = LinearMotion::stationary(DMatrix::from_diagonal(&walk)).unwrap();
-        let mut general = KalmanFilter::new(motion, prior.clone()).unwrap();
+        let motion = LinearMotion::stationary(DMatrix::from_diagonal(&walk)).expect("valid by construction");
+        let mut general = KalmanFilter::new(motion, prior.clone()).expect("valid by construction");
         for _ in 0..60 {
             let hidden = rng.random_range(0..(1 << n_colors) - 1);
             let truth = noisy(prior.mean(), &params.mean_noise, &mut rng);
             let (matrix, noise) = sensor(n_colors, hidden, &params.mean_noise);
             let z = &matrix * &truth;
-            ours.predict(seconds).unwrap();
-            general.predict(None).unwrap();
-            let evidence = ours.update(&means(&truth, hidden)).unwrap();
-            let sensor = LinearSensor::new(matrix, noise).unwrap();
-            let innovation = general.update(&sensor, &z).unwrap();
+            ours.predict(seconds).expect("valid by construction");
+            general.predict(None).expect("valid by construction");
+            let evidence = ours.update(&means(&truth, hidden)).expect("valid by construction");
+            let sensor = LinearSensor::new(matrix, noise).expect("valid by construction");
+            let innovation = general.update(&sensor, &z).expect("valid by construction");
             let expected = innovation.log_likelihood();
             // Both are exact but for rounding: condition about 1e3, 15 to 27 numbers, 60 steps.
             assert!((evidence - expected).abs() < 1e-10 * expected.abs().max(1.0), "{evidence} {expected}");
@@ -79,7 +79,8 @@ fn regression_shrinks_what_nobody_saw_and_the_exact_filter_does_not() {
             (covariance[(i, j)], covariance[(j, i)]) = (0.0, 0.0);
         }
     }
-    let prior = wayfix_gaussian_core::Gaussian::new(support::stacked(&BRIGHT), covariance).unwrap();
+    let prior = wayfix_gaussian_core::Gaussian::new(support::stacked(&BRIGHT), covariance)
+        .expect("valid by construction");
     let still = LightingParams { drift: Drift::RandomWalk(Vector3::zeros()), ..LightingParams::default() };
     let mut exact = filter(prior.clone(), still);
     let mut regressing = filter(prior.clone(), LightingParams { unseen: Unseen::Regress, ..still });
@@ -87,7 +88,7 @@ fn regression_shrinks_what_nobody_saw_and_the_exact_filter_does_not() {
     let n_images = 50;
     for _ in 0..n_images {
         for light in [&mut exact, &mut regressing] {
-            light.update(&means(prior.mean(), 0b10000)).unwrap();
+            light.update(&means(prior.mean(), 0b10000)).expect("valid by construction");
         }
     }
     assert_eq!(volume(&exact, 4), before, "nothing was said about pink");
@@ -107,12 +108,12 @@ fn an_unseen_colour_keeps_what_its_correlations_leave_open() {
     // As many looks at the other four as make them certain.
     for _ in 0..10_000 {
         for light in [&mut exact, &mut regressing] {
-            light.update(&means(prior.mean(), 0b10000)).unwrap();
+            light.update(&means(prior.mean(), 0b10000)).expect("valid by construction");
         }
     }
     let others: Vec<usize> = (0..12).collect();
     let known = prior.mean().rows(0, 12).into_owned();
-    let left = prior.conditional(&others, &known).unwrap();
+    let left = prior.conditional(&others, &known).expect("valid by construction");
     // 10 000 looks leave a hundredth of a percent of the noise: 64e-4 against variances of 25 and more.
     let block = exact.covariance().fixed_view::<3, 3>(12, 12);
     let off = (block - left.covariance()).amax();
@@ -129,8 +130,8 @@ fn the_paper_and_the_exact_filter_agree_when_every_colour_is_seen() {
     let regress = LightingParams { unseen: Unseen::Regress, ..LightingParams::default() };
     let mut regressing = filter(prior.clone(), regress);
     for light in [&mut exact, &mut regressing] {
-        light.predict(0.1).unwrap();
-        light.update(&means(prior.mean(), 0)).unwrap();
+        light.predict(0.1).expect("valid by construction");
+        light.update(&means(prior.mean(), 0)).expect("valid by construction");
     }
     assert_eq!(exact.covariance(), regressing.covariance());
 }
@@ -147,11 +148,12 @@ fn the_estimate_moves_to_the_truth_and_knows_how_far_it_is_off() {
         let mut light = filter(prior, still);
         for _ in 0..n_images {
             let seen = noisy(&truth, &still.mean_noise, &mut rng);
-            light.update(&means(&seen, rng.random_range(0..32))).unwrap();
+            light.update(&means(&seen, rng.random_range(0..32))).expect("valid by construction");
         }
         let error = light.mean() - &truth;
         let belief = wayfix_gaussian_core::Gaussian::new(light.mean().clone(), light.covariance().clone());
-        nees += belief.unwrap().mahalanobis_squared(&truth).unwrap() / f64::from(n_venues);
+        nees +=
+            belief.expect("valid by construction").mahalanobis_squared(&truth).unwrap() / f64::from(n_venues);
         assert!(error.amax() < 12.0, "{error}"); // five standard deviations of what ten looks leave
     }
     // Mean of 400 chi-squared variables with 15 degrees: standard deviation (30/400)^½ = 0.27, four of them.
@@ -163,12 +165,12 @@ fn five_hundred_frames_without_a_colour_never_make_it_surer() {
     let prior = common_gain(&BRIGHT, 0.3);
     for drift in [WALK, Drift::TowardsPrior(5.0)] {
         let mut light = filter(prior.clone(), LightingParams { drift, ..LightingParams::default() });
-        light.update(&means(&(prior.mean() * 0.8), 0)).unwrap();
+        light.update(&means(&(prior.mean() * 0.8), 0)).expect("valid by construction");
         let nothing = means(prior.mean(), 0b11111);
         for _ in 0..500 {
             let before: Vec<f64> = light.colors().map(|color| color.covariance.determinant()).collect();
-            light.predict(0.04).unwrap();
-            assert_eq!(light.update(&nothing).unwrap(), 0.0);
+            light.predict(0.04).expect("valid by construction");
+            assert_eq!(light.update(&nothing).expect("valid by construction"), 0.0);
             let wider =
                 |(now, then): (wayfix_color_model::ColorDensity, &f64)| now.covariance.determinant() > *then;
             assert!(light.colors().zip(&before).all(wider));
@@ -191,11 +193,11 @@ fn drift_depends_on_the_time_and_not_on_the_number_of_steps() {
     for drift in [WALK, Drift::TowardsPrior(3.0)] {
         let params = LightingParams { drift, ..LightingParams::default() };
         let mut once = filter(prior.clone(), params);
-        once.update(&means(&(prior.mean() * 0.9), 0b01100)).unwrap();
+        once.update(&means(&(prior.mean() * 0.9), 0b01100)).expect("valid by construction");
         let mut often = once.clone();
-        once.predict(2.0).unwrap();
+        once.predict(2.0).expect("valid by construction");
         for _ in 0..50 {
-            often.predict(0.04).unwrap();
+            often.predict(0.04).expect("valid by construction");
         }
         // Fifty roundings.
         assert!((once.mean() - often.mean()).amax() < 1e-11);

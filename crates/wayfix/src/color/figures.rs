@@ -69,8 +69,8 @@ fn classification(run: &ColorRun) -> Vec<Metric> {
     for (at, name) in run.system.map().colors().iter().enumerate() {
         let rates = rate_of(labelled.iter().copied(), ColorId(at as u8), MIN_PIXELS);
         if let Some(rate) = MeanInterval::of(&rates) {
-            metrics.push(Metric::new(&format!("rate_{name}"), rate.mean, ""));
-            metrics.push(Metric::new(&format!("rate_{name}_ci95"), rate.half_width, ""));
+            metrics.push(Metric::new(format!("rate_{name}"), rate.mean, ""));
+            metrics.push(Metric::new(format!("rate_{name}_ci95"), rate.half_width, ""));
         }
     }
     metrics

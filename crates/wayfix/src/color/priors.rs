@@ -1,3 +1,5 @@
+//! What the colours may look like before anything is seen, learned or read.
+
 use std::{fs, path::Path};
 
 use anyhow::{Context, Result};

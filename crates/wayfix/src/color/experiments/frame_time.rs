@@ -42,8 +42,8 @@ pub fn frame_time(
     }
     let timings = points
         .iter()
-        .map(|(n, ms)| Metric::new(&format!("frame_median_ms_{n}"), *ms, "ms"))
-        .chain(points.iter().map(|(n, ms)| Metric::new(&format!("us_per_particle_{n}"), 1e3 * ms / n, "µs")))
+        .map(|(n, ms)| Metric::new(format!("frame_median_ms_{n}"), *ms, "ms"))
+        .chain(points.iter().map(|(n, ms)| Metric::new(format!("us_per_particle_{n}"), 1e3 * ms / n, "µs")))
         .collect();
     let plot = LinesPlot {
         title: "Computing time of a frame".to_owned(),

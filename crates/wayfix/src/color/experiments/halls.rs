@@ -42,7 +42,7 @@ pub fn other_halls(
         let values: Vec<f64> = runs.iter().filter_map(|run| value(run, name)).collect();
         if let Some(mean) = MeanInterval::of(&values) {
             metrics.push(Metric::new(name, mean.mean, unit));
-            metrics.push(Metric::new(&format!("{name}_ci95"), mean.half_width, unit));
+            metrics.push(Metric::new(format!("{name}_ci95"), mean.half_width, unit));
         }
     }
     let worst = runs.iter().filter_map(|run| value(run, "position_mean_m")).fold(0.0, f64::max);

@@ -47,8 +47,8 @@ pub fn switching(
     ];
     let mut metrics = Vec::new();
     for (name, curve) in curves.iter().chain(&known) {
-        metrics.push(Metric::new(&format!("{name}_rate"), mean(curve.iter().map(|point| point.1)), ""));
-        metrics.push(Metric::new(&format!("{name}_worst_fall"), worst_fall(curve, switches), ""));
+        metrics.push(Metric::new(format!("{name}_rate"), mean(curve.iter().map(|point| point.1)), ""));
+        metrics.push(Metric::new(format!("{name}_worst_fall"), worst_fall(curve, switches), ""));
     }
     let figures = vec![
         plot("Classification rate while lights are switched, localizing", &curves).draw()?,

@@ -45,10 +45,10 @@ pub fn withheld(
     for (color, name) in map.colors().iter().enumerate() {
         if let [Some(joint), Some(independent)] = rates[2 * color..2 * color + 2] {
             for (kind, rate) in [("joint", joint), ("independent", independent)] {
-                metrics.push(Metric::new(&format!("{name}_{kind}"), rate.mean, ""));
-                metrics.push(Metric::new(&format!("{name}_{kind}_ci95"), rate.half_width, ""));
+                metrics.push(Metric::new(format!("{name}_{kind}"), rate.mean, ""));
+                metrics.push(Metric::new(format!("{name}_{kind}_ci95"), rate.half_width, ""));
             }
-            metrics.push(Metric::new(&format!("{name}_gain"), joint.mean - independent.mean, ""));
+            metrics.push(Metric::new(format!("{name}_gain"), joint.mean - independent.mean, ""));
         }
     }
     Ok(Run { metrics, ..Run::default() })
