@@ -17,6 +17,7 @@ mod transition;
 
 pub use dense::DenseTransition;
 pub use diffusion::DiffusionKernel;
+pub(crate) use filter::entropy;
 pub use filter::{BestState, DiscreteFilter};
 pub use graph::{Follow, Graph};
 pub use grid::{Grid, Move};
