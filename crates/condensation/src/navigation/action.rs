@@ -6,11 +6,11 @@ use crate::{BestState, Localizer, Routes, StateSpace};
 /// How the next action is chosen while the robot is not certain where it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ActionChoice {
-    /// As if the best state were the true one. [Kasprzak & Szynkiewicz, Sec. 2.2 (c)]
+    /// As if the best state were the true one: nearer to the goal. [Kasprzak & Szynkiewicz, Sec. 2.2 (c)]
     #[default]
     Greedy,
-    /// The one after which the next look is expected to leave the least entropy, over the best `hypotheses` places; once they agree,
-    /// as greedy.
+    /// Of the actions that bring the best state nearest to the goal, the one after which the next look is expected to leave the least
+    /// entropy over the best `hypotheses` places. At the goal, where none brings it nearer, all are compared.
     Informed {
         /// How many of the best places are told apart.
         hypotheses: usize,
@@ -18,48 +18,54 @@ pub enum ActionChoice {
 }
 
 impl ActionChoice {
-    /// The index of the action to take. At a goal that is doubtful, the greedy choice is a random action: standing still shows nothing new.
+    /// The index of the action to take; none when there is no way. At a goal that is doubtful the greedy choice is a random action, since
+    /// standing still shows nothing new.
     pub(super) fn choose<S: StateSpace, R: Rng + ?Sized>(
         self,
         space: &S,
         routes: &Routes,
         localizer: &Localizer,
-        certain: bool,
         rng: &mut R,
     ) -> Option<usize> {
         let best = localizer.best();
         let greedy = routes.toward(space, best.state)?;
+        let is_there = best.state == routes.goal();
         match self {
-            Self::Informed { hypotheses } if !certain => {
-                Some(informed(space, routes, localizer, hypotheses).unwrap_or(greedy))
+            Self::Greedy if is_there => Some(rng.random_range(0..space.actions().len())),
+            Self::Greedy => Some(greedy),
+            Self::Informed { hypotheses } => {
+                let reached = |index: usize| space.step(best.state, space.actions()[index]);
+                let nearest = routes.distance(reached(greedy));
+                let is_open = |&index: &usize| {
+                    if is_there {
+                        reached(index) != best.state
+                    } else {
+                        routes.distance(reached(index)) == nearest
+                    }
+                };
+                let open: Vec<usize> = (0..space.actions().len()).filter(is_open).collect();
+                Some(most_informative(space, &open, localizer, hypotheses).unwrap_or(greedy))
             }
-            _ if best.state == routes.goal() => Some(rng.random_range(0..space.actions().len())),
-            _ => Some(greedy),
         }
     }
 }
 
-/// The action with the least expected entropy after the next look; of equal ones that which is nearest to the goal.
-fn informed<S: StateSpace>(
+/// The action of the least expected entropy after the next look, the first of equal ones.
+fn most_informative<S: StateSpace>(
     space: &S,
-    routes: &Routes,
+    open: &[usize],
     localizer: &Localizer,
     hypotheses: usize,
 ) -> Option<usize> {
     let candidates = candidates(localizer.belief(), hypotheses);
-    if candidates.len() < 2 {
-        return None;
-    }
-    let score = |(index, &action): (usize, &S::Action)| {
-        let moved: Vec<BestState> = candidates
-            .iter()
-            .map(|c| BestState { state: space.step(c.state, action), confidence: c.confidence })
-            .collect();
-        let distance = routes.distance(moved[0].state).unwrap_or(u32::MAX);
-        (expected_entropy(localizer, &moved), distance, index)
+    let score = |&index: &usize| {
+        let action = space.actions()[index];
+        let moved =
+            |c: &BestState| BestState { state: space.step(c.state, action), confidence: c.confidence };
+        let moved: Vec<BestState> = candidates.iter().map(moved).collect();
+        (expected_entropy(localizer, &moved), index)
     };
-    let scores = space.actions().iter().enumerate().map(score);
-    scores.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, _, index)| index)
+    open.iter().map(score).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, index)| index)
 }
 
 /// The best places, with their beliefs normalized among themselves.

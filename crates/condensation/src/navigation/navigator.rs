@@ -136,7 +136,7 @@ impl<S: StateSpace> Navigator<S> {
                 return Ok(report(Arrival::Unsure));
             }
 
-            let choice = self.params.choice.choose(&self.space, &routes, localizer, certain, rng);
+            let choice = self.params.choice.choose(&self.space, &routes, localizer, rng);
             // From where there is no way to the goal any action may show that the robot is elsewhere.
             let action = choice.unwrap_or_else(|| steps % self.transitions.len());
             world.act(self.space.actions()[action]);

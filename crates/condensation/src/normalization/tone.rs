@@ -1,54 +1,80 @@
 use crate::Picture;
 
-/// Tables that give each channel of `seen` the mean and standard deviation of `learned`.
+/// A share of pixels for each of the 256 values.
+type Shares = [f64; 256];
+
+/// Tables, one a channel, that give `seen` the mean and the standard deviation of `learned`; for [`Picture::mapped`].
+///
+/// A channel without contrast keeps its own and is only moved.
+///
+/// ```
+/// use wayfix_condensation::{Light, Picture, affine_match};
+/// let learned = Picture::from_rgb(3, 1, [40_u8, 80, 160].iter().flat_map(|&grey| [grey; 3]).collect())?;
+/// let seen = Light { gain: 0.5, offset: 30.0, gamma: 1.0 }.apply(&learned)?;
+/// assert_eq!(seen.mapped(&affine_match(&seen, &learned)), learned);
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
 pub fn affine_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
     std::array::from_fn(|channel| {
-        let (m, s) = moments(&histogram(seen, channel));
-        let (mean, sigma) = moments(&histogram(learned, channel));
-        let gain = if s > 0.0 { sigma / s } else { 1.0 };
-        std::array::from_fn(|i| ((i as f64 - m) * gain + mean).round().clamp(0.0, 255.0) as u8)
+        let (mean, sigma) = moments(&shares(seen, channel));
+        let (learned_mean, learned_sigma) = moments(&shares(learned, channel));
+        let gain = if sigma > 0.0 { learned_sigma / sigma } else { 1.0 };
+        std::array::from_fn(|value| rounded((value as f64 - mean) * gain + learned_mean))
     })
 }
 
-/// Tables that give each channel of `seen` the histogram of `learned`.
+/// Tables, one a channel, that give `seen` the histogram of `learned`; for [`Picture::mapped`].
+///
+/// Each value goes to where its middle rank lies among the learned ranks, interpolated, so that any monotone tone curve is undone.
+///
+/// ```
+/// use wayfix_condensation::{Light, Picture, histogram_match};
+/// let learned = Picture::from_rgb(3, 1, [40_u8, 80, 160].iter().flat_map(|&grey| [grey; 3]).collect())?;
+/// let seen = Light { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?;
+/// assert_eq!(seen.mapped(&histogram_match(&seen, &learned)), learned);
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
 pub fn histogram_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
     std::array::from_fn(|channel| {
-        let a = mid_ranks(&histogram(seen, channel));
-        let b = mid_ranks(&histogram(learned, channel));
-        std::array::from_fn(|i| interpolate(a[i], &b).round().clamp(0.0, 255.0) as u8)
+        let ranks = middle_ranks(&shares(seen, channel));
+        let learned_ranks = middle_ranks(&shares(learned, channel));
+        std::array::from_fn(|value| rounded(value_at(ranks[value], &learned_ranks)))
     })
 }
 
-fn histogram(picture: &Picture, channel: usize) -> [f64; 256] {
-    let mut h = [0.0; 256];
-    for p in picture.pixels() {
-        h[usize::from(p[channel])] += 1.0;
+fn shares(picture: &Picture, channel: usize) -> Shares {
+    let mut counts = [0_u64; 256];
+    for pixel in picture.pixels() {
+        counts[usize::from(pixel[channel])] += 1;
     }
-    h.map(|c| c / picture.pixels().len() as f64)
+    counts.map(|count| count as f64 / picture.pixels().len() as f64)
 }
 
-fn moments(h: &[f64; 256]) -> (f64, f64) {
-    let mean: f64 = h.iter().enumerate().map(|(i, p)| i as f64 * p).sum();
-    let var: f64 = h.iter().enumerate().map(|(i, p)| (i as f64 - mean).powi(2) * p).sum();
-    (mean, var.sqrt())
+fn moments(shares: &Shares) -> (f64, f64) {
+    let mean: f64 = shares.iter().enumerate().map(|(value, p)| value as f64 * p).sum();
+    let variance: f64 = shares.iter().enumerate().map(|(value, p)| (value as f64 - mean).powi(2) * p).sum();
+    (mean, variance.sqrt())
 }
 
-fn mid_ranks(h: &[f64; 256]) -> [f64; 256] {
-    let mut sum = 0.0;
-    h.map(|p| {
-        sum += p;
-        sum - 0.5 * p
+/// The share of darker pixels and half of those that are equal.
+fn middle_ranks(shares: &Shares) -> [f64; 256] {
+    let mut darker = 0.0;
+    shares.map(|share| {
+        darker += share;
+        darker - 0.5 * share
     })
 }
 
-fn interpolate(rank: f64, ranks: &[f64; 256]) -> f64 {
-    let above = ranks.partition_point(|&r| r < rank);
-    if above == 0 {
-        return 0.0;
+/// Where a rank falls among those of the 256 values.
+fn value_at(rank: f64, ranks: &[f64; 256]) -> f64 {
+    let above = ranks.partition_point(|&other| other < rank);
+    if above == 0 || above == 256 {
+        return above.min(255) as f64;
     }
-    if above == 256 {
-        return 255.0;
-    }
-    let (lo, hi) = (ranks[above - 1], ranks[above]);
-    (above - 1) as f64 + if hi > lo { (rank - lo) / (hi - lo) } else { 0.0 }
+    let (low, high) = (ranks[above - 1], ranks[above]);
+    (above - 1) as f64 + if high > low { (rank - low) / (high - low) } else { 0.0 }
+}
+
+fn rounded(value: f64) -> u8 {
+    value.round().clamp(0.0, 255.0) as u8
 }
