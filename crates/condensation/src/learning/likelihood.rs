@@ -127,3 +127,45 @@ impl DisturbanceBelief {
 fn dot(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector, SMatrix};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    /// One measurement after the other is the joint Kalman update with matrices, and the evidence that of the joint Gaussian.
+    #[test]
+    fn sequential_update_is_the_joint_one() {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let mut uniform = || rng.random_range(-1.0..1.0);
+        let k = 6;
+        let a = DMatrix::from_fn(k, N, |_, _| uniform());
+        let z = DVector::from_fn(k, |_, _| uniform());
+        let root = SMatrix::<f64, N, N>::from_fn(|_, _| uniform());
+        let prior = root * root.transpose();
+        let covariance = DMatrix::from_fn(N, N, |i, j| prior[(i, j)]);
+        let innovation = &a * &covariance * a.transpose() + DMatrix::identity(k, k) * 0.7;
+        let gain = &covariance * a.transpose() * innovation.clone().try_inverse().expect("positive definite");
+        let mean = &gain * &z;
+        let posterior = &covariance - &gain * &a * &covariance;
+
+        let mut belief = DisturbanceBelief {
+            mean: [0.0; N],
+            covariance: std::array::from_fn(|i| std::array::from_fn(|j| prior[(i, j)])),
+        };
+        let rows: Vec<[f64; N]> = (0..k).map(|i| std::array::from_fn(|j| a[(i, j)])).collect();
+        let (squared_distance, log_determinant) = belief.update(&rows, z.as_slice(), 0.7);
+        let expected = z.dot(&(innovation.clone().try_inverse().expect("positive definite") * &z));
+        assert!((squared_distance - expected).abs() < 1e-9);
+        assert!((log_determinant - innovation.determinant().ln()).abs() < 1e-9);
+        for i in 0..N {
+            assert!((belief.mean[i] - mean[i]).abs() < 1e-9);
+            for j in 0..N {
+                assert!((belief.covariance[i][j] - posterior[(i, j)]).abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -51,3 +51,31 @@ impl Carried<'_> {
         arriving
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SparseTransition;
+
+    fn belief(mean: f64, variance: f64) -> DisturbanceBelief {
+        let mut covariance = [[0.0; N_DISTURBANCES]; N_DISTURBANCES];
+        (0..N_DISTURBANCES).for_each(|i| covariance[i][i] = variance);
+        DisturbanceBelief { mean: [mean; N_DISTURBANCES], covariance }
+    }
+
+    /// Where two meet, mean and variance are those of the mixture; what moves alone stays as it is.
+    #[test]
+    fn what_meets_is_merged_by_moments() {
+        let to_the_middle = SparseTransition::from_rows([[(1, 1.0)], [(2, 1.0)], [(1, 1.0)]]).unwrap();
+        let mut mass = [0.2, 0.2, 0.6];
+        let mut disturbances = [belief(1.0, 0.5), belief(7.0, 2.0), belief(3.0, 0.1)];
+        Carried { transition: &to_the_middle, leak: 0.0 }.apply(&mut mass, &mut disturbances);
+        assert!((mass[1] - 0.8).abs() < 1e-15 && (mass[2] - 0.2).abs() < 1e-15);
+        assert!((disturbances[2].mean[0] - 7.0).abs() < 1e-12);
+        assert!((disturbances[2].covariance[0][0] - 2.0).abs() < 1e-12);
+        // weights 1/4 and 3/4: mean 2.5, within 0.2, between 0.75
+        assert!((disturbances[1].mean[3] - 2.5).abs() < 1e-12);
+        assert!((disturbances[1].covariance[3][3] - 0.95).abs() < 1e-12);
+        assert!((disturbances[1].covariance[3][1] - 0.75).abs() < 1e-12);
+    }
+}
