@@ -23,4 +23,4 @@ pub use learning::{
 pub use navigation::{
     ActionChoice, Arrival, Localizer, LocalizerParams, Navigator, NavigatorParams, Routes, RunReport, World,
 };
-pub use normalization::{Light, affine_match, histogram_match};
+pub use normalization::{Light, affine_match, histogram_match, light_match};

@@ -1,5 +1,7 @@
 //! Belief against plain versions: dense sums, logarithms throughout.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use proptest::prelude::*;
 use wayfix_condensation::{
     CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, Graph, Grid, HeadingGrid,

@@ -1,5 +1,7 @@
 //! The laws of a Bayes filter, and the same bits for any number of threads.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use wayfix_condensation::{BestState, DiscreteFilter, Grid, Move, Slip, StateSpace, Transition};
 use wayfix_estimation_traits::BayesFilter;
 

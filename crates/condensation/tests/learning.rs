@@ -1,5 +1,7 @@
 //! What is learned, against what it was made of.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod common;
 
 use common::scene;

@@ -1,5 +1,7 @@
 //! The loop as a whole, on a painted scene.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod common;
 
 use std::sync::Arc;

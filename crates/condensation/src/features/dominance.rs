@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 /// What makes a grey value dominate a histogram.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dominance {
     /// The three most frequent values, most frequent first, with their shares of the pixels: the paper's. They are often neighbours, and
     /// change with a pixel.
@@ -13,8 +13,20 @@ pub enum Dominance {
     },
     /// The means of the three classes into which the histogram falls with the least variance within classes, darkest first, and the
     /// classes' shares. They move smoothly with the picture, linearly with gain and offset. [Otsu 1979]
-    #[default]
     Classes,
+    /// The same three classes, averaged over all ways to divide the histogram: one that leaves a share $`δ`$ more of the variance within
+    /// classes than the best counts $`e^{-δ / τ}`$. So nothing jumps where two divisions are equally good.
+    SoftClasses {
+        /// $`τ`$, a share of the variance; positive.
+        softness: f64,
+    },
+}
+
+impl Default for Dominance {
+    /// Soft classes, with divisions counted that are about three per cent of the variance worse than the best.
+    fn default() -> Self {
+        Self::SoftClasses { softness: 0.03 }
+    }
 }
 
 type Density = [f64; 256];
@@ -26,6 +38,7 @@ impl Dominance {
             Self::Counts => counts(density),
             Self::Peaks { sigma } => peaks(density, sigma),
             Self::Classes => classes(density),
+            Self::SoftClasses { softness } => soft_classes(density, softness),
         }
     }
 }
@@ -62,15 +75,38 @@ fn classes(density: &Density) -> Vec<(f64, f64)> {
     cumulated.best_lower(2..256, 1..255, &mut lower);
     let quality = |upper: usize| cumulated.two_classes(lower[upper], upper) + cumulated.gain(upper, 256);
     let upper = (2..256).fold(2, |best, upper| if quality(upper) > quality(best) { upper } else { best });
-    let class = |from: usize, to: usize| {
-        let share = cumulated.share[to] - cumulated.share[from];
-        // An empty class dominates nothing; it sits at its lower bound.
-        (
-            if share > 0.0 { (cumulated.moment[to] - cumulated.moment[from]) / share } else { from as f64 },
-            share,
-        )
-    };
-    vec![class(0, lower[upper]), class(lower[upper], upper), class(upper, 256)]
+    vec![cumulated.class(0, lower[upper]), cumulated.class(lower[upper], upper), cumulated.class(upper, 256)]
+}
+
+fn soft_classes(density: &Density, softness: f64) -> Vec<(f64, f64)> {
+    /// Grey levels between bounds that are tried: averaging makes finer ones pointless.
+    const STEP: usize = 4;
+    let cumulated = Cumulated::new(density);
+    let mean = cumulated.moment[256];
+    let variance: f64 = density.iter().enumerate().map(|(i, p)| p * (i as f64 - mean).powi(2)).sum();
+    if variance <= 0.0 || softness <= 0.0 {
+        return classes(density);
+    }
+    let bounds = || (STEP..256).step_by(STEP);
+    let divisions = || bounds().flat_map(|a| (a + STEP..256).step_by(STEP).map(move |b| (a, b)));
+    let quality: Vec<f64> =
+        divisions().map(|(a, b)| cumulated.two_classes(a, b) + cumulated.gain(b, 256)).collect();
+    let best = quality.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Sums of weights, of shares and of first moments of each class.
+    let (mut total, mut shares, mut means) = (0.0, [0.0; 3], [0.0; 3]);
+    for ((a, b), quality) in divisions().zip(&quality) {
+        let exponent = (quality - best) / (softness * variance);
+        if exponent > -30.0 {
+            let weight = exponent.exp();
+            total += weight;
+            for (k, (from, to)) in [(0, a), (a, b), (b, 256)].into_iter().enumerate() {
+                let (mean, share) = cumulated.class(from, to);
+                means[k] += weight * mean;
+                shares[k] += weight * share;
+            }
+        }
+    }
+    (0..3).map(|k| (means[k] / total, shares[k] / total)).collect()
 }
 
 /// Shares and first moments of the values below each bound.
@@ -93,6 +129,12 @@ impl Cumulated {
     fn gain(&self, from: usize, to: usize) -> f64 {
         let share = self.share[to] - self.share[from];
         if share > 0.0 { (self.moment[to] - self.moment[from]).powi(2) / share } else { 0.0 }
+    }
+
+    /// Mean and share of the values `from..to`. An empty class dominates nothing; it sits at its lower bound.
+    fn class(&self, from: usize, to: usize) -> (f64, f64) {
+        let share = self.share[to] - self.share[from];
+        (if share > 0.0 { (self.moment[to] - self.moment[from]) / share } else { from as f64 }, share)
     }
 
     fn two_classes(&self, lower: usize, upper: usize) -> f64 {

@@ -16,6 +16,16 @@ impl Light {
     /// That of learning.
     pub const SAME: Self = Self { gain: 1.0, offset: 0.0, gamma: 1.0 };
 
+    /// What each of the 256 values was in the light of learning: undoes [`table`](Self::table), but for what was clipped and rounded.
+    ///
+    /// # Errors
+    /// As [`table`](Self::table).
+    pub fn inverse_table(&self) -> Result<[u8; 256], CondensationError> {
+        self.table()?;
+        let value = |j: usize| ((j as f64 - self.offset) / (255.0 * self.gain)).clamp(0.0, 1.0);
+        Ok(std::array::from_fn(|j| (255.0 * value(j).powf(1.0 / self.gamma)).round() as u8))
+    }
+
     /// What becomes of each of the 256 values, rounded and clipped.
     ///
     /// # Errors

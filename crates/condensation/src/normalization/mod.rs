@@ -2,5 +2,6 @@
 
 mod light;
 mod tone;
+
 pub use light::Light;
-pub use tone::{affine_match, histogram_match};
+pub use tone::{affine_match, histogram_match, light_match};

@@ -78,3 +78,50 @@ fn value_at(rank: f64, ranks: &[f64; 256]) -> f64 {
 fn rounded(value: f64) -> u8 {
     value.round().clamp(0.0, 255.0) as u8
 }
+
+/// The [`Light`](crate::Light) in which `learned` looks as `seen` does, by least squares between the quantiles of all three channels; for
+/// [`Light::inverse_table`](crate::Light::inverse_table).
+///
+/// One curve for all channels: three numbers from the whole scene cannot follow what went out of view, as [`histogram_match`] does.
+/// None when the learned scene has no contrast.
+///
+/// ```
+/// use wayfix_condensation::{Light, Picture, light_match};
+/// let learned = Picture::from_rgb(16, 16, (0..=255_u8).flat_map(|grey| [grey; 3]).collect())?;
+/// let light = Light { gain: 0.7, offset: 20.0, gamma: 1.3 };
+/// let found = light_match(&light.apply(&learned)?, &learned).expect("contrast");
+/// assert!((found.gain - 0.7).abs() < 0.01 && (found.offset - 20.0).abs() < 1.0 && (found.gamma - 1.3).abs() < 0.02);
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
+pub fn light_match(seen: &Picture, learned: &Picture) -> Option<crate::Light> {
+    let pairs: Vec<(f64, f64)> = (0..3)
+        .flat_map(|channel| {
+            let ranks = middle_ranks(&shares(seen, channel));
+            let learned_ranks = middle_ranks(&shares(learned, channel));
+            (1..100).map(move |i| {
+                let rank = f64::from(i) / 100.0;
+                (value_at(rank, &learned_ranks), value_at(rank, &ranks))
+            })
+        })
+        .collect();
+    // Given gamma the rest is a line; gamma itself is tried from 0.4 to 2.5 in steps of one per cent.
+    let fits = (-92..=92).filter_map(|i| fit_line(&pairs, 1.01_f64.powi(i)));
+    fits.min_by(|a, b| a.1.total_cmp(&b.1)).map(|fit| fit.0)
+}
+
+/// Gain and offset for a gamma, and the squared error.
+fn fit_line(pairs: &[(f64, f64)], gamma: f64) -> Option<(crate::Light, f64)> {
+    let n = pairs.len() as f64;
+    let bent = |value: f64| 255.0 * (value / 255.0).powf(gamma);
+    let x_mean = pairs.iter().map(|pair| bent(pair.0)).sum::<f64>() / n;
+    let y_mean = pairs.iter().map(|pair| pair.1).sum::<f64>() / n;
+    let (mut xx, mut xy) = (0.0, 0.0);
+    for &(x, y) in pairs {
+        xx += (bent(x) - x_mean).powi(2);
+        xy += (bent(x) - x_mean) * (y - y_mean);
+    }
+    let gain = xy / xx;
+    let offset = y_mean - gain * x_mean;
+    let error = pairs.iter().map(|&(x, y)| (gain * bent(x) + offset - y).powi(2)).sum();
+    (xx > 0.0 && gain > 0.0).then_some((crate::Light { gain, offset, gamma }, error))
+}
