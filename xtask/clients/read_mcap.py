@@ -1,14 +1,30 @@
 #!/usr/bin/env python3
 """Reads MCAP files with Python's mcap: checksums, schemas, every message decoded, time in order.
 
+Images are decoded with Pillow, where it is installed.
+
     read_mcap.py FILE…
 """
 
 import collections
+import io
 import sys
 
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
+
+try:
+    from PIL import Image
+except ImportError:
+    Image = None
+
+
+def check_image(message):
+    """Raises when a foxglove.CompressedImage does not decode, or to another format than it says."""
+    image = Image.open(io.BytesIO(message.data))
+    image.load()
+    if image.format.lower() != message.format:
+        raise ValueError(f"{image.format} under the name {message.format}")
 
 
 def read(path):
@@ -23,6 +39,8 @@ def read(path):
             latest = message.log_time
             if decoded.DESCRIPTOR.full_name != schema.name:
                 raise ValueError(f"{channel.topic}: {decoded.DESCRIPTOR.full_name} under the name {schema.name}")
+            if Image is not None and schema.name == "foxglove.CompressedImage":
+                check_image(decoded)
             counts[channel.topic, schema.name] += 1
         summary = reader.get_summary()
     if summary is None or summary.statistics.message_count != sum(counts.values()):

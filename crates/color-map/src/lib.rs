@@ -41,16 +41,17 @@ mod color;
 mod error;
 mod label_image;
 mod map;
-mod projector;
+mod render;
 mod shape;
 mod span;
+mod tree;
 
 pub use camera::Camera;
 pub use color::ColorId;
 pub use error::{MapError, ViewError};
 pub use label_image::LabelImage;
 pub use map::{ColorMap, Extent, Hit};
-pub use projector::Projector;
+pub use render::Projector;
 pub use shape::{Band, Shape};
 pub use span::Span;
 

@@ -1,4 +1,3 @@
-#![cfg(feature = "serde")]
 //! Maps as files.
 
 mod support;

@@ -38,4 +38,22 @@ pub enum SimError {
         /// The name asked for.
         name: String,
     },
+    /// The shapes do not make a map.
+    #[error(transparent)]
+    Map(#[from] wayfix_color_map::MapError),
+    /// The numbers do not make a camera.
+    #[error(transparent)]
+    View(#[from] wayfix_color_map::ViewError),
+    /// A picture cannot be encoded.
+    #[error("a picture cannot be encoded: {reason}")]
+    Picture {
+        /// What the codec says.
+        reason: String,
+    },
+}
+
+impl From<wayfix_sensor_log::ImageError> for SimError {
+    fn from(error: wayfix_sensor_log::ImageError) -> Self {
+        Self::Picture { reason: error.to_string() }
+    }
 }

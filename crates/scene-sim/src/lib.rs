@@ -2,14 +2,14 @@
 //!
 //! A [`Simulation`] drives a robot along a [`route`] through a [`world`] and gives the log of its [`sensor`]s as
 //! [`Record`](wayfix_sensor_log::Record)s, truth included. Named, seeded set-ups are [`Scenario`]s; [`monobot`] is the
-//! one-dimensional robot on which filters are taken apart.
+//! one-dimensional robot on which filters are taken apart; [`league`] is a field full of colours under changing light, with a camera.
 //!
 //! * **The truth is nobody's model.** Two wheels with motors that lag, slip that hangs together in time and radii that are not as
 //!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
 //!   [`GaussianOdometry`](sensor::GaussianOdometry) and the default [`RangeBearing`](sensor::RangeBearing) match what an extended
 //!   Kalman filter assumes, for tests of its consistency.
 //! * **One stream of randomness per sin** ([`random::Streams`]): switching one on leaves the draws of the others as they were.
-//! * **The same bits on every machine**: transcendental functions come from `libm` ([`plane`], [`random`]).
+//! * **The same bits on every machine**: transcendental functions come from `libm` ([`plane`], [`space`], [`random`]).
 //! * **Yours plug in**: [`world::World`] and [`sensor::Sensor`] are the two places to extend (`examples/custom_sensor.rs`).
 //!
 //! ```
@@ -26,6 +26,7 @@
 mod check;
 pub mod drive;
 mod error;
+pub mod league;
 pub mod monobot;
 pub mod plane;
 pub mod random;
@@ -33,6 +34,7 @@ pub mod route;
 mod scenario;
 pub mod sensor;
 mod simulation;
+pub mod space;
 pub mod world;
 
 pub use error::SimError;

@@ -1,7 +1,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::{Format, LogEnd, Stamp};
+use crate::{Format, ImageFormat, LogEnd, Stamp};
 
 /// Why a log could not be opened or written, and what to do about it.
 #[derive(Debug, thiserror::Error)]
@@ -35,8 +35,8 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-    /// A folder where a file belongs.
-    #[error("{}: is a folder without RobotN_*.dat files; give a log file, or the folder of a UTIAS set", path.display())]
+    /// A folder that is no log.
+    #[error("{}: is a folder without RobotN_*.dat files and without PNG or JPEG images; give a log file, the folder of a UTIAS set or of images", path.display())]
     IsADirectory {
         /// The folder.
         path: PathBuf,
@@ -112,6 +112,38 @@ pub enum LogError {
         what: &'static str,
         /// Its stamp.
         stamp: Stamp,
+    },
+    /// A camera that sees nothing.
+    #[error("camera at {stamp}: {width} x {height} pixels with focal lengths {fx} and {fy} see nothing")]
+    BadCamera {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Horizontal focal length, pixels.
+        fx: f64,
+        /// Vertical focal length, pixels.
+        fy: f64,
+        /// Stamp of the record.
+        stamp: Stamp,
+    },
+    /// Bytes that are no image of the format that they should have.
+    #[error("{what} at {stamp}: {n_bytes} bytes that do not begin as {} does", format.name())]
+    NotAnImage {
+        /// Kind of the record.
+        what: &'static str,
+        /// How it should be compressed.
+        format: ImageFormat,
+        /// How many bytes there are.
+        n_bytes: usize,
+        /// Stamp of the record.
+        stamp: Stamp,
+    },
+    /// A rate at which no folder of images can be read.
+    #[error("frame rate {rate_hz} Hz is not between 0.001 and 1 000 000")]
+    BadFrameRate {
+        /// The rate.
+        rate_hz: f64,
     },
     /// A stamp beyond what Foxglove messages hold.
     #[error("stamp {stamp} is beyond the year 2106")]

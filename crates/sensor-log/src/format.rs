@@ -7,6 +7,7 @@ use std::str::FromStr;
 use mcap::MAGIC;
 
 use crate::LogError;
+use crate::image_folder::images_in;
 use crate::text::{Lines, range_bearing, tum, utias};
 
 /// How a log is stored.
@@ -29,21 +30,24 @@ pub enum Format {
     Tum,
     /// MCAP with Foxglove protobuf messages.
     Mcap,
+    /// A folder of PNG and JPEG files, frames by name.
+    Images,
 }
 
 impl Format {
-    pub(crate) const NAMES: &'static str = "utias, range-bearing, tum, mcap";
+    pub(crate) const NAMES: &'static str = "utias, range-bearing, tum, mcap, images";
 
-    /// The format of what lies at `path`: by name for folders and `.mcap`, else by the first bytes.
+    /// The format of what lies at `path`: by what is in it for folders, by name for `.mcap`, else by the first bytes.
     ///
     /// # Errors
     /// When nothing is there, it cannot be read, is empty, or looks like no known format.
     pub fn detect(path: &Path) -> Result<Self, LogError> {
         let io = |source| LogError::io(path, source);
         if fs::metadata(path).map_err(io)?.is_dir() {
-            return match utias::robots_present(path)?.is_empty() {
-                true => Err(LogError::IsADirectory { path: path.into() }),
-                false => Ok(Self::Utias),
+            return match (utias::robots_present(path)?.as_slice(), images_in(path)?.as_slice()) {
+                ([], []) => Err(LogError::IsADirectory { path: path.into() }),
+                ([], _) => Ok(Self::Images),
+                _ => Ok(Self::Utias),
             };
         }
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) {
@@ -89,6 +93,7 @@ impl fmt::Display for Format {
             Self::RangeBearing => "range-bearing",
             Self::Tum => "tum",
             Self::Mcap => "mcap",
+            Self::Images => "images",
         })
     }
 }
@@ -96,7 +101,7 @@ impl fmt::Display for Format {
 impl FromStr for Format {
     type Err = LogError;
     fn from_str(name: &str) -> Result<Self, LogError> {
-        [Self::Utias, Self::RangeBearing, Self::Tum, Self::Mcap]
+        [Self::Utias, Self::RangeBearing, Self::Tum, Self::Mcap, Self::Images]
             .into_iter()
             .find(|format| format.to_string() == name)
             .ok_or_else(|| LogError::NoSuchFormat { name: name.to_owned() })

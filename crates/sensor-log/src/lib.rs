@@ -1,4 +1,4 @@
-//! Stamped robot records: readers for public data sets and MCAP, writers for the same.
+//! Stamped robot records: readers for public data sets, MCAP and folders of images, writers for the same.
 //!
 //! [`open`] gives the records of a log in time order, whatever its format, and a [`ReadReport`] of what could not be read:
 //!
@@ -8,8 +8,9 @@
 //! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, sightings, truth |
 //! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
 //! | [`Format::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
+//! | [`Format::Images`] | a folder of PNG and JPEG files | images |
 //!
-//! [`write()`] writes records in any of these formats but the first, [`convert()`] a whole log, [`McapWriter`] also what viewers draw;
+//! [`write()`] writes records as text or MCAP, [`convert()`] a whole log, [`McapWriter`] also what viewers draw;
 //! [`LogSummary`] says what a log holds.
 //!
 //! A bad row never stops the reading: it is left out, counted by kind, and the first few are named with file and line.
@@ -29,6 +30,8 @@
 mod convert;
 mod error;
 mod format;
+mod image;
+mod image_folder;
 mod log;
 mod mcap_log;
 mod open;
@@ -43,10 +46,11 @@ mod write;
 pub use convert::convert;
 pub use error::LogError;
 pub use format::Format;
+pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummary};
 pub use log::{Log, LogMeta};
 pub use mcap_log::{Drawing, McapWriter, Shape, topics};
 pub use open::{OpenOptions, PoseKind, open};
-pub use record::{Data, Record, Sighting, Target, TrueLandmark, Velocity};
+pub use record::{CameraInfo, Data, Record, Sighting, Target, TrueLandmark, Velocity};
 pub use report::{LogEnd, Problem, ProblemKind, ReadReport};
 pub use stamp::Stamp;
 pub use summary::{KindSummary, LogSummary};

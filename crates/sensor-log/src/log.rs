@@ -2,6 +2,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::vec;
 
+use crate::image_folder::ImageFolder;
 use crate::mcap_log::McapRecords;
 use crate::{Format, ReadReport, Record};
 
@@ -10,7 +11,9 @@ use crate::{Format, ReadReport, Record};
 /// Iterate by reference when the report is wanted afterwards: for streamed formats it is complete only at the end.
 pub struct Log {
     meta: LogMeta,
-    records: Records,
+    /// The record that was read to see whether there is one.
+    first: Option<Record>,
+    rest: Records,
     report: ReadReport,
 }
 
@@ -35,17 +38,27 @@ impl LogMeta {
     }
 }
 
-enum Records {
+/// Where the next record comes from.
+pub(crate) enum Records {
     Memory(vec::IntoIter<Record>),
-    Mcap { first: Option<Record>, rest: Box<McapRecords> },
+    Mcap(Box<McapRecords>),
+    Images(ImageFolder),
+}
+
+impl Records {
+    /// The next record in time order; trouble goes into the report.
+    pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
+        match self {
+            Self::Memory(records) => records.next(),
+            Self::Mcap(records) => records.next(report),
+            Self::Images(folder) => folder.next(report),
+        }
+    }
 }
 
 impl Log {
-    pub(crate) fn in_memory(meta: LogMeta, records: Vec<Record>, report: ReadReport) -> Self {
-        Self { meta, records: Records::Memory(records.into_iter()), report }
-    }
-    pub(crate) fn streamed(meta: LogMeta, first: Record, rest: McapRecords, report: ReadReport) -> Self {
-        Self { meta, records: Records::Mcap { first: Some(first), rest: Box::new(rest) }, report }
+    pub(crate) fn new(meta: LogMeta, first: Record, rest: Records, report: ReadReport) -> Self {
+        Self { meta, first: Some(first), rest, report }
     }
     /// Where the log comes from.
     pub fn meta(&self) -> &LogMeta {
@@ -65,10 +78,7 @@ impl Log {
 impl Iterator for Log {
     type Item = Record;
     fn next(&mut self) -> Option<Record> {
-        match &mut self.records {
-            Records::Memory(records) => records.next(),
-            Records::Mcap { first, rest } => first.take().or_else(|| rest.next(&mut self.report)),
-        }
+        self.first.take().or_else(|| self.rest.next(&mut self.report))
     }
 }
 

@@ -1,11 +1,13 @@
 use std::path::Path;
 
+use crate::image_folder::ImageFolder;
+use crate::log::Records;
 use crate::mcap_log::McapRecords;
 use crate::text::{range_bearing, tum, utias};
-use crate::{Format, Log, LogEnd, LogError, LogMeta, ReadReport};
+use crate::{Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record};
 
 /// How to open a log. The default finds out what it can.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct OpenOptions {
     /// The format, when it is not to be detected.
     pub format: Option<Format>,
@@ -13,6 +15,14 @@ pub struct OpenOptions {
     pub robot: Option<u32>,
     /// What the poses of a format that does not say (TUM) are.
     pub poses: PoseKind,
+    /// Frames a second of a folder of images, which has no clock: frame k is k / rate seconds after the start. 30 Hz by default.
+    pub frame_rate_hz: f64,
+}
+
+impl Default for OpenOptions {
+    fn default() -> Self {
+        Self { format: None, robot: None, poses: PoseKind::default(), frame_rate_hz: 30.0 }
+    }
 }
 
 /// What a bare trajectory means.
@@ -30,6 +40,8 @@ pub enum PoseKind {
 /// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings (MCAP: the order of the file).
 /// Text logs are read whole and sorted where rows go backwards, which is reported. MCAP files are read chunk by chunk;
 /// what comes more than 256 records too late is left out, which is reported.
+/// Folders of images are read file by file, in the order of their names, where numbers count by value (`frame9` before `frame10`);
+/// other files are passed over. A file that cannot be read keeps its frame number, so that later stamps stay right.
 ///
 /// # Errors
 /// When nothing usable is there: see [`LogError`]. Single bad rows are no error, they are in [`Log::report`].
@@ -41,25 +53,23 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
     };
     let mut meta = LogMeta { format, origin: None, source: path.into(), robot: None };
     let mut report = ReadReport::default();
-    let records = match format {
+    let in_memory = |records: Vec<Record>| Records::Memory(records.into_iter());
+    let mut records = match format {
         Format::Utias => {
             let robot = utias::choose_robot(path, options.robot)?;
             meta.robot = Some(robot);
-            utias::read(path, robot, &mut report)?
+            in_memory(utias::read(path, robot, &mut report)?)
         }
-        Format::RangeBearing => range_bearing::read(path, &mut report)?,
-        Format::Tum => tum::read(path, options.poses, &mut report)?,
-        Format::Mcap => {
-            let mut records = McapRecords::open(path)?;
-            let first = records.next(&mut report).ok_or_else(|| nothing_in(path, format, &report))?;
-            meta.origin = records.origin();
-            return Ok(Log::streamed(meta, first, records, report));
-        }
+        Format::RangeBearing => in_memory(range_bearing::read(path, &mut report)?),
+        Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
+        Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path)?)),
+        Format::Images => Records::Images(ImageFolder::open(path, options.frame_rate_hz)?),
     };
-    if records.is_empty() {
-        return Err(nothing_in(path, format, &report));
+    let first = records.next(&mut report).ok_or_else(|| nothing_in(path, format, &report))?;
+    if let Records::Mcap(records) = &records {
+        meta.origin = records.origin();
     }
-    Ok(Log::in_memory(meta, records, report))
+    Ok(Log::new(meta, first, records, report))
 }
 
 /// Why there is not a single record: damage, the wrong content, or an empty log.

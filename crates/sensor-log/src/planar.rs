@@ -5,6 +5,9 @@
 
 use wayfix_estimation_traits::wrap_angle;
 
+/// How far from 1 the norm of a quaternion may be where it is checked; a few printed digits give 1e-3.
+pub(crate) const NORM_TOLERANCE: f64 = 0.05;
+
 /// A roll that no robot has and no viewer shows.
 const MAX_RESIDUAL: f64 = 1e-14;
 

@@ -1,6 +1,6 @@
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{Pose2, Pose3};
 
-use crate::Stamp;
+use crate::{EncodedImage, Stamp};
 
 /// One thing that happened, and when.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,14 @@ pub enum Data {
     TrueLandmark(TrueLandmark),
     /// A pose some program estimated.
     EstimatedPose(Pose2<f64>),
+    /// How the camera projects; it holds until the next one.
+    CameraInfo(CameraInfo),
+    /// Where the joints say that the camera is in the robot's frame on the ground: x along the optical axis, y left, z up.
+    CameraMount(Pose3<f64>),
+    /// What the camera saw.
+    Image(EncodedImage),
+    /// What each pixel of the image at the same stamp shows: 0 nothing of the map, k + 1 the map's colour k.
+    TrueLabels(EncodedImage),
 }
 
 impl Data {
@@ -41,6 +49,10 @@ impl Data {
             Self::TruePose(_) => "true pose",
             Self::TrueLandmark(_) => "true landmark",
             Self::EstimatedPose(_) => "estimated pose",
+            Self::CameraInfo(_) => "camera info",
+            Self::CameraMount(_) => "camera mount",
+            Self::Image(_) => "image",
+            Self::TrueLabels(_) => "true labels",
         }
     }
 
@@ -53,6 +65,11 @@ impl Data {
             }
             Self::Sightings(look) => look.iter().all(|s| s.range.is_finite() && s.bearing.is_finite()),
             Self::TrueLandmark(landmark) => landmark.x.is_finite() && landmark.y.is_finite(),
+            Self::CameraInfo(info) => [info.fx, info.fy, info.cx, info.cy].iter().all(|v| v.is_finite()),
+            Self::CameraMount(pose) => {
+                pose.translation.iter().chain(pose.rotation.coords.iter()).all(|v| v.is_finite())
+            }
+            Self::Image(_) | Self::TrueLabels(_) => true,
         };
         if is_finite { Ok(()) } else { Err(self.kind()) }
     }
@@ -65,6 +82,31 @@ pub struct Velocity {
     pub linear: f64,
     /// Counter-clockwise, rad/s.
     pub angular: f64,
+}
+
+/// A pinhole camera. With the camera's x axis along the optical axis, y left, z up, a point is at column $`c_x - f_x y / x`$ and row
+/// $`c_y - f_y z / x`$; pixel (i, j) covers [i, i + 1) × [j, j + 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraInfo {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Horizontal focal length, pixels.
+    pub fx: f64,
+    /// Vertical focal length, pixels.
+    pub fy: f64,
+    /// Column of the optical axis, pixels.
+    pub cx: f64,
+    /// Row of the optical axis, pixels.
+    pub cy: f64,
+}
+
+impl CameraInfo {
+    /// Whether it has pixels and both focal lengths are positive.
+    pub(crate) fn sees(&self) -> bool {
+        self.width > 0 && self.height > 0 && self.fx > 0.0 && self.fy > 0.0
+    }
 }
 
 /// One range and bearing to one thing.

@@ -49,7 +49,7 @@ pub enum LogEnd {
 pub struct Problem {
     /// The file's name, without its folder.
     pub file: String,
-    /// Line of a text file, index of a message in an MCAP file; both count from 1.
+    /// Line of a text file, index of a message in an MCAP file or of an image in its folder; all count from 1.
     pub row: u64,
     /// What kind of trouble.
     pub kind: ProblemKind,
@@ -81,6 +81,8 @@ pub enum ProblemKind {
     Undecodable,
     /// A chunk of messages whose checksum or compression is wrong; left out.
     DamagedChunk,
+    /// A file that is no image, breaks off or claims too many pixels; left out.
+    UnreadableImage,
 }
 
 impl ReadReport {
@@ -148,6 +150,7 @@ impl fmt::Display for ProblemKind {
             Self::TooLate => "too late",
             Self::Undecodable => "undecodable message",
             Self::DamagedChunk => "damaged chunk",
+            Self::UnreadableImage => "unreadable image",
         })
     }
 }

@@ -1,7 +1,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use crate::{Data, Log, LogMeta, ReadReport, Stamp, Target};
+use crate::{Data, ImageSummary, Log, LogMeta, ReadReport, Stamp, Target};
 
 /// What a log holds; `Display` prints it for people.
 ///
@@ -37,6 +37,8 @@ pub struct LogSummary {
     pub unknown_codes: BTreeMap<u32, u64>,
     /// Sightings that say nothing of what they are of.
     pub n_unlabelled: u64,
+    /// Images by kind of record.
+    pub images: BTreeMap<&'static str, ImageSummary>,
     /// What could not be read.
     pub report: ReadReport,
 }
@@ -73,6 +75,7 @@ impl LogSummary {
             robots_seen: BTreeSet::new(),
             unknown_codes: BTreeMap::new(),
             n_unlabelled: 0,
+            images: BTreeMap::new(),
             report: ReadReport::default(),
         };
         for record in log.by_ref() {
@@ -96,6 +99,9 @@ impl LogSummary {
         match data {
             Data::TrueLandmark(landmark) => drop(self.landmarks_surveyed.insert(landmark.id)),
             Data::Sightings(look) => look.iter().for_each(|sighting| self.add_sighting(sighting.target)),
+            Data::Image(image) | Data::TrueLabels(image) => {
+                self.images.entry(data.kind()).or_default().add(image);
+            }
             _ => {}
         }
     }
@@ -130,6 +136,9 @@ impl fmt::Display for LogSummary {
         }
         if self.n_sightings > 0 {
             writeln!(f, "  seen {} times: {}", self.n_sightings, self.what_was_seen().join("; "))?;
+        }
+        for (kind, images) in &self.images {
+            writeln!(f, "  {kind}: {images}")?;
         }
         write!(f, "{}", self.report)
     }

@@ -1,9 +1,10 @@
 //! Probabilistic robot localization on logs: the application behind the command `wayfix`.
 //!
-//! Records of a log go through a [`system`] (for now [`slam`]); [`evaluate`] compares its estimates with truth, [`plot`] draws them,
+//! Records of a log go through a [`system`] ([`slam`], [`color`]); [`evaluate`] compares its estimates with truth, [`plot`] draws them,
 //! [`report`] writes figures and pictures; [`fixtures`] are the stored logs; [`cli`] is the command line.
 
 pub mod cli;
+pub mod color;
 pub mod evaluate;
 pub mod fixtures;
 pub mod plot;

@@ -103,7 +103,10 @@ fn python_peers(options: &Options) -> Vec<Job> {
     let mut kalman =
         job("kalman numpy OpenCV filterpy", shell::command(&python, &["peers/opencv_filterpy_kalman.py"]));
     kalman.missing = pypi(&["numpy", "cv2", "filterpy"], "numpy opencv-python-headless filterpy");
-    let mut jobs = vec![kalman];
+    let mut resampling =
+        job("particle particles", shell::command(&python, &["peers/particles_resampling.py"]));
+    resampling.missing = pypi(&["particles"], "particles");
+    let mut jobs = vec![kalman, resampling];
     jobs.extend(slam_jobs(options, "numpy", &KNOWN, |log, _, job| {
         job.command = shell::command(&python, &["peers/numpy_ekf_slam.py"]);
         job.command.arg(log);

@@ -52,15 +52,13 @@ impl ColorMap {
                 met = Some((decal.color, decal.shape));
             }
         }
-        for post in &self.posts {
-            for band in &post.bands {
-                match post.enter(band, origin, direction) {
-                    Some(at) if at < nearest => {
-                        nearest = at;
-                        met = Some((band.color, post.shape));
-                    }
-                    _ => {}
+        for prism in &self.prisms {
+            match prism.enter(origin, direction) {
+                Some(at) if at < nearest => {
+                    nearest = at;
+                    met = Some((prism.color, prism.shape));
                 }
+                _ => {}
             }
         }
         met.map(|(color, shape)| Hit { color, distance: nearest * direction.norm(), shape })

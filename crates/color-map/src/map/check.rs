@@ -89,9 +89,9 @@ pub(super) fn post(shape: usize, x: f64, y: f64, radius: f64, bands: &[Band]) ->
 }
 
 /// Posts are told which is in front by their places in plan, so no two may overlap there.
-pub(super) fn posts_apart(posts: &[Prism]) -> Result<(), MapError> {
-    for (i, a) in posts.iter().enumerate() {
-        for b in &posts[i + 1..] {
+pub(super) fn posts_apart(prisms: &[Prism]) -> Result<(), MapError> {
+    for (i, a) in prisms.iter().enumerate() {
+        for b in prisms[i + 1..].iter().filter(|b| b.shape != a.shape) {
             let distance_m = ((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)).sqrt();
             let least_m = a.corner_radius + b.corner_radius;
             if distance_m < least_m {

@@ -1,5 +1,5 @@
 use super::{Decal, Extent, Layer, Prism, check};
-use crate::{ColorId, MapError, Shape};
+use crate::{ColorId, MapError, Shape, tree::Tree};
 
 /// A map of coloured surfaces, checked once.
 ///
@@ -26,7 +26,10 @@ pub struct ColorMap {
     shapes: Vec<Shape>,
     extent: Option<Extent>,
     pub(crate) layers: Vec<Layer>,
-    pub(crate) posts: Vec<Prism>,
+    /// One a band.
+    pub(crate) prisms: Vec<Prism>,
+    /// The same surfaces, sorted for any view.
+    pub(crate) tree: Tree,
 }
 
 impl ColorMap {
@@ -35,10 +38,11 @@ impl ColorMap {
     /// # Errors
     /// See [`MapError`]: unknown, too many or equally named colours; polygons with too few corners, without width, not flat or not
     /// convex (1e-6 m are tolerated); posts without radius, with bands out of order, or standing in each other; numbers that are NaN or
-    /// beyond 1e6 m.
+    /// beyond 1e6 m; surfaces that pierce
+    /// each other into more than 200 000 pieces.
     pub fn new(colors: Vec<String>, shapes: Vec<Shape>) -> Result<Self, MapError> {
         check::colors(&colors)?;
-        let (mut layers, mut posts) = (Vec::new(), Vec::new());
+        let (mut layers, mut prisms) = (Vec::new(), Vec::new());
         for (i, shape) in shapes.iter().enumerate() {
             match shape {
                 Shape::Polygon { color, vertices } => {
@@ -50,13 +54,14 @@ impl ColorMap {
                 Shape::Post { x, y, radius, bands } => {
                     check::post(i, *x, *y, *radius, bands)?;
                     bands.iter().try_for_each(|band| check::color(i, band.color, colors.len()))?;
-                    posts.push(Prism::new(i, *x, *y, *radius, bands));
+                    prisms.extend(bands.iter().map(|band| Prism::new(i, *x, *y, *radius, band)));
                 }
             }
         }
-        check::posts_apart(&posts)?;
+        check::posts_apart(&prisms)?;
+        let tree = Tree::build(&layers, &prisms)?;
         let extent = Extent::of(&shapes);
-        Ok(Self { colors, shapes, extent, layers, posts })
+        Ok(Self { colors, shapes, extent, layers, prisms, tree })
     }
 
     /// The names of the colours.

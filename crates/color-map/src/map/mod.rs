@@ -15,4 +15,4 @@ pub use color_map::ColorMap;
 pub use extent::Extent;
 pub(crate) use layer::{Decal, Layer};
 pub(crate) use plane::{HAIR, Plane};
-pub(crate) use prism::Prism;
+pub(crate) use prism::{Prism, SIDES};

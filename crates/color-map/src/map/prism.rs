@@ -1,10 +1,10 @@
 use nalgebra::Vector3;
 
 use super::Plane;
-use crate::Band;
+use crate::{Band, ColorId};
 
 /// Sides of the prism that stands for a post.
-const SIDES: usize = 16;
+pub(crate) const SIDES: usize = 16;
 /// Circumscribed over meant radius, π / (16 sin π/16): the prism's outline is as long as the circle, so the mean of its width over all
 /// directions is the circle's diameter (Cauchy).
 const CORNER_RADIUS: f64 = 1.006_454_542_799_564;
@@ -12,24 +12,26 @@ const CORNER_RADIUS: f64 = 1.006_454_542_799_564;
 const COSINES: [f64; 3] =
     [0.923_879_532_511_286_7, std::f64::consts::FRAC_1_SQRT_2, 0.382_683_432_365_089_84];
 
-/// A post as the solid that is drawn and cast at: a regular upright prism, one solid a band.
+/// A band of a post as the solid that is drawn and cast at: a regular upright prism.
 #[derive(Clone, Debug)]
 pub(crate) struct Prism {
     pub(crate) shape: usize,
+    pub(crate) color: ColorId,
     pub(crate) x: f64,
     pub(crate) y: f64,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
     /// From the centre to a corner.
     pub(crate) corner_radius: f64,
-    pub(crate) bands: Vec<Band>,
     /// Corners in plan, counter-clockwise from +x.
-    pub(crate) corners: [(f64, f64); SIDES],
+    corners: [(f64, f64); SIDES],
     /// Upright planes, outward; side `k` is between corners `k` and `k + 1`.
     pub(crate) sides: [Plane; SIDES],
 }
 
 impl Prism {
-    pub(crate) fn new(shape: usize, x: f64, y: f64, radius: f64, bands: &[Band]) -> Self {
-        let corner_radius = Self::corner_radius_of(radius);
+    pub(crate) fn new(shape: usize, x: f64, y: f64, radius: f64, band: &Band) -> Self {
+        let corner_radius = CORNER_RADIUS * radius;
         let corners = std::array::from_fn(|k| {
             let (cos, sin) = direction(k);
             (x + corner_radius * cos, y + corner_radius * sin)
@@ -39,11 +41,7 @@ impl Prism {
             let normal = Vector3::new(by - ay, ax - bx, 0.0).normalize();
             Plane { normal, offset: normal.x * 0.5 * (ax + bx) + normal.y * 0.5 * (ay + by) }
         });
-        Self { shape, x, y, corner_radius, bands: bands.to_vec(), corners, sides }
-    }
-
-    pub(crate) fn corner_radius_of(radius: f64) -> f64 {
-        CORNER_RADIUS * radius
+        Self { shape, color: band.color, x, y, from: band.from, to: band.to, corner_radius, corners, sides }
     }
 
     /// A corner at a height.
@@ -52,12 +50,27 @@ impl Prism {
         Vector3::new(x, y, z)
     }
 
-    /// Where a ray from outside enters the band's solid, in multiples of `direction`.
-    pub(crate) fn enter(&self, band: &Band, origin: &Vector3<f64>, direction: &Vector3<f64>) -> Option<f64> {
-        let top = Plane { normal: Vector3::z(), offset: band.to };
-        let bottom = Plane { normal: -Vector3::z(), offset: -band.from };
+    /// Centre and radius of a ball around it.
+    pub(crate) fn ball(&self) -> (Vector3<f64>, f64) {
+        let half = 0.5 * (self.to - self.from);
+        let radius = (self.corner_radius * self.corner_radius + half * half).sqrt();
+        (Vector3::new(self.x, self.y, self.from + half), radius)
+    }
+
+    /// The upper end, outward.
+    pub(crate) fn top(&self) -> Plane {
+        Plane { normal: Vector3::z(), offset: self.to }
+    }
+
+    /// The lower end, outward.
+    pub(crate) fn bottom(&self) -> Plane {
+        Plane { normal: -Vector3::z(), offset: -self.from }
+    }
+
+    /// Where a ray from outside enters the solid, in multiples of `direction`.
+    pub(crate) fn enter(&self, origin: &Vector3<f64>, direction: &Vector3<f64>) -> Option<f64> {
         let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
-        for plane in self.sides.iter().chain([&top, &bottom]) {
+        for plane in self.sides.iter().chain(&[self.top(), self.bottom()]) {
             let (outside, speed) = (plane.distance(origin), plane.normal.dot(direction));
             let at = -outside / speed;
             if speed < 0.0 {
@@ -101,7 +114,7 @@ mod tests {
 
     #[test]
     fn the_outline_is_as_long_as_the_circle() {
-        let prism = Prism::new(0, 1.0, -2.0, 0.05, &[]);
+        let prism = Prism::new(0, 1.0, -2.0, 0.05, &Band { color: ColorId(0), from: 0.0, to: 0.2 });
         let length: f64 = (0..SIDES).map(|k| (prism.corner(k + 1, 0.0) - prism.corner(k, 0.0)).norm()).sum();
         assert!((length / (std::f64::consts::TAU * 0.05) - 1.0).abs() < 1e-14);
     }

@@ -38,6 +38,24 @@ pub enum Source {
     ExternalPosition,
     /// Noise on the ranges to a reference at the origin.
     Anchor,
+    /// What a venue is like: its paints, lamps, camera and people.
+    Venue,
+    /// Where a legged robot walks and when it stands.
+    Walk,
+    /// What it looks at.
+    Gaze,
+    /// Errors of its joints.
+    Joints,
+    /// Slip of its feet.
+    Gait,
+    /// The automatic white balance.
+    WhiteBalance,
+    /// Noise of a camera.
+    Picture,
+    /// Robots, ball and referee on the field.
+    Things,
+    /// Where a kidnapped robot is put.
+    Kidnap,
     /// A user's own.
     Other(u32),
 }
@@ -62,6 +80,15 @@ impl Source {
             Self::Mislabel => 14,
             Self::ExternalPosition => 15,
             Self::Anchor => 16,
+            Self::Venue => 17,
+            Self::Walk => 18,
+            Self::Gaze => 19,
+            Self::Joints => 20,
+            Self::Gait => 21,
+            Self::WhiteBalance => 22,
+            Self::Picture => 23,
+            Self::Things => 24,
+            Self::Kidnap => 25,
             Self::Other(n) => (1 << 32) | n as u64,
         }
     }

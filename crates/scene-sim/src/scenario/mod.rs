@@ -1,6 +1,7 @@
 //! Named, seeded set-ups: what fixtures are made of.
 
 mod catalogue;
+mod league;
 mod named;
 mod planar;
 

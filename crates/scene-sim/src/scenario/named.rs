@@ -1,8 +1,9 @@
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{Record, Stamp};
 
-use super::{PlanarParams, catalogue};
+use super::{PlanarParams, catalogue, league};
 use crate::SimError;
+use crate::league::LeagueParams;
 use crate::monobot::MonobotParams;
 use crate::random::Streams;
 
@@ -34,6 +35,8 @@ pub enum ScenarioParams {
     Planar(Box<PlanarParams>),
     /// A robot on a line, one step every 100 ms.
     Monobot(MonobotParams),
+    /// A robot with a camera on the field of the four-legged league.
+    League(Box<LeagueParams>),
 }
 
 impl Scenario {
@@ -42,13 +45,36 @@ impl Scenario {
         catalogue::all()
     }
 
+    /// Those with a camera on the field of the four-legged league: `color_dark` (D1), `color_bright` (D2), `color_switching` (S) and
+    /// `color_kidnapped` (K). All four are in one hall, which is none of the training venues.
+    pub fn in_color() -> Vec<Self> {
+        league::all()
+    }
+
     /// The one called `name`.
     ///
     /// # Errors
     /// When there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
-        let found = Self::all().into_iter().find(|scenario| scenario.name == name);
+        let found = Self::all().into_iter().chain(Self::in_color()).find(|scenario| scenario.name == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
+    }
+
+    /// The same with other draws of everything, and on the four-legged league's field in a hall of its own: light that nobody has seen.
+    ///
+    /// ```
+    /// use wayfix_scene_sim::{Scenario, ScenarioParams};
+    /// let scenario = Scenario::named("color_dark")?.with_seed(100);
+    /// let ScenarioParams::League(params) = &scenario.params else { panic!("the league") };
+    /// assert_eq!((scenario.seed, params.venue_seed), (100, None));
+    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// ```
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        if let ScenarioParams::League(params) = &mut self.params {
+            params.venue_seed = None;
+        }
+        self
     }
 
     /// The log, in time order. Give it a generator seeded with [`seed`](Self::seed) for the log that goes by this name.
@@ -59,6 +85,7 @@ impl Scenario {
         let mut streams = Streams::new(rng);
         match &self.params {
             ScenarioParams::Planar(params) => params.simulate(&mut streams),
+            ScenarioParams::League(params) => params.simulate(streams),
             ScenarioParams::Monobot(params) => {
                 let run = params.simulate(&mut streams)?;
                 Ok(run.records(Stamp::from_nanoseconds(1_600_000_000_000_000_000), 100))

@@ -4,6 +4,7 @@ use foxglove::messages::{self, Odometry, PointCloud, PoseInFrame, Timestamp};
 use prost::Message;
 use wayfix_estimation_traits::Pose2;
 
+use super::camera;
 use super::cloud::{self, Slot};
 use super::routes::Route;
 use crate::planar::heading_of;
@@ -22,6 +23,11 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
         Route::Increment => pose_record(bytes, log_time, Data::OdometryIncrement),
         Route::TruePose => pose_record(bytes, log_time, Data::TruePose),
         Route::EstimatedPose => pose_record(bytes, log_time, Data::EstimatedPose),
+        Route::CameraInfo => camera::info(bytes, log_time),
+        Route::CameraMount => camera::mount(bytes, log_time),
+        Route::CameraOptical => Ok(Vec::new()),
+        Route::Image => camera::image(bytes, log_time, Data::Image),
+        Route::TrueLabels => camera::image(bytes, log_time, Data::TrueLabels),
         Route::Sightings => {
             let cloud: PointCloud = decode(bytes)?;
             Ok(vec![Record {
@@ -38,11 +44,11 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
     }
 }
 
-fn decode<M: Message + Default>(bytes: &[u8]) -> Result<M, Fault> {
+pub(super) fn decode<M: Message + Default>(bytes: &[u8]) -> Result<M, Fault> {
     M::decode(bytes).map_err(|error| (ProblemKind::Undecodable, error.to_string()))
 }
 
-fn stamp(timestamp: Option<Timestamp>, log_time: Stamp) -> Result<Stamp, Fault> {
+pub(super) fn stamp(timestamp: Option<Timestamp>, log_time: Stamp) -> Result<Stamp, Fault> {
     let Some(timestamp) = timestamp else { return Ok(log_time) };
     timestamp
         .normalize()
@@ -120,13 +126,13 @@ fn read_points<T>(cloud: &PointCloud, read: impl Fn(&[u8]) -> Option<T>) -> Resu
         .ok_or_else(|| inconsistent("point cloud whose bytes do not fit its fields"))
 }
 
-fn finite(numbers: impl IntoIterator<Item = f64>) -> Result<(), Fault> {
+pub(super) fn finite(numbers: impl IntoIterator<Item = f64>) -> Result<(), Fault> {
     match numbers.into_iter().find(|number| !number.is_finite()) {
         None => Ok(()),
         Some(number) => Err((ProblemKind::NotFinite, format!("{number} is not finite"))),
     }
 }
 
-fn inconsistent(reason: &str) -> Fault {
+pub(super) fn inconsistent(reason: &str) -> Fault {
     (ProblemKind::Inconsistent, reason.to_owned())
 }

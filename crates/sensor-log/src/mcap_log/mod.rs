@@ -1,5 +1,6 @@
 //! MCAP files with Foxglove protobuf messages.
 
+mod camera;
 mod chunk;
 mod cloud;
 mod decode;

@@ -4,8 +4,8 @@ use crate::{Data, Record, Stamp};
 
 /// Records held back so that one that comes late still finds its place.
 const WINDOW_RECORDS: usize = 256;
-/// Sightings held back at most, so that large messages do not fill the memory.
-const WINDOW_SIGHTINGS: usize = 1 << 20;
+/// Bytes of sightings and images held back at most, so that large messages do not fill the memory.
+const WINDOW_BYTES: usize = 32 << 20;
 
 /// Puts records that come slightly out of order back into it, with bounded memory.
 ///
@@ -13,7 +13,7 @@ const WINDOW_SIGHTINGS: usize = 1 << 20;
 #[derive(Debug, Default)]
 pub(super) struct Reorder {
     held: BTreeMap<(Stamp, u64), Record>,
-    n_sightings: usize,
+    n_bytes: usize,
     n_pushed: u64,
     last_out: Stamp,
 }
@@ -30,7 +30,7 @@ impl Reorder {
         if stamp < self.last_out {
             return Err(TooLate { stamp, last_out: self.last_out });
         }
-        self.n_sightings += n_sightings(&record);
+        self.n_bytes += n_bytes(&record);
         self.n_pushed += 1;
         self.held.insert((stamp, self.n_pushed), record);
         Ok(())
@@ -38,7 +38,7 @@ impl Reorder {
 
     /// The earliest record once enough others are known.
     pub(super) fn pop_ready(&mut self) -> Option<Record> {
-        let is_ready = self.held.len() > WINDOW_RECORDS || self.n_sightings > WINDOW_SIGHTINGS;
+        let is_ready = self.held.len() > WINDOW_RECORDS || self.n_bytes > WINDOW_BYTES;
         if is_ready { self.pop() } else { None }
     }
 
@@ -46,14 +46,16 @@ impl Reorder {
     pub(super) fn pop(&mut self) -> Option<Record> {
         let ((stamp, _), record) = self.held.pop_first()?;
         self.last_out = stamp;
-        self.n_sightings -= n_sightings(&record);
+        self.n_bytes -= n_bytes(&record);
         Some(record)
     }
 }
 
-fn n_sightings(record: &Record) -> usize {
+/// What a record holds besides itself.
+fn n_bytes(record: &Record) -> usize {
     match &record.data {
-        Data::Sightings(look) => look.len(),
+        Data::Sightings(look) => size_of_val(look.as_slice()),
+        Data::Image(image) | Data::TrueLabels(image) => image.bytes.len(),
         _ => 0,
     }
 }

@@ -9,6 +9,12 @@ pub(super) enum Route {
     TruePose,
     TrueLandmarks,
     EstimatedPose,
+    CameraInfo,
+    CameraMount,
+    /// Known, and nothing to read: the turn is always the same.
+    CameraOptical,
+    Image,
+    TrueLabels,
 }
 
 impl Route {
@@ -21,6 +27,11 @@ impl Route {
             topics::TRUE_POSE => (Self::TruePose, "foxglove.PoseInFrame"),
             topics::TRUE_LANDMARKS => (Self::TrueLandmarks, "foxglove.PointCloud"),
             topics::ESTIMATED_POSE => (Self::EstimatedPose, "foxglove.PoseInFrame"),
+            topics::CAMERA_INFO => (Self::CameraInfo, "foxglove.CameraCalibration"),
+            topics::CAMERA_MOUNT => (Self::CameraMount, "foxglove.FrameTransform"),
+            topics::CAMERA_OPTICAL => (Self::CameraOptical, "foxglove.FrameTransform"),
+            topics::IMAGE => (Self::Image, "foxglove.CompressedImage"),
+            topics::TRUE_LABELS => (Self::TrueLabels, "foxglove.CompressedImage"),
             _ => return None,
         };
         (schema == expected && encoding == "protobuf").then_some(route)

@@ -8,6 +8,12 @@
 //! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |
 //! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
 //! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
+//! | [`CAMERA_INFO`] | `foxglove.CameraCalibration` | [`CAMERA_OPTICAL_FRAME`] | [`Data::CameraInfo`](crate::Data::CameraInfo) |
+//! | [`CAMERA_MOUNT`] | `foxglove.FrameTransform` | [`CAMERA_FRAME`] in [`BODY_FRAME`] | [`Data::CameraMount`](crate::Data::CameraMount) |
+//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::Image`](crate::Data::Image) |
+//! | [`TRUE_LABELS`] | `foxglove.CompressedImage`, grey PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::TrueLabels`](crate::Data::TrueLabels) |
+//!
+//! With every camera mount, [`CAMERA_OPTICAL`] places the optical frame (z forward, x right, y down) that viewers draw images in.
 //!
 //! A metadata record `wayfix` with the key `origin` names the format that the records come from, when it was another one.
 //!
@@ -26,9 +32,24 @@ pub const TRUE_LANDMARKS: &str = "/truth/landmarks";
 /// Where some program thinks the robot was.
 pub const ESTIMATED_POSE: &str = "/estimate/pose";
 
+/// How the camera projects.
+pub const CAMERA_INFO: &str = "/camera/info";
+/// Where the camera is on the robot.
+pub const CAMERA_MOUNT: &str = "/camera/mount";
+/// The camera's axes turned as viewers want them; not read back.
+pub const CAMERA_OPTICAL: &str = "/camera/optical";
+/// What the camera saw.
+pub const IMAGE: &str = "/camera/image";
+/// What each pixel shows.
+pub const TRUE_LABELS: &str = "/truth/labels";
+
 /// The fixed frame.
 pub const WORLD_FRAME: &str = "world";
 /// The frame that wheel odometry drifts in.
 pub const ODOMETRY_FRAME: &str = "odom";
 /// The robot: x forward, y left.
 pub const BODY_FRAME: &str = "base_link";
+/// The camera: x along the optical axis, y left, z up.
+pub const CAMERA_FRAME: &str = "camera";
+/// The camera as images have it: z along the optical axis, x right, y down.
+pub const CAMERA_OPTICAL_FRAME: &str = "camera_optical";

@@ -9,6 +9,7 @@ use mcap::WriteOptions;
 use mcap::records::MessageHeader;
 use wayfix_estimation_traits::Pose2;
 
+use super::camera;
 use super::drawing::scene_update;
 use super::{Drawing, encode, origin, topics};
 use crate::{Data, Format, LogError, Record, Stamp, TrueLandmark};
@@ -93,10 +94,12 @@ impl<W: Write + Seek> McapWriter<W> {
     /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).
     ///
     /// # Errors
-    /// When a number is not finite, the stamp is beyond the year 2106, or the output fails.
+    /// When a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says, the stamp
+    /// is beyond the year 2106, or the output fails.
     pub fn record(&mut self, record: &Record) -> Result<(), LogError> {
         let stamp = record.stamp;
         record.data.check_finite().map_err(|what| LogError::NotFinite { what, stamp })?;
+        camera::check(record)?;
         if let Data::TrueLandmark(landmark) = record.data {
             if stamp != self.landmarks_stamp {
                 self.flush_landmarks()?;
@@ -122,6 +125,17 @@ impl<W: Write + Seek> McapWriter<W> {
                 self.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)
             }
             Data::TrueLandmark(_) => Ok(()),
+            Data::CameraInfo(info) => {
+                self.message(topics::CAMERA_INFO, stamp, &camera::encode_info(timestamp, info))
+            }
+            Data::CameraMount(pose) => {
+                self.message(topics::CAMERA_MOUNT, stamp, &camera::encode_mount(timestamp, pose))?;
+                self.message(topics::CAMERA_OPTICAL, stamp, &camera::encode_optical(timestamp))
+            }
+            Data::Image(image) => self.message(topics::IMAGE, stamp, &camera::encode_image(timestamp, image)),
+            Data::TrueLabels(image) => {
+                self.message(topics::TRUE_LABELS, stamp, &camera::encode_image(timestamp, image))
+            }
         }
     }
 

@@ -10,11 +10,8 @@ use wayfix_estimation_traits::Pose2;
 use super::Lines;
 use super::row::{RowError, columns, number, stamp};
 use super::time_check::TimeCheck;
-use crate::planar::{heading_of, quaternion_of};
+use crate::planar::{NORM_TOLERANCE, heading_of, quaternion_of};
 use crate::{Data, LogError, PoseKind, ProblemKind, ReadReport, Record, WriteReport};
-
-/// How far from 1 the norm of a quaternion may be; a few printed digits give 1e-3.
-const NORM_TOLERANCE: f64 = 0.05;
 
 pub(crate) fn looks_like(row: &str) -> bool {
     parse(row, PoseKind::default()).is_ok()

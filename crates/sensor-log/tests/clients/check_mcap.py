@@ -1,17 +1,24 @@
 #!/usr/bin/env python3
 """Decodes every message of an MCAP file with the Python packages mcap and mcap-protobuf-support.
 
-Prints topic, schema and count. Fails when a message does not decode, there is none, or an expected topic is missing.
+Prints topic, schema and count. Fails when a message does not decode, there is none, or an expected topic is missing. Images are
+decoded with Pillow, where it is installed.
 
-    pip install mcap mcap-protobuf-support
+    pip install mcap mcap-protobuf-support pillow
     check_mcap.py FILE.mcap [TOPIC...]
 """
 
 import collections
+import io
 import sys
 
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
+
+try:
+    from PIL import Image
+except ImportError:
+    Image = None
 
 
 def main(path, expected_topics):
@@ -21,6 +28,8 @@ def main(path, expected_topics):
         for schema, channel, _, message in reader.iter_decoded_messages():
             if not message.ListFields() and schema.name != "foxglove.SceneUpdate":
                 sys.exit(f"{path}: empty message on {channel.topic}")
+            if Image is not None and schema.name == "foxglove.CompressedImage":
+                Image.open(io.BytesIO(message.data)).load()
             counts[channel.topic, schema.name] += 1
         statistics = reader.get_summary().statistics
     for (topic, schema), count in sorted(counts.items()):

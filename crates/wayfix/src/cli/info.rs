@@ -9,9 +9,9 @@ use super::output::print;
 #[derive(clap::Args)]
 #[command(after_long_help = FORMATS)]
 pub(super) struct Arguments {
-    /// The log: a file, or the folder of a UTIAS set.
+    /// The log: a file, or the folder of a UTIAS set or of images.
     path: PathBuf,
-    /// How it is stored: utias, range-bearing, tum or mcap [default: found out by looking].
+    /// How it is stored: utias, range-bearing, tum, mcap or images [default: found out by looking].
     #[arg(long)]
     format: Option<Format>,
     /// Which robot, in sets of several.
@@ -31,7 +31,9 @@ Formats:
   tum            t x y z qx qy qz qw lines: poses only
   mcap           Foxglove protobuf messages on /odom/velocity (Odometry) or /odom/increment (PoseInFrame),
                  /sightings (PointCloud with range, bearing, kind, id), /truth/pose (PoseInFrame),
-                 /truth/landmarks (PointCloud with x, y, id)";
+                 /truth/landmarks (PointCloud with x, y, id), /camera/info (CameraCalibration), /camera/mount
+                 (FrameTransform), /camera/image and /truth/labels (CompressedImage)
+  images         a folder of PNG and JPEG files, frames by name, 30 Hz";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };

@@ -1,12 +1,14 @@
 //! The command line: one command a file.
 
 mod convert;
+mod finish;
 mod fixtures;
 mod info;
 mod input;
 mod output;
 mod progress;
 mod regress;
+mod run_color;
 mod run_slam;
 
 use std::process::ExitCode;
@@ -19,6 +21,7 @@ use clap::{Parser, Subcommand};
 ///   wayfix info slam_100.txt                      what a log holds
 ///   wayfix run slam --log slam_100.txt            trajectory and map, with figures where the log has truth
 ///   wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results
+///   wayfix run color --log color_dark.mcap --map four-legged-field.toml
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
@@ -44,12 +47,14 @@ enum Command {
 #[derive(Subcommand)]
 enum Run {
     Slam(run_slam::Arguments),
+    Color(run_color::Arguments),
 }
 
 /// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
 pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(Run::Slam(arguments)) => run_slam::main(arguments),
+        Command::Run(Run::Color(arguments)) => run_color::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
         Command::Regress(arguments) => regress::main(arguments),

@@ -5,15 +5,16 @@ use std::{
 };
 
 use anyhow::{Context, Result};
-use wayfix_sensor_log::{Format, LogEnd, LogMeta, OpenOptions, ReadReport, Record};
+use wayfix_sensor_log::{Format, LogMeta, OpenOptions, Record};
 
 use super::{
+    finish::{self, ESTIMATES},
     input::read_toml,
     output::{print, tell},
     progress,
 };
 use crate::{
-    report::{Machine, Report, Run, RunSummary, Suite, table, table::TableStyle},
+    report::Run,
     slam::{self, AssociationRule, EstimateLog, Profile, SlamRun, SlamSystemParams},
     system::Stopwatch,
 };
@@ -102,30 +103,21 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let stopwatch = Stopwatch::start();
     let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
     let mut slam = run(&records, &params, estimates.as_mut())?;
-    tell_refusals(&mut slam);
-    count_problems(&mut slam, &read);
+    finish::account(slam.events(), &read);
 
     let mut run = Run {
         name: arguments.log.display().to_string(),
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..slam::summarize(&mut slam)
     };
-    let figures = if arguments.json {
-        serde_json::to_string(&RunSummary::new(&run, arguments.seed))? + "\n"
-    } else {
-        table::run(&run, TableStyle::of_stdout())
-    };
-    if let (Some(out), Some(estimates)) = (&arguments.out, estimates) {
+    if let Some(estimates) = estimates {
         estimates.finish()?;
         run.log = Some(ESTIMATES.to_owned());
         run.figures = slam::pictures(&slam)?;
-        write_report(out, run, arguments.seed)?;
     }
-    print(figures)?;
+    finish::show("slam", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
     Ok(ExitCode::SUCCESS)
 }
-
-const ESTIMATES: &str = "estimates.mcap";
 
 fn params(arguments: &Arguments, meta: &LogMeta) -> Result<SlamSystemParams> {
     let profile = arguments.profile.unwrap_or(Profile::of_log(meta));
@@ -161,33 +153,4 @@ fn run(
     });
     bar.finish_and_clear();
     slam
-}
-
-fn tell_refusals(slam: &mut SlamRun) {
-    let events = slam.events();
-    for refusal in events.refusals() {
-        tell(format!("refused {refusal}"));
-    }
-    let n_unlisted = events.n_refusals() - events.refusals().len() as u64;
-    if n_unlisted > 0 {
-        tell(format!("refused … and {n_unlisted} more"));
-    }
-}
-
-fn count_problems(slam: &mut SlamRun, read: &ReadReport) {
-    slam.events().add("log_problem", read.n_problems());
-    if read.end != LogEnd::Complete {
-        slam.events().count("log_incomplete");
-    }
-}
-
-fn write_report(out: &Path, run: Run, seed: u64) -> Result<()> {
-    for (number, figure) in run.figures.iter().enumerate() {
-        let path = out.join(format!("figure-{}.svg", number + 1));
-        fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;
-    }
-    let suites = vec![Suite { name: "slam".to_owned(), runs: vec![run] }];
-    Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
-    tell(format!("wrote index.html, report.json, {ESTIMATES} and the figures as SVG to {}", out.display()));
-    Ok(())
 }

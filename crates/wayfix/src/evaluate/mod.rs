@@ -1,11 +1,13 @@
 //! Figures of a trajectory and a map against truth, as `docs/accuracy.md` defines them.
 
 mod alignment;
+mod interval;
 mod landmarks;
 mod trajectory;
 mod truth;
 
 pub use alignment::{align, rms_distance};
+pub use interval::{MeanInterval, proportion_interval};
 pub use landmarks::{Correspondence, landmark_errors};
 pub use trajectory::{Sample, TrajectoryErrors, trajectory_errors};
 pub use truth::TrueTrack;

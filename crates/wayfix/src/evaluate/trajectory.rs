@@ -20,6 +20,16 @@ impl Sample {
         self.estimate.local(&self.truth)
     }
 
+    /// Distance between the positions, m.
+    pub fn position_error(&self) -> f64 {
+        (self.estimate.translation - self.truth.translation).norm()
+    }
+
+    /// Angle between the headings, rad, not negative.
+    pub fn heading_error(&self) -> f64 {
+        wrap_angle(self.estimate.heading() - self.truth.heading()).abs()
+    }
+
     /// Normalized estimation error squared, $`e^T P^{-1} e`$ with $`e`$ the truth seen from the estimate; chi-squared with three degrees
     /// of freedom for an honest filter. `None` while some direction is known exactly.
     pub fn nees(&self) -> Option<f64> {
@@ -46,8 +56,7 @@ pub struct TrajectoryErrors {
 pub fn trajectory_errors(samples: &[Sample]) -> Option<TrajectoryErrors> {
     let positions = samples.iter().map(|sample| (sample.estimate.translation, sample.truth.translation));
     let identity = Pose2::new(0.0, 0.0, 0.0);
-    let squared_turns =
-        samples.iter().map(|sample| wrap_angle(sample.estimate.heading() - sample.truth.heading()).powi(2));
+    let squared_turns = samples.iter().map(|sample| sample.heading_error().powi(2));
     let nees: Vec<f64> = samples.iter().filter_map(Sample::nees).collect();
     Some(TrajectoryErrors {
         ate_rmse: rms_distance(positions.clone(), &identity)?,

@@ -1,4 +1,5 @@
 use super::axis::{Axis, Scale};
+use super::ellipse::ellipse;
 use super::ink::Ink;
 use super::layout::{Frame, PANEL_WIDTH, Plate, no_data};
 use super::legend::{Legend, Mark};
@@ -33,6 +34,8 @@ pub struct MapPlot {
     pub landmarks: Vec<EstimatedLandmark>,
     /// Where the landmarks are.
     pub true_landmarks: Vec<(f64, f64)>,
+    /// Lines on the floor, walls: drawn faintly beneath.
+    pub surroundings: Vec<Vec<(f64, f64)>>,
 }
 
 /// A landmark of the map.
@@ -55,7 +58,11 @@ impl MapPlot {
     /// # Errors
     /// When the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
-        let ellipses: Vec<Vec<(f64, f64)>> = self.landmarks.iter().map(EstimatedLandmark::ellipse).collect();
+        let ellipses: Vec<Vec<(f64, f64)>> = self
+            .landmarks
+            .iter()
+            .map(|landmark| ellipse(landmark.position, landmark.covariance, 2.0))
+            .collect();
         let Some((x, y, height)) = self.axes(&ellipses) else { return no_data(&self.title) };
         let frame = Frame { title: &self.title, alt: self.alt(), legend: self.legend(), x_label: "x, m" };
         let plate = Plate { heading: "y, m".to_owned(), x, y, height };
@@ -63,6 +70,7 @@ impl MapPlot {
     }
 
     fn fill(&self, panel: &Panel, ellipses: &[Vec<(f64, f64)>]) -> Result<(), PlotError> {
+        self.surroundings.iter().try_for_each(|line| panel.path(line, Ink::Grid, 1.6))?;
         panel.path(&self.dead_reckoning, Ink::DEAD_RECKONING, 1.1)?;
         panel.path(&self.truth, Ink::TRUTH, 1.4)?;
         panel.path(&self.estimate, Ink::ESTIMATE, 1.4)?;
@@ -99,6 +107,7 @@ impl MapPlot {
         let means = self.landmarks.iter().map(|landmark| landmark.position);
         let core: Vec<_> = [&self.truth, &self.estimate, &self.true_landmarks]
             .into_iter()
+            .chain(&self.surroundings)
             .flatten()
             .copied()
             .chain(means)
@@ -118,26 +127,6 @@ impl MapPlot {
         let height = (PANEL_WIDTH * shape).round();
         Some((x.widened(metres_wide), y.widened(metres_wide * height / PANEL_WIDTH), height))
             .map(|(x, y, height)| (Axis::linear(x.low, x.high), Axis::linear(y.low, y.high), height))
-    }
-}
-
-impl EstimatedLandmark {
-    /// Points on the 2σ ellipse, first and last the same: $`μ + 2 L (\cos φ, \sin φ)`$ with the Cholesky factor $`L`$.
-    fn ellipse(&self) -> Vec<(f64, f64)> {
-        const N_POINTS: u32 = 48;
-        let [[xx, xy], [_, yy]] = self.covariance;
-        let l_xx = xx.sqrt();
-        let l_yx = xy / l_xx;
-        let l_yy = (yy - l_yx * l_yx).sqrt();
-        if !(l_xx > 0.0 && l_yy > 0.0 && l_yx.is_finite()) {
-            return Vec::new();
-        }
-        let point = |k: u32| {
-            let (sin, cos) =
-                (std::f64::consts::TAU * f64::from(k % N_POINTS) / f64::from(N_POINTS)).sin_cos();
-            (self.position.0 + 2.0 * l_xx * cos, self.position.1 + 2.0 * (l_yx * cos + l_yy * sin))
-        };
-        (0..=N_POINTS).map(point).collect()
     }
 }
 

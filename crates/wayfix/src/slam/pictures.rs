@@ -49,6 +49,7 @@ fn map(run: &SlamRun, samples: &[(Keyframe, Sample)]) -> MapPlot {
             })
             .collect(),
         true_landmarks: run.true_landmarks.values().map(|position| (position.x, position.y)).collect(),
+        surroundings: Vec::new(),
     }
 }
 

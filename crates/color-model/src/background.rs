@@ -1,0 +1,62 @@
+/// How pixels look that show nothing of the map.
+///
+/// Densities of two poses are comparable only when both explain every pixel of the image; a pixel without a label counts as background.
+/// Uniform over the $`256^3`$ colours unless learned. An own one: [`Background::Histogram`] from pixels that are known to be no part of the map.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Background {
+    /// Every YUV value is as likely as any other.
+    #[default]
+    Uniform,
+    /// As often as it was seen, in 4096 cells of 16 × 16 × 16, each with one pixel added so that nothing is impossible.
+    Histogram(Vec<f64>),
+}
+
+const CELLS: usize = 1 << 12;
+const COLOURS: f64 = 16_777_216.0;
+
+impl Background {
+    /// Learns from pixels that show nothing of the map; none give the uniform density.
+    ///
+    /// ```
+    /// use wayfix_color_model::Background;
+    /// let wall = Background::learned([[200, 120, 130]; 5000].iter().copied());
+    /// assert!(wall.log_density([201, 121, 131]) > Background::Uniform.log_density([201, 121, 131]) + 5.0);
+    /// ```
+    pub fn learned(pixels: impl IntoIterator<Item = [u8; 3]>) -> Self {
+        let mut counts = vec![1.0; CELLS];
+        for pixel in pixels {
+            counts[cell(pixel)] += 1.0;
+        }
+        let total: f64 = counts.iter().sum();
+        let log_density = |count: f64| (count / total * CELLS as f64 / COLOURS).ln();
+        Self::Histogram(counts.into_iter().map(log_density).collect())
+    }
+
+    /// $`\ln p_{bg}(c)`$ of a pixel, nats.
+    pub fn log_density(&self, pixel: [u8; 3]) -> f64 {
+        match self {
+            Self::Uniform => -COLOURS.ln(),
+            Self::Histogram(cells) => cells.get(cell(pixel)).copied().unwrap_or(-COLOURS.ln()),
+        }
+    }
+}
+
+fn cell([y, u, v]: [u8; 3]) -> usize {
+    (usize::from(y >> 4) << 8) | (usize::from(u >> 4) << 4) | usize::from(v >> 4)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn densities_sum_to_one_over_all_colours() {
+        let learned = Background::learned([[10, 20, 30], [10, 20, 31], [250, 0, 255]]);
+        for background in [learned, Background::Uniform] {
+            let centre = |k: usize| [(k >> 8) as u8 * 16, ((k >> 4) & 15) as u8 * 16, (k & 15) as u8 * 16];
+            let sum: f64 =
+                (0..CELLS).map(|k| background.log_density(centre(k)).exp() * COLOURS / CELLS as f64).sum();
+            assert!((sum - 1.0).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,221 @@
+use wayfix_color_map::ColorId;
+
+use super::NO_COLOR;
+use crate::ColorModelError;
+
+/// Pixels of one colour that hang together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blob {
+    /// Their colour.
+    pub color: ColorId,
+    /// How many.
+    pub n_pixels: usize,
+    /// First and last column.
+    pub columns: (usize, usize),
+    /// First and last row.
+    pub rows: (usize, usize),
+    /// Mean of the pixels' centres, (u, v) in pixels: the first pixel's centre is (0.5, 0.5).
+    pub centroid: (f64, f64),
+}
+
+/// Finds the blobs of a classified image, 255 being background; neighbours touch at an edge or a corner. Ordered by their first pixel.
+///
+/// Runs of equal labels are joined to those that they touch in the row above, and each set of runs is a blob: time in proportion to the pixels.
+///
+/// ```
+/// use wayfix_color_map::ColorId;
+/// use wayfix_color_model::find_blobs;
+/// let labels = [
+///     0, 0, 255, 1, //
+///     255, 255, 0, 1, // touches the two above at a corner
+/// ];
+/// let blobs = find_blobs(&labels, 4)?;
+/// assert_eq!(blobs.len(), 2);
+/// assert_eq!((blobs[0].n_pixels, blobs[0].columns, blobs[0].rows), (3, (0, 2), (0, 1)));
+/// assert_eq!((blobs[1].color, blobs[1].centroid), (ColorId(1), (3.5, 1.0)));
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
+///
+/// # Errors
+/// When the labels do not fill rows of `width` pixels, or there are none.
+pub fn find_blobs(labels: &[u8], width: usize) -> Result<Vec<Blob>, ColorModelError> {
+    if labels.is_empty() || width == 0 || !labels.len().is_multiple_of(width) {
+        let height = labels.len().checked_div(width).unwrap_or(0);
+        let (expected, got) = (width.saturating_mul(height.max(1)), labels.len());
+        return Err(ColorModelError::ImageSize { width, height, expected, got });
+    }
+    let mut runs = Runs::default();
+    for (row, labels) in labels.chunks_exact(width).enumerate() {
+        runs.add_row(row, labels);
+    }
+    Ok(runs.blobs())
+}
+
+/// Pixels of a row with the same label.
+struct Run {
+    label: u8,
+    row: usize,
+    start: usize,
+    end: usize,
+}
+
+/// All runs so far, as a forest whose roots are the first runs of their blobs.
+#[derive(Default)]
+struct Runs {
+    runs: Vec<Run>,
+    parent: Vec<usize>,
+    /// Where the runs of the last row begin.
+    last_row: usize,
+}
+
+impl Runs {
+    fn add_row(&mut self, row: usize, labels: &[u8]) {
+        let first = self.runs.len();
+        let mut above = self.last_row;
+        let mut start = 0;
+        for same in labels.chunk_by(|a, b| a == b) {
+            let end = start + same.len();
+            if same[0] != NO_COLOR {
+                let at = self.runs.len();
+                self.runs.push(Run { label: same[0], row, start, end });
+                self.parent.push(at);
+                above = self.join_above(at, above, first);
+            }
+            start = end;
+        }
+        self.last_row = first;
+    }
+
+    /// Joins run `at` to those it touches among `above..first`; gives the first that the next run of this row may still touch.
+    fn join_above(&mut self, at: usize, mut above: usize, first: usize) -> usize {
+        let (start, end, label) = (self.runs[at].start, self.runs[at].end, self.runs[at].label);
+        while above < first && self.runs[above].start <= end {
+            if self.runs[above].end >= start && self.runs[above].label == label {
+                self.join(above, at);
+            }
+            if self.runs[above].end > end {
+                break; // it reaches beyond this run
+            }
+            above += 1;
+        }
+        // The last one may end where the next run begins, and touch that at a corner.
+        above.saturating_sub(1).max(self.last_row)
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
+
+    fn root(&mut self, mut at: usize) -> usize {
+        while self.parent[at] != at {
+            self.parent[at] = self.parent[self.parent[at]];
+            at = self.parent[at];
+        }
+        at
+    }
+
+    fn blobs(mut self) -> Vec<Blob> {
+        let mut blobs: Vec<Blob> = Vec::new();
+        let mut blob_of = vec![0; self.runs.len()];
+        for at in 0..self.runs.len() {
+            let root = self.root(at);
+            let run = &self.runs[at];
+            let blob = Blob {
+                color: ColorId(run.label),
+                n_pixels: run.end - run.start,
+                columns: (run.start, run.end - 1),
+                rows: (run.row, run.row),
+                centroid: (0.5 * (run.start + run.end) as f64, run.row as f64 + 0.5),
+            };
+            if root == at {
+                blob_of[at] = blobs.len();
+                blobs.push(blob);
+            } else {
+                // Roots come first.
+                blobs[blob_of[root]].absorb(&blob);
+            }
+        }
+        blobs
+    }
+}
+
+impl Blob {
+    fn absorb(&mut self, other: &Self) {
+        let n_pixels = self.n_pixels + other.n_pixels;
+        let share = other.n_pixels as f64 / n_pixels as f64;
+        self.centroid.0 += (other.centroid.0 - self.centroid.0) * share;
+        self.centroid.1 += (other.centroid.1 - self.centroid.1) * share;
+        self.columns = (self.columns.0.min(other.columns.0), self.columns.1.max(other.columns.1));
+        self.rows = (self.rows.0.min(other.rows.0), self.rows.1.max(other.rows.1));
+        self.n_pixels = n_pixels;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// Pixel by pixel: floods from every pixel that has no blob yet.
+    fn flooded(labels: &[u8], width: usize) -> Vec<(u8, Vec<usize>)> {
+        let height = labels.len() / width;
+        let mut done = vec![false; labels.len()];
+        let mut blobs = Vec::new();
+        for seed in 0..labels.len() {
+            if done[seed] || labels[seed] == NO_COLOR {
+                continue;
+            }
+            let (mut pixels, mut open) = (Vec::new(), vec![seed]);
+            done[seed] = true;
+            while let Some(at) = open.pop() {
+                pixels.push(at);
+                let (u, v) = (at % width, at / width);
+                for y in v.saturating_sub(1)..=(v + 1).min(height - 1) {
+                    for x in u.saturating_sub(1)..=(u + 1).min(width - 1) {
+                        let next = y * width + x;
+                        if !done[next] && labels[next] == labels[seed] {
+                            done[next] = true;
+                            open.push(next);
+                        }
+                    }
+                }
+            }
+            blobs.push((labels[seed], pixels));
+        }
+        blobs
+    }
+
+    #[test]
+    fn blobs_of_random_images_are_what_flooding_finds() {
+        let mut rng = ChaCha8Rng::seed_from_u64(431);
+        for _ in 0..3000 {
+            let (width, height) = (rng.random_range(1..14), rng.random_range(1..14));
+            let n_labels = rng.random_range(1..4);
+            let label = |k: u8| if k == 0 { NO_COLOR } else { k - 1 };
+            let labels: Vec<u8> =
+                (0..width * height).map(|_| label(rng.random_range(0..=n_labels))).collect();
+            let (blobs, flooded) = (find_blobs(&labels, width).unwrap(), flooded(&labels, width));
+            assert_eq!(blobs.len(), flooded.len(), "{width} {labels:?}");
+            for (blob, (label, pixels)) in blobs.iter().zip(&flooded) {
+                assert_eq!((blob.color.0, blob.n_pixels), (*label, pixels.len()));
+                let columns = || pixels.iter().map(|at| at % width);
+                let rows = || pixels.iter().map(|at| at / width);
+                assert_eq!(blob.columns, (columns().min().unwrap(), columns().max().unwrap()));
+                assert_eq!(blob.rows, (rows().min().unwrap(), rows().max().unwrap()));
+                let mean = |sum: usize| sum as f64 / pixels.len() as f64 + 0.5;
+                assert!((blob.centroid.0 - mean(columns().sum())).abs() < 1e-9);
+                assert!((blob.centroid.1 - mean(rows().sum())).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn labels_that_are_no_image_are_refused() {
+        for (n, width) in [(0, 0), (0, 4), (6, 0), (6, 4)] {
+            assert!(find_blobs(&vec![0; n], width).is_err());
+        }
+        assert!(find_blobs(&[NO_COLOR; 6], 3).unwrap().is_empty());
+    }
+}

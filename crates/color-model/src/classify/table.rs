@@ -1,0 +1,96 @@
+use super::{Classifier, NO_COLOR, classifier::Row};
+use crate::{Background, ColorDensity, ColorModelError, LightingFilter, YuvImage};
+use wayfix_color_map::ColorId;
+
+/// A [`Classifier`] compiled into a table over YUV, made anew when the light has moved: one look-up a pixel. [Schulz & Fox 2004, VI]
+///
+/// It looks at six bits of Y and seven of U and V: paints differ less in their chroma than the light differs in its brightness from place to
+/// place, so chroma wants the finer cells. One megabyte, of which an image touches little.
+///
+/// ```
+/// use nalgebra::{DMatrix, DVector};
+/// use wayfix_color_map::ColorId;
+/// use wayfix_color_model::{LightingFilter, LightingParams, LookUpTable};
+/// use wayfix_gaussian_core::Gaussian;
+/// let means = DVector::from_vec(vec![80.0, 110.0, 100.0, 140.0, 125.0, 180.0]);
+/// let light = LightingFilter::new(Gaussian::new(means, DMatrix::identity(6, 6) * 9.0)?, LightingParams::default())?;
+/// let mut table = LookUpTable::new(&light, None)?;
+/// assert_eq!(table.classify([138, 126, 175]), Some(ColorId(1)));
+/// assert!(!table.follow(&light)?); // the light is the same: nothing to do
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct LookUpTable {
+    cells: Vec<u8>,
+    compiled_for: Vec<ColorDensity>,
+    background: Option<Background>,
+    /// The table is made anew when any colour's density has moved by more than this from the one it was compiled for: symmetrized
+    /// Kullback-Leibler divergence, nats. Default 0.05: a shift by about a quarter of a standard deviation.
+    pub rebuild_above: f64,
+}
+
+/// Bits that are looked at of Y, U, V.
+const BITS: [u32; 3] = [6, 7, 7];
+
+impl LookUpTable {
+    /// A table for the light that a filter knows, with a class for the background if there is one.
+    ///
+    /// # Errors
+    /// When a colour's density has no peak, or there are more than 255 colours.
+    pub fn new(light: &LightingFilter, background: Option<Background>) -> Result<Self, ColorModelError> {
+        let cells = vec![NO_COLOR; 1 << BITS.iter().sum::<u32>()];
+        let mut table = Self { cells, compiled_for: Vec::new(), background, rebuild_above: 0.05 };
+        table.compile(light)?;
+        Ok(table)
+    }
+
+    /// Makes the table anew if the light has moved; tells whether it has.
+    ///
+    /// # Errors
+    /// When a colour's density has no peak; the table is unchanged then.
+    pub fn follow(&mut self, light: &LightingFilter) -> Result<bool, ColorModelError> {
+        let moved = light.n_colors() != self.compiled_for.len()
+            || light.colors().zip(&self.compiled_for).any(|(now, then)| {
+                // What cannot be compared is no reason to trust the table.
+                !now.divergence(then).is_some_and(|divergence| divergence <= self.rebuild_above)
+            });
+        if moved {
+            self.compile(light)?;
+        }
+        Ok(moved)
+    }
+
+    /// The colour of a pixel; `None` for background.
+    pub fn classify(&self, pixel: [u8; 3]) -> Option<ColorId> {
+        let label = self.cells[cell(pixel)];
+        (label != NO_COLOR).then_some(ColorId(label))
+    }
+
+    /// The colour of every pixel: [`ColorId`] as a number, 255 for background.
+    pub fn classify_image(&self, image: &YuvImage) -> Vec<u8> {
+        image.pixels().iter().map(|pixel| self.cells[cell(*pixel)]).collect()
+    }
+
+    fn compile(&mut self, light: &LightingFilter) -> Result<(), ColorModelError> {
+        let mut classifier = Classifier::of_light(light)?;
+        if let Some(background) = &self.background {
+            classifier = classifier.with_background(background.clone());
+        }
+        let [y, u, v] = BITS.map(|bits| f64::from(1_u32 << (8 - bits)));
+        let centre = |k: usize, width: f64| (k as f64 + 0.5) * width - 0.5;
+        let mut row = Row::new(1 << BITS[2]);
+        for (at, cells) in self.cells.chunks_exact_mut(1 << BITS[2]).enumerate() {
+            let at = [centre(at >> BITS[1], y), centre(at & ((1 << BITS[1]) - 1), u)];
+            classifier.label_row(at, [centre(0, v), v], &mut row);
+            cells.copy_from_slice(&row.labels);
+        }
+        self.compiled_for = light.colors().collect();
+        Ok(())
+    }
+}
+
+#[inline]
+fn cell([y, u, v]: [u8; 3]) -> usize {
+    let [y, u, v] = [(y, BITS[0]), (u, BITS[1]), (v, BITS[2])].map(|(c, bits)| usize::from(c >> (8 - bits)));
+    (y << (BITS[1] + BITS[2])) | (u << BITS[2]) | v
+}

@@ -1,0 +1,87 @@
+use wayfix_gaussian_core::GaussianError;
+use wayfix_kalman::KalmanError;
+use wayfix_particle::ParticleError;
+
+/// Why a colour model cannot do what it was asked for. What it knew before, it still knows.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColorModelError {
+    /// Something has not as many parts as it should.
+    #[error("{what}: expected {expected}, got {got}")]
+    Dimension {
+        /// What was counted.
+        what: &'static str,
+        /// How many there should be.
+        expected: usize,
+        /// How many there are.
+        got: usize,
+    },
+    /// A number that is NaN or infinite.
+    #[error("{what} is not finite")]
+    NotFinite {
+        /// What it belongs to.
+        what: &'static str,
+    },
+    /// A number outside the range that has a meaning.
+    #[error("{what}: {value} is out of range")]
+    OutOfRange {
+        /// What it is.
+        what: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// A colour's density with a mean that is not finite or a covariance that is not positive definite.
+    #[error("the density of a colour has no peak: mean not finite or covariance not positive definite")]
+    DensityNotPositive,
+    /// An image without pixels, or whose pixels do not fill it.
+    #[error("an image of {width} x {height} pixels needs {expected} bytes, got {got}")]
+    ImageSize {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Bytes that are needed; 0 for an image that is too large to be one.
+        expected: usize,
+        /// Bytes that were given.
+        got: usize,
+    },
+    /// An image of another size than the camera's, as (columns, rows).
+    #[error("frame of {} x {} pixels from a camera of {} x {}", got.0, got.1, expected.0, expected.1)]
+    FrameSize {
+        /// The camera's.
+        expected: (usize, usize),
+        /// The image's.
+        got: (usize, usize),
+    },
+    /// A row too long for exact sums.
+    #[error("rows of {width} pixels are longer than {limit}, beyond which sums would overflow")]
+    TooWide {
+        /// Pixels in a row.
+        width: usize,
+        /// Longest row.
+        limit: usize,
+    },
+    /// A map without any surface.
+    #[error("the map has no surfaces")]
+    EmptyMap,
+    /// The particles do not have a mean pose.
+    #[error("the particles have no common pose")]
+    NoPose,
+    /// No member of the bank.
+    #[error("the bank has {n_members} lighting filters, no number {member}")]
+    NoSuchMember {
+        /// The number asked for.
+        member: usize,
+        /// How many there are.
+        n_members: usize,
+    },
+    /// A mean or covariance is none.
+    #[error(transparent)]
+    Gaussian(#[from] GaussianError),
+    /// A filter refuses.
+    #[error(transparent)]
+    Kalman(#[from] KalmanError),
+    /// Particles refuse.
+    #[error(transparent)]
+    Particle(#[from] ParticleError),
+}

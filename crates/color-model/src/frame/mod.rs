@@ -1,0 +1,8 @@
+//! An image as sums: any horizontal run of pixels in one subtraction.
+
+mod prefix;
+mod sums;
+
+pub use prefix::Frame;
+pub use sums::PixelSums;
+pub(crate) use sums::rounded;

@@ -1,0 +1,49 @@
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// How the pixels of one map colour are distributed in YUV: $`N(μ[m], Σ[m,m] + ν)`$. [Schulz & Fox 2004, Eq. 9]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorDensity {
+    /// Mean (Y, U, V).
+    pub mean: Vector3<f64>,
+    /// Covariance of a single pixel.
+    pub covariance: Matrix3<f64>,
+}
+
+impl ColorDensity {
+    /// Half of $`KL(p ‖ q) + KL(q ‖ p)`$, nats: how far two densities are apart. `None` when one of them is none.
+    ///
+    /// ```
+    /// use nalgebra::{Matrix3, Vector3};
+    /// use wayfix_color_model::ColorDensity;
+    /// let at = |y| ColorDensity { mean: Vector3::new(y, 128.0, 128.0), covariance: Matrix3::identity() * 100.0 };
+    /// assert_eq!(at(90.0).divergence(&at(90.0)), Some(0.0));
+    /// let one_sigma = at(90.0).divergence(&at(100.0)).unwrap();
+    /// assert!((one_sigma - 0.5).abs() < 1e-12);
+    /// ```
+    pub fn divergence(&self, other: &Self) -> Option<f64> {
+        let (p, q) = (self.covariance.cholesky()?, other.covariance.cholesky()?);
+        let between = self.mean - other.mean;
+        let shape = (p.solve(&other.covariance) + q.solve(&self.covariance)).trace() - 6.0;
+        let shift = between.dot(&(p.solve(&between) + q.solve(&between)));
+        let divergence = 0.25 * (shape + shift);
+        divergence.is_finite().then_some(divergence.max(0.0))
+    }
+
+    /// Eq. 9 for every colour of a belief $`N(μ, Σ)`$ of the light, with pixels that scatter by $`ν`$.
+    pub(super) fn all<'a>(
+        mean: &'a DVector<f64>,
+        covariance: &'a DMatrix<f64>,
+        pixel_noise: Vector3<f64>,
+    ) -> impl Iterator<Item = Self> + 'a {
+        (0..mean.len() / 3).map(move |color| Self {
+            mean: mean.fixed_rows::<3>(3 * color).into_owned(),
+            covariance: covariance.fixed_view::<3, 3>(3 * color, 3 * color)
+                + Matrix3::from_diagonal(&pixel_noise),
+        })
+    }
+
+    /// What is said of a colour that is not there: nothing, in a way that every user of densities refuses.
+    pub(super) fn unknown() -> Self {
+        Self { mean: Vector3::repeat(f64::NAN), covariance: Matrix3::repeat(f64::NAN) }
+    }
+}

@@ -1,0 +1,162 @@
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector, Vector3};
+use wayfix_color_map::ColorId;
+use wayfix_gaussian_core::{Gaussian, check_covariance};
+
+use super::{ColorDensity, ColorMeans, LightingParams, Unseen, update::observe};
+use crate::ColorModelError;
+
+/// A Kalman filter over the means of all map colours at once, $`θ ∼ N(μ, Σ)`$ with $`θ = (θ[1], …, θ[M])`$ in YUV: what one kind of light does.
+///
+/// Colours vary together, so a colour that nobody has seen yet follows from those that were seen. [Schulz & Fox 2004, Eqs. 2-6]
+///
+/// ```
+/// use nalgebra::{DMatrix, DVector, Vector3};
+/// use wayfix_color_map::ColorId;
+/// use wayfix_color_model::{ColorMeans, LightingFilter, LightingParams};
+/// use wayfix_gaussian_core::Gaussian;
+/// // Two colours that become brighter together: correlation 0.9 of standard deviations of 30.
+/// let mut covariance = DMatrix::from_diagonal_element(6, 6, 900.0);
+/// for i in 0..3 {
+///     (covariance[(i, i + 3)], covariance[(i + 3, i)]) = (810.0, 810.0);
+/// }
+/// let prior = Gaussian::new(DVector::from_element(6, 128.0), covariance)?;
+/// let mut light = LightingFilter::new(prior, LightingParams::default())?;
+/// light.update(&ColorMeans::new([(Some(Vector3::new(60.0, 128.0, 128.0)), 900), (None, 0)]))?;
+/// let unseen = light.color(ColorId(1)).mean;
+/// assert!((unseen.x - 71.0).abs() < 2.0); // 128 - 68 · 810/964
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct LightingFilter {
+    prior: Arc<Gaussian<DVector<f64>>>,
+    params: LightingParams,
+    mean: DVector<f64>,
+    covariance: DMatrix<f64>,
+}
+
+impl LightingFilter {
+    /// A filter that knows the `prior` of $`3M`$ numbers.
+    ///
+    /// # Errors
+    /// When the prior's dimension is not a positive multiple of three, it has no density, a mean lies beyond a million or a variance beyond a
+    /// billion times that of an image's mean (next to which the mean would be without noise), or a parameter is out of range.
+    pub fn new(prior: Gaussian<DVector<f64>>, params: LightingParams) -> Result<Self, ColorModelError> {
+        params.check()?;
+        let n = prior.mean().len();
+        if n == 0 || !n.is_multiple_of(3) || n > 3 * MOST_COLORS {
+            let expected = n.next_multiple_of(3).clamp(3, 3 * MOST_COLORS);
+            return Err(ColorModelError::Dimension { what: "numbers of a lighting prior", expected, got: n });
+        }
+        if prior.covariance().nrows() != n {
+            let got = prior.covariance().nrows();
+            return Err(ColorModelError::Dimension { what: "rows of a prior covariance", expected: n, got });
+        }
+        check_covariance("lighting prior", prior.covariance())?;
+        prior.mean().iter().try_for_each(|mean| check_value("prior mean of a colour", *mean))?;
+        if let Some(i) = (0..n).find(|&i| prior.covariance()[(i, i)] > params.widest(i)) {
+            let value = prior.covariance()[(i, i)];
+            return Err(ColorModelError::OutOfRange { what: "prior variance", value });
+        }
+        let (mean, covariance) = (prior.mean().clone(), prior.covariance().clone());
+        Ok(Self { prior: Arc::new(prior), params, mean, covariance })
+    }
+
+    /// What was known before the first image.
+    pub fn prior(&self) -> &Gaussian<DVector<f64>> {
+        &self.prior
+    }
+
+    /// How many colours.
+    pub fn n_colors(&self) -> usize {
+        self.mean.len() / 3
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &LightingParams {
+        &self.params
+    }
+
+    /// $`μ`$, three numbers a colour.
+    pub fn mean(&self) -> &DVector<f64> {
+        &self.mean
+    }
+
+    /// $`Σ`$.
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.covariance
+    }
+
+    /// How the pixels of a colour are distributed (Eq. 9). The numbers of a colour that is not there are NaN, which everything that uses
+    /// densities refuses.
+    pub fn color(&self, color: ColorId) -> ColorDensity {
+        self.colors().nth(color.index()).unwrap_or_else(ColorDensity::unknown)
+    }
+
+    /// The densities of all colours, in the order of the map.
+    pub fn colors(&self) -> impl Iterator<Item = ColorDensity> {
+        ColorDensity::all(&self.mean, &self.covariance, self.params.pixel_noise)
+    }
+
+    /// Lets the light drift for `seconds` (Eq. 6).
+    ///
+    /// # Errors
+    /// When the time is negative or not finite; nothing has changed then.
+    pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
+        check_seconds(seconds)?;
+        let LightingParams { drift, .. } = self.params;
+        drift.move_mean(seconds, &self.prior, &mut self.mean);
+        drift.widen(seconds, &self.prior, |i| self.params.widest(i), &mut self.covariance);
+        Ok(())
+    }
+
+    /// Learns from the colour means of one image (Eqs. 3-5). Gives the log evidence $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
+    ///
+    /// # Errors
+    /// When there are more or fewer colours, or a mean is not finite or beyond a million; nothing has changed then.
+    pub fn update(&mut self, means: &ColorMeans) -> Result<f64, ColorModelError> {
+        means.check(self.n_colors())?;
+        let log_evidence = means.seen().map(|(color, mean)| self.observe(color, &mean)).sum();
+        if self.params.unseen == Unseen::Regress {
+            self.observe_regressed(means);
+        }
+        Ok(log_evidence)
+    }
+
+    fn observe(&mut self, color: ColorId, mean: &Vector3<f64>) -> f64 {
+        let (at, noise) = (3 * color.index(), self.params.mean_noise);
+        (0..3).map(|i| observe(&mut self.mean, &mut self.covariance, at + i, mean[i], noise[i])).sum()
+    }
+
+    /// Fills in the colours that were not seen. Given those that were, each looks most likely as its mean says by now, so the means stay.
+    fn observe_regressed(&mut self, means: &ColorMeans) {
+        let all = (0..=u8::MAX).map(ColorId).take(self.n_colors());
+        for color in all.filter(|color| means.mean(*color).is_none()) {
+            let most_likely = self.mean.fixed_rows::<3>(3 * color.index()).into_owned();
+            self.observe(color, &most_likely);
+        }
+    }
+}
+
+/// As many as a [`ColorId`] can name.
+const MOST_COLORS: usize = 1 << u8::BITS;
+
+pub(super) fn check_seconds(seconds: f64) -> Result<(), ColorModelError> {
+    if seconds >= 0.0 && seconds.is_finite() {
+        Ok(())
+    } else {
+        Err(ColorModelError::OutOfRange { what: "seconds of drift", value: seconds })
+    }
+}
+
+/// Values of pixels, up to those of very deep images; squares of what lies beyond might leave the range of numbers.
+pub(super) fn check_value(what: &'static str, value: f64) -> Result<(), ColorModelError> {
+    if !value.is_finite() {
+        Err(ColorModelError::NotFinite { what })
+    } else if value.abs() > 1e6 {
+        Err(ColorModelError::OutOfRange { what, value })
+    } else {
+        Ok(())
+    }
+}

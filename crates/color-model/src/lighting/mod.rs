@@ -1,0 +1,17 @@
+//! What today's light does to the colours: filters over all colour means at once, and banks of them for different lights.
+
+mod bank;
+mod density;
+mod drift;
+mod filter;
+mod means;
+mod params;
+mod tracker;
+mod update;
+
+pub use bank::{Choice, LightingBank};
+pub use density::ColorDensity;
+pub use filter::LightingFilter;
+pub use means::ColorMeans;
+pub use params::{Drift, LightingParams, Unseen};
+pub use tracker::{Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker};

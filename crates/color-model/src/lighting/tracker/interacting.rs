@@ -1,0 +1,130 @@
+use std::sync::Arc;
+
+use nalgebra::{DVector, Vector3};
+use wayfix_gaussian_core::{Gaussian, GaussianError, moment_matched};
+use wayfix_kalman::{Gpb2, Imm, MarkovChain, Sequential};
+
+use super::{
+    super::filter::check_seconds,
+    LightTracker,
+    models::{LightMotion, seen},
+};
+use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter};
+
+/// The interacting multiple model filter for a light that is switched now and then.
+///
+/// Its models share one state, so a light of the bank cannot rest while another is on. What they differ in is how the state moves: it drifts, or it
+/// has just been switched to one of the bank's lights, of which no more than the prior is known. [Blom & Bar-Shalom 1988]
+#[derive(Clone)]
+pub struct ImmTracker {
+    filter: Imm<LightMotion, Sequential>,
+    noise: Noise,
+}
+
+/// As [`ImmTracker`], with mixing put off until after the next image, so that a switch is judged by two. [Bar-Shalom et al. 2001, §11.6.5]
+#[derive(Clone)]
+pub struct Gpb2Tracker {
+    filter: Gpb2<LightMotion, Sequential>,
+    noise: Noise,
+}
+
+#[derive(Clone, Copy)]
+struct Noise {
+    n_colors: usize,
+    mean: Vector3<f64>,
+    pixel: Vector3<f64>,
+}
+
+impl ImmTracker {
+    /// Starts from the mixture of the bank's priors. Noise and drift are those of the first member; the probability of a switch is the chain's mean.
+    ///
+    /// # Errors
+    /// When the priors have no common Gaussian.
+    pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
+        let Models { motions, chain, start, noise } = Models::of(bank)?;
+        Ok(Self { filter: Imm::new(motions, chain, Sequential, &start)?, noise })
+    }
+
+    /// How probable it is that the light drifts, and that it has just been switched to each member of the bank.
+    pub fn probabilities(&self) -> Vec<f64> {
+        self.filter.model_probabilities()
+    }
+}
+
+impl Gpb2Tracker {
+    /// As [`ImmTracker::new`].
+    ///
+    /// # Errors
+    /// When the priors have no common Gaussian.
+    pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
+        let Models { motions, chain, start, noise } = Models::of(bank)?;
+        Ok(Self { filter: Gpb2::new(motions, chain, Sequential, &start)?, noise })
+    }
+
+    /// As [`ImmTracker::probabilities`].
+    pub fn probabilities(&self) -> Vec<f64> {
+        self.filter.model_probabilities()
+    }
+}
+
+struct Models {
+    motions: Vec<LightMotion>,
+    chain: MarkovChain,
+    start: Gaussian<DVector<f64>>,
+    noise: Noise,
+}
+
+impl Models {
+    fn of(bank: &LightingBank) -> Result<Self, ColorModelError> {
+        let priors: Vec<_> = bank.members().iter().map(|light| light.prior().clone()).collect();
+        let start = moment_matched(bank.chain().initial(), &priors).map_err(GaussianError::from)?;
+        let params =
+            bank.members().first().map(|light: &Arc<LightingFilter>| *light.params()).unwrap_or_default();
+        let drift = LightMotion::Drift { drift: params.drift, prior: Arc::new(start.clone()) };
+        let switches = priors.into_iter().map(|prior| LightMotion::Switch { to: Arc::new(prior) });
+        let row = switching(bank.chain());
+        Ok(Self {
+            motions: std::iter::once(drift).chain(switches).collect(),
+            // A switch is as likely after any image, whatever has been on.
+            chain: MarkovChain::new(&vec![row.clone(); row.len()], &row)?,
+            start,
+            noise: Noise { n_colors: bank.n_colors(), mean: params.mean_noise, pixel: params.pixel_noise },
+        })
+    }
+}
+
+/// Probability that the light drifts on, and that it is switched to each member: means over the members that it may come from.
+fn switching(chain: &MarkovChain) -> Vec<f64> {
+    let n = chain.n_models();
+    let mean = |probability: &dyn Fn(usize) -> f64| (0..n).map(probability).sum::<f64>() / n as f64;
+    let to = |j: usize| mean(&|i| if i == j { 0.0 } else { chain.probability(i, j) });
+    std::iter::once(mean(&|i| chain.probability(i, i))).chain((0..n).map(to)).collect()
+}
+
+/// Both filters have the same calls, but no trait in common.
+macro_rules! light_tracker {
+    ($tracker:ty) => {
+        impl LightTracker for $tracker {
+            fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
+                check_seconds(seconds)?;
+                Ok(self.filter.predict(&seconds)?)
+            }
+
+            fn update(&mut self, means: &ColorMeans) -> Result<(), ColorModelError> {
+                means.check(self.noise.n_colors)?;
+                if let Some((sensor, values)) = seen(means, &self.noise.mean)? {
+                    self.filter.update(&sensor, &values)?;
+                }
+                Ok(())
+            }
+
+            fn colors(&self) -> Result<Vec<ColorDensity>, ColorModelError> {
+                let belief = self.filter.estimate()?;
+                Ok(ColorDensity::all(belief.mean(), belief.covariance(), self.noise.pixel).collect())
+            }
+        }
+    };
+}
+
+light_tracker!(ImmTracker);
+light_tracker!(Gpb2Tracker);

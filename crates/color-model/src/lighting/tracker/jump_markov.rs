@@ -1,0 +1,97 @@
+use nalgebra::{DVector, Vector3};
+use wayfix_gaussian_core::Gaussian;
+use wayfix_kalman::{JumpMarkov, JumpMarkovParams, ModelBank, Sequential};
+
+use super::{
+    super::filter::check_seconds,
+    LightTracker,
+    models::{LightMotion, seen},
+};
+use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter};
+
+/// The switching filter of [Schulz & Fox 2004, §III.A.3]: a filter for each light, of which only the active one learns; the likeliest histories of
+/// which one was active when are kept, instead of particles that sample them.
+///
+/// ```
+/// use nalgebra::{DMatrix, DVector, Vector3};
+/// use wayfix_color_model::{ColorMeans, JumpMarkovTracker, LightTracker, LightingBank, LightingFilter, LightingParams};
+/// use wayfix_gaussian_core::Gaussian;
+/// use wayfix_kalman::{JumpMarkovParams, MarkovChain};
+/// let light = |y: f64| {
+///     let prior = Gaussian::new(DVector::from_vec(vec![y, 128.0, 128.0]), DMatrix::identity(3, 3) * 100.0)?;
+///     LightingFilter::new(prior, LightingParams::default())
+/// };
+/// let bank = LightingBank::new(vec![light(60.0)?, light(160.0)?], MarkovChain::sticky(2, 0.98)?)?;
+/// let mut tracker = JumpMarkovTracker::new(&bank, JumpMarkovParams::default())?;
+/// for y in [150.0, 151.0, 66.0] {
+///     tracker.predict(0.04)?;
+///     tracker.update(&ColorMeans::new([(Some(Vector3::new(y, 128.0, 128.0)), 500)]))?;
+/// }
+/// assert_eq!(tracker.active(), 0);
+/// assert!((tracker.colors()?[0].mean.x - 63.7).abs() < 0.1); // 60 + 6 · 100 / 164
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
+#[derive(Clone)]
+pub struct JumpMarkovTracker {
+    filter: JumpMarkov<LightMotion, Sequential>,
+    n_colors: usize,
+    mean_noise: Vector3<f64>,
+    pixel_noise: Vector3<f64>,
+}
+
+impl JumpMarkovTracker {
+    /// Starts from what the bank's members know. Noise is that of the first member.
+    ///
+    /// # Errors
+    /// When no history is to be kept.
+    pub fn new(bank: &LightingBank, params: JumpMarkovParams) -> Result<Self, ColorModelError> {
+        let belief = |light: &LightingFilter| {
+            Gaussian::from_parts_unchecked(light.mean().clone(), light.covariance().clone())
+        };
+        let beliefs: Vec<_> = bank.members().iter().map(|light| belief(light)).collect();
+        let motions = bank.members().iter().map(|light| LightMotion::drift_of(light)).collect();
+        let models: ModelBank<LightMotion, Sequential> = ModelBank::new(motions, Sequential, &beliefs)?;
+        let noise = bank.members().first().map(|light| *light.params()).unwrap_or_default();
+        Ok(Self {
+            filter: JumpMarkov::new(models, bank.chain().clone(), params)?,
+            n_colors: bank.n_colors(),
+            mean_noise: noise.mean_noise,
+            pixel_noise: noise.pixel_noise,
+        })
+    }
+
+    /// The light that is most probably on.
+    pub fn active(&self) -> usize {
+        self.filter.selected()
+    }
+
+    /// How probable it is that each light is on.
+    pub fn probabilities(&self) -> Vec<f64> {
+        self.filter.model_probabilities()
+    }
+
+    /// What is believed of the light that is most probably on.
+    pub fn estimate(&self) -> Gaussian<DVector<f64>> {
+        self.filter.estimate()
+    }
+}
+
+impl LightTracker for JumpMarkovTracker {
+    fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
+        check_seconds(seconds)?;
+        Ok(self.filter.predict(&seconds)?)
+    }
+
+    fn update(&mut self, means: &ColorMeans) -> Result<(), ColorModelError> {
+        means.check(self.n_colors)?;
+        if let Some((sensor, values)) = seen(means, &self.mean_noise)? {
+            self.filter.update(&sensor, Some(&values))?;
+        }
+        Ok(())
+    }
+
+    fn colors(&self) -> Result<Vec<ColorDensity>, ColorModelError> {
+        let belief = self.estimate();
+        Ok(ColorDensity::all(belief.mean(), belief.covariance(), self.pixel_noise).collect())
+    }
+}

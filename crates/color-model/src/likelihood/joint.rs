@@ -1,0 +1,100 @@
+use nalgebra::Vector3;
+use wayfix_estimation_traits::LogWeight;
+
+use super::{PixelParams, params::Region};
+use crate::{LightingFilter, PixelSums};
+
+/// The likelihood of all pixels at once, the light being the same for all of them.
+///
+/// $`\ln \int \prod_m \prod_{c ∈ m} N(c; θ_m + e_m, ν)^β\, N(e; 0, R)\, N(θ; μ, Σ)\, dθ\, de`$, with $`β`$ the tempering and $`R`$ the variance of an image's
+/// means. Eq. 9 gives every pixel a light of its own, so that under a light hardly known the right pose pays for that ignorance pixel by
+/// pixel; here it pays once. In closed form, from the same sums: the scatter of each colour about its own mean, and the innovation of all means.
+pub(crate) struct JointLikelihood {
+    /// Lower triangle of the means' covariance, row by row, and their residuals.
+    covariance: Vec<f64>,
+    residuals: Vec<f64>,
+    rows: Vec<usize>,
+    noises: Vec<f64>,
+}
+
+impl JointLikelihood {
+    pub(crate) fn new() -> Self {
+        Self { covariance: Vec::new(), residuals: Vec::new(), rows: Vec::new(), noises: Vec::new() }
+    }
+
+    pub(crate) fn log_likelihood(
+        &mut self,
+        sums: &[PixelSums],
+        filter: &LightingFilter,
+        params: &PixelParams,
+        n_pixels: usize,
+    ) -> LogWeight {
+        let noise = filter.params().pixel_noise + params.unevenness(filter);
+        let scatter = |sums: &PixelSums| Region::new(sums, log_scatter(sums, &noise));
+        let within = params.log_likelihood(n_pixels, sums.iter().map(scatter));
+        let tempering = params.independent_pixels / n_pixels.max(1) as f64;
+        within + self.log_innovation(sums, filter, &noise, tempering)
+    }
+
+    /// $`\ln N(\bar v; μ, Σ + R + ν/βn) - \ln N(0; 0, ν/βn)`$ over the colours that are seen.
+    fn log_innovation(
+        &mut self,
+        sums: &[PixelSums],
+        filter: &LightingFilter,
+        pixel: &Vector3<f64>,
+        tempering: f64,
+    ) -> f64 {
+        let of_mean = filter.params().mean_noise;
+        self.rows.clear();
+        self.residuals.clear();
+        self.noises.clear();
+        let mut log = 0.0;
+        for (color, sums) in sums.iter().enumerate() {
+            let Some(mean) = sums.mean() else { continue };
+            for channel in 0..3 {
+                let row = 3 * color + channel;
+                let noise = pixel[channel] / (tempering * sums.count() as f64);
+                log += 0.5 * noise.ln();
+                self.rows.push(row);
+                self.residuals.push(mean[channel] - filter.mean()[row]);
+                self.noises.push(noise + of_mean[channel]);
+            }
+        }
+        let covariance = filter.covariance();
+        self.covariance.clear();
+        for (i, &row) in self.rows.iter().enumerate() {
+            self.covariance.extend(self.rows[..=i].iter().map(|&column| covariance[(row, column)]));
+            let diagonal = self.covariance.len() - 1;
+            self.covariance[diagonal] += self.noises[i];
+        }
+        log + log_normal(&mut self.covariance, &mut self.residuals)
+    }
+}
+
+/// $`\sum_c \ln N(c; \bar c, ν)`$ about the pixels' own mean.
+fn log_scatter(sums: &PixelSums, noise: &Vector3<f64>) -> f64 {
+    let Some(mean) = sums.mean() else { return 0.0 };
+    let scatter = sums.scatter_about(&mean).diagonal();
+    let log_peak = -1.5 * std::f64::consts::TAU.ln() - 0.5 * noise.iter().map(|v| v.ln()).sum::<f64>();
+    sums.count() as f64 * log_peak - 0.5 * scatter.component_div(noise).sum()
+}
+
+/// $`-\tfrac{1}{2} (\ln |S| + r^T S^{-1} r)`$ of a covariance given as the rows of its lower triangle, by Cholesky in place.
+fn log_normal(covariance: &mut [f64], residuals: &mut [f64]) -> f64 {
+    let mut log = 0.0;
+    for i in 0..residuals.len() {
+        let (above, row) = covariance.split_at_mut(i * (i + 1) / 2);
+        for j in 0..i {
+            let other = &above[j * (j + 1) / 2..][..=j];
+            let dot: f64 = row[..j].iter().zip(other).map(|(a, b)| a * b).sum();
+            row[j] = (row[j] - dot) / other[j];
+        }
+        let square: f64 = row[..i].iter().map(|a| a * a).sum();
+        let dot: f64 = row[..i].iter().zip(&residuals[..i]).map(|(a, r)| a * r).sum();
+        let pivot = (row[i] - square).sqrt();
+        row[i] = pivot;
+        residuals[i] = (residuals[i] - dot) / pivot;
+        log -= pivot.ln() + 0.5 * residuals[i] * residuals[i];
+    }
+    log
+}

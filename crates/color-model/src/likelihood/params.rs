@@ -1,0 +1,112 @@
+use nalgebra::Vector3;
+
+use crate::{ColorModelError, LightingFilter, PixelSums};
+
+/// Whether pixels share the light that is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum PixelLight {
+    /// All pixels of an image have one light: what is not known of it counts once.
+    #[default]
+    Common,
+    /// Each pixel counts for itself, as in [Schulz & Fox 2004, Eqs. 9, 16]: what is not known of the light counts for every pixel.
+    Each,
+}
+
+/// How the pixels of an image are weighed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct PixelParams {
+    /// Whether pixels share the light that is not known.
+    pub light: PixelLight,
+    /// How many independent observations an image is worth, however many pixels it has: log-likelihoods are multiplied by this over the
+    /// number of pixels. Neighbouring pixels share shade, blur and label errors, so 25 000 of them do not tell 25 000 times as much as one.
+    pub independent_pixels: f64,
+    /// Share of a mapped surface that something unmapped hides: a pixel that no map colour explains counts $`\ln`$ of it, wherever it lies.
+    pub outlier_share: f64,
+    /// The worst that the pixels of one colour can count on average, nats a pixel below the background: a hidden surface does not make a
+    /// pose impossible. Infinite for the pixel product as it is in the paper.
+    pub floor: f64,
+    /// How far a colour differs over one image and over the field, which the lighting model does not know: standard deviation of Y as a share of
+    /// the light's mean Y, since shade and vignetting multiply the light. Added to what the lighting filter says.
+    pub uneven_brightness: f64,
+    /// The same of U and of V, as a share of the light's mean Y.
+    pub uneven_chroma: f64,
+    /// Pixels left out at both ends of each span, where a small error of the pose changes the label.
+    pub edge_margin: u16,
+}
+
+impl Default for PixelParams {
+    fn default() -> Self {
+        Self {
+            light: PixelLight::Common,
+            independent_pixels: 60.0,
+            outlier_share: 0.3,
+            floor: 3.0,
+            uneven_brightness: 0.12,
+            uneven_chroma: 0.03,
+            edge_margin: 1,
+        }
+    }
+}
+
+/// What the likelihood has to know of the pixels that a pose gives to one colour.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Region {
+    /// Pixels, without outliers.
+    pub(crate) count: f64,
+    pub(crate) n_outliers: f64,
+    /// $`\sum \ln p(c|m)`$.
+    pub(crate) log_density: f64,
+    /// $`-\sum \ln p_{bg}(c)`$.
+    pub(crate) background: f64,
+}
+
+impl Region {
+    pub(crate) fn new(sums: &PixelSums, log_density: f64) -> Self {
+        Self {
+            count: sums.count() as f64,
+            n_outliers: sums.n_outliers() as f64,
+            log_density,
+            background: sums.background_nats(),
+        }
+    }
+}
+
+impl PixelParams {
+    /// The variances of `uneven_…` in the light of one filter.
+    pub(crate) fn unevenness(&self, filter: &LightingFilter) -> Vector3<f64> {
+        let brightness = filter.mean().iter().step_by(3).sum::<f64>() / filter.n_colors() as f64;
+        let [y, uv] = [self.uneven_brightness, self.uneven_chroma].map(|share| (share * brightness).powi(2));
+        Vector3::new(y, uv, uv)
+    }
+
+    pub(crate) fn check(&self) -> Result<(), ColorModelError> {
+        let Self { independent_pixels, outlier_share, floor, .. } = *self;
+        let check = |what, value: f64, limit: f64| {
+            if value > 0.0 && value <= limit {
+                Ok(())
+            } else {
+                Err(ColorModelError::OutOfRange { what, value })
+            }
+        };
+        check("independent pixels", independent_pixels, f64::MAX)?;
+        check("share of outliers", outlier_share, 1.0)?;
+        check("floor of a colour", floor, f64::INFINITY)
+    }
+
+    /// $`\sum_m \max(-f n_m,\; \sum_{c ∈ m} [\ln p(c | m) - \ln p_{bg}(c)] + o_m \ln ε)`$, tempered.
+    pub(crate) fn log_likelihood(&self, n_pixels: usize, regions: impl Iterator<Item = Region>) -> f64 {
+        let log_ratio = |region: Region| {
+            let n = region.count + region.n_outliers;
+            let outliers = self.outlier_share.ln() * region.n_outliers;
+            let log_ratio = region.log_density + region.background + outliers;
+            if n > 0.0 { log_ratio.max(-self.floor * n) } else { 0.0 }
+        };
+        regions.map(log_ratio).sum::<f64>() * self.independent_pixels / n_pixels.max(1) as f64
+    }
+}

@@ -1,0 +1,85 @@
+use wayfix_color_map::{LabelImage, Projector};
+use wayfix_estimation_traits::{LogWeight, Pose3};
+
+use super::{PixelParams, SumDensity, ViewLikelihood, params::Region};
+use crate::{ColorDensity, ColorModelError, YuvImage, frame};
+
+/// The pixel product [Schulz & Fox 2004, Eq. 16], pixel by pixel: the reference.
+///
+/// Each pixel that the map, seen from the pose, labels with colour `m` counts $`\ln p(c|m) - \ln p_{bg}(c)`$. The paper leaves background pixels
+/// out; without the ratio, poses that label different numbers of pixels would not compare.
+pub struct PixelView<'a> {
+    image: &'a YuvImage,
+    background: Vec<Option<f64>>,
+    projector: Projector,
+    params: PixelParams,
+}
+
+impl<'a> PixelView<'a> {
+    /// The likelihood of one image; `nats` gives a pixel's $`-\ln p_{bg}(c)`$, or `None` for an outlier, as for
+    /// [`Frame::with_background`](crate::Frame::with_background).
+    ///
+    /// # Errors
+    /// When image and camera differ in size, or a parameter is out of range.
+    pub fn new(
+        image: &'a YuvImage,
+        nats: impl FnMut([u8; 3]) -> Option<f64>,
+        projector: Projector,
+        params: PixelParams,
+    ) -> Result<Self, ColorModelError> {
+        params.check()?;
+        check_size(&projector, image.width() as usize, image.height() as usize)?;
+        let background =
+            image.pixels().iter().copied().map(nats).map(|nats| nats.map(frame::rounded)).collect();
+        Ok(Self { image, background, projector, params })
+    }
+}
+
+impl ViewLikelihood for PixelView<'_> {
+    fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, light: &[ColorDensity]) -> LogWeight {
+        let Ok(light) = light.iter().map(SumDensity::new).collect::<Result<Vec<_>, _>>() else {
+            return f64::NEG_INFINITY;
+        };
+        let Ok(labels) = self.projector.labels(camera_pose) else {
+            return f64::NEG_INFINITY;
+        };
+        let mut regions = vec![Region::default(); light.len()];
+        for (at, (pixel, nats)) in self.image.pixels().iter().zip(&self.background).enumerate() {
+            let (row, column) = (at as u32 / labels.width(), at as u32 % labels.width());
+            let Some(color) = labels.get(column, row) else { continue };
+            let (Some(region), Some(density)) = (regions.get_mut(color.index()), light.get(color.index()))
+            else {
+                continue;
+            };
+            if !is_inside(&labels, column, row, u32::from(self.params.edge_margin)) {
+                continue;
+            }
+            match nats {
+                Some(nats) => {
+                    region.count += 1.0;
+                    region.background += nats;
+                    region.log_density += density.log(*pixel);
+                }
+                None => region.n_outliers += 1.0,
+            }
+        }
+        self.params.log_likelihood(self.image.pixels().len(), regions.into_iter())
+    }
+}
+
+/// Whether all pixels of the image up to `margin` away have the same label.
+fn is_inside(labels: &LabelImage, column: u32, row: u32, margin: u32) -> bool {
+    let columns = column.saturating_sub(margin)..(column + margin + 1).min(labels.width());
+    let mut rows = row.saturating_sub(margin)..(row + margin + 1).min(labels.height());
+    rows.all(|r| columns.clone().all(|c| labels.get(c, r) == labels.get(column, row)))
+}
+
+pub(crate) fn check_size(projector: &Projector, width: usize, height: usize) -> Result<(), ColorModelError> {
+    let camera = projector.camera();
+    let expected = (camera.width() as usize, camera.height() as usize);
+    if expected == (width, height) {
+        Ok(())
+    } else {
+        Err(ColorModelError::FrameSize { expected, got: (width, height) })
+    }
+}

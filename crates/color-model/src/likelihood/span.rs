@@ -1,0 +1,78 @@
+use wayfix_color_map::{Projector, Span, ViewError};
+use wayfix_estimation_traits::{LogWeight, Pose3};
+
+use super::{PixelParams, SumDensity, ViewLikelihood, params::Region, pixel::check_size};
+use crate::{ColorDensity, ColorModelError, Frame, PixelSums};
+
+/// Sums what `frame` shows where the map, seen from `camera_pose`, has each colour, without the pixels within `edge_margin` of an edge.
+///
+/// Independent of light: one gathering serves every lighting hypothesis, and the colour means that update them.
+///
+/// # Errors
+/// When the pose is not finite or its quaternion not of unit length.
+pub fn gather(
+    projector: &mut Projector,
+    frame: &Frame,
+    camera_pose: &Pose3<f64>,
+    edge_margin: u16,
+    sums: &mut [PixelSums],
+) -> Result<(), ViewError> {
+    sums.fill(PixelSums::default());
+    let mut add = |span: Span| {
+        if let Some(sums) = sums.get_mut(span.color.index()) {
+            frame.add_run(usize::from(span.row), usize::from(span.start), usize::from(span.end), sums);
+        }
+    };
+    match edge_margin {
+        0 => projector.spans(camera_pose, &mut add),
+        margin => projector.inner_spans(camera_pose, margin, &mut add),
+    }
+}
+
+/// The pixel likelihood at the cost of spans, equal to that of [`PixelView`](crate::PixelView).
+///
+/// $`\sum_m \sum_{c ∈ m} [\ln N(c; μ_m, Σ_{mm} + ν) - \ln p_{bg}(c)]`$ [Schulz & Fox 2004, Eqs. 9, 16]: of the pixels of a colour only count,
+/// $`\sum c`$ and $`\sum c c^T`$ matter, and a row's run of pixels gives them in one subtraction.
+pub struct SpanView<'a> {
+    frame: &'a Frame,
+    projector: Projector,
+    sums: Vec<PixelSums>,
+    params: PixelParams,
+}
+
+impl<'a> SpanView<'a> {
+    /// The likelihood of one frame, made by [`Frame::with_background`], in the map of `projector`.
+    ///
+    /// # Errors
+    /// When frame and camera differ in size, or a parameter is out of range.
+    pub fn new(frame: &'a Frame, projector: Projector, params: PixelParams) -> Result<Self, ColorModelError> {
+        params.check()?;
+        check_size(&projector, frame.width(), frame.height())?;
+        let sums = vec![PixelSums::default(); projector.map().colors().len()];
+        Ok(Self { frame, projector, sums, params })
+    }
+}
+
+impl ViewLikelihood for SpanView<'_> {
+    fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, light: &[ColorDensity]) -> LogWeight {
+        let Ok(light) = light.iter().map(SumDensity::new).collect::<Result<Vec<_>, _>>() else {
+            return f64::NEG_INFINITY;
+        };
+        let margin = self.params.edge_margin;
+        match gather(&mut self.projector, self.frame, camera_pose, margin, &mut self.sums) {
+            Ok(()) => log_likelihood(&self.sums, &light, &self.params, self.frame.n_pixels()),
+            Err(_) => f64::NEG_INFINITY,
+        }
+    }
+}
+
+/// The likelihood from what [`gather`] summed.
+pub(crate) fn log_likelihood(
+    sums: &[PixelSums],
+    light: &[SumDensity],
+    params: &PixelParams,
+    n_pixels: usize,
+) -> LogWeight {
+    let region = |(sums, density): (&PixelSums, &SumDensity)| Region::new(sums, density.sum_log(sums));
+    params.log_likelihood(n_pixels, sums.iter().zip(light).map(region))
+}

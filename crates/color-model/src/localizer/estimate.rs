@@ -1,0 +1,114 @@
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix3, Vector3};
+use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_gaussian_core::Gaussian;
+
+/// Where most of the weight is: mean and covariance of the dominant cluster of particles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseEstimate {
+    /// The cluster's pose, its covariance in the body frame of the mean (metres, radians).
+    pub pose: Gaussian<Pose2<f64>>,
+    /// The cluster's share of the whole weight, in (0, 1].
+    pub share: f64,
+}
+
+impl PoseEstimate {
+    /// Standard deviation of the position along its worst direction, metres.
+    pub fn position_sigma(&self) -> f64 {
+        let position = self.pose.covariance().fixed_view::<2, 2>(0, 0).into_owned();
+        position.symmetric_eigenvalues().max().max(0.0).sqrt()
+    }
+    /// Standard deviation of the heading, radians.
+    pub fn heading_sigma(&self) -> f64 {
+        self.pose.covariance()[(2, 2)].max(0.0).sqrt()
+    }
+}
+
+/// How far around its centre a cluster reaches: metres and radians.
+const REACH: Vector3<f64> = Vector3::new(0.4, 0.4, 0.5);
+/// Steps of the mean towards the middle of its cluster.
+const N_STEPS: usize = 5;
+/// Variances a particle stands for, so that a single one is no certainty: 2 mm and 0.2°.
+const GRAIN: Vector3<f64> = Vector3::new(4e-6, 4e-6, 1.2e-5);
+
+/// The dominant cluster of weighted poses: starts in the heaviest cell of a grid and shifts to the mean of what is within reach.
+///
+/// `None` when there are no poses or no weight.
+pub(crate) fn dominant_cluster(particles: &[(Pose2<f64>, f64)]) -> Option<PoseEstimate> {
+    let mut cells = BTreeMap::<[i64; 3], (f64, usize)>::new();
+    for (at, (pose, weight)) in particles.iter().enumerate() {
+        let cell =
+            [pose.x() / REACH.x, pose.y() / REACH.y, pose.heading() / REACH.z].map(|v| v.floor() as i64);
+        let (total, heaviest) = cells.entry(cell).or_insert((0.0, at));
+        *total += weight;
+        if *weight > particles[*heaviest].1 {
+            *heaviest = at;
+        }
+    }
+    let (_, (_, start)) = cells.iter().max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+    let mut mean = particles[*start].0;
+    let mut moments = Moments::about(&mean, particles);
+    for _ in 0..N_STEPS {
+        mean = mean.retract(&moments.mean);
+        moments = Moments::about(&mean, particles);
+    }
+    let total: f64 = particles.iter().map(|(_, weight)| weight).sum();
+    if moments.weight.is_nan() || moments.weight <= 0.0 {
+        return None;
+    }
+    let pose = Gaussian::new(mean, moments.spread + Matrix3::from_diagonal(&GRAIN)).ok()?;
+    Some(PoseEstimate { pose, share: moments.weight / total })
+}
+
+/// Weight, mean and spread of what is within reach of a centre, in its tangent space.
+struct Moments {
+    weight: f64,
+    mean: Vector3<f64>,
+    spread: Matrix3<f64>,
+}
+
+impl Moments {
+    fn about(centre: &Pose2<f64>, particles: &[(Pose2<f64>, f64)]) -> Self {
+        let (mut weight, mut sum, mut products) = (0.0, Vector3::zeros(), Matrix3::zeros());
+        for (pose, w) in particles {
+            let from_centre = centre.local(pose);
+            if from_centre.component_div(&REACH).norm_squared() <= 1.0 {
+                weight += w;
+                sum += from_centre * *w;
+                products += from_centre * from_centre.transpose() * *w;
+            }
+        }
+        let scale = if weight > 0.0 { 1.0 / weight } else { 0.0 };
+        let mean = sum * scale;
+        Self { weight, mean, spread: products * scale - mean * mean.transpose() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_heavier_of_two_clusters_is_the_estimate() {
+        let around = |x: f64, heading: f64, weight: f64| {
+            [(-0.05, -0.02), (0.05, 0.02), (0.0, 0.0)]
+                .map(|(dx, turn)| (Pose2::new(x + dx, 0.0, heading + turn), weight / 3.0))
+        };
+        let pi = std::f64::consts::PI;
+        let particles = [around(1.0, pi, 0.7), around(-1.0, 0.0, 0.3)].concat();
+        let estimate = dominant_cluster(&particles).unwrap();
+        assert!((estimate.share - 0.7).abs() < 1e-12);
+        // The heading's wrap is inside the cluster.
+        let off = Pose2::new(1.0, 0.0, pi).local(estimate.pose.mean());
+        assert!(off.norm() < 1e-9, "{off}");
+        let along = 2.0 / 3.0 * 0.05_f64.powi(2); // two of three are 5 cm off the mean
+        assert!((estimate.pose.covariance()[(0, 0)] - along - GRAIN.x).abs() < 1e-12);
+    }
+
+    #[test]
+    fn no_weight_is_no_estimate() {
+        assert_eq!(dominant_cluster(&[]), None);
+        assert_eq!(dominant_cluster(&[(Pose2::new(0.0, 0.0, 0.0), 0.0)]), None);
+    }
+}

@@ -1,0 +1,36 @@
+use nalgebra::Matrix3;
+use wayfix_color_map::ColorId;
+
+use crate::{ColorDensity, ColorModelError, LightingBank, PixelParams, SumDensity};
+
+/// A particle's knowledge of the light: a bank of filters, and its colours' densities ready for weighing.
+///
+/// Particles with a common ancestor share it until one of them sees something.
+#[derive(Clone, Debug)]
+pub(crate) struct Light {
+    pub(crate) bank: LightingBank,
+    /// Of every colour under every member, member by member.
+    densities: Vec<SumDensity>,
+    n_colors: usize,
+}
+
+impl Light {
+    pub(crate) fn new(bank: LightingBank, pixels: &PixelParams) -> Result<Self, ColorModelError> {
+        let n_colors = bank.n_colors();
+        let densities = (0..bank.n_members())
+            .flat_map(|member| (0..n_colors).map(move |color| (member, ColorId(color as u8))))
+            .map(|(member, color)| {
+                let filter = bank.member(member);
+                let ColorDensity { mean, covariance } = filter.color(color);
+                let covariance = covariance + Matrix3::from_diagonal(&pixels.unevenness(filter));
+                SumDensity::new(&ColorDensity { mean, covariance })
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { bank, densities, n_colors })
+    }
+
+    /// Densities of the colours under one member.
+    pub(crate) fn member(&self, member: usize) -> &[SumDensity] {
+        &self.densities[member * self.n_colors..][..self.n_colors]
+    }
+}

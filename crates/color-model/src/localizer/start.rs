@@ -1,0 +1,44 @@
+use rand::{Rng, RngExt};
+use wayfix_color_map::ColorMap;
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::Gaussian;
+
+use crate::ColorModelError;
+
+/// Where the robot may be at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Start {
+    /// About here.
+    Near(Gaussian<Pose2<f64>>),
+    /// Anywhere above the map, facing anywhere.
+    Anywhere,
+}
+
+/// A rectangle of the ground, metres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Area {
+    min: [f64; 2],
+    max: [f64; 2],
+}
+
+impl Area {
+    /// The ground below a map.
+    pub(crate) fn of(map: &ColorMap) -> Result<Self, ColorModelError> {
+        let extent = map.extent().ok_or(ColorModelError::EmptyMap)?;
+        Ok(Self { min: [extent.min.x, extent.min.y], max: [extent.max.x, extent.max.y] })
+    }
+
+    /// The nearest pose inside: boards stop a robot that would walk out.
+    pub(crate) fn clamp(&self, pose: &mut Pose2<f64>) {
+        for axis in 0..2 {
+            pose.translation[axis] = pose.translation[axis].clamp(self.min[axis], self.max[axis]);
+        }
+    }
+
+    pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Pose2<f64> {
+        let mut between =
+            |axis: usize| self.min[axis] + rng.random::<f64>() * (self.max[axis] - self.min[axis]);
+        let (x, y) = (between(0), between(1));
+        Pose2::new(x, y, (rng.random::<f64>() - 0.5) * std::f64::consts::TAU)
+    }
+}

@@ -1,0 +1,57 @@
+use nalgebra::{DMatrix, DVector, Vector3};
+use serde::{Deserialize, Serialize};
+use wayfix_gaussian_core::Gaussian;
+
+use super::{LightingPriors, PriorError};
+
+/// [`LightingPriors`] as files have them: plain lists, checked on the way in.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PriorFile {
+    colors: Vec<String>,
+    pixel_noise: [f64; 3],
+    mean_noise: [f64; 3],
+    members: Vec<Member>,
+}
+
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Member {
+    mean: Vec<f64>,
+    covariance: Vec<Vec<f64>>,
+}
+
+impl From<LightingPriors> for PriorFile {
+    fn from(priors: LightingPriors) -> Self {
+        let member = |gaussian: &Gaussian<DVector<f64>>| Member {
+            mean: gaussian.mean().as_slice().to_vec(),
+            covariance: gaussian.covariance().row_iter().map(|row| row.iter().copied().collect()).collect(),
+        };
+        Self {
+            colors: priors.colors().to_vec(),
+            pixel_noise: priors.pixel_noise().into(),
+            mean_noise: priors.mean_noise().into(),
+            members: priors.members().iter().map(member).collect(),
+        }
+    }
+}
+
+impl TryFrom<PriorFile> for LightingPriors {
+    type Error = PriorError;
+
+    fn try_from(file: PriorFile) -> Result<Self, PriorError> {
+        let members = file.members.into_iter().map(Member::gaussian).collect::<Result<_, _>>()?;
+        Self::new(file.colors, members, Vector3::from(file.pixel_noise), Vector3::from(file.mean_noise))
+    }
+}
+
+impl Member {
+    fn gaussian(self) -> Result<Gaussian<DVector<f64>>, PriorError> {
+        let n = self.covariance.len();
+        if let Some(row) = self.covariance.iter().find(|row| row.len() != n) {
+            return Err(PriorError::Dimension { what: "row of a covariance", expected: n, got: row.len() });
+        }
+        let covariance = DMatrix::from_fn(n, n, |i, j| self.covariance[i][j]);
+        Ok(Gaussian::new(DVector::from_vec(self.mean), covariance)?)
+    }
+}

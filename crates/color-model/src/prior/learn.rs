@@ -1,0 +1,87 @@
+use rand::Rng;
+use wayfix_gaussian_core::{GaussianError, IterationError, fit_hierarchical};
+
+use super::evidence::{evidence, pooled_mean_noise, pooled_pixel_noise};
+use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
+
+/// Learns a prior for each of `k` kinds of light from venues seen before. [Schulz & Fox 2004, III.B]
+///
+/// The venues are split by their brightness ([`split_by_brightness`]); each group gives the Gaussian that maximizes Eq. 10
+/// ([`fit_hierarchical`]). Colours that an image does not show are missing, not guessed.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_color_model::{ColorMeans, PriorParams, TrainingVenue, learn_priors};
+/// let image = |light: f64| ColorMeans::new([
+///     (Some(Vector3::new(60.0 * light, 110.0, 100.0)), 500),
+///     (Some(Vector3::new(120.0 * light, 128.0, 128.0)), 80),
+/// ]);
+/// let venue = |k: usize| {
+///     let light = if k < 6 { 0.5 } else { 1.5 } + 0.05 * (k % 6) as f64;
+///     TrainingVenue { name: k.to_string(), images: vec![image(light), image(light + 0.01)], pixels: None }
+/// };
+/// let venues: Vec<TrainingVenue> = (0..12).map(venue).collect();
+/// let params = PriorParams { mean_noise: Some(Vector3::repeat(1.0)), ..PriorParams::default() };
+/// let rng = &mut ChaCha8Rng::seed_from_u64(1);
+/// let priors = learn_priors(&["green".into(), "white".into()], &venues, 2, &params, rng)?;
+/// let [dark, bright] = priors.members() else { panic!("two kinds of light") };
+/// assert!((dark.mean()[0] - 37.8).abs() < 0.5 && (bright.mean()[0] - 97.8).abs() < 0.5); // 60 times the mean of the lights
+/// # Ok::<(), wayfix_color_model::PriorError>(())
+/// ```
+///
+/// # Errors
+/// When there are not `k` different venues, a venue or parameter makes no sense, a colour is in no image of a group, or EM does not arrive.
+pub fn learn_priors<R: Rng + ?Sized>(
+    colors: &[String],
+    venues: &[TrainingVenue],
+    k: usize,
+    params: &PriorParams,
+    rng: &mut R,
+) -> Result<LightingPriors, PriorError> {
+    let n_colors = colors.len();
+    params.check()?;
+    let split = split_by_brightness(venues, n_colors, k, params.restarts, rng)?;
+    let mean_noise = params.mean_noise.map_or_else(|| pooled_mean_noise(venues, n_colors), Ok)?;
+    let pixel_noise = pooled_pixel_noise(venues, &params.pixel_noise);
+    let hierarchical = params.hierarchical(n_colors)?;
+    let mut members = Vec::with_capacity(k);
+    for group in 0..k {
+        let chosen = venues.iter().zip(&split).filter(|(_, g)| **g == group);
+        let groups =
+            chosen.map(|(venue, _)| evidence(venue, n_colors, &mean_noise)).collect::<Result<Vec<_>, _>>()?;
+        let fit = fit_hierarchical(&groups, &hierarchical).map_err(|error| match error {
+            IterationError::Step(GaussianError::Unobserved { coordinate }) => {
+                PriorError::UnseenColor { group, color: colors[coordinate / 3].clone() }
+            }
+            error => error.into(),
+        })?;
+        members.push(fit.gaussian);
+    }
+    LightingPriors::new(colors.to_vec(), members, pixel_noise, mean_noise)
+}
+
+/// The group of each venue, from 0 for the darkest to `k - 1`: k-means on the mean Y of each colour. [Schulz & Fox 2004, V]
+///
+/// # Errors
+/// When there are not `k` different venues, or a venue has no image that shows a colour, images of another number of colours, or means that
+/// are not finite.
+pub fn split_by_brightness<R: Rng + ?Sized>(
+    venues: &[TrainingVenue],
+    n_colors: usize,
+    k: usize,
+    restarts: usize,
+    rng: &mut R,
+) -> Result<Vec<usize>, PriorError> {
+    venues.iter().try_for_each(|venue| venue.check(n_colors))?;
+    let brightness: Vec<_> = venues.iter().map(|venue| venue.brightness(n_colors)).collect();
+    let split = k_means(&brightness, k, restarts, rng)?;
+    let luminance = |group: &usize| split.centers[*group].iter().sum::<f64>();
+    let mut order: Vec<usize> = (0..k).collect();
+    order.sort_by(|a, b| luminance(a).total_cmp(&luminance(b)));
+    let mut rank = vec![0; k];
+    for (position, group) in order.into_iter().enumerate() {
+        rank[group] = position;
+    }
+    Ok(split.assignment.into_iter().map(|group| rank[group]).collect())
+}

@@ -1,0 +1,18 @@
+//! What lights are like, learned from venues seen before: a prior per kind of light.
+
+mod error;
+mod evidence;
+#[cfg(feature = "serde")]
+mod file;
+mod k_means;
+mod learn;
+mod params;
+mod priors;
+mod venue;
+
+pub use error::PriorError;
+pub use k_means::{KMeans, k_means};
+pub use learn::{learn_priors, split_by_brightness};
+pub use params::PriorParams;
+pub use priors::LightingPriors;
+pub use venue::{PixelSpread, TrainingVenue};

@@ -1,0 +1,60 @@
+use nalgebra::{DMatrix, DVector, Vector3};
+use wayfix_gaussian_core::{HierarchicalParams, InverseWishart};
+
+use super::{PriorError, error::check_positive};
+
+/// How priors are learned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PriorParams {
+    /// Standard deviation of a colour between venues before any is seen, (Y, U, V): the mode of the hyperprior, colours uncorrelated.
+    /// Default 30, 10, 10.
+    pub color_sigmas: Vector3<f64>,
+    /// How many venues the hyperprior is worth; more of them shrink the correlations between colours. Default 3.
+    pub pseudo_venues: f64,
+    /// Variance of an image's mean of a colour about its venue's, (Y, U, V). Default none: pooled over the training images.
+    pub mean_noise: Option<Vector3<f64>>,
+    /// Variance of a pixel about the mean of its colour when no venue recorded it. Default 144, 36, 36.
+    pub pixel_noise: Vector3<f64>,
+    /// How many starts of k-means; the best result counts. Default 20.
+    pub restarts: usize,
+    /// When EM stops: see [`HierarchicalParams`]. Default 1e-6 nats, or 10 000 iterations.
+    pub tolerance: f64,
+    /// See `tolerance`.
+    pub max_iterations: usize,
+}
+
+impl Default for PriorParams {
+    fn default() -> Self {
+        Self {
+            color_sigmas: Vector3::new(30.0, 10.0, 10.0),
+            pseudo_venues: 3.0,
+            mean_noise: None,
+            pixel_noise: Vector3::new(144.0, 36.0, 36.0),
+            restarts: 20,
+            tolerance: 1e-6,
+            max_iterations: 10_000,
+        }
+    }
+}
+
+impl PriorParams {
+    pub(super) fn check(&self) -> Result<(), PriorError> {
+        let noise = self.mean_noise.iter().flat_map(|noise| noise.iter()).chain(&self.pixel_noise);
+        noise.into_iter().try_for_each(|variance| check_positive("variance of the noise", *variance))?;
+        self.color_sigmas.iter().try_for_each(|sigma| check_positive("sigma of a colour", *sigma))?;
+        check_positive("number of pseudo-venues", self.pseudo_venues)?;
+        check_positive("number of restarts", self.restarts as f64)
+    }
+
+    /// The hyperprior for `n_colors` colours, and when to stop.
+    pub(super) fn hierarchical(&self, n_colors: usize) -> Result<HierarchicalParams, PriorError> {
+        let variances = DVector::from_fn(3 * n_colors, |i, _| self.color_sigmas[i % 3].powi(2));
+        let mode = DMatrix::from_diagonal(&variances);
+        Ok(HierarchicalParams {
+            covariance_prior: Some(InverseWishart::from_mode(&mode, self.pseudo_venues)?),
+            mean_prior: None,
+            tolerance: self.tolerance,
+            max_iterations: self.max_iterations,
+        })
+    }
+}

@@ -1,0 +1,70 @@
+use super::{YuvStandard, standard::convert};
+use crate::ColorModelError;
+
+/// An image of YUV pixels, row by row from the upper left.
+///
+/// ```
+/// use wayfix_color_model::{YuvImage, YuvStandard};
+/// let image = YuvImage::from_rgb(2, 1, &[0, 0, 0, 255, 255, 255], YuvStandard::Bt601Full)?;
+/// assert_eq!(image.pixels(), [[0, 128, 128], [255, 128, 128]]);
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct YuvImage {
+    width: u32,
+    height: u32,
+    pixels: Vec<[u8; 3]>,
+}
+
+impl YuvImage {
+    /// An image of YUV pixels.
+    ///
+    /// # Errors
+    /// When the pixels do not fill the image, or there are none.
+    pub fn new(width: u32, height: u32, pixels: Vec<[u8; 3]>) -> Result<Self, ColorModelError> {
+        let got = pixels.len() * 3;
+        check(width, height, got)?;
+        Ok(Self { width, height, pixels })
+    }
+
+    /// Converts RGB bytes.
+    ///
+    /// # Errors
+    /// When the bytes do not fill the image, or there are none.
+    pub fn from_rgb(
+        width: u32,
+        height: u32,
+        rgb: &[u8],
+        standard: YuvStandard,
+    ) -> Result<Self, ColorModelError> {
+        check(width, height, rgb.len())?;
+        let weights = standard.weights();
+        let (pixels, _) = rgb.as_chunks::<3>();
+        Ok(Self { width, height, pixels: pixels.iter().map(|rgb| convert(&weights, *rgb)).collect() })
+    }
+
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// `[Y, U, V]` of every pixel.
+    pub fn pixels(&self) -> &[[u8; 3]] {
+        &self.pixels
+    }
+}
+
+fn check(width: u32, height: u32, got: usize) -> Result<(), ColorModelError> {
+    let (width, height) = (width as usize, height as usize);
+    let expected = width.checked_mul(height).and_then(|n| n.checked_mul(3)).unwrap_or(0);
+    if expected == got && got > 0 {
+        Ok(())
+    } else {
+        Err(ColorModelError::ImageSize { width, height, expected, got })
+    }
+}

@@ -1,0 +1,38 @@
+use wayfix_estimation_traits::LogWeight;
+
+use super::ParticleSet;
+use crate::{Evidence, ParticleError, Weights};
+
+impl<X> ParticleSet<X> {
+    /// Makes the weights add up to one, and tells what their sum was.
+    ///
+    /// # Errors
+    /// [`ParticleError::NoWeight`] when every particle is impossible. The weights stay as they are; whether to forget the measurement
+    /// ([`forget_weights`](Self::forget_weights)) or to start again is the caller's decision.
+    pub fn normalize(&mut self) -> Result<Evidence, ParticleError> {
+        normalize(&mut self.log_weights, &mut self.workspace.weights)
+    }
+
+    /// Gives every particle the same weight, whatever it was.
+    pub fn forget_weights(&mut self) {
+        let log_share = -(self.n_particles() as f64).ln();
+        self.log_weights.fill(log_share);
+    }
+}
+
+/// In place, with memory for the plain weights; leaves log weights alone when it fails.
+pub(super) fn normalize(
+    log_weights: &mut [LogWeight],
+    weights: &mut Weights,
+) -> Result<Evidence, ParticleError> {
+    let log_sum = weights.assign_log(log_weights)?;
+    for log_weight in log_weights {
+        *log_weight -= log_sum;
+    }
+    let n_particles = weights.as_slice().len();
+    Ok(Evidence {
+        log_likelihood: log_sum,
+        effective_sample_size: weights.effective_sample_size(),
+        n_particles,
+    })
+}

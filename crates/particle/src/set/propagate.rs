@@ -1,0 +1,31 @@
+use rand::Rng;
+
+use super::ParticleSet;
+use crate::chunks::{ChunkRng, Streams, map_chunks};
+
+impl<X: Send> ParticleSet<X> {
+    /// Moves every particle: $`x_i ∼ p(x_k | x_{k-1} = x_i)`$. Weights stay.
+    ///
+    /// The same bits for any number of threads: particles draw from a stream of their chunk, seeded from `rng`.
+    pub fn propagate<R: Rng + ?Sized>(&mut self, motion: impl Fn(&mut X, &mut ChunkRng) + Sync, rng: &mut R) {
+        self.propagate_with(|| (), |(), state, rng| motion(state, rng), rng);
+    }
+
+    /// [`propagate`](Self::propagate) with something that `prepare` makes once a chunk of particles: a curried model, working memory.
+    ///
+    /// What a motion leaves in it must not matter to the next particle.
+    pub fn propagate_with<S, R: Rng + ?Sized>(
+        &mut self,
+        prepare: impl Fn() -> S + Sync,
+        motion: impl Fn(&mut S, &mut X, &mut ChunkRng) + Sync,
+        rng: &mut R,
+    ) {
+        let streams = Streams::from_generator(rng);
+        map_chunks(&mut self.states, &mut self.log_weights, |chunk, states, _| {
+            let (mut prepared, mut rng) = (prepare(), streams.stream(chunk));
+            for state in states {
+                motion(&mut prepared, state, &mut rng);
+            }
+        });
+    }
+}

@@ -1,0 +1,193 @@
+use nalgebra::Vector2;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use wayfix_estimation_traits::{Pose2, Pose3};
+
+use super::{
+    LeagueParams, Legged, Lighting, Photographer, Picture, Rgb, Scene, Surface, Things, Venue, field_map,
+    landmarks,
+};
+use crate::SimError;
+use crate::random::deviate::uniform;
+use crate::random::{GaussMarkov, Source, Streams};
+
+/// What happens at one frame, truth included.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// When the middle of the exposure is, milliseconds after the start.
+    pub milliseconds: u64,
+    /// What the robot believes to have moved since the last frame, and when it says so (just before the shutter opens, milliseconds
+    /// after the start); none at the first frame.
+    pub odometry: Option<(u64, Pose2<f64>)>,
+    /// Where it truly is.
+    pub pose: Pose2<f64>,
+    /// Where the joints say that the camera is, in the robot's frame on the ground.
+    pub mount: Pose3<f64>,
+    /// Where the camera truly is in the world.
+    pub camera_pose: Pose3<f64>,
+    /// Which lamps are on.
+    pub lighting: Lighting,
+    /// The picture, and what it truly shows.
+    pub picture: Picture,
+}
+
+/// The frames of a drive, one after another.
+///
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_scene_sim::{league::{LeagueParams, LeagueDrive}, random::Streams};
+/// let params = LeagueParams { n_frames: 3, ..LeagueParams::default() };
+/// let drive = LeagueDrive::new(&params, Streams::new(ChaCha8Rng::seed_from_u64(1)))?;
+/// let stamps: Vec<u64> = drive.map(|frame| frame.milliseconds).collect();
+/// assert_eq!(stamps, [100, 200, 300]);
+/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// ```
+pub struct LeagueDrive {
+    params: LeagueParams,
+    streams: Streams,
+    venue: Venue,
+    map: Vec<Surface>,
+    things: Things,
+    robot: Legged,
+    photographer: Photographer,
+    /// Of red and of blue.
+    balance: [GaussMarkov; 2],
+    milliseconds: u64,
+    n_taken: usize,
+}
+
+/// The odometry speaks this long before the shutter opens.
+const ODOMETRY_LEAD_MS: u64 = 1;
+
+impl LeagueDrive {
+    /// The robot at its start, the camera ready.
+    ///
+    /// # Errors
+    /// When a parameter has no meaning.
+    pub fn new(params: &LeagueParams, mut streams: Streams) -> Result<Self, SimError> {
+        let venue = match params.venue_seed {
+            Some(seed) => Venue::draw(Streams::new(ChaCha8Rng::seed_from_u64(seed)).of(Source::Venue))?,
+            None => Venue::draw(streams.of(Source::Venue))?,
+        };
+        Self::in_venue(params, venue, streams)
+    }
+
+    /// The same in a venue of one's own.
+    ///
+    /// # Errors
+    /// When a parameter has no meaning.
+    pub fn in_venue(params: &LeagueParams, venue: Venue, mut streams: Streams) -> Result<Self, SimError> {
+        params.validate(&venue.camera)?;
+        let robot = Legged::new(params.robot, params.start, landmarks(), &mut streams)?;
+        let photographer = Photographer::new(venue.camera)?;
+        let drift = GaussMarkov::new(venue.camera.white_balance_correlation_s);
+        Ok(Self {
+            map: Surface::of_map(&field_map()?),
+            things: Things::draw(streams.of(Source::Things)),
+            robot,
+            photographer,
+            balance: [drift.clone(), drift],
+            milliseconds: 0,
+            n_taken: 0,
+            params: params.clone(),
+            streams,
+            venue,
+        })
+    }
+
+    /// Where it drives.
+    pub fn venue(&self) -> &Venue {
+        &self.venue
+    }
+
+    fn walk_until(&mut self, milliseconds: u64) {
+        while self.milliseconds < milliseconds {
+            self.robot.step(&mut self.streams);
+            self.milliseconds += 1;
+        }
+    }
+
+    fn kidnap(&mut self) {
+        let from = self.robot.pose().translation;
+        let margin = self.params.robot.walk.margin_m;
+        let rng = self.streams.of(Source::Kidnap);
+        let mut to = Pose2::new(0.0, 0.0, 0.0);
+        // The field is 4.2 m long: most places are far enough.
+        for _ in 0..100 {
+            let at = super::field::spot(margin, rng);
+            to = Pose2::new(at.x, at.y, uniform(-std::f64::consts::PI, std::f64::consts::PI, rng));
+            if Vector2::metric_distance(&at, &from) > 1.0 {
+                break;
+            }
+        }
+        self.robot.put(to);
+    }
+
+    fn lighting(&self) -> Lighting {
+        let past = self.params.lights.iter().take_while(|(frame, _)| *frame <= self.n_taken);
+        past.last().map_or(Lighting::Bright, |(_, lighting)| *lighting)
+    }
+
+    fn balance(&mut self) -> Rgb {
+        let period_s = f64::from(self.params.period_ms) * 1e-3;
+        let sigma = self.venue.camera.white_balance_drift;
+        let rng = self.streams.of(Source::WhiteBalance);
+        let [red, blue] = self.balance.each_mut().map(|x| libm::exp(sigma * x.advance(period_s, rng)));
+        Rgb::new(red, 1.0, blue)
+    }
+
+    fn frame(&mut self) -> Frame {
+        let middle = u64::from(self.params.period_ms) * (self.n_taken as u64 + 1);
+        let exposure = u64::from(self.venue.camera.exposure_ms);
+        let opens = middle - exposure / 2;
+        let odometry = self.odometry(opens - ODOMETRY_LEAD_MS);
+        if self.params.kidnaps.contains(&self.n_taken) {
+            self.kidnap();
+        }
+        self.walk_until(opens);
+        let opening = self.robot.camera_pose();
+        self.walk_until(middle);
+        let (pose, mount, camera_pose) =
+            (self.robot.pose(), self.robot.reported_mount(), self.robot.camera_pose());
+        self.walk_until(opens + exposure);
+        let closing = self.robot.camera_pose();
+        let (lighting, picture) = (self.lighting(), self.picture(&pose, [&opening, &closing]));
+        Frame { milliseconds: middle, odometry, pose, mount, camera_pose, lighting, picture }
+    }
+
+    /// Before the first frame it counts for nothing.
+    fn odometry(&mut self, milliseconds: u64) -> Option<(u64, Pose2<f64>)> {
+        self.walk_until(milliseconds);
+        let seconds = f64::from(self.params.period_ms) * 1e-3;
+        let moved = self.robot.odometry(seconds, &mut self.streams);
+        (self.n_taken > 0).then_some((milliseconds, moved))
+    }
+
+    fn picture(&mut self, pose: &Pose2<f64>, camera: [&Pose3<f64>; 2]) -> Picture {
+        let mut surfaces = self.map.clone();
+        if self.params.with_things {
+            surfaces.extend(self.things.surfaces(self.milliseconds as f64 * 1e-3, pose));
+        }
+        let balance = self.balance();
+        let scene = Scene {
+            surfaces,
+            paints: &self.venue.paints,
+            light: self.venue.light(self.lighting()),
+            backdrop: &self.venue.hall,
+        };
+        self.photographer.take(&scene, camera, &balance, self.streams.of(Source::Picture))
+    }
+}
+
+impl Iterator for LeagueDrive {
+    type Item = Frame;
+
+    fn next(&mut self) -> Option<Frame> {
+        if self.n_taken >= self.params.n_frames {
+            return None;
+        }
+        let frame = self.frame();
+        self.n_taken += 1;
+        Some(frame)
+    }
+}

@@ -1,0 +1,64 @@
+use nalgebra::Vector3;
+
+/// Linear red, green and blue: radiance, irradiance, reflectance or gain, as the place says.
+pub type Rgb = Vector3<f64>;
+
+/// How much light falls on what. Implement it to light the field your own way (`examples/custom_light.rs`).
+///
+/// **Laws**: finite and nowhere negative, and nothing depends on anything but the arguments.
+pub trait LightField {
+    /// Irradiance of a surface at `point` (metres) that faces along the unit vector `normal`; 1 is the everyday light of a venue.
+    fn irradiance(&self, point: &Vector3<f64>, normal: &Vector3<f64>) -> Rgb;
+}
+
+/// A panel on the ceiling that shines downwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lamp {
+    /// Where it hangs, metres.
+    pub position: Vector3<f64>,
+    /// Irradiance 1 m straight below it.
+    pub strength: Rgb,
+}
+
+/// Lamps, and light from everywhere else.
+///
+/// A lamp gives $`E = I \cos θ_o \cos θ_i / d^2`$ (a Lambert emitter that faces down and a Lambert surface); nothing casts a shadow.
+///
+/// ```
+/// use wayfix_estimation_traits::nalgebra::Vector3;
+/// use wayfix_scene_sim::league::{Lamp, Lamps, LightField, Rgb};
+/// let lamp = Lamp { position: Vector3::new(0.0, 0.0, 2.0), strength: Rgb::repeat(4.0) };
+/// let light = Lamps { lamps: vec![lamp], ambient: Rgb::zeros(), bounce: Rgb::zeros() };
+/// let below = light.irradiance(&Vector3::zeros(), &Vector3::z());
+/// let aside = light.irradiance(&Vector3::new(2.0, 0.0, 0.0), &Vector3::z());
+/// assert!((below.x - 1.0).abs() < 1e-15 && (aside.x - 0.25).abs() < 1e-15); // cos⁴ 45°
+/// ```
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Lamps {
+    /// What shines.
+    pub lamps: Vec<Lamp>,
+    /// Irradiance from above that comes from everywhere.
+    pub ambient: Rgb,
+    /// Irradiance from below: what the carpet throws back.
+    pub bounce: Rgb,
+}
+
+impl LightField for Lamps {
+    fn irradiance(&self, point: &Vector3<f64>, normal: &Vector3<f64>) -> Rgb {
+        let up = 0.5 + 0.5 * normal.z;
+        let around = self.ambient * up + self.bounce * (1.0 - up);
+        self.lamps.iter().fold(around, |sum, lamp| sum + lamp.irradiance(point, normal))
+    }
+}
+
+impl Lamp {
+    fn irradiance(&self, point: &Vector3<f64>, normal: &Vector3<f64>) -> Rgb {
+        let to_lamp = self.position - point;
+        let facing = normal.dot(&to_lamp);
+        if facing <= 0.0 || to_lamp.z <= 0.0 {
+            return Rgb::zeros();
+        }
+        let squared = to_lamp.norm_squared();
+        self.strength * (to_lamp.z * facing / (squared * squared))
+    }
+}

@@ -1,0 +1,57 @@
+use wayfix_estimation_traits::Pose2;
+
+use super::{CameraParams, Lighting, RobotParams};
+use crate::{SimError, check};
+
+/// One drive over the field with the camera running.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeagueParams {
+    /// Number of frames, at most 100 000. Default 280.
+    pub n_frames: usize,
+    /// Time from one to the next, milliseconds; longer than the exposure. Default 100.
+    pub period_ms: u32,
+    /// Which venue: the one that this seed gives, or with `None` one that belongs to the seed of the drive. Default `None`.
+    pub venue_seed: Option<u64>,
+    /// The light from the frame on, in the order of the frames. Default bright from frame 0 on; so it is before the first.
+    pub lights: Vec<(usize, Lighting)>,
+    /// Where the robot starts; `None` for anywhere on the field. Default `None`.
+    pub start: Option<Pose2<f64>>,
+    /// Before which frames somebody lifts the robot and puts it elsewhere, 1 m away at least. Default none.
+    pub kidnaps: Vec<usize>,
+    /// The robot.
+    pub robot: RobotParams,
+    /// Whether there are robots, a ball and a referee that no map lists. Default true.
+    pub with_things: bool,
+    /// How many frames of the log get labels. Default 12.
+    pub n_labelled: usize,
+}
+
+impl Default for LeagueParams {
+    fn default() -> Self {
+        Self {
+            n_frames: 280,
+            period_ms: 100,
+            venue_seed: None,
+            lights: vec![(0, Lighting::Bright)],
+            start: None,
+            kidnaps: Vec::new(),
+            robot: RobotParams::default(),
+            with_things: true,
+            n_labelled: 12,
+        }
+    }
+}
+
+impl LeagueParams {
+    /// Whether the numbers make a drive with this camera; the robot's are looked at when it is built.
+    pub(super) fn validate(&self, camera: &CameraParams) -> Result<(), SimError> {
+        check::count("frames", self.n_frames, 100_000)?;
+        let (exposure, period) = (f64::from(camera.exposure_ms), f64::from(self.period_ms));
+        check::above("period of the frames (ms)", period, exposure + 2.0, "2 ms longer than the exposure")?;
+        check::at_most("period of the frames (ms)", period, 60_000.0, "at most 60 000")?;
+        let Some(start) = self.start else { return Ok(()) };
+        check::finite("start (m)", start.x())?;
+        check::finite("start (m)", start.y())?;
+        check::finite("start (rad)", start.heading())
+    }
+}

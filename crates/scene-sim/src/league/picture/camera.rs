@@ -1,0 +1,101 @@
+use wayfix_color_map::Camera;
+
+use crate::league::Rgb;
+use crate::{SimError, check};
+
+/// The camera in a robot's head: optics, chip, and what its electronics make of the charge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraParams {
+    /// Size and focal length. Default: that of an ERS-7, 208 × 160 pixels and 56.9° × 45.2°.
+    pub camera: Camera,
+    /// How long the shutter is open, milliseconds. Default 10.
+    pub exposure_ms: u32,
+    /// Signal, as a share of full scale, of radiance 1. Default 1.
+    pub gain: f64,
+    /// Gains of the three channels. Default 1.
+    pub white_balance: Rgb,
+    /// How the automatic white balance drifts: σ of the logarithm of the gains of red and blue. Default 0.02.
+    pub white_balance_drift: f64,
+    /// Correlation time of that drift, seconds. Default 20.
+    pub white_balance_correlation_s: f64,
+    /// Share of red, green and blue lost in the corners of the picture. Default (0.58, 0.50, 0.18): corners are dark and bluish.
+    pub vignetting: Rgb,
+    /// Share of each channel that comes from either of the others. Default 0.05.
+    pub crosstalk: f64,
+    /// Stray light: share of the picture's mean that every pixel gets. Default 0.015.
+    pub flare: f64,
+    /// Electrons at full scale: shot noise has σ = √(signal / electrons). Default 4000.
+    pub full_well: f64,
+    /// Read noise, σ as a share of full scale. Default 0.003.
+    pub read_noise: f64,
+    /// Exponent of the response, signal to grey value. Default 0.5.
+    pub gamma: f64,
+    /// Which pixels share their colour. Default [`Chroma::Pairs`].
+    pub chroma: Chroma,
+    /// Quality of the JPEG files, 1 to 100. Default 88.
+    pub jpeg_quality: u8,
+}
+
+/// How many pixels share one value of U and V.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Chroma {
+    /// Each has its own (4:4:4).
+    Each,
+    /// Two beside each other (4:2:2).
+    #[default]
+    Pairs,
+    /// Two by two (4:2:0).
+    Squares,
+}
+
+impl CameraParams {
+    /// The defaults, for a camera of one's own.
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            camera,
+            exposure_ms: 10,
+            gain: 1.0,
+            white_balance: Rgb::repeat(1.0),
+            white_balance_drift: 0.02,
+            white_balance_correlation_s: 20.0,
+            vignetting: Rgb::new(0.58, 0.50, 0.18),
+            crosstalk: 0.05,
+            flare: 0.015,
+            full_well: 4000.0,
+            read_noise: 0.003,
+            gamma: 0.5,
+            chroma: Chroma::default(),
+            jpeg_quality: 88,
+        }
+    }
+
+    /// The camera of an ERS-7, with the defaults.
+    ///
+    /// # Errors
+    /// Passes on what [`Camera`] says; the numbers are constant, so it has nothing to say.
+    pub fn ers7() -> Result<Self, SimError> {
+        Ok(Self::new(Camera::from_field_of_view(208, 160, 56.9_f64.to_radians(), 45.2_f64.to_radians())?))
+    }
+
+    /// Whether the numbers make a camera.
+    ///
+    /// # Errors
+    /// Names the first that does not.
+    pub fn validate(&self) -> Result<(), SimError> {
+        let n_pixels = self.camera.width() as usize * self.camera.height() as usize;
+        check::count("pixels of the camera", n_pixels, 1 << 22)?;
+        check::at_most("exposure (ms)", f64::from(self.exposure_ms), 1000.0, "at most 1000")?;
+        check::not_negative("gain", self.gain)?;
+        self.white_balance.iter().try_for_each(|&gain| check::not_negative("white balance", gain))?;
+        check::not_negative("drift of the white balance", self.white_balance_drift)?;
+        check::not_negative("correlation time of the white balance (s)", self.white_balance_correlation_s)?;
+        self.vignetting.iter().try_for_each(|&loss| check::share("vignetting", loss))?;
+        check::share("crosstalk", self.crosstalk)?;
+        check::share("flare", self.flare)?;
+        check::positive("electrons at full scale", self.full_well)?;
+        check::not_negative("read noise", self.read_noise)?;
+        check::positive("gamma", self.gamma)?;
+        check::positive("quality of the JPEG files", f64::from(self.jpeg_quality))?;
+        check::at_most("quality of the JPEG files", f64::from(self.jpeg_quality), 100.0, "at most 100")
+    }
+}

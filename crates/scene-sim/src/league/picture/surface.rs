@@ -1,0 +1,114 @@
+use nalgebra::Vector3;
+use wayfix_color_map::{ColorId, ColorMap, Shape};
+
+use crate::league::Rgb;
+
+/// The geometry of one surface. All are seen from both sides.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Form {
+    /// A planar convex polygon.
+    Polygon {
+        /// Its corners in order, metres.
+        corners: Vec<Vector3<f64>>,
+    },
+    /// The side of an upright cylinder.
+    Tube {
+        /// A point of its axis; z is not used.
+        axis: Vector3<f64>,
+        /// Radius, metres.
+        radius: f64,
+        /// Height of its lower end, metres.
+        from: f64,
+        /// Height of its upper end, metres.
+        to: f64,
+    },
+    /// A ball.
+    Ball {
+        /// Its centre, metres.
+        centre: Vector3<f64>,
+        /// Radius, metres.
+        radius: f64,
+    },
+}
+
+/// What a surface is painted with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Skin {
+    /// A colour of the map; the venue says what it looks like.
+    Map(ColorId),
+    /// A diffuse reflectance that no map lists.
+    Unmapped(Rgb),
+}
+
+/// Something to see.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Where it is.
+    pub form: Form,
+    /// What it looks like.
+    pub skin: Skin,
+}
+
+impl Surface {
+    /// The surfaces of a map, in its order.
+    pub fn of_map(map: &ColorMap) -> Vec<Self> {
+        map.shapes().iter().flat_map(of_shape).collect()
+    }
+
+    /// The sides and the top of a box that is upright but turned by `heading`: `low` and `high` are opposite corners in its own frame.
+    pub(in crate::league) fn cuboid(
+        place: &wayfix_estimation_traits::Pose2<f64>,
+        low: [f64; 3],
+        high: [f64; 3],
+        skin: Skin,
+    ) -> [Self; 5] {
+        let ahead = crate::plane::direction(place.heading());
+        let corner = |k: usize| {
+            let pick = |axis: usize| if k >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            let (x, y) = (pick(0), pick(1));
+            let at = place.translation + ahead * x + nalgebra::Vector2::new(-ahead.y, ahead.x) * y;
+            Vector3::new(at.x, at.y, pick(2))
+        };
+        [[0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6]]
+            .map(|side| Self { form: Form::Polygon { corners: side.map(corner).to_vec() }, skin })
+    }
+}
+
+fn of_shape(shape: &Shape) -> Vec<Surface> {
+    match shape {
+        Shape::Polygon { color, vertices } => {
+            vec![Surface { form: Form::Polygon { corners: vertices.clone() }, skin: Skin::Map(*color) }]
+        }
+        Shape::Post { x, y, radius, bands } => bands
+            .iter()
+            .map(|band| Surface {
+                form: Form::Tube {
+                    axis: Vector3::new(*x, *y, 0.0),
+                    radius: *radius,
+                    from: band.from,
+                    to: band.to,
+                },
+                skin: Skin::Map(band.color),
+            })
+            .collect(),
+    }
+}
+
+impl Form {
+    /// The unit normal at a point of the surface, on the side of `eye`.
+    pub(super) fn normal(&self, at: &Vector3<f64>, eye: &Vector3<f64>) -> Vector3<f64> {
+        let outward = match self {
+            Self::Polygon { corners } => plane_normal(corners),
+            Self::Tube { axis, .. } => Vector3::new(at.x - axis.x, at.y - axis.y, 0.0),
+            Self::Ball { centre, .. } => at - centre,
+        };
+        let unit = outward.try_normalize(0.0).unwrap_or_else(Vector3::z);
+        if unit.dot(&(eye - at)) < 0.0 { -unit } else { unit }
+    }
+}
+
+/// Counter-clockwise corners make it point at who sees them so; not of unit length.
+pub(super) fn plane_normal(corners: &[Vector3<f64>]) -> Vector3<f64> {
+    let Some((first, rest)) = corners.split_first() else { return Vector3::zeros() };
+    rest.windows(2).map(|pair| (pair[0] - first).cross(&(pair[1] - first))).sum()
+}

@@ -1,0 +1,87 @@
+use wayfix_sensor_log::{CameraInfo, Data, EncodedImage, Record, Stamp};
+
+use super::{Frame, LeagueDrive, LeagueParams, N_COLORS, Picture};
+use crate::random::Streams;
+use crate::{SimError, check};
+
+/// Stamp of the start, nanoseconds, as in [`Simulation`](crate::Simulation).
+const START_NS: u64 = 1_600_000_000_000_000_000;
+/// A colour counts as in view from this many pixels on.
+const IN_VIEW_PIXELS: usize = 40;
+
+impl LeagueParams {
+    /// The log of a drive, in time order: camera info at the start; before each frame but the first an odometry increment; then, at the
+    /// stamp of the frame, true pose, camera mount, true labels (of some frames) and picture.
+    ///
+    /// The log is cut into [`n_labelled`](Self::n_labelled) stretches, and in each the first frame with the most map colours in view
+    /// (40 pixels at least) gets labels: somebody who labels by hand takes pictures that show something.
+    ///
+    /// # Errors
+    /// When a parameter has no meaning.
+    pub fn simulate(&self, streams: Streams) -> Result<Vec<Record>, SimError> {
+        check::count("labelled frames", self.n_labelled, self.n_frames)?;
+        let drive = LeagueDrive::new(self, streams)?;
+        let camera_info = record(0, Data::CameraInfo(camera_info(&drive)));
+        let quality = drive.venue().camera.jpeg_quality;
+        let mut frames = Vec::with_capacity(self.n_frames);
+        let mut labelled: Vec<Option<Labelled>> = vec![None; self.n_labelled];
+        for (idx, frame) in drive.enumerate() {
+            if let Some(best) = labelled.get_mut(idx * self.n_labelled / self.n_frames) {
+                consider(idx, &frame.picture, best);
+            }
+            frames.push(records_of(&frame, quality)?);
+        }
+        for Labelled { idx, picture, .. } in labelled.into_iter().flatten() {
+            let labels = EncodedImage::png_gray(picture.width, picture.height, &picture.labels)?;
+            if let Some(Record { stamp, .. }) = frames[idx].last() {
+                let record = Record { stamp: *stamp, data: Data::TrueLabels(labels) };
+                let before_picture = frames[idx].len() - 1;
+                frames[idx].insert(before_picture, record);
+            }
+        }
+        Ok(std::iter::once(camera_info).chain(frames.into_iter().flatten()).collect())
+    }
+}
+
+/// The best frame of a stretch so far.
+#[derive(Clone)]
+struct Labelled {
+    idx: usize,
+    n_colors: usize,
+    picture: Picture,
+}
+
+fn consider(idx: usize, picture: &Picture, best: &mut Option<Labelled>) {
+    let in_view =
+        |color: u8| picture.labels.iter().filter(|&&label| label == color).count() >= IN_VIEW_PIXELS;
+    let n_colors = (1..=N_COLORS as u8).filter(|&color| in_view(color)).count();
+    if best.as_ref().is_none_or(|best| n_colors > best.n_colors) {
+        *best = Some(Labelled { idx, n_colors, picture: picture.clone() });
+    }
+}
+
+/// The picture is the last.
+fn records_of(frame: &Frame, quality: u8) -> Result<Vec<Record>, SimError> {
+    let Picture { width, height, rgb, .. } = &frame.picture;
+    let jpeg = EncodedImage::jpeg(*width, *height, rgb, quality)?;
+    let odometry = frame.odometry.map(|(when, moved)| record(when, Data::OdometryIncrement(moved)));
+    let at_once = [Data::TruePose(frame.pose), Data::CameraMount(frame.mount), Data::Image(jpeg)];
+    let at_once = at_once.map(|data| record(frame.milliseconds, data));
+    Ok(odometry.into_iter().chain(at_once).collect())
+}
+
+fn camera_info(drive: &LeagueDrive) -> CameraInfo {
+    let camera = drive.venue().camera.camera;
+    CameraInfo {
+        width: camera.width(),
+        height: camera.height(),
+        fx: camera.fx(),
+        fy: camera.fy(),
+        cx: camera.cx(),
+        cy: camera.cy(),
+    }
+}
+
+fn record(milliseconds: u64, data: Data) -> Record {
+    Record { stamp: Stamp::from_nanoseconds(START_NS + milliseconds * 1_000_000), data }
+}

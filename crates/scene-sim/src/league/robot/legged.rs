@@ -1,0 +1,132 @@
+use std::f64::consts::TAU;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
+
+use super::head::Head;
+use super::odometry::GaitOdometry;
+use super::walker::{Walker, advance_phase};
+use super::{RobotParams, SwayParams};
+use crate::random::{GaussMarkov, Source, Streams};
+use crate::{SimError, space};
+
+/// The neck in the robot's frame on the ground, metres.
+const NECK_M: [f64; 3] = [0.07, 0.0, 0.19];
+/// The camera in the frame of the head, metres.
+const NOSE_M: [f64; 3] = [0.08, 0.0, 0.03];
+/// Correlation time of the slow part of the sway, seconds.
+const UNSTEADY_S: f64 = 1.0;
+
+/// A four-legged robot that walks about and looks around, a millisecond at a time.
+///
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_scene_sim::{league::{Legged, RobotParams, landmarks}, random::Streams};
+/// let mut streams = Streams::new(ChaCha8Rng::seed_from_u64(1));
+/// let start = Pose2::new(0.0, 0.0, 0.0);
+/// let mut robot = Legged::new(RobotParams::default(), Some(start), landmarks(), &mut streams)?;
+/// (0..10_000).for_each(|_| robot.step(&mut streams));
+/// assert!((robot.pose().translation - start.translation).norm() > 0.2, "it walks");
+/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Legged {
+    walker: Walker,
+    head: Head,
+    odometry: GaitOdometry,
+    landmarks: Vec<Vector3<f64>>,
+    sway: SwayParams,
+    /// Phase of the stride, radians.
+    phase: f64,
+    /// How strongly it sways, smoothed.
+    strength: f64,
+    unsteady: [GaussMarkov; 2],
+    /// Roll and pitch beside the gait's, radians.
+    slow: [f64; 2],
+}
+
+const STEP_S: f64 = 1e-3;
+
+impl Legged {
+    /// A robot at rest at `start`, or anywhere; it looks at `landmarks`.
+    ///
+    /// # Errors
+    /// When a parameter has no meaning.
+    pub fn new(
+        params: RobotParams,
+        start: Option<Pose2<f64>>,
+        landmarks: Vec<Vector3<f64>>,
+        streams: &mut Streams,
+    ) -> Result<Self, SimError> {
+        params.validate()?;
+        let anywhere = Walker::anywhere(&params.walk, streams.of(Source::Walk));
+        let slow = GaussMarkov::new(UNSTEADY_S);
+        Ok(Self {
+            walker: Walker::new(params.walk, start.unwrap_or(anywhere)),
+            head: Head::new(params.head, streams.of(Source::Joints)),
+            odometry: GaitOdometry::new(params.odometry, streams.of(Source::Gait)),
+            landmarks,
+            sway: params.sway,
+            phase: 0.0,
+            strength: 0.0,
+            unsteady: [slow.clone(), slow],
+            slow: [0.0; 2],
+        })
+    }
+
+    /// Lets a millisecond pass.
+    pub fn step(&mut self, streams: &mut Streams) {
+        let moved = self.walker.step(STEP_S, streams.of(Source::Walk));
+        self.odometry.add(&moved);
+        self.head.step(STEP_S, &self.walker.pose, &self.landmarks, streams.of(Source::Gaze));
+        self.strength += (self.walker.activity().min(1.0) - self.strength) * 0.01;
+        self.phase = advance_phase(self.phase, TAU * STEP_S / self.sway.stride_s);
+        self.wobble(streams);
+    }
+
+    /// Where it truly stands.
+    pub fn pose(&self) -> Pose2<f64> {
+        self.walker.pose
+    }
+
+    /// Where its camera truly is in the world (x along the optical axis).
+    pub fn camera_pose(&self) -> Pose3<f64> {
+        let (sin, _) = libm::sincos(self.phase);
+        let (sin_twice, cos_twice) = libm::sincos(2.0 * self.phase);
+        let lift = Vector3::z() * (self.strength * self.sway.height_m * cos_twice);
+        let roll = self.slow[0] + self.strength * self.sway.roll_rad * sin;
+        let pitch = self.slow[1] + self.strength * self.sway.pitch_rad * sin_twice;
+        let body = Pose3 { translation: lift, rotation: space::pitch(pitch) * space::roll(roll) };
+        let camera = body.compose(&mounted(self.head.true_rotation()));
+        space::on_ground(&self.walker.pose).compose(&camera)
+    }
+
+    /// What the joints say: the camera in the robot's frame on the ground, in the usual stance.
+    pub fn reported_mount(&self) -> Pose3<f64> {
+        mounted(self.head.reported_rotation())
+    }
+
+    /// What it believes to have moved since this was asked last.
+    pub fn odometry(&mut self, seconds: f64, streams: &mut Streams) -> Pose2<f64> {
+        self.odometry.take(seconds, streams.of(Source::Gait))
+    }
+
+    /// Somebody lifts it and puts it elsewhere; its odometry notices nothing.
+    pub fn put(&mut self, pose: Pose2<f64>) {
+        self.walker.put(pose);
+        self.head.settle(&pose);
+    }
+
+    /// The slow part of the sway.
+    fn wobble(&mut self, streams: &mut Streams) {
+        let rng = streams.of(Source::Joints);
+        for (slow, process) in self.slow.iter_mut().zip(&mut self.unsteady) {
+            *slow = self.sway.unsteady_rad * process.advance(STEP_S, rng);
+        }
+    }
+}
+
+fn mounted(rotation: UnitQuaternion<f64>) -> Pose3<f64> {
+    Pose3 { translation: Vector3::from(NECK_M) + rotation * Vector3::from(NOSE_M), rotation }
+}

@@ -1,0 +1,159 @@
+use crate::random::Tail;
+use crate::{SimError, check};
+
+/// A four-legged robot: how it walks, sways and turns its head, and what it knows of that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotParams {
+    /// How it walks.
+    pub walk: WalkParams,
+    /// How its body moves meanwhile.
+    pub sway: SwayParams,
+    /// How it turns its head.
+    pub head: HeadParams,
+    /// What it believes about its steps.
+    pub odometry: GaitOdometryParams,
+}
+
+/// Where it goes: from one random point of the field to the next, forwards or sideways, with turns and rests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WalkParams {
+    /// Speed, m/s; 0 never leaves its place. Default 0.25.
+    pub speed_mps: f64,
+    /// Turning rate, rad/s. Default 1.
+    pub turn_radps: f64,
+    /// How fast it comes to a speed: time constant, seconds. Default 0.15.
+    pub lag_s: f64,
+    /// Mean length of a rest, seconds. Default 0.5.
+    pub rest_s: f64,
+    /// Share of ways that it walks without turning that way first. Default 0.25.
+    pub sideways_share: f64,
+    /// How far from the boards it stays, metres, at most 1. Default 0.35.
+    pub margin_m: f64,
+}
+
+/// What the joints of the head do not report: the body moves with the gait.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwayParams {
+    /// Length of one stride, seconds. Default 0.5.
+    pub stride_s: f64,
+    /// Amplitude of the roll at full speed, radians. Default 1°.
+    pub roll_rad: f64,
+    /// Amplitude of the pitch at full speed, radians. Default 0.7°.
+    pub pitch_rad: f64,
+    /// Amplitude of the height at full speed, metres. Default 0.004.
+    pub height_m: f64,
+    /// σ of a slow error of roll and pitch, walking or not, radians: the carpet is soft. Default 0.3°.
+    pub unsteady_rad: f64,
+}
+
+/// The head: pan and tilt, and a camera in its nose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadParams {
+    /// Top speed of a joint, rad/s. Default 2.
+    pub speed_radps: f64,
+    /// Furthest pan to either side, radians. Default 88°.
+    pub pan_limit_rad: f64,
+    /// How long it looks at one thing on average, seconds. Default 0.5.
+    pub dwell_s: f64,
+    /// Share of looks that go to the carpet ahead instead of a landmark. Default 0.15.
+    pub down_share: f64,
+    /// Resolution of the reported angles, radians; 0 for none. Default 0.25°.
+    pub quantum_rad: f64,
+    /// How old reported angles are, seconds. Default 0.008.
+    pub lag_s: f64,
+    /// σ of the constant error of pan, tilt and roll of the camera, radians. Default 0.35°.
+    pub bias_rad: f64,
+}
+
+/// Odometry from the commanded steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaitOdometryParams {
+    /// Bounds of the share of a commanded step forwards or sideways that becomes motion; drawn once per axis. Default 0.8 to 1.1.
+    pub step_scale: [f64; 2],
+    /// The same for turning. Default 0.9 to 1.1.
+    pub turn_scale: [f64; 2],
+    /// σ of the relative error of an increment. Default 0.1.
+    pub noise: f64,
+    /// Shape of that error. Default Student's t with 4 degrees of freedom.
+    pub tail: Tail,
+    /// σ of the turning that goes unnoticed with each metre, rad/m. Default 0.08.
+    pub drift_rad_per_m: f64,
+    /// Correlation time of that drift, seconds. Default 8.
+    pub drift_correlation_s: f64,
+}
+
+impl Default for RobotParams {
+    fn default() -> Self {
+        let degrees = f64::to_radians;
+        Self {
+            walk: WalkParams {
+                speed_mps: 0.25,
+                turn_radps: 1.0,
+                lag_s: 0.15,
+                rest_s: 0.5,
+                sideways_share: 0.25,
+                margin_m: 0.35,
+            },
+            sway: SwayParams {
+                stride_s: 0.5,
+                roll_rad: degrees(1.0),
+                pitch_rad: degrees(0.7),
+                height_m: 0.004,
+                unsteady_rad: degrees(0.3),
+            },
+            head: HeadParams {
+                speed_radps: 2.0,
+                pan_limit_rad: degrees(88.0),
+                dwell_s: 0.5,
+                down_share: 0.15,
+                quantum_rad: degrees(0.25),
+                lag_s: 0.008,
+                bias_rad: degrees(0.35),
+            },
+            odometry: GaitOdometryParams {
+                step_scale: [0.8, 1.1],
+                turn_scale: [0.9, 1.1],
+                noise: 0.1,
+                tail: Tail::StudentT { degrees_of_freedom: 4.0 },
+                drift_rad_per_m: 0.08,
+                drift_correlation_s: 8.0,
+            },
+        }
+    }
+}
+
+impl RobotParams {
+    /// Whether the numbers make a robot.
+    ///
+    /// # Errors
+    /// Names the first that does not.
+    pub fn validate(&self) -> Result<(), SimError> {
+        let Self { walk, sway, head, odometry } = self;
+        check::not_negative("speed (m/s)", walk.speed_mps)?;
+        check::positive("turning rate (rad/s)", walk.turn_radps)?;
+        check::positive("lag of the gait (s)", walk.lag_s)?;
+        check::not_negative("rest (s)", walk.rest_s)?;
+        check::share("ways walked sideways", walk.sideways_share)?;
+        check::not_negative("margin (m)", walk.margin_m)?;
+        check::at_most("margin (m)", walk.margin_m, 1.0, "at most 1")?;
+        check::positive("stride (s)", sway.stride_s)?;
+        check::not_negative("roll (rad)", sway.roll_rad)?;
+        check::not_negative("pitch (rad)", sway.pitch_rad)?;
+        check::not_negative("swaying height (m)", sway.height_m)?;
+        check::not_negative("slow roll and pitch (rad)", sway.unsteady_rad)?;
+        check::positive("speed of the head (rad/s)", head.speed_radps)?;
+        check::not_negative("furthest pan (rad)", head.pan_limit_rad)?;
+        check::not_negative("length of a look (s)", head.dwell_s)?;
+        check::share("looks at the carpet", head.down_share)?;
+        check::not_negative("resolution of the joints (rad)", head.quantum_rad)?;
+        check::not_negative("lag of the joints (s)", head.lag_s)?;
+        check::not_negative("error of the joints (rad)", head.bias_rad)?;
+        for scale in [odometry.step_scale, odometry.turn_scale].concat() {
+            check::positive("scale of the odometry", scale)?;
+        }
+        check::not_negative("error of the odometry", odometry.noise)?;
+        odometry.tail.validate()?;
+        check::not_negative("drift of the odometry (rad/m)", odometry.drift_rad_per_m)?;
+        check::not_negative("correlation time of the drift (s)", odometry.drift_correlation_s)
+    }
+}

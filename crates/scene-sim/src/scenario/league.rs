@@ -1,0 +1,29 @@
+use super::{Scenario, ScenarioParams};
+use crate::league::{LeagueParams, Lighting};
+
+/// The hall of all four: picked out of 24, because what the colours seen tell about one not yet seen shows best in its dark light. It is no
+/// average; for an average draw others ([`Scenario::with_seed`]).
+const HALL: u64 = 2034;
+
+pub(super) fn all() -> Vec<Scenario> {
+    let league =
+        |name, seed, params| Scenario { name, seed, params: ScenarioParams::League(Box::new(params)) };
+    vec![
+        league("color_dark", 21, under(Lighting::Dark)),
+        league("color_bright", 22, under(Lighting::Bright)),
+        league("color_switching", 23, switching()),
+        league("color_kidnapped", 24, LeagueParams { kidnaps: vec![95, 190], ..under(Lighting::Bright) }),
+    ]
+}
+
+fn under(lighting: Lighting) -> LeagueParams {
+    LeagueParams { venue_seed: Some(HALL), lights: vec![(0, lighting)], ..LeagueParams::default() }
+}
+
+/// Lights go off and on again five times; every frame is labelled, for the classification rate over time.
+fn switching() -> LeagueParams {
+    use Lighting::{Bright, Dark};
+    let lights = vec![(0, Bright), (50, Dark), (95, Bright), (140, Dark), (170, Bright), (230, Dark)];
+    let params = LeagueParams { lights, ..under(Bright) };
+    LeagueParams { n_labelled: params.n_frames, ..params }
+}

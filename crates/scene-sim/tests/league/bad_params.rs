@@ -1,0 +1,133 @@
+//! Parameters without a meaning are refused with their name and value; nothing panics.
+
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use wayfix_color_map::Camera;
+use wayfix_estimation_traits::Pose2;
+use wayfix_scene_sim::SimError;
+use wayfix_scene_sim::league::{
+    CameraParams, GaitOdometryParams, HeadParams, LeagueDrive, LeagueParams, Photographer, Rgb, RobotParams,
+    SwayParams, TrainingParams, WalkParams,
+};
+use wayfix_scene_sim::random::Tail;
+
+use crate::support::{honest, streams};
+
+const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, -1.0];
+
+#[track_caller]
+fn assert_refused<T>(result: Result<T, SimError>, value: f64) {
+    let named = match result {
+        Err(SimError::Parameter { value, .. }) => Some(value.to_bits()),
+        _ => None,
+    };
+    assert_eq!(named, Some(value.to_bits()), "{value} is not named");
+}
+
+#[test]
+fn cameras() {
+    for bad in BAD {
+        for params in [
+            CameraParams { gain: bad, ..honest() },
+            CameraParams { white_balance: Rgb::new(1.0, bad, 1.0), ..honest() },
+            CameraParams { white_balance_drift: bad, ..honest() },
+            CameraParams { white_balance_correlation_s: bad, ..honest() },
+            CameraParams { vignetting: Rgb::new(0.0, 0.0, bad), ..honest() },
+            CameraParams { crosstalk: bad, ..honest() },
+            CameraParams { flare: bad, ..honest() },
+            CameraParams { full_well: bad, ..honest() },
+            CameraParams { read_noise: bad, ..honest() },
+            CameraParams { gamma: bad, ..honest() },
+        ] {
+            assert_refused(Photographer::new(params), bad);
+        }
+    }
+    assert_refused(CameraParams { jpeg_quality: 0, ..honest() }.validate(), 0.0);
+    assert_refused(CameraParams { jpeg_quality: 101, ..honest() }.validate(), 101.0);
+    assert_refused(CameraParams { exposure_ms: 5000, ..honest() }.validate(), 5000.0);
+    let huge = Camera::new(16_384, 16_384, 1e3, 1e3, 0.0, 0.0).expect("allowed there");
+    assert!(matches!(
+        Photographer::new(CameraParams { camera: huge, ..honest() }),
+        Err(SimError::TooMany { .. })
+    ));
+}
+
+#[test]
+fn robots() {
+    let default = RobotParams::default();
+    for bad in BAD {
+        let walks = [
+            WalkParams { speed_mps: bad, ..default.walk },
+            WalkParams { turn_radps: bad, ..default.walk },
+            WalkParams { lag_s: bad, ..default.walk },
+            WalkParams { rest_s: bad, ..default.walk },
+            WalkParams { sideways_share: bad, ..default.walk },
+            WalkParams { margin_m: bad, ..default.walk },
+        ];
+        let sways = [
+            SwayParams { stride_s: bad, ..default.sway },
+            SwayParams { roll_rad: bad, ..default.sway },
+            SwayParams { pitch_rad: bad, ..default.sway },
+            SwayParams { height_m: bad, ..default.sway },
+            SwayParams { unsteady_rad: bad, ..default.sway },
+        ];
+        let heads = [
+            HeadParams { speed_radps: bad, ..default.head },
+            HeadParams { pan_limit_rad: bad, ..default.head },
+            HeadParams { dwell_s: bad, ..default.head },
+            HeadParams { down_share: bad, ..default.head },
+            HeadParams { quantum_rad: bad, ..default.head },
+            HeadParams { lag_s: bad, ..default.head },
+            HeadParams { bias_rad: bad, ..default.head },
+        ];
+        let odometries = [
+            GaitOdometryParams { step_scale: [bad, 1.0], ..default.odometry },
+            GaitOdometryParams { turn_scale: [1.0, bad], ..default.odometry },
+            GaitOdometryParams { noise: bad, ..default.odometry },
+            GaitOdometryParams { tail: Tail::StudentT { degrees_of_freedom: bad }, ..default.odometry },
+            GaitOdometryParams { drift_rad_per_m: bad, ..default.odometry },
+            GaitOdometryParams { drift_correlation_s: bad, ..default.odometry },
+        ];
+        let robots = walks.map(|walk| RobotParams { walk, ..default }).into_iter();
+        let robots = robots.chain(sways.map(|sway| RobotParams { sway, ..default }));
+        let robots = robots.chain(heads.map(|head| RobotParams { head, ..default }));
+        let robots = robots.chain(odometries.map(|odometry| RobotParams { odometry, ..default }));
+        for robot in robots {
+            let params = LeagueParams { robot, n_frames: 1, ..LeagueParams::default() };
+            assert_refused(LeagueDrive::new(&params, streams(1)), bad);
+        }
+    }
+}
+
+#[test]
+fn drives() {
+    let default = LeagueParams::default();
+    for start in
+        [Pose2::new(f64::NAN, 0.0, 0.0), Pose2::new(0.0, f64::NAN, 0.0), Pose2::new(0.0, 0.0, f64::NAN)]
+    {
+        assert_refused(
+            LeagueDrive::new(&LeagueParams { start: Some(start), ..default.clone() }, streams(1)),
+            f64::NAN,
+        );
+    }
+    assert_refused(LeagueDrive::new(&LeagueParams { period_ms: 12, ..default.clone() }, streams(1)), 12.0);
+    assert_refused(
+        LeagueDrive::new(&LeagueParams { period_ms: 60_001, ..default.clone() }, streams(1)),
+        60_001.0,
+    );
+    let labels = LeagueParams { n_frames: 3, n_labelled: 4, ..default.clone() }.simulate(streams(1));
+    assert!(matches!(labels, Err(SimError::TooMany { limit: 3, got: 4, .. })));
+    let many = LeagueDrive::new(&LeagueParams { n_frames: 100_001, ..default.clone() }, streams(1));
+    assert!(matches!(many, Err(SimError::TooMany { got: 100_001, .. })));
+    let none = LeagueParams { n_frames: 0, ..default };
+    assert_eq!(LeagueDrive::new(&none, streams(1)).expect("no frames are no fault").count(), 0);
+}
+
+#[test]
+fn training() {
+    let rng = ChaCha8Rng::seed_from_u64(1);
+    let many = TrainingParams { n_halls: 10_001, ..TrainingParams::default() };
+    assert!(matches!(many.gather(rng.clone()), Err(SimError::TooMany { got: 10_001, .. })));
+    let none = TrainingParams { n_images: 0, n_halls: 1, ..TrainingParams::default() };
+    let sets = none.gather(rng).expect("no pictures are no fault");
+    assert!(sets.iter().all(|set| set.images.is_empty() && set.pixel_variance == [0.0; 3]));
+}

@@ -1,0 +1,42 @@
+//! Noise of the chip.
+
+use wayfix_scene_sim::league::{CameraParams, Rgb};
+
+use crate::support::{deviation, honest, mean, of_blank};
+
+#[test]
+fn shot_and_read_noise_add_up() {
+    for (signal, full_well, read_noise) in
+        [(0.5, 500.0, 0.0), (0.1, 500.0, 0.0), (0.5, 1e15, 0.03), (0.2, 500.0, 0.02)]
+    {
+        let camera = CameraParams { full_well, read_noise, ..honest() };
+        let picture = of_blank(camera, Rgb::repeat(signal));
+        let green: Vec<f64> = picture.rgb.chunks_exact(3).map(|rgb| f64::from(rgb[1])).collect();
+        let n = green.len() as f64;
+        // Rounding to whole levels adds 1/12.
+        let sigma = (255.0 * 255.0 * (signal / full_well + read_noise * read_noise) + 1.0 / 12.0_f64).sqrt();
+        let off = (deviation(&green) - sigma).abs();
+        assert!(off < 4.0 * sigma / (2.0 * n).sqrt() + 0.02, "σ {} wanted {sigma}", deviation(&green));
+        // Half a step of the response is lost.
+        assert!(
+            (mean(&green) - 255.0 * signal).abs() < 4.0 * sigma / n.sqrt() + 0.05,
+            "mean {}",
+            mean(&green)
+        );
+    }
+}
+
+#[test]
+fn the_quick_deviate_has_mean_0_variance_1_and_nearly_normal_tails() {
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let n = 200_000;
+    let draws: Vec<f64> = (0..n).map(|_| wayfix_scene_sim::random::deviate::quick_normal(&mut rng)).collect();
+    let root = f64::from(n).sqrt();
+    assert!(mean(&draws).abs() < 4.0 / root, "{}", mean(&draws));
+    assert!((deviation(&draws) - 1.0).abs() < 4.0 / (2.0_f64.sqrt() * root), "{}", deviation(&draws));
+    // Four uniform numbers: kurtosis 3 − 6/(5·4) = 2.7. The standard error of a fourth moment is at most √(E x⁸/n) < √(70/n).
+    let fourth = mean(&draws.iter().map(|x| x.powi(4)).collect::<Vec<_>>());
+    assert!((fourth - 2.7).abs() < 4.0 * 70.0_f64.sqrt() / root, "{fourth}");
+    assert!(draws.iter().all(|x| x.abs() <= 12.0_f64.sqrt()));
+}

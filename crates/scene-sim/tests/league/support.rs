@@ -1,0 +1,84 @@
+//! Cameras without sins, and scenes that make one thing measurable.
+
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};
+use wayfix_scene_sim::league::{
+    Backdrop, CameraParams, Chroma, Lamps, LightField, N_COLORS, Photographer, Picture, Rgb, Scene, Seen,
+    Surface,
+};
+use wayfix_scene_sim::random::Streams;
+use wayfix_scene_sim::space;
+
+pub(crate) fn streams(seed: u64) -> Streams {
+    Streams::new(ChaCha8Rng::seed_from_u64(seed))
+}
+
+/// Linear, noiseless, without falling corners.
+pub(crate) fn honest() -> CameraParams {
+    CameraParams {
+        vignetting: Rgb::zeros(),
+        crosstalk: 0.0,
+        flare: 0.0,
+        full_well: 1e15,
+        read_noise: 0.0,
+        gamma: 1.0,
+        chroma: Chroma::Each,
+        white_balance_drift: 0.0,
+        ..CameraParams::ers7().expect("a sound camera")
+    }
+}
+
+/// A wall of one reflectance wherever one looks.
+pub(crate) struct Blank(pub(crate) Rgb);
+
+impl Backdrop for Blank {
+    fn seen(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> Seen {
+        Seen { point: eye + direction, normal: Vector3::z(), reflectance: self.0 }
+    }
+}
+
+pub(crate) fn even_light() -> Lamps {
+    Lamps { lamps: vec![], ambient: Rgb::repeat(1.0), bounce: Rgb::repeat(1.0) }
+}
+
+/// A picture of a blank wall of this reflectance.
+pub(crate) fn of_blank(camera: CameraParams, reflectance: Rgb) -> Picture {
+    let paints = [Rgb::zeros(); N_COLORS];
+    let (light, backdrop) = (even_light(), Blank(reflectance));
+    let scene = Scene { surfaces: vec![], paints: &paints, light: &light, backdrop: &backdrop };
+    let pose = looking([0.0, 0.0, 0.3], 0.0, 0.0);
+    take(camera, &scene, [&pose, &pose])
+}
+
+pub(crate) fn take(camera: CameraParams, scene: &Scene<'_>, poses: [&Pose3<f64>; 2]) -> Picture {
+    let mut photographer = Photographer::new(camera).expect("a sound camera");
+    photographer.take(scene, poses, &Rgb::repeat(1.0), &mut ChaCha8Rng::seed_from_u64(5))
+}
+
+/// The field in even light, every colour painted its own grey.
+pub(crate) fn field_in<'a>(
+    light: &'a dyn LightField,
+    backdrop: &'a dyn Backdrop,
+    paints: &'a [Rgb],
+) -> Scene<'a> {
+    let map = wayfix_scene_sim::league::field_map().expect("a sound map");
+    Scene { surfaces: Surface::of_map(&map), paints, light, backdrop }
+}
+
+pub(crate) fn looking(from: [f64; 3], yaw: f64, pitch: f64) -> Pose3<f64> {
+    Pose3 { translation: Vector3::from(from), rotation: space::yaw(yaw) * space::pitch(pitch) }
+}
+
+/// One channel of a pixel.
+pub(crate) fn channel(picture: &Picture, column: u32, row: u32, channel: usize) -> f64 {
+    f64::from(picture.rgb[3 * (row * picture.width + column) as usize + channel])
+}
+
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+pub(crate) fn deviation(values: &[f64]) -> f64 {
+    let centre = mean(values);
+    mean(&values.iter().map(|v| (v - centre) * (v - centre)).collect::<Vec<_>>()).sqrt()
+}

@@ -1,0 +1,83 @@
+use std::fmt;
+use std::sync::Arc;
+
+/// A compressed image. Clones share the bytes.
+///
+/// ```
+/// use wayfix_sensor_log::EncodedImage;
+/// let grey = [0_u8, 50, 100, 150, 200, 250];
+/// let image = EncodedImage::png_gray(3, 2, &grey)?;
+/// assert_eq!(image.decode_gray()?.pixels, grey);
+/// let colours = image.decode_rgb()?;
+/// assert_eq!((colours.width, colours.height, &colours.pixels[3..6]), (3, 2, &[50, 50, 50][..]));
+/// # Ok::<(), wayfix_sensor_log::ImageError>(())
+/// ```
+#[derive(Clone, PartialEq, Eq)]
+pub struct EncodedImage {
+    /// How it is compressed.
+    pub format: ImageFormat,
+    /// The file.
+    pub bytes: Arc<[u8]>,
+}
+
+/// How an image is compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum ImageFormat {
+    /// JPEG, with loss.
+    Jpeg,
+    /// PNG, without.
+    Png,
+}
+
+/// An image as pixels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DecodedImage {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Row by row from the upper left: three bytes a pixel (R, G, B), or one of a grey image.
+    pub pixels: Vec<u8>,
+}
+
+impl ImageFormat {
+    /// Its name in `foxglove.CompressedImage` and `sensor_msgs/CompressedImage`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Jpeg => "jpeg",
+            Self::Png => "png",
+        }
+    }
+
+    /// The format that a file of this beginning has.
+    pub fn of_bytes(bytes: &[u8]) -> Option<Self> {
+        match bytes {
+            [0xFF, 0xD8, 0xFF, ..] => Some(Self::Jpeg),
+            [0x89, b'P', b'N', b'G', ..] => Some(Self::Png),
+            _ => None,
+        }
+    }
+}
+
+impl EncodedImage {
+    /// The file as it is; nothing is decoded.
+    pub fn new(format: ImageFormat, bytes: impl Into<Arc<[u8]>>) -> Self {
+        Self { format, bytes: bytes.into() }
+    }
+
+    /// Its type on the web.
+    pub fn media_type(&self) -> &'static str {
+        match self.format {
+            ImageFormat::Jpeg => "image/jpeg",
+            ImageFormat::Png => "image/png",
+        }
+    }
+}
+
+impl fmt::Debug for EncodedImage {
+    /// Kilobytes of numbers help nobody.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "EncodedImage({}, {} bytes)", self.format.name(), self.bytes.len())
+    }
+}

@@ -1,0 +1,49 @@
+use std::collections::BTreeMap;
+use std::fmt;
+
+use super::{EncodedImage, ImageFormat};
+
+/// What images there are, by their headers; `Display` prints it for people.
+///
+/// ```
+/// use wayfix_sensor_log::{EncodedImage, ImageFormat, ImageSummary};
+/// let mut summary = ImageSummary::default();
+/// summary.add(&EncodedImage::png_gray(3, 2, &[0; 6])?);
+/// summary.add(&EncodedImage::new(ImageFormat::Jpeg, &[0xFF, 0xD8, 0xFF][..]));
+/// assert_eq!(summary.sizes[&(ImageFormat::Png, 3, 2)], 1);
+/// assert_eq!(summary.n_damaged, 1);
+/// # Ok::<(), wayfix_sensor_log::ImageError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct ImageSummary {
+    /// How many of each format, width and height.
+    pub sizes: BTreeMap<(ImageFormat, u32, u32), u64>,
+    /// How many have a header that cannot be read or break off.
+    pub n_damaged: u64,
+    /// Bytes of all of them.
+    pub n_bytes: u64,
+}
+
+impl ImageSummary {
+    /// Counts an image.
+    pub fn add(&mut self, image: &EncodedImage) {
+        self.n_bytes += image.bytes.len() as u64;
+        match image.size() {
+            Ok((width, height)) => *self.sizes.entry((image.format, width, height)).or_default() += 1,
+            Err(_) => self.n_damaged += 1,
+        }
+    }
+}
+
+impl fmt::Display for ImageSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for ((format, width, height), count) in &self.sizes {
+            write!(f, "{count} {} of {width} x {height} pixels, ", format.name())?;
+        }
+        if self.n_damaged > 0 {
+            write!(f, "{} damaged, ", self.n_damaged)?;
+        }
+        write!(f, "{:.1} MB", self.n_bytes as f64 * 1e-6)
+    }
+}

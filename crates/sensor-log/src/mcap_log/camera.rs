@@ -1,0 +1,139 @@
+//! Cameras and their images as Foxglove messages, and back.
+
+use foxglove::bytes::Bytes;
+use foxglove::messages::{self, CameraCalibration, CompressedImage, FrameTransform, Timestamp};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
+use wayfix_estimation_traits::Pose3;
+
+use super::decode::{Fault, decode, finite, inconsistent, stamp};
+use super::topics;
+use crate::format::shortened;
+use crate::planar::NORM_TOLERANCE;
+use crate::{CameraInfo, Data, EncodedImage, ImageFormat, LogError, Record, Stamp};
+
+/// How far the norm of a unit quaternion in doubles strays from one after a few products.
+const ROUNDING: f64 = 1e-12;
+
+/// What would not come back is not written.
+pub(super) fn check(record: &Record) -> Result<(), LogError> {
+    let stamp = record.stamp;
+    match &record.data {
+        Data::CameraInfo(info) if !info.sees() => {
+            let CameraInfo { width, height, fx, fy, .. } = *info;
+            Err(LogError::BadCamera { width, height, fx, fy, stamp })
+        }
+        Data::Image(image) | Data::TrueLabels(image)
+            if ImageFormat::of_bytes(&image.bytes) != Some(image.format) =>
+        {
+            let (what, n_bytes) = (record.data.kind(), image.bytes.len());
+            Err(LogError::NotAnImage { what, format: image.format, n_bytes, stamp })
+        }
+        _ => Ok(()),
+    }
+}
+
+pub(super) fn encode_info(timestamp: Timestamp, info: &CameraInfo) -> CameraCalibration {
+    let CameraInfo { width, height, fx, fy, cx, cy } = *info;
+    CameraCalibration {
+        timestamp: Some(timestamp),
+        frame_id: topics::CAMERA_OPTICAL_FRAME.to_owned(),
+        width,
+        height,
+        k: vec![fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0],
+        r: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        p: vec![fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
+        ..CameraCalibration::default()
+    }
+}
+
+pub(super) fn encode_mount(timestamp: Timestamp, pose: &Pose3<f64>) -> FrameTransform {
+    let (t, q) = (pose.translation, pose.rotation);
+    FrameTransform {
+        timestamp: Some(timestamp),
+        parent_frame_id: topics::BODY_FRAME.to_owned(),
+        child_frame_id: topics::CAMERA_FRAME.to_owned(),
+        translation: Some(messages::Vector3 { x: t.x, y: t.y, z: t.z }),
+        rotation: Some(messages::Quaternion { x: q.i, y: q.j, z: q.k, w: q.w }),
+    }
+}
+
+/// The same camera with z forward, x right, y down.
+pub(super) fn encode_optical(timestamp: Timestamp) -> FrameTransform {
+    FrameTransform {
+        timestamp: Some(timestamp),
+        parent_frame_id: topics::CAMERA_FRAME.to_owned(),
+        child_frame_id: topics::CAMERA_OPTICAL_FRAME.to_owned(),
+        translation: Some(messages::Vector3::default()),
+        rotation: Some(messages::Quaternion { x: -0.5, y: 0.5, z: -0.5, w: 0.5 }),
+    }
+}
+
+pub(super) fn encode_image(timestamp: Timestamp, image: &EncodedImage) -> CompressedImage {
+    CompressedImage {
+        timestamp: Some(timestamp),
+        frame_id: topics::CAMERA_OPTICAL_FRAME.to_owned(),
+        data: Bytes::copy_from_slice(&image.bytes),
+        format: image.format.name().to_owned(),
+    }
+}
+
+pub(super) fn info(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
+    let message: CameraCalibration = decode(bytes)?;
+    let stamp = stamp(message.timestamp, log_time)?;
+    let &[fx, skew, cx, _, fy, cy, _, _, _] = message.k.as_slice() else {
+        return Err(inconsistent(&format!("camera matrix K of {} numbers, not 9", message.k.len())));
+    };
+    finite([fx, fy, cx, cy])?;
+    let info = CameraInfo { width: message.width, height: message.height, fx, fy, cx, cy };
+    if !info.sees() {
+        let CameraInfo { width, height, .. } = info;
+        return Err(inconsistent(&format!("{width} x {height} pixels, focal lengths {fx} and {fy}")));
+    }
+    // Points would be taken for seen where they are not.
+    if skew != 0.0 || message.d.iter().any(|coefficient| *coefficient != 0.0) {
+        let (model, d) = (shortened(&message.distortion_model), &message.d[..message.d.len().min(8)]);
+        let reason =
+            format!("not a pinhole camera: skew {skew}, distortion {model:?} {d:?}; rectify the images");
+        return Err(inconsistent(&reason));
+    }
+    Ok(vec![Record { stamp, data: Data::CameraInfo(info) }])
+}
+
+pub(super) fn mount(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
+    let message: FrameTransform = decode(bytes)?;
+    let stamp = stamp(message.timestamp, log_time)?;
+    let (t, q) = (message.translation.unwrap_or_default(), message.rotation.unwrap_or_default());
+    let quaternion = Quaternion::new(q.w, q.x, q.y, q.z);
+    finite([t.x, t.y, t.z])?;
+    finite(quaternion.coords.iter().copied())?;
+    let norm = quaternion.norm();
+    let rotation = if quaternion.coords == Vector4::zeros() {
+        UnitQuaternion::identity() // one that is not there means no rotation to most writers
+    } else if (norm - 1.0).abs() > NORM_TOLERANCE {
+        return Err(inconsistent(&format!("quaternion of norm {norm}")));
+    } else if (norm - 1.0).abs() > ROUNDING {
+        UnitQuaternion::new_normalize(quaternion)
+    } else {
+        UnitQuaternion::new_unchecked(quaternion) // it stays what it was, to the bit
+    };
+    let pose = Pose3 { translation: Vector3::new(t.x, t.y, t.z), rotation };
+    Ok(vec![Record { stamp, data: Data::CameraMount(pose) }])
+}
+
+pub(super) fn image(
+    bytes: &[u8],
+    log_time: Stamp,
+    to_data: impl Fn(EncodedImage) -> Data,
+) -> Result<Vec<Record>, Fault> {
+    let message: CompressedImage = decode(bytes)?;
+    let stamp = stamp(message.timestamp, log_time)?;
+    // What the file is counts more than what it is called ("jpg", "bgr8; jpeg compressed bgr8").
+    let Some(format) = ImageFormat::of_bytes(&message.data) else {
+        return Err(inconsistent(&format!(
+            "image called {:?} is neither JPEG nor PNG ({} bytes)",
+            shortened(&message.format),
+            message.data.len()
+        )));
+    };
+    Ok(vec![Record { stamp, data: to_data(EncodedImage::new(format, &message.data[..])) }])
+}

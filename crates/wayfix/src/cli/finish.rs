@@ -1,0 +1,54 @@
+//! What every `wayfix run` does at the end.
+
+use std::{fs, path::Path};
+
+use anyhow::{Context, Result};
+use wayfix_sensor_log::{LogEnd, ReadReport};
+
+use super::output::{print, tell};
+use crate::{
+    report::{Machine, Report, Run, RunSummary, Suite, table, table::TableStyle},
+    system::Events,
+};
+
+/// The estimates beside the report.
+pub(super) const ESTIMATES: &str = "estimates.mcap";
+
+/// Names what was refused, and counts what could not be read.
+pub(super) fn account(events: &mut Events, read: &ReadReport) {
+    for refusal in events.refusals() {
+        tell(format!("refused {refusal}"));
+    }
+    let n_unlisted = events.n_refusals() - events.refusals().len() as u64;
+    if n_unlisted > 0 {
+        tell(format!("refused … and {n_unlisted} more"));
+    }
+    events.add("log_problem", read.n_problems());
+    if read.end != LogEnd::Complete {
+        events.count("log_incomplete");
+    }
+}
+
+/// Prints the figures, and writes the report where a folder is given.
+pub(super) fn show(suite: &str, run: Run, out: Option<&Path>, json: bool, seed: u64) -> Result<()> {
+    let figures = if json {
+        serde_json::to_string(&RunSummary::new(&run, seed))? + "\n"
+    } else {
+        table::run(&run, TableStyle::of_stdout())
+    };
+    if let Some(out) = out {
+        write_report(out, suite, run, seed)?;
+    }
+    print(figures)
+}
+
+fn write_report(out: &Path, suite: &str, run: Run, seed: u64) -> Result<()> {
+    for (number, figure) in run.figures.iter().enumerate() {
+        let path = out.join(format!("figure-{}.svg", number + 1));
+        fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    let suites = vec![Suite { name: suite.to_owned(), runs: vec![run] }];
+    Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
+    tell(format!("wrote index.html, report.json, {ESTIMATES} and the figures as SVG to {}", out.display()));
+    Ok(())
+}

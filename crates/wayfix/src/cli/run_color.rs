@@ -1,0 +1,173 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    str::FromStr,
+    sync::Arc,
+};
+
+use anyhow::{Context, Result, ensure};
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Format, OpenOptions, Record};
+
+use super::{
+    finish::{self, ESTIMATES},
+    input::read_toml,
+    output::{print, tell},
+    progress,
+};
+use crate::{
+    color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, StartPose, priors},
+    plot::Picture,
+    report::Run,
+    system::{Stopwatch, System},
+};
+
+/// Adaptive colour localization: where the robot stands on a coloured field, and what today's light does to the colours.
+///
+/// The log holds camera images, the camera's calibration, where the joints say the camera is, and odometry; the map says which surfaces
+/// have which colour. No colour is calibrated: priors say what colours may look like, dark or bright, and the filter finds out.
+///
+/// Where the log holds true poses, the search starts near the first one (0.5 m and 17° in standard deviation) and the figures tell how far the
+/// estimate is off: `position_mean_m`, `heading_mean_deg`, beside `odometry_position_mean_m` for odometry alone from the same start. Where it
+/// holds true labels, `classification_rate` is the share of labelled pixels that are recognized. Without truth these figures are absent.
+///
+/// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// The log, an MCAP file.
+    #[arg(long, value_name = "PATH")]
+    log: PathBuf,
+    /// The map: coloured polygons and posts, TOML or JSON.
+    #[arg(long, value_name = "FILE")]
+    map: PathBuf,
+    /// What the colours may look like, one Gaussian a kind of light, as JSON [default: dark and bright light on the colours of the
+    /// four-legged league].
+    #[arg(long, value_name = "FILE")]
+    priors: Option<PathBuf>,
+    /// Write the built-in priors to a file, and end: the form of one's own.
+    #[arg(long, value_name = "FILE", exclusive = true)]
+    write_priors: Option<PathBuf>,
+    /// Where the robot is at the first image: `anywhere`, or x,y,heading in metres and degrees [default: near the first true pose, else
+    /// anywhere].
+    #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
+    start: Option<StartArgument>,
+    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// Print the parameters that would be used, as TOML, and end: a file to start from.
+    #[arg(long)]
+    print_params: bool,
+    /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP.
+    ///
+    /// It is created where need be. Nothing is written without it.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the figures as one JSON object instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Seed of the particles.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run color --log fixtures/color_dark.mcap --map fixtures/four-legged-field.toml
+  wayfix run color --log my.mcap --map my-field.toml --start anywhere --out results
+  wayfix run color --log my.mcap --map my-field.toml --print-params > my.toml";
+
+#[derive(Clone, Copy, Debug)]
+struct StartArgument(StartPose);
+
+impl FromStr for StartArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "anywhere" {
+            return Ok(Self(StartPose::Anywhere));
+        }
+        let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+        match numbers[..] {
+            [x, y, heading] if numbers.iter().all(|number| number.is_finite()) => {
+                Ok(Self(StartPose::Near(Pose2::new(x, y, heading.to_radians()))))
+            }
+            _ => {
+                Err("give `anywhere`, or x,y,heading in metres and degrees, for instance -1.5,0.3,90"
+                    .to_owned())
+            }
+        }
+    }
+}
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    if let Some(path) = &arguments.write_priors {
+        let text = serde_json::to_string_pretty(&priors::built_in()?)? + "\n";
+        fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let params = match &arguments.params {
+        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        None => ColorSystemParams::default(),
+    };
+    if arguments.print_params {
+        print(toml::to_string(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let map = Arc::new(color::read_map(&arguments.map)?);
+    let priors = arguments.priors.as_deref().map_or_else(priors::built_in, priors::read)?;
+    ensure!(
+        priors.colors() == map.colors(),
+        "the map has the colours {:?}, the priors {:?}: they must be the same, in the same order",
+        map.colors(),
+        priors.colors()
+    );
+    let bank = priors::bank(&priors, &params)?;
+    let log = wayfix_sensor_log::open(&arguments.log, &OpenOptions::default())?;
+    let origin = log.meta().first_format();
+    let (records, read) = log.read_all();
+    if !read.is_clean() {
+        tell(&read);
+    }
+
+    let stopwatch = Stopwatch::start();
+    let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let bar = progress::bar(records.len(), "colour localization");
+    let mut remaining = records.iter();
+    let start = arguments.start.map(|start| start.0);
+    let color = color::run(&records, map, bank, &params, start, arguments.seed, |system| {
+        if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
+            estimates.observe(record, system);
+        }
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    let mut color = color?;
+    finish::account(color.system.events(), &read);
+
+    let name = arguments.log.display().to_string();
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let mut run = Run { name, seconds, ..color::summarize(&mut color) };
+    if let Some(estimates) = estimates {
+        estimates.finish()?;
+        run.log = Some(ESTIMATES.to_owned());
+        run.figures = pictures(&mut color, &records)?;
+    }
+    finish::show("color", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Frames of the film strip.
+const FILM_FRAMES: usize = 5;
+
+fn open_estimates(out: &Path, origin: Format) -> Result<ColorEstimateLog> {
+    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    Ok(ColorEstimateLog::create(&out.join(ESTIMATES), origin)?)
+}
+
+fn pictures(color: &mut ColorRun, records: &[Record]) -> Result<Vec<Picture>> {
+    let mut pictures = color::pictures(color)?;
+    pictures.push(color::film(color, records, FILM_FRAMES)?);
+    Ok(pictures)
+}

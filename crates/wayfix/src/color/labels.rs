@@ -1,0 +1,59 @@
+use wayfix_color_map::ColorId;
+use wayfix_color_model::{Classifier, YuvImage};
+use wayfix_sensor_log::DecodedImage;
+
+/// Of the pixels that truly show each map colour, how many were classified as that colour.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LabelCounts {
+    /// `(right, all)` of each colour, in the order of the map.
+    pub by_color: Vec<(u64, u64)>,
+}
+
+impl LabelCounts {
+    /// Share of all labelled pixels that were classified rightly; `None` without any.
+    pub fn rate(&self) -> Option<f64> {
+        let (right, all) =
+            self.by_color.iter().fold((0, 0), |sum, counts| (sum.0 + counts.0, sum.1 + counts.1));
+        (all > 0).then(|| right as f64 / all as f64)
+    }
+
+    /// The same for one colour.
+    pub fn rate_of(&self, color: ColorId) -> Option<f64> {
+        let (right, all) = *self.by_color.get(usize::from(color.0))?;
+        (all > 0).then(|| right as f64 / all as f64)
+    }
+}
+
+/// Classifies every labelled pixel; those that show nothing of the map do not count, as in [Schulz & Fox 2004, V.A].
+///
+/// `None` when the labels are of another size than the image.
+pub fn tally(
+    image: &YuvImage,
+    labels: &DecodedImage,
+    classifier: &Classifier,
+    n_colors: usize,
+) -> Option<LabelCounts> {
+    if (labels.width, labels.height) != (image.width(), image.height()) {
+        return None;
+    }
+    let mut by_color = vec![(0, 0); n_colors];
+    for (pixel, &label) in image.pixels().iter().zip(&labels.pixels) {
+        let Some(truth) = label.checked_sub(1) else { continue };
+        let Some(counts) = by_color.get_mut(usize::from(truth)) else { continue };
+        counts.1 += 1;
+        counts.0 += u64::from(classifier.classify(*pixel) == Some(ColorId(truth)));
+    }
+    Some(LabelCounts { by_color })
+}
+
+/// Mean over images of the rate of a colour, with the images that show less than `min_pixels` of it left out.
+pub fn rate_of<'a>(
+    counts: impl IntoIterator<Item = &'a LabelCounts>,
+    color: ColorId,
+    min_pixels: u64,
+) -> Vec<f64> {
+    let shows = |counts: &&LabelCounts| {
+        counts.by_color.get(usize::from(color.0)).is_some_and(|(_, all)| *all >= min_pixels)
+    };
+    counts.into_iter().filter(shows).filter_map(|counts| counts.rate_of(color)).collect()
+}

@@ -1,0 +1,35 @@
+use std::{fs, path::Path};
+
+use anyhow::{Context, Result};
+use wayfix_color_map::{ColorMap, Shape};
+
+/// Reads a map of coloured surfaces, TOML or (with the ending .json) JSON.
+///
+/// # Errors
+/// When the file cannot be read, is not of this form, or a surface has no meaning.
+pub fn read_map(path: &Path) -> Result<ColorMap> {
+    let text = fs::read_to_string(path).with_context(|| format!("cannot read the map {}", path.display()))?;
+    let map = if path.extension().is_some_and(|extension| extension == "json") {
+        serde_json::from_str(&text).map_err(anyhow::Error::from)
+    } else {
+        toml::from_str(&text).map_err(anyhow::Error::from)
+    };
+    map.with_context(|| format!("the map {} is not usable", path.display()))
+}
+
+/// The outlines of the map's surfaces seen from above, to draw paths on.
+pub fn field_lines(map: &ColorMap) -> Vec<Vec<(f64, f64)>> {
+    const CORNERS: u32 = 12;
+    let outline = |shape: &Shape| match shape {
+        Shape::Polygon { vertices, .. } => {
+            vertices.iter().chain(vertices.first()).map(|vertex| (vertex.x, vertex.y)).collect()
+        }
+        Shape::Post { x, y, radius, .. } => (0..=CORNERS)
+            .map(|k| {
+                let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(CORNERS)).sin_cos();
+                (x + radius * cos, y + radius * sin)
+            })
+            .collect(),
+    };
+    map.shapes().iter().map(outline).collect()
+}

@@ -1,0 +1,24 @@
+//! Adaptive colour localization on logs: where the robot stands on a coloured field, and what today's light does to the colours.
+//!
+//! [`run`] takes the records of a log, a map and priors through a [`ColorSystem`]; [`summarize`] gives the figures, [`pictures`] the pictures;
+//! [`experiments`] are those of the paper, for `wayfix regress color`.
+
+mod estimates;
+mod figures;
+mod labels;
+mod map;
+mod params;
+mod pictures;
+pub mod priors;
+mod run;
+mod system;
+pub mod venues;
+
+pub use estimates::ColorEstimateLog;
+pub use figures::summarize;
+pub use labels::{LabelCounts, rate_of, tally};
+pub use map::{field_lines, read_map};
+pub use params::{ColorSystemParams, StartParams};
+pub use pictures::{film, pictures, uv_ellipses};
+pub use run::{ColorRun, run};
+pub use system::{ColorSystem, FrameResult, StartPose};

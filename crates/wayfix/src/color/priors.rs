@@ -1,0 +1,82 @@
+use std::{fs, path::Path};
+
+use anyhow::{Context, Result};
+use nalgebra::Vector3;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use wayfix_color_model::{
+    ColorMeans, LightingBank, LightingFilter, LightingParams, LightingPriors, PixelSpread, PriorParams,
+    TrainingVenue, learn_priors,
+};
+use wayfix_kalman::MarkovChain;
+use wayfix_scene_sim::league::{COLOR_NAMES, TrainingParams};
+
+use super::ColorSystemParams;
+
+/// Dark and bright, learned from the 44 simulated venues of the four-legged league ([`learn_from_simulation`]).
+const BUILT_IN: &str = include_str!("../../data/four-legged-priors.json");
+/// Seed of the training venues; no log comes from it.
+const TRAINING_SEED: u64 = 2004;
+
+/// The priors for the colours of the four-legged league that come with the application.
+///
+/// # Errors
+/// Never in practice: a test reads them.
+pub fn built_in() -> Result<LightingPriors> {
+    serde_json::from_str(BUILT_IN).context("the built-in priors are not usable")
+}
+
+/// Reads priors from a JSON file, as `--write-priors` writes them.
+///
+/// # Errors
+/// When the file cannot be read or is not of this form.
+pub fn read(path: &Path) -> Result<LightingPriors> {
+    let text =
+        fs::read_to_string(path).with_context(|| format!("cannot read priors from {}", path.display()))?;
+    serde_json::from_str(&text).with_context(|| format!("the priors in {} are not usable", path.display()))
+}
+
+/// Learns `k` priors from the simulated training venues, darkest first: what the built-in ones (`k` = 2) were made by.
+///
+/// # Errors
+/// When learning fails.
+pub fn learn_from_simulation(k: usize) -> Result<LightingPriors> {
+    let venues: Vec<TrainingVenue> = TrainingParams::default()
+        .gather(ChaCha8Rng::seed_from_u64(TRAINING_SEED))?
+        .into_iter()
+        .map(training_venue)
+        .collect();
+    let colors = COLOR_NAMES.map(str::to_owned);
+    let mut rng = ChaCha8Rng::seed_from_u64(TRAINING_SEED + 1);
+    Ok(learn_priors(&colors, &venues, k, &PriorParams::default(), &mut rng)?)
+}
+
+fn training_venue(venue: wayfix_scene_sim::league::TrainingVenue) -> TrainingVenue {
+    let image = |image: wayfix_scene_sim::league::ColorMeans| {
+        let means = image.means.map(|mean| mean.map(Vector3::from));
+        ColorMeans::new(means.into_iter().zip(image.counts.map(|count| count as u64)))
+    };
+    TrainingVenue {
+        name: venue.name,
+        images: venue.images.into_iter().map(image).collect(),
+        pixels: Some(PixelSpread {
+            variances: Vector3::from(venue.pixel_variance),
+            degrees_of_freedom: venue.degrees_of_freedom,
+        }),
+    }
+}
+
+/// A bank of one lighting filter a prior, with a chain that seldom switches.
+///
+/// # Errors
+/// When a prior or a parameter is not usable.
+pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<LightingBank> {
+    let lighting = LightingParams {
+        pixel_noise: params.pixel_noise.map_or(priors.pixel_noise(), Vector3::from),
+        mean_noise: params.mean_noise.map_or(priors.mean_noise(), Vector3::from),
+        drift: params.drift,
+        unseen: params.unseen,
+    };
+    let filters = priors.members().iter().map(|prior| LightingFilter::new(prior.clone(), lighting));
+    let chain = MarkovChain::sticky(priors.members().len(), params.light_stays)?;
+    Ok(LightingBank::new(filters.collect::<Result<_, _>>()?, chain)?)
+}

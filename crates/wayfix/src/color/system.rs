@@ -1,0 +1,247 @@
+use std::{sync::Arc, time::Duration};
+
+use nalgebra::Vector3;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use wayfix_color_map::{Camera, ColorMap};
+use wayfix_color_model::{
+    Classifier, ColorLocalizer, Fix, LightingBank, LookUpTable, OdometryStep, Start, YuvImage,
+};
+use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
+use wayfix_gaussian_core::Gaussian;
+use wayfix_sensor_log::{CameraInfo, Data, EncodedImage, Record, Stamp};
+
+use super::{ColorSystemParams, LabelCounts, tally};
+use crate::system::{Events, Stopwatch, System};
+
+/// What is known of the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StartPose {
+    /// About here, as far off as [`StartParams`](super::StartParams) says.
+    Near(Pose2<f64>),
+    /// Anywhere on the field.
+    Anywhere,
+}
+
+/// The localizer, fed with the records of a log.
+pub struct ColorSystem {
+    map: Arc<ColorMap>,
+    bank: LightingBank,
+    params: ColorSystemParams,
+    start: StartPose,
+    rng: ChaCha8Rng,
+    camera: Option<CameraInfo>,
+    mount: Option<Pose3<f64>>,
+    labels: Option<(Stamp, EncodedImage)>,
+    localizer: Option<ColorLocalizer>,
+    pending: Pending,
+    odometry: Option<Pose2<f64>>,
+    frames: Vec<FrameResult>,
+    table: Option<LookUpTable>,
+    events: Events,
+}
+
+/// Motion since the last frame.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pending {
+    increment: Option<Pose2<f64>>,
+    since: Option<Stamp>,
+}
+
+/// What one frame gave.
+#[derive(Clone, Debug)]
+pub struct FrameResult {
+    /// When it was taken.
+    pub stamp: Stamp,
+    /// Where the robot is, with covariance in its own frame.
+    pub pose: Gaussian<Pose2<f64>>,
+    /// What that is worth.
+    pub fix: Fix,
+    /// Where odometry alone would have it; `None` without a known start.
+    pub odometry: Option<Pose2<f64>>,
+    /// Effective number of particles.
+    pub effective_particles: f64,
+    /// Number of particles.
+    pub n_particles: usize,
+    /// Probability of each light of the bank.
+    pub light_probabilities: Vec<f64>,
+    /// Classified pixels, where the log has true labels.
+    pub labelled: Option<LabelCounts>,
+    /// Computing time from the decoded image on.
+    pub step: Duration,
+}
+
+impl ColorSystem {
+    /// A system that has seen nothing yet.
+    pub fn new(
+        map: Arc<ColorMap>,
+        bank: LightingBank,
+        params: ColorSystemParams,
+        start: StartPose,
+        seed: u64,
+    ) -> Self {
+        let odometry = match start {
+            StartPose::Near(pose) => Some(pose),
+            StartPose::Anywhere => None,
+        };
+        Self {
+            map,
+            bank,
+            params,
+            start,
+            rng: ChaCha8Rng::seed_from_u64(seed),
+            camera: None,
+            mount: None,
+            labels: None,
+            localizer: None,
+            pending: Pending::default(),
+            odometry,
+            frames: Vec::new(),
+            table: None,
+            events: Events::default(),
+        }
+    }
+
+    /// What every frame so far gave.
+    pub fn frames(&self) -> &[FrameResult] {
+        &self.frames
+    }
+
+    /// The localizer; `None` before the first frame.
+    pub fn localizer(&self) -> Option<&ColorLocalizer> {
+        self.localizer.as_ref()
+    }
+
+    /// The light that the localizer holds for the most probable; the prior's before the first frame.
+    pub fn light(&self) -> &LightingBank {
+        self.localizer.as_ref().map_or(&self.bank, ColorLocalizer::light)
+    }
+
+    /// What it is tuned by.
+    pub fn params(&self) -> &ColorSystemParams {
+        &self.params
+    }
+
+    /// The map.
+    pub fn map(&self) -> &ColorMap {
+        &self.map
+    }
+
+    /// The image classified under the light of the moment: the map's colours, 255 for background.
+    ///
+    /// # Errors
+    /// When a colour's density has no peak.
+    pub fn classified(&mut self, image: &YuvImage) -> Result<Vec<u8>, String> {
+        let light = self.light().member(self.light().active()).clone();
+        let table = match self.table.take() {
+            Some(mut table) => {
+                table.follow(&light).map_err(|error| error.to_string())?;
+                table
+            }
+            None => {
+                LookUpTable::new(&light, Some(self.params.background.clone())).map_err(|e| e.to_string())?
+            }
+        };
+        let classified = table.classify_image(image);
+        self.table = Some(table);
+        Ok(classified)
+    }
+
+    fn move_by(&mut self, increment: &Pose2<f64>) {
+        let so_far = self.pending.increment.unwrap_or(Pose2::new(0.0, 0.0, 0.0));
+        self.pending.increment = Some(so_far.compose(increment));
+        self.odometry = self.odometry.map(|pose| pose.compose(increment));
+    }
+
+    fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
+        let info = self.camera.ok_or("no camera info before this image")?;
+        let mount = self.mount.ok_or("no camera mount before this image")?;
+        let decoded = image.decode_rgb().map_err(|error| error.to_string())?;
+        let image = YuvImage::from_rgb(decoded.width, decoded.height, &decoded.pixels, self.params.yuv)
+            .map_err(|error| error.to_string())?;
+
+        let stopwatch = Stopwatch::start();
+        let outcome = self.localize(stamp, info, &mount, &image).map_err(|error| error.to_string())?;
+        let step = stopwatch.elapsed();
+
+        self.events.count(match outcome.fix {
+            Fix::Tracking => "tracking",
+            Fix::Ambiguous => "ambiguous",
+            Fix::Lost => "lost",
+        });
+        self.events.add("particles_injected", outcome.n_injected as u64);
+        let labelled = self.labelled(stamp, &image);
+        self.frames.push(FrameResult {
+            stamp,
+            pose: outcome.estimate.pose,
+            fix: outcome.fix,
+            odometry: self.odometry,
+            effective_particles: outcome.effective_particles,
+            n_particles: outcome.n_particles,
+            light_probabilities: outcome.light_probabilities,
+            labelled,
+            step,
+        });
+        Ok(())
+    }
+
+    fn localize(
+        &mut self,
+        stamp: Stamp,
+        info: CameraInfo,
+        mount: &Pose3<f64>,
+        image: &YuvImage,
+    ) -> anyhow::Result<wayfix_color_model::FrameOutcome> {
+        let localizer = match &mut self.localizer {
+            Some(localizer) => localizer,
+            none => none.insert(ColorLocalizer::new(
+                Arc::clone(&self.map),
+                Camera::new(info.width, info.height, info.fx, info.fy, info.cx, info.cy)?,
+                self.bank.clone(),
+                &start(self.start, &self.params)?,
+                self.params.localizer,
+                &mut self.rng,
+            )?),
+        };
+        if let Some(since) = self.pending.since {
+            let step =
+                OdometryStep { increment: self.pending.increment, seconds: stamp.seconds_since(since) };
+            localizer.predict(&step, &mut self.rng)?;
+        }
+        // What has been predicted must not be predicted again, whatever becomes of the image.
+        self.pending = Pending { increment: None, since: Some(stamp) };
+        Ok(localizer.update(image, mount, &mut self.rng)?)
+    }
+
+    fn labelled(&mut self, stamp: Stamp, image: &YuvImage) -> Option<LabelCounts> {
+        let (_, labels) = self.labels.take().filter(|(labelled, _)| *labelled == stamp)?;
+        let labels = labels.decode_gray().ok()?;
+        let light = self.light();
+        let classifier = Classifier::of_light(light.member(light.active())).ok()?;
+        tally(image, &labels, &classifier, self.map.colors().len())
+    }
+}
+
+fn start(start: StartPose, params: &ColorSystemParams) -> anyhow::Result<Start> {
+    let StartPose::Near(pose) = start else { return Ok(Start::Anywhere) };
+    let sigma = params.start.position_sigma;
+    let sigmas = Vector3::new(sigma, sigma, params.start.heading_sigma);
+    Ok(Start::Near(Gaussian::from_sigmas(pose, &sigmas)?))
+}
+
+impl System for ColorSystem {
+    fn take(&mut self, record: &Record) -> Result<(), String> {
+        match &record.data {
+            Data::CameraInfo(info) => self.camera = Some(*info),
+            Data::CameraMount(mount) => self.mount = Some(*mount),
+            Data::TrueLabels(labels) => self.labels = Some((record.stamp, labels.clone())),
+            Data::OdometryIncrement(increment) => self.move_by(increment),
+            Data::Image(image) => self.see(record.stamp, image)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn events(&mut self) -> &mut Events {
+        &mut self.events
+    }
+}

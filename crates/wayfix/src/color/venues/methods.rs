@@ -1,0 +1,120 @@
+use anyhow::{Context, Result};
+use nalgebra::Vector3;
+use wayfix_color_map::ColorId;
+use wayfix_color_model::{ColorDensity, ColorMeans, LightingFilter, LightingParams, LightingPriors};
+
+use super::image::VenueImage;
+use super::prior::{BALL, CARPET, Experience, block};
+
+/// How the two colours of an image become Gaussians; the order is that of all tables here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Method {
+    Fixed,
+    Joint,
+    Independent,
+    SharedNoise,
+    Oracle,
+}
+
+impl Method {
+    pub(super) const ALL: [Self; 5] =
+        [Self::Fixed, Self::Joint, Self::Independent, Self::SharedNoise, Self::Oracle];
+
+    /// What its figures are called.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Joint => "ball",
+            Self::Independent => "independent",
+            Self::SharedNoise => "shared_noise",
+            Self::Oracle => "oracle",
+        }
+    }
+
+    /// The legend in pictures.
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Joint => "adapted, joint prior",
+            Self::Independent => "adapted, independent prior",
+            Self::SharedNoise => "adapted, one noise for all colours",
+            Self::Oracle => "oracle",
+        }
+    }
+
+    /// Gaussians of carpet and ball for one image of a venue whose ball pixels are truly `own_ball`.
+    pub(super) fn densities(
+        self,
+        experience: &Experience,
+        image: &VenueImage,
+        own_ball: &ColorDensity,
+    ) -> Result<[ColorDensity; 2]> {
+        let own_carpet = image.carpet.density;
+        let seen = &own_carpet.mean;
+        Ok(match self {
+            Self::Fixed => [CARPET, BALL].map(|color| predicted(experience, &prior(experience), color)),
+            Self::Joint => {
+                [own_carpet, predicted(experience, &lit(experience, &experience.priors, seen)?, BALL)]
+            }
+            Self::Independent => {
+                let light = lit(experience, &experience.priors.independent(), seen)?;
+                [own_carpet, predicted(experience, &light, BALL)]
+            }
+            Self::SharedNoise => {
+                let light = filter(experience, &experience.priors, seen)?;
+                [CARPET, BALL].map(|color| light.color(ColorId(color as u8)))
+            }
+            Self::Oracle => [own_carpet, *own_ball],
+        })
+    }
+}
+
+/// What is known of the colours' means.
+struct Light {
+    mean: nalgebra::DVector<f64>,
+    covariance: nalgebra::DMatrix<f64>,
+}
+
+fn prior(experience: &Experience) -> Light {
+    let joint = experience.joint();
+    Light { mean: joint.mean().clone(), covariance: joint.covariance().clone() }
+}
+
+/// The colours' means once an image's carpet was seen.
+fn lit(experience: &Experience, priors: &LightingPriors, carpet: &Vector3<f64>) -> Result<Light> {
+    let light = filter(experience, priors, carpet)?;
+    Ok(Light { mean: light.mean().clone(), covariance: light.covariance().clone() })
+}
+
+fn filter(experience: &Experience, priors: &LightingPriors, carpet: &Vector3<f64>) -> Result<LightingFilter> {
+    let params = LightingParams {
+        pixel_noise: experience.priors.pixel_noise(),
+        mean_noise: experience.priors.mean_noise(),
+        ..LightingParams::default()
+    };
+    let prior = priors.members().first().context("no prior")?;
+    let mut light = LightingFilter::new(prior.clone(), params)?;
+    light.update(&ColorMeans::new([(Some(*carpet), 1), (None, 0)]))?;
+    Ok(light)
+}
+
+/// The pixels of a colour that is known as well as `light` knows it: its mean, the image's mean about that, the pixels about the image's.
+fn predicted(experience: &Experience, light: &Light, color: usize) -> ColorDensity {
+    let (mean, covariance) = block(&light.mean, &light.covariance, color);
+    ColorDensity { mean, covariance: covariance + experience.mean_noise() + experience.pixels[color] }
+}
+
+/// How much better the joint prior foretells the venue's ball than the independent one, nats: the logarithm of the ratio of the densities
+/// of the mean ball once the mean carpet is seen.
+pub(super) fn joint_gain_nats(
+    experience: &Experience,
+    carpet: &Vector3<f64>,
+    ball: &Vector3<f64>,
+) -> Result<f64> {
+    let log_density = |priors: &LightingPriors| -> Result<f64> {
+        let light = lit(experience, priors, carpet)?;
+        let (mean, covariance) = block(&light.mean, &light.covariance, BALL);
+        Ok(wayfix_gaussian_core::Gaussian::new(mean, covariance)?.log_density(ball)?)
+    };
+    Ok(log_density(&experience.priors)? - log_density(&experience.priors.independent())?)
+}

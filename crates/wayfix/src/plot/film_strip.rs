@@ -1,0 +1,83 @@
+use std::fmt::Write as _;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use wayfix_sensor_log::EncodedImage;
+
+use super::canvas::FONT_SIZE;
+use super::layout::{WIDTH, no_data};
+use super::markup::escape;
+use super::{Picture, PlotError};
+
+/// Rows of pictures of one size: what a camera saw, and what a program made of it.
+///
+/// The pictures are inside the drawing, so that the page needs no other file.
+#[derive(Clone, Debug, Default)]
+pub struct FilmStrip {
+    /// Caption.
+    pub title: String,
+    /// What each row shows, with its frames from left to right.
+    pub rows: Vec<(String, Vec<FilmFrame>)>,
+    /// Width and height of a frame in its own pixels.
+    pub frame_size: (u32, u32),
+}
+
+/// One frame of a strip.
+#[derive(Clone, Debug)]
+pub struct FilmFrame {
+    /// The picture.
+    pub image: EncodedImage,
+    /// A word or two below it.
+    pub caption: String,
+}
+
+const GAP: f64 = 6.0;
+const LINE: f64 = 20.0;
+
+impl FilmStrip {
+    /// The picture.
+    ///
+    /// # Errors
+    /// When the drawing library refuses; only an empty strip needs it.
+    pub fn draw(&self) -> Result<Picture, PlotError> {
+        let n_columns = self.rows.iter().map(|(_, frames)| frames.len()).max().unwrap_or(0);
+        let (frame_width, frame_height) = self.frame_size;
+        if n_columns == 0 || frame_width == 0 || frame_height == 0 {
+            return no_data(&self.title);
+        }
+        let width = (WIDTH - GAP * (n_columns - 1) as f64) / n_columns as f64;
+        let height = width * f64::from(frame_height) / f64::from(frame_width);
+        let row_height = LINE + height + LINE;
+        let total = row_height * self.rows.len() as f64;
+        let headings: Vec<&str> = self.rows.iter().map(|(heading, _)| heading.as_str()).collect();
+        let alt = format!("{}: {}", self.title, headings.join("; "));
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{total:.0}\" viewBox=\"0 0 {WIDTH} {total:.0}\" \
+             role=\"img\" aria-label=\"{}\" font-size=\"{FONT_SIZE}\">\n",
+            escape(&alt)
+        );
+        for (row, (heading, frames)) in self.rows.iter().enumerate() {
+            let top = row as f64 * row_height;
+            write_text(&mut svg, 0.0, top + 0.7 * LINE, heading);
+            for (column, frame) in frames.iter().enumerate() {
+                let left = column as f64 * (width + GAP);
+                let _ = writeln!(
+                    svg,
+                    "<image x=\"{left:.1}\" y=\"{:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
+                     href=\"data:{};base64,{}\"/>",
+                    top + LINE,
+                    frame.image.media_type(),
+                    STANDARD.encode(&*frame.image.bytes)
+                );
+                write_text(&mut svg, left, top + LINE + height + 0.75 * LINE, &frame.caption);
+            }
+        }
+        svg.push_str("</svg>\n");
+        let (width, height) = (WIDTH.round() as u32, total.round() as u32);
+        Ok(Picture { title: self.title.clone(), alt, width, height, svg })
+    }
+}
+
+fn write_text(svg: &mut String, x: f64, y: f64, text: &str) {
+    let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" fill=\"var(--muted)\">{}</text>", escape(text));
+}
