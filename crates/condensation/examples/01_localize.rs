@@ -1,0 +1,64 @@
+//! Learn a small picture, darken it, and find a goal in it from an unknown place: `cargo run --release -p wayfix-condensation --example 01_localize`
+
+use std::sync::Arc;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use wayfix_condensation::{
+    Appearance, AppearanceParams, Arrival, FeatureTable, Grid, Light, Localizer, LocalizerParams, MeanVar,
+    Move, Navigator, NavigatorParams, Picture, SceneViews, StateSpace, ViewFeature, ViewGrid, World,
+};
+
+/// The robot as it really is: at a place it does not know, before a scene darker than the one it learned.
+struct Robot {
+    grid: Grid,
+    views: FeatureTable,
+    at: usize,
+}
+
+impl World<Move> for Robot {
+    fn act(&mut self, action: Move) {
+        self.at = self.grid.step(self.at, action);
+    }
+
+    fn look(&mut self, features: &mut [f64]) {
+        features.copy_from_slice(self.views.get(self.at).expect("a state of the grid"));
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Learning: 13 × 9 views of a painted scene, and how they answer to shifts and to light.
+    let scene = painting(256, 192)?;
+    let views = ViewGrid::new((256, 192), (64, 64), 16)?;
+    let params = AppearanceParams::online();
+    let appearance = Appearance::learn(&SceneViews::new(&scene, &views)?, &MeanVar, &params)?;
+
+    // The robot's world: less contrast, more offset, a bent tone curve, and all views a little beside the learned ones.
+    let real = Light { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&scene)?.shifted(4, 3);
+    let grid = *views.grid();
+    let start = grid.state(2, 6).ok_or("outside")?;
+    let goal = grid.state(10, 1).ok_or("outside")?;
+    let mut robot = Robot { grid, views: MeanVar.extract_all(&real, &views)?, at: start };
+
+    let navigator = Navigator::new(grid, NavigatorParams::default())?;
+    let mut localizer = Localizer::new(Arc::new(appearance), LocalizerParams::default())?;
+    let mut show = |step: usize, localizer: &Localizer| {
+        let best = localizer.best();
+        println!("{step:2}: place {:?} with confidence {:.4}", grid.place(best.state), best.confidence);
+    };
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let report = navigator.run(goal, &mut localizer, &mut robot, &mut show, &mut rng)?;
+    println!("{:?} after {} moves; {:?}", report.arrival, report.steps, localizer.disturbance().0);
+    assert_eq!((report.arrival, robot.at), (Arrival::Reached, goal));
+    Ok(())
+}
+
+/// Coloured waves.
+fn painting(width: usize, height: usize) -> Result<Picture, wayfix_condensation::CondensationError> {
+    let wave = |phase: f64| (60.0 * phase.sin() + 120.0) as u8;
+    let pixel = |i: usize| {
+        let (x, y) = ((i % width) as f64, (i / width) as f64);
+        [wave(x / 40.0 + (y / 50.0).sin()), wave(x * y / 6000.0), wave(y / 35.0 - (x / 80.0).cos())]
+    };
+    Picture::from_rgb(width, height, (0..width * height).flat_map(pixel).collect())
+}

@@ -1,0 +1,31 @@
+//! Belief over a finite set of states: spaces, transitions, diffusion, the filter and what watches it.
+
+mod chunks;
+mod dense;
+mod diffusion;
+mod filter;
+mod graph;
+mod grid;
+mod heading_grid;
+mod kidnap;
+mod lattice;
+mod outcome;
+mod slip;
+mod space;
+mod sparse;
+mod transition;
+
+pub use dense::DenseTransition;
+pub use diffusion::DiffusionKernel;
+pub(crate) use filter::entropy;
+pub use filter::{BestState, DiscreteFilter};
+pub use graph::{Follow, Graph};
+pub use grid::{Grid, Move};
+pub use heading_grid::{HeadingGrid, Maneuver};
+pub use kidnap::KidnapMonitor;
+pub use lattice::{Axis, Lattice};
+pub use outcome::{Evidence, Outcome};
+pub use slip::Slip;
+pub use space::StateSpace;
+pub use sparse::SparseTransition;
+pub use transition::Transition;

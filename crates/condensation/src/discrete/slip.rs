@@ -1,0 +1,49 @@
+use crate::error::probability;
+use crate::{CondensationError, SparseTransition, StateSpace};
+
+/// How moves go wrong: with these probabilities the robot stays where it is, or does one of the other actions instead.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slip {
+    /// That nothing happens.
+    pub stays: f64,
+    /// That another action happens, each of them equally likely.
+    pub strays: f64,
+}
+
+impl Slip {
+    /// $`p(s' \mid s, a)`$ of an action in a space. [Kasprzak & Szynkiewicz, Sec. 2.2]
+    ///
+    /// ```
+    /// use wayfix_condensation::{Grid, Move, Slip, Transition};
+    /// let grid = Grid::new(3, 1)?;
+    /// let right = Slip { stays: 0.25, strays: 0.0 }.transition(&grid, Move { dx: 1, dy: 0 })?;
+    /// let mut predicted = [0.0; 3];
+    /// right.predict(&[1.0, 0.0, 0.0], &mut predicted);
+    /// assert_eq!(predicted, [0.25, 0.75, 0.0]);
+    /// # Ok::<(), wayfix_condensation::CondensationError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`CondensationError::Parameter`] when the probabilities are none, or exceed one together.
+    pub fn transition<S: StateSpace>(
+        &self,
+        space: &S,
+        action: S::Action,
+    ) -> Result<SparseTransition, CondensationError> {
+        probability("probability to stay", self.stays)?;
+        probability("probability to stray", self.strays)?;
+        let goes = probability("probability of the intended action", 1.0 - self.stays - self.strays)?;
+        let each = self.strays / space.actions().len() as f64;
+        let rows = (0..space.n_states()).map(|state| {
+            let mut row = vec![(space.step(state, action), goes)];
+            if self.stays > 0.0 {
+                row.push((state, self.stays));
+            }
+            if self.strays > 0.0 {
+                row.extend(space.actions().iter().map(|&other| (space.step(state, other), each)));
+            }
+            row
+        });
+        SparseTransition::from_rows(rows)
+    }
+}

@@ -1,0 +1,21 @@
+/// Where belief goes in one step: $`\hat b(s') = \sum_s p(s' \mid s)\, b(s)`$. [Kasprzak & Szynkiewicz, Eq. 4]
+///
+/// Linear, so it carries any quantity that goes with the state, not belief alone. **Laws**: what comes out has the sum of what
+/// went in; nonnegative stays nonnegative.
+pub trait Transition {
+    /// How many states it speaks of.
+    fn n_states(&self) -> usize;
+
+    /// Writes what becomes of `belief` into `predicted`. Both have [`n_states`](Self::n_states) elements.
+    fn predict(&self, belief: &[f64], predicted: &mut [f64]);
+}
+
+impl<T: Transition + ?Sized> Transition for &T {
+    fn n_states(&self) -> usize {
+        (**self).n_states()
+    }
+
+    fn predict(&self, belief: &[f64], predicted: &mut [f64]) {
+        (**self).predict(belief, predicted);
+    }
+}

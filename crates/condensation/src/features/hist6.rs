@@ -1,0 +1,56 @@
+use crate::features::dominance::Dominance;
+use crate::features::histogram::{self, Histogram};
+use crate::{CondensationError, FeatureTable, Picture, View, ViewFeature, ViewGrid};
+
+/// Three dominating grey values and their densities: $`[I_1, I_2, I_3, ρ(I_1), ρ(I_2), ρ(I_3)]`$. [Kasprzak & Szynkiewicz, Sec. 3.3]
+///
+/// What dominates is up to [`Dominance`]. Where there are fewer than three, the last repeats with density zero.
+///
+/// ```
+/// use wayfix_condensation::{Dominance, Hist6, Picture, ViewFeature};
+/// let picture = Picture::from_rgb(4, 1, [10_u8, 10, 60, 200].iter().flat_map(|&grey| [grey; 3]).collect())?;
+/// let mut features = [0.0; 6];
+/// Hist6 { dominance: Dominance::Classes }.extract(&picture.whole(), &mut features);
+/// assert_eq!(features, [10.0, 60.0, 200.0, 0.5, 0.25, 0.25]);
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hist6 {
+    /// What makes a grey value dominate.
+    pub dominance: Dominance,
+}
+
+const N: usize = 6;
+
+impl ViewFeature for Hist6 {
+    fn n_components(&self) -> usize {
+        N
+    }
+
+    fn extract(&self, view: &View<'_>, features: &mut [f64]) {
+        self.describe(&histogram::of_view(view), features);
+    }
+
+    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
+        views.check(scene)?;
+        let mut table = FeatureTable::zeros(views.grid(), N);
+        histogram::for_each_view(scene, views, |state, histogram| {
+            self.describe(histogram, table.row_mut(state));
+        });
+        Ok(table)
+    }
+}
+
+impl Hist6 {
+    fn describe(&self, histogram: &Histogram, features: &mut [f64]) {
+        let n_pixels = f64::from(histogram.iter().sum::<u32>());
+        let density = histogram.map(|count| f64::from(count) / n_pixels);
+        let dominating = self.dominance.of(&density);
+        let mut last = 0.0;
+        for k in 0..N / 2 {
+            let (value, share) = dominating.get(k).copied().unwrap_or((last, 0.0));
+            (features[k], features[k + N / 2]) = (value, share);
+            last = value;
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! What a whole view looks like, in a handful of numbers.
+
+mod columns;
+mod dominance;
+mod fft6;
+mod hist6;
+mod histogram;
+mod joined;
+mod mean_var;
+mod picture;
+mod table;
+mod view;
+mod view_grid;
+
+pub use dominance::Dominance;
+pub use fft6::Fft6;
+pub use hist6::Hist6;
+pub use joined::Joined;
+pub use mean_var::MeanVar;
+pub use picture::Picture;
+pub use table::{FeatureTable, ViewFeature};
+pub use view::View;
+pub use view_grid::ViewGrid;

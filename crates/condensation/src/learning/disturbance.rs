@@ -1,0 +1,42 @@
+use crate::Light;
+
+/// How many numbers describe a [`Disturbance`].
+pub const N_DISTURBANCES: usize = 5;
+
+/// What is the same in all views of a run and unknown before it: by how much views are shifted and the light differs.
+///
+/// Used for values and for standard deviations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disturbance {
+    /// Shift to the right, in pixels.
+    pub dx: f64,
+    /// Shift down, in pixels.
+    pub dy: f64,
+    /// What the gain has more than that of the condition.
+    pub gain: f64,
+    /// What the offset has more, in grey levels.
+    pub offset: f64,
+    /// Logarithm of what gamma is multiplied by.
+    pub log_gamma: f64,
+}
+
+impl Disturbance {
+    /// In the order of the fields.
+    pub fn to_array(self) -> [f64; N_DISTURBANCES] {
+        [self.dx, self.dy, self.gain, self.offset, self.log_gamma]
+    }
+
+    /// The light of a condition, changed by this.
+    pub fn applied_to(&self, light: Light) -> Light {
+        Light {
+            gain: light.gain + self.gain,
+            offset: light.offset + self.offset,
+            gamma: light.gamma * self.log_gamma.exp(),
+        }
+    }
+
+    /// In the order of the fields.
+    pub fn from_array([dx, dy, gain, offset, log_gamma]: [f64; N_DISTURBANCES]) -> Self {
+        Self { dx, dy, gain, offset, log_gamma }
+    }
+}

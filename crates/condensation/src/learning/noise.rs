@@ -1,0 +1,66 @@
+use nalgebra::{DMatrix, DVector};
+
+use crate::error::checked;
+use crate::{CondensationError, FeatureTable};
+
+/// How the covariance of noise is learned from few samples a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseParams {
+    /// Share of the covariance that is pooled over all states, the rest being the state's own: shrinkage.
+    pub pooling: f64,
+    /// Least variance of a component, as a share of its variance over the states.
+    pub floor: f64,
+}
+
+impl Default for NoiseParams {
+    fn default() -> Self {
+        Self { pooling: 0.5, floor: 3e-4 }
+    }
+}
+
+impl NoiseParams {
+    pub(super) fn check(&self) -> Result<(), CondensationError> {
+        checked("pooling", self.pooling, self.pooling > 0.0 && self.pooling <= 1.0, "in (0, 1]")?;
+        checked(
+            "noise floor",
+            self.floor,
+            self.floor >= 0.0 && self.floor.is_finite(),
+            "finite and not negative",
+        )?;
+        Ok(())
+    }
+
+    /// Covariance of every state from residuals `residuals[sample][state]`.
+    pub(super) fn covariances(
+        &self,
+        features: &FeatureTable,
+        residuals: &[Vec<DVector<f64>>],
+    ) -> Vec<DMatrix<f64>> {
+        let (n, k) = (features.n_states(), features.n_components());
+        let mut own = vec![DMatrix::zeros(k, k); n];
+        for sample in residuals {
+            for (covariance, residual) in own.iter_mut().zip(sample) {
+                covariance.ger(1.0 / residuals.len() as f64, residual, residual, 1.0);
+            }
+        }
+        let mut pooled = own.iter().fold(DMatrix::zeros(k, k), |sum, c| sum + c) / n as f64;
+        for (i, (mean, variance)) in moments(features).into_iter().enumerate() {
+            // A component that never varies has no spread to take a share of; it must not make the covariance singular.
+            pooled[(i, i)] += (self.floor * variance + 1e-12 * (1.0 + mean * mean)) / self.pooling;
+        }
+        own.iter_mut().for_each(|c| *c = &*c * (1.0 - self.pooling) + &pooled * self.pooling);
+        own
+    }
+}
+
+/// Mean and variance of every component over the states.
+pub(super) fn moments(features: &FeatureTable) -> Vec<(f64, f64)> {
+    let n = features.n_states() as f64;
+    let component = |i: usize| features.rows().map(move |row| row[i]);
+    (0..features.n_components())
+        .map(|i| {
+            let mean = component(i).sum::<f64>() / n;
+            (mean, component(i).map(|value| (value - mean).powi(2)).sum::<f64>() / n)
+        })
+        .collect()
+}

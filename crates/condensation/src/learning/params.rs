@@ -1,0 +1,62 @@
+use crate::error::checked;
+use crate::{CondensationError, Disturbance, Light, NoiseParams, Tail};
+
+/// How appearance is learned. None of it depends on the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AppearanceParams {
+    /// Standard deviations of the disturbance around each condition.
+    pub disturbance: Disturbance,
+    /// The lights of the conditions, as they differ from that of learning.
+    pub lights: Vec<Light>,
+    /// Noise that no disturbance explains.
+    pub noise: NoiseParams,
+    /// How fast likelihood falls with distance.
+    pub tail: Tail,
+}
+
+impl AppearanceParams {
+    /// For views normalized from statistics of the whole scene.
+    ///
+    /// What is left is a shift of some pixels (a standard deviation of 2.4 on each axis, so that five pixels are no surprise) and a light
+    /// that normalization missed: the scene in view is not quite the one learned, and grey values are rounded twice. That is a few per cent,
+    /// but not exactly of the form gain, offset, gamma, so a tenth is allowed for.
+    pub fn normalized() -> Self {
+        Self {
+            disturbance: Disturbance { dx: 2.4, dy: 2.4, gain: 0.1, offset: 8.0, log_gamma: 0.1 },
+            lights: vec![Light::SAME],
+            noise: NoiseParams::default(),
+            tail: Tail::default(),
+        }
+    }
+
+    /// For views as the camera gives them: the light is estimated together with the place, from no knowledge.
+    ///
+    /// Three gains times five gammas in geometric steps cover 0.5 to 1.4 and 0.56 to 1.8; around each the disturbance reaches half way to the
+    /// next. The features are nearly linear in the offset, so that one of ± 20 grey levels (one sigma) needs no conditions.
+    ///
+    /// ```
+    /// use wayfix_condensation::AppearanceParams;
+    /// assert_eq!(AppearanceParams::online().lights.len(), 15);
+    /// ```
+    pub fn online() -> Self {
+        let gammas = (-2..=2).map(|i| 2.0_f64.powf(f64::from(i) / 3.0));
+        let lights = gammas.flat_map(|gamma| [0.6, 0.85, 1.2].map(|gain| Light { gain, offset: 0.0, gamma }));
+        Self {
+            disturbance: Disturbance { dx: 2.4, dy: 2.4, gain: 0.12, offset: 20.0, log_gamma: 0.12 },
+            lights: lights.collect(),
+            ..Self::normalized()
+        }
+    }
+
+    pub(super) fn check(&self) -> Result<(), CondensationError> {
+        for sigma in self.disturbance.to_array() {
+            let valid = sigma.is_finite() && sigma >= 0.0;
+            checked("sigma of the disturbance", sigma, valid, "finite and not negative")?;
+        }
+        if self.lights.is_empty() {
+            return Err(CondensationError::Empty { what: "conditions" });
+        }
+        self.noise.check()?;
+        self.tail.check()
+    }
+}

@@ -1,0 +1,14 @@
+//! From anywhere to a goal, by looking around.
+
+mod action;
+mod carried;
+mod localizer;
+mod navigator;
+mod report;
+mod routes;
+
+pub use action::ActionChoice;
+pub use localizer::{Localizer, LocalizerParams};
+pub use navigator::{Navigator, NavigatorParams, World};
+pub use report::{Arrival, RunReport};
+pub use routes::Routes;

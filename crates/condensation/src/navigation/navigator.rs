@@ -1,0 +1,162 @@
+use rand::Rng;
+
+use crate::error::{check_size, checked};
+use crate::navigation::report::{Arrival, RunReport};
+use crate::{
+    ActionChoice, CondensationError, KidnapMonitor, Localizer, Outcome, Routes, Slip, SparseTransition,
+    StateSpace,
+};
+
+/// Where a robot moves and looks: a simulation, or the robot itself.
+pub trait World<A> {
+    /// Does an action, as well as it can.
+    fn act(&mut self, action: A);
+
+    /// Writes the features of what is seen now.
+    fn look(&mut self, features: &mut [f64]);
+}
+
+/// When a run is over, and how actions are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NavigatorParams {
+    /// Confidence at which the robot stops at the goal.
+    pub confidence: f64,
+    /// For how many looks in a row it must be that confident: one look can mislead.
+    pub confirmations: usize,
+    /// Most moves of a run.
+    pub max_steps: usize,
+    /// How actions are chosen.
+    pub choice: ActionChoice,
+    /// How moves go wrong.
+    pub slip: Slip,
+    /// Probability of a false alarm of the kidnapping monitor.
+    pub false_alarm_rate: f64,
+}
+
+impl Default for NavigatorParams {
+    /// Stops at 99.9 % in three looks, at the latest after 80 moves.
+    fn default() -> Self {
+        Self {
+            confidence: 0.999,
+            confirmations: 3,
+            max_steps: 80,
+            choice: ActionChoice::Greedy,
+            slip: Slip::default(),
+            false_alarm_rate: 1e-6,
+        }
+    }
+}
+
+/// The loop of self-localization on the way to a goal. [Kasprzak & Szynkiewicz, Sec. 2.2]
+#[derive(Clone, Debug)]
+pub struct Navigator<S: StateSpace> {
+    space: S,
+    transitions: Vec<SparseTransition>, // by action
+    params: NavigatorParams,
+}
+
+impl<S: StateSpace> Navigator<S> {
+    /// For a space and its moves.
+    ///
+    /// # Errors
+    /// [`CondensationError::Parameter`].
+    pub fn new(space: S, params: NavigatorParams) -> Result<Self, CondensationError> {
+        let transition = |&action: &S::Action| params.slip.transition(&space, action);
+        let transitions = space.actions().iter().map(transition).collect::<Result<_, _>>()?;
+        Self::with_transitions(space, transitions, params)
+    }
+
+    /// With transitions of one's own, learned from a log of moves, say: one for every action of the space.
+    ///
+    /// # Errors
+    /// [`CondensationError::Parameter`], or [`CondensationError::Dimension`] when there are more or fewer than actions.
+    pub fn with_transitions(
+        space: S,
+        transitions: Vec<SparseTransition>,
+        params: NavigatorParams,
+    ) -> Result<Self, CondensationError> {
+        check_size("list of transitions", space.actions().len(), transitions.len())?;
+        let confidence = params.confidence;
+        checked(
+            "confidence",
+            confidence,
+            confidence > 0.0 && confidence < 1.0,
+            "between 0 and 1, both excluded",
+        )?;
+        KidnapMonitor::from_false_alarm_rate(params.false_alarm_rate)?;
+        Ok(Self { space, transitions, params })
+    }
+
+    /// The states.
+    pub fn space(&self) -> &S {
+        &self.space
+    }
+
+    /// Drives to `goal`; `watch` is shown the localizer after every look.
+    ///
+    /// # Errors
+    /// [`CondensationError::State`] when the goal does not exist, [`CondensationError::Dimension`] when the localizer is of another space,
+    /// [`CondensationError::NotFinite`] when the world shows features that are none.
+    pub fn run<R: Rng + ?Sized>(
+        &self,
+        goal: usize,
+        localizer: &mut Localizer,
+        world: &mut impl World<S::Action>,
+        watch: &mut impl FnMut(usize, &Localizer),
+        rng: &mut R,
+    ) -> Result<RunReport, CondensationError> {
+        check_size("localizer", self.space.n_states(), localizer.belief().len())?;
+        let routes = Routes::to_goal(&self.space, goal)?;
+        let mut monitor = KidnapMonitor::from_false_alarm_rate(self.params.false_alarm_rate)?;
+        let mut features = vec![0.0; localizer.appearance().n_components()];
+        let (mut confirmed, mut steps_to_certainty, mut kidnappings) = (0, None, 0);
+        let mut steps = 0;
+        loop {
+            world.look(&mut features);
+            let outcome = localizer.update(&features)?;
+            kidnappings +=
+                usize::from(start_over_if_elsewhere(&mut monitor, &outcome, localizer, &features)?);
+            watch(steps, localizer);
+
+            let best = localizer.best();
+            let certain = best.confidence >= self.params.confidence;
+            confirmed = if certain { confirmed + 1 } else { 0 };
+            if certain {
+                steps_to_certainty.get_or_insert(steps);
+            }
+            let sure = confirmed >= self.params.confirmations.max(1);
+            let report = |arrival| RunReport { arrival, steps, steps_to_certainty, best, kidnappings };
+            if sure && best.state == goal {
+                return Ok(report(Arrival::Reached));
+            }
+            if sure && routes.distance(best.state).is_none() {
+                return Ok(report(Arrival::Unreachable));
+            }
+            if steps == self.params.max_steps {
+                return Ok(report(Arrival::Unsure));
+            }
+
+            let choice = self.params.choice.choose(&self.space, &routes, localizer, rng);
+            // From where there is no way to the goal any action may show that the robot is elsewhere.
+            let action = choice.unwrap_or_else(|| steps % self.transitions.len());
+            world.act(self.space.actions()[action]);
+            localizer.predict(&self.transitions[action])?;
+            steps += 1;
+        }
+    }
+}
+
+/// Forgets place and light when the measurements say that the robot is elsewhere, and begins again with this one.
+fn start_over_if_elsewhere(
+    monitor: &mut KidnapMonitor,
+    outcome: &Outcome,
+    localizer: &mut Localizer,
+    features: &[f64],
+) -> Result<bool, CondensationError> {
+    let elsewhere = monitor.observe(outcome);
+    if elsewhere {
+        localizer.forget();
+        let _ = localizer.update(features)?; // impossible even from scratch: the next look decides
+    }
+    Ok(elsewhere)
+}

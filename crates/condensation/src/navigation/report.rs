@@ -1,0 +1,28 @@
+use crate::BestState;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Arrival {
+    /// The robot believes with the stated confidence that it is at the goal.
+    Reached,
+    /// The steps are used up and it is not sure enough.
+    Unsure,
+    /// It is sure to be where no way leads to the goal.
+    Unreachable,
+}
+
+/// What happened in a run. Whether the robot really is at the goal only its surroundings know.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunReport {
+    /// How it ended.
+    pub arrival: Arrival,
+    /// Moves that were made.
+    pub steps: usize,
+    /// Moves until confidence first was what the parameters ask for, if it ever was.
+    pub steps_to_certainty: Option<usize>,
+    /// The place that is believed in at the end, and how much.
+    pub best: BestState,
+    /// How often the robot noticed that it was elsewhere, and started over.
+    pub kidnappings: usize,
+}

@@ -1,0 +1,7 @@
+//! Making what is seen comparable with what was learned under another light.
+
+mod light;
+mod tone;
+
+pub use light::Light;
+pub use tone::{affine_match, histogram_match, light_match};

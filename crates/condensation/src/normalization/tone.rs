@@ -1,0 +1,127 @@
+use crate::Picture;
+
+/// A share of pixels for each of the 256 values.
+type Shares = [f64; 256];
+
+/// Tables, one a channel, that give `seen` the mean and the standard deviation of `learned`; for [`Picture::mapped`].
+///
+/// A channel without contrast keeps its own and is only moved.
+///
+/// ```
+/// use wayfix_condensation::{Light, Picture, affine_match};
+/// let learned = Picture::from_rgb(3, 1, [40_u8, 80, 160].iter().flat_map(|&grey| [grey; 3]).collect())?;
+/// let seen = Light { gain: 0.5, offset: 30.0, gamma: 1.0 }.apply(&learned)?;
+/// assert_eq!(seen.mapped(&affine_match(&seen, &learned)), learned);
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
+pub fn affine_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
+    std::array::from_fn(|channel| {
+        let (mean, sigma) = moments(&shares(seen, channel));
+        let (learned_mean, learned_sigma) = moments(&shares(learned, channel));
+        let gain = if sigma > 0.0 { learned_sigma / sigma } else { 1.0 };
+        std::array::from_fn(|value| rounded((value as f64 - mean) * gain + learned_mean))
+    })
+}
+
+/// Tables, one a channel, that give `seen` the histogram of `learned`; for [`Picture::mapped`].
+///
+/// Each value goes to where its middle rank lies among the learned ranks, interpolated, so that any monotone tone curve is undone.
+///
+/// ```
+/// use wayfix_condensation::{Light, Picture, histogram_match};
+/// let learned = Picture::from_rgb(3, 1, [40_u8, 80, 160].iter().flat_map(|&grey| [grey; 3]).collect())?;
+/// let seen = Light { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?;
+/// assert_eq!(seen.mapped(&histogram_match(&seen, &learned)), learned);
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
+pub fn histogram_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
+    std::array::from_fn(|channel| {
+        let ranks = middle_ranks(&shares(seen, channel));
+        let learned_ranks = middle_ranks(&shares(learned, channel));
+        std::array::from_fn(|value| rounded(value_at(ranks[value], &learned_ranks)))
+    })
+}
+
+fn shares(picture: &Picture, channel: usize) -> Shares {
+    let mut counts = [0_u64; 256];
+    for pixel in picture.pixels() {
+        counts[usize::from(pixel[channel])] += 1;
+    }
+    counts.map(|count| count as f64 / picture.pixels().len() as f64)
+}
+
+fn moments(shares: &Shares) -> (f64, f64) {
+    let mean: f64 = shares.iter().enumerate().map(|(value, p)| value as f64 * p).sum();
+    let variance: f64 = shares.iter().enumerate().map(|(value, p)| (value as f64 - mean).powi(2) * p).sum();
+    (mean, variance.sqrt())
+}
+
+/// The share of darker pixels and half of those that are equal.
+fn middle_ranks(shares: &Shares) -> [f64; 256] {
+    let mut darker = 0.0;
+    shares.map(|share| {
+        darker += share;
+        darker - 0.5 * share
+    })
+}
+
+/// Where a rank falls among those of the 256 values.
+fn value_at(rank: f64, ranks: &[f64; 256]) -> f64 {
+    let above = ranks.partition_point(|&other| other < rank);
+    if above == 0 || above == 256 {
+        return above.min(255) as f64;
+    }
+    let (low, high) = (ranks[above - 1], ranks[above]);
+    (above - 1) as f64 + if high > low { (rank - low) / (high - low) } else { 0.0 }
+}
+
+fn rounded(value: f64) -> u8 {
+    value.round().clamp(0.0, 255.0) as u8
+}
+
+/// The [`Light`](crate::Light) in which `learned` looks as `seen` does, by least squares between the quantiles of all three channels; for
+/// [`Light::inverse_table`](crate::Light::inverse_table).
+///
+/// One curve for all channels: three numbers from the whole scene cannot follow what went out of view, as [`histogram_match`] does.
+/// None when the learned scene has no contrast.
+///
+/// ```
+/// use wayfix_condensation::{Light, Picture, light_match};
+/// let learned = Picture::from_rgb(16, 16, (0..=255_u8).flat_map(|grey| [grey; 3]).collect())?;
+/// let light = Light { gain: 0.7, offset: 20.0, gamma: 1.3 };
+/// let found = light_match(&light.apply(&learned)?, &learned).expect("contrast");
+/// assert!((found.gain - 0.7).abs() < 0.01 && (found.offset - 20.0).abs() < 1.0 && (found.gamma - 1.3).abs() < 0.02);
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
+pub fn light_match(seen: &Picture, learned: &Picture) -> Option<crate::Light> {
+    let pairs: Vec<(f64, f64)> = (0..3)
+        .flat_map(|channel| {
+            let ranks = middle_ranks(&shares(seen, channel));
+            let learned_ranks = middle_ranks(&shares(learned, channel));
+            (1..100).map(move |i| {
+                let rank = f64::from(i) / 100.0;
+                (value_at(rank, &learned_ranks), value_at(rank, &ranks))
+            })
+        })
+        .collect();
+    // Given gamma the rest is a line; gamma itself is tried from 0.4 to 2.5 in steps of one per cent.
+    let fits = (-92..=92).filter_map(|i| fit_line(&pairs, 1.01_f64.powi(i)));
+    fits.min_by(|a, b| a.1.total_cmp(&b.1)).map(|fit| fit.0)
+}
+
+/// Gain and offset for a gamma, and the squared error.
+fn fit_line(pairs: &[(f64, f64)], gamma: f64) -> Option<(crate::Light, f64)> {
+    let n = pairs.len() as f64;
+    let bent = |value: f64| 255.0 * (value / 255.0).powf(gamma);
+    let x_mean = pairs.iter().map(|pair| bent(pair.0)).sum::<f64>() / n;
+    let y_mean = pairs.iter().map(|pair| pair.1).sum::<f64>() / n;
+    let (mut xx, mut xy) = (0.0, 0.0);
+    for &(x, y) in pairs {
+        xx += (bent(x) - x_mean).powi(2);
+        xy += (bent(x) - x_mean) * (y - y_mean);
+    }
+    let gain = xy / xx;
+    let offset = y_mean - gain * x_mean;
+    let error = pairs.iter().map(|&(x, y)| (gain * bent(x) + offset - y).powi(2)).sum();
+    (xx > 0.0 && gain > 0.0).then_some((crate::Light { gain, offset, gamma }, error))
+}

@@ -1,0 +1,127 @@
+//! Features of all views at once against one view at a time, and both against their definitions.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use proptest::prelude::*;
+use wayfix_condensation::{
+    CondensationError, Dominance, FeatureTable, Fft6, Hist6, Joined, MeanVar, Picture, StateSpace, View,
+    ViewFeature, ViewGrid,
+};
+
+/// A feature without what it knows of neighbouring views.
+struct Plain<'a>(&'a dyn ViewFeature);
+
+impl ViewFeature for Plain<'_> {
+    fn n_components(&self) -> usize {
+        self.0.n_components()
+    }
+
+    fn extract(&self, view: &View<'_>, features: &mut [f64]) {
+        self.0.extract(view, features);
+    }
+}
+
+fn all_features() -> Vec<Box<dyn ViewFeature + Send>> {
+    vec![
+        Box::new(MeanVar),
+        Box::new(Fft6),
+        Box::new(Hist6 { dominance: Dominance::Counts }),
+        Box::new(Hist6 { dominance: Dominance::Peaks { sigma: 4.0 } }),
+        Box::new(Hist6 { dominance: Dominance::Classes }),
+        Box::new(Hist6::default()),
+    ]
+}
+
+fn assert_equal(got: &FeatureTable, expected: &FeatureTable) {
+    assert_eq!(got.n_states(), expected.n_states());
+    for (state, (a, b)) in got.rows().zip(expected.rows()).enumerate() {
+        for (x, y) in a.iter().zip(b) {
+            assert!((x - y).abs() < 1e-9, "state {state}: {a:?} and {b:?}");
+        }
+    }
+}
+
+fn picture() -> impl Strategy<Value = Picture> {
+    (6_usize..30, 6_usize..30).prop_flat_map(|(width, height)| {
+        prop::collection::vec(any::<u8>(), 3 * width * height)
+            .prop_map(move |bytes| Picture::from_rgb(width, height, bytes).expect("that many bytes"))
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn all_views_are_the_single_views(
+        scene in picture(), view in (1_usize..7, 1_usize..7), step in 1_usize..9, shift in (-5..5, -5..5),
+    ) {
+        let views = ViewGrid::new((scene.width(), scene.height()), view, step).unwrap().moved(shift.0, shift.1);
+        for feature in all_features() {
+            let plain = Plain(feature.as_ref()).extract_all(&scene, &views).unwrap();
+            assert_equal(&feature.extract_all(&scene, &views).unwrap(), &plain);
+        }
+        let joined = Joined::new(all_features());
+        assert_equal(&joined.extract_all(&scene, &views).unwrap(), &Plain(&joined).extract_all(&scene, &views).unwrap());
+    }
+
+    #[test]
+    fn features_are_what_they_are_defined_to_be(scene in picture()) {
+        let n = scene.pixels().len() as f64;
+        let mut mean_var = [0.0; 6];
+        MeanVar.extract(&scene.whole(), &mut mean_var);
+        for c in 0..3 {
+            let values = || scene.pixels().iter().map(|pixel| f64::from(pixel[c]));
+            let mean = values().sum::<f64>() / n;
+            let sigma = (values().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
+            prop_assert!((mean_var[c] - mean).abs() < 1e-9 && (mean_var[c + 3] - sigma).abs() < 1e-9);
+        }
+        let mut moduli = [0.0; 6];
+        Fft6.extract(&scene.whole(), &mut moduli);
+        for (l, modulus) in moduli.iter().enumerate() {
+            let (mut real, mut imaginary) = (0.0, 0.0); // Eq. 7, pixel by pixel
+            for (i, &grey) in scene.grey().iter().enumerate() {
+                let angle = std::f64::consts::TAU * (l * (i % scene.width())) as f64 / scene.width() as f64;
+                real += f64::from(grey) * angle.cos() / n;
+                imaginary -= f64::from(grey) * angle.sin() / n;
+            }
+            prop_assert!((modulus - real.hypot(imaginary)).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn classes_follow_gain_and_offset() {
+    let grey = |values: &[u8]| {
+        Picture::from_rgb(values.len(), 1, values.iter().flat_map(|&v| [v; 3]).collect()).unwrap()
+    };
+    let values = [10, 14, 20, 70, 72, 90, 140, 150];
+    let brighter: Vec<u8> = values.iter().map(|v| v / 2 + 60).collect();
+    let (mut before, mut after) = ([0.0; 6], [0.0; 6]);
+    Hist6 { dominance: Dominance::Classes }.extract(&grey(&values).whole(), &mut before);
+    Hist6 { dominance: Dominance::Classes }.extract(&grey(&brighter).whole(), &mut after);
+    for k in 0..3 {
+        assert!((after[k] - (0.5 * before[k] + 60.0)).abs() < 1e-9 && after[k + 3] == before[k + 3]);
+    }
+}
+
+#[test]
+fn a_constant_picture_has_finite_features() {
+    let scene = Picture::from_rgb(9, 8, vec![77; 3 * 72]).unwrap();
+    let views = ViewGrid::new((9, 8), (4, 4), 2).unwrap();
+    for feature in all_features() {
+        let table = feature.extract_all(&scene, &views).unwrap();
+        assert!(table.rows().flatten().all(|value| value.is_finite()));
+        assert!(table.rows().all(|row| row == table.get(0).unwrap()));
+    }
+}
+
+#[test]
+fn sizes_that_do_not_fit_are_refused() {
+    let refused = ViewGrid::new((100, 80), (128, 64), 8);
+    assert_eq!(refused, Err(CondensationError::SceneSmallerThanView { scene: (100, 80), view: (128, 64) }));
+    assert!(matches!(ViewGrid::new((100, 80), (10, 10), 0), Err(CondensationError::Extent { .. })));
+    assert!(matches!(Picture::from_rgb(0, 5, vec![]), Err(CondensationError::Extent { .. })));
+    let views = ViewGrid::new((10, 8), (4, 4), 2).unwrap();
+    let other = Picture::from_rgb(9, 8, vec![0; 3 * 72]).unwrap();
+    assert!(matches!(MeanVar.extract_all(&other, &views), Err(CondensationError::Dimension { .. })));
+    assert!(other.view((6, 0), (4, 4)).is_err() && views.corner(views.grid().n_states()).is_err());
+}

@@ -1,0 +1,154 @@
+//! The loop as a whole, on a painted scene.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{Drive, scene};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use wayfix_condensation::{
+    ActionChoice, Appearance, AppearanceParams, Arrival, FeatureTable, Fft6, Follow, Graph, Hist6, Light,
+    Localizer, LocalizerParams, MeanVar, Navigator, NavigatorParams, Picture, RunReport, SceneViews,
+    StateSpace, ViewFeature, ViewGrid, World, histogram_match,
+};
+
+struct Trial {
+    views: ViewGrid,
+    appearance: Arc<Appearance>,
+    seen: FeatureTable,
+}
+
+impl Trial {
+    fn new(feature: &dyn ViewFeature, learned: &Picture, real: &Picture, params: &AppearanceParams) -> Self {
+        let views = ViewGrid::new((learned.width(), learned.height()), (64, 64), 16).unwrap();
+        let source = SceneViews::new(learned, &views).unwrap();
+        let appearance = Arc::new(Appearance::learn(&source, feature, params).unwrap());
+        Self { seen: feature.extract_all(real, &views).unwrap(), appearance, views }
+    }
+
+    fn run(
+        &self,
+        seed: u64,
+        choice: ActionChoice,
+        kidnapped: Option<(usize, usize)>,
+    ) -> (RunReport, usize, Localizer) {
+        let grid = *self.views.grid();
+        let navigator =
+            Navigator::new(grid, NavigatorParams { choice, ..NavigatorParams::default() }).unwrap();
+        let mut localizer = Localizer::new(self.appearance.clone(), LocalizerParams::default()).unwrap();
+        let start = (seed as usize * 37) % grid.n_states();
+        let goal = (seed as usize * 53 + 11) % grid.n_states();
+        let mut drive = Drive { grid, seen: self.seen.clone(), at: start, kidnapped, looks: 0 };
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let report = navigator.run(goal, &mut localizer, &mut drive, &mut |_, _| {}, &mut rng).unwrap();
+        (report, drive.at.abs_diff(goal), localizer)
+    }
+}
+
+const OTHER_LIGHT: Light = Light { gain: 0.7, offset: 20.0, gamma: 1.3 };
+
+/// The goal, 100 of 100, on 20 runs a feature and mode: each of them must end at the true goal by the robot's own decision.
+#[test]
+fn every_feature_reaches_every_goal_in_another_light() {
+    let learned = scene(240, 176, 3);
+    let real = OTHER_LIGHT.apply(&learned).unwrap().shifted(4, 3);
+    let matched = real.mapped(&histogram_match(&real, &learned));
+    let features: [&dyn ViewFeature; 3] = [&MeanVar, &Fft6, &Hist6::default()];
+    for (number, feature) in features.into_iter().enumerate() {
+        let modes = [(&matched, AppearanceParams::normalized()), (&real, AppearanceParams::online())];
+        for (scene, params) in modes {
+            let trial = Trial::new(feature, &learned, scene, &params);
+            for seed in 0..20 {
+                let (report, off, _) = trial.run(seed, ActionChoice::Greedy, None);
+                assert_eq!(
+                    (report.arrival, off),
+                    (Arrival::Reached, 0),
+                    "feature {number}, run {seed}: {report:?}"
+                );
+            }
+        }
+    }
+}
+
+/// From no knowledge to the light that the scene was made with. The conditions start at gains of 0.6 and 0.85 and an offset of 0, so that
+/// a gain within 8 % and an offset within 8 levels were told by the views.
+#[test]
+fn light_is_found_together_with_the_place() {
+    let learned = scene(240, 176, 3);
+    let trial =
+        Trial::new(&MeanVar, &learned, &OTHER_LIGHT.apply(&learned).unwrap(), &AppearanceParams::online());
+    for seed in 0..5 {
+        let (light, _) = trial.run(seed, ActionChoice::Greedy, None).2.disturbance();
+        assert!(
+            (light.gain / 0.7 - 1.0).abs() < 0.08 && (light.offset - 20.0).abs() < 8.0,
+            "run {seed}: {light:?}"
+        );
+    }
+}
+
+#[test]
+fn informed_choice_arrives_too() {
+    let learned = scene(240, 176, 3);
+    let trial = Trial::new(&Fft6, &learned, &learned.shifted(-3, 4), &AppearanceParams::normalized());
+    for seed in 0..10 {
+        let (report, off, _) = trial.run(seed, ActionChoice::Informed { hypotheses: 8 }, None);
+        assert_eq!((report.arrival, off), (Arrival::Reached, 0), "run {seed}");
+    }
+}
+
+#[test]
+fn a_kidnapped_robot_notices_and_still_arrives() {
+    let learned = scene(240, 176, 3);
+    let trial = Trial::new(&MeanVar, &learned, &learned, &AppearanceParams::normalized());
+    let n = trial.views.grid().n_states();
+    for seed in [1, 4, 7] {
+        // Put far away at the third look, when it has long been sure.
+        let away = ((seed as usize * 37) % n + n / 2) % n;
+        let (report, off, _) = trial.run(seed, ActionChoice::Greedy, Some((3, away)));
+        assert_eq!((report.arrival, off), (Arrival::Reached, 0), "run {seed}: {report:?}");
+    }
+}
+
+/// Everything looks the same: the run ends after its steps, unsure, with finite beliefs.
+#[test]
+fn a_constant_scene_ends_unsure() {
+    let grey = Picture::from_rgb(240, 176, vec![90; 3 * 240 * 176]).unwrap();
+    let trial = Trial::new(&MeanVar, &grey, &grey, &AppearanceParams::normalized());
+    let (report, _, localizer) = trial.run(2, ActionChoice::Greedy, None);
+    assert_eq!((report.arrival, report.steps), (Arrival::Unsure, NavigatorParams::default().max_steps));
+    assert!(localizer.belief().iter().all(|p| p.is_finite()));
+    assert!((localizer.belief().iter().sum::<f64>() - 1.0).abs() < 1e-9);
+}
+
+struct Walk {
+    graph: Graph,
+    at: usize,
+}
+
+impl World<Follow> for Walk {
+    fn act(&mut self, action: Follow) {
+        self.at = self.graph.step(self.at, action);
+    }
+
+    fn look(&mut self, features: &mut [f64]) {
+        features[0] = 10.0 * self.at as f64;
+    }
+}
+
+#[test]
+fn a_goal_without_a_way_is_unreachable() {
+    let graph = Graph::new(4, &[(0, 1), (1, 0), (2, 3), (3, 2)]).unwrap();
+    let places: Vec<Vec<f64>> = (0..4).map(|state| vec![10.0 * f64::from(state)]).collect();
+    let appearance =
+        Arc::new(Appearance::from_spread(FeatureTable::from_rows(&places).unwrap(), 0.1).unwrap());
+    let navigator = Navigator::new(graph.clone(), NavigatorParams::default()).unwrap();
+    let mut localizer = Localizer::new(appearance, LocalizerParams::default()).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut walk = Walk { graph, at: 0 };
+    let report = navigator.run(3, &mut localizer, &mut walk, &mut |_, _| {}, &mut rng).unwrap();
+    assert_eq!(report.arrival, Arrival::Unreachable);
+    assert!(navigator.run(9, &mut localizer, &mut walk, &mut |_, _| {}, &mut rng).is_err());
+}
