@@ -140,7 +140,7 @@ fn logs_in_which_there_is_nothing_to_do_are_refused_with_the_reason() {
 fn paths_that_are_no_logs_are_refused_with_what_to_give_instead() {
     let scratch = Scratch::new();
     refused(&run_slam(&scratch.path("absent.mcap"), &[]), "no such file or folder");
-    refused(&run_slam(&scratch.path(""), &[]), "give a log file, or the folder of a UTIAS set");
+    refused(&run_slam(&scratch.path(""), &[]), "give a log file, the folder of a UTIAS set or of images");
     fs::create_dir(scratch.path("folder.mcap")).expect("a new folder");
     refused(&run_slam(&scratch.path("folder.mcap"), &["--format", "mcap"]), "is a folder");
 
