@@ -164,15 +164,11 @@ mod tests {
     }
 
     #[test]
-    fn many_starts_find_the_best_split_of_ten_points() {
+    fn many_starts_find_the_best_split_of_complete_points() {
         for seed in 0..20 {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let points: Vec<Point> = (0..10)
-                .map(|i| {
-                    let mut coordinate = || Some(rng.random_range(0.0..10.0));
-                    if i % 4 == 3 { vec![coordinate(), None] } else { vec![coordinate(), coordinate()] }
-                })
-                .collect();
+            let mut coordinate = || Some(rng.random_range(0.0..10.0));
+            let points: Vec<Point> = (0..10).map(|_| vec![coordinate(), coordinate()]).collect();
             let split = k_means(&points, 2, 300, &mut rng).unwrap();
             let least = least_distortion(&points);
             // Equal but for the rounding of ten terms.
@@ -185,14 +181,35 @@ mod tests {
     }
 
     #[test]
+    fn gaps_do_not_tear_groups_apart() {
+        for seed in 0..20 {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            // Groups 30 apart in each coordinate and 10 wide: whichever coordinates are known, the nearer centre is the right one.
+            let points: Vec<Point> = (0..24)
+                .map(|i| {
+                    let mut coordinate = || Some(f64::from(i % 2) * 30.0 + rng.random_range(0.0..10.0));
+                    let mut point = vec![coordinate(), coordinate(), coordinate()];
+                    point[i as usize % 3] = None;
+                    point
+                })
+                .collect();
+            let split = k_means(&points, 2, 10, &mut rng).unwrap().assignment;
+            assert!(
+                (0..24).all(|i| split[i] == split[i % 2]) && split[0] != split[1],
+                "seed {seed}: {split:?}"
+            );
+        }
+    }
+
+    #[test]
     fn points_that_make_no_groups_are_refused() {
         let rng = &mut ChaCha8Rng::seed_from_u64(0);
         let one = vec![Some(1.0)];
         assert!(matches!(k_means(&vec![one.clone(); 5], 2, 10, rng), Err(PriorError::TooFew { .. })));
-        assert!(k_means(&[one.clone()], 2, 10, rng).is_err());
+        assert!(k_means(std::slice::from_ref(&one), 2, 10, rng).is_err());
         assert!(k_means(&[], 1, 10, rng).is_err());
-        assert!(k_means(&[one.clone()], 0, 10, rng).is_err());
-        assert!(k_means(&[one.clone()], 1, 0, rng).is_err());
+        assert!(k_means(std::slice::from_ref(&one), 0, 10, rng).is_err());
+        assert!(k_means(std::slice::from_ref(&one), 1, 0, rng).is_err());
         assert!(k_means(&[one.clone(), vec![None]], 1, 10, rng).is_err());
         assert!(k_means(&[one.clone(), vec![Some(f64::NAN)]], 1, 10, rng).is_err());
         assert!(k_means(&[one.clone(), vec![]], 1, 10, rng).is_err());
