@@ -18,7 +18,10 @@ pub use lighting::{
     Choice, ColorDensity, ColorMeans, Drift, Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker,
     LightingBank, LightingFilter, LightingParams, Unseen,
 };
-pub use likelihood::{PixelLight, PixelParams, PixelView, SpanView, SumDensity, ViewLikelihood, gather};
+pub use likelihood::{
+    FeatureParams, FeatureView, PixelLight, PixelParams, PixelView, SpanView, SumDensity, ViewLikelihood,
+    gather,
+};
 pub use localizer::{
     AcquisitionParams, CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome,
     LocalizerParams, OdometryNoise, OdometryStep, PoseEstimate, Start,

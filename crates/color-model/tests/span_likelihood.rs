@@ -43,11 +43,11 @@ fn field() -> Arc<ColorMap> {
         beacon(2.0, -1.5, 3),
         beacon(-2.0, 1.5, 2),
     ];
-    Arc::new(ColorMap::new(colors, shapes).unwrap())
+    Arc::new(ColorMap::new(colors, shapes).expect("valid by construction"))
 }
 
 fn camera() -> Camera {
-    Camera::from_field_of_view(COLUMNS, ROWS, 1.0, 0.8).unwrap()
+    Camera::from_field_of_view(COLUMNS, ROWS, 1.0, 0.8).expect("valid by construction")
 }
 
 /// Smooth and noisy at once, so that regions have means as well as scatter.
@@ -56,7 +56,7 @@ fn image(rng: &mut ChaCha8Rng) -> YuvImage {
         let (column, row) = (at % COLUMNS, at / COLUMNS);
         [3 * row, 2 * column, row + column].map(|value| (value + rng.random_range(0..90_u32)).min(255) as u8)
     };
-    YuvImage::new(COLUMNS, ROWS, (0..COLUMNS * ROWS).map(pixel).collect()).unwrap()
+    YuvImage::new(COLUMNS, ROWS, (0..COLUMNS * ROWS).map(pixel).collect()).expect("valid by construction")
 }
 
 fn pose(rng: &mut ChaCha8Rng) -> Pose3<f64> {
@@ -86,10 +86,10 @@ fn nats([y, u, v]: [u8; 3]) -> Option<f64> {
 fn largest_difference(params: PixelParams, n_poses: usize) -> f64 {
     let mut rng = ChaCha8Rng::seed_from_u64(20_261_121);
     let image = image(&mut rng);
-    let frame = Frame::with_background(&image, nats).unwrap();
+    let frame = Frame::with_background(&image, nats).expect("valid by construction");
     let projector = || Projector::new(field(), camera());
-    let mut plain = PixelView::new(&image, nats, projector(), params).unwrap();
-    let mut spans = SpanView::new(&frame, projector(), params).unwrap();
+    let mut plain = PixelView::new(&image, nats, projector(), params).expect("valid by construction");
+    let mut spans = SpanView::new(&frame, projector(), params).expect("valid by construction");
     let (mut largest, mut n_seen) = (0.0_f64, 0);
     for _ in 0..n_poses {
         let (pose, light) = (pose(&mut rng), light(&mut rng));
@@ -131,8 +131,8 @@ fn so_they_are_with_floor_and_margin() {
 
 #[test]
 fn frames_of_another_size_are_refused() {
-    let small = YuvImage::new(8, 8, vec![[0; 3]; 64]).unwrap();
-    let frame = Frame::new(&small).unwrap();
+    let small = YuvImage::new(8, 8, vec![[0; 3]; 64]).expect("valid by construction");
+    let frame = Frame::new(&small).expect("valid by construction");
     let projector = || Projector::new(field(), camera());
     let expected = ColorModelError::FrameSize { expected: (52, 40), got: (8, 8) };
     assert_eq!(SpanView::new(&frame, projector(), product()).err(), Some(expected.clone()));

@@ -1,4 +1,4 @@
-use wayfix_color_map::ColorId;
+use wayfix_color_map::{ColorId, Span};
 
 use super::NO_COLOR;
 use crate::ColorModelError;
@@ -46,12 +46,31 @@ pub fn find_blobs(labels: &[u8], width: usize) -> Result<Vec<Blob>, ColorModelEr
     }
     let mut runs = Runs::default();
     for (row, labels) in labels.chunks_exact(width).enumerate() {
-        runs.add_row(row, labels);
+        let mut start = 0;
+        for same in labels.chunk_by(|a, b| a == b) {
+            let end = start + same.len();
+            if same[0] != NO_COLOR {
+                runs.add(Run { label: same[0], row, start, end });
+            }
+            start = end;
+        }
     }
     Ok(runs.blobs())
 }
 
-/// Pixels of a row with the same label.
+/// Finds the blobs of an image given as spans, in any order, that do not overlap.
+pub(crate) fn blobs_of_spans(spans: &mut [Span]) -> Vec<Blob> {
+    spans.sort_unstable_by_key(|span| (span.row, span.start));
+    let mut runs = Runs::default();
+    for same in spans.chunk_by(|a, b| (a.row, a.end, a.color) == (b.row, b.start, b.color)) {
+        let (first, last) = (same[0], same[same.len() - 1]);
+        let [row, start, end] = [first.row, first.start, last.end].map(usize::from);
+        runs.add(Run { label: first.color.0, row, start, end });
+    }
+    runs.blobs()
+}
+
+/// Pixels of a row with the same label, as many as there are side by side.
 struct Run {
     label: u8,
     row: usize,
@@ -64,32 +83,32 @@ struct Run {
 struct Runs {
     runs: Vec<Run>,
     parent: Vec<usize>,
-    /// Where the runs of the last row begin.
+    row: usize,
+    /// Where the runs of this row begin, and where those of the row above do.
+    this_row: usize,
     last_row: usize,
+    /// The first run of the row above that the next one may touch.
+    above: usize,
 }
 
 impl Runs {
-    fn add_row(&mut self, row: usize, labels: &[u8]) {
-        let first = self.runs.len();
-        let mut above = self.last_row;
-        let mut start = 0;
-        for same in labels.chunk_by(|a, b| a == b) {
-            let end = start + same.len();
-            if same[0] != NO_COLOR {
-                let at = self.runs.len();
-                self.runs.push(Run { label: same[0], row, start, end });
-                self.parent.push(at);
-                above = self.join_above(at, above, first);
-            }
-            start = end;
+    /// Adds the next run, row by row and from left to right.
+    fn add(&mut self, run: Run) {
+        let at = self.runs.len();
+        if run.row != self.row {
+            self.last_row = if run.row == self.row + 1 { self.this_row } else { at };
+            (self.row, self.this_row, self.above) = (run.row, at, self.last_row);
         }
-        self.last_row = first;
+        self.runs.push(run);
+        self.parent.push(at);
+        self.join_above(at);
     }
 
-    /// Joins run `at` to those it touches among `above..first`; gives the first that the next run of this row may still touch.
-    fn join_above(&mut self, at: usize, mut above: usize, first: usize) -> usize {
+    /// Joins run `at` to those it touches in the row above.
+    fn join_above(&mut self, at: usize) {
         let (start, end, label) = (self.runs[at].start, self.runs[at].end, self.runs[at].label);
-        while above < first && self.runs[above].start <= end {
+        let mut above = self.above;
+        while above < self.this_row && self.runs[above].start <= end {
             if self.runs[above].end >= start && self.runs[above].label == label {
                 self.join(above, at);
             }
@@ -99,7 +118,7 @@ impl Runs {
             above += 1;
         }
         // The last one may end where the next run begins, and touch that at a corner.
-        above.saturating_sub(1).max(self.last_row)
+        self.above = above.saturating_sub(1).max(self.last_row);
     }
 
     fn join(&mut self, a: usize, b: usize) {
@@ -155,7 +174,7 @@ impl Blob {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
+    use rand::{RngExt, SeedableRng, seq::SliceRandom};
     use rand_chacha::ChaCha8Rng;
 
     /// Pixel by pixel: floods from every pixel that has no blob yet.
@@ -187,6 +206,18 @@ mod tests {
         blobs
     }
 
+    /// One span a pixel, in no order.
+    fn shuffled_pixels(labels: &[u8], width: usize, rng: &mut ChaCha8Rng) -> Vec<Span> {
+        let span = |(at, label): (usize, &u8)| {
+            let (row, start) = ((at / width) as u16, (at % width) as u16);
+            Span { row, start, end: start + 1, color: ColorId(*label) }
+        };
+        let mut spans: Vec<Span> =
+            labels.iter().enumerate().filter(|(_, label)| **label != NO_COLOR).map(span).collect();
+        spans.shuffle(rng);
+        spans
+    }
+
     #[test]
     fn blobs_of_random_images_are_what_flooding_finds() {
         let mut rng = ChaCha8Rng::seed_from_u64(431);
@@ -198,6 +229,7 @@ mod tests {
                 (0..width * height).map(|_| label(rng.random_range(0..=n_labels))).collect();
             let (blobs, flooded) = (find_blobs(&labels, width).unwrap(), flooded(&labels, width));
             assert_eq!(blobs.len(), flooded.len(), "{width} {labels:?}");
+            assert_eq!(blobs_of_spans(&mut shuffled_pixels(&labels, width, &mut rng)), blobs);
             for (blob, (label, pixels)) in blobs.iter().zip(&flooded) {
                 assert_eq!((blob.color.0, blob.n_pixels), (*label, pixels.len()));
                 let columns = || pixels.iter().map(|at| at % width);

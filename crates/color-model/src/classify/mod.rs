@@ -4,6 +4,7 @@ mod blobs;
 mod classifier;
 mod table;
 
+pub(crate) use blobs::blobs_of_spans;
 pub use blobs::{Blob, find_blobs};
 pub use classifier::Classifier;
 pub use table::LookUpTable;

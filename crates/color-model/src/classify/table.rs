@@ -4,8 +4,8 @@ use wayfix_color_map::ColorId;
 
 /// A [`Classifier`] compiled into a table over YUV, made anew when the light has moved: one look-up a pixel. [Schulz & Fox 2004, VI]
 ///
-/// It looks at six bits of Y and seven of U and V: paints differ less in their chroma than the light differs in its brightness from place to
-/// place, so chroma wants the finer cells. One megabyte, of which an image touches little.
+/// It looks at six bits of Y and all of U and V: paints differ less in their chroma than the light differs in its brightness from place to
+/// place, so chroma wants the finer cells. Four megabytes, of which an image touches little.
 ///
 /// ```
 /// use nalgebra::{DMatrix, DVector};
@@ -30,7 +30,7 @@ pub struct LookUpTable {
 }
 
 /// Bits that are looked at of Y, U, V.
-const BITS: [u32; 3] = [6, 7, 7];
+const BITS: [u32; 3] = [6, 8, 8];
 
 impl LookUpTable {
     /// A table for the light that a filter knows, with a class for the background if there is one.

@@ -1,6 +1,8 @@
 //! How well an image fits a camera pose in a coloured map, under given light.
 
 mod density;
+mod feature;
+mod feature_params;
 mod joint;
 mod params;
 mod pixel;
@@ -8,6 +10,8 @@ mod span;
 mod view;
 
 pub use density::SumDensity;
+pub use feature::FeatureView;
+pub use feature_params::FeatureParams;
 pub(crate) use joint::JointLikelihood;
 pub use params::{PixelLight, PixelParams};
 pub use pixel::PixelView;

@@ -29,7 +29,8 @@ pub(crate) fn random_prior(n_colors: usize, rng: &mut impl Rng) -> Gaussian<DVec
     let n = 3 * n_colors;
     let factor = DMatrix::from_fn(n, n, |_, _| 8.0 * normal(rng));
     let covariance = &factor * factor.transpose() + DMatrix::identity(n, n) * 20.0;
-    Gaussian::new(DVector::from_fn(n, |_, _| 128.0 + 40.0 * normal(rng)), covariance).unwrap()
+    Gaussian::new(DVector::from_fn(n, |_, _| 128.0 + 40.0 * normal(rng)), covariance)
+        .expect("valid by construction")
 }
 
 /// A prior whose colours become brighter and more colourful together, by `spread` of the whole (1 standard deviation), and by 5 each alone.
@@ -38,11 +39,11 @@ pub(crate) fn common_gain(colors: &[[f64; 3]], spread: f64) -> Gaussian<DVector<
     let grey = DVector::from_fn(mean.len(), |i, _| if i % 3 == 0 { 0.0 } else { 128.0 });
     let direction = (&mean - grey) * spread;
     let covariance = &direction * direction.transpose() + DMatrix::identity(mean.len(), mean.len()) * 25.0;
-    Gaussian::new(mean, covariance).unwrap()
+    Gaussian::new(mean, covariance).expect("valid by construction")
 }
 
 pub(crate) fn filter(prior: Gaussian<DVector<f64>>, params: LightingParams) -> LightingFilter {
-    LightingFilter::new(prior, params).unwrap()
+    LightingFilter::new(prior, params).expect("valid by construction")
 }
 
 /// Means of all colours but those whose bit in `hidden` is set.
