@@ -1,4 +1,4 @@
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::LogWeight;
 
 use super::{PixelParams, params::Region};
@@ -27,13 +27,13 @@ impl JointLikelihood {
         sums: &[PixelSums],
         filter: &LightingFilter,
         params: &PixelParams,
+        noise: &Vector3<f64>,
         n_pixels: usize,
     ) -> LogWeight {
-        let noise = filter.params().pixel_noise + params.unevenness(filter);
-        let scatter = |sums: &PixelSums| Region::new(sums, log_scatter(sums, &noise));
-        let within = params.log_likelihood(n_pixels, sums.iter().map(scatter));
         let tempering = params.independent_pixels / n_pixels.max(1) as f64;
-        within + self.log_innovation(sums, filter, &noise, tempering)
+        let scatter = |sums: &PixelSums| Region::new(sums, log_scatter(sums, noise));
+        let within = params.log_likelihood(n_pixels, sums.iter().map(scatter));
+        within + self.log_innovation(sums, filter, noise, tempering)
     }
 
     /// $`\ln N(\bar v; μ, Σ + R + ν/βn) - \ln N(0; 0, ν/βn)`$ over the colours that are seen.
@@ -71,12 +71,15 @@ impl JointLikelihood {
     }
 }
 
-/// $`\sum_c \ln N(c; \bar c, ν)`$ about the pixels' own mean.
+/// $`\sum_c \ln N(c; \bar c, ν + \hat S)`$ about the pixels' own mean: the `noise` and the scatter that they have.
 fn log_scatter(sums: &PixelSums, noise: &Vector3<f64>) -> f64 {
     let Some(mean) = sums.mean() else { return 0.0 };
-    let scatter = sums.scatter_about(&mean).diagonal();
-    let log_peak = -1.5 * std::f64::consts::TAU.ln() - 0.5 * noise.iter().map(|v| v.ln()).sum::<f64>();
-    sums.count() as f64 * log_peak - 0.5 * scatter.component_div(noise).sum()
+    let n = sums.count() as f64;
+    let scatter = sums.scatter_about(&mean);
+    let covariance = Matrix3::from_diagonal(noise) + scatter / n;
+    let Some(factor) = covariance.cholesky() else { return f64::NEG_INFINITY };
+    let log_root: f64 = factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
+    n * (-1.5 * std::f64::consts::TAU.ln() - log_root) - 0.5 * factor.inverse().dot(&scatter)
 }
 
 /// $`-\tfrac{1}{2} (\ln |S| + r^T S^{-1} r)`$ of a covariance given as the rows of its lower triangle, by Cholesky in place.

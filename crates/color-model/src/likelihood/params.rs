@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use crate::{ColorModelError, LightingFilter, PixelSums};
+use crate::{ColorModelError, PixelSums};
 
 /// Whether pixels share the light that is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,6 +38,8 @@ pub struct PixelParams {
     pub uneven_chroma: f64,
     /// Pixels left out at both ends of each span, where a small error of the pose changes the label.
     pub edge_margin: u16,
+    /// Share of a uniform background beside the colours that the frames show.
+    pub uniform_share: f64,
 }
 
 impl Default for PixelParams {
@@ -50,6 +52,7 @@ impl Default for PixelParams {
             uneven_brightness: 0.12,
             uneven_chroma: 0.03,
             edge_margin: 1,
+            uniform_share: 0.2,
         }
     }
 }
@@ -79,8 +82,7 @@ impl Region {
 
 impl PixelParams {
     /// The variances of `uneven_…` in the light of one filter.
-    pub(crate) fn unevenness(&self, filter: &LightingFilter) -> Vector3<f64> {
-        let brightness = filter.mean().iter().step_by(3).sum::<f64>() / filter.n_colors() as f64;
+    pub(crate) fn unevenness(&self, brightness: f64) -> Vector3<f64> {
         let [y, uv] = [self.uneven_brightness, self.uneven_chroma].map(|share| (share * brightness).powi(2));
         Vector3::new(y, uv, uv)
     }

@@ -1,18 +1,9 @@
-use nalgebra::Vector3;
-use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
-use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_particle::{Resampler, Systematic, Weights};
-
-use super::{CameraNoise, particle::ColorParticle, start::Area, weigh::Weighing, weighed::Weighed};
-use crate::ColorModelError;
-
-/// How the robot is looked for in the first frames.
+/// How the robot is looked for at the start, and again when it seems to have been carried away.
 ///
-/// Seen from half a metre off, the likelihood of a frame is a narrow peak far from every particle, and the light is hardly known. So the first
-/// frames are gone through several times, softened each time, with resampling and ever smaller steps in between: an annealed particle filter
-/// [Deutscher et al. 2000]. It finds modes and is no sample of the posterior, hence only at the start. Until then all particles share one light,
-/// the mixture of theirs: a wrong place cannot make the light its own.
+/// One frame is not enough: under a light that is hardly known, some false place explains it better than the true one, with a light to
+/// suit. The same light has to explain all frames of a while, and of those the false place cannot make sense. So the last frames are kept, and
+/// whole trajectories are weighed by all of them at once under one light. The likelihood is narrow, hence the trajectories are drawn near to its
+/// peaks by an annealed particle filter [Deutscher et al. 2000]: weighed softly, resampled, moved by ever smaller steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -20,15 +11,30 @@ use crate::ColorModelError;
     serde(default, deny_unknown_fields)
 )]
 pub struct AcquisitionParams {
-    /// Frames that it takes.
+    /// Frames that are kept. At the start the robot is looked for after 1, 2, 4, ... frames, up to this number.
     pub n_frames: usize,
-    /// Fewest particles until then.
+    /// Most of them that trajectories are weighed by, evenly spread.
+    pub n_weighed: usize,
+    /// Places that are pursued when the robot was looked for, each by particles of its own. With every frame there is one fewer.
+    pub n_kept: usize,
+    /// A place is given up when the frames make it this much less likely than the best, nats.
+    pub hopeless: f64,
+    /// By how much the frames have to make another place more likely than the one where the robot believes to be, when that is doubted, nats: it
+    /// is carried away in one of thousands of frames, and then may be in any of some hundred thousand places.
+    pub elsewhere: f64,
+    /// Trajectories that are drawn at first.
+    pub n_drawn: usize,
+    /// Frames that those are weighed by.
+    pub n_coarse: usize,
+    /// Places that are looked at more closely.
+    pub n_niches: usize,
+    /// Trajectories of the passes after it.
     pub n_particles: usize,
-    /// Passes over each of these frames before the one that counts.
+    /// Passes after the first.
     pub n_passes: u32,
-    /// A pass is softened until this share of the particles is effective.
+    /// A pass is softened until this share of the trajectories is effective.
     pub least_effective: f64,
-    /// Standard deviation of the steps after the first pass over the first frame, metres. Each pass halves it.
+    /// Standard deviation of the steps after the first pass, metres. They shrink by the same factor from pass to pass, to a tenth at the last.
     pub reach: f64,
     /// The same for the heading, radians.
     pub turn: f64,
@@ -36,7 +42,21 @@ pub struct AcquisitionParams {
 
 impl Default for AcquisitionParams {
     fn default() -> Self {
-        Self { n_frames: 15, n_particles: 3000, n_passes: 4, least_effective: 0.25, reach: 0.15, turn: 0.15 }
+        Self {
+            n_frames: 8,
+            n_weighed: 8,
+            n_kept: 12,
+            hopeless: 60.0,
+            elsewhere: 20.0,
+            n_drawn: 6000,
+            n_coarse: 3,
+            n_niches: 50,
+            n_particles: 600,
+            n_passes: 8,
+            least_effective: 0.2,
+            reach: 0.15,
+            turn: 0.15,
+        }
     }
 }
 
@@ -48,49 +68,9 @@ impl AcquisitionParams {
             ("turn of a pass (rad)", self.turn),
         ]
     }
-}
 
-/// One search through a frame.
-pub(crate) struct Search<'a> {
-    pub(crate) params: &'a AcquisitionParams,
-    pub(crate) weighing: &'a Weighing<'a>,
-    pub(crate) camera: &'a CameraNoise,
-    pub(crate) area: &'a Area,
-    /// Whether nothing has been seen before.
-    pub(crate) is_first: bool,
-}
-
-impl Search<'_> {
-    /// Particles nearer to the peaks of the frame's likelihood, equally weighted.
-    pub(crate) fn run<R: Rng + ?Sized>(
-        &self,
-        particles: Vec<ColorParticle>,
-        weights: &Weights,
-        rng: &mut R,
-    ) -> Result<(Vec<ColorParticle>, Weights), ColorModelError> {
-        let (mut particles, mut weights) = (particles, weights.clone());
-        for pass in 0..self.params.n_passes {
-            let views = self.weighing.views(&particles);
-            let weighed = Weighed::new(&particles, &weights, &views, self.params.least_effective, rng)?;
-            let ancestors = Systematic.ancestors(&weighed.weights, particles.len(), rng)?;
-            // Particles that have seen a frame before are nearer than those that have not.
-            let scale = 0.5_f64.powi(pass as i32 + i32::from(!self.is_first));
-            particles = ancestors.iter().map(|&at| self.near(&particles[at], scale, rng)).collect();
-            weights = Weights::from_linear(vec![1.0; particles.len()])?;
-        }
-        Ok((particles, weights))
-    }
-
-    fn near<R: Rng + ?Sized>(&self, particle: &ColorParticle, scale: f64, rng: &mut R) -> ColorParticle {
-        let mut near = particle.clone();
-        let sigmas = Vector3::new(self.params.reach, self.params.reach, self.params.turn) * scale;
-        let step = sigmas.map(|sigma| sigma * rng.sample::<f64, _>(StandardNormal));
-        let mut body: Pose2<f64> = near.sampled.body.retract(&step);
-        self.area.clamp(&mut body);
-        near.sampled.body = body;
-        // The camera's error keeps its distribution: the part that is drawn anew shrinks with the steps.
-        let kept = (1.0 - 0.25 * scale * scale).sqrt();
-        near.sampled.error = self.camera.mixed(&particle.sampled.error, kept, rng);
-        near
+    /// Size of the steps after a pass, as a share of those after the first.
+    pub(crate) fn scale(&self, pass: u32) -> f64 {
+        0.1_f64.powf(f64::from(pass) / f64::from(self.n_passes.max(2) - 1))
     }
 }

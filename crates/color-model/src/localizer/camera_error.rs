@@ -56,8 +56,7 @@ impl Default for CameraNoise {
 impl CameraNoise {
     /// The error `seconds` later: $`e' = ρ e + \sqrt{1 - ρ^2}\, n`$, $`ρ = e^{-t/τ}`$, whose standard deviations stay the same.
     pub fn after<R: Rng + ?Sized>(&self, error: &CameraError, seconds: f64, rng: &mut R) -> CameraError {
-        let rho = if self.seconds > 0.0 { (-seconds / self.seconds).exp() } else { 0.0 };
-        self.mixed(error, rho, rng)
+        self.mixed(error, self.kept(seconds), rng)
     }
 
     /// An error of which nothing is known.
@@ -66,13 +65,23 @@ impl CameraNoise {
     }
 
     pub(crate) fn mixed<R: Rng + ?Sized>(&self, error: &CameraError, rho: f64, rng: &mut R) -> CameraError {
-        let fresh = (1.0 - rho * rho).sqrt();
-        let deviates = Vector4::from_fn(|_, _| fresh * rng.sample::<f64, _>(StandardNormal));
+        let deviates = Vector4::from_fn(|_, _| rng.sample(StandardNormal));
+        self.blended(error, rho, &deviates)
+    }
+
+    /// The same with the standard normal deviates that the rest is made of.
+    pub(crate) fn blended(&self, error: &CameraError, rho: f64, deviates: &Vector4<f64>) -> CameraError {
+        let deviates = deviates * (1.0 - rho * rho).sqrt();
         let sigmas = Vector3::new(self.roll, self.tilt, self.pan);
         CameraError {
             rotation: error.rotation * rho + sigmas.component_mul(&deviates.xyz()),
             height: error.height * rho + self.height * deviates.w,
         }
+    }
+
+    /// Share of an error that is left after some time.
+    pub(crate) fn kept(&self, seconds: f64) -> f64 {
+        if self.seconds > 0.0 { (-seconds / self.seconds).exp() } else { 0.0 }
     }
 
     pub(crate) fn values(&self) -> [(&'static str, f64); 5] {

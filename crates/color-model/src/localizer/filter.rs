@@ -1,23 +1,18 @@
 use std::sync::Arc;
 
-use rand::{Rng, distr::Distribution};
-use wayfix_color_map::{Camera, ColorId, ColorMap};
+use rand::Rng;
+use wayfix_color_map::{Camera, ColorMap};
 use wayfix_estimation_traits::{Pose2, Pose3, SampleMotion};
 use wayfix_particle::{RaoBlackwell, Weights};
 
 use super::{
     Fix, FrameOutcome, LocalizerParams, OdometryStep, PoseEstimate, Start,
-    acquisition::Search,
-    estimate::dominant_cluster,
-    fitness::Fitness,
+    hypothesis::{Hypothesis, share_of_first, shortlist},
     light::Light,
-    palette::Palette,
-    particle::{CameraLocation, ColorParticle},
-    relight::{Relight, predict_light},
-    renewal::{Renewal, Renewed},
+    particle::CameraLocation,
+    shots::{Shot, Shots, Walked},
     start::Area,
-    weigh::Weighing,
-    weighed::Weighed,
+    vigilance::Vigilance,
 };
 use crate::{Background, ColorModelError, LightingBank, YuvImage};
 
@@ -26,16 +21,25 @@ use crate::{Background, ColorModelError, LightingBank, YuvImage};
 /// The Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV]: a particle is a camera location and, conditioned on it, a switching
 /// Kalman filter of the light.
 pub struct ColorLocalizer {
-    map: Arc<ColorMap>,
-    camera: Camera,
-    area: Area,
-    background: Option<Background>,
-    params: LocalizerParams,
-    particles: Vec<ColorParticle>,
-    weights: Weights,
-    seconds: f64,
-    fitness: Fitness,
-    n_updates: usize,
+    pub(super) map: Arc<ColorMap>,
+    pub(super) camera: Camera,
+    pub(super) area: Area,
+    pub(super) background: Option<Background>,
+    pub(super) params: LocalizerParams,
+    /// Where the robot may be, the most probable first; never empty.
+    pub(super) hypotheses: Vec<Hypothesis>,
+    /// The light as it is known beforehand.
+    pub(super) prior: Arc<Light>,
+    /// The light as it was known before there was doubt about the place.
+    pub(super) trusted: Arc<Light>,
+    pub(super) start: Start,
+    /// Odometry since the last frame.
+    pub(super) walked: Walked,
+    pub(super) shots: Shots,
+    pub(super) vigilance: Vigilance,
+    pub(super) n_updates: usize,
+    /// Frames since the robot was looked for.
+    pub(super) n_since_search: usize,
 }
 
 impl ColorLocalizer {
@@ -57,37 +61,33 @@ impl ColorLocalizer {
             return Err(ColorModelError::Dimension { what: "colours of the lighting bank", expected, got });
         }
         let area = Area::of(&map)?;
-        let light = Arc::new(Light::new(light, &params.pixels)?);
-        let particle = |body: Pose2<f64>, rng: &mut R| {
-            RaoBlackwell::from_shared(
-                CameraLocation { body, error: params.camera.sample(rng) },
-                Arc::clone(&light),
-            )
-        };
-        let particles: Vec<ColorParticle> = match start {
-            Start::Near(about) => {
-                let about = about.sampler();
-                (0..params.max_particles.max(params.acquisition.n_particles))
-                    .map(|_| particle(about.sample(rng), rng))
-                    .collect()
-            }
-            Start::Anywhere => {
-                (0..params.max_particles_lost).map(|_| particle(area.sample(rng), rng)).collect()
-            }
-        };
-        let weights = Weights::from_linear(vec![1.0; particles.len()])?;
-        let fitness = Fitness::default();
+        let prior = Arc::new(Light::new(light, &params.pixels)?);
+        let particles = (0..params.max_particles)
+            .map(|_| {
+                let location =
+                    CameraLocation { body: start.draw(&area, rng), error: params.camera.sample(rng) };
+                RaoBlackwell::from_shared(location, Arc::clone(&prior))
+            })
+            .collect();
         Ok(Self {
             map,
             camera,
             area,
             background: None,
             params,
-            particles,
-            weights,
-            seconds: 0.0,
-            fitness,
+            hypotheses: vec![Hypothesis {
+                particles,
+                weights: Weights::from_linear(vec![1.0; params.max_particles])?,
+                log_evidence: 0.0,
+            }],
+            trusted: Arc::clone(&prior),
+            prior,
+            start: start.clone(),
+            walked: Walked::default(),
+            shots: Shots::default(),
+            vigilance: Vigilance::default(),
             n_updates: 0,
+            n_since_search: 0,
         })
     }
 
@@ -96,17 +96,17 @@ impl ColorLocalizer {
         Self { background: Some(background), ..self }
     }
 
-    /// The particles' weighted body poses.
+    /// The weighted body poses of the particles about the most probable place.
     pub fn poses(&self) -> impl Iterator<Item = (Pose2<f64>, f64)> {
-        let weights = self.weights.as_slice().iter().copied();
-        self.particles.iter().map(|particle| particle.sampled.body).zip(weights)
+        self.hypotheses.iter().take(1).flat_map(|hypothesis| {
+            let bodies = hypothesis.particles.iter().map(|particle| particle.sampled.body);
+            bodies.zip(hypothesis.weights.as_slice().iter().copied())
+        })
     }
 
     /// What the colours look like to the heaviest particle.
     pub fn light(&self) -> &LightingBank {
-        let weights = self.weights.as_slice();
-        let heaviest = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap_or(0);
-        &self.particles[heaviest].conditional().bank
+        self.hypotheses.first().and_then(Hypothesis::light).map_or(&self.prior.bank, |light| &light.bank)
     }
 
     /// Moves every particle by the odometry and by noise of its own. Call as often as there is odometry; the time adds up to the next frame.
@@ -125,11 +125,11 @@ impl ColorLocalizer {
             return Err(ColorModelError::OutOfRange { what: "seconds of a step", value: step.seconds });
         }
         let moved = self.params.odometry.given(step);
-        for particle in &mut self.particles {
+        for particle in self.hypotheses.iter_mut().flat_map(|hypothesis| &mut hypothesis.particles) {
             particle.sampled.body = moved(&particle.sampled.body, rng);
             self.area.clamp(&mut particle.sampled.body);
         }
-        self.seconds += step.seconds;
+        self.walked.add(step, &self.params.odometry);
         Ok(())
     }
 
@@ -144,80 +144,56 @@ impl ColorLocalizer {
         rng: &mut R,
     ) -> Result<FrameOutcome, ColorModelError> {
         self.check(image, mount)?;
-        let mut particles = self.particles.clone();
-        predict_light(&mut particles, self.seconds, &self.params.pixels)?;
-        let look = Palette::of(&particles, self.weights.as_slice())?.look(image, self.background.as_ref())?;
-        for particle in &mut particles {
-            particle.sampled.error = self.params.camera.after(&particle.sampled.error, self.seconds, rng);
-        }
-        let frame = &look.frame;
-        let weighing =
-            Weighing { map: &self.map, camera: self.camera, frame, mount, pixels: &self.params.pixels };
-        let is_acquiring = self.n_updates < self.params.acquisition.n_frames;
-        let mut prior = self.weights.clone();
-        if is_acquiring {
-            let search = Search {
-                params: &self.params.acquisition,
-                weighing: &weighing,
-                camera: &self.params.camera,
-                area: &self.area,
-                is_first: self.n_updates == 0,
-            };
-            (particles, prior) = search.run(particles, &prior, rng)?;
-        }
-        let views = weighing.views(&particles);
-        let weighed = Weighed::new(&particles, &prior, &views, self.params.least_effective, rng)?;
-
-        let estimate = dominant_cluster(&weighed.poses(&particles)).ok_or(ColorModelError::NoPose)?;
-        let temper = self.params.pixels.independent_pixels / frame.n_pixels() as f64;
-        let fit = weighed.mean_log_likelihood / temper / look.explainable.max(1.0);
-        let mut fitness = self.fitness;
-        fitness.observe(fit, &self.params);
-
-        let renewal = Renewal {
-            params: &self.params,
-            area: &self.area,
-            suspicion: fitness.suspicion(),
-            estimate: estimate.pose.mean(),
-            least: if is_acquiring { self.params.acquisition.n_particles } else { self.params.min_particles },
+        let mut shots = self.shots.clone();
+        let shot = Shot { image: image.clone(), mount: *mount, walked: self.walked };
+        shots.push(shot, self.params.acquisition.n_frames);
+        let n_frames = self.params.acquisition.n_frames;
+        let is_start = self.n_updates < n_frames && (self.n_updates + 1).is_power_of_two();
+        let is_doubted = self.vigilance.is_search_due(&self.params);
+        let (judged, n_since_search) = if is_start {
+            (self.search(&shots, &self.start, &self.prior, rng)?, 0)
+        } else if is_doubted {
+            (self.reconsider(self.look(image, mount, rng)?, &shots, rng)?, 0)
+        } else {
+            (self.look(image, mount, rng)?, self.n_since_search + 1)
         };
-        let relight = Relight {
-            views: &views,
-            members: &weighed.members,
-            min_pixels: self.params.min_pixels,
-            withheld: self.params.withheld.map(|color| ColorId(color as u8)),
-            pixels: &self.params.pixels,
-        };
-        let mut renewed = renewal.renew(&particles, &weighed.weights, &relight, rng)?;
-        if is_acquiring {
-            self.share_light(&mut renewed)?;
+        let most = self.params.acquisition.n_kept.saturating_sub(n_since_search);
+        let judged = shortlist(judged, most, self.params.acquisition.hopeless);
+        let best = judged.first().ok_or(ColorModelError::NoPose)?;
+        let mut vigilance = self.vigilance;
+        if is_doubted {
+            vigilance = vigilance.after_search(&self.params);
+        }
+        if !is_start {
+            vigilance.observe(best.seen.fit, &self.params);
         }
 
-        let outcome = FrameOutcome {
-            fix: self.fix(&estimate, &fitness),
-            estimate,
-            tempering: weighed.tempering,
-            effective_particles: weighed.weights.effective_sample_size(),
-            n_particles: renewed.particles.len(),
-            log_evidence_per_pixel: weighed.log_evidence / temper / frame.n_pixels() as f64,
-            fit,
-            kidnap_suspicion: fitness.suspicion(),
-            n_injected: renewed.n_injected,
-            light_probabilities: weighed.light_probabilities(),
+        let share = share_of_first(&judged) * best.estimate.share;
+        let mut outcome = FrameOutcome {
+            fix: self.fix(&best.estimate, share, &vigilance),
+            estimate: PoseEstimate { share, ..best.estimate.clone() },
+            tempering: best.seen.weighed.tempering,
+            effective_particles: best.seen.weighed.weights.effective_sample_size(),
+            n_particles: 0,
+            n_hypotheses: judged.len(),
+            log_evidence_per_pixel: best.seen.weighed.log_evidence / self.params.pixels.independent_pixels,
+            fit: best.seen.fit,
+            kidnap_suspicion: vigilance.suspicion(&self.params),
+            light_probabilities: best.seen.weighed.light_probabilities(),
         };
-        (self.particles, self.weights) = (renewed.particles, renewed.weights);
-        (self.fitness, self.seconds) = (fitness, 0.0);
-        self.n_updates += 1;
+        let hypotheses =
+            judged.iter().map(|one| self.renewed(one, judged.len(), rng)).collect::<Result<Vec<_>, _>>()?;
+        outcome.n_particles = hypotheses.iter().map(|hypothesis| hypothesis.particles.len()).sum();
+        if let Some(light) = hypotheses.first().and_then(Hypothesis::light)
+            && hypotheses.len() == 1
+            && !vigilance.is_doubtful()
+        {
+            self.trusted = Arc::clone(light);
+        }
+        (self.hypotheses, self.shots, self.vigilance) = (hypotheses, shots, vigilance);
+        (self.walked, self.n_updates, self.n_since_search) =
+            (Walked::default(), self.n_updates + 1, n_since_search);
         Ok(outcome)
-    }
-
-    /// Gives all particles the mixture of their lights.
-    fn share_light(&self, renewed: &mut Renewed) -> Result<(), ColorModelError> {
-        let banks = renewed.particles.iter().map(|particle| &particle.conditional().bank);
-        let bank = LightingBank::merged(renewed.weights.as_slice().iter().copied().zip(banks))?;
-        let light = Arc::new(Light::new(bank, &self.params.pixels)?);
-        renewed.particles.iter_mut().for_each(|particle| particle.set_conditional(Arc::clone(&light)));
-        Ok(())
     }
 
     fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {
@@ -233,11 +209,11 @@ impl ColorLocalizer {
         Ok(())
     }
 
-    fn fix(&self, estimate: &PoseEstimate, fitness: &Fitness) -> Fix {
+    fn fix(&self, estimate: &PoseEstimate, share: f64, vigilance: &Vigilance) -> Fix {
         let is_narrow = estimate.position_sigma() < 0.3 && estimate.heading_sigma() < 0.3;
-        if fitness.recent() < self.params.lost_fit {
+        if vigilance.recent() < self.params.lost_fit {
             Fix::Lost
-        } else if estimate.share > 0.5 && is_narrow && self.n_updates >= self.params.acquisition.n_frames {
+        } else if share > 0.5 && is_narrow && self.n_updates >= self.params.acquisition.n_frames {
             Fix::Tracking
         } else {
             Fix::Ambiguous

@@ -21,8 +21,9 @@ impl Light {
             .flat_map(|member| (0..n_colors).map(move |color| (member, ColorId(color as u8))))
             .map(|(member, color)| {
                 let filter = bank.member(member);
+                let brightness = filter.mean().iter().step_by(3).sum::<f64>() / n_colors as f64;
                 let ColorDensity { mean, covariance } = filter.color(color);
-                let covariance = covariance + Matrix3::from_diagonal(&pixels.unevenness(filter));
+                let covariance = covariance + Matrix3::from_diagonal(&pixels.unevenness(brightness));
                 SumDensity::new(&ColorDensity { mean, covariance })
             })
             .collect::<Result<_, _>>()?;

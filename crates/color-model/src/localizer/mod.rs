@@ -2,10 +2,14 @@
 
 mod acquisition;
 mod camera_error;
+mod candidate;
 mod estimate;
+mod evaluation;
 mod filter;
-mod fitness;
+mod hypothesis;
+mod judgement;
 mod light;
+mod niche;
 mod odometry;
 mod outcome;
 mod palette;
@@ -13,8 +17,15 @@ mod params;
 mod particle;
 mod relight;
 mod renewal;
+mod search;
+mod seen;
+mod shots;
 mod start;
 mod surroundings;
+mod threads;
+mod trajectory;
+mod views;
+mod vigilance;
 mod weigh;
 mod weighed;
 

@@ -15,12 +15,13 @@ pub struct FrameOutcome {
     pub n_particles: usize,
     /// Log of the mean likelihood ratio to the background, nats a pixel of the image, before tempering.
     pub log_evidence_per_pixel: f64,
-    /// Share of what the image could be explained by at best that the estimate explains; low of a robot that is elsewhere.
+    /// How much better the best place explains the frame than the colours that the frame shows on average, nats a pixel: 0.2 to 0.5 where the
+    /// robot sees much of the map, about 0 or less where it sees none of it, or is elsewhere.
     pub fit: f64,
-    /// Suspicion that the robot was carried away, 0 to 1: how far the recent fit fell below the usual one.
+    /// How long the recent fit has been low, as a share of the time after which the robot is looked for again, 0 to 1.
     pub kidnap_suspicion: f64,
-    /// Number of particles injected.
-    pub n_injected: usize,
+    /// Places that are still pursued.
+    pub n_hypotheses: usize,
     /// Probability of each member of the lighting bank.
     pub light_probabilities: Vec<f64>,
 }

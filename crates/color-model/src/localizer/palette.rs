@@ -1,8 +1,8 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_color_map::ColorId;
 
-use super::{particle::ColorParticle, surroundings::Surroundings};
-use crate::{Background, ColorDensity, ColorModelError, Frame, SumDensity, YuvImage};
+use super::{hypothesis::Hypothesis, particle::ColorParticle};
+use crate::{ColorDensity, ColorModelError, Frame, SumDensity, YuvImage};
 
 /// All map colours under all lights that the particles think of: tells pixels that some map colour may explain from outliers.
 ///
@@ -12,46 +12,35 @@ pub(crate) struct Palette {
     densities: Vec<SumDensity>,
 }
 
-/// A frame, and what it could be explained by at best.
-pub(crate) struct Look {
-    pub(crate) frame: Frame,
-    /// $`\sum_c \max_m [\ln p(c|m) - \ln p_{bg}(c)]`$ over all pixels that are no outliers.
-    pub(crate) explainable: f64,
-}
-
 impl Palette {
-    /// Every colour's mixture over the particles, matched in mean and covariance.
-    pub(crate) fn of(particles: &[ColorParticle], weights: &[f64]) -> Result<Self, ColorModelError> {
-        let Some(first) = particles.first() else { return Ok(Self { densities: Vec::new() }) };
-        let (n_members, n_colors) =
-            (first.conditional().bank.n_members(), first.conditional().bank.n_colors());
-        let densities = (0..n_members)
-            .flat_map(|member| (0..n_colors).map(move |color| (member, ColorId(color as u8))))
-            .map(|(member, color)| SumDensity::new(&mixed(particles, weights, member, color)))
-            .collect::<Result<_, _>>()?;
+    /// Every colour's mixture over the particles of each hypothesis, matched in mean and covariance.
+    pub(crate) fn of(hypotheses: &[Hypothesis]) -> Result<Self, ColorModelError> {
+        let mut densities = Vec::new();
+        for Hypothesis { particles, weights, .. } in hypotheses {
+            let Some(first) = particles.first() else { continue };
+            let bank = &first.conditional().bank;
+            for member in 0..bank.n_members() {
+                for color in (0..bank.n_colors()).map(|color| ColorId(color as u8)) {
+                    densities.push(SumDensity::new(&mixed(particles, weights.as_slice(), member, color))?);
+                }
+            }
+        }
         Ok(Self { densities })
     }
 
+    /// A frame against the background, without those pixels that nothing of the map explains.
     pub(crate) fn look(
         &self,
         image: &YuvImage,
-        background: Option<&Background>,
-    ) -> Result<Look, ColorModelError> {
-        let surroundings = Surroundings::of(image);
-        let nats_of = |pixel| {
-            background.map_or_else(|| surroundings.nats(pixel), |learned| -learned.log_density(pixel))
-        };
+        nats_of: impl Fn([u8; 3]) -> f64,
+        outlier: f64,
+    ) -> Result<Frame, ColorModelError> {
         let mut memo = Memo::default();
-        let mut explainable = 0.0;
-        let frame = Frame::with_background(image, |pixel| {
+        Frame::with_background(image, |pixel| {
             let best = memo.get(pixel, |pixel| self.best(pixel));
             let nats = nats_of(pixel);
-            (best + nats > 0.0).then(|| {
-                explainable += best + nats;
-                nats
-            })
-        })?;
-        Ok(Look { frame, explainable })
+            (best + nats > outlier).then_some(nats)
+        })
     }
 
     fn best(&self, pixel: [u8; 3]) -> f64 {

@@ -31,19 +31,14 @@ pub struct LocalizerParams {
     pub withheld: Option<usize>,
     /// Share of the effective particles that a frame has to leave: its likelihood is softened until it does.
     pub least_effective: f64,
-    /// Fewest labelled pixels, as a share of the image, of which the best particle must see for a frame to say anything.
-    pub min_view: f64,
     /// How the long-term and the short-term average of the fit follow a frame's: rates of augmented Monte Carlo localization.
     pub slow_rate: f64,
     /// See [`slow_rate`](Self::slow_rate).
     pub fast_rate: f64,
-    /// Share of particles injected whenever particles are resampled.
-    pub min_injected: f64,
-    /// Fit below which a robot is lost: it counts as fully suspicious at half of it.
+    /// Recent fit below which the robot is looked for again.
+    pub doubtful_fit: f64,
+    /// Recent fit below which the robot is lost.
     pub lost_fit: f64,
-    /// Largest share of particles injected in a frame. 0 by default: on simulated drives uniform newcomers found false optima more often than
-    /// the robot.
-    pub max_injected: f64,
 }
 
 impl Default for LocalizerParams {
@@ -60,12 +55,10 @@ impl Default for LocalizerParams {
             min_pixels: 30,
             withheld: None,
             least_effective: 0.2,
-            min_view: 0.02,
             slow_rate: 0.02,
             fast_rate: 0.3,
-            min_injected: 0.0,
-            lost_fit: 0.3,
-            max_injected: 0.0,
+            doubtful_fit: 0.2,
+            lost_fit: 0.05,
         }
     }
 }
@@ -83,12 +76,10 @@ impl LocalizerParams {
         check("most particles lost", self.max_particles_lost as f64, self.max_particles as f64, f64::MAX)?;
         check("least effective share", self.least_effective, 0.0, 1.0)?;
         check("resample below", self.resample_below, 0.0, 1.0)?;
-        check("smallest view", self.min_view, 0.0, 1.0)?;
         check("slow rate", self.slow_rate, 0.0, self.fast_rate)?;
         check("fast rate", self.fast_rate, 0.0, 1.0)?;
-        check("least injection", self.min_injected, 0.0, self.max_injected)?;
-        check("fit of a lost robot", self.lost_fit, 0.0, 1.0)?;
-        check("largest injection", self.max_injected, 0.0, 0.9)
+        check("doubtful fit", self.doubtful_fit, -1.0, 1.0)?;
+        check("fit of a lost robot", self.lost_fit, -1.0, 1.0)
     }
 }
 

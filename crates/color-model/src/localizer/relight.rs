@@ -3,7 +3,7 @@ use std::sync::Arc;
 use wayfix_color_map::ColorId;
 use wayfix_particle::RaoBlackwell;
 
-use super::{light::Light, particle::ColorParticle, weigh::Views};
+use super::{light::Light, particle::ColorParticle, views::Views};
 use crate::{ColorMeans, ColorModelError, PixelParams, PixelSums};
 
 /// Lets the light of every particle drift for `seconds`. Particles that share a light go on sharing it.

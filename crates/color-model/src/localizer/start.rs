@@ -1,4 +1,4 @@
-use rand::{Rng, RngExt};
+use rand::{Rng, RngExt, distr::Distribution};
 use wayfix_color_map::ColorMap;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
@@ -40,5 +40,15 @@ impl Area {
             |axis: usize| self.min[axis] + rng.random::<f64>() * (self.max[axis] - self.min[axis]);
         let (x, y) = (between(0), between(1));
         Pose2::new(x, y, (rng.random::<f64>() - 0.5) * std::f64::consts::TAU)
+    }
+}
+
+impl Start {
+    /// A pose that the start allows.
+    pub(crate) fn draw<R: Rng + ?Sized>(&self, area: &Area, rng: &mut R) -> Pose2<f64> {
+        match self {
+            Self::Near(about) => about.sampler().sample(rng),
+            Self::Anywhere => area.sample(rng),
+        }
     }
 }

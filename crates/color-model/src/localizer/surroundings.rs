@@ -1,41 +1,95 @@
+use nalgebra::Vector3;
+
 use crate::YuvImage;
 
-/// Bits of Y, U and V that a cell of the histogram leaves out.
-const SHIFTS: [u32; 3] = [4, 3, 3];
-const CELLS: usize = 1 << (24 - SHIFTS[0] - SHIFTS[1] - SHIFTS[2]);
-/// YUV values in a cell.
-const CELL_LEVELS: f64 = (1_u32 << (SHIFTS[0] + SHIFTS[1] + SHIFTS[2])) as f64;
+/// Side of a cell of the histogram, as a share of the standard deviation that a colour of the map is granted.
+const CELL: f64 = 1.0;
 
-/// Share of the background that looks like the rest of the frame. The frame also shows the map's colours, which the background does
-/// not have, so the larger part is uniform: a label then gains up to 3 nats over none where it explains a pixel as well as the frame does.
-const LIKE_THE_FRAME: f64 = 0.05;
-
-/// The background that labels have to beat when none was learned: in part how often each colour occurs in the frame itself.
+/// The background that labels have to beat when none was learned: how often each colour occurs in the images themselves, seen with the
+/// scatter that a colour of the map is granted.
 ///
-/// A uniform background would reward any label of a grey wall; against the frame's own colours, rare ones (beacons, goals) count most.
+/// Beside a uniform background any label would pay that puts one loose colour over everything. Against what the images show on
+/// average, a label pays when its pixels are told apart from the others by it: $`\ln N(c; μ_m, ν) / q(c)`$ sums to the mutual information of
+/// labels and colours for the right pose, and to a negative divergence for a label that fits everything.
 pub(crate) struct Surroundings {
-    nats: Vec<f32>,
+    histogram: Histogram,
+    /// Of the counts to densities, and what a colour that never occurs has.
+    per_count: f64,
+    uniform: f64,
 }
 
 impl Surroundings {
-    pub(crate) fn of(image: &YuvImage) -> Self {
-        let mut counts = vec![0_u32; CELLS];
-        for pixel in image.pixels() {
-            counts[cell(*pixel)] += 1;
+    /// What `images` show; `noise` is the variance of a map colour's pixels. A uniform share keeps the density from vanishing.
+    pub(crate) fn of<'a>(
+        images: impl Iterator<Item = &'a YuvImage>,
+        noise: &Vector3<f64>,
+        uniform_share: f64,
+    ) -> Self {
+        let mut histogram = Histogram::new(noise.map(|variance| CELL * variance.sqrt()));
+        let mut n = 0;
+        for image in images {
+            image.pixels().iter().for_each(|pixel| histogram.add(*pixel));
+            n += image.pixels().len();
         }
-        let per_pixel = LIKE_THE_FRAME / (image.pixels().len().max(1) as f64 * CELL_LEVELS);
-        let uniform = (1.0 - LIKE_THE_FRAME) / f64::from(1_u32 << 24);
-        let nats = counts.iter().map(|&n| -(uniform + per_pixel * f64::from(n)).ln() as f32).collect();
-        Self { nats }
+        (0..3).for_each(|channel| histogram.blur(channel));
+        let volume = histogram.widths.product();
+        Self {
+            histogram,
+            per_count: (1.0 - uniform_share) / (n.max(1) as f64 * volume),
+            uniform: uniform_share / f64::from(1_u32 << 24),
+        }
     }
 
     /// $`-\ln p_{bg}(c)`$.
     pub(crate) fn nats(&self, pixel: [u8; 3]) -> f64 {
-        f64::from(self.nats[cell(pixel)])
+        -(self.uniform + self.per_count * f64::from(self.histogram.at(pixel))).ln()
     }
 }
 
-fn cell([y, u, v]: [u8; 3]) -> usize {
-    let [y, u, v] = [(y, 0), (u, 1), (v, 2)].map(|(value, channel)| usize::from(value >> SHIFTS[channel]));
-    (y << (16 - SHIFTS[1] - SHIFTS[2])) | (u << (8 - SHIFTS[2])) | v
+/// Counts of pixels in cells of YUV.
+struct Histogram {
+    widths: Vector3<f64>,
+    sizes: [usize; 3],
+    counts: Vec<f32>,
+}
+
+impl Histogram {
+    fn new(widths: Vector3<f64>) -> Self {
+        let widths = widths.map(|width| width.clamp(1.5, 64.0));
+        let sizes: [usize; 3] = widths.map(|width| (255.0 / width) as usize + 1).into();
+        Self { widths, sizes, counts: vec![0.0; sizes.iter().product()] }
+    }
+
+    fn index(&self, pixel: [u8; 3]) -> usize {
+        let [y, u, v] = [0, 1, 2].map(|channel| (f64::from(pixel[channel]) / self.widths[channel]) as usize);
+        (y * self.sizes[1] + u) * self.sizes[2] + v
+    }
+
+    fn add(&mut self, pixel: [u8; 3]) {
+        let at = self.index(pixel);
+        self.counts[at] += 1.0;
+    }
+
+    fn at(&self, pixel: [u8; 3]) -> f32 {
+        self.counts[self.index(pixel)]
+    }
+
+    /// A quarter of each count goes to either neighbour, twice: with the cell's own width a standard deviation of about one cell.
+    fn blur(&mut self, channel: usize) {
+        let stride: usize = self.sizes[channel + 1..].iter().product();
+        let size = self.sizes[channel];
+        for _ in 0..2 {
+            for block in self.counts.chunks_mut(stride * size) {
+                let mut last = block[..stride].to_vec();
+                for at in 0..size {
+                    for lane in 0..stride {
+                        let here = block[at * stride + lane];
+                        let next = if at + 1 < size { block[(at + 1) * stride + lane] } else { here };
+                        block[at * stride + lane] = 0.25 * (last[lane] + next) + 0.5 * here;
+                        last[lane] = here;
+                    }
+                }
+            }
+        }
+    }
 }

@@ -2,7 +2,7 @@ use rand::{Rng, RngExt};
 use wayfix_estimation_traits::Pose2;
 use wayfix_particle::Weights;
 
-use super::{particle::ColorParticle, weigh::Views};
+use super::{particle::ColorParticle, views::Views};
 use crate::{ColorModelError, LightingBank};
 
 /// Importance weights, and the lighting filter that each particle chose.
@@ -25,18 +25,15 @@ impl Weighed {
     ///
     /// # Errors
     /// When the frame is impossible from every particle.
-    pub(crate) fn new<R: Rng + ?Sized>(
-        particles: &[ColorParticle],
+    pub(crate) fn new<'a, R: Rng + ?Sized>(
+        banks: impl Iterator<Item = &'a LightingBank>,
         prior: &Weights,
         views: &Views,
         least_effective: f64,
         rng: &mut R,
     ) -> Result<Self, ColorModelError> {
-        let draws: Vec<(usize, f64)> = particles
-            .iter()
-            .enumerate()
-            .map(|(at, particle)| draw_member(&particle.conditional().bank, views.by_member(at), rng))
-            .collect();
+        let draws: Vec<(usize, f64)> =
+            banks.enumerate().map(|(at, bank)| draw_member(bank, views.by_member(at), rng)).collect();
         let log_likelihoods: Vec<f64> = draws.iter().map(|(_, log_likelihood)| *log_likelihood).collect();
         let least = least_effective * prior.effective_sample_size();
         let (weights, tempering) = softened(&log_likelihoods, prior, least)?;
@@ -74,7 +71,11 @@ impl Weighed {
 ///
 /// A few particles spread over a field are too coarse for a likelihood as narrow as an image's: the nearest would take all the weight, near
 /// or not. Softened, they move together over some frames; once they are as close as the likelihood is wide, the power is 1.
-fn softened(log_likelihoods: &[f64], prior: &Weights, least: f64) -> Result<(Weights, f64), ColorModelError> {
+pub(crate) fn softened(
+    log_likelihoods: &[f64],
+    prior: &Weights,
+    least: f64,
+) -> Result<(Weights, f64), ColorModelError> {
     let weights = |power: f64| {
         let log_weight = |(l, w): (&f64, &f64)| if *l == f64::NEG_INFINITY { *l } else { power * l + w.ln() };
         Weights::from_log(&log_likelihoods.iter().zip(prior.as_slice()).map(log_weight).collect::<Vec<_>>())

@@ -57,6 +57,12 @@ impl YuvImage {
     pub fn pixels(&self) -> &[[u8; 3]] {
         &self.pixels
     }
+
+    /// Mean of Y; 0 of an image without pixels.
+    pub fn brightness(&self) -> f64 {
+        let sum: u64 = self.pixels.iter().map(|pixel| u64::from(pixel[0])).sum();
+        sum as f64 / self.pixels.len().max(1) as f64
+    }
 }
 
 fn check(width: u32, height: u32, got: usize) -> Result<(), ColorModelError> {

@@ -172,7 +172,7 @@ impl ColorSystem {
             Fix::Ambiguous => "ambiguous",
             Fix::Lost => "lost",
         });
-        self.events.add("particles_injected", outcome.n_injected as u64);
+
         let labelled = self.labelled(stamp, &image);
         self.frames.push(FrameResult {
             stamp,

@@ -1,0 +1,26 @@
+use super::trajectory::Trajectory;
+use crate::PixelSums;
+
+/// A trajectory, and how well it explains the frames.
+#[derive(Clone)]
+pub(crate) struct Candidate {
+    pub(crate) trajectory: Trajectory,
+    /// What every colour shows in every frame: the colours of the first frame, then those of the next.
+    pub(crate) sums: Vec<PixelSums>,
+    /// Log-likelihood under every member of the lighting bank.
+    pub(crate) log_likelihoods: Vec<f64>,
+    /// Log of likelihood and prior, nats.
+    pub(crate) score: f64,
+    /// Whether it descends from a place that was pursued before the search.
+    pub(crate) is_known: bool,
+}
+
+impl Candidate {
+    /// The sums of all frames.
+    pub(crate) fn total(&self, n_colors: usize, totals: &mut [PixelSums]) {
+        totals.fill(PixelSums::default());
+        for frame in self.sums.chunks(n_colors.max(1)) {
+            totals.iter_mut().zip(frame).for_each(|(total, sums)| total.add(sums));
+        }
+    }
+}

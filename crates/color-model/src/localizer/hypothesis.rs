@@ -1,0 +1,73 @@
+use std::sync::Arc;
+
+use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_particle::Weights;
+
+use super::{PoseEstimate, estimate::dominant_cluster, light::Light, particle::ColorParticle, seen::Seen};
+
+/// One place where the robot may be: particles that are weighed and resampled among themselves, and what all frames say for it.
+///
+/// Resampled together, the particles of a few frames' favourite would crowd out the others; apart, every place keeps its particles
+/// and its light until the frames have decided: a mixture of particle filters [Vermaak et al. 2003].
+#[derive(Clone)]
+pub(crate) struct Hypothesis {
+    pub(crate) particles: Vec<ColorParticle>,
+    pub(crate) weights: Weights,
+    /// Log-likelihood of the frames since the robot was looked for, nats.
+    pub(crate) log_evidence: f64,
+}
+
+impl Hypothesis {
+    /// Where most of its particles are.
+    pub(crate) fn place(&self) -> Option<Pose2<f64>> {
+        dominant_cluster(&self.poses()).map(|estimate| *estimate.pose.mean())
+    }
+
+    /// The light of its heaviest particle.
+    pub(crate) fn light(&self) -> Option<&Arc<Light>> {
+        let heaviest = self.particles.iter().zip(self.weights.as_slice()).max_by(|a, b| a.1.total_cmp(b.1));
+        heaviest.map(|(particle, _)| particle.shared_conditional())
+    }
+
+    /// Body poses with weights.
+    pub(crate) fn poses(&self) -> Vec<(Pose2<f64>, f64)> {
+        let bodies = self.particles.iter().map(|particle| particle.sampled.body);
+        bodies.zip(self.weights.as_slice().iter().copied()).collect()
+    }
+}
+
+/// A hypothesis in the light of a frame.
+pub(crate) struct Judged {
+    pub(crate) seen: Seen,
+    pub(crate) estimate: PoseEstimate,
+    pub(crate) log_evidence: f64,
+}
+
+/// Poses nearer to each other than this, in metres and in radians, belong together.
+const REACH: [f64; 3] = [0.3, 0.3, 0.4];
+
+/// Whether two poses are one place.
+pub(crate) fn is_same_place(a: &Pose2<f64>, b: &Pose2<f64>) -> bool {
+    let off = a.local(b);
+    (0..3).map(|axis| (off[axis] / REACH[axis]).powi(2)).sum::<f64>() < 1.0
+}
+
+/// The better of the hypotheses, best first: none twice, `most` of them, and none that the frames made `hopeless` nats less likely than the best.
+pub(crate) fn shortlist(mut judged: Vec<Judged>, most: usize, hopeless: f64) -> Vec<Judged> {
+    judged.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    let mut kept: Vec<Judged> = Vec::new();
+    for one in judged {
+        let is_known = |other: &Judged| is_same_place(other.estimate.pose.mean(), one.estimate.pose.mean());
+        let is_hopeless = |best: &Judged| best.log_evidence - one.log_evidence > hopeless;
+        if kept.len() < most.max(1) && !kept.iter().any(is_known) && !kept.first().is_some_and(is_hopeless) {
+            kept.push(one);
+        }
+    }
+    kept
+}
+
+/// Posterior probability of the first of several hypotheses, equally probable beforehand.
+pub(crate) fn share_of_first(judged: &[Judged]) -> f64 {
+    let Some(first) = judged.first() else { return 0.0 };
+    1.0 / judged.iter().map(|one| (one.log_evidence - first.log_evidence).exp()).sum::<f64>()
+}

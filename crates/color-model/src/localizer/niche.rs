@@ -1,0 +1,56 @@
+use wayfix_particle::{Resampler, Systematic, Weights};
+
+use super::{candidate::Candidate, hypothesis::is_same_place, weighed::softened};
+use crate::ColorModelError;
+
+/// Candidates about one place.
+///
+/// Places are refined apart and compared afterwards: together, those that are good from afar would have taken over before the others are
+/// near enough to their own peaks.
+pub(crate) struct Niche(pub(crate) Vec<Candidate>);
+
+impl Niche {
+    /// The best of many candidates that are apart from each other, `most` of them.
+    pub(crate) fn apart(mut candidates: Vec<Candidate>, most: usize) -> Vec<Self> {
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let mut niches: Vec<Self> = Vec::new();
+        for candidate in candidates {
+            let place = candidate.trajectory.newest;
+            if niches.len() < most
+                && !niches.iter().any(|niche| is_same_place(&niche.0[0].trajectory.newest, &place))
+            {
+                niches.push(Self(vec![candidate]));
+            }
+        }
+        niches
+    }
+
+    /// Keeps the best, `most` of them, and those that descend from known places; the best first.
+    pub(crate) fn retain_best(niches: &mut Vec<Self>, most: usize) {
+        niches.sort_by(|a, b| b.best().total_cmp(&a.best()));
+        let mut rank = 0;
+        niches.retain(|niche| {
+            rank += 1;
+            rank <= most || niche.0.iter().any(|candidate| candidate.is_known)
+        });
+    }
+
+    /// The score of the best.
+    pub(crate) fn best(&self) -> f64 {
+        self.0.iter().map(|candidate| candidate.score).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The next generation, of `n` candidates.
+    pub(crate) fn resampled<R: rand::Rng + ?Sized>(
+        &self,
+        n: usize,
+        least_effective: f64,
+        rng: &mut R,
+    ) -> Result<Vec<Candidate>, ColorModelError> {
+        let equal = Weights::from_linear(vec![1.0; self.0.len()])?;
+        let scores: Vec<f64> = self.0.iter().map(|candidate| candidate.score).collect();
+        let (weights, _) = softened(&scores, &equal, least_effective * scores.len() as f64)?;
+        let ancestors = Systematic.ancestors(&weights, n.max(1), rng)?;
+        Ok(ancestors.iter().map(|&at| self.0[at].clone()).collect())
+    }
+}
