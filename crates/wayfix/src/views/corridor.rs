@@ -1,0 +1,1 @@
+//! Places along a corridor that was driven twice.
