@@ -42,12 +42,20 @@ pub fn summarize(run: &ViewsRun) -> Run {
     let events = [
         ("arrived", successes),
         ("arrived_elsewhere", count(&Trial::is_deceived)),
+        ("arrived_next_to_goal", count(&|trial| trial.is_deceived() && is_beside(run, trial))),
         ("unsure", count(&|trial| trial.report.arrival == Arrival::Unsure)),
         ("started_over", kidnappings),
     ];
     let events: BTreeMap<String, u64> =
         events.into_iter().map(|(name, n)| (name.to_owned(), n as u64)).collect();
     Run { metrics, timings, events, notes: failures(trials).into_iter().collect(), ..Run::default() }
+}
+
+/// Whether a trial ended in one of the eight places around its goal.
+fn is_beside(run: &ViewsRun, trial: &Trial) -> bool {
+    let grid = run.system.views().grid();
+    let ((x, y), (goal_x, goal_y)) = (grid.place(trial.end), grid.place(trial.goal));
+    x.abs_diff(goal_x).max(y.abs_diff(goal_y)) == 1
 }
 
 /// Which trials failed, for those who want to look at one.

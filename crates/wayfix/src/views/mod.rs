@@ -20,6 +20,7 @@ pub use feature::FeatureKind;
 pub use figures::summarize;
 pub use normalization::Normalization;
 pub use params::ViewsParams;
+use pictures::shade;
 pub use pictures::{belief_film, pictures};
 pub use real_scene::RealScene;
 pub use run::{ViewsRun, run};

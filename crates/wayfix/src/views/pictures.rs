@@ -1,3 +1,5 @@
+use std::cmp::Reverse;
+
 use anyhow::Result;
 use wayfix_condensation::{Grid, Picture as Pixels};
 use wayfix_sensor_log::EncodedImage;
@@ -5,8 +7,8 @@ use wayfix_sensor_log::EncodedImage;
 use super::{Trial, ViewSystem, ViewsRun};
 use crate::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, Series};
 
-/// Moves after which Fig. 6 and we show the belief.
-const SHOWN: [usize; 4] = [0, 2, 6, 16];
+/// Moves after which the belief is shown, beside the last.
+const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];
 /// Pixels a place of a belief map.
 const CELL: usize = 12;
 const TRUTH: [u8; 3] = [214, 39, 40];
@@ -14,15 +16,15 @@ const GOAL: [u8; 3] = [24, 140, 60];
 const BEST: [u8; 3] = [240, 160, 0];
 const JPEG_QUALITY: u8 = 85;
 
-/// The scene learned and seen, the belief in a drive, and how fast the drives became certain.
+/// The scene learned and seen, the belief in the drive that was unsure for longest, and how fast all of them became certain.
 ///
 /// # Errors
 /// When a picture cannot be encoded or drawn.
 pub fn pictures(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> Result<Vec<Picture>> {
-    Ok(vec![scenes(learned, real)?, belief_film(&run.system, seed, 0)?, certainty(&run.trials).draw()?])
+    Ok(vec![scenes(learned, real)?, belief_film(&run.system, seed, slowest(&run.trials))?, certainty(&run.trials).draw()?])
 }
 
-/// Belief over the places after 0, 2, 6 and 16 moves and at the end of a trial. [Kasprzak & Szynkiewicz, Fig. 6]
+/// Belief over the places after 0, 1, 2, 6 and 16 moves and at the end of a trial. [Kasprzak & Szynkiewicz, Fig. 6]
 ///
 /// # Errors
 /// When the trial cannot be driven or a picture not be encoded.
@@ -47,7 +49,8 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture
         Ok(FilmFrame { image, caption: format!("{number} moves") })
     };
     let frames = maps.into_iter().map(frame).collect::<Result<_>>()?;
-    let heading = "dark: believed; red frame: true place, orange: best place, green: goal".to_owned();
+    let heading =
+        "dark: believed (to a millionth of the most); red: true place, orange: best, green: goal".to_owned();
     let film = FilmStrip {
         title: format!("Belief over the places, trial {trial}"),
         rows: vec![(heading, frames)],
@@ -56,25 +59,33 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture
     Ok(film.draw()?)
 }
 
-/// A square a place, darker where belief is larger; of marks at one place the last is seen, and the others around it.
+/// A square a place, darker where belief is larger. The marks of one place lie inside each other, the last outermost.
 fn belief_map(grid: &Grid, belief: &[f64], marks: &[(usize, [u8; 3])]) -> Vec<u8> {
-    const PAPER: [f64; 3] = [246.0, 247.0, 249.0];
-    const INK: [f64; 3] = [8.0, 48.0, 107.0];
     let most = belief.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let width = grid.columns() * CELL;
     let pixel = |i: usize| {
         let (x, y) = (i % width, i / width);
         let place = grid.state(x / CELL, y / CELL).unwrap_or(0);
         let border = [x % CELL, y % CELL].into_iter().map(|at| at.min(CELL - 1 - at)).min().unwrap_or(0);
-        // The marks of one place lie inside each other, two pixels wide.
-        let here = marks.iter().rev().filter(|mark| mark.0 == place).map(|mark| mark.1);
-        if let Some(color) = here.take(CELL / 4).nth(border / 2) {
-            return color;
-        }
-        let share = (belief[place] / most).sqrt();
-        std::array::from_fn(|c| (PAPER[c] + share * (INK[c] - PAPER[c])).round() as u8)
+        let mark = marks.iter().rev().filter(|mark| mark.0 == place).nth(border / 2);
+        mark.map_or_else(|| shade(belief[place] / most), |mark| mark.1)
     };
     (0..width * grid.rows() * CELL).flat_map(pixel).collect()
+}
+
+/// White for nothing, dark blue for 1, and in between by the logarithm down to a millionth.
+pub(super) fn shade(share: f64) -> [u8; 3] {
+    const PAPER: [f64; 3] = [246.0, 247.0, 249.0];
+    const INK: [f64; 3] = [8.0, 48.0, 107.0];
+    let depth = (1.0 + share.max(f64::MIN_POSITIVE).log10() / 6.0).clamp(0.0, 1.0);
+    std::array::from_fn(|c| (PAPER[c] + depth * (INK[c] - PAPER[c])).round() as u8)
+}
+
+/// The trial that became certain last; one that never did is the slowest of all.
+fn slowest(trials: &[Trial]) -> u64 {
+    let steps = |trial: &Trial| trial.report.steps_to_certainty.unwrap_or(usize::MAX);
+    let slowest = (0_u64..).zip(trials).max_by_key(|(index, trial)| (steps(trial), Reverse(*index)));
+    slowest.map_or(0, |(index, _)| index)
 }
 
 fn scenes(learned: &Pixels, real: &Pixels) -> Result<Picture> {

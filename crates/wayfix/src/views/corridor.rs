@@ -1,1 +1,0 @@
-//! Places along a corridor that was driven twice.

@@ -1,0 +1,43 @@
+use anyhow::Result;
+use wayfix_condensation::FeatureTable;
+
+use super::localize::{Journey, Method, STEADY, VAGUE};
+use crate::{report::Metric, views::FeatureKind};
+
+/// One feature along the corridor in every way.
+pub(super) struct Variants {
+    pub(super) filtered: Journey,
+    swapped: f64,
+    vague_motion: f64,
+    independent: f64,
+    single_frame: f64,
+}
+
+impl Variants {
+    pub(super) fn of(learned: &FeatureTable, seen: &FeatureTable) -> Result<Self> {
+        let share = |method| Journey::of(learned, seen, method).map(|journey| journey.share());
+        Ok(Self {
+            filtered: Journey::of(learned, seen, Method::Filter(STEADY))?,
+            swapped: Journey::of(seen, learned, Method::Filter(STEADY))?.share(),
+            vague_motion: share(Method::Filter(VAGUE))?,
+            independent: share(Method::Independent(STEADY))?,
+            single_frame: share(Method::SingleFrame)?,
+        })
+    }
+}
+
+/// The share of frames found, first as it is meant, then in the other ways.
+pub(super) fn metrics(variants: &[(FeatureKind, Variants)]) -> Vec<Metric> {
+    let column = |suffix: &'static str, value: fn(&Variants) -> f64| {
+        variants
+            .iter()
+            .map(move |(kind, variants)| Metric::new(format!("{}{suffix}", kind.name()), value(variants), ""))
+    };
+    column("_share", |v| v.filtered.share())
+        .chain(column("_share_swapped", |v| v.swapped))
+        .chain(column("_share_vague_motion", |v| v.vague_motion))
+        .chain(column("_share_independent", |v| v.independent))
+        .chain(column("_share_single_frame", |v| v.single_frame))
+        .chain(column("_correlation_length", |v| v.filtered.correlation_length))
+        .collect()
+}
