@@ -63,6 +63,9 @@ pub(super) struct Arguments {
     /// Pixels that the real camera stands to the right and down [default: 4,3, or 0,0 with --learn-from].
     #[arg(long, value_name = "DX,DY", allow_hyphen_values = true)]
     shift: Option<Shift>,
+    /// Look by how much the camera of --scene stood aside of that of --learn-from on the whole, up to N pixels each way, and take that out.
+    #[arg(long, value_name = "N", value_parser = positive(), requires = "learn_from")]
+    register: Option<u64>,
     /// Of moves that lead equally near to the goal take the one that is expected to show most, comparing the N best places.
     #[arg(long, value_name = "N")]
     informed: Option<usize>,
@@ -89,7 +92,7 @@ const EXAMPLES: &str = "\
 Examples:
   wayfix run views --scene china.jpg --out results
   wayfix run views --scene china.jpg --view 256 --step 16 --feature hist6 --normalization online
-  wayfix run views --scene right.png --learn-from left.png --feature joined
+  wayfix run views --scene right.png --learn-from left.png --register 64 --feature joined
   wayfix run views --scene china.jpg --gain 1 --offset -30 --gamma 1 --shift -5,0 --json";
 
 fn positive() -> RangedU64ValueParser {
@@ -125,8 +128,15 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     let scene = read(&arguments.scene)?;
     let learned = arguments.learn_from.as_ref().map(read).transpose()?;
-    let real = arguments.real_scene().of(&scene)?;
+    let mut real = arguments.real_scene().of(&scene)?;
     let learned = learned.as_ref().unwrap_or(&scene);
+    if let Some(reach) = arguments.register {
+        let (dx, dy) = views::mean_shift(learned, &real, reach as usize);
+        tell(format!(
+            "note: the real camera stood {dx} pixels to the right and {dy} down of the learned one"
+        ));
+        real = real.shifted(-dx, -dy);
+    }
     if let Some(out) = &arguments.out {
         fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
     }

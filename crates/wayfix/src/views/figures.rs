@@ -60,7 +60,7 @@ fn is_beside(run: &ViewsRun, trial: &Trial) -> bool {
 
 /// Which trials failed, for those who want to look at one.
 fn failures(trials: &[Trial]) -> Option<String> {
-    const LISTED: usize = 20;
+    const LISTED: usize = 5;
     let failed: Vec<String> = (0_u32..)
         .zip(trials)
         .filter(|(_, trial)| !trial.succeeded())

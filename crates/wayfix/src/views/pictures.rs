@@ -9,6 +9,8 @@ use crate::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, Series};
 
 /// Moves after which the belief is shown, beside the last.
 const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];
+/// Frames of a film beside each other; two rows hold all.
+const FRAMES_A_ROW: usize = 3;
 /// Pixels a place of a belief map.
 const CELL: usize = 12;
 const TRUTH: [u8; 3] = [214, 39, 40];
@@ -21,7 +23,11 @@ const JPEG_QUALITY: u8 = 85;
 /// # Errors
 /// When a picture cannot be encoded or drawn.
 pub fn pictures(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> Result<Vec<Picture>> {
-    Ok(vec![scenes(learned, real)?, belief_film(&run.system, seed, slowest(&run.trials))?, certainty(&run.trials).draw()?])
+    Ok(vec![
+        scenes(learned, real)?,
+        belief_film(&run.system, seed, slowest(&run.trials))?,
+        certainty(&run.trials).draw()?,
+    ])
 }
 
 /// Belief over the places after 0, 1, 2, 6 and 16 moves and at the end of a trial. [Kasprzak & Szynkiewicz, Fig. 6]
@@ -48,12 +54,14 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture
         let image = EncodedImage::png_rgb(size.0, size.1, &map)?;
         Ok(FilmFrame { image, caption: format!("{number} moves") })
     };
-    let frames = maps.into_iter().map(frame).collect::<Result<_>>()?;
-    let heading =
-        "dark: believed (to a millionth of the most); red: true place, orange: best, green: goal".to_owned();
+    let frames: Vec<FilmFrame> = maps.into_iter().map(frame).collect::<Result<_>>()?;
+    let legends =
+        ["red: true place, orange: best, green: goal", "dark: believed, by the logarithm to a millionth"];
+    let rows =
+        frames.chunks(FRAMES_A_ROW).zip(legends).map(|(frames, legend)| (legend.to_owned(), frames.to_vec()));
     let film = FilmStrip {
         title: format!("Belief over the places, trial {trial}"),
-        rows: vec![(heading, frames)],
+        rows: rows.collect(),
         frame_size: size,
     };
     Ok(film.draw()?)

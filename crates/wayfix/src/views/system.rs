@@ -9,8 +9,8 @@ use wayfix_condensation::{
 
 use super::{FeatureKind, Normalization, ViewsError, ViewsParams};
 
-/// Places times lights that fit into about a gigabyte.
-const MAX_HYPOTHESES: usize = 2_000_000;
+/// Places times lights of which a look takes about half a second.
+const MAX_HYPOTHESES: usize = 500_000;
 
 /// How a scene is divided into views, and what is measured of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

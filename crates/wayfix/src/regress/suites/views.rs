@@ -18,6 +18,8 @@ struct Settings {
     experiment: Experiment,
     /// The scene that was learned, beside the one of the run, when it is another picture.
     learn_from: Option<PathBuf>,
+    /// How far the camera may have moved on the whole, pixels; that is measured and taken out.
+    register: Option<usize>,
     /// Width and height of a view, pixels.
     #[serde(default = "view")]
     view: usize,
@@ -72,14 +74,22 @@ fn drive(job: &Job<'_>, settings: &Settings) -> Result<Run> {
     let path = job.log()?;
     let scene = views::read_scene(path)?.picture;
     let (learned, real) = match &settings.learn_from {
-        Some(file) => (views::read_scene(&path.with_file_name(file))?.picture, scene),
+        Some(file) => {
+            let learned = views::read_scene(&path.with_file_name(file))?.picture;
+            let (dx, dy) =
+                settings.register.map_or((0, 0), |reach| views::mean_shift(&learned, &scene, reach));
+            (learned, scene.shifted(-dx, -dy))
+        }
         None => {
             let real = RealScene::default().of(&scene)?;
             (scene, real)
         }
     };
     let (params, seed) = (ViewsParams::default(), job.options.seed);
-    let mut all = Run::default();
+    let mut all = Run {
+        notes: vec!["The pictures are of the last feature and normalization.".to_owned()],
+        ..Run::default()
+    };
     for &normalization in &settings.normalization {
         for feature in FeatureKind::OF_THE_PAPER {
             let setup = Setup { view: settings.view, step: settings.step, feature, normalization };

@@ -1,7 +1,7 @@
 use anyhow::Result;
 use wayfix_condensation::FeatureTable;
 
-use super::localize::{Journey, Method, STEADY, VAGUE};
+use super::localize::{Journey, Method, STEADY, TOLERANCE, VAGUE};
 use crate::{report::Metric, views::FeatureKind};
 
 /// One feature along the corridor in every way.
@@ -11,6 +11,7 @@ pub(super) struct Variants {
     vague_motion: f64,
     independent: f64,
     single_frame: f64,
+    after_ten_frames: f64,
 }
 
 impl Variants {
@@ -22,8 +23,23 @@ impl Variants {
             vague_motion: share(Method::Filter(VAGUE))?,
             independent: share(Method::Independent(STEADY))?,
             single_frame: share(Method::SingleFrame)?,
+            after_ten_frames: after_ten_frames(learned, seen)?,
         })
     }
+}
+
+/// Of drives that begin at each of the frames, the share that is found at its tenth.
+fn after_ten_frames(learned: &FeatureTable, seen: &FeatureTable) -> Result<f64> {
+    const N_FRAMES: usize = 10;
+    let n_starts = (seen.n_states() + 1).saturating_sub(N_FRAMES);
+    let mut n_found = 0;
+    for start in 0..n_starts {
+        let rows: Vec<Vec<f64>> = seen.rows().skip(start).take(N_FRAMES).map(<[f64]>::to_vec).collect();
+        let journey = Journey::of(learned, &FeatureTable::from_rows(&rows)?, Method::Filter(STEADY))?;
+        let place = journey.best.last().copied().unwrap_or(0);
+        n_found += usize::from(place.abs_diff(start + N_FRAMES - 1) <= TOLERANCE);
+    }
+    Ok(n_found as f64 / n_starts as f64)
 }
 
 /// The share of frames found, first as it is meant, then in the other ways.
@@ -38,6 +54,7 @@ pub(super) fn metrics(variants: &[(FeatureKind, Variants)]) -> Vec<Metric> {
         .chain(column("_share_vague_motion", |v| v.vague_motion))
         .chain(column("_share_independent", |v| v.independent))
         .chain(column("_share_single_frame", |v| v.single_frame))
+        .chain(column("_share_after_10_frames", |v| v.after_ten_frames))
         .chain(column("_correlation_length", |v| v.filtered.correlation_length))
         .collect()
 }

@@ -13,6 +13,8 @@ use crate::{
 
 /// Pixels a frame and a place of a belief map.
 const CELL: usize = 4;
+/// Frames between the marks of the truth.
+const MARK_EVERY: usize = 10;
 /// Columns of the film strip.
 const FILM_FRAMES: usize = 6;
 const TRUTH: [u8; 3] = [214, 39, 40];
@@ -39,14 +41,15 @@ fn beliefs(variants: &[(FeatureKind, Variants)]) -> Result<Picture> {
     Ok(film.draw()?)
 }
 
-/// A column a frame, a row a place, the first at the bottom; every other cell of the true places is marked.
+/// A column a frame, a row a place, the first at the bottom; every tenth true place is marked.
 fn belief_map(beliefs: &[Vec<f64>]) -> ((u32, u32), Vec<u8>) {
     let n_places = beliefs.first().map_or(0, Vec::len);
     let (width, height) = (beliefs.len() * CELL, n_places * CELL);
     let pixel = |i: usize| {
         let (frame, place) = (i % width / CELL, n_places - 1 - i / width / CELL);
         let most = beliefs[frame].iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let is_marked = frame == place && frame % 2 == 0;
+        let is_near = |at: usize| at.abs_diff((frame + 1) / MARK_EVERY * MARK_EVERY) <= 1;
+        let is_marked = is_near(frame) && is_near(place);
         if is_marked { TRUTH } else { shade(beliefs[frame][place] / most) }
     };
     ((width as u32, height as u32), (0..width * height).flat_map(pixel).collect())
