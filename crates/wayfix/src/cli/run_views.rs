@@ -52,13 +52,13 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = positive())]
     trials: u64,
     /// Contrast of the real scene [default: 0.7, or 1 with --learn-from].
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
     gain: Option<f64>,
     /// Brightness of the real scene, grey levels [default: 20, or 0 with --learn-from].
     #[arg(long, value_name = "LEVELS", allow_hyphen_values = true)]
     offset: Option<f64>,
     /// Bend of the real scene's tone curve [default: 1.3, or 1 with --learn-from].
-    #[arg(long, value_name = "EXPONENT")]
+    #[arg(long, value_name = "EXPONENT", allow_hyphen_values = true)]
     gamma: Option<f64>,
     /// Pixels that the real camera stands to the right and down [default: 4,3, or 0,0 with --learn-from].
     #[arg(long, value_name = "DX,DY", allow_hyphen_values = true)]
