@@ -1,4 +1,9 @@
-use std::{fs, path::PathBuf, process::ExitCode, str::FromStr};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    str::FromStr,
+};
 
 use anyhow::{Context, Result};
 use clap::builder::RangedU64ValueParser;
@@ -127,7 +132,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let scene = read(&arguments.scene)?;
-    let learned = arguments.learn_from.as_ref().map(read).transpose()?;
+    let learned = arguments.learn_from.as_deref().map(read).transpose()?;
     let mut real = arguments.real_scene().of(&scene)?;
     let learned = learned.as_ref().unwrap_or(&scene);
     if let Some(reach) = arguments.register {
@@ -176,7 +181,7 @@ impl Arguments {
 }
 
 /// A picture; what reading it changed is told.
-fn read(path: &PathBuf) -> Result<wayfix_condensation::Picture> {
+fn read(path: &Path) -> Result<wayfix_condensation::Picture> {
     let scene = views::read_scene(path)?;
     for remark in scene.remarks {
         tell(format!("note: {} {remark}", path.display()));

@@ -11,7 +11,8 @@ pub(super) struct Variants {
     vague_motion: f64,
     independent: f64,
     single_frame: f64,
-    after_ten_frames: f64,
+    after_10_frames: f64,
+    after_30_frames: f64,
 }
 
 impl Variants {
@@ -23,21 +24,21 @@ impl Variants {
             vague_motion: share(Method::Filter(VAGUE))?,
             independent: share(Method::Independent(STEADY))?,
             single_frame: share(Method::SingleFrame)?,
-            after_ten_frames: after_ten_frames(learned, seen)?,
+            after_10_frames: found_after(10, learned, seen)?,
+            after_30_frames: found_after(30, learned, seen)?,
         })
     }
 }
 
-/// Of drives that begin at each of the frames, the share that is found at its tenth.
-fn after_ten_frames(learned: &FeatureTable, seen: &FeatureTable) -> Result<f64> {
-    const N_FRAMES: usize = 10;
-    let n_starts = (seen.n_states() + 1).saturating_sub(N_FRAMES);
+/// Of drives of so many frames that begin at each of the frames, the share that is found at the end. NaN where none is that long.
+fn found_after(n_frames: usize, learned: &FeatureTable, seen: &FeatureTable) -> Result<f64> {
+    let n_starts = (seen.n_states() + 1).saturating_sub(n_frames);
     let mut n_found = 0;
     for start in 0..n_starts {
-        let rows: Vec<Vec<f64>> = seen.rows().skip(start).take(N_FRAMES).map(<[f64]>::to_vec).collect();
+        let rows: Vec<Vec<f64>> = seen.rows().skip(start).take(n_frames).map(<[f64]>::to_vec).collect();
         let journey = Journey::of(learned, &FeatureTable::from_rows(&rows)?, Method::Filter(STEADY))?;
         let place = journey.best.last().copied().unwrap_or(0);
-        n_found += usize::from(place.abs_diff(start + N_FRAMES - 1) <= TOLERANCE);
+        n_found += usize::from(place.abs_diff(start + n_frames - 1) <= TOLERANCE);
     }
     Ok(n_found as f64 / n_starts as f64)
 }
@@ -54,7 +55,8 @@ pub(super) fn metrics(variants: &[(FeatureKind, Variants)]) -> Vec<Metric> {
         .chain(column("_share_vague_motion", |v| v.vague_motion))
         .chain(column("_share_independent", |v| v.independent))
         .chain(column("_share_single_frame", |v| v.single_frame))
-        .chain(column("_share_after_10_frames", |v| v.after_ten_frames))
+        .chain(column("_share_after_10_frames", |v| v.after_10_frames).filter(|m| m.value.is_finite()))
+        .chain(column("_share_after_30_frames", |v| v.after_30_frames).filter(|m| m.value.is_finite()))
         .chain(column("_correlation_length", |v| v.filtered.correlation_length))
         .collect()
 }
