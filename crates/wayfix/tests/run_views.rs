@@ -156,6 +156,11 @@ fn printed_parameters_given_back_change_nothing_and_a_few_change_what_they_name(
     let file = scratch.file("few.toml", "[navigator]\nmax_steps = 0");
     let none = run_views(&scene, &["--params", file.to_str().expect("a plain path")]);
     assert_eq!((none.metric("steps_mean"), none.metric("successes")), (0.0, 0.0));
+    let file = scratch.file("slip.toml", "[navigator.slip]\nstays = 0.3\nstrays = 0.1");
+    let slips = run_views(&scene, &["--params", file.to_str().expect("a plain path")]);
+    // A way of n moves takes n / 0.7 and more, and a robot that knows it still arrives.
+    let usual = run_views(&scene, &[]).metric("steps_mean");
+    assert!(slips.metric("steps_mean") > 1.1 * usual && slips.metric("successes") >= 0.9 * 20.0, "{slips:?}");
 }
 
 #[test]

@@ -4,13 +4,16 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_condensation::{
     Appearance, Arrival, FeatureTable, Grid, Localizer, Move, Navigator, Picture, RunReport, SceneViews,
-    StateSpace, ViewGrid, World,
+    Slip, StateSpace, ViewGrid, World,
 };
 
 use super::{FeatureKind, Normalization, ViewsError, ViewsParams};
 
 /// Places times lights of which a look takes about half a second.
 const MAX_HYPOTHESES: usize = 500_000;
+
+/// Streams of a seed from here on are of moves that go wrong, those below of starts, goals and choices.
+const SLIPS: u64 = 1 << 32;
 
 /// How a scene is divided into views, and what is measured of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +128,10 @@ impl ViewSystem {
         let start = rng.random_range(0..grid.n_states());
         let goal = rng.random_range(0..grid.n_states());
         let at = Cell::new(start);
-        let mut drive = Drive { grid, seen: &self.seen, at: &at };
+        let mut slips = ChaCha8Rng::seed_from_u64(seed);
+        slips.set_stream(SLIPS + index);
+        let mut drive =
+            Drive { grid, seen: &self.seen, at: &at, slip: self.params.navigator.slip, rng: slips };
         let mut localizer = Localizer::new(Arc::clone(&self.appearance), self.params.localizer)?;
         let mut belief_in_truth = Vec::new();
         let mut observe = |number: usize, localizer: &Localizer| {
@@ -154,11 +160,22 @@ struct Drive<'a> {
     grid: Grid,
     seen: &'a FeatureTable,
     at: &'a Cell<usize>,
+    slip: Slip,
+    rng: ChaCha8Rng,
 }
 
 impl World<Move> for Drive<'_> {
+    /// As often as the model says nothing happens, or another action.
     fn act(&mut self, action: Move) {
-        self.at.set(self.grid.step(self.at.get(), action));
+        let u: f64 = self.rng.random();
+        let done = match u {
+            u if u < self.slip.stays => Move::STAY,
+            u if u < self.slip.stays + self.slip.strays => {
+                Move::ALL[self.rng.random_range(0..Move::ALL.len())]
+            }
+            _ => action,
+        };
+        self.at.set(self.grid.step(self.at.get(), done));
     }
 
     fn look(&mut self, features: &mut [f64]) {
