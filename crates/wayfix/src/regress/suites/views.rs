@@ -90,6 +90,7 @@ fn drive(job: &Job<'_>, settings: &Settings) -> Result<Run> {
         notes: vec!["The pictures are of the last feature and normalization.".to_owned()],
         ..Run::default()
     };
+    let mut last = None;
     for &normalization in &settings.normalization {
         for feature in FeatureKind::OF_THE_PAPER {
             let setup = Setup { view: settings.view, step: settings.step, feature, normalization };
@@ -102,8 +103,11 @@ fn drive(job: &Job<'_>, settings: &Settings) -> Result<Run> {
             let events = summary.events.into_iter().filter(|(name, n)| name != "arrived" && *n > 0);
             all.events.extend(events.map(|(name, n)| (format!("{prefix}_{name}"), n)));
             all.notes.extend(summary.notes.into_iter().map(|note| format!("{prefix}: {note}")));
-            all.figures = views::pictures(&run, &learned, &real, seed)?;
+            last = Some(run);
         }
+    }
+    if let Some(run) = last {
+        all.figures = views::pictures(&run, &learned, &real, seed)?;
     }
     Ok(all)
 }
