@@ -5,7 +5,8 @@
 //! traverse that was learned. A frame is found when the place believed in is at most two off.
 //!
 //! The filter knows that the robot drives on: one place a frame, none or two in a tenth of the frames each. The rest is learned from the first
-//! traverse alone ([`Traverse`](wayfix_condensation::Traverse)); nothing is chosen by looking at the second. Beside it stand the figures
+//! traverse alone ([`Traverse`](wayfix_condensation::Traverse)), but the form of the model was settled while
+//! looking at this corridor. Beside it stand the figures
 //! of four variants: the traverses swapped, a vaguer idea of the motion, no filter at all, and frames taken for independent; and the share of
 //! short drives that are found at the end, when one begins at each of the frames.
 
