@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | discrete filter | [`DiscreteFilter`] over any [`StateSpace`]: [`Grid`], [`HeadingGrid`], [`Graph`]; [`Transition`]s, [`DiffusionKernel`] |
 //! | features | [`ViewFeature`]: [`MeanVar`], [`Fft6`], [`Hist6`], [`Joined`], your own; all views of a scene at once |
-//! | learning | [`Appearance`]: features of every state and how they answer to shift and light; [`MoveLog`]; p-values |
+//! | learning | [`Appearance`]: features of every state and how they answer to shift and light; [`Traverse`]; [`MoveLog`]; p-values |
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceParams::online`] |
 //! | navigation | [`Localizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
 //!
@@ -29,7 +29,7 @@ pub use features::{
 };
 pub use learning::{
     Appearance, AppearanceParams, Disturbance, MoveLog, N_DISTURBANCES, NoiseParams, PValues, PictureViews,
-    SceneViews, Tail, ViewSource,
+    SceneViews, Tail, Traverse, TraverseParams, ViewSource,
 };
 pub use navigation::{
     ActionChoice, Arrival, Localizer, LocalizerParams, Navigator, NavigatorParams, Routes, RunReport, World,

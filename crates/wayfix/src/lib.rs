@@ -1,6 +1,6 @@
 //! Probabilistic robot localization on logs: the application behind the command `wayfix`.
 //!
-//! Records of a log go through a [`system`] ([`slam`], [`color`]); [`evaluate`] compares its estimates with truth, [`plot`] draws them,
+//! Records of a log go through a [`system`] ([`slam`], [`color`]), pictures through [`views`]; [`evaluate`] compares its estimates with truth, [`plot`] draws them,
 //! [`report`] writes figures and pictures; [`fixtures`] are the stored logs; [`cli`] is the command line.
 
 pub mod cli;
@@ -10,5 +10,7 @@ pub mod fixtures;
 pub mod plot;
 pub mod regress;
 pub mod report;
+mod settings;
 pub mod slam;
 pub mod system;
+pub mod views;

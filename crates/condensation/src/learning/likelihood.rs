@@ -7,6 +7,7 @@ const N: usize = N_DISTURBANCES;
 
 /// How fast likelihood falls with the distance between measured and expected features.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Tail {
     /// $`e^{-d^2 / 2}`$, as in the paper: a single feature that jumps decides against the true place for good.
     Gaussian,
@@ -32,7 +33,7 @@ impl Tail {
 
     /// The log-density at a squared distance of `k` components, but for constants, and by what the noise of this measurement is to be
     /// multiplied so that an outlier does not bend the disturbance either.
-    fn weigh(self, squared_distance: f64, k: usize) -> (LogWeight, f64) {
+    pub(super) fn weigh(self, squared_distance: f64, k: usize) -> (LogWeight, f64) {
         match self {
             Self::Gaussian => (-0.5 * squared_distance, 1.0),
             Self::StudentT { dof } => {

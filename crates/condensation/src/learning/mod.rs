@@ -9,6 +9,7 @@ mod params;
 mod response;
 mod source;
 mod transitions;
+mod traverse;
 mod whitener;
 
 pub use appearance::Appearance;
@@ -20,3 +21,4 @@ pub use p_value::PValues;
 pub use params::AppearanceParams;
 pub use source::{PictureViews, SceneViews, ViewSource};
 pub use transitions::MoveLog;
+pub use traverse::{Traverse, TraverseParams};

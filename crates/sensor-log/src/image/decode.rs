@@ -2,7 +2,7 @@ use std::io::Cursor;
 
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageReader, Limits};
 
-use super::{DecodedImage, EncodedImage, ImageError, ImageFormat};
+use super::{DecodedImage, EncodedImage, ImageError, ImageFormat, PixelLayout};
 
 /// Pixels of the largest image that is decoded; a damaged or hostile header must not fill the memory.
 const MAX_PIXELS: u64 = 64 << 20;
@@ -18,6 +18,17 @@ impl EncodedImage {
     /// When the file is cut short, its header is damaged or of another format, or it claims no pixel or more than 64 Mi.
     pub fn size(&self) -> Result<(u32, u32), ImageError> {
         Ok(self.decoder()?.dimensions())
+    }
+
+    /// How the file stores its pixels, from the header: what decoding to eight bits of colour will change.
+    ///
+    /// # Errors
+    /// As [`size`](Self::size).
+    pub fn layout(&self) -> Result<PixelLayout, ImageError> {
+        let color = self.decoder()?.original_color_type();
+        let channels = color.channel_count();
+        let bits_per_channel = color.bits_per_pixel() / u16::from(channels.max(1));
+        Ok(PixelLayout { channels, bits_per_channel })
     }
 
     /// The image in colour: grey becomes colour, deeper channels are rounded to eight bits, transparency is dropped.
@@ -162,10 +173,13 @@ mod tests {
         let deep =
             png_of(image::ImageBuffer::from_pixel(3, 2, image::Rgb([65_535_u16, 257 * 100 + 120, 140])));
         assert_eq!(deep.decode_rgb().unwrap().pixels[..3], [255, 100, 1]);
+        assert_eq!(deep.layout().unwrap(), PixelLayout { channels: 3, bits_per_channel: 16 });
         let transparent = png_of(image::RgbaImage::from_pixel(3, 2, image::Rgba([10, 20, 30, 0])));
         assert_eq!(transparent.decode_rgb().unwrap().pixels[..3], [10, 20, 30]);
+        assert!(transparent.layout().unwrap().has_alpha());
         let grey = EncodedImage::png_gray(2, 1, &[9, 200]).unwrap();
         assert_eq!(grey.decode_rgb().unwrap().pixels, [9, 9, 9, 200, 200, 200]);
+        assert_eq!(grey.layout().unwrap(), PixelLayout { channels: 1, bits_per_channel: 8 });
     }
 
     #[test]

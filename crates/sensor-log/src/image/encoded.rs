@@ -41,6 +41,22 @@ pub struct DecodedImage {
     pub pixels: Vec<u8>,
 }
 
+/// How a file stores its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelLayout {
+    /// 1 grey, 2 grey and alpha, 3 colours, 4 colours and alpha.
+    pub channels: u8,
+    /// Bits of each channel.
+    pub bits_per_channel: u16,
+}
+
+impl PixelLayout {
+    /// Whether a channel says how transparent a pixel is.
+    pub fn has_alpha(self) -> bool {
+        matches!(self.channels, 2 | 4)
+    }
+}
+
 impl ImageFormat {
     /// Its name in `foxglove.CompressedImage` and `sensor_msgs/CompressedImage`.
     pub fn name(self) -> &'static str {

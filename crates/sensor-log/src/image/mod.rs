@@ -7,6 +7,6 @@ mod error;
 mod summary;
 mod whole;
 
-pub use encoded::{DecodedImage, EncodedImage, ImageFormat};
+pub use encoded::{DecodedImage, EncodedImage, ImageFormat, PixelLayout};
 pub use error::ImageError;
 pub use summary::ImageSummary;

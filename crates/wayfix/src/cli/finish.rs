@@ -47,8 +47,9 @@ fn write_report(out: &Path, suite: &str, run: Run, seed: u64) -> Result<()> {
         let path = out.join(format!("figure-{}.svg", number + 1));
         fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;
     }
+    let estimates = if run.log.is_some() { format!(", {ESTIMATES}") } else { String::new() };
     let suites = vec![Suite { name: suite.to_owned(), runs: vec![run] }];
     Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
-    tell(format!("wrote index.html, report.json, {ESTIMATES} and the figures as SVG to {}", out.display()));
+    tell(format!("wrote index.html, report.json{estimates} and the figures as SVG to {}", out.display()));
     Ok(())
 }

@@ -10,6 +10,7 @@ mod progress;
 mod regress;
 mod run_color;
 mod run_slam;
+mod run_views;
 
 use std::process::ExitCode;
 
@@ -22,6 +23,7 @@ use clap::{Parser, Subcommand};
 ///   wayfix run slam --log slam_100.txt            trajectory and map, with figures where the log has truth
 ///   wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results
 ///   wayfix run color --log color_dark.mcap --map four-legged-field.toml
+///   wayfix run views --scene china.jpg             where in a picture a camera looks, learned in other light
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
@@ -48,6 +50,7 @@ enum Command {
 enum Run {
     Slam(run_slam::Arguments),
     Color(run_color::Arguments),
+    Views(run_views::Arguments),
 }
 
 /// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
@@ -55,6 +58,7 @@ pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(Run::Slam(arguments)) => run_slam::main(arguments),
         Command::Run(Run::Color(arguments)) => run_color::main(arguments),
+        Command::Run(Run::Views(arguments)) => run_views::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
         Command::Regress(arguments) => regress::main(arguments),

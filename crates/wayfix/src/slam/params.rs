@@ -6,6 +6,8 @@ use wayfix_slam_ekf::{
     VelocityMotion,
 };
 
+use crate::settings::over_defaults;
+
 /// Everything that can be set for EKF-SLAM on a log.
 ///
 /// ```
@@ -158,25 +160,11 @@ impl SlamSystemParams {
         }
         let named: Named = toml::from_str(text)?;
         let defaults = Self::of(named.profile.unwrap_or(profile));
-        let mut values = toml::Table::try_from(&defaults).map_err(serde::de::Error::custom)?;
-        overlay(&mut values, toml::from_str(text)?);
-        values.try_into()
+        over_defaults(&defaults, text)
     }
 
     fn named(self, profile: Profile) -> Self {
         Self { profile, ..self }
-    }
-}
-
-/// Puts the values of `upper` over those of `lower`, table by table.
-fn overlay(lower: &mut toml::Table, upper: toml::Table) {
-    for (key, value) in upper {
-        match (lower.get_mut(&key), value) {
-            (Some(toml::Value::Table(lower)), toml::Value::Table(upper)) => overlay(lower, upper),
-            (_, value) => {
-                lower.insert(key, value);
-            }
-        }
     }
 }
 

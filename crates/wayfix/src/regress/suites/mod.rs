@@ -2,6 +2,7 @@
 
 mod color;
 mod slam;
+mod views;
 
 use anyhow::{Context, Result};
 
@@ -11,7 +12,7 @@ use crate::report::Run;
 /// Does one run.
 pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
 
-const SUITES: [(&str, Runner); 2] = [("color", color::run), ("slam", slam::run)];
+const SUITES: [(&str, Runner); 3] = [("color", color::run), ("slam", slam::run), ("views", views::run)];
 
 /// All suites, in the order of the report.
 pub fn names() -> Vec<&'static str> {

@@ -1,0 +1,190 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    str::FromStr,
+};
+
+use anyhow::{Context, Result};
+use clap::builder::RangedU64ValueParser;
+use wayfix_condensation::{ActionChoice, Light};
+
+use super::{
+    finish,
+    input::read_toml,
+    output::{print, tell},
+    progress,
+};
+use crate::{
+    report::Run,
+    system::Stopwatch,
+    views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams},
+};
+
+/// State condensation: in which of the views of a scene a robot is, from what the whole view looks like.
+///
+/// A picture is divided into overlapping views, one every --step pixels; each is a place. The robot learns a few numbers of every view, is
+/// put somewhere in the same scene on another day (other light, some pixels aside), and drives to a goal one view a move until it believes
+/// that it is there. This is repeated --trials times with random starts and goals.
+///
+/// Without --learn-from the other day is made of the picture itself: gain 0.7, offset 20, gamma 1.3, a shift of 4,3 pixels, unless options
+/// say otherwise. With --learn-from both pictures are taken as they are, and the options come on top where given.
+///
+/// `successes` counts the drives that say "I am at the goal" and are; one that stays unsure is none. `steps_mean` are the moves of a drive,
+/// `steps_to_certainty_mean` those until confidence is first as high as a robot asks for that stops (0.999).
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// The scene that the robot drives in, JPEG or PNG.
+    #[arg(long, value_name = "IMAGE")]
+    scene: PathBuf,
+    /// The scene as it was learned, of the same size [default: --scene].
+    #[arg(long, value_name = "IMAGE")]
+    learn_from: Option<PathBuf>,
+    /// Width and height of a view, pixels.
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = positive())]
+    view: u64,
+    /// Pixels between neighbouring views.
+    #[arg(long, value_name = "N", default_value_t = 32, value_parser = positive())]
+    step: u64,
+    /// What is measured of a view.
+    #[arg(long, value_enum, value_name = "NAME", default_value = "mean-var")]
+    feature: FeatureKind,
+    /// How today's light is made that of learning.
+    #[arg(long, value_enum, value_name = "HOW", default_value = "whole-scene")]
+    normalization: Normalization,
+    /// Drives with random start and goal.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = positive())]
+    trials: u64,
+    /// Contrast of the real scene [default: 0.7, or 1 with --learn-from].
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
+    gain: Option<f64>,
+    /// Brightness of the real scene, grey levels [default: 20, or 0 with --learn-from].
+    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true)]
+    offset: Option<f64>,
+    /// Bend of the real scene's tone curve [default: 1.3, or 1 with --learn-from].
+    #[arg(long, value_name = "EXPONENT", allow_hyphen_values = true)]
+    gamma: Option<f64>,
+    /// Pixels that the real camera stands to the right and down [default: 4,3, or 0,0 with --learn-from].
+    #[arg(long, value_name = "DX,DY", allow_hyphen_values = true)]
+    shift: Option<Shift>,
+    /// Look by how much the camera of --scene stood aside of that of --learn-from on the whole, up to N pixels each way, and take that out.
+    #[arg(long, value_name = "N", value_parser = positive(), requires = "learn_from")]
+    register: Option<u64>,
+    /// Of moves that lead equally near to the goal take the one that is expected to show most, comparing the N best places.
+    #[arg(long, value_name = "N")]
+    informed: Option<usize>,
+    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// Print the parameters that would be used, as TOML, and end: a file to start from.
+    #[arg(long)]
+    print_params: bool,
+    /// Folder for index.html, report.json and the figures as SVG.
+    ///
+    /// It is created where need be. Nothing is written without it.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the figures as one JSON object instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Seed of starts, goals and random moves.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run views --scene china.jpg --out results
+  wayfix run views --scene china.jpg --view 256 --step 16 --feature hist6 --normalization online
+  wayfix run views --scene right.png --learn-from left.png --register 64 --feature joined
+  wayfix run views --scene china.jpg --gain 1 --offset -30 --gamma 1 --shift -5,0 --json";
+
+fn positive() -> RangedU64ValueParser {
+    RangedU64ValueParser::new().range(1..=1_000_000)
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Shift((i32, i32));
+
+impl FromStr for Shift {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<Option<i32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+        match numbers[..] {
+            [Some(dx), Some(dy)] => Ok(Self((dx, dy))),
+            _ => Err("give two whole numbers of pixels, right and down, for instance 4,-3".to_owned()),
+        }
+    }
+}
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let mut params = match &arguments.params {
+        Some(path) => read_toml(path, ViewsParams::from_toml)?,
+        None => ViewsParams::default(),
+    };
+    if let Some(hypotheses) = arguments.informed {
+        params.navigator.choice = ActionChoice::Informed { hypotheses };
+    }
+    if arguments.print_params {
+        print(toml::to_string(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let scene = read(&arguments.scene)?;
+    let learned = arguments.learn_from.as_deref().map(read).transpose()?;
+    let mut real = arguments.real_scene().of(&scene)?;
+    let learned = learned.as_ref().unwrap_or(&scene);
+    if let Some(reach) = arguments.register {
+        let (dx, dy) = views::mean_shift(learned, &real, reach as usize);
+        tell(format!(
+            "note: the real camera stood {dx} pixels to the right and {dy} down of the learned one"
+        ));
+        real = real.shifted(-dx, -dy);
+    }
+    if let Some(out) = &arguments.out {
+        fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    }
+
+    let stopwatch = Stopwatch::start();
+    let setup = Setup {
+        view: arguments.view as usize,
+        step: arguments.step as usize,
+        feature: arguments.feature,
+        normalization: arguments.normalization,
+    };
+    let bar = progress::bar(arguments.trials as usize, "drives");
+    let run = views::run(learned, &real, &setup, &params, arguments.trials, arguments.seed, &|| bar.inc(1));
+    bar.finish_and_clear();
+    let views = run?;
+
+    let name = arguments.scene.display().to_string();
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let mut run = Run { name, seconds, ..views::summarize(&views) };
+    if arguments.out.is_some() {
+        run.figures = views::pictures(&views, learned, &real, arguments.seed)?;
+    }
+    finish::show("views", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    fn real_scene(&self) -> RealScene {
+        let default = if self.learn_from.is_some() { RealScene::AS_IT_IS } else { RealScene::default() };
+        let light = Light {
+            gain: self.gain.unwrap_or(default.light.gain),
+            offset: self.offset.unwrap_or(default.light.offset),
+            gamma: self.gamma.unwrap_or(default.light.gamma),
+        };
+        RealScene { light, shift: self.shift.map_or(default.shift, |shift| shift.0) }
+    }
+}
+
+/// A picture; what reading it changed is told.
+fn read(path: &Path) -> Result<wayfix_condensation::Picture> {
+    let scene = views::read_scene(path)?;
+    for remark in scene.remarks {
+        tell(format!("note: {} {remark}", path.display()));
+    }
+    Ok(scene.picture)
+}

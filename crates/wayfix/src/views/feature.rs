@@ -1,0 +1,56 @@
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+use wayfix_condensation::{Dominance, Fft6, Hist6, Joined, MeanVar, ViewFeature};
+
+/// What is measured of a view. [Kasprzak & Szynkiewicz, Sec. 3]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FeatureKind {
+    /// Mean and standard deviation of red, green and blue.
+    MeanVar,
+    /// Moduli of the first six Fourier components along the rows.
+    Fft6,
+    /// Three dominating grey values and their shares.
+    Hist6,
+    /// All eighteen numbers of the three.
+    Joined,
+}
+
+impl FeatureKind {
+    /// The paper's three.
+    pub const OF_THE_PAPER: [Self; 3] = [Self::MeanVar, Self::Fft6, Self::Hist6];
+    /// Those, and all of them joined.
+    pub const ALL: [Self; 4] = [Self::MeanVar, Self::Fft6, Self::Hist6, Self::Joined];
+
+    /// Its name in figures.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MeanVar => "mean_var",
+            Self::Fft6 => "fft6",
+            Self::Hist6 => "hist6",
+            Self::Joined => "joined",
+        }
+    }
+
+    /// Its name in the paper.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::MeanVar => "MeanVar",
+            Self::Fft6 => "FFT6",
+            Self::Hist6 => "Hist6",
+            Self::Joined => "all three joined",
+        }
+    }
+
+    /// The feature; `dominance` is what the histogram's numbers are.
+    pub fn feature(self, dominance: Dominance) -> Box<dyn ViewFeature + Send> {
+        match self {
+            Self::MeanVar => Box::new(MeanVar),
+            Self::Fft6 => Box::new(Fft6),
+            Self::Hist6 => Box::new(Hist6 { dominance }),
+            Self::Joined => Box::new(Joined::new(
+                Self::OF_THE_PAPER.into_iter().map(|part| part.feature(dominance)).collect(),
+            )),
+        }
+    }
+}
