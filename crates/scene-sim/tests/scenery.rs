@@ -17,6 +17,7 @@ fn aside(shift_px: (f64, f64)) -> Visit {
         cast: [1.0; 3],
         falloff: 0.0,
         exposure: 1.0,
+        gamma: 1.0,
         steepness: 1e-3,
         levels: (0.0, 255.0),
         noise: 0.0,
@@ -72,6 +73,17 @@ fn light_is_not_the_same_everywhere() {
     assert!(middle[0] > middle[1] && middle[1] > middle[2], "a warm cast");
 }
 
+/// 20 + 0.7 · 255 (v / 255)^1.3, which is how the photographs of `wayfix run views` are made darker.
+#[test]
+fn a_dimmed_visit_is_gain_offset_and_gamma() {
+    for value in [0_u8, 64, 150, 255] {
+        let flat = RgbPicture { width: 4, height: 4, rgb: vec![value; 48] };
+        let seen = Visit { noise: 0.0, ..Visit::dimmed() }.picture_of(&flat, 1).unwrap();
+        let expected = 20.0 + 0.7 * 255.0 * (f64::from(value) / 255.0).powf(1.3);
+        assert!((f64::from(seen.rgb[0]) - expected).abs() <= 0.51, "{value}: {} {expected}", seen.rgb[0]);
+    }
+}
+
 #[test]
 fn meaningless_visits_are_refused() {
     let (_, learned) = lab();
@@ -80,6 +92,7 @@ fn meaningless_visits_are_refused() {
         Visit { cast: [1.0, 0.0, 1.0], ..Visit::default() },
         Visit { falloff: 1.1, ..Visit::default() },
         Visit { exposure: -1.0, ..Visit::default() },
+        Visit { gamma: 0.0, ..Visit::default() },
         Visit { steepness: 0.0, ..Visit::default() },
         Visit { levels: (100.0, 90.0), ..Visit::default() },
         Visit { noise: f64::INFINITY, ..Visit::default() },

@@ -8,8 +8,8 @@ use crate::{SimError, check};
 
 /// How a scene looks when the robot comes back: another camera, another light, and not quite the same place.
 ///
-/// In this order: the picture is taken some pixels aside, lit from the middle with a cast of colour, exposed, bent by an S-shaped
-/// response, squeezed between a black and a white level, and gets noise that grows with brightness.
+/// In this order: the picture is taken some pixels aside, lit from the middle with a cast of colour, exposed, bent by a power and an
+/// S-shaped response, squeezed between a black and a white level, and gets noise that grows with brightness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Visit {
     /// The camera stands so many pixels to the right and down; fractions interpolate. Default (3.4, −2.6).
@@ -20,6 +20,8 @@ pub struct Visit {
     pub falloff: f64,
     /// Factor of the light on the sensor. Default 0.9.
     pub exposure: f64,
+    /// Exponent of the light on the sensor. Default 1.
+    pub gamma: f64,
     /// Steepness of the response at half its range: a logistic curve, nearly straight below 1. Default 3.
     pub steepness: f64,
     /// Grey levels of black and of white. Default 22 and 212.
@@ -35,6 +37,7 @@ impl Default for Visit {
             cast: [1.05, 1.0, 0.92],
             falloff: 0.08,
             exposure: 0.9,
+            gamma: 1.0,
             steepness: 3.0,
             levels: (22.0, 212.0),
             noise: 3.0,
@@ -43,6 +46,22 @@ impl Default for Visit {
 }
 
 impl Visit {
+    /// Gain 0.7, offset 20 grey levels, gamma 1.3 and noise, the same everywhere and in all three colours, with the camera (4, 3) pixels aside.
+    ///
+    /// The steepness is so small that the response is straight to 1e-8 of its range.
+    pub fn dimmed() -> Self {
+        Self {
+            shift_px: (4.0, 3.0),
+            cast: [1.0; 3],
+            falloff: 0.0,
+            exposure: 1.0,
+            gamma: 1.3,
+            steepness: 1e-3,
+            levels: (20.0, 198.5),
+            ..Self::default()
+        }
+    }
+
     /// The picture of `scene` on this visit. Beyond the edge the last pixel repeats.
     ///
     /// # Errors
@@ -63,7 +82,7 @@ impl Visit {
                 let seen = interpolated(scene, x as f64 + self.shift_px.0, y as f64 + self.shift_px.1);
                 let light = self.light(scene, x, y);
                 for (value, cast) in seen.into_iter().zip(self.cast) {
-                    let response = self.response(value * cast * light);
+                    let response = self.response(libm::pow(value * cast * light, self.gamma));
                     let sigma = self.noise * (0.5 + 0.5 * response);
                     let (black, white) = self.levels;
                     let level = black + (white - black) * response + sigma * quick_normal(rng);
@@ -93,6 +112,7 @@ impl Visit {
         self.cast.into_iter().try_for_each(|factor| check::positive("cast of colour", factor))?;
         check::share("falloff", self.falloff)?;
         check::positive("exposure", self.exposure)?;
+        check::positive("gamma", self.gamma)?;
         check::positive("steepness", self.steepness)?;
         check::not_negative("black level", self.levels.0)?;
         check::above("white level", self.levels.1, self.levels.0, "finite and above the black level")?;
