@@ -2,7 +2,8 @@
 //!
 //! A [`Simulation`] drives a robot along a [`route`] through a [`world`] and gives the log of its [`sensor`]s as
 //! [`Record`](wayfix_sensor_log::Record)s, truth included. Named, seeded set-ups are [`Scenario`]s; [`monobot`] is the
-//! one-dimensional robot on which filters are taken apart; [`league`] is a field full of colours under changing light, with a camera.
+//! one-dimensional robot on which filters are taken apart; [`league`] is a field full of colours under changing light, with a camera;
+//! [`scenery`] are flat scenes, seen through a window.
 //!
 //! * **The truth is nobody's model.** Two wheels with motors that lag, slip that hangs together in time and radii that are not as
 //!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
@@ -32,6 +33,7 @@ pub mod plane;
 pub mod random;
 pub mod route;
 mod scenario;
+pub mod scenery;
 pub mod sensor;
 mod simulation;
 pub mod space;

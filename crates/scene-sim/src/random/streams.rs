@@ -56,6 +56,12 @@ pub enum Source {
     Things,
     /// Where a kidnapped robot is put.
     Kidnap,
+    /// Smooth textures of a flat scene.
+    Texture,
+    /// Places and colours of the shapes in a flat scene.
+    Objects,
+    /// Noise of the camera before a flat scene.
+    Pixels,
     /// A user's own.
     Other(u32),
 }
@@ -89,6 +95,9 @@ impl Source {
             Self::Picture => 23,
             Self::Things => 24,
             Self::Kidnap => 25,
+            Self::Texture => 26,
+            Self::Objects => 27,
+            Self::Pixels => 28,
             Self::Other(n) => (1 << 32) | n as u64,
         }
     }

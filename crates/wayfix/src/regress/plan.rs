@@ -135,7 +135,7 @@ pub(super) fn judge(bounds: &[Bound], metrics: &mut Vec<Metric>) {
             metrics.len() - 1
         });
         let metric = &mut metrics[index];
-        metric.paper = bound.paper;
+        metric.paper = bound.paper.or(metric.paper);
         if bound.open {
             let wanted = [
                 bound.low.map(|low| format!("at least {low}")),

@@ -1,6 +1,7 @@
 use std::{io, path::PathBuf};
 
 use wayfix_condensation::CondensationError;
+use wayfix_scene_sim::SimError;
 use wayfix_sensor_log::ImageError;
 
 /// Why views could not be learned or driven through.
@@ -67,6 +68,9 @@ pub enum ViewsError {
         /// Least number of both.
         min: usize,
     },
+    /// A scene cannot be composed, or not be seen like that.
+    #[error(transparent)]
+    Scenery(#[from] SimError),
     /// The library refused.
     #[error(transparent)]
     Condensation(#[from] CondensationError),

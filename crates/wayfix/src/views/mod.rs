@@ -2,6 +2,8 @@
 //!
 //! A [`ViewSystem`] learns one picture of a scene and drives in another one, seen on another day; [`run`] makes many drives between random
 //! places, [`summarize`] gives their figures and [`pictures`] shows them. [`corridor`] does the same along a corridor that was driven twice.
+//! [`composed`] makes scenes that need no file, [`PaperScene`] has the paper's figures for scenes of these names, [`p_value_metrics`] and
+//! [`compare_choices`] make ours.
 //!
 //! ```
 //! use wayfix::views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams};
@@ -18,23 +20,30 @@
 //! # Ok::<(), views::ViewsError>(())
 //! ```
 
+mod choices;
+mod composed;
 pub mod corridor;
 mod error;
 mod feature;
 mod figures;
 mod normalization;
+mod paper;
 mod params;
 mod pictures;
 mod real_scene;
 mod register;
 mod run;
 mod scene;
+mod statistics;
 mod system;
 
+pub use choices::{INFORMED, compare_choices};
+pub use composed::composed;
 pub use error::ViewsError;
 pub use feature::FeatureKind;
 pub use figures::summarize;
 pub use normalization::Normalization;
+pub use paper::PaperScene;
 pub use params::ViewsParams;
 use pictures::shade;
 pub use pictures::{belief_film, pictures};
@@ -42,4 +51,5 @@ pub use real_scene::RealScene;
 pub use register::mean_shift;
 pub use run::{ViewsRun, run};
 pub use scene::{Scene, read_scene};
+pub use statistics::p_value_metrics;
 pub use system::{Setup, Step, Trial, ViewSystem};
