@@ -46,8 +46,12 @@ fn main() {
         projector.spans(&camera_pose, &mut |span| n += usize::from(span.end - span.start)).map(|()| n)
     });
     let mut sums = [PixelSums::default(); 5];
-    report("spans and their sums", 2000, || gather(&mut projector, &frame, &camera_pose, 0, &mut sums));
-    report("inner spans and their sums", 2000, || gather(&mut projector, &frame, &camera_pose, 1, &mut sums));
+    report("spans and their sums", 2000, || {
+        gather(&mut projector, |_| Some(&frame), &camera_pose, 0, &mut sums)
+    });
+    report("inner spans and their sums", 2000, || {
+        gather(&mut projector, |_| Some(&frame), &camera_pose, 1, &mut sums)
+    });
     let means = ColorMeans::new(sums.iter().map(|sums| (sums.mean(), sums.count())));
     let lit = bank();
     report("lighting update", 2000, || lit.clone().update_member(1, &means));

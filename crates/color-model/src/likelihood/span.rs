@@ -1,25 +1,25 @@
-use wayfix_color_map::{Projector, Span, ViewError};
+use wayfix_color_map::{ColorId, Projector, Span, ViewError};
 use wayfix_estimation_traits::{LogWeight, Pose3};
 
 use super::{PixelParams, SumDensity, ViewLikelihood, params::Region, pixel::check_size};
 use crate::{ColorDensity, ColorModelError, Frame, PixelSums};
 
-/// Sums what `frame` shows where the map, seen from `camera_pose`, has each colour, without the pixels within `edge_margin` of an edge.
+/// Sums what the frame of each colour shows where the map, seen from `camera_pose`, has each colour, without the pixels within `edge_margin` of an edge.
 ///
 /// Independent of light: one gathering serves every lighting hypothesis, and the colour means that update them.
 ///
 /// # Errors
 /// When the pose is not finite or its quaternion not of unit length.
-pub fn gather(
+pub fn gather<'a>(
     projector: &mut Projector,
-    frame: &Frame,
+    frame_of: impl Fn(ColorId) -> Option<&'a Frame>,
     camera_pose: &Pose3<f64>,
     edge_margin: u16,
     sums: &mut [PixelSums],
 ) -> Result<(), ViewError> {
     sums.fill(PixelSums::default());
     let mut add = |span: Span| {
-        if let Some(sums) = sums.get_mut(span.color.index()) {
+        if let (Some(sums), Some(frame)) = (sums.get_mut(span.color.index()), frame_of(span.color)) {
             frame.add_run(usize::from(span.row), usize::from(span.start), usize::from(span.end), sums);
         }
     };
@@ -59,7 +59,7 @@ impl ViewLikelihood for SpanView<'_> {
             return f64::NEG_INFINITY;
         };
         let margin = self.params.edge_margin;
-        match gather(&mut self.projector, self.frame, camera_pose, margin, &mut self.sums) {
+        match gather(&mut self.projector, |_| Some(self.frame), camera_pose, margin, &mut self.sums) {
             Ok(()) => log_likelihood(&self.sums, &light, &self.params, self.frame.n_pixels()),
             Err(_) => f64::NEG_INFINITY,
         }

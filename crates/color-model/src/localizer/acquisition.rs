@@ -13,10 +13,15 @@
 pub struct AcquisitionParams {
     /// Frames that are kept. At the start the robot is looked for after 1, 2, 4, ... frames, up to this number.
     pub n_frames: usize,
+    /// Frames until the robot is looked for again even if nothing is doubted: a wrong place may explain what is seen quite well, and only
+    /// another that does so better gives it away. 0 for never.
+    pub every: usize,
     /// Most of them that trajectories are weighed by, evenly spread.
     pub n_weighed: usize,
     /// Places that are pursued when the robot was looked for, each by particles of its own. With every frame there is one fewer.
     pub n_kept: usize,
+    /// Places that are pursued for as long as the frames have not decided between them.
+    pub n_undecided: usize,
     /// A place is given up when the frames make it this much less likely than the best, nats.
     pub hopeless: f64,
     /// By how much the frames have to make another place more likely than the one where the robot believes to be, when that is doubted, nats: it
@@ -43,14 +48,16 @@ pub struct AcquisitionParams {
 impl Default for AcquisitionParams {
     fn default() -> Self {
         Self {
-            n_frames: 8,
+            n_frames: 16,
+            every: 15,
             n_weighed: 8,
             n_kept: 12,
+            n_undecided: 4,
             hopeless: 60.0,
             elsewhere: 20.0,
             n_drawn: 6000,
             n_coarse: 3,
-            n_niches: 50,
+            n_niches: 150,
             n_particles: 600,
             n_passes: 8,
             least_effective: 0.2,

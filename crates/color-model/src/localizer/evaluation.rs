@@ -62,7 +62,8 @@ impl Search<'_> {
             let camera_pose = locations[at].camera_pose(&self.shots[at].mount);
             let sums = &mut jolted.sums[at * n_colors..][..n_colors];
             let margin = self.params.pixels.edge_margin;
-            if gather(&mut scratch.projector, &self.frames[at], &camera_pose, margin, sums).is_ok() {
+            if gather(&mut scratch.projector, |_| Some(&self.frames[at]), &camera_pose, margin, sums).is_ok()
+            {
                 self.score(scratch, &mut jolted);
                 if jolted.score > candidate.score {
                     *candidate = jolted;
@@ -81,7 +82,8 @@ impl Search<'_> {
             let camera_pose = locations[at].camera_pose(&self.shots[at].mount);
             let sums = &mut candidate.sums[at * n_colors..][..n_colors];
             let margin = self.params.pixels.edge_margin;
-            if gather(&mut scratch.projector, &self.frames[at], &camera_pose, margin, sums).is_err() {
+            if gather(&mut scratch.projector, |_| Some(&self.frames[at]), &camera_pose, margin, sums).is_err()
+            {
                 sums.fill(PixelSums::default());
             }
         }

@@ -14,7 +14,7 @@ use super::{
     start::Area,
     vigilance::Vigilance,
 };
-use crate::{Background, ColorModelError, LightingBank, YuvImage};
+use crate::{AcquisitionParams, Background, ColorModelError, LightingBank, YuvImage};
 
 /// Finds out where a robot stands on a colour-coded field and what the colours look like in today's light, at once.
 ///
@@ -150,15 +150,18 @@ impl ColorLocalizer {
         let n_frames = self.params.acquisition.n_frames;
         let is_start = self.n_updates < n_frames && (self.n_updates + 1).is_power_of_two();
         let is_doubted = self.vigilance.is_search_due(&self.params);
+        let is_search = is_doubted || self.is_routine();
         let (judged, n_since_search) = if is_start {
-            (self.search(&shots, &self.start, &self.prior, rng)?, 0)
-        } else if is_doubted {
+            let found = self.search(&shots, &self.start, &self.prior, rng)?;
+            (found.into_iter().map(|one| one.judged).collect(), 0)
+        } else if is_search {
             (self.reconsider(self.look(image, mount, rng)?, &shots, rng)?, 0)
         } else {
             (self.look(image, mount, rng)?, self.n_since_search + 1)
         };
-        let most = self.params.acquisition.n_kept.saturating_sub(n_since_search);
-        let judged = shortlist(judged, most, self.params.acquisition.hopeless);
+        let acquisition = &self.params.acquisition;
+        let most = acquisition.n_kept.saturating_sub(n_since_search).max(acquisition.n_undecided);
+        let judged = shortlist(judged, most, acquisition.hopeless);
         let best = judged.first().ok_or(ColorModelError::NoPose)?;
         let mut vigilance = self.vigilance;
         if is_doubted {
@@ -184,9 +187,10 @@ impl ColorLocalizer {
         let hypotheses =
             judged.iter().map(|one| self.renewed(one, judged.len(), rng)).collect::<Result<Vec<_>, _>>()?;
         outcome.n_particles = hypotheses.iter().map(|hypothesis| hypothesis.particles.len()).sum();
+        let is_confirmed = hypotheses.len() == 1 && !vigilance.is_doubtful();
         if let Some(light) = hypotheses.first().and_then(Hypothesis::light)
-            && hypotheses.len() == 1
-            && !vigilance.is_doubtful()
+            && is_confirmed
+            && (is_search || Arc::ptr_eq(&self.trusted, &self.prior))
         {
             self.trusted = Arc::clone(light);
         }
@@ -194,6 +198,12 @@ impl ColorLocalizer {
         (self.walked, self.n_updates, self.n_since_search) =
             (Walked::default(), self.n_updates + 1, n_since_search);
         Ok(outcome)
+    }
+
+    /// Whether it is time to look for the robot again although nothing is doubted.
+    fn is_routine(&self) -> bool {
+        let AcquisitionParams { n_frames, every, .. } = self.params.acquisition;
+        every > 0 && self.n_since_search + 1 >= every && self.n_updates > n_frames
     }
 
     fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {

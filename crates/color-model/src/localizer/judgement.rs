@@ -12,7 +12,7 @@ use super::{
     palette::Palette,
     relight::{Relight, predict_light},
     renewal::renew,
-    search::Search,
+    search::{Found, Search},
     seen::Seen,
     shots::Shots,
     surroundings::Surroundings,
@@ -63,8 +63,8 @@ impl ColorLocalizer {
             let background = self.background.as_ref();
             background.map_or_else(|| surroundings.nats(pixel), |learned| -learned.log_density(pixel))
         };
-        let frame = &Palette::of(&hypotheses)?.look(image, nats, -pixels.floor)?;
-        let weighing = Weighing { map: &self.map, camera: self.camera, frame, mount, pixels, noise };
+        let frames = &Palette::of(&hypotheses)?.look(image, nats, -pixels.floor)?;
+        let weighing = Weighing { map: &self.map, camera: self.camera, frames, mount, pixels, noise };
         let mut judged = Vec::new();
         for Hypothesis { mut particles, weights, log_evidence } in hypotheses {
             for particle in &mut particles {
@@ -88,7 +88,7 @@ impl ColorLocalizer {
         start: &Start,
         light: &Arc<Light>,
         rng: &mut R,
-    ) -> Result<Vec<Judged>, ColorModelError> {
+    ) -> Result<Vec<Found>, ColorModelError> {
         let shots = shots.spread(self.params.acquisition.n_weighed);
         let background = self.background.as_ref();
         let search = Search::new(&self.map, self.camera, &self.area, &self.params, light, shots, background)?;
@@ -97,19 +97,13 @@ impl ColorLocalizer {
         } else {
             self.hypotheses.iter().filter_map(|hypothesis| hypothesis.place()).collect()
         };
-        let found = search.run(|rng| start.draw(&self.area, rng), &known, rng)?;
-        let judged = |(seen, log_evidence): (Seen, f64)| {
-            let estimate =
-                dominant_cluster(&seen.weighed.poses(&seen.particles)).ok_or(ColorModelError::NoPose)?;
-            Ok(Judged { seen, estimate, log_evidence })
-        };
-        found.into_iter().map(judged).collect()
+        search.run(|rng| start.draw(&self.area, rng), &known, rng)
     }
 
-    /// The place that is doubted, and those that the last frames suggest instead.
+    /// The places that are believed in, and those that explain the last frames better.
     pub(super) fn reconsider<R: Rng + ?Sized>(
         &self,
-        doubted: Vec<Judged>,
+        believed: Vec<Judged>,
         shots: &Shots,
         rng: &mut R,
     ) -> Result<Vec<Judged>, ColorModelError> {
@@ -117,17 +111,18 @@ impl ColorLocalizer {
         let is_light_doubted = self.vigilance.n_searches() % 2 == 1;
         let light = if is_light_doubted { &self.prior } else { &self.trusted };
         let found = self.search(shots, &Start::Anywhere, light, rng)?;
+        let best = |scores: &mut dyn Iterator<Item = f64>| scores.fold(f64::NEG_INFINITY, f64::max);
+        let of_found = |one: &Found| one.judged.log_evidence;
+        let as_known = best(&mut found.iter().filter(|one| one.is_known).map(of_found));
+        let best_found = best(&mut found.iter().map(of_found));
         let odds = self.params.acquisition.elsewhere * if is_light_doubted { 3.0 } else { 1.0 };
-        let best =
-            |judged: &[Judged]| judged.iter().map(|one| one.log_evidence).fold(f64::NEG_INFINITY, f64::max);
-        let (believed, best_score) = (best(&doubted), best(&found));
+        let start = best(&mut believed.iter().map(|one| one.log_evidence)) - odds;
         // The frames that a place was chosen by among thousands flatter it: only those to come count for it. Meanwhile their order decides.
-        let newcomer = |one: Judged| {
-            let order = 1e-3 * (one.log_evidence - best_score);
-            Judged { log_evidence: believed - odds + order, ..one }
+        let newcomer = |Found { judged, .. }: Found| {
+            let order = 1e-3 * (judged.log_evidence - best_found);
+            Judged { log_evidence: start + order, ..judged }
         };
-        let mut judged = doubted;
-        judged.extend(found.into_iter().map(newcomer));
-        Ok(judged)
+        let better = found.into_iter().filter(|one| !one.is_known && of_found(one) > as_known).map(newcomer);
+        Ok(believed.into_iter().chain(better).collect())
     }
 }

@@ -4,48 +4,62 @@ use wayfix_color_map::ColorId;
 use super::{hypothesis::Hypothesis, particle::ColorParticle};
 use crate::{ColorDensity, ColorModelError, Frame, SumDensity, YuvImage};
 
-/// All map colours under all lights that the particles think of: tells pixels that some map colour may explain from outliers.
+/// Every map colour under all lights that the particles think of: tells, for each colour, pixels that it may explain from outliers.
 ///
-/// A pixel that the background explains better than any colour of the map, under any member of the bank, belongs to something that the map
-/// does not know (a ball, a robot, a spectator). That does not depend on where the robot is, so it is decided once a frame, and the sums stay exact.
+/// A pixel that the background explains better than the colour, under any member of the bank, belongs to something that hides it there (a
+/// ball, a robot, a spectator). A robot of another colour on the carpet would widen the scatter of the whole carpet; as outliers its pixels
+/// count for themselves. That does not depend on where the robot is, so it is decided once a frame, and the sums stay exact.
 pub(crate) struct Palette {
-    densities: Vec<SumDensity>,
+    /// Of every colour.
+    densities: Vec<Vec<SumDensity>>,
 }
 
 impl Palette {
     /// Every colour's mixture over the particles of each hypothesis, matched in mean and covariance.
     pub(crate) fn of(hypotheses: &[Hypothesis]) -> Result<Self, ColorModelError> {
-        let mut densities = Vec::new();
+        let n_colors = hypotheses
+            .iter()
+            .find_map(|hypothesis| hypothesis.light())
+            .map_or(0, |light| light.bank.n_colors());
+        let mut densities = vec![Vec::new(); n_colors];
         for Hypothesis { particles, weights, .. } in hypotheses {
             let Some(first) = particles.first() else { continue };
             let bank = &first.conditional().bank;
             for member in 0..bank.n_members() {
                 for color in (0..bank.n_colors()).map(|color| ColorId(color as u8)) {
-                    densities.push(SumDensity::new(&mixed(particles, weights.as_slice(), member, color))?);
+                    densities[color.index()].push(SumDensity::new(&mixed(
+                        particles,
+                        weights.as_slice(),
+                        member,
+                        color,
+                    ))?);
                 }
             }
         }
         Ok(Self { densities })
     }
 
-    /// A frame against the background, without those pixels that nothing of the map explains.
+    /// A frame against the background, for every colour without the pixels that it does not explain.
     pub(crate) fn look(
         &self,
         image: &YuvImage,
         nats_of: impl Fn([u8; 3]) -> f64,
         outlier: f64,
-    ) -> Result<Frame, ColorModelError> {
-        let mut memo = Memo::default();
-        Frame::with_background(image, |pixel| {
-            let best = memo.get(pixel, |pixel| self.best(pixel));
-            let nats = nats_of(pixel);
-            (best + nats > outlier).then_some(nats)
-        })
+    ) -> Result<Vec<Frame>, ColorModelError> {
+        let look = |densities: &Vec<SumDensity>| {
+            let mut memo = Memo::default();
+            Frame::with_background(image, |pixel| {
+                let best = memo.get(pixel, |pixel| best(densities, pixel));
+                let nats = nats_of(pixel);
+                (best + nats > outlier).then_some(nats)
+            })
+        };
+        self.densities.iter().map(look).collect()
     }
+}
 
-    fn best(&self, pixel: [u8; 3]) -> f64 {
-        self.densities.iter().map(|density| density.log(pixel)).fold(f64::NEG_INFINITY, f64::max)
-    }
+fn best(densities: &[SumDensity], pixel: [u8; 3]) -> f64 {
+    densities.iter().map(|density| density.log(pixel)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 fn mixed(particles: &[ColorParticle], weights: &[f64], member: usize, color: ColorId) -> ColorDensity {

@@ -7,11 +7,18 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_particle::{RaoBlackwell, Weights};
 
 use super::{
-    AcquisitionParams, LocalizerParams, candidate::Candidate, light::Light, niche::Niche,
-    particle::ColorParticle, seen::Seen, shots::Shot, start::Area, surroundings::Surroundings,
-    trajectory::Trajectory, views::Views, weighed::Weighed,
+    AcquisitionParams, LocalizerParams, candidate::Candidate, estimate::dominant_cluster, hypothesis::Judged,
+    light::Light, niche::Niche, particle::ColorParticle, seen::Seen, shots::Shot, start::Area,
+    surroundings::Surroundings, trajectory::Trajectory, views::Views, weighed::Weighed,
 };
 use crate::{Background, ColorModelError, Frame, PixelSums};
+
+/// A place that explains the frames well, its log-evidence that of all frames.
+pub(crate) struct Found {
+    pub(crate) judged: Judged,
+    /// Whether it descends from a known one.
+    pub(crate) is_known: bool,
+}
 
 /// Looks for the robot in several frames at once, under one light that nobody has seen.
 pub(crate) struct Search<'a> {
@@ -56,7 +63,7 @@ impl<'a> Search<'a> {
         first: impl FnMut(&mut R) -> Pose2<f64>,
         known: &[Pose2<f64>],
         rng: &mut R,
-    ) -> Result<Vec<(Seen, f64)>, ColorModelError> {
+    ) -> Result<Vec<Found>, ColorModelError> {
         let AcquisitionParams { n_niches, n_passes, n_kept, .. } = self.params.acquisition;
         let mut niches = Niche::apart(self.candidates(first, known, rng)?, n_niches);
         for pass in 0..n_passes {
@@ -65,7 +72,14 @@ impl<'a> Search<'a> {
             let most = if pass + 1 < n_passes { fewer } else { niches.len() };
             Niche::retain_best(&mut niches, most);
         }
-        niches.iter().map(|niche| Ok((self.seen(&niche.0, rng)?, niche.best()))).collect()
+        let found = |niche: &Niche| {
+            let is_known = niche.0.iter().any(|candidate| candidate.is_known);
+            let seen = self.seen(&niche.0, rng)?;
+            let estimate =
+                dominant_cluster(&seen.weighed.poses(&seen.particles)).ok_or(ColorModelError::NoPose)?;
+            Ok(Found { judged: Judged { seen, estimate, log_evidence: niche.best() }, is_known })
+        };
+        niches.iter().map(found).collect()
     }
 
     /// Candidates all over the start, weighed by a few frames, and those of known places, before them.

@@ -27,7 +27,8 @@ struct Scratch {
 pub(crate) struct Weighing<'a> {
     pub(crate) map: &'a Arc<ColorMap>,
     pub(crate) camera: Camera,
-    pub(crate) frame: &'a Frame,
+    /// For each colour.
+    pub(crate) frames: &'a [Frame],
     pub(crate) mount: &'a Pose3<f64>,
     pub(crate) pixels: &'a PixelParams,
     /// Variance of a map colour's pixels in this frame.
@@ -53,10 +54,17 @@ impl Weighing<'_> {
     fn view(&self, Scratch { projector, joint }: &mut Scratch, particle: &ColorParticle, view: ViewMut) {
         let ViewMut { sums, log_likelihoods } = view;
         let camera_pose = particle.sampled.camera_pose(self.mount);
-        let seen = gather(projector, self.frame, &camera_pose, self.pixels.edge_margin, sums).is_ok();
+        let seen = gather(
+            projector,
+            |color| self.frames.get(color.index()),
+            &camera_pose,
+            self.pixels.edge_margin,
+            sums,
+        )
+        .is_ok();
         for (member, log_likelihood_of) in log_likelihoods.iter_mut().enumerate() {
             let light = particle.conditional();
-            let n_pixels = self.frame.n_pixels();
+            let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
             let value = match self.pixels.light {
                 PixelLight::Common => {
                     joint.log_likelihood(sums, light.bank.member(member), self.pixels, &self.noise, n_pixels)
