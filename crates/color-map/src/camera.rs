@@ -80,6 +80,28 @@ impl Camera {
         Self::new(width, height, focal(cx, horizontal_rad), focal(cy, vertical_rad), cx, cy)
     }
 
+    /// The camera of this one's images with squares of `by` × `by` pixels averaged to one; what does not fill a square is cut off at the right and
+    /// at the bottom.
+    ///
+    /// # Errors
+    /// [`ViewError::Camera`]: no square fits into the image, or `by` is 0.
+    ///
+    /// ```
+    /// # use nalgebra::Vector3;
+    /// # use wayfix_color_map::Camera;
+    /// let camera = Camera::from_field_of_view(208, 160, 1.0, 0.8)?;
+    /// let small = camera.shrunk(2)?;
+    /// let (point, half) = (Vector3::new(2.0, 0.3, 0.1), small.project(&Vector3::new(2.0, 0.3, 0.1)).unwrap());
+    /// assert!((camera.project(&point).unwrap() / 2.0 - half).norm() < 1e-12);
+    /// # Ok::<(), wayfix_color_map::ViewError>(())
+    /// ```
+    pub fn shrunk(&self, by: u32) -> Result<Self, ViewError> {
+        let side = |n: u32| n.checked_div(by).unwrap_or(0);
+        let share = 1.0 / f64::from(by.max(1));
+        let [fx, fy, cx, cy] = [self.fx, self.fy, self.cx, self.cy].map(|value| value * share);
+        Self::new(side(self.width), side(self.height), fx, fy, cx, cy)
+    }
+
     /// Columns of the image.
     pub fn width(&self) -> u32 {
         self.width

@@ -27,6 +27,10 @@ pub struct AcquisitionParams {
     /// By how much the frames have to make another place more likely than the one where the robot believes to be, when that is doubted, nats: it
     /// is carried away in one of thousands of frames, and then may be in any of some hundred thousand places.
     pub elsewhere: f64,
+    /// The robot is looked for in images of which squares of this many pixels a side are averaged to one.
+    pub shrink: u32,
+    /// Pixels left out at both ends of each span of the shrunk images.
+    pub edge_margin: u16,
     /// Trajectories that are drawn at first.
     pub n_drawn: usize,
     /// Frames that those are weighed by.
@@ -55,6 +59,8 @@ impl Default for AcquisitionParams {
             n_undecided: 4,
             hopeless: 60.0,
             elsewhere: 20.0,
+            shrink: 2,
+            edge_margin: 1,
             n_drawn: 6000,
             n_coarse: 3,
             n_niches: 150,

@@ -61,7 +61,7 @@ impl Search<'_> {
             let locations = jolted.trajectory.locations(&self.shots, &self.params.camera);
             let camera_pose = locations[at].camera_pose(&self.shots[at].mount);
             let sums = &mut jolted.sums[at * n_colors..][..n_colors];
-            let margin = self.params.pixels.edge_margin;
+            let margin = self.params.acquisition.edge_margin;
             if gather(&mut scratch.projector, |_| Some(&self.frames[at]), &camera_pose, margin, sums).is_ok()
             {
                 self.score(scratch, &mut jolted);
@@ -81,7 +81,7 @@ impl Search<'_> {
         for at in (0..self.shots.len()).rev().step_by(stride) {
             let camera_pose = locations[at].camera_pose(&self.shots[at].mount);
             let sums = &mut candidate.sums[at * n_colors..][..n_colors];
-            let margin = self.params.pixels.edge_margin;
+            let margin = self.params.acquisition.edge_margin;
             if gather(&mut scratch.projector, |_| Some(&self.frames[at]), &camera_pose, margin, sums).is_err()
             {
                 sums.fill(PixelSums::default());

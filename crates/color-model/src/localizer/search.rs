@@ -45,14 +45,19 @@ impl<'a> Search<'a> {
     ) -> Result<Self, ColorModelError> {
         let brightness = shots.iter().map(|shot| shot.image.brightness()).sum::<f64>() / shots.len() as f64;
         let noise = light.bank.member(0).params().pixel_noise + params.pixels.unevenness(brightness);
-        let images = shots.iter().map(|shot| &shot.image);
-        let surroundings = Surroundings::of(images.clone(), &noise, params.pixels.uniform_share);
+        let AcquisitionParams { shrink, .. } = params.acquisition;
+        let images = shots.iter().map(|shot| shot.image.shrunk(shrink)).collect::<Result<Vec<_>, _>>()?;
+        let surroundings = Surroundings::of(images.iter(), &noise, params.pixels.uniform_share);
         let nats = |pixel| {
             background.map_or_else(|| surroundings.nats(pixel), |learned| -learned.log_density(pixel))
         };
         let frames = images
+            .iter()
             .map(|image| Frame::with_background(image, |pixel| Some(nats(pixel))))
             .collect::<Result<_, _>>()?;
+        let camera = camera
+            .shrunk(shrink)
+            .map_err(|_| ColorModelError::OutOfRange { what: "shrinking of images", value: shrink.into() })?;
         Ok(Self { map, camera, area, params, light, shots, frames, noise })
     }
 

@@ -43,6 +43,36 @@ impl YuvImage {
         Ok(Self { width, height, pixels: pixels.iter().map(|rgb| convert(&weights, *rgb)).collect() })
     }
 
+    /// The image with squares of `by` × `by` pixels averaged to one; what does not fill a square is cut off at the right and at the bottom.
+    ///
+    /// # Errors
+    /// When no square fits into the image, or `by` is 0.
+    ///
+    /// ```
+    /// # use wayfix_color_model::YuvImage;
+    /// let image = YuvImage::new(3, 2, vec![[10, 0, 0], [20, 0, 0], [99, 0, 0], [30, 0, 0], [40, 0, 0], [99, 0, 0]])?;
+    /// assert_eq!(image.shrunk(2)?.pixels(), [[25, 0, 0]]);
+    /// # Ok::<(), wayfix_color_model::ColorModelError>(())
+    /// ```
+    pub fn shrunk(&self, by: u32) -> Result<Self, ColorModelError> {
+        let [width, height] = [self.width, self.height].map(|side| side.checked_div(by).unwrap_or(0));
+        let by = by as usize;
+        let n = (by * by) as u32;
+        let mut pixels = Vec::with_capacity((width * height) as usize);
+        for rows in self.pixels.chunks_exact((self.width as usize * by).max(1)) {
+            for column in 0..width as usize {
+                let mut sum = [n / 2; 3];
+                for row in rows.chunks_exact(self.width as usize) {
+                    for pixel in &row[column * by..][..by] {
+                        (0..3).for_each(|channel| sum[channel] += u32::from(pixel[channel]));
+                    }
+                }
+                pixels.push(sum.map(|sum| (sum / n) as u8));
+            }
+        }
+        Self::new(width, height, pixels)
+    }
+
     /// Columns.
     pub fn width(&self) -> u32 {
         self.width
