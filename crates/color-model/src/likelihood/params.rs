@@ -52,7 +52,7 @@ impl Default for PixelParams {
             uneven_brightness: 0.12,
             uneven_chroma: 0.03,
             edge_margin: 1,
-            uniform_share: 0.2,
+            uniform_share: 0.02,
         }
     }
 }

@@ -53,12 +53,12 @@ impl Default for AcquisitionParams {
     fn default() -> Self {
         Self {
             n_frames: 16,
-            every: 15,
+            every: 20,
             n_weighed: 8,
             n_kept: 12,
             n_undecided: 4,
             hopeless: 60.0,
-            elsewhere: 20.0,
+            elsewhere: 40.0,
             shrink: 2,
             edge_margin: 1,
             n_drawn: 6000,

@@ -57,7 +57,7 @@ impl Default for LocalizerParams {
             least_effective: 0.2,
             slow_rate: 0.02,
             fast_rate: 0.3,
-            doubtful_fit: 0.2,
+            doubtful_fit: 0.1,
             lost_fit: 0.05,
         }
     }

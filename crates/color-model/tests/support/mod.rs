@@ -1,6 +1,8 @@
 //! Lights for the tests.
 #![allow(dead_code, reason = "every test binary uses its part")]
 
+pub(crate) mod painted;
+
 use nalgebra::{DMatrix, DVector, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};

@@ -68,7 +68,8 @@ impl Scene {
     }
 
     pub(crate) fn image(&self, pixels: Vec<[u8; 3]>) -> YuvImage {
-        YuvImage::new(self.camera.width(), self.camera.height(), pixels).expect("as many pixels as the camera")
+        YuvImage::new(self.camera.width(), self.camera.height(), pixels)
+            .expect("as many pixels as the camera")
     }
 }
 
