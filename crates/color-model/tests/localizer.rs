@@ -139,6 +139,28 @@ fn a_robot_that_sees_nothing_of_the_map_does_not_pretend_to_know() {
 }
 
 #[test]
+fn parameters_that_make_no_sense_are_refused_before_the_first_frame() {
+    let scene = Scene::new();
+    let refused = |change: &dyn Fn(&mut LocalizerParams)| {
+        let (mut params, mut rng) = (params(), ChaCha8Rng::seed_from_u64(7));
+        change(&mut params);
+        let map = scene.map.clone();
+        let made = ColorLocalizer::new(map, scene.camera, bank(), &Start::Anywhere, params, &mut rng);
+        assert!(matches!(made.err(), Some(ColorModelError::OutOfRange { .. })), "{params:?}");
+    };
+    for value in [f64::NAN, -1.0] {
+        refused(&|params| params.acquisition.elsewhere = value);
+        refused(&|params| params.acquisition.hopeless = value);
+        refused(&|params| params.pixels.uniform_share = value);
+        refused(&|params| params.pixels.uneven_brightness = value);
+        refused(&|params| params.pixels.uneven_chroma = value);
+    }
+    for shrink in [0, 81, u32::MAX] {
+        refused(&|params| params.acquisition.shrink = shrink);
+    }
+}
+
+#[test]
 fn missing_odometry_costs_certainty_and_not_the_robot() {
     let mut scene = Scene::new();
     let body = Pose2::new(0.5, 0.2, 0.4);

@@ -12,16 +12,7 @@ fn lab() -> (Scenery, RgbPicture) {
 
 /// Nothing but a change of place: every other step of a visit does as little as it can.
 fn aside(shift_px: (f64, f64)) -> Visit {
-    Visit {
-        shift_px,
-        cast: [1.0; 3],
-        falloff: 0.0,
-        exposure: 1.0,
-        gamma: 1.0,
-        steepness: 1e-3,
-        levels: (0.0, 255.0),
-        noise: 0.0,
-    }
+    Visit { shift_px, gamma: 1.0, levels: (0.0, 255.0), noise: 0.0, ..Visit::dimmed() }
 }
 
 fn grey(picture: &RgbPicture, x: usize, y: usize) -> [u8; 3] {

@@ -88,17 +88,24 @@ impl PixelParams {
     }
 
     pub(crate) fn check(&self) -> Result<(), ColorModelError> {
-        let Self { independent_pixels, outlier_share, floor, .. } = *self;
-        let check = |what, value: f64, limit: f64| {
-            if value > 0.0 && value <= limit {
-                Ok(())
-            } else {
-                Err(ColorModelError::OutOfRange { what, value })
-            }
+        let check = |what, value, is_sound: bool| {
+            if is_sound { Ok(()) } else { Err(ColorModelError::OutOfRange { what, value }) }
         };
-        check("independent pixels", independent_pixels, f64::MAX)?;
-        check("share of outliers", outlier_share, 1.0)?;
-        check("floor of a colour", floor, f64::INFINITY)
+        let is_share = |value: f64| value > 0.0 && value <= 1.0;
+        let Self { independent_pixels, outlier_share, floor, uniform_share, .. } = *self;
+        check(
+            "independent pixels",
+            independent_pixels,
+            independent_pixels > 0.0 && independent_pixels.is_finite(),
+        )?;
+        check("share of outliers", outlier_share, is_share(outlier_share))?;
+        check("floor of a colour", floor, floor > 0.0)?;
+        check("uniform share of the background", uniform_share, is_share(uniform_share))?;
+        let Self { uneven_brightness, uneven_chroma, .. } = *self;
+        for (what, value) in [("uneven brightness", uneven_brightness), ("uneven chroma", uneven_chroma)] {
+            check(what, value, value >= 0.0 && value.is_finite())?;
+        }
+        Ok(())
     }
 
     /// $`\sum_m \max(-f n_m,\; \sum_{c ∈ m} [\ln p(c | m) - \ln p_{bg}(c)] + o_m \ln ε)`$, tempered.

@@ -1,3 +1,7 @@
+use wayfix_color_map::Camera;
+
+use crate::ColorModelError;
+
 /// How the robot is looked for at the start, and again when it seems to have been carried away.
 ///
 /// One frame is not enough: under a light that is hardly known, some false place explains it better than the true one, with a light to
@@ -74,12 +78,20 @@ impl Default for AcquisitionParams {
 }
 
 impl AcquisitionParams {
-    pub(crate) fn values(&self) -> [(&'static str, f64); 3] {
+    pub(crate) fn values(&self) -> [(&'static str, f64); 5] {
         [
+            ("nats of a hopeless place", self.hopeless),
+            ("lead of the place believed in, nats", self.elsewhere),
             ("least effective share of a pass", self.least_effective),
             ("reach of a pass (m)", self.reach),
             ("turn of a pass (rad)", self.turn),
         ]
+    }
+
+    /// The camera of the shrunk images.
+    pub(crate) fn camera(&self, camera: &Camera) -> Result<Camera, ColorModelError> {
+        let (what, value) = ("shrinking of images", f64::from(self.shrink));
+        camera.shrunk(self.shrink).map_err(|_| ColorModelError::OutOfRange { what, value })
     }
 
     /// Size of the steps after a pass, as a share of those after the first.

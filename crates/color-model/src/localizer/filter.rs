@@ -46,7 +46,7 @@ impl ColorLocalizer {
     /// A localizer that starts where `start` says, in light of which `light` says what is known.
     ///
     /// # Errors
-    /// When a parameter is out of range, the map is empty, or its colours and the light's differ in number.
+    /// When a parameter is out of range or too large for the camera's images, the map is empty, or its colours and the light's differ in number.
     pub fn new<R: Rng + ?Sized>(
         map: Arc<ColorMap>,
         camera: Camera,
@@ -56,6 +56,7 @@ impl ColorLocalizer {
         rng: &mut R,
     ) -> Result<Self, ColorModelError> {
         params.check()?;
+        params.acquisition.camera(&camera)?;
         let (expected, got) = (map.colors().len(), light.n_colors());
         if expected != got {
             return Err(ColorModelError::Dimension { what: "colours of the lighting bank", expected, got });

@@ -20,7 +20,7 @@ pub(crate) struct Found {
     pub(crate) is_known: bool,
 }
 
-/// Looks for the robot in several frames at once, under one light that nobody has seen.
+/// Looks for the robot in several frames at once, under one light.
 pub(crate) struct Search<'a> {
     pub(super) map: &'a Arc<ColorMap>,
     pub(super) camera: Camera,
@@ -55,9 +55,7 @@ impl<'a> Search<'a> {
             .iter()
             .map(|image| Frame::with_background(image, |pixel| Some(nats(pixel))))
             .collect::<Result<_, _>>()?;
-        let camera = camera
-            .shrunk(shrink)
-            .map_err(|_| ColorModelError::OutOfRange { what: "shrinking of images", value: shrink.into() })?;
+        let camera = params.acquisition.camera(&camera)?;
         Ok(Self { map, camera, area, params, light, shots, frames, noise })
     }
 

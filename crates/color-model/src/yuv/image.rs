@@ -57,14 +57,14 @@ impl YuvImage {
     pub fn shrunk(&self, by: u32) -> Result<Self, ColorModelError> {
         let [width, height] = [self.width, self.height].map(|side| side.checked_div(by).unwrap_or(0));
         let by = by as usize;
-        let n = (by * by) as u32;
+        let n = (by * by) as u64;
         let mut pixels = Vec::with_capacity((width * height) as usize);
         for rows in self.pixels.chunks_exact((self.width as usize * by).max(1)) {
             for column in 0..width as usize {
                 let mut sum = [n / 2; 3];
                 for row in rows.chunks_exact(self.width as usize) {
                     for pixel in &row[column * by..][..by] {
-                        (0..3).for_each(|channel| sum[channel] += u32::from(pixel[channel]));
+                        (0..3).for_each(|channel| sum[channel] += u64::from(pixel[channel]));
                     }
                 }
                 pixels.push(sum.map(|sum| (sum / n) as u8));

@@ -62,7 +62,7 @@ pub struct FrameResult {
     pub effective_particles: f64,
     /// Number of particles.
     pub n_particles: usize,
-    /// Share of what the image could be explained by at best that the estimate explains.
+    /// How much better the estimate explains the image than the colours that it shows on average, nats a pixel.
     pub fit: f64,
     /// Log of the mean likelihood ratio to the background, nats a pixel.
     pub log_evidence_per_pixel: f64,
