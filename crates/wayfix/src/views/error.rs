@@ -9,7 +9,7 @@ use wayfix_sensor_log::ImageError;
 #[non_exhaustive]
 pub enum ViewsError {
     /// A file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}", path.display())]
     Read {
         /// Which one.
         path: PathBuf,
@@ -23,7 +23,7 @@ pub enum ViewsError {
         path: PathBuf,
     },
     /// A picture is damaged.
-    #[error("{}: {source}", path.display())]
+    #[error("{} is damaged", path.display())]
     Image {
         /// Which one.
         path: PathBuf,
