@@ -35,6 +35,9 @@ pub enum SlamError {
     /// A landmark with this identity is in the map already.
     #[error("landmark {0} is in the map already")]
     LandmarkExists(LandmarkId),
+    /// First-estimates and invariant filters need to know how robot and landmarks move together.
+    #[error("this linearization needs a landmark model that implements `symmetries`")]
+    NoSymmetry,
     /// A parameter is outside its range.
     #[error("parameter {name} is {value}, must be {range}")]
     Parameter {

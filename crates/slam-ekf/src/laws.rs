@@ -14,6 +14,8 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 /// 3. The robot Jacobian of `initialize` is the derivative of its landmark, and its covariance is symmetric positive definite.
 /// 4. A new landmark is no surer than the measurement: $`H_m N H_m^T ⪰ R`$.
 ///
+/// 5. Moving robot and landmark along a symmetry changes no measurement, and every symmetry moves the robot in a way of its own.
+///
 /// A model whose single measurement does not place a landmark says so by landmarks that are not finite; it is held to the first law only.
 ///
 /// ```
@@ -46,10 +48,35 @@ where
             let landmark_is_seen = SeenAtLandmark { model, robot };
             laws::sensor(&landmark_is_seen, std::slice::from_ref(landmark))
                 .map_err(at("law 1, by the landmark"))?;
+            symmetry(model, robot, landmark).map_err(at("symmetry"))?;
             initialization(model, robot, &model.expected(robot, landmark)).map_err(at("initialize"))?;
         }
     }
     Ok(())
+}
+
+fn symmetry<M: LandmarkModel>(model: &M, robot: &M::Robot, landmark: &M::Landmark) -> Result<(), Violation>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    let (of_robot, of_landmark) = (model.robot_symmetry(robot), model.landmark_symmetry(landmark));
+    let n_names = model.symmetries().len();
+    let n_odd = of_robot.ncols().abs_diff(n_names) + of_landmark.ncols().abs_diff(n_names);
+    within("one column for every name of a symmetry (law 5)", n_odd as f64, 0.0)?;
+    if n_names == 0 {
+        return Ok(());
+    }
+    let by_robot = model.robot_jacobian(robot, landmark);
+    let by_landmark = model.landmark_jacobian(robot, landmark);
+    let seen = &by_robot * &of_robot + &by_landmark * &of_landmark;
+    let size = by_robot.amax() * of_robot.amax() + by_landmark.amax() * of_landmark.amax();
+    within(
+        "a symmetry changes no measurement (law 5)",
+        seen.iter().fold(0.0, |m, x| x.abs().max(m)),
+        1e-6 * size,
+    )?; // numerical Jacobians
+    let smallest = of_robot.singular_values().iter().copied().fold(f64::INFINITY, f64::min);
+    within("every symmetry moves the robot (law 5)", if smallest > 1e-9 { 0.0 } else { 1.0 }, 0.0)
 }
 
 fn initialization<M: LandmarkModel>(

@@ -34,12 +34,14 @@ pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
 pub use error::SlamError;
 pub use filter::{
-    Confirmation, EkfSlam, LandmarkEstimate, OutlierRule, PredictedSighting, SlamParams, UpdateOrder,
+    Confirmation, EkfSlam, LandmarkEstimate, Linearization, OutlierRule, PredictedSighting, SlamParams,
+    UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    IncrementMotion, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor,
-    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion,
+    IncrementMotion, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, RelativePosition,
+    RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl,
+    VelocityMotion, point_symmetry, pose_symmetry,
 };
 pub use outcome::{Outcome, StepReport};
 

@@ -2,14 +2,17 @@
 
 mod confirmation;
 mod gates;
+mod linearization;
 mod map;
 mod params;
 mod predict;
 mod sight;
 mod state;
+mod step;
 mod update;
 
 pub use confirmation::Confirmation;
+pub use linearization::Linearization;
 pub use params::{OutlierRule, SlamParams, UpdateOrder};
 pub use sight::PredictedSighting;
 pub use state::{EkfSlam, LandmarkEstimate};

@@ -1,12 +1,14 @@
 //! Motions and sensors of planar robots.
 
 mod increment;
+mod planar;
 mod range_bearing;
 mod relative_position;
 mod scaled;
 mod velocity;
 
 pub use increment::IncrementMotion;
+pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};
 pub use scaled::{ScaledMotion, ScaledPose, ScaledRangeBearingSensor};
