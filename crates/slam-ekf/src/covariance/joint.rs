@@ -66,7 +66,7 @@ impl JointCovariance {
     /// Cost $`O(n^2)`$ for each column of `A` that is not zero. The rows of the robot must be zero: [`move_robot`](Self::move_robot) moves it.
     pub(crate) fn shear(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>) {
         let leaned_on = b * self.block(0..b.ncols(), 0..self.dimension); // B P_r·
-        let own = (&leaned_on.columns(0, b.ncols()) * b.transpose()) * 0.5;
+        let own = leaned_on.columns(0, b.ncols()) * b.transpose() * 0.5;
         let half = leaned_on + own * a.transpose();
         let half = half.transpose();
         let mut p = self.storage.view_mut((0, 0), (self.dimension, self.dimension));
