@@ -31,7 +31,10 @@ mod models;
 mod outcome;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
-pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
+pub use association::{
+    Association, DataAssociation, JointCompatibility, JointCompatibilityParams, KnownIds, NearestNeighbour,
+    NearestNeighbourParams,
+};
 pub use error::SlamError;
 pub use filter::{
     Confirmation, EkfSlam, LandmarkEstimate, Linearization, OutlierRule, PredictedSighting, SlamParams,
@@ -39,9 +42,9 @@ pub use filter::{
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    IncrementMotion, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, RelativePosition,
-    RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl,
-    VelocityMotion, point_symmetry, pose_symmetry,
+    AckermannControl, AckermannMotion, AckermannVehicle, IncrementMotion, Mounted, PLANAR_SYMMETRIES,
+    RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose,
+    ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 pub use outcome::{Outcome, StepReport};
 
