@@ -41,6 +41,17 @@ pub fn rms_distance(
     (n > 0).then(|| (sum / n as f64).sqrt())
 }
 
+/// Median distance of the pairs after moving the first of each by `motion`; `None` when there are none.
+pub fn median_distance(
+    pairs: impl Iterator<Item = (Vector2<f64>, Vector2<f64>)>,
+    motion: &Pose2<f64>,
+) -> Option<f64> {
+    let mut distances: Vec<f64> =
+        pairs.map(|(estimated, truth)| (motion.transform(&estimated) - truth).norm()).collect();
+    distances.sort_by(f64::total_cmp);
+    distances.get(distances.len() / 2).copied()
+}
+
 #[cfg(test)]
 mod tests {
     use rand::RngExt;

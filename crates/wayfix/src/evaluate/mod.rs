@@ -3,11 +3,13 @@
 mod alignment;
 mod interval;
 mod landmarks;
+mod positions;
 mod trajectory;
 mod truth;
 
-pub use alignment::{align, rms_distance};
+pub use alignment::{align, median_distance, rms_distance};
 pub use interval::{MeanInterval, proportion_interval};
 pub use landmarks::{Correspondence, landmark_errors};
+pub use positions::TruePositions;
 pub use trajectory::{Sample, TrajectoryErrors, trajectory_errors};
 pub use truth::TrueTrack;

@@ -1,6 +1,8 @@
+use wayfix_estimation_traits::{LieGroup, Pose2};
+
 use super::{Keyframe, SlamRun};
 use crate::{
-    evaluate::{Sample, landmark_errors, trajectory_errors},
+    evaluate::{Sample, align, landmark_errors, median_distance, rms_distance, trajectory_errors},
     report::{Metric, Run},
 };
 
@@ -28,6 +30,7 @@ fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
     if let Some(errors) = trajectory_errors(&dead_reckoning) {
         metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
     }
+    metrics.extend(position_metrics(run));
     if let Some((rmse, aligned)) =
         landmark_errors(&run.landmarks(), &run.true_landmarks, run.correspondence())
     {
@@ -40,6 +43,26 @@ fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
     metrics.push(Metric::new("n_landmarks", run.system.filter().n_landmarks() as f64, ""));
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
     (metrics, timings(run.system.keyframes()))
+}
+
+/// Where the log has true positions of an antenna and no true poses.
+fn position_metrics(run: &SlamRun) -> Vec<Metric> {
+    let positions = run.positions();
+    if !run.samples().is_empty() || positions.is_empty() {
+        return Vec::new();
+    }
+    let estimated = positions.iter().map(|(_, estimate, truth)| (*estimate, *truth));
+    let reckoned =
+        positions.iter().map(|(keyframe, _, truth)| (run.system.antenna(&keyframe.dead_reckoning), *truth));
+    let motion = align(estimated.clone());
+    let mut metrics = Vec::new();
+    let mut add = |name, value: Option<f64>| metrics.extend(value.map(|value| Metric::new(name, value, "m")));
+    add("ate_rmse_m", rms_distance(estimated.clone(), &Pose2::identity()));
+    add("ate_median_m", median_distance(estimated.clone(), &Pose2::identity()));
+    add("ate_aligned_rmse_m", rms_distance(estimated.clone(), &motion));
+    add("ate_aligned_median_m", median_distance(estimated, &motion));
+    add("dead_reckoning_aligned_rmse_m", rms_distance(reckoned.clone(), &align(reckoned)));
+    metrics
 }
 
 fn timings(keyframes: &[Keyframe]) -> Vec<Metric> {

@@ -12,7 +12,7 @@ mod system;
 
 pub use estimates::EstimateLog;
 pub use figures::summarize;
-pub use params::{AssociationRule, Profile, RobotParams, SlamSystemParams};
+pub use params::{AssociationRule, MountingParams, Profile, RobotParams, SlamSystemParams};
 pub use pictures::pictures;
 pub use run::{SlamRun, run};
-pub use system::{Keyframe, SlamSystem};
+pub use system::{Keyframe, PointSensor, SlamSystem};

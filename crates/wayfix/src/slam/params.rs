@@ -2,8 +2,8 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{Format, LogMeta};
 use wayfix_slam_ekf::{
-    Confirmation, IncrementMotion, NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams,
-    VelocityMotion,
+    AckermannVehicle, Confirmation, IncrementMotion, JointCompatibilityParams, NearestNeighbourParams,
+    OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
 use crate::settings::over_defaults;
@@ -25,8 +25,15 @@ pub struct SlamSystemParams {
     /// How sightings find their landmarks; when not given, by identity where the log has identities, else nearest neighbour.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub association: Option<AssociationRule>,
+    /// Start pose, m and rad; when not given, the truth where odometry starts, a fit to the first true positions, or the origin.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub start: Option<[f64; 3]>,
     /// Timing and calibration of the robot.
     pub robot: RobotParams,
+    /// Where things sit on the robot.
+    pub mounting: MountingParams,
+    /// Measures of a car-like vehicle.
+    pub vehicle: AckermannVehicle,
     /// Noise of the range-bearing sensor.
     pub sensor: RangeBearingSensor,
     /// Noise of velocity odometry.
@@ -37,8 +44,26 @@ pub struct SlamSystemParams {
     pub filter: SlamParams,
     /// Thresholds of nearest neighbour.
     pub nearest_neighbour: NearestNeighbourParams,
-    /// What a landmark must show that nearest neighbour found; takes the place of the filter's `confirmation` then.
-    pub nearest_neighbour_confirmation: Confirmation,
+    /// Thresholds of joint compatibility.
+    pub joint_compatibility: JointCompatibilityParams,
+    /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
+    pub unlabelled_confirmation: Confirmation,
+}
+
+/// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MountingParams {
+    /// The range-bearing sensor, m.
+    pub sensor_x: f64,
+    /// The range-bearing sensor, m.
+    pub sensor_y: f64,
+    /// Which way it looks, rad; 0 ahead, counter-clockwise.
+    pub sensor_heading: f64,
+    /// The antenna whose true positions the log has, m.
+    pub antenna_x: f64,
+    /// The antenna, m.
+    pub antenna_y: f64,
 }
 
 /// Timing and calibration of a robot.
@@ -66,6 +91,8 @@ pub enum Profile {
     /// The simulated range-bearing logs for comparing programs: 0.02 m and 0.005 rad for every increment, 0.05 m and 0.01 rad
     /// for every sighting.
     RangeBearing,
+    /// The truck of the Victoria Park set: a car with a laser that finds tree trunks.
+    VictoriaPark,
     /// The robots of the UTIAS set: iRobot Create with a monocular camera that reads bar codes.
     Utias,
 }
@@ -76,6 +103,7 @@ impl Profile {
         match meta.first_format() {
             Format::Utias => Self::Utias,
             Format::RangeBearing => Self::RangeBearing,
+            Format::VictoriaPark => Self::VictoriaPark,
             _ => Self::Generic,
         }
     }
@@ -89,6 +117,8 @@ pub enum AssociationRule {
     Known,
     /// Individual-compatibility nearest neighbour with two thresholds.
     Nn,
+    /// Joint compatibility branch and bound.
+    Jcbb,
 }
 
 impl SlamSystemParams {
@@ -98,13 +128,17 @@ impl SlamSystemParams {
             Profile::Generic => Self {
                 profile,
                 association: None,
+                start: None,
                 robot: RobotParams::default(),
+                mounting: MountingParams::default(),
+                vehicle: AckermannVehicle::default(),
                 sensor: RangeBearingSensor::default(),
                 velocity: VelocityMotion::default(),
                 increment: IncrementMotion::default(),
                 filter: SlamParams::default(),
                 nearest_neighbour: NearestNeighbourParams::default(),
-                nearest_neighbour_confirmation: Confirmation {
+                joint_compatibility: JointCompatibilityParams::default(),
+                unlabelled_confirmation: Confirmation {
                     n_sightings: 3,
                     patience: Some(20),
                     ..Confirmation::default()
@@ -117,6 +151,30 @@ impl SlamSystemParams {
                     heading_variance_per_radian: 0.0,
                     translation_variance_per_step: 0.02 * 0.02,
                     heading_variance_per_step: 0.005 * 0.005,
+                },
+                ..Self::of(Profile::Generic)
+            }
+            .named(profile),
+            Profile::VictoriaPark => Self {
+                mounting: MountingParams {
+                    sensor_x: 3.78,
+                    sensor_y: 0.5,
+                    sensor_heading: 0.0,
+                    antenna_x: 3.78,
+                    antenna_y: 0.5,
+                },
+                sensor: RangeBearingSensor {
+                    range_sigma: 0.3,
+                    range_sigma_per_meter: 0.0,
+                    bearing_sigma: 0.02,
+                },
+                velocity: VelocityMotion {
+                    linear_sigma: 0.0,
+                    angular_sigma: 0.0,
+                    turning_sigma: 0.05,
+                    linear_sigma_per_meter: 0.1,
+                    angular_sigma_per_meter: 0.01,
+                    ..VelocityMotion::default()
                 },
                 ..Self::of(Profile::Generic)
             }
@@ -206,7 +264,7 @@ mod tests {
 
     #[test]
     fn parameters_survive_being_written() {
-        for profile in [Profile::Generic, Profile::RangeBearing, Profile::Utias] {
+        for profile in [Profile::Generic, Profile::RangeBearing, Profile::VictoriaPark, Profile::Utias] {
             let params = SlamSystemParams::of(profile);
             let text = toml::to_string(&params).unwrap();
             assert_eq!(SlamSystemParams::from_toml(&text, Profile::Generic).unwrap(), params);

@@ -37,9 +37,10 @@ fn map(run: &SlamRun, samples: &[(Keyframe, Sample)]) -> MapPlot {
     let landmark =
         |covariance: Matrix2<f64>| [[covariance.m11, covariance.m12], [covariance.m21, covariance.m22]];
     let landmarks = run.system.filter().landmarks();
+    let fixes = run.true_positions.fixes().iter().map(|(_, fix)| (fix.x, fix.y));
     MapPlot {
         title: "Path and map with 2σ ellipses".to_owned(),
-        truth: samples.iter().map(|(_, sample)| point(&sample.truth)).collect(),
+        truth: samples.iter().map(|(_, sample)| point(&sample.truth)).chain(fixes).collect(),
         estimate: keyframes.iter().map(|keyframe| point(&keyframe.pose)).collect(),
         dead_reckoning: keyframes.iter().map(|keyframe| point(&keyframe.dead_reckoning)).collect(),
         landmarks: landmarks

@@ -1,6 +1,6 @@
 use std::ops::RangeInclusive;
 
-use wayfix_slam_ekf::{Confirmation, NearestNeighbour, SlamError};
+use wayfix_slam_ekf::{Confirmation, JointCompatibility, NearestNeighbour, SlamError};
 
 use super::SlamSystemParams;
 
@@ -14,6 +14,9 @@ const NOT_NEGATIVE: Range = (0.0..=1e6, "from 0 to 1e6");
 /// A sensor without noise leaves nothing to invert.
 const SENSOR_NOISE: Range = (1e-9..=1e6, "from 1e-9 to 1e6");
 const TIMES_SEEN: Range = (1.0..=1e6, "from 1 to 1e6");
+/// No robot is larger than a kilometre.
+const PLACE: Range = (-1e3..=1e3, "from -1000 to 1000");
+const WHEEL_BASE: Range = (1e-3..=1e3, "from 0.001 to 1000 m");
 const THRESHOLD: Range = (f64::MIN_POSITIVE..=f64::INFINITY, "positive");
 
 impl SlamSystemParams {
@@ -31,9 +34,10 @@ impl SlamSystemParams {
     /// # Errors
     /// [`SlamError::Parameter`] for the first that is not.
     pub fn validated(self) -> Result<Self, SlamError> {
-        let Self { robot, sensor, velocity, increment, filter, .. } = &self;
-        let nearest_neighbour_confirmation = &self.nearest_neighbour_confirmation;
+        let Self { robot, mounting, vehicle, sensor, velocity, increment, filter, .. } = &self;
+        let unlabelled_confirmation = &self.unlabelled_confirmation;
         NearestNeighbour::new(self.nearest_neighbour)?;
+        JointCompatibility::new(self.joint_compatibility)?;
         let nearest_range_sigma = sensor.range_sigma + sensor.range_sigma_per_meter;
         let times_seen = |confirmation: &Confirmation| confirmation.n_sightings as f64;
         for (name, value, (range, words)) in [
@@ -41,6 +45,13 @@ impl SlamSystemParams {
             ("robot.command_delay", robot.command_delay, DELAY),
             ("robot.command_erosion", robot.command_erosion, DELAY),
             ("robot.range_scale_sigma", robot.range_scale_sigma, NOT_NEGATIVE),
+            ("mounting.sensor_x", mounting.sensor_x, PLACE),
+            ("mounting.sensor_y", mounting.sensor_y, PLACE),
+            ("mounting.sensor_heading", mounting.sensor_heading, PLACE),
+            ("mounting.antenna_x", mounting.antenna_x, PLACE),
+            ("mounting.antenna_y", mounting.antenna_y, PLACE),
+            ("vehicle.wheel_base", vehicle.wheel_base, WHEEL_BASE),
+            ("vehicle.wheel_offset", vehicle.wheel_offset, PLACE),
             ("sensor.range_sigma", sensor.range_sigma, NOT_NEGATIVE),
             ("sensor.range_sigma_per_meter", sensor.range_sigma_per_meter, NOT_NEGATIVE),
             ("sensor.range_sigma at one metre", nearest_range_sigma, SENSOR_NOISE),
@@ -48,6 +59,8 @@ impl SlamSystemParams {
             ("velocity.linear_sigma", velocity.linear_sigma, NOT_NEGATIVE),
             ("velocity.angular_sigma", velocity.angular_sigma, NOT_NEGATIVE),
             ("velocity.turning_sigma", velocity.turning_sigma, NOT_NEGATIVE),
+            ("velocity.linear_sigma_per_meter", velocity.linear_sigma_per_meter, NOT_NEGATIVE),
+            ("velocity.angular_sigma_per_meter", velocity.angular_sigma_per_meter, NOT_NEGATIVE),
             ("velocity.standing_factor", velocity.standing_factor, NOT_NEGATIVE),
             ("velocity.speed_loss_in_turns", velocity.speed_loss_in_turns, NOT_NEGATIVE),
             (
@@ -65,16 +78,8 @@ impl SlamSystemParams {
             ("increment.heading_variance_per_step", increment.heading_variance_per_step, NOT_NEGATIVE),
             ("filter.confirmation.n_sightings", times_seen(&filter.confirmation), TIMES_SEEN),
             ("filter.confirmation.contradiction", filter.confirmation.contradiction, THRESHOLD),
-            (
-                "nearest_neighbour_confirmation.n_sightings",
-                times_seen(nearest_neighbour_confirmation),
-                TIMES_SEEN,
-            ),
-            (
-                "nearest_neighbour_confirmation.contradiction",
-                nearest_neighbour_confirmation.contradiction,
-                THRESHOLD,
-            ),
+            ("unlabelled_confirmation.n_sightings", times_seen(unlabelled_confirmation), TIMES_SEEN),
+            ("unlabelled_confirmation.contradiction", unlabelled_confirmation.contradiction, THRESHOLD),
         ] {
             if !range.contains(&value) {
                 return Err(SlamError::Parameter { name, value, range: words });
@@ -113,7 +118,9 @@ mod tests {
         assert!(paths.len() > 20, "{paths:?}");
         let in_the_filter = ["filter.gate_probability", "filter.student_t_degrees_of_freedom"];
         for path in paths.iter().filter(|path| !in_the_filter.contains(&path.as_str())) {
-            for value in ["nan", "-1.0", "-inf"] {
+            let may_be_negative = path.starts_with("mounting.") || path == "vehicle.wheel_offset";
+            let low = if may_be_negative { "-1e4" } else { "-1.0" };
+            for value in ["nan", low, "-inf"] {
                 let Err(SlamError::Parameter { name, .. }) = with(path, value).validated() else {
                     panic!("{path} = {value} passes");
                 };
@@ -125,7 +132,7 @@ mod tests {
 
     #[test]
     fn the_defaults_of_every_profile_are_in_range() {
-        for profile in [Profile::Generic, Profile::RangeBearing, Profile::Utias] {
+        for profile in [Profile::Generic, Profile::RangeBearing, Profile::VictoriaPark, Profile::Utias] {
             assert!(SlamSystemParams::of(profile).validated().is_ok());
         }
     }

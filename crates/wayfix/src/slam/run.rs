@@ -7,7 +7,7 @@ use wayfix_sensor_log::{Data, Record, Stamp, Target};
 
 use super::{AssociationRule, Keyframe, SlamSystem, SlamSystemParams};
 use crate::{
-    evaluate::{Correspondence, Sample, TrueTrack},
+    evaluate::{Correspondence, Sample, TruePositions, TrueTrack, align},
     system::{Events, System, drive},
 };
 
@@ -19,6 +19,8 @@ pub struct SlamRun {
     pub association: AssociationRule,
     /// True poses, where the log has them.
     pub truth: TrueTrack,
+    /// True positions of the antenna, where the log has them.
+    pub true_positions: TruePositions,
     /// True landmarks, where the log has them.
     pub true_landmarks: BTreeMap<u32, Vector2<f64>>,
     /// Keyframes up to here are compared with truth: the last stamp that both odometry and truth have.
@@ -27,7 +29,8 @@ pub struct SlamRun {
 
 /// Runs EKF-SLAM over the records of a log and shows the system to `observe` after each.
 ///
-/// The start pose is the truth where odometry starts, else the origin; nothing else ties the run to the truth.
+/// The start pose is the truth where odometry starts. Where the log has positions only, it is the pose from which the first metres of the
+/// path fit them best; else the origin. Nothing else ties the run to the truth.
 ///
 /// # Errors
 /// When there is no odometry, no sighting, or none that can be used, or a parameter is out of range.
@@ -53,8 +56,15 @@ pub fn run(
         bail!("no sighting carries an identity: use nearest neighbour (--association nn)");
     }
     let truth = TrueTrack::from_records(records);
-    let start = truth.at(start_stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0));
-    let mut system = SlamSystem::new(params.clone(), association, start_stamp, start)?;
+    let true_positions = TruePositions::from_records(records);
+    let from = |start| SlamSystem::new(params.clone(), association, start_stamp, start);
+    let origin = Pose2::new(0.0, 0.0, 0.0);
+    let start = match (params.start, truth.at(start_stamp)) {
+        (Some([x, y, heading]), _) => Pose2::new(x, y, heading),
+        (None, Some(pose)) => pose,
+        (None, None) => fitted_start(from(origin)?, records, &true_positions),
+    };
+    let mut system = from(start)?;
     drive(&mut system, records, observe);
     if !has_used_a_sighting(system.events()) {
         bail!(
@@ -63,8 +73,16 @@ pub fn run(
         );
     }
     let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or(start_stamp);
-    let evaluated_until = truth.last_stamp().map_or(last_odometry, |stamp| stamp.min(last_odometry));
-    Ok(SlamRun { system, association, truth, true_landmarks: true_landmarks(records), evaluated_until })
+    let last_truth = truth.last_stamp().or(true_positions.last_stamp());
+    let evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
+    Ok(SlamRun {
+        system,
+        association,
+        truth,
+        true_positions,
+        true_landmarks: true_landmarks(records),
+        evaluated_until,
+    })
 }
 
 impl SlamRun {
@@ -76,6 +94,15 @@ impl SlamRun {
         };
         self.system.keyframes().iter().filter_map(sample).collect()
     }
+    /// Estimated positions of the antenna with the true ones, for logs whose truth has no headings.
+    pub fn positions(&self) -> Vec<(Keyframe, Vector2<f64>, Vector2<f64>)> {
+        let pair = |keyframe: &Keyframe| {
+            let truth = self.true_positions.near(keyframe.stamp)?;
+            let until = keyframe.stamp <= self.evaluated_until;
+            until.then(|| (*keyframe, self.system.antenna(&keyframe.pose), truth))
+        };
+        self.system.keyframes().iter().filter_map(pair).collect()
+    }
     /// Estimated landmark positions.
     pub fn landmarks(&self) -> BTreeMap<u32, Vector2<f64>> {
         self.system.filter().landmarks().map(|landmark| (landmark.id.0, landmark.mean)).collect()
@@ -84,13 +111,34 @@ impl SlamRun {
     pub fn correspondence(&self) -> Correspondence {
         match self.association {
             AssociationRule::Known => Correspondence::ById,
-            AssociationRule::Nn => Correspondence::Nearest,
+            AssociationRule::Nn | AssociationRule::Jcbb => Correspondence::Nearest,
         }
     }
     /// What happened.
     pub fn events(&mut self) -> &mut Events {
         self.system.events()
     }
+}
+
+/// Metres of the path whose fit to the true positions gives the start pose: long against the errors of the fixes, short against those of
+/// the path.
+const START_LENGTH: f64 = 40.0;
+
+/// The start from which the first metres of a run fit the true positions best; the origin when there are none.
+fn fitted_start(mut pilot: SlamSystem, records: &[Record], positions: &TruePositions) -> Pose2<f64> {
+    let mut travelled = 0.0;
+    let mut last = Vector2::zeros();
+    let is_short = |record: &&Record| {
+        let _ = pilot.take(record); // what is refused here is refused, and counted, again
+        let now = pilot.dead_reckoning().translation;
+        travelled += (now - last).norm();
+        last = now;
+        travelled < START_LENGTH
+    };
+    records.iter().take_while(is_short).for_each(drop);
+    let pair = |keyframe: &Keyframe| Some((pilot.antenna(&keyframe.pose), positions.near(keyframe.stamp)?));
+    let pairs: Vec<_> = pilot.keyframes().iter().filter_map(pair).collect();
+    align(pairs.into_iter())
 }
 
 fn has_used_a_sighting(events: &Events) -> bool {
@@ -118,7 +166,8 @@ fn start_stamp(records: &[Record]) -> Option<Stamp> {
 }
 
 fn odometry_stamp(record: &Record) -> Option<Stamp> {
-    matches!(record.data, Data::Velocity(_) | Data::OdometryIncrement(_)).then_some(record.stamp)
+    matches!(record.data, Data::Velocity(_) | Data::Ackermann(_) | Data::OdometryIncrement(_))
+        .then_some(record.stamp)
 }
 
 /// Whether any sighting of a landmark carries an identity; `None` when there are no such sightings.

@@ -3,15 +3,16 @@ use std::{
     time::Duration,
 };
 
-use nalgebra::{Matrix3, Matrix4, Vector4};
+use nalgebra::{Matrix3, Matrix4, Vector2, Vector4};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
-use wayfix_sensor_log::{Data, Record, Sighting, Stamp, Target, Velocity};
+use wayfix_sensor_log::{AckermannDrive, Data, Record, Sighting, Stamp, Target, Velocity};
 use wayfix_slam_ekf::{
-    EkfSlam, KnownIds, LandmarkId, NearestNeighbour, Observation, Outcome, RangeBearing, ScaledMotion,
-    ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams, StepReport,
+    EkfSlam, JointCompatibility, KnownIds, LandmarkId, Mounted, NearestNeighbour, Observation, Outcome,
+    RangeBearing, RangeBearingSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor, SlamError,
+    SlamParams, StepReport,
 };
 
-use super::{AssociationRule, SlamSystemParams, commands::Commands, in_sequence::InSequence};
+use super::{AssociationRule, MountingParams, SlamSystemParams, commands::Commands, in_sequence::InSequence};
 use crate::system::{Events, Stopwatch, System};
 
 /// The estimate at the stamp of one look of the sensor, from everything up to it.
@@ -33,10 +34,13 @@ pub struct Keyframe {
     pub step: Duration,
 }
 
+/// Points seen by a range-bearing sensor that may sit anywhere on the robot and whose scale is estimated.
+pub type PointSensor = ScaledRangeBearingSensor<Mounted<RangeBearingSensor>>;
+
 /// EKF-SLAM that takes records.
 pub struct SlamSystem {
     params: SlamSystemParams,
-    filter: EkfSlam<ScaledRangeBearingSensor>,
+    filter: EkfSlam<PointSensor>,
     association: Rule,
     commands: Commands,
     /// Velocities or increments: whichever came first.
@@ -55,6 +59,7 @@ const FASTEST: f64 = 1e3;
 enum Rule {
     Known(KnownIds),
     NearestNeighbour(NearestNeighbour),
+    JointCompatibility(JointCompatibility),
 }
 
 impl SlamSystem {
@@ -72,13 +77,18 @@ impl SlamSystem {
         let association = match rule {
             AssociationRule::Known => Rule::Known(KnownIds),
             AssociationRule::Nn => Rule::NearestNeighbour(NearestNeighbour::new(params.nearest_neighbour)?),
+            AssociationRule::Jcbb => {
+                Rule::JointCompatibility(JointCompatibility::new(params.joint_compatibility)?)
+            }
         };
         let confirmation = match rule {
             AssociationRule::Known => params.filter.confirmation,
-            AssociationRule::Nn => params.nearest_neighbour_confirmation,
+            AssociationRule::Nn | AssociationRule::Jcbb => params.unlabelled_confirmation,
         };
         let filter_params = SlamParams { confirmation, ..params.filter };
-        let sensor = ScaledRangeBearingSensor(params.sensor);
+        let MountingParams { sensor_x, sensor_y, sensor_heading, .. } = params.mounting;
+        let mount = Pose2::new(sensor_x, sensor_y, sensor_heading);
+        let sensor = ScaledRangeBearingSensor(Mounted { sensor: params.sensor, mount });
         let state = ScaledPose { pose: start, log_range_scale: 0.0 };
         let variances = Vector4::new(0.0, 0.0, 0.0, params.robot.range_scale_sigma.powi(2));
         let covariance = Matrix4::from_diagonal(&variances);
@@ -97,8 +107,17 @@ impl SlamSystem {
     }
 
     /// The filter: robot, map, covariance.
-    pub fn filter(&self) -> &EkfSlam<ScaledRangeBearingSensor> {
+    pub fn filter(&self) -> &EkfSlam<PointSensor> {
         &self.filter
+    }
+    /// Where odometry alone would put the robot.
+    pub fn dead_reckoning(&self) -> &Pose2<f64> {
+        &self.dead_reckoning
+    }
+    /// Where the antenna is when the robot is at `pose`.
+    pub fn antenna(&self, pose: &Pose2<f64>) -> Vector2<f64> {
+        let MountingParams { antenna_x, antenna_y, .. } = self.params.mounting;
+        pose.transform(&Vector2::new(antenna_x, antenna_y))
     }
     /// One estimate for every look of the sensor at landmarks.
     pub fn keyframes(&self) -> &[Keyframe] {
@@ -114,6 +133,12 @@ impl SlamSystem {
         }
         self.commands.push(stamp, velocity);
         self.advance_to(self.exposure(stamp))
+    }
+
+    /// A car's encoder and steering are the velocity of its rear axle.
+    fn take_drive(&mut self, stamp: Stamp, drive: AckermannDrive) -> Result<(), String> {
+        let moved = self.params.vehicle.velocity(drive.wheel_speed, drive.steering, 0.0);
+        self.take_velocity(stamp, Velocity { linear: moved.linear, angular: moved.angular })
     }
 
     fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
@@ -141,6 +166,7 @@ impl SlamSystem {
         let report = match &mut self.association {
             Rule::Known(rule) => self.filter.update(&observations, rule),
             Rule::NearestNeighbour(rule) => self.filter.update(&observations, rule),
+            Rule::JointCompatibility(rule) => self.filter.update(&observations, rule),
         };
         self.step += stopwatch.elapsed();
         let report = report.map_err(|error| error.to_string())?;
@@ -256,11 +282,14 @@ fn event_name(outcome: &Outcome<RangeBearing>) -> &'static str {
 impl System for SlamSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
-            Data::Velocity(_) | Data::OdometryIncrement(_) if !self.moves_by(&record.data) => {
+            Data::Velocity(_) | Data::OdometryIncrement(_) | Data::Ackermann(_)
+                if !self.moves_by(&record.data) =>
+            {
                 self.events.count("second_odometry");
                 Ok(())
             }
             Data::Velocity(velocity) => self.take_velocity(record.stamp, *velocity),
+            Data::Ackermann(drive) => self.take_drive(record.stamp, *drive),
             Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
             Data::Sightings(sightings) => self.take_sightings(record.stamp, sightings),
             _ => Ok(()),
