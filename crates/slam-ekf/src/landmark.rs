@@ -72,6 +72,11 @@ where
         measurement.local(measurement).iter().all(|entry| entry.is_finite())
     }
 
+    /// Whether a landmark that should look like this is within reach and view, so that not seeing it means something. By default: always.
+    fn should_see(&self, _expected: &Self::Measurement) -> bool {
+        true
+    }
+
     /// Names of the ways to move robot and map together that no measurement can see, such as "translation along x".
     ///
     /// None by default: then there is only the standard filter, and the observability toolbox names nothing.

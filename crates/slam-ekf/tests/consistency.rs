@@ -27,7 +27,7 @@ fn average_nees(belief: f64) -> f64 {
         translation_variance_per_step: x * x,
         heading_variance_per_step: turn * turn,
     };
-    let sensor = RangeBearingSensor { range_sigma, range_sigma_per_meter: 0.0, bearing_sigma };
+    let sensor = RangeBearingSensor { range_sigma, bearing_sigma, ..RangeBearingSensor::default() };
     let nees = |seed| {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let landmarks = common::landmarks(12, &mut rng);
@@ -76,7 +76,7 @@ fn share_outside_on_a_long_loop(linearization: Linearization, n_anchors: usize) 
             heading_variance_per_step: turn * turn,
         };
         let [range_sigma, bearing_sigma] = world.sighting;
-        let sensor = RangeBearingSensor { range_sigma, range_sigma_per_meter: 0.0, bearing_sigma };
+        let sensor = RangeBearingSensor { range_sigma, bearing_sigma, ..RangeBearingSensor::default() };
         let params = SlamParams { linearization, ..SlamParams::default() };
         let mut slam = EkfSlam::new(sensor, params, world.start()).unwrap();
         for (id, landmark) in landmarks.iter().take(n_anchors).enumerate() {

@@ -33,7 +33,7 @@ fn landmarks() -> Vec<Vector2<f64>> {
 
 #[test]
 fn of_every_landmark_model() {
-    let sensor = RangeBearingSensor { range_sigma: 0.1, range_sigma_per_meter: 0.02, bearing_sigma: 0.01 };
+    let sensor = RangeBearingSensor { range_sigma: 0.1, range_sigma_per_meter: 0.02, ..Default::default() };
     laws::landmark_model(&sensor, &poses(), &landmarks()).unwrap();
     laws::landmark_model(&RelativePositionSensor { sigma: 0.1 }, &poses(), &landmarks()).unwrap();
     laws::landmark_model(&ScaledRangeBearingSensor(sensor), &scaled(&poses()), &landmarks()).unwrap();
@@ -99,8 +99,13 @@ enum Wrong {
     Twisted,
 }
 
-const GOOD: RangeBearingSensor =
-    RangeBearingSensor { range_sigma: 0.1, range_sigma_per_meter: 0.02, bearing_sigma: 0.01 };
+const GOOD: RangeBearingSensor = RangeBearingSensor {
+    range_sigma: 0.1,
+    range_sigma_per_meter: 0.02,
+    bearing_sigma: 0.01,
+    reach: f64::INFINITY,
+    half_field_of_view: PI,
+};
 
 impl LandmarkModel for Wrong {
     type Robot = Pose2<f64>;

@@ -17,19 +17,22 @@ use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, 
 pub struct Confirmation {
     /// Looks in which it must be seen, the first included; 1 takes every landmark at first sight.
     pub n_sightings: usize,
-    /// Looks without it after which a tentative landmark is forgotten; never, when not given. Identities that are read need no such
-    /// end, landmarks that association made up do.
+    /// Looks in a row that should have shown a tentative landmark and did not after which it is forgotten; never, when not given.
+    /// Identities that are read need no such end, landmarks that association made up do.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub patience: Option<usize>,
     /// NIS above which a sighting contradicts a tentative landmark, which then starts anew. 13.8 is the 0.999 quantile for range and
     /// bearing.
     pub contradiction: f64,
+    /// Share of the looks that should show it in which a confirmed landmark must be seen, or it leaves the map; 0 keeps all. Judged when
+    /// it was missed more than `patience` times.
+    pub least_share_seen: f64,
 }
 
 impl Default for Confirmation {
     /// Two sightings that agree.
     fn default() -> Self {
-        Self { n_sightings: 2, patience: None, contradiction: 13.8155 }
+        Self { n_sightings: 2, patience: None, contradiction: 13.8155, least_share_seen: 0.0 }
     }
 }
 
@@ -56,23 +59,35 @@ where
     pub(super) fn note_sighting(&mut self, id: LandmarkId) {
         if let Some(slot) = self.landmarks.get_mut(&id) {
             slot.n_sightings += 1;
+            slot.n_missed_in_a_row = 0;
             slot.last_seen = self.look;
         }
     }
 
-    /// Forgets tentative landmarks that were not seen again in time.
-    pub(super) fn forget_unconfirmed(&mut self) {
-        let Some(patience) = self.params.confirmation.patience else {
+    /// Forgets what should have been seen and was not: tentative landmarks in time, confirmed ones that are seen too seldom.
+    pub(super) fn forget_missed(&mut self) {
+        let Confirmation { n_sightings, patience: Some(patience), least_share_seen, .. } =
+            self.params.confirmation
+        else {
             return;
         };
-        let is_overdue = |slot: &Slot<M::Landmark>| self.look - slot.last_seen > patience;
-        let overdue: Vec<LandmarkId> = self
-            .landmarks
-            .iter()
-            .filter(|(_, slot)| !self.is_confirmed(slot) && is_overdue(slot))
-            .map(|(id, _)| *id)
-            .collect();
-        for id in overdue {
+        let mut forgotten = Vec::new();
+        for (id, slot) in &mut self.landmarks {
+            let is_missed = slot.last_seen < self.look
+                && self.model.should_see(&self.model.expected(&self.robot, &slot.mean));
+            slot.n_missed_in_a_row += usize::from(is_missed);
+            slot.n_missed += usize::from(is_missed);
+            let share = slot.n_sightings as f64 / (slot.n_sightings + slot.n_missed) as f64;
+            let is_overdue = if slot.n_sightings < n_sightings {
+                slot.n_missed_in_a_row > patience
+            } else {
+                slot.n_missed > patience && share < least_share_seen
+            };
+            if is_overdue {
+                forgotten.push(*id);
+            }
+        }
+        for id in forgotten {
             self.remove(id);
         }
     }

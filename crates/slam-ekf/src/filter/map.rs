@@ -74,7 +74,9 @@ where
     fn append(&mut self, id: LandmarkId, new: NewLandmark<M::Landmark, M::Robot>, n_sightings: usize) {
         let offset = self.covariance.append(&new.robot_jacobian, &new.covariance);
         let (mean, first) = (new.landmark.clone(), new.landmark);
-        self.landmarks.insert(id, Slot { mean, first, offset, n_sightings, last_seen: self.look });
+        let last_seen = self.look;
+        let slot = Slot { mean, first, offset, n_sightings, n_missed: 0, n_missed_in_a_row: 0, last_seen };
+        self.landmarks.insert(id, slot);
     }
 
     fn check_free(&self, id: LandmarkId) -> Result<(), SlamError> {

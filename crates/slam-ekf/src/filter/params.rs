@@ -81,6 +81,14 @@ impl SlamParams {
             let range = "positive";
             return Err(SlamError::Parameter { name: "contradiction", value: contradiction, range });
         }
+        let share = self.confirmation.least_share_seen;
+        if !(0.0..=1.0).contains(&share) {
+            return Err(SlamError::Parameter {
+                name: "least_share_seen",
+                value: share,
+                range: "from 0 to 1",
+            });
+        }
         Ok(self)
     }
 

@@ -54,6 +54,10 @@ pub(super) struct Slot<L> {
     pub(super) first: L,
     pub(super) offset: usize,
     pub(super) n_sightings: usize,
+    /// Looks that should have shown it and did not.
+    pub(super) n_missed: usize,
+    /// Of these, since it was seen last.
+    pub(super) n_missed_in_a_row: usize,
     /// The look in which it was seen last.
     pub(super) last_seen: usize,
 }

@@ -59,7 +59,7 @@ where
         for batch in associated.chunks(self.params.order.batch_size(associated.len())) {
             self.update_batch(observations, batch, &mut taken, &mut outcomes);
         }
-        self.forget_unconfirmed();
+        self.forget_missed();
         Ok(StepReport { outcomes })
     }
 

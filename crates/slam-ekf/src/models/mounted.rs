@@ -59,6 +59,10 @@ where
         self.sensor.is_usable(measurement)
     }
 
+    fn should_see(&self, expected: &S::Measurement) -> bool {
+        self.sensor.should_see(expected)
+    }
+
     fn symmetries(&self) -> &'static [&'static str] {
         self.sensor.symmetries()
     }

@@ -1,3 +1,5 @@
+use std::f64::consts::PI;
+
 use nalgebra::{Const, DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Angle, Manifold, Pose2, wrap_angle};
 
@@ -66,12 +68,22 @@ pub struct RangeBearingSensor {
     pub range_sigma_per_meter: f64,
     /// Standard deviation of the bearing, rad.
     pub bearing_sigma: f64,
+    /// Range up to which a landmark in view is seen as a rule, m. It refuses no measurement: it tells which landmarks are missed.
+    pub reach: f64,
+    /// The same for the bearing to either side, rad.
+    pub half_field_of_view: f64,
 }
 
 impl Default for RangeBearingSensor {
-    /// A good camera or laser: 5 cm, 0.01 rad.
+    /// A good camera or laser: 5 cm, 0.01 rad, all around.
     fn default() -> Self {
-        Self { range_sigma: 0.05, range_sigma_per_meter: 0.0, bearing_sigma: 0.01 }
+        Self {
+            range_sigma: 0.05,
+            range_sigma_per_meter: 0.0,
+            bearing_sigma: 0.01,
+            reach: f64::INFINITY,
+            half_field_of_view: PI,
+        }
     }
 }
 
@@ -107,6 +119,10 @@ impl LandmarkModel for RangeBearingSensor {
     /// A range must be positive: a bearing alone does not place a point.
     fn is_usable(&self, measurement: &RangeBearing) -> bool {
         measurement.range > 0.0 && measurement.range.is_finite() && measurement.bearing.radians().is_finite()
+    }
+
+    fn should_see(&self, expected: &RangeBearing) -> bool {
+        expected.range <= self.reach && expected.bearing.radians().abs() <= self.half_field_of_view
     }
 
     fn symmetries(&self) -> &'static [&'static str] {

@@ -93,6 +93,10 @@ where
         self.0.is_usable(measurement)
     }
 
+    fn should_see(&self, expected: &RangeBearing) -> bool {
+        self.0.should_see(expected)
+    }
+
     fn symmetries(&self) -> &'static [&'static str] {
         self.0.symmetries()
     }

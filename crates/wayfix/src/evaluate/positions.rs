@@ -64,7 +64,7 @@ mod tests {
         assert_eq!(near(1201), Some(1400.0));
         assert_eq!(near(690), None);
         assert_eq!(near(2000), None);
-        assert_eq!(near(3300), Some(3000.0));
+        assert_eq!(near(3290), Some(3000.0));
         assert_eq!(TruePositions::default().near(at(1)), None);
     }
 }

@@ -164,9 +164,11 @@ impl SlamSystemParams {
                     antenna_y: 0.5,
                 },
                 sensor: RangeBearingSensor {
-                    range_sigma: 0.3,
+                    range_sigma: 1.0,
                     range_sigma_per_meter: 0.0,
-                    bearing_sigma: 0.02,
+                    bearing_sigma: 0.05,
+                    reach: 30.0,
+                    half_field_of_view: 1.3,
                 },
                 velocity: VelocityMotion {
                     linear_sigma: 0.0,
@@ -175,6 +177,20 @@ impl SlamSystemParams {
                     linear_sigma_per_meter: 0.1,
                     angular_sigma_per_meter: 0.01,
                     ..VelocityMotion::default()
+                },
+                nearest_neighbour: NearestNeighbourParams {
+                    certainly_new: 60.0,
+                    ..NearestNeighbourParams::default()
+                },
+                joint_compatibility: JointCompatibilityParams {
+                    certainly_new: 60.0,
+                    ..JointCompatibilityParams::default()
+                },
+                unlabelled_confirmation: Confirmation {
+                    n_sightings: 8,
+                    patience: Some(5),
+                    least_share_seen: 0.4,
+                    ..Confirmation::default()
                 },
                 ..Self::of(Profile::Generic)
             }
@@ -192,6 +208,8 @@ impl SlamSystemParams {
                     range_sigma: 0.01,
                     range_sigma_per_meter: 0.03,
                     bearing_sigma: 0.035,
+                    reach: 5.0,
+                    half_field_of_view: 0.45,
                 },
                 velocity: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
                 filter: SlamParams {

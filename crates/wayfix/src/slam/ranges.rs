@@ -17,6 +17,7 @@ const TIMES_SEEN: Range = (1.0..=1e6, "from 1 to 1e6");
 /// No robot is larger than a kilometre.
 const PLACE: Range = (-1e3..=1e3, "from -1000 to 1000");
 const WHEEL_BASE: Range = (1e-3..=1e3, "from 0.001 to 1000 m");
+const SHARE: Range = (0.0..=1.0, "from 0 to 1");
 const THRESHOLD: Range = (f64::MIN_POSITIVE..=f64::INFINITY, "positive");
 
 impl SlamSystemParams {
@@ -56,6 +57,8 @@ impl SlamSystemParams {
             ("sensor.range_sigma_per_meter", sensor.range_sigma_per_meter, NOT_NEGATIVE),
             ("sensor.range_sigma at one metre", nearest_range_sigma, SENSOR_NOISE),
             ("sensor.bearing_sigma", sensor.bearing_sigma, SENSOR_NOISE),
+            ("sensor.reach", sensor.reach, THRESHOLD),
+            ("sensor.half_field_of_view", sensor.half_field_of_view, THRESHOLD),
             ("velocity.linear_sigma", velocity.linear_sigma, NOT_NEGATIVE),
             ("velocity.angular_sigma", velocity.angular_sigma, NOT_NEGATIVE),
             ("velocity.turning_sigma", velocity.turning_sigma, NOT_NEGATIVE),
@@ -76,6 +79,8 @@ impl SlamSystemParams {
                 NOT_NEGATIVE,
             ),
             ("increment.heading_variance_per_step", increment.heading_variance_per_step, NOT_NEGATIVE),
+            ("filter.confirmation.least_share_seen", filter.confirmation.least_share_seen, SHARE),
+            ("unlabelled_confirmation.least_share_seen", unlabelled_confirmation.least_share_seen, SHARE),
             ("filter.confirmation.n_sightings", times_seen(&filter.confirmation), TIMES_SEEN),
             ("filter.confirmation.contradiction", filter.confirmation.contradiction, THRESHOLD),
             ("unlabelled_confirmation.n_sightings", times_seen(unlabelled_confirmation), TIMES_SEEN),
