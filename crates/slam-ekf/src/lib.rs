@@ -29,6 +29,7 @@ mod landmark;
 pub mod laws;
 mod models;
 mod outcome;
+mod snapshot;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
@@ -42,6 +43,7 @@ pub use models::{
     ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion,
 };
 pub use outcome::{Outcome, StepReport};
+pub use snapshot::{SavedLandmark, Snapshot};
 
 /// The matrix library of every public signature.
 pub use wayfix_estimation_traits::nalgebra;

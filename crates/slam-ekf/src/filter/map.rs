@@ -76,7 +76,7 @@ where
         self.landmarks.insert(id, Slot { mean: new.landmark, offset, n_sightings, last_seen: self.look });
     }
 
-    fn check_free(&self, id: LandmarkId) -> Result<(), SlamError> {
+    pub(super) fn check_free(&self, id: LandmarkId) -> Result<(), SlamError> {
         if self.knows(id) { Err(SlamError::LandmarkExists(id)) } else { Ok(()) }
     }
 
@@ -98,7 +98,7 @@ where
     }
 }
 
-fn check_finite<L: Manifold<Scalar = f64>>(landmark: &L) -> Result<(), SlamError>
+pub(super) fn check_finite<L: Manifold<Scalar = f64>>(landmark: &L) -> Result<(), SlamError>
 where
     DefaultAllocator: Allocator<L::Dim>,
 {

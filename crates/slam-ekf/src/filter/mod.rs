@@ -5,6 +5,7 @@ mod gates;
 mod map;
 mod params;
 mod predict;
+mod resume;
 mod sight;
 mod state;
 mod update;

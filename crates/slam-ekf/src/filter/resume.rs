@@ -1,0 +1,127 @@
+use nalgebra::{DMatrix, DMatrixView, DefaultAllocator, DimName, linalg::Cholesky};
+
+use super::{
+    EkfSlam, SlamParams,
+    map::check_finite,
+    predict::LARGEST_VARIANCE,
+    state::Slot,
+};
+use crate::{
+    LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SavedLandmark, SlamAlloc, SlamError,
+    Snapshot, covariance::JointCovariance,
+};
+
+impl<M: LandmarkModel> EkfSlam<M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    /// All that the filter knows, as a plain value. Cost O(n²).
+    pub fn snapshot(&self) -> Snapshot<M::Robot, M::Landmark> {
+        let mut slots: Vec<(&LandmarkId, &Slot<M::Landmark>)> = self.landmarks.iter().collect();
+        slots.sort_unstable_by_key(|(_, slot)| slot.offset);
+        let saved = |(id, slot): (&LandmarkId, &Slot<M::Landmark>)| SavedLandmark {
+            id: *id,
+            mean: slot.mean.clone(),
+            n_sightings: slot.n_sightings,
+            last_seen: slot.last_seen,
+        };
+        Snapshot {
+            look: self.look,
+            robot: self.robot.clone(),
+            landmarks: slots.into_iter().map(saved).collect(),
+            anchors: self.anchors.iter().map(|(id, landmark)| (*id, landmark.clone())).collect(),
+            covariance: self.covariance.lower(),
+        }
+    }
+
+    /// The filter that a snapshot was taken of: from here on both do the same, bit for bit, when model and parameters are the same.
+    ///
+    /// The snapshot may come from anywhere; nothing of it is taken on trust. Cost O(n³), once.
+    ///
+    /// ```
+    /// use wayfix_estimation_traits::Pose2;
+    /// use wayfix_slam_ekf::*;
+    /// let (sensor, params) = (RangeBearingSensor::default(), SlamParams::default());
+    /// let mut slam = EkfSlam::new(sensor, params, Pose2::new(0.0, 0.0, 0.0))?;
+    /// let seen = [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(2.0, 0.1) }];
+    /// slam.update(&seen, &mut KnownIds)?;
+    ///
+    /// let mut resumed = EkfSlam::resume(sensor, params, slam.snapshot())?;
+    /// slam.predict(&IncrementMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;
+    /// resumed.predict(&IncrementMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;
+    /// assert_eq!(resumed.snapshot(), slam.snapshot());
+    ///
+    /// let mut halved = slam.snapshot();
+    /// halved.covariance.truncate(3);
+    /// assert!(matches!(EkfSlam::resume(sensor, params, halved), Err(SlamError::Dimension { expected: 15, got: 3, .. })));
+    /// # Ok::<(), SlamError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When a parameter is out of range, a number is not finite, a count is absurd, an identity comes twice, or the covariance has another size or is not
+    /// positive semidefinite.
+    pub fn resume(
+        model: M,
+        params: SlamParams,
+        snapshot: Snapshot<M::Robot, M::Landmark>,
+    ) -> Result<Self, SlamError> {
+        let Snapshot { look, robot, landmarks, anchors, covariance } = snapshot;
+        let mut slam = Self::new(model, params, robot)?;
+        check_count("look", look, usize::MAX / 2)?;
+        slam.look = look;
+        for (id, landmark) in anchors {
+            slam.add_anchor(id, landmark)?;
+        }
+        let mut offset = RobotDim::<M>::DIM;
+        for SavedLandmark { id, mean, n_sightings, last_seen } in landmarks {
+            slam.check_free(id)?;
+            check_finite(&mean)?;
+            check_count("last_seen", last_seen, look)?;
+            check_count("n_sightings", n_sightings, usize::MAX / 2)?;
+            slam.landmarks.insert(id, Slot { mean, offset, n_sightings, last_seen });
+            offset += LandmarkDim::<M>::DIM;
+        }
+        slam.covariance = joint_covariance(offset, &covariance)?;
+        Ok(slam)
+    }
+}
+
+fn check_count(name: &'static str, count: usize, largest: usize) -> Result<(), SlamError> {
+    if count <= largest {
+        return Ok(());
+    }
+    Err(SlamError::Parameter { name, value: count as f64, range: "no look later than the last one, and countable" })
+}
+
+fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<JointCovariance, SlamError> {
+    let what = "saved covariance";
+    let (expected, got) = (dimension.saturating_mul(dimension + 1) / 2, lower.len());
+    if expected != got {
+        return Err(SlamError::Dimension { what, expected, got });
+    }
+    if !lower.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {
+        return Err(SlamError::NotFinite { what });
+    }
+    let joint = JointCovariance::from_lower(dimension, lower);
+    let smallest_variance = joint.matrix().diagonal().min();
+    if smallest_variance < 0.0 || !is_semidefinite(&joint.matrix()) {
+        return Err(SlamError::NotACovariance { what, value: smallest_variance, asymmetry: 0.0 });
+    }
+    Ok(joint)
+}
+
+/// Whether the correlations are positive semidefinite up to what a long run may have lost by rounding.
+fn is_semidefinite(covariance: &DMatrixView<'_, f64>) -> bool {
+    let deviations = covariance.diagonal().map(f64::sqrt);
+    let correlations = DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |row, column| {
+        match covariance[(row, column)] {
+            _ if row == column => 1.0 + SLACK,
+            0.0 => 0.0,
+            entry => entry / deviations[row] / deviations[column],
+        }
+    });
+    Cholesky::new(correlations).is_some()
+}
+
+/// An eigenvalue of the correlations that is above minus this counts as zero. The filter itself stays within some thousand roundings.
+const SLACK: f64 = 1e-9;
