@@ -136,6 +136,10 @@ where
     pub fn model(&self) -> &M {
         &self.model
     }
+    /// The parameters.
+    pub fn params(&self) -> &SlamParams {
+        &self.params
+    }
     /// One landmark of the state, confirmed or not.
     pub fn landmark(&self, id: LandmarkId) -> Option<LandmarkEstimate<M::Landmark>> {
         self.landmarks.get(&id).map(|slot| self.estimate(id, slot))

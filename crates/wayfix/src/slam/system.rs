@@ -1,7 +1,4 @@
-use std::{
-    mem::{Discriminant, discriminant},
-    time::Duration,
-};
+use std::time::Duration;
 
 use nalgebra::{Matrix3, Matrix4, Vector4};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
@@ -11,7 +8,9 @@ use wayfix_slam_ekf::{
     ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams, StepReport,
 };
 
-use super::{AssociationRule, SlamSystemParams, commands::Commands, in_sequence::InSequence};
+use super::{
+    AssociationRule, SlamSystemParams, commands::Commands, in_sequence::InSequence, saved::Odometry,
+};
 use crate::system::{Events, Stopwatch, System};
 
 /// The estimate at the stamp of one look of the sensor, from everything up to it.
@@ -35,15 +34,16 @@ pub struct Keyframe {
 
 /// EKF-SLAM that takes records.
 pub struct SlamSystem {
-    params: SlamSystemParams,
-    filter: EkfSlam<ScaledRangeBearingSensor>,
-    association: Rule,
-    commands: Commands,
+    pub(super) params: SlamSystemParams,
+    pub(super) filter: EkfSlam<ScaledRangeBearingSensor>,
+    pub(super) association: Rule,
+    pub(super) commands: Commands,
     /// Velocities or increments: whichever came first.
-    odometry: Option<Discriminant<Data>>,
+    pub(super) odometry: Option<Odometry>,
     /// The time that the filter's state is at.
-    time: Stamp,
-    dead_reckoning: Pose2<f64>,
+    pub(super) time: Stamp,
+    pub(super) past: Past,
+    pub(super) dead_reckoning: Pose2<f64>,
     keyframes: Vec<Keyframe>,
     events: Events,
     step: Duration,
@@ -52,7 +52,16 @@ pub struct SlamSystem {
 /// No robot is faster, m/s and rad/s; a command in force moves the robot until the next, so it must not be nonsense.
 const FASTEST: f64 = 1e3;
 
-enum Rule {
+/// Which records were taken, in this run and in the one that it goes on from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Past {
+    /// Stamp of the last record that was taken.
+    pub(super) taken_until: Stamp,
+    /// Records up to this stamp were taken by the run before.
+    pub(super) resumed_at: Option<Stamp>,
+}
+
+pub(super) enum Rule {
     Known(KnownIds),
     NearestNeighbour(NearestNeighbour),
 }
@@ -89,6 +98,7 @@ impl SlamSystem {
             odometry: None,
             params,
             time: start_stamp,
+            past: Past::default(),
             dead_reckoning: start,
             keyframes: Vec::new(),
             events: Events::default(),
@@ -106,8 +116,8 @@ impl SlamSystem {
     }
 
     fn take_velocity(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
-        if !(velocity.linear.abs() <= FASTEST && velocity.angular.abs() <= FASTEST) {
-            let Velocity { linear, angular } = velocity;
+        let Velocity { linear, angular } = velocity;
+        if !is_possible(velocity) {
             return Err(format!(
                 "velocity ({linear} m/s, {angular} rad/s) is beyond {FASTEST} or not finite"
             ));
@@ -115,6 +125,7 @@ impl SlamSystem {
         self.commands.push(stamp, velocity);
         self.advance_to(self.exposure(stamp))
     }
+
 
     fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
         let stopwatch = Stopwatch::start();
@@ -150,9 +161,8 @@ impl SlamSystem {
     }
 
     /// A log may tell of the same motion twice, as velocities and as increments; the first kind moves the robot.
-    fn moves_by(&mut self, odometry: &Data) -> bool {
-        let kind = discriminant(odometry);
-        *self.odometry.get_or_insert(kind) == kind
+    fn moves_by(&mut self, odometry: Odometry) -> bool {
+        *self.odometry.get_or_insert(odometry) == odometry
     }
 
     /// When the sensor saw what has this stamp.
@@ -238,6 +248,10 @@ impl SlamSystem {
     }
 }
 
+pub(super) fn is_possible(velocity: Velocity) -> bool {
+    velocity.linear.abs() <= FASTEST && velocity.angular.abs() <= FASTEST
+}
+
 fn event_name(outcome: &Outcome<RangeBearing>) -> &'static str {
     match outcome {
         Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
@@ -255,8 +269,13 @@ fn event_name(outcome: &Outcome<RangeBearing>) -> &'static str {
 
 impl System for SlamSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
+        if self.past.resumed_at.is_some_and(|resumed_at| record.stamp <= resumed_at) {
+            self.events.count("before_resume");
+            return Ok(());
+        }
+        self.past.taken_until = record.stamp;
         match &record.data {
-            Data::Velocity(_) | Data::OdometryIncrement(_) if !self.moves_by(&record.data) => {
+            odometry if Odometry::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
                 self.events.count("second_odometry");
                 Ok(())
             }
