@@ -1,11 +1,11 @@
 //! The law suite of [`LandmarkModel`]: run it on your own kinds of landmarks.
 
-use nalgebra::{DefaultAllocator, linalg::Cholesky};
+use nalgebra::{DMatrix, DefaultAllocator, DimName, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, SensorModel, TangentMatrix, laws};
 
 pub use wayfix_estimation_traits::laws::Violation;
 
-use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
+use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, Symmetry};
 
 /// The laws of [`LandmarkModel`], at every pair of a robot and a landmark that sees it.
 ///
@@ -47,6 +47,49 @@ where
             laws::sensor(&landmark_is_seen, std::slice::from_ref(landmark))
                 .map_err(at("law 1, by the landmark"))?;
             initialization(model, robot, &model.expected(robot, landmark)).map_err(at("initialize"))?;
+        }
+    }
+    Ok(())
+}
+
+/// The law of [`Symmetry`]: whoever moves the world does not change what is seen, $`H_r N_r + H_m N_m = 0`$.
+///
+/// ```
+/// use nalgebra::Vector2;
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_slam_ekf::{RangeBearingSensor, laws};
+/// laws::symmetry(&RangeBearingSensor::default(), &[Pose2::new(1.0, -2.0, 3.1)], &[Vector2::new(4.0, 1.0)])?;
+/// # Ok::<(), laws::Violation>(())
+/// ```
+///
+/// # Errors
+/// The first pair at which it does not hold.
+pub fn symmetry<M: Symmetry>(
+    model: &M,
+    robots: &[M::Robot],
+    landmarks: &[M::Landmark],
+) -> Result<(), Violation>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    let dense = |rows: usize, columns: usize, entry: &dyn Fn(usize, usize) -> f64| {
+        DMatrix::from_fn(rows, columns, entry)
+    };
+    let rows = MeasurementDim::<M>::DIM;
+    for robot in robots {
+        for landmark in landmarks {
+            let (h_r, h_m) =
+                (model.robot_jacobian(robot, landmark), model.landmark_jacobian(robot, landmark));
+            let by_robot = dense(rows, RobotDim::<M>::DIM, &|i, j| h_r[(i, j)]) * model.robot_motion(robot);
+            let by_landmark =
+                dense(rows, LandmarkDim::<M>::DIM, &|i, j| h_m[(i, j)]) * model.landmark_motion(landmark);
+            let size = 1.0 + by_robot.amax();
+            within("moving the world is not seen", (by_robot + by_landmark).amax(), 1e-6 * size).map_err(
+                |violation| Violation {
+                    case: format!("(robot {robot:?}, landmark {landmark:?})"),
+                    ..violation
+                },
+            )?;
         }
     }
     Ok(())

@@ -28,8 +28,10 @@ mod filter;
 mod landmark;
 pub mod laws;
 mod models;
+pub mod observability;
 mod outcome;
 mod snapshot;
+mod symmetry;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
@@ -39,11 +41,13 @@ pub use filter::{
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    IncrementMotion, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor,
-    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion,
+    IncrementMotion, MonobotMotion, MonobotSensor, RangeBearing, RangeBearingSensor, RelativePosition,
+    RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl,
+    VelocityMotion,
 };
 pub use outcome::{Outcome, StepReport};
 pub use snapshot::{SavedLandmark, Snapshot};
+pub use symmetry::Symmetry;
 
 /// The matrix library of every public signature.
 pub use wayfix_estimation_traits::nalgebra;

@@ -53,7 +53,10 @@ fn drive(stops: &[usize]) -> (Saved, u32) {
 fn a_filter_that_stopped_goes_on_bit_for_bit() {
     let (whole, next_id) = drive(&[]);
     assert!(whole.landmarks.len() > 10, "a map");
-    assert!(next_id as usize > whole.landmarks.len(), "some landmarks were forgotten, their numbers are used up");
+    assert!(
+        next_id as usize > whole.landmarks.len(),
+        "some landmarks were forgotten, their numbers are used up"
+    );
     for stops in [vec![45], vec![1, 2, 3], (0..90).collect()] {
         assert_eq!(drive(&stops), (whole.clone(), next_id), "stopped before {stops:?}");
     }

@@ -35,7 +35,8 @@ where
     /// Puts an anchor into the map: a landmark whose place in the world is known exactly.
     ///
     /// An anchor never enters the state; its observations correct robot and map, and tie both to the world. One anchor with
-    /// range and bearing, or two with range, make a planar map fully observable. [Andrade-Cetto 2003, section 2.3]
+    /// range and bearing fixes a planar map but for turning about the anchor; two make it fully observable. [Andrade-Cetto 2005,
+    /// Eqs. 20-25; a planar map turns freely about a single one, which the paper does not say]
     ///
     /// # Errors
     /// When the identity is taken or the landmark is not finite.

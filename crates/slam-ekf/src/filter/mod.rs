@@ -9,6 +9,7 @@ mod resume;
 mod sight;
 mod state;
 mod update;
+mod update_robot;
 
 pub use confirmation::Confirmation;
 pub use params::{OutlierRule, SlamParams, UpdateOrder};

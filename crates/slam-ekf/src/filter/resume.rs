@@ -1,11 +1,6 @@
 use nalgebra::{DMatrix, DMatrixView, DefaultAllocator, DimName, linalg::Cholesky};
 
-use super::{
-    EkfSlam, SlamParams,
-    map::check_finite,
-    predict::LARGEST_VARIANCE,
-    state::Slot,
-};
+use super::{EkfSlam, SlamParams, map::check_finite, predict::LARGEST_VARIANCE, state::Slot};
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SavedLandmark, SlamAlloc, SlamError,
     Snapshot, covariance::JointCovariance,
@@ -90,7 +85,11 @@ fn check_count(name: &'static str, count: usize, largest: usize) -> Result<(), S
     if count <= largest {
         return Ok(());
     }
-    Err(SlamError::Parameter { name, value: count as f64, range: "no look later than the last one, and countable" })
+    Err(SlamError::Parameter {
+        name,
+        value: count as f64,
+        range: "no look later than the last one, and countable",
+    })
 }
 
 fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<JointCovariance, SlamError> {
@@ -113,13 +112,14 @@ fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<JointCovariance, 
 /// Whether the correlations are positive semidefinite up to what a long run may have lost by rounding.
 fn is_semidefinite(covariance: &DMatrixView<'_, f64>) -> bool {
     let deviations = covariance.diagonal().map(f64::sqrt);
-    let correlations = DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |row, column| {
-        match covariance[(row, column)] {
-            _ if row == column => 1.0 + SLACK,
-            0.0 => 0.0,
-            entry => entry / deviations[row] / deviations[column],
-        }
-    });
+    let correlations =
+        DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |row, column| {
+            match covariance[(row, column)] {
+                _ if row == column => 1.0 + SLACK,
+                0.0 => 0.0,
+                entry => entry / deviations[row] / deviations[column],
+            }
+        });
     Cholesky::new(correlations).is_some()
 }
 

@@ -158,6 +158,12 @@ where
         LandmarkEstimate { id, mean: slot.mean.clone(), covariance: self.landmark_covariance(slot) }
     }
 
+    /// Where a landmark is, and where its block starts in the covariance; nowhere for an anchor.
+    pub(crate) fn place(&self, id: LandmarkId) -> Option<(&M::Landmark, Option<usize>)> {
+        let slot = self.landmarks.get(&id).map(|slot| (&slot.mean, Some(slot.offset)));
+        slot.or_else(|| self.anchors.get(&id).map(|mean| (mean, None)))
+    }
+
     pub(super) fn landmark_covariance(&self, slot: &Slot<M::Landmark>) -> TangentMatrix<M::Landmark> {
         let block = slot.offset..slot.offset + LandmarkDim::<M>::DIM;
         let view = self.covariance.block(block.clone(), block);

@@ -1,12 +1,14 @@
-//! Motions and sensors of planar robots.
+//! Motions and sensors of planar robots, and of one on a line.
 
 mod increment;
+mod monobot;
 mod range_bearing;
 mod relative_position;
 mod scaled;
 mod velocity;
 
 pub use increment::IncrementMotion;
+pub use monobot::{MonobotMotion, MonobotSensor};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};
 pub use scaled::{ScaledMotion, ScaledPose, ScaledRangeBearingSensor};
