@@ -85,7 +85,10 @@ fn the_command_saves_and_goes_on() {
         assert!(outcome.code == 1 && outcome.stderr.contains(why), "{}", outcome.stderr);
     };
     refused(run_slam(&both, &["--resume", &text(&map)]), "before_resume");
-    refused(run_slam(&both, &["--resume", &text(&map), "--association", "nn"]), "association is known, here it is nn");
+    refused(
+        run_slam(&both, &["--resume", &text(&map), "--association", "nn"]),
+        "association is known, here it is nn",
+    );
     refused(run_slam(&both, &["--resume", &text(&both)]), "not a saved map");
     refused(run_slam(&both, &["--resume", &text(&scratch.path("missing"))]), "cannot go on from");
     refused(run_slam(&both, &["--save", "/no/such/folder/x.map"]), "cannot save the map");
@@ -104,7 +107,10 @@ fn a_damaged_file_is_refused_with_its_reason() {
     assert_eq!(SavedMap::from_bytes(&bytes).unwrap(), system.save());
     for length in 0..bytes.len() {
         let error = SavedMap::from_bytes(&bytes[..length]).unwrap_err();
-        assert!(matches!(error, SavedMapError::NotASavedMap | SavedMapError::Length { .. }), "{length}: {error}");
+        assert!(
+            matches!(error, SavedMapError::NotASavedMap | SavedMapError::Length { .. }),
+            "{length}: {error}"
+        );
     }
     for place in 0..bytes.len() {
         for flip in [0x01, 0x80, 0xff] {
@@ -156,7 +162,17 @@ fn a_killed_process_leaves_the_old_or_the_new_file_whole() {
     let (mut n_killed, mut n_cut) = (0, 0);
     for _ in 0..40 {
         let mut command = Command::new(env!("CARGO_BIN_EXE_wayfix"));
-        command.args(["run", "slam", "--json", "--profile", "range-bearing", "--association", "nn", "--save-every", "0"]);
+        command.args([
+            "run",
+            "slam",
+            "--json",
+            "--profile",
+            "range-bearing",
+            "--association",
+            "nn",
+            "--save-every",
+            "0",
+        ]);
         command.arg("--log").arg(&log).arg("--save").arg(&map);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         thread::sleep(Duration::from_micros(rng.random_range(3_000..300_000)));

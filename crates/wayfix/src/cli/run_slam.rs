@@ -76,6 +76,11 @@ pub(super) struct Arguments {
     /// Records up to the stamp it was saved at are left out; figures and events are those of the rest.
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
+    /// Tell which directions of the map nothing has ever constrained.
+    ///
+    /// Sightings never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
+    #[arg(long)]
+    observability: bool,
     /// Print one JSON object instead of a table.
     ///
     /// `{"metrics": {name: number}, "events": {name: count}, "seed": n}`; units are in the names.
@@ -132,6 +137,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..slam::summarize(&mut slam)
     };
+    run.notes.iter().for_each(tell);
     if let Some(estimates) = estimates {
         estimates.finish()?;
         run.log = Some(ESTIMATES.to_owned());
@@ -150,6 +156,7 @@ fn params(arguments: &Arguments, meta: &LogMeta) -> Result<SlamSystemParams> {
         None => SlamSystemParams::of(profile),
     };
     params.association = arguments.association.or(params.association);
+    params.record_observability = arguments.observability;
     Ok(params)
 }
 

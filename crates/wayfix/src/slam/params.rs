@@ -39,6 +39,9 @@ pub struct SlamSystemParams {
     pub nearest_neighbour: NearestNeighbourParams,
     /// What a landmark must show that nearest neighbour found; takes the place of the filter's `confirmation` then.
     pub nearest_neighbour_confirmation: Confirmation,
+    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    #[serde(skip)]
+    pub record_observability: bool,
 }
 
 /// Timing and calibration of a robot.
@@ -109,6 +112,7 @@ impl SlamSystemParams {
                     patience: Some(20),
                     ..Confirmation::default()
                 },
+                record_observability: false,
             },
             Profile::RangeBearing => Self {
                 increment: IncrementMotion {

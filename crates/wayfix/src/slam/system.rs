@@ -6,6 +6,7 @@ use wayfix_sensor_log::{Data, Record, Sighting, Stamp, Target, Velocity};
 use wayfix_slam_ekf::{
     EkfSlam, KnownIds, LandmarkId, NearestNeighbour, Observation, Outcome, RangeBearing, ScaledMotion,
     ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams, StepReport,
+    observability::ObservabilityRecorder,
 };
 
 use super::{
@@ -43,6 +44,7 @@ pub struct SlamSystem {
     /// The time that the filter's state is at.
     pub(super) time: Stamp,
     pub(super) past: Past,
+    observability: Option<ObservabilityRecorder>,
     pub(super) dead_reckoning: Pose2<f64>,
     keyframes: Vec<Keyframe>,
     events: Events,
@@ -91,8 +93,10 @@ impl SlamSystem {
         let state = ScaledPose { pose: start, log_range_scale: 0.0 };
         let variances = Vector4::new(0.0, 0.0, 0.0, params.robot.range_scale_sigma.powi(2));
         let covariance = Matrix4::from_diagonal(&variances);
+        let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
         Ok(Self {
-            filter: EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?,
+            observability: params.record_observability.then(|| ObservabilityRecorder::new(&filter)),
+            filter,
             association,
             commands: Commands::new(&params.robot),
             odometry: None,
@@ -115,6 +119,11 @@ impl SlamSystem {
         &self.keyframes
     }
 
+    /// What the run observed, when that was to be recorded.
+    pub fn observability(&self) -> Option<&ObservabilityRecorder> {
+        self.observability.as_ref()
+    }
+
     fn take_velocity(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
         let Velocity { linear, angular } = velocity;
         if !is_possible(velocity) {
@@ -126,13 +135,15 @@ impl SlamSystem {
         self.advance_to(self.exposure(stamp))
     }
 
-
     fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
         let stopwatch = Stopwatch::start();
-        self.filter
-            .predict(&ScaledMotion(self.params.increment), increment)
-            .map_err(|error| error.to_string())?;
+        let motion = ScaledMotion(self.params.increment);
+        let before = *self.filter.robot();
+        self.filter.predict(&motion, increment).map_err(|error| error.to_string())?;
         self.step += stopwatch.elapsed();
+        if let Some(recorder) = &mut self.observability {
+            recorder.moved(&motion.jacobian(&before, increment));
+        }
         self.dead_reckoning = self.dead_reckoning.compose(increment);
         self.time = stamp;
         Ok(())
@@ -155,6 +166,9 @@ impl SlamSystem {
         };
         self.step += stopwatch.elapsed();
         let report = report.map_err(|error| error.to_string())?;
+        if let Some(recorder) = &mut self.observability {
+            recorder.record(&self.filter, &seen_landmarks(&report));
+        }
         self.count(&observations, &report);
         self.add_keyframe(stamp, &report);
         Ok(())
@@ -179,8 +193,12 @@ impl SlamSystem {
         let stopwatch = Stopwatch::start();
         let controls = self.commands.between(self.time, time);
         let motion = InSequence(self.params.velocity);
+        let before = *self.filter.robot();
         let moved = self.filter.predict(&ScaledMotion(motion), controls.as_slice());
         moved.map_err(|error| error.to_string())?;
+        if let Some(recorder) = &mut self.observability {
+            recorder.moved(&ScaledMotion(motion).jacobian(&before, &controls));
+        }
         self.dead_reckoning = motion.propagate(&self.dead_reckoning, &controls);
         self.step += stopwatch.elapsed();
         self.commands.forget_before(time);
@@ -246,6 +264,17 @@ impl SlamSystem {
             }
         }
     }
+}
+
+/// Landmarks that corrected or started in a look.
+fn seen_landmarks(report: &StepReport<RangeBearing>) -> Vec<LandmarkId> {
+    let seen = |outcome: &Outcome<RangeBearing>| match outcome {
+        Outcome::Accepted { landmark, .. }
+        | Outcome::Initialized { landmark }
+        | Outcome::Restarted { landmark } => Some(*landmark),
+        _ => None,
+    };
+    report.outcomes.iter().filter_map(seen).collect()
 }
 
 pub(super) fn is_possible(velocity: Velocity) -> bool {

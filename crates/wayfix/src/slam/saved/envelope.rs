@@ -78,7 +78,10 @@ mod tests {
         for length in 0..sealed.len() {
             let error = open(&sealed[..length]).unwrap_err();
             let by_length = matches!(error, SavedMapError::Length { .. });
-            assert!(by_length || (length < 8 && matches!(error, SavedMapError::NotASavedMap)), "{length}: {error}");
+            assert!(
+                by_length || (length < 8 && matches!(error, SavedMapError::NotASavedMap)),
+                "{length}: {error}"
+            );
         }
         let longer = [&sealed[..], &[0]].concat();
         assert!(matches!(open(&longer), Err(SavedMapError::Length { .. })));

@@ -113,7 +113,10 @@ mod tests {
         ] {
             let sealed = envelope::seal(&postcard::to_stdvec(&kind).unwrap());
             let error = SavedMap::from_bytes(&sealed).unwrap_err();
-            assert!(matches!(error, SavedMapError::Kind { .. }) && error.to_string().contains(what), "{error}");
+            assert!(
+                matches!(error, SavedMapError::Kind { .. }) && error.to_string().contains(what),
+                "{error}"
+            );
         }
     }
 

@@ -58,7 +58,8 @@ impl SlamSystem {
             Rule::Known(_) => (AssociationRule::Known, None),
             Rule::NearestNeighbour(rule) => (AssociationRule::Nn, Some(rule.next_id())),
         };
-        let command = |(stamp, velocity): (Stamp, Velocity)| (stamp.nanoseconds(), velocity.linear, velocity.angular);
+        let command =
+            |(stamp, velocity): (Stamp, Velocity)| (stamp.nanoseconds(), velocity.linear, velocity.angular);
         let state = SystemState {
             filter: self.filter.snapshot(),
             association,
@@ -74,8 +75,16 @@ impl SlamSystem {
 
     /// The system that a map was saved of, with these parameters.
     pub(in crate::slam) fn resume(params: SlamSystemParams, saved: SavedMap) -> Result<Self, SavedMapError> {
-        let SystemState { filter, association, next_id, taken_until, time, dead_reckoning, odometry, commands } =
-            saved.state;
+        let SystemState {
+            filter,
+            association,
+            next_id,
+            taken_until,
+            time,
+            dead_reckoning,
+            odometry,
+            commands,
+        } = saved.state;
         check_association(params.association, association)?;
         let stamp = Stamp::from_nanoseconds;
         let mut system = Self::new(params, association, stamp(time), dead_reckoning)?;
