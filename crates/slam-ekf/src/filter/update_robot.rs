@@ -73,7 +73,7 @@ where
             return Err(SlamError::Outlier { nis: innovation.nis, threshold });
         }
         let noise = noise * self.params.noise_scale(innovation.nis, threshold);
-        if !(noise.amax() < LARGEST_VARIANCE) {
+        if noise.amax() >= LARGEST_VARIANCE {
             return Err(SlamError::Outlier { nis: innovation.nis, threshold }); // so far out that it would weigh nothing
         }
 

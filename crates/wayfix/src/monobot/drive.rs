@@ -41,7 +41,7 @@ pub struct Drive {
 /// The anchor's identity: after those of all landmarks.
 const ANCHOR: LandmarkId = LandmarkId(u32::MAX);
 /// A landmark on top of the robot is seen with this, m: noise in proportion to distance alone would make that look exact.
-const SMALLEST_SIGMA: f64 = 1e-4;
+const SMALLEST_SIGMA: f64 = 1e-6;
 
 /// The plain Kalman filter: every landmark counts at once, and no look is doubted.
 fn plain() -> SlamParams {
