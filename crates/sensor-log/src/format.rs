@@ -8,7 +8,7 @@ use mcap::MAGIC;
 
 use crate::LogError;
 use crate::image_folder::images_in;
-use crate::text::{Lines, range_bearing, tum, utias};
+use crate::text::{Lines, range_bearing, tum, utias, victoria_park};
 
 /// How a log is stored.
 ///
@@ -24,6 +24,8 @@ use crate::text::{Lines, range_bearing, tum, utias};
 pub enum Format {
     /// A folder of the UTIAS Multi-Robot Cooperative Localization and Mapping set.
     Utias,
+    /// A folder of the Victoria Park set: `odometry.csv`, `trees.csv` and, if need be, `gps.csv`.
+    VictoriaPark,
     /// Plain `L`, `P`, `O`, `Z` lines.
     RangeBearing,
     /// A trajectory as the TUM RGB-D benchmark writes it.
@@ -35,7 +37,9 @@ pub enum Format {
 }
 
 impl Format {
-    pub(crate) const NAMES: &'static str = "utias, range-bearing, tum, mcap, images";
+    const ALL: [Self; 6] =
+        [Self::Utias, Self::VictoriaPark, Self::RangeBearing, Self::Tum, Self::Mcap, Self::Images];
+    pub(crate) const NAMES: &'static str = "utias, victoria-park, range-bearing, tum, mcap, images";
 
     /// The format of what lies at `path`: by what is in it for folders, by name for `.mcap`, else by the first bytes.
     ///
@@ -44,6 +48,9 @@ impl Format {
     pub fn detect(path: &Path) -> Result<Self, LogError> {
         let io = |source| LogError::io(path, source);
         if fs::metadata(path).map_err(io)?.is_dir() {
+            if victoria_park::is_in(path) {
+                return Ok(Self::VictoriaPark);
+            }
             return match (utias::robots_present(path)?.as_slice(), images_in(path)?.as_slice()) {
                 ([], []) => Err(LogError::IsADirectory { path: path.into() }),
                 ([], _) => Ok(Self::Images),
@@ -90,6 +97,7 @@ impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Utias => "utias",
+            Self::VictoriaPark => "victoria-park",
             Self::RangeBearing => "range-bearing",
             Self::Tum => "tum",
             Self::Mcap => "mcap",
@@ -101,7 +109,7 @@ impl fmt::Display for Format {
 impl FromStr for Format {
     type Err = LogError;
     fn from_str(name: &str) -> Result<Self, LogError> {
-        [Self::Utias, Self::RangeBearing, Self::Tum, Self::Mcap, Self::Images]
+        Self::ALL
             .into_iter()
             .find(|format| format.to_string() == name)
             .ok_or_else(|| LogError::NoSuchFormat { name: name.to_owned() })

@@ -5,6 +5,7 @@
 //! | format | is | holds |
 //! | --- | --- | --- |
 //! | [`Format::Utias`] | a folder of the UTIAS multi-robot set | velocity, sightings, truth |
+//! | [`Format::VictoriaPark`] | a folder of the Victoria Park set as CSV | car odometry, trees, GPS |
 //! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, sightings, truth |
 //! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
 //! | [`Format::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
@@ -27,6 +28,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod ackermann;
 mod convert;
 mod error;
 mod format;
@@ -43,6 +45,7 @@ mod summary;
 mod text;
 mod write;
 
+pub use ackermann::AckermannDrive;
 pub use convert::convert;
 pub use error::LogError;
 pub use format::Format;
@@ -50,7 +53,7 @@ pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummar
 pub use log::{Log, LogMeta};
 pub use mcap_log::{Drawing, McapWriter, Shape, topics};
 pub use open::{OpenOptions, PoseKind, open};
-pub use record::{CameraInfo, Data, Record, Sighting, Target, TrueLandmark, Velocity};
+pub use record::{CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, Velocity};
 pub use report::{LogEnd, Problem, ProblemKind, ReadReport};
 pub use stamp::Stamp;
 pub use summary::{KindSummary, LogSummary};

@@ -3,7 +3,7 @@ use std::path::Path;
 use crate::image_folder::ImageFolder;
 use crate::log::Records;
 use crate::mcap_log::McapRecords;
-use crate::text::{range_bearing, tum, utias};
+use crate::text::{range_bearing, tum, utias, victoria_park};
 use crate::{Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record};
 
 /// How to open a log. The default finds out what it can.
@@ -60,6 +60,7 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
             meta.robot = Some(robot);
             in_memory(utias::read(path, robot, &mut report)?)
         }
+        Format::VictoriaPark => in_memory(victoria_park::read(path, &mut report)?),
         Format::RangeBearing => in_memory(range_bearing::read(path, &mut report)?),
         Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
         Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path)?)),

@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::{Pose2, Pose3};
 
-use crate::{EncodedImage, Stamp};
+use crate::{AckermannDrive, EncodedImage, Stamp};
 
 /// One thing that happened, and when.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,10 +21,16 @@ pub enum Data {
     Velocity(Velocity),
     /// Motion since the previous increment, in the robot frame before the motion.
     OdometryIncrement(Pose2<f64>),
+    /// What a car-like vehicle is told to do, or measures of itself; it holds until the next one.
+    Ackermann(AckermannDrive),
     /// Everything one look of a range-bearing sensor saw, in the order of the log.
     Sightings(Vec<Sighting>),
-    /// Where the robot truly was, from motion capture, a simulator or GPS.
+    /// How wide the things are that the look at the same stamp saw, in its order, metres. It comes before the look.
+    SightedWidths(Vec<f64>),
+    /// Where the robot truly was, from motion capture or a simulator.
     TruePose(Pose2<f64>),
+    /// Where one point of the robot truly was, from a satellite receiver for instance; nothing is known of the heading.
+    TruePosition(TruePosition),
     /// Where a landmark truly is.
     TrueLandmark(TrueLandmark),
     /// A pose some program estimated.
@@ -45,8 +51,11 @@ impl Data {
         match self {
             Self::Velocity(_) => "velocity",
             Self::OdometryIncrement(_) => "odometry increment",
+            Self::Ackermann(_) => "ackermann drive",
             Self::Sightings(_) => "sightings",
+            Self::SightedWidths(_) => "sighted widths",
             Self::TruePose(_) => "true pose",
+            Self::TruePosition(_) => "true position",
             Self::TrueLandmark(_) => "true landmark",
             Self::EstimatedPose(_) => "estimated pose",
             Self::CameraInfo(_) => "camera info",
@@ -63,7 +72,10 @@ impl Data {
             Self::OdometryIncrement(pose) | Self::TruePose(pose) | Self::EstimatedPose(pose) => {
                 pose.is_finite()
             }
+            Self::Ackermann(drive) => drive.wheel_speed.is_finite() && drive.steering.is_finite(),
             Self::Sightings(look) => look.iter().all(|s| s.range.is_finite() && s.bearing.is_finite()),
+            Self::SightedWidths(widths) => widths.iter().all(|width| width.is_finite()),
+            Self::TruePosition(position) => position.x.is_finite() && position.y.is_finite(),
             Self::TrueLandmark(landmark) => landmark.x.is_finite() && landmark.y.is_finite(),
             Self::CameraInfo(info) => [info.fx, info.fy, info.cx, info.cy].iter().all(|v| v.is_finite()),
             Self::CameraMount(pose) => {
@@ -116,7 +128,7 @@ pub struct Sighting {
     pub target: Target,
     /// Distance, metres.
     pub range: f64,
-    /// Direction in the robot frame, radians, 0 ahead, counter-clockwise.
+    /// Direction from the sensor, radians, 0 ahead (along the robot's x axis), counter-clockwise.
     pub bearing: f64,
 }
 
@@ -131,6 +143,15 @@ pub enum Target {
     UnknownCode(u32),
     /// The sensor does not tell things apart.
     Unlabelled,
+}
+
+/// Where an antenna, or another point of the robot, was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TruePosition {
+    /// x in the world, metres.
+    pub x: f64,
+    /// y in the world, metres.
+    pub y: f64,
 }
 
 /// A surveyed landmark.

@@ -13,8 +13,8 @@ use std::io::Cursor;
 use proptest::prelude::*;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Data, Format, LogEnd, LogError, McapWriter, OpenOptions, PoseKind, Record, Sighting, Stamp, Target,
-    TrueLandmark, Velocity, convert, open, write,
+    AckermannDrive, Data, Format, LogEnd, LogError, McapWriter, OpenOptions, PoseKind, Record, Sighting,
+    Stamp, Target, TrueLandmark, TruePosition, Velocity, convert, open, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -53,6 +53,10 @@ fn data() -> impl Strategy<Value = Data> {
         (number(), number()).prop_map(|(linear, angular)| Data::Velocity(Velocity { linear, angular })),
         pose().prop_map(Data::OdometryIncrement),
         prop::collection::vec(sighting, 0..8).prop_map(Data::Sightings),
+        (number(), number())
+            .prop_map(|(wheel_speed, steering)| Data::Ackermann(AckermannDrive { wheel_speed, steering })),
+        prop::collection::vec(number(), 0..8).prop_map(Data::SightedWidths),
+        (number(), number()).prop_map(|(x, y)| Data::TruePosition(TruePosition { x, y })),
         pose().prop_map(Data::TruePose),
         (any::<u32>(), number(), number()).prop_map(|(id, x, y)| Data::TrueLandmark(TrueLandmark {
             id,
@@ -98,6 +102,9 @@ fn bits(record: &Record) -> (u64, String, Vec<u64>) {
             look.iter().flat_map(|sighting| [sighting.range, sighting.bearing]).collect()
         }
         Data::TrueLandmark(landmark) => vec![landmark.x, landmark.y],
+        Data::Ackermann(drive) => vec![drive.wheel_speed, drive.steering],
+        Data::SightedWidths(widths) => widths.clone(),
+        Data::TruePosition(position) => vec![position.x, position.y],
         other => panic!("{other:?}"),
     };
     (

@@ -55,6 +55,32 @@ fn utias_set_7() {
 }
 
 #[test]
+fn victoria_park() {
+    let Some(folder) = data_folder() else { return };
+    let (records, report) = open(folder.join("victoria_park"), &OpenOptions::default()).unwrap().read_all();
+    // One fix is more than 30 m from both its neighbours, by a separate program.
+    assert_eq!((report.rows_read, report.n_problems()), (61945 + 52974 + 4465, 1), "{report}");
+    assert!(in_time_order(&records));
+    assert_eq!(count(&records, |data| matches!(data, Data::Ackermann(_))), 61945);
+    assert_eq!(count(&records, |data| matches!(data, Data::TruePosition(_))), 4465);
+    let looks: Vec<_> = records
+        .windows(2)
+        .filter_map(|pair| match (&pair[0].data, &pair[1].data) {
+            (Data::SightedWidths(widths), Data::Sightings(look)) => Some((widths, look)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(looks.len(), 7230);
+    assert!(looks.iter().all(|(widths, look)| widths.len() == look.len()));
+    assert_eq!(looks.iter().map(|(_, look)| look.len()).sum::<usize>(), 52974);
+    let bearings = looks.iter().flat_map(|(_, look)| look.iter()).map(|sighting| sighting.bearing);
+    assert!(
+        bearings.clone().all(|bearing| bearing.abs() < std::f64::consts::FRAC_PI_2),
+        "the laser looks ahead"
+    );
+}
+
+#[test]
 fn simulated_range_bearing_logs() {
     let Some(folder) = data_folder() else { return };
     for (name, n_landmarks) in [("slam_100", 100), ("slam_200", 200), ("slam_400", 400)] {

@@ -43,6 +43,9 @@ pub enum SlamError {
         /// What would have passed.
         threshold: f64,
     },
+    /// First-estimates and invariant filters need to know how robot and landmarks move together.
+    #[error("this linearization needs a landmark model that implements `symmetries`")]
+    NoSymmetry,
     /// A parameter is outside its range.
     #[error("parameter {name} is {value}, must be {range}")]
     Parameter {

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use nalgebra::{DefaultAllocator, DimName, OVector, allocator::Allocator};
+use nalgebra::{DMatrix, DefaultAllocator, DimName, OVector, allocator::Allocator};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix, numerical_jacobian};
 
 use crate::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
@@ -71,6 +71,25 @@ where
     /// Whether the measurement can be used at all. By default: whether it is finite.
     fn is_usable(&self, measurement: &Self::Measurement) -> bool {
         measurement.local(measurement).iter().all(|entry| entry.is_finite())
+    }
+
+    /// Names of the ways to move robot and map together that no measurement can see, such as "translation along x".
+    ///
+    /// None by default: then there is only the standard filter, and the observability toolbox names nothing.
+    fn symmetries(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// $`g_r`$: how the robot moves in its tangent space when the world moves, one column a symmetry, per metre or radian.
+    ///
+    /// **Law**: $`∂h/∂x_r \, g_r + ∂h/∂m \, g_m = 0`$, and the columns are independent.
+    fn robot_symmetry(&self, _robot: &Self::Robot) -> DMatrix<f64> {
+        DMatrix::zeros(RobotDim::<Self>::DIM, 0)
+    }
+
+    /// $`g_m`$: how a landmark moves with it.
+    fn landmark_symmetry(&self, _landmark: &Self::Landmark) -> DMatrix<f64> {
+        DMatrix::zeros(LandmarkDim::<Self>::DIM, 0)
     }
 
     /// $`g(x_r, z)`$: a landmark from its first measurement.

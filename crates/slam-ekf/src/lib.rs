@@ -31,23 +31,22 @@ mod models;
 pub mod observability;
 mod outcome;
 mod snapshot;
-mod symmetry;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
 pub use error::SlamError;
 pub use filter::{
-    Confirmation, EkfSlam, LandmarkEstimate, OutlierRule, PredictedSighting, SlamParams, UpdateOrder,
+    Confirmation, EkfSlam, LandmarkEstimate, Linearization, OutlierRule, PredictedSighting, SlamParams,
+    UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    IncrementMotion, MonobotMotion, MonobotSensor, RangeBearing, RangeBearingSensor, RelativePosition,
-    RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl,
-    VelocityMotion,
+    IncrementMotion, MonobotMotion, MonobotSensor, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor,
+    RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor,
+    VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 pub use outcome::{Outcome, StepReport};
 pub use snapshot::{SavedLandmark, Snapshot};
-pub use symmetry::Symmetry;
 
 /// The matrix library of every public signature.
 pub use wayfix_estimation_traits::nalgebra;

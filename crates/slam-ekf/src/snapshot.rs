@@ -27,6 +27,8 @@ pub struct SavedLandmark<L> {
     pub id: LandmarkId,
     /// Where it is.
     pub mean: L,
+    /// Where it was when it was placed first, which is where a first-estimates filter linearizes.
+    pub first: L,
     /// Looks in which it was seen.
     pub n_sightings: usize,
     /// The look in which it was seen last.

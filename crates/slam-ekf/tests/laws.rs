@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Matrix2, Matrix2x3, Vector2};
+use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Pose2, laws as general};
 use wayfix_slam_ekf::{
     IncrementMotion, LandmarkModel, NewLandmark, RangeBearing, RangeBearingSensor, RelativePositionSensor,
@@ -82,6 +82,8 @@ enum Wrong {
     Sure,
     /// The noise is indefinite.
     Noise,
+    /// Landmarks turn the other way when the world turns.
+    Twisted,
 }
 
 const GOOD: RangeBearingSensor =
@@ -105,6 +107,17 @@ impl LandmarkModel for Wrong {
     }
     fn noise(&self, measurement: &RangeBearing) -> Matrix2<f64> {
         GOOD.noise(measurement) * if matches!(self, Self::Noise) { -1.0 } else { 1.0 }
+    }
+    fn symmetries(&self) -> &'static [&'static str] {
+        GOOD.symmetries()
+    }
+    fn robot_symmetry(&self, robot: &Pose2<f64>) -> DMatrix<f64> {
+        GOOD.robot_symmetry(robot)
+    }
+    fn landmark_symmetry(&self, landmark: &Vector2<f64>) -> DMatrix<f64> {
+        let mut symmetry = GOOD.landmark_symmetry(landmark);
+        symmetry.column_mut(2).scale_mut(if matches!(self, Self::Twisted) { -1.0 } else { 1.0 });
+        symmetry
     }
     fn initialize(&self, robot: &Pose2<f64>, seen: &RangeBearing) -> NewLandmark<Vector2<f64>, Pose2<f64>> {
         let seen = match self {
@@ -132,5 +145,6 @@ fn mistakes_are_caught_by_the_law_they_break() {
     assert!(law(Wrong::Mirrored).0.contains("law 2"));
     assert!(law(Wrong::Unturned).1.contains("initialize") && law(Wrong::Unturned).0.contains("derivative"));
     assert!(law(Wrong::Sure).0.contains("law 4"));
+    assert!(law(Wrong::Twisted).0.contains("law 5"));
     assert!(law(Wrong::Noise).0.contains("positive definite"));
 }

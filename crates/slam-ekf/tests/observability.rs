@@ -9,8 +9,8 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{MotionModel, Pose2, SensorModel};
 use wayfix_slam_ekf::{
     EkfSlam, IncrementMotion, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, OutlierRule,
-    RangeBearingSensor, RelativePositionSensor, ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams,
-    laws, observability::ObservabilityRecorder,
+    RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams, laws,
+    observability::ObservabilityRecorder,
 };
 
 const SEED: u64 = 21;
@@ -63,8 +63,11 @@ fn free(recorder: &ObservabilityRecorder) -> Vec<String> {
 #[test]
 fn a_plain_map_may_be_moved_and_turned_and_two_anchors_or_a_camera_end_that() {
     let mut names = free(&lap(0, false));
-    names.sort();
-    assert_eq!(names, ["common translation in x", "common translation in y", "rotation about the origin"]);
+    names.sort_unstable();
+    assert_eq!(
+        names,
+        ["rotation of everything", "translation of everything along x", "translation of everything along y"]
+    );
     assert_eq!(free(&lap(2, false)), [""; 0]);
     assert_eq!(free(&lap(0, true)), [""; 0]);
 }
@@ -79,9 +82,9 @@ fn about_a_single_anchor_the_map_still_turns() {
     let part = |name: &str| {
         directions[0].parts.iter().find(|(found, _)| *found == name).map_or(0.0, |(_, part)| *part)
     };
-    let turn = part("rotation about the origin");
-    assert!((part("common translation in x") - turn * y).abs() < 1e-6, "{}", directions[0]);
-    assert!((part("common translation in y") + turn * x).abs() < 1e-6, "{}", directions[0]);
+    let turn = part("rotation of everything");
+    assert!((part("translation of everything along x") - turn * y).abs() < 1e-6, "{}", directions[0]);
+    assert!((part("translation of everything along y") + turn * x).abs() < 1e-6, "{}", directions[0]);
 }
 
 #[test]
@@ -125,15 +128,8 @@ fn the_monobot_has_the_information_of_the_paper() {
 }
 
 #[test]
-fn every_model_keeps_the_law_of_symmetry() {
-    let poses = [Pose2::new(0.0, 0.0, 0.0), Pose2::new(3.0, -2.0, 3.1), Pose2::new(-40.0, 1.0, -1.5)];
-    let points = [Vector2::new(4.0, 1.0), Vector2::new(-7.0, 0.2)];
-    laws::symmetry(&RangeBearingSensor::default(), &poses, &points).unwrap();
-    laws::symmetry(&RelativePositionSensor { sigma: 0.1 }, &poses, &points).unwrap();
-    let scaled = poses.map(|pose| ScaledPose { pose, log_range_scale: 0.1 });
-    laws::symmetry(&ScaledRangeBearingSensor::default(), &scaled, &points).unwrap();
+fn the_monobot_keeps_the_laws() {
     let line = MonobotSensor { sigma: 0.1, sigma_per_meter: 0.1 };
-    laws::symmetry(&line, &[Vector1::new(-1.0)], &[Vector1::new(1.0), Vector1::new(-3.0)]).unwrap();
     laws::landmark_model(&line, &[Vector1::new(-1.0)], &[Vector1::new(1.0), Vector1::new(-3.0)]).unwrap();
 }
 

@@ -8,8 +8,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    Confirmation, EkfSlam, IncrementMotion, LandmarkId, NearestNeighbour, NearestNeighbourParams,
-    RangeBearingSensor, SlamError, SlamParams, Snapshot,
+    Confirmation, EkfSlam, IncrementMotion, LandmarkId, Linearization, NearestNeighbour,
+    NearestNeighbourParams, RangeBearingSensor, SlamError, SlamParams, Snapshot,
 };
 
 const SEED: u64 = 11;
@@ -17,9 +17,9 @@ const SEED: u64 = 11;
 type Saved = Snapshot<Pose2<f64>, Vector2<f64>>;
 
 /// Landmarks that nobody told apart, some of which are forgotten again: the filter's whole memory is at work.
-fn params() -> SlamParams {
+fn params(linearization: Linearization) -> SlamParams {
     let confirmation = Confirmation { n_sightings: 4, patience: Some(2), ..Confirmation::default() };
-    SlamParams { confirmation, ..SlamParams::default() }
+    SlamParams { confirmation, linearization, ..SlamParams::default() }
 }
 
 fn rule() -> NearestNeighbour {
@@ -27,20 +27,21 @@ fn rule() -> NearestNeighbour {
 }
 
 fn resume(snapshot: Saved) -> Result<EkfSlam<RangeBearingSensor>, SlamError> {
-    EkfSlam::resume(RangeBearingSensor::default(), params(), snapshot)
+    EkfSlam::resume(RangeBearingSensor::default(), params(Linearization::Newest), snapshot)
 }
 
 /// A drive among unlabelled points and one anchor, stopped and resumed before each step that `stops` names.
-fn drive(stops: &[usize]) -> (Saved, u32) {
+fn drive(stops: &[usize], linearization: Linearization) -> (Saved, u32) {
+    let (sensor, params) = (RangeBearingSensor::default(), params(linearization));
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let landmarks = common::landmarks(30, &mut rng);
     let steps = common::drive(90, &landmarks, &mut rng);
-    let mut slam = EkfSlam::new(RangeBearingSensor::default(), params(), common::start()).unwrap();
+    let mut slam = EkfSlam::new(sensor, params, common::start()).unwrap();
     slam.add_anchor(LandmarkId(1000), Vector2::from(landmarks[0])).unwrap();
     let mut rule = rule();
     for (k, step) in steps.iter().enumerate() {
         if stops.contains(&k) {
-            slam = resume(slam.snapshot()).unwrap();
+            slam = EkfSlam::resume(sensor, params, slam.snapshot()).unwrap();
             rule = self::rule().numbering_from(rule.next_id());
         }
         slam.predict(&IncrementMotion::default(), &step.increment).unwrap();
@@ -51,20 +52,21 @@ fn drive(stops: &[usize]) -> (Saved, u32) {
 
 #[test]
 fn a_filter_that_stopped_goes_on_bit_for_bit() {
-    let (whole, next_id) = drive(&[]);
-    assert!(whole.landmarks.len() > 10, "a map");
-    assert!(
-        next_id as usize > whole.landmarks.len(),
-        "some landmarks were forgotten, their numbers are used up"
-    );
-    for stops in [vec![45], vec![1, 2, 3], (0..90).collect()] {
-        assert_eq!(drive(&stops), (whole.clone(), next_id), "stopped before {stops:?}");
+    for linearization in [Linearization::Newest, Linearization::FirstEstimates, Linearization::Invariant] {
+        let (whole, next_id) = drive(&[], linearization);
+        assert!(whole.landmarks.len() > 10, "a map");
+        let n_numbered = next_id as usize;
+        assert!(n_numbered > whole.landmarks.len(), "some were forgotten, and their numbers are used up");
+        for stops in [vec![45], vec![1, 2, 3], (0..90).collect()] {
+            let resumed = drive(&stops, linearization);
+            assert_eq!(resumed, (whole.clone(), next_id), "{linearization:?} stopped before {stops:?}");
+        }
     }
 }
 
 #[test]
 fn what_cannot_be_a_filter_is_refused() {
-    let (good, _) = drive(&[]);
+    let (good, _) = drive(&[], Linearization::Newest);
     let n = 3 + 2 * good.landmarks.len();
     assert!(resume(good.clone()).is_ok());
     let refused = |spoil: &dyn Fn(&mut Saved)| {

@@ -7,6 +7,7 @@ use wayfix_estimation_traits::Pose2;
 use super::camera;
 use super::cloud::{self, Slot};
 use super::routes::Route;
+use super::vehicle;
 use crate::planar::heading_of;
 use crate::{Data, ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, Velocity};
 
@@ -21,6 +22,9 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
             Ok(vec![Record { stamp: stamp(message.timestamp, log_time)?, data: velocity(&message)? }])
         }
         Route::Increment => pose_record(bytes, log_time, Data::OdometryIncrement),
+        Route::Ackermann => vehicle::drive(bytes, log_time),
+        Route::SightedWidths => vehicle::widths(bytes, log_time),
+        Route::TruePosition => vehicle::position(bytes, log_time),
         Route::TruePose => pose_record(bytes, log_time, Data::TruePose),
         Route::EstimatedPose => pose_record(bytes, log_time, Data::EstimatedPose),
         Route::CameraInfo => camera::info(bytes, log_time),
@@ -113,14 +117,14 @@ fn landmarks(cloud: &PointCloud) -> Result<Vec<TrueLandmark>, Fault> {
     Ok(landmarks)
 }
 
-fn slots<const N: usize>(cloud: &PointCloud, names: [&str; N]) -> Result<[Slot; N], Fault> {
+pub(super) fn slots<const N: usize>(cloud: &PointCloud, names: [&str; N]) -> Result<[Slot; N], Fault> {
     let slots: Option<Vec<Slot>> = names.iter().map(|name| Slot::of(cloud, name)).collect();
     slots
         .and_then(|slots| slots.try_into().ok())
         .ok_or_else(|| inconsistent(&format!("point cloud without the fields {names:?}")))
 }
 
-fn read_points<T>(cloud: &PointCloud, read: impl Fn(&[u8]) -> Option<T>) -> Result<Vec<T>, Fault> {
+pub(super) fn read_points<T>(cloud: &PointCloud, read: impl Fn(&[u8]) -> Option<T>) -> Result<Vec<T>, Fault> {
     cloud::points(cloud)
         .and_then(|points| points.map(read).collect())
         .ok_or_else(|| inconsistent("point cloud whose bytes do not fit its fields"))

@@ -13,6 +13,7 @@ mod reader;
 mod reorder;
 mod routes;
 pub mod topics;
+mod vehicle;
 mod writer;
 
 pub use drawing::{Drawing, Shape};

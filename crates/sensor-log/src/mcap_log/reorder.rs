@@ -55,6 +55,7 @@ impl Reorder {
 fn n_bytes(record: &Record) -> usize {
     match &record.data {
         Data::Sightings(look) => size_of_val(look.as_slice()),
+        Data::SightedWidths(widths) => size_of_val(widths.as_slice()),
         Data::Image(image) | Data::TrueLabels(image) => image.bytes.len(),
         _ => 0,
     }

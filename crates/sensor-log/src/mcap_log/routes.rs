@@ -5,8 +5,11 @@ use super::topics;
 pub(super) enum Route {
     Velocity,
     Increment,
+    Ackermann,
     Sightings,
+    SightedWidths,
     TruePose,
+    TruePosition,
     TrueLandmarks,
     EstimatedPose,
     CameraInfo,
@@ -23,7 +26,10 @@ impl Route {
         let (route, expected) = match topic {
             topics::VELOCITY => (Self::Velocity, "foxglove.Odometry"),
             topics::INCREMENT => (Self::Increment, "foxglove.PoseInFrame"),
+            topics::ACKERMANN => (Self::Ackermann, "foxglove.JointStates"),
             topics::SIGHTINGS => (Self::Sightings, "foxglove.PointCloud"),
+            topics::SIGHTED_WIDTHS => (Self::SightedWidths, "foxglove.PointCloud"),
+            topics::TRUE_POSITION => (Self::TruePosition, "foxglove.PointCloud"),
             topics::TRUE_POSE => (Self::TruePose, "foxglove.PoseInFrame"),
             topics::TRUE_LANDMARKS => (Self::TrueLandmarks, "foxglove.PointCloud"),
             topics::ESTIMATED_POSE => (Self::EstimatedPose, "foxglove.PoseInFrame"),

@@ -4,7 +4,10 @@
 //! | --- | --- | --- | --- |
 //! | [`VELOCITY`] | `foxglove.Odometry`, the two velocities | [`BODY_FRAME`] in [`ODOMETRY_FRAME`] | [`Data::Velocity`](crate::Data::Velocity) |
 //! | [`INCREMENT`] | `foxglove.PoseInFrame`, new pose in the old body frame | [`BODY_FRAME`] | [`Data::OdometryIncrement`](crate::Data::OdometryIncrement) |
+//! | [`ACKERMANN`] | `foxglove.JointStates`, velocity of `wheel`, position of `steering` | | [`Data::Ackermann`](crate::Data::Ackermann) |
 //! | [`SIGHTINGS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Sightings`](crate::Data::Sightings) |
+//! | [`SIGHTED_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`Data::SightedWidths`](crate::Data::SightedWidths) |
+//! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`Data::TruePosition`](crate::Data::TruePosition) |
 //! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |
 //! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
 //! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
@@ -23,8 +26,14 @@
 pub const VELOCITY: &str = "/odom/velocity";
 /// Odometry increments.
 pub const INCREMENT: &str = "/odom/increment";
+/// Wheel speed and steering of a car-like vehicle.
+pub const ACKERMANN: &str = "/odom/ackermann";
 /// Ranges and bearings.
 pub const SIGHTINGS: &str = "/sightings";
+/// How wide the sighted things are.
+pub const SIGHTED_WIDTHS: &str = "/sightings/widths";
+/// Where a point of the robot truly was.
+pub const TRUE_POSITION: &str = "/truth/position";
 /// Where the robot truly was.
 pub const TRUE_POSE: &str = "/truth/pose";
 /// Where the landmarks truly are.

@@ -9,9 +9,9 @@ use mcap::WriteOptions;
 use mcap::records::MessageHeader;
 use wayfix_estimation_traits::Pose2;
 
-use super::camera;
 use super::drawing::scene_update;
 use super::{Drawing, encode, origin, topics};
+use super::{camera, vehicle};
 use crate::{Data, Format, LogError, Record, Stamp, TrueLandmark};
 
 /// Messages are flushed in chunks of about this size: a crash loses no more.
@@ -116,6 +116,15 @@ impl<W: Write + Seek> McapWriter<W> {
             }
             Data::OdometryIncrement(step) => {
                 self.pose_in_frame(topics::INCREMENT, stamp, topics::BODY_FRAME, step)
+            }
+            Data::Ackermann(drive) => {
+                self.message(topics::ACKERMANN, stamp, &vehicle::encode_drive(timestamp, drive))
+            }
+            Data::SightedWidths(widths) => {
+                self.message(topics::SIGHTED_WIDTHS, stamp, &vehicle::encode_widths(timestamp, widths))
+            }
+            Data::TruePosition(position) => {
+                self.message(topics::TRUE_POSITION, stamp, &vehicle::encode_position(timestamp, position))
             }
             Data::Sightings(look) => {
                 self.message(topics::SIGHTINGS, stamp, &encode::sightings(timestamp, look))

@@ -35,13 +35,22 @@ impl<'p, R: BufRead> Lines<'p, R> {
 
     /// Hands every row to `read_row`; what it refuses goes into the report.
     pub(crate) fn for_each_row(
-        mut self,
+        self,
         report: &mut ReadReport,
         mut read_row: impl FnMut(&str) -> Result<(), RowError>,
     ) -> Result<(), LogError> {
+        self.for_each_numbered_row(report, |_, row| read_row(row))
+    }
+
+    /// Hands every row with its number to `read_row`; what it refuses goes into the report.
+    pub(crate) fn for_each_numbered_row(
+        mut self,
+        report: &mut ReadReport,
+        mut read_row: impl FnMut(u64, &str) -> Result<(), RowError>,
+    ) -> Result<(), LogError> {
         let file = self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         while let Some(row) = self.next_row()? {
-            match row.text.and_then(&mut read_row) {
+            match row.text.and_then(|text| read_row(row.number, text)) {
                 Ok(()) => report.rows_read += 1,
                 Err(RowError { kind, reason }) => {
                     // A row that only comes late is used all the same.

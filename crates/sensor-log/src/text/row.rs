@@ -18,9 +18,18 @@ impl RowError {
 
 /// Exactly `N` columns, separated by blanks or tabs.
 pub(crate) fn columns<const N: usize>(row: &str) -> Result<[&str; N], RowError> {
+    exactly(row.split_ascii_whitespace())
+}
+
+/// Exactly `N` columns, separated by commas.
+pub(crate) fn comma_columns<const N: usize>(row: &str) -> Result<[&str; N], RowError> {
+    exactly(row.split(',').map(str::trim_ascii))
+}
+
+fn exactly<'a, const N: usize>(found: impl Iterator<Item = &'a str>) -> Result<[&'a str; N], RowError> {
     let mut columns = [""; N];
     let mut n_columns = 0;
-    for column in row.split_ascii_whitespace() {
+    for column in found {
         if let Some(slot) = columns.get_mut(n_columns) {
             *slot = column;
         }
@@ -75,6 +84,7 @@ mod tests {
         assert_eq!(stamp("-1").unwrap_err().kind, ProblemKind::BadStamp);
         assert_eq!(id("4294967296").unwrap_err().kind, ProblemKind::NotANumber);
         assert_eq!(columns::<2>(" a\t b ").unwrap(), ["a", "b"]);
+        assert_eq!(comma_columns::<2>("a, b").unwrap(), ["a", "b"]);
         assert_eq!(columns::<2>("a b c").unwrap_err().reason, "3 columns instead of 2");
     }
 }

@@ -78,6 +78,30 @@ impl JointCovariance {
         self.storage.view_mut((0, 0), (R::DIM, R::DIM)).copy_from(&robot);
     }
 
+    /// $`P ← (I + A B S) P (I + A B S)^T`$, where $`S`$ takes the robot out of the state: every block leans by its rows of `A` on $`B e_r`$.
+    ///
+    /// Cost $`O(n^2)`$ for each column of `A` that is not zero. The rows of the robot must be zero: [`move_robot`](Self::move_robot) moves it.
+    pub(crate) fn shear(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>) {
+        let leaned_on = b * self.block(0..b.ncols(), 0..self.dimension); // B P_r·
+        let own = leaned_on.columns(0, b.ncols()) * b.transpose() * 0.5;
+        let half = leaned_on + own * a.transpose();
+        let half = half.transpose();
+        let mut p = self.storage.view_mut((0, 0), (self.dimension, self.dimension));
+        for column in (0..a.ncols()).filter(|column| a.column(*column).amax() > 0.0) {
+            let (lean, on) = (a.column(column), half.column(column));
+            for (state, mut entries) in p.column_iter_mut().enumerate() {
+                let (on_state, lean_state) = (on[state], lean[state]);
+                for (entry, (lean, on)) in entries.iter_mut().zip(lean.iter().zip(on.iter())) {
+                    *entry += lean * on_state + on * lean_state;
+                }
+            }
+        }
+        for state in 0..self.dimension {
+            let deviation: f64 = (0..a.ncols()).map(|k| (a[(state, k)] * half[(state, k)]).abs()).sum();
+            p[(state, state)] += ROUNDING * (p[(state, state)].abs() + deviation);
+        }
+    }
+
     /// Appends a block that depends on the robot: $`P_{m·} = G P_{r·},\; P_{mm} = G P_{rr} G^T + N`$. Returns its offset.
     pub(crate) fn append<L: DimName, R: DimName>(
         &mut self,
@@ -142,5 +166,38 @@ impl JointCovariance {
             grown.view_mut((0, 0), (self.dimension, self.dimension)).copy_from(&self.matrix());
             self.storage = grown;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, Matrix2x3, Matrix3};
+
+    use super::*;
+
+    #[test]
+    fn a_shear_is_the_dense_congruence() {
+        let mut covariance =
+            JointCovariance::from_robot(&Matrix3::new(2.0, 0.3, 0.1, 0.3, 1.0, -0.2, 0.1, -0.2, 0.5));
+        for k in 0..4 {
+            let lever = Matrix2x3::new(1.0, 0.2 * k as f64, -1.0, 0.0, 1.0, 0.5 * k as f64);
+            covariance.append(&lever, &nalgebra::Matrix2::new(0.3, 0.1, 0.1, 0.2));
+        }
+        let before = covariance.matrix().into_owned();
+        let n = before.nrows();
+        let a = DMatrix::from_fn(
+            n,
+            2,
+            |row, column| if row < 3 { 0.0 } else { ((row + 3 * column) as f64).sin() },
+        );
+        let b = DMatrix::from_row_slice(2, 3, &[0.5, -1.0, 0.0, 0.1, 0.2, 2.0]);
+
+        covariance.shear(&a, &b);
+
+        let mut dense = DMatrix::identity(n, n);
+        dense.columns_mut(0, 3).gemm(1.0, &a, &b, 1.0);
+        let expected = &dense * before * dense.transpose();
+        assert!((covariance.matrix() - &expected).amax() < 1e-12 * expected.amax()); // roundings of a dozen products, and what is given back
+        assert_eq!(covariance.matrix(), covariance.matrix().transpose());
     }
 }

@@ -74,7 +74,8 @@ where
 
     fn append(&mut self, id: LandmarkId, new: NewLandmark<M::Landmark, M::Robot>, n_sightings: usize) {
         let offset = self.covariance.append(&new.robot_jacobian, &new.covariance);
-        self.landmarks.insert(id, Slot { mean: new.landmark, offset, n_sightings, last_seen: self.look });
+        let (mean, first) = (new.landmark.clone(), new.landmark);
+        self.landmarks.insert(id, Slot { mean, first, offset, n_sightings, last_seen: self.look });
     }
 
     pub(super) fn check_free(&self, id: LandmarkId) -> Result<(), SlamError> {

@@ -2,16 +2,19 @@
 
 mod confirmation;
 mod gates;
+mod linearization;
 mod map;
 mod params;
 mod predict;
 mod resume;
 mod sight;
 mod state;
+mod step;
 mod update;
 mod update_robot;
 
 pub use confirmation::Confirmation;
+pub use linearization::Linearization;
 pub use params::{OutlierRule, SlamParams, UpdateOrder};
 pub use sight::PredictedSighting;
 pub use state::{EkfSlam, LandmarkEstimate};

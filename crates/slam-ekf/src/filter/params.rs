@@ -1,4 +1,4 @@
-use super::Confirmation;
+use super::{Confirmation, Linearization};
 use crate::SlamError;
 
 /// Parameters of the filter, the same for every kind of landmark.
@@ -19,6 +19,8 @@ pub struct SlamParams {
     pub student_t_degrees_of_freedom: f64,
     /// Whether observations of one look correct together.
     pub order: UpdateOrder,
+    /// Where derivatives are taken, and with that whether the filter stays consistent on long loops.
+    pub linearization: Linearization,
     /// What a landmark must show before it counts.
     pub confirmation: Confirmation,
 }
@@ -61,6 +63,7 @@ impl Default for SlamParams {
             gate_probability: 0.9999,
             student_t_degrees_of_freedom: 4.0,
             order: UpdateOrder::Joint,
+            linearization: Linearization::default(),
             confirmation: Confirmation::default(),
         }
     }

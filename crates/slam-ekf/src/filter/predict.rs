@@ -1,5 +1,5 @@
 use nalgebra::{DMatrix, DefaultAllocator, DimName, OMatrix, allocator::Allocator};
-use wayfix_estimation_traits::{Manifold, MotionModel, Tangent, TangentMatrix};
+use wayfix_estimation_traits::MotionModel;
 
 use super::{EkfSlam, state::is_finite};
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError};
@@ -34,17 +34,6 @@ where
         self.covariance.move_robot(&jacobian, &noise);
         self.robot = moved;
         Ok(())
-    }
-
-    /// Steps the robot's mean and takes its covariance along into the tangent space there.
-    ///
-    /// Without the second half the covariance would stay in the frame of the old heading. With it the filter is the same, number for
-    /// number, as one that keeps the robot's error in world coordinates.
-    pub(super) fn step_robot(&mut self, step: &Tangent<M::Robot>) {
-        let corrected = self.robot.retract(step);
-        let transport = self.robot.chart_jacobian(&corrected);
-        self.robot = corrected;
-        self.covariance.move_robot(&transport, &TangentMatrix::<M::Robot>::zeros());
     }
 }
 

@@ -17,6 +17,7 @@ where
         let saved = |(id, slot): (&LandmarkId, &Slot<M::Landmark>)| SavedLandmark {
             id: *id,
             mean: slot.mean.clone(),
+            first: slot.first.clone(),
             n_sightings: slot.n_sightings,
             last_seen: slot.last_seen,
         };
@@ -68,12 +69,13 @@ where
             slam.add_anchor(id, landmark)?;
         }
         let mut offset = RobotDim::<M>::DIM;
-        for SavedLandmark { id, mean, n_sightings, last_seen } in landmarks {
+        for SavedLandmark { id, mean, first, n_sightings, last_seen } in landmarks {
             slam.check_free(id)?;
             check_finite(&mean)?;
+            check_finite(&first)?;
             check_count("last_seen", last_seen, look)?;
             check_count("n_sightings", n_sightings, usize::MAX / 2)?;
-            slam.landmarks.insert(id, Slot { mean, offset, n_sightings, last_seen });
+            slam.landmarks.insert(id, Slot { mean, first, offset, n_sightings, last_seen });
             offset += LandmarkDim::<M>::DIM;
         }
         slam.covariance = joint_covariance(offset, &covariance)?;

@@ -1,7 +1,7 @@
 use nalgebra::{DefaultAllocator, DimName, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
-use super::EkfSlam;
+use super::{EkfSlam, Linearization, state::Slot};
 use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
 /// How a landmark of the map should look from here: what associations compare measurements with.
@@ -49,7 +49,7 @@ where
     /// gives no finite measurement).
     pub fn predicted_sighting(&self, id: LandmarkId) -> Option<PredictedSighting<M>> {
         if let Some(slot) = self.landmarks.get(&id) {
-            self.predict_sighting(id, &slot.mean, Some(slot.offset))
+            self.predict_sighting(id, &slot.mean, Some(slot))
         } else {
             self.predict_sighting(id, self.anchors.get(&id)?, None)
         }
@@ -59,21 +59,23 @@ where
     pub fn predicted_sightings(&self) -> impl Iterator<Item = PredictedSighting<M>> {
         let anchors = self.anchors.iter().filter_map(|(id, mean)| self.predict_sighting(*id, mean, None));
         let landmarks = self.landmarks.iter();
-        anchors.chain(
-            landmarks.filter_map(|(id, slot)| self.predict_sighting(*id, &slot.mean, Some(slot.offset))),
-        )
+        anchors.chain(landmarks.filter_map(|(id, slot)| self.predict_sighting(*id, &slot.mean, Some(slot))))
     }
 
     fn predict_sighting(
         &self,
         landmark: LandmarkId,
         mean: &M::Landmark,
-        offset: Option<usize>,
+        slot: Option<&Slot<M::Landmark>>,
     ) -> Option<PredictedSighting<M>> {
         let expected = self.model.expected(&self.robot, mean);
-        let robot_jacobian = self.model.robot_jacobian(&self.robot, mean);
+        let linearized_at = match (slot, self.params.linearization) {
+            (Some(slot), Linearization::FirstEstimates) => &slot.first,
+            _ => mean,
+        };
+        let robot_jacobian = self.model.robot_jacobian(&self.robot, linearized_at);
         let landmark_jacobian =
-            offset.map(|offset| (offset, self.model.landmark_jacobian(&self.robot, mean)));
+            slot.map(|slot| (slot.offset, self.model.landmark_jacobian(&self.robot, linearized_at)));
 
         let mut covariance = &robot_jacobian * self.robot_covariance() * robot_jacobian.transpose();
         if let Some((offset, jacobian)) = &landmark_jacobian {

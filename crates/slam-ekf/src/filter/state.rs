@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrixView, DefaultAllocator, DimName};
 use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
-use super::{SlamParams, gates::Gates};
+use super::{Linearization, SlamParams, gates::Gates};
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
     covariance::JointCovariance,
@@ -50,6 +50,8 @@ where
 #[derive(Clone, Debug)]
 pub(super) struct Slot<L> {
     pub(super) mean: L,
+    /// Where it was when it was placed first.
+    pub(super) first: L,
     pub(super) offset: usize,
     pub(super) n_sightings: usize,
     /// The look in which it was seen last.
@@ -77,7 +79,7 @@ where
     /// An empty map around a robot whose pose is the origin of everything, known exactly.
     ///
     /// # Errors
-    /// When a parameter is out of range or the pose is not finite.
+    /// When a parameter is out of range, the pose is not finite, or the linearization needs a symmetry that the model does not tell.
     pub fn new(model: M, params: SlamParams, start: M::Robot) -> Result<Self, SlamError> {
         Self::with_start_covariance(model, params, start, TangentMatrix::<M::Robot>::zeros())
     }
@@ -85,7 +87,7 @@ where
     /// An empty map around a robot whose pose in a given world is uncertain.
     ///
     /// # Errors
-    /// When a parameter is out of range, the pose is not finite, or the covariance is not symmetric positive semidefinite.
+    /// As [`new`](Self::new), or when the covariance is not symmetric positive semidefinite.
     pub fn with_start_covariance(
         model: M,
         params: SlamParams,
@@ -96,6 +98,9 @@ where
             return Err(SlamError::NotFinite { what: "start pose" });
         }
         super::predict::check_covariance("start covariance", &covariance)?;
+        if params.linearization != Linearization::Newest && model.symmetries().is_empty() {
+            return Err(SlamError::NoSymmetry);
+        }
         Ok(Self {
             model,
             gates: Gates::from_probability(params.validated()?.gate_probability, MeasurementDim::<M>::DIM)?,

@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, DVector, DefaultAllocator};
-use wayfix_estimation_traits::{Manifold, Tangent, TangentMatrix};
+use wayfix_estimation_traits::TangentMatrix;
 
 use super::{
     EkfSlam, PredictedSighting,
@@ -145,15 +145,6 @@ where
         let step = self.covariance.correct(&jacobian, &noise, &residual)?;
         self.step(&step);
         Some(())
-    }
-
-    /// Steps all means.
-    pub(super) fn step(&mut self, step: &DVector<f64>) {
-        self.step_robot(&Tangent::<M::Robot>::from_fn(|row, _| step[row]));
-        for slot in self.landmarks.values_mut() {
-            let delta = Tangent::<M::Landmark>::from_fn(|row, _| step[slot.offset + row]);
-            slot.mean = slot.mean.retract(&delta);
-        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod increment;
 mod monobot;
+mod planar;
 mod range_bearing;
 mod relative_position;
 mod scaled;
@@ -9,6 +10,7 @@ mod velocity;
 
 pub use increment::IncrementMotion;
 pub use monobot::{MonobotMotion, MonobotSensor};
+pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};
 pub use scaled::{ScaledMotion, ScaledPose, ScaledRangeBearingSensor};

@@ -1,4 +1,4 @@
-use nalgebra::{Matrix1, Vector1};
+use nalgebra::{DMatrix, Matrix1, Vector1};
 use wayfix_estimation_traits::MotionModel;
 
 use crate::{LandmarkModel, NewLandmark};
@@ -64,6 +64,15 @@ impl LandmarkModel for MonobotSensor {
     }
     fn noise(&self, distance: &Vector1<f64>) -> Matrix1<f64> {
         Matrix1::new((self.sigma + self.sigma_per_meter * distance.x.abs()).powi(2))
+    }
+    fn symmetries(&self) -> &'static [&'static str] {
+        &["translation of everything"]
+    }
+    fn robot_symmetry(&self, _: &Vector1<f64>) -> DMatrix<f64> {
+        DMatrix::identity(1, 1)
+    }
+    fn landmark_symmetry(&self, _: &Vector1<f64>) -> DMatrix<f64> {
+        DMatrix::identity(1, 1)
     }
     fn initialize(
         &self,

@@ -1,6 +1,7 @@
-use nalgebra::{Const, Matrix2, Matrix2x3, Vector2};
+use nalgebra::{Const, DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Angle, Manifold, Pose2, wrap_angle};
 
+use super::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 use crate::{LandmarkModel, NewLandmark};
 
 /// Distance and direction of a point, seen from the robot.
@@ -106,6 +107,18 @@ impl LandmarkModel for RangeBearingSensor {
     /// A range must be positive: a bearing alone does not place a point.
     fn is_usable(&self, measurement: &RangeBearing) -> bool {
         measurement.range > 0.0 && measurement.range.is_finite() && measurement.bearing.radians().is_finite()
+    }
+
+    fn symmetries(&self) -> &'static [&'static str] {
+        PLANAR_SYMMETRIES
+    }
+
+    fn robot_symmetry(&self, robot: &Pose2<f64>) -> DMatrix<f64> {
+        pose_symmetry(robot)
+    }
+
+    fn landmark_symmetry(&self, landmark: &Vector2<f64>) -> DMatrix<f64> {
+        point_symmetry(landmark)
     }
 
     fn initialize(

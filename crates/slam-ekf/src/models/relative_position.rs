@@ -1,6 +1,7 @@
-use nalgebra::{Matrix2, Matrix2x3, Vector2};
+use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Pose2, TangentMatrix};
 
+use super::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 use crate::{LandmarkModel, NewLandmark};
 
 /// Position of a point in the robot frame, metres: x forward, y left.
@@ -37,6 +38,18 @@ impl LandmarkModel for RelativePositionSensor {
 
     fn noise(&self, _: &RelativePosition) -> TangentMatrix<RelativePosition> {
         Matrix2::identity() * self.sigma.powi(2)
+    }
+
+    fn symmetries(&self) -> &'static [&'static str] {
+        PLANAR_SYMMETRIES
+    }
+
+    fn robot_symmetry(&self, robot: &Pose2<f64>) -> DMatrix<f64> {
+        pose_symmetry(robot)
+    }
+
+    fn landmark_symmetry(&self, landmark: &Vector2<f64>) -> DMatrix<f64> {
+        point_symmetry(landmark)
     }
 
     fn initialize(

@@ -1,7 +1,10 @@
-use nalgebra::{Const, Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
+use nalgebra::{Const, DMatrix, Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
 
-use super::{RangeBearing, RangeBearingSensor, range_bearing::placement_jacobian};
+use super::{
+    PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, point_symmetry, pose_symmetry,
+    range_bearing::placement_jacobian,
+};
 use crate::{LandmarkModel, NewLandmark};
 
 /// A pose together with the scale of the robot's range sensor, estimated on the way.
@@ -89,6 +92,18 @@ impl LandmarkModel for ScaledRangeBearingSensor {
 
     fn is_usable(&self, measurement: &RangeBearing) -> bool {
         self.0.is_usable(measurement)
+    }
+
+    fn symmetries(&self) -> &'static [&'static str] {
+        PLANAR_SYMMETRIES
+    }
+
+    fn robot_symmetry(&self, robot: &ScaledPose) -> DMatrix<f64> {
+        pose_symmetry(&robot.pose).insert_row(3, 0.0)
+    }
+
+    fn landmark_symmetry(&self, landmark: &Vector2<f64>) -> DMatrix<f64> {
+        point_symmetry(landmark)
     }
 
     fn initialize(

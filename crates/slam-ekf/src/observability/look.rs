@@ -1,6 +1,6 @@
 use nalgebra::{DMatrix, DefaultAllocator, DimName};
 
-use crate::{EkfSlam, LandmarkDim, LandmarkId, MeasurementDim, RobotDim, SlamAlloc, Symmetry};
+use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
 /// One look, linearized at the filter's estimate: only the robot's and the seen landmarks' columns.
 pub(super) struct Look {
@@ -15,7 +15,7 @@ pub(super) struct Look {
 
 impl Look {
     /// How these landmarks and anchors look from here; what is not in the map or cannot be seen is left out.
-    pub(super) fn of<M: Symmetry>(slam: &EkfSlam<M>, seen: &[LandmarkId]) -> Self
+    pub(super) fn of<M: LandmarkModel>(slam: &EkfSlam<M>, seen: &[LandmarkId]) -> Self
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
@@ -32,8 +32,8 @@ impl Look {
             DMatrix::zeros(rows * sightings.len(), n),
             DMatrix::zeros(rows * sightings.len(), rows * sightings.len()),
         );
-        let mut motion = DMatrix::zeros(n, slam.model().directions().len());
-        motion.rows_mut(0, robot_size).copy_from(&slam.model().robot_motion(slam.robot()));
+        let mut motion = DMatrix::zeros(n, slam.model().symmetries().len());
+        motion.rows_mut(0, robot_size).copy_from(&slam.model().robot_symmetry(slam.robot()));
         let mut places: Vec<usize> = (0..robot_size).collect(); // in the filter's covariance
         for (k, sighting) in sightings.iter().enumerate() {
             jacobian.view_mut((k * rows, 0), (rows, robot_size)).copy_from(&sighting.robot);
@@ -64,7 +64,7 @@ struct Linearized {
 }
 
 impl Linearized {
-    fn of<M: Symmetry>(slam: &EkfSlam<M>, id: LandmarkId) -> Option<Self>
+    fn of<M: LandmarkModel>(slam: &EkfSlam<M>, id: LandmarkId) -> Option<Self>
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
@@ -84,7 +84,7 @@ impl Linearized {
             robot: dense(rows, RobotDim::<M>::DIM, &|i, j| by_robot[(i, j)]),
             landmark: dense(rows, size, &|i, j| by_landmark[(i, j)]),
             noise: dense(rows, rows, &|i, j| noise[(i, j)]),
-            motion: model.landmark_motion(mean),
+            motion: model.landmark_symmetry(mean),
         };
         let mut all =
             linearized.robot.iter().chain(linearized.landmark.iter()).chain(linearized.noise.iter());

@@ -7,7 +7,7 @@ use super::{
     look::Look,
     null_space::{null_space, readable},
 };
-use crate::{EkfSlam, LandmarkDim, LandmarkId, MeasurementDim, RobotDim, SlamAlloc, Symmetry};
+use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
 /// Adds up what a run's measurements say about the robot at its start and the landmarks, without any prior.
 ///
@@ -29,7 +29,7 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, MeasurementDim, RobotDim, SlamAllo
 /// slam.update(&[seen(0, 2.0)], &mut KnownIds)?;
 /// recorder.record(&slam, &[LandmarkId(0)]);
 /// assert_eq!((recorder.dimension(), recorder.rank()), (2, 1));
-/// assert_eq!(recorder.free_directions()[0].to_string(), "common translation");
+/// assert_eq!(recorder.free_directions()[0].to_string(), "translation of everything");
 ///
 /// slam.add_anchor(LandmarkId(1), Vector1::new(0.0))?; // a landmark whose place is known
 /// slam.update(&[seen(1, 1.0)], &mut KnownIds)?;
@@ -59,11 +59,11 @@ const SINGULAR: f64 = 1e-11;
 
 impl ObservabilityRecorder {
     /// Nothing is known of the robot, and no landmark was seen.
-    pub fn new<M: Symmetry>(slam: &EkfSlam<M>) -> Self
+    pub fn new<M: LandmarkModel>(slam: &EkfSlam<M>) -> Self
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
-        let (size, directions) = (RobotDim::<M>::DIM, slam.model().directions());
+        let (size, directions) = (RobotDim::<M>::DIM, slam.model().symmetries());
         Self {
             transition: DMatrix::identity(size, size),
             blocks: BTreeMap::new(),
@@ -84,7 +84,7 @@ impl ObservabilityRecorder {
 
     /// One look at these landmarks and anchors, linearized at the filter's present estimate: before the update for the paper's $`S`$, or after it
     /// to have new landmarks in. `false`, and nothing recorded, when none of them is in the map or $`S`$ is not positive definite.
-    pub fn record<M: Symmetry>(&mut self, slam: &EkfSlam<M>, seen: &[LandmarkId]) -> bool
+    pub fn record<M: LandmarkModel>(&mut self, slam: &EkfSlam<M>, seen: &[LandmarkId]) -> bool
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
@@ -93,7 +93,7 @@ impl ObservabilityRecorder {
     }
 
     /// A measurement of the robot alone, with its Jacobian and innovation covariance, as of [`EkfSlam::update_robot`].
-    pub fn record_robot<'a, M: Symmetry>(
+    pub fn record_robot<'a, M: LandmarkModel>(
         &mut self,
         slam: &EkfSlam<M>,
         jacobian: impl Into<DMatrixView<'a, f64>>,
@@ -106,7 +106,7 @@ impl ObservabilityRecorder {
             (jacobian.into().into_owned(), innovation_covariance.into().into_owned());
         let fits = jacobian.ncols() == RobotDim::<M>::DIM
             && covariance.shape() == (jacobian.nrows(), jacobian.nrows());
-        let motion = slam.model().robot_motion(slam.robot());
+        let motion = slam.model().robot_symmetry(slam.robot());
         let look = Look { jacobian, landmarks: Vec::new(), innovation_covariance: covariance, motion };
         fits && self.add(&look, LandmarkDim::<M>::DIM)
     }
@@ -127,7 +127,7 @@ impl ObservabilityRecorder {
     pub fn null_space(&self) -> DMatrix<f64> {
         null_space(&self.information, &self.information.diagonal(), SINGULAR)
     }
-    /// Motions of the whole world that no measurement has ever noticed.
+    /// Motions of the whole world that no measurement has ever noticed, among those that the model names ([`LandmarkModel::symmetries`]).
     pub fn free_directions(&self) -> Vec<FreeDirection> {
         let basis = null_space(&self.constraint, &self.uncancelled, NOTHING);
         let named = |vector: DVector<f64>| FreeDirection::new(self.directions, vector.iter().copied());

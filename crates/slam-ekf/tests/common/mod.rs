@@ -44,18 +44,65 @@ pub(crate) fn drive(n_steps: usize, landmarks: &[[f64; 2]], rng: &mut ChaCha8Rng
             let [x, y, turn] = ODOMETRY.map(|sigma| sigma * normal(rng));
             increment = Pose2::new(motion.x() + x, motion.y() + y, motion.heading() + turn);
         }
-        let observations = landmarks.iter().enumerate().filter_map(|(id, [x, y])| {
-            let seen = truth.inverse_transform(&nalgebra::Vector2::new(*x, *y));
-            let [range, bearing] = SIGHTING.map(|sigma| sigma * normal(rng));
-            let measurement = RangeBearing::new(seen.norm() + range, seen.y.atan2(seen.x) + bearing);
-            (seen.norm() < RANGE).then_some(Observation { label: Some(LandmarkId(id as u32)), measurement })
-        });
-        let observations = observations.collect();
-        Step { truth, increment, observations }
+        Step { truth, increment, observations: look(&truth, landmarks, RANGE, SIGHTING, rng) }
     };
     (0..n_steps).map(&mut step).collect()
 }
 
 pub(crate) fn start() -> Pose2<f64> {
     Pose2::new(3.0, 0.0, std::f64::consts::FRAC_PI_2)
+}
+
+/// Laps of a circle in a ring of landmarks.
+pub(crate) struct LongLoop {
+    pub(crate) radius: f64,
+    pub(crate) n_per_lap: usize,
+    pub(crate) odometry: [f64; 3],
+    pub(crate) sighting: [f64; 2],
+}
+
+impl LongLoop {
+    pub(crate) fn start(&self) -> Pose2<f64> {
+        Pose2::new(self.radius, 0.0, std::f64::consts::FRAC_PI_2)
+    }
+
+    /// In the order of their directions from the centre, up to 8 m from the path.
+    pub(crate) fn landmarks(&self, n: usize, rng: &mut ChaCha8Rng) -> Vec<[f64; 2]> {
+        let place = |i: usize| {
+            let angle = std::f64::consts::TAU * (i as f64 + rng.random::<f64>()) / n as f64;
+            let radius = self.radius + 8.0 * (2.0 * rng.random::<f64>() - 1.0);
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        (0..n).map(place).collect()
+    }
+
+    pub(crate) fn drive(&self, n_steps: usize, landmarks: &[[f64; 2]], rng: &mut ChaCha8Rng) -> Vec<Step> {
+        let turn = std::f64::consts::TAU / self.n_per_lap as f64;
+        let motion = Pose2::exp(&nalgebra::Vector3::new(self.radius * turn, 0.0, turn));
+        let mut truth = self.start();
+        let step = |_| {
+            truth = truth.compose(&motion);
+            let [x, y, turn] = self.odometry.map(|sigma| sigma * normal(rng));
+            let increment = Pose2::new(motion.x() + x, motion.y() + y, motion.heading() + turn);
+            Step { truth, increment, observations: look(&truth, landmarks, 10.0, self.sighting, rng) }
+        };
+        (0..n_steps).map(step).collect()
+    }
+}
+
+/// Everything within `reach`, with its identity.
+fn look(
+    robot: &Pose2<f64>,
+    landmarks: &[[f64; 2]],
+    reach: f64,
+    sigmas: [f64; 2],
+    rng: &mut ChaCha8Rng,
+) -> Vec<Observation<RangeBearing>> {
+    let see = |(id, [x, y]): (usize, &[f64; 2])| {
+        let seen = robot.inverse_transform(&nalgebra::Vector2::new(*x, *y));
+        let [range, bearing] = sigmas.map(|sigma| sigma * normal(rng));
+        let measurement = RangeBearing::new(seen.norm() + range, seen.y.atan2(seen.x) + bearing);
+        (seen.norm() < reach).then_some(Observation { label: Some(LandmarkId(id as u32)), measurement })
+    };
+    landmarks.iter().enumerate().filter_map(see).collect()
 }

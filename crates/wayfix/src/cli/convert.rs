@@ -12,11 +12,11 @@ use super::output::{print, tell};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log to read: a file, or the folder of a UTIAS set or of images (30 Hz).
+    /// The log to read: a file, or the folder of a UTIAS set, of Victoria Park or of images (30 Hz).
     input: PathBuf,
     /// The file to write: .mcap, .txt (range-bearing lines) or .tum (poses).
     output: PathBuf,
-    /// How the input is stored: utias, range-bearing, tum, mcap or images [default: found out by looking].
+    /// How the input is stored: utias, victoria-park, range-bearing, tum, mcap or images [default: found out by looking].
     #[arg(long, value_name = "FORMAT")]
     from: Option<Format>,
     /// How to store the output: mcap, range-bearing or tum [default: what its ending says].

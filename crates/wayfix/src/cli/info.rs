@@ -9,9 +9,9 @@ use super::output::print;
 #[derive(clap::Args)]
 #[command(after_long_help = FORMATS)]
 pub(super) struct Arguments {
-    /// The log: a file, or the folder of a UTIAS set or of images.
+    /// The log: a file, or the folder of a UTIAS set, of Victoria Park or of images.
     path: PathBuf,
-    /// How it is stored: utias, range-bearing, tum, mcap or images [default: found out by looking].
+    /// How it is stored: utias, victoria-park, range-bearing, tum, mcap or images [default: found out by looking].
     #[arg(long)]
     format: Option<Format>,
     /// Which robot, in sets of several.
@@ -22,6 +22,8 @@ pub(super) struct Arguments {
 const FORMATS: &str = "\
 Formats:
   utias          a folder with Barcodes.dat and RobotN_{Odometry,Measurement,Groundtruth}.dat
+  victoria-park  a folder with odometry.csv (t_s,speed_mps,steering_rad), trees.csv (t_s,range_m,bearing_rad,diameter_m;
+                 bearing 0 to the right) and, for figures, gps.csv (t_s,x_m,y_m)
   range-bearing  text without stamps, a step every 0.1 s, each in the order P, O, Z
                    L id x y              a true landmark, m
                    P x y heading         the true pose, m and rad
@@ -30,7 +32,7 @@ Formats:
                  L and P are for figures only and may be absent.
   tum            t x y z qx qy qz qw lines: poses only
   mcap           Foxglove protobuf messages on /odom/velocity (Odometry) or /odom/increment (PoseInFrame),
-                 /sightings (PointCloud with range, bearing, kind, id), /truth/pose (PoseInFrame),
+                 or /odom/ackermann (JointStates wheel, steering), /sightings (PointCloud with range, bearing, kind, id), /truth/pose (PoseInFrame),
                  /truth/landmarks (PointCloud with x, y, id), /camera/info (CameraCalibration), /camera/mount
                  (FrameTransform), /camera/image and /truth/labels (CompressedImage)
   images         a folder of PNG and JPEG files, frames by name, 30 Hz";

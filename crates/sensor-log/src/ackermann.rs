@@ -1,0 +1,18 @@
+/// What the encoder and the steering of a car-like vehicle say, as they say it.
+///
+/// Where the wheel sits and how the wheels steer is the vehicle's affair, not the log's. With the encoder on the inner side of a left
+/// turn, half a track width $`H`$ off the middle, and the distance $`L`$ between the axles, the middle of the rear axle moves with
+/// $`v = v_{wheel} / (1 - \tan(\alpha) H / L)`$ [Guivant & Nebot 2001].
+///
+/// ```
+/// use wayfix_sensor_log::{AckermannDrive, Data};
+/// let drive = AckermannDrive { wheel_speed: 2.0, steering: 0.1 };
+/// assert_eq!(Data::Ackermann(drive).kind(), "ackermann drive");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AckermannDrive {
+    /// Speed over the ground of the wheel that carries the encoder (Victoria Park: the rear left one), m/s.
+    pub wheel_speed: f64,
+    /// Angle of the steered axle, radians, positive to the left.
+    pub steering: f64,
+}

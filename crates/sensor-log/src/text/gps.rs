@@ -1,0 +1,65 @@
+use crate::{Problem, ProblemKind, ReadReport, Stamp, TruePosition};
+
+/// A fix whose steps from the one before and to the one after are both longer is a jump of the receiver, metres.
+const MAX_STEP_M: f64 = 30.0;
+
+/// The fixes of `file`, each with its row, without jumps, which go into the report.
+///
+/// Only a fix between two others is judged: one long step alone may be a gap in the reception.
+pub(super) fn drop_jumps(
+    file: &str,
+    fixes: Vec<(u64, Stamp, TruePosition)>,
+    report: &mut ReadReport,
+) -> Vec<(Stamp, TruePosition)> {
+    let steps: Vec<f64> = fixes.windows(2).map(|pair| step(&pair[0].2, &pair[1].2)).collect();
+    let mut kept = Vec::with_capacity(fixes.len());
+    for (index, (row, stamp, position)) in fixes.into_iter().enumerate() {
+        let before = index.checked_sub(1).and_then(|index| steps.get(index));
+        match (before, steps.get(index)) {
+            (Some(before), Some(after)) if before.min(*after) > MAX_STEP_M => {
+                report.rows_read -= 1;
+                report.add(Problem {
+                    file: file.to_owned(),
+                    row,
+                    kind: ProblemKind::Inconsistent,
+                    reason: format!(
+                        "fix {before:.0} m from the one before and {after:.0} m from the one after"
+                    ),
+                });
+            }
+            _ => kept.push((stamp, position)),
+        }
+    }
+    kept
+}
+
+fn step(from: &TruePosition, to: &TruePosition) -> f64 {
+    (to.x - from.x).hypot(to.y - from.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x of the fixes that stay, and the rows of the others.
+    fn kept(xs: &[f64]) -> (Vec<f64>, Vec<u64>) {
+        let fix = |(row, x): (usize, &f64)| (row as u64, Stamp::default(), TruePosition { x: *x, y: 0.0 });
+        let mut report = ReadReport { rows_read: xs.len() as u64, ..Default::default() };
+        let kept = drop_jumps("gps.csv", xs.iter().enumerate().map(fix).collect(), &mut report);
+        assert_eq!(report.rows_read, kept.len() as u64);
+        let rows = report.examples.iter().map(|problem| problem.row).collect();
+        (kept.into_iter().map(|(_, position)| position.x).collect(), rows)
+    }
+
+    #[test]
+    fn only_a_fix_far_from_both_neighbours_goes() {
+        assert_eq!(kept(&[0.0, 1.0, 140.0, 2.0, 3.0]), (vec![0.0, 1.0, 2.0, 3.0], vec![2]));
+        let gap = [0.0, 1.0, 140.0, 141.0];
+        assert_eq!(kept(&gap), (gap.to_vec(), vec![]));
+        let at_the_ends = [0.0, 31.0, 32.0, 63.0];
+        assert_eq!(kept(&at_the_ends), (at_the_ends.to_vec(), vec![]));
+        let thirty = [0.0, 30.0, 0.0];
+        assert_eq!(kept(&thirty), (thirty.to_vec(), vec![]));
+        assert_eq!(kept(&[]), (vec![], vec![]));
+    }
+}

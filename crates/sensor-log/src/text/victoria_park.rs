@@ -1,0 +1,121 @@
+//! The Victoria Park set of the Australian Centre for Field Robotics [Guivant & Nebot 2001], as CSV files in a folder.
+//!
+//! | file | columns (the first row names them) |
+//! | --- | --- |
+//! | `odometry.csv` | `t_s,speed_mps,steering_rad`: the encoder of the rear left wheel and the steering |
+//! | `trees.csv` | `t_s,range_m,bearing_rad,diameter_m`: trunks in the laser scans; bearing 0 to the right, π/2 ahead |
+//! | `gps.csv` | `t_s,x_m,y_m`: fixes of the antenna; the file may be missing |
+//!
+//! Bearings come out as REP 103 has them, 0 ahead, and are those of the laser, which sits 3.78 m ahead of the rear axle and 0.5 m left.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use wayfix_estimation_traits::wrap_angle;
+
+use super::Lines;
+use super::gps::drop_jumps;
+use super::row::{RowError, comma_columns, number, stamp};
+use super::time_check::TimeCheck;
+use crate::format::shortened;
+use crate::{
+    AckermannDrive, Data, Format, LogError, ReadReport, Record, Sighting, Stamp, Target, TruePosition,
+};
+
+const ODOMETRY: &str = "odometry.csv";
+const TREES: &str = "trees.csv";
+const GPS: &str = "gps.csv";
+
+/// Whether the folder holds the set.
+pub(crate) fn is_in(folder: &Path) -> bool {
+    [ODOMETRY, TREES].iter().all(|name| folder.join(name).is_file())
+}
+
+/// All records, sorted by time.
+pub(crate) fn read(folder: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
+    if folder.is_file() {
+        let reason = format!("the set is a folder; give the one that holds {ODOMETRY} and {TREES}");
+        return Err(LogError::NotThisFormat { path: folder.into(), format: Format::VictoriaPark, reason });
+    }
+    // The stable sort keeps this order at equal stamps: truth, odometry, sightings.
+    let mut records = read_fixes(&folder.join(GPS), report)?;
+    records.extend(read_odometry(&folder.join(ODOMETRY), report)?);
+    records.extend(read_trees(&folder.join(TREES), report)?);
+    records.sort_by_key(|record| record.stamp);
+    Ok(records)
+}
+
+fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
+    let mut records = Vec::new();
+    for_each_row(path, ["t_s", "speed_mps", "steering_rad"], report, |_, [t, speed, steering]| {
+        let drive = AckermannDrive { wheel_speed: number(speed)?, steering: number(steering)? };
+        let stamp = stamp(t)?;
+        records.push(Record { stamp, data: Data::Ackermann(drive) });
+        Ok(stamp)
+    })?;
+    Ok(records)
+}
+
+/// Rows of the same stamp are one look, in the order of the file.
+fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
+    let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Sighting>)> = BTreeMap::new();
+    let header = ["t_s", "range_m", "bearing_rad", "diameter_m"];
+    for_each_row(path, header, report, |_, [t, range, bearing, diameter]| {
+        let (stamp, range, width) = (stamp(t)?, number(range)?, number(diameter)?);
+        let bearing = wrap_angle(number(bearing)? - std::f64::consts::FRAC_PI_2);
+        let (widths, look) = looks.entry(stamp).or_default();
+        widths.push(width);
+        look.push(Sighting { target: Target::Unlabelled, range, bearing });
+        Ok(stamp)
+    })?;
+    let to_records = |(stamp, (widths, look))| {
+        [Data::SightedWidths(widths), Data::Sightings(look)].map(|data| Record { stamp, data })
+    };
+    Ok(looks.into_iter().flat_map(to_records).collect())
+}
+
+fn read_fixes(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
+    let mut fixes = Vec::new();
+    let read = for_each_row(path, ["t_s", "x_m", "y_m"], report, |row, [t, x, y]| {
+        let position = TruePosition { x: number(x)?, y: number(y)? };
+        let stamp = stamp(t)?;
+        fixes.push((row, stamp, position));
+        Ok(stamp)
+    });
+    match read {
+        Err(LogError::NotFound { .. }) => return Ok(Vec::new()),
+        result => result?,
+    }
+    let to_record = |(stamp, position)| Record { stamp, data: Data::TruePosition(position) };
+    Ok(drop_jumps(GPS, fixes, report).into_iter().map(to_record).collect())
+}
+
+/// Hands every row below the header to `take_row`, which gives its stamp.
+fn for_each_row<const N: usize>(
+    path: &Path,
+    header: [&str; N],
+    report: &mut ReadReport,
+    mut take_row: impl FnMut(u64, [&str; N]) -> Result<Stamp, RowError>,
+) -> Result<(), LogError> {
+    let mut lines = Lines::open(path)?;
+    check_header(&mut lines, path, header)?;
+    let mut time = TimeCheck::default();
+    lines.for_each_numbered_row(report, |row, text| time.check(take_row(row, comma_columns(text)?)?))
+}
+
+/// Columns that mean something else would give a log that looks right and is not.
+fn check_header<R: std::io::BufRead, const N: usize>(
+    lines: &mut Lines<'_, R>,
+    path: &Path,
+    header: [&str; N],
+) -> Result<(), LogError> {
+    let Some(row) = lines.next_row()? else {
+        return Err(LogError::Empty { path: path.into() });
+    };
+    let text = row.text.unwrap_or("no text");
+    if comma_columns(text).is_ok_and(|columns: [&str; N]| columns == header) {
+        return Ok(());
+    }
+    let reason = format!("line {} is {:?} instead of {:?}", row.number, shortened(text), header.join(","));
+    Err(LogError::NotThisFormat { path: path.into(), format: Format::VictoriaPark, reason })
+}

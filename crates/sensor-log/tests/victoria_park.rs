@@ -1,0 +1,87 @@
+//! The reader of the Victoria Park set, on files written here.
+
+use std::f64::consts::FRAC_PI_2;
+use std::fs;
+use std::path::Path;
+
+use wayfix_sensor_log::{
+    AckermannDrive, Data, Format, LogError, OpenOptions, ProblemKind, Record, Sighting, Stamp, Target,
+    TruePosition, open,
+};
+
+fn write(folder: &Path, name: &str, text: &str) {
+    fs::write(folder.join(name), text).expect("the scratch folder is writable");
+}
+
+fn set(folder: &Path) {
+    write(folder, "odometry.csv", "t_s,speed_mps,steering_rad\n1.000,0.5,-0.1\n1.025,0.75,0.2\n");
+    write(folder, "trees.csv", "t_s,range_m,bearing_rad,diameter_m\n1.025,20,1.0,0.3\n1.025,10,2.5,0.4\n");
+    write(folder, "gps.csv", "t_s,x_m,y_m\n1.025,-67.5,-41.75\n");
+}
+
+fn at(milliseconds: u64, data: Data) -> Record {
+    Record { stamp: Stamp::from_nanoseconds(milliseconds * 1_000_000), data }
+}
+
+#[test]
+fn the_three_files_are_merged_and_bearings_turned_ahead() {
+    let folder = tempfile::tempdir().unwrap();
+    set(folder.path());
+    let log = open(folder.path(), &OpenOptions::default()).unwrap();
+    assert_eq!(log.meta().format, Format::VictoriaPark);
+    let (records, report) = log.read_all();
+    let tree = |range, bearing| Sighting { target: Target::Unlabelled, range, bearing };
+    let drive = |wheel_speed, steering| Data::Ackermann(AckermannDrive { wheel_speed, steering });
+    let expected = [
+        at(1000, drive(0.5, -0.1)),
+        at(1025, Data::TruePosition(TruePosition { x: -67.5, y: -41.75 })),
+        at(1025, drive(0.75, 0.2)),
+        at(1025, Data::SightedWidths(vec![0.3, 0.4])),
+        at(1025, Data::Sightings(vec![tree(20.0, 1.0 - FRAC_PI_2), tree(10.0, 2.5 - FRAC_PI_2)])),
+    ];
+    assert_eq!(records, expected);
+    assert_eq!((report.rows_read, report.n_problems()), (5, 0));
+}
+
+#[test]
+fn bad_rows_are_counted_and_the_rest_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    set(folder.path());
+    let rows = "t_s,speed_mps,steering_rad\n2,1,0\n1,1,0\n3,nan,0\n3,1\n-1,1,0\n3,fast,0\n4,1,0";
+    write(folder.path(), "odometry.csv", rows);
+    let jump = "t_s,x_m,y_m\n1,0,0\n2,0,100\n3,1,0\n";
+    write(folder.path(), "gps.csv", jump);
+    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let count = |is: fn(&Data) -> bool| records.iter().filter(|record| is(&record.data)).count();
+    assert_eq!(count(|data| matches!(data, Data::Ackermann(_))), 3);
+    assert_eq!(count(|data| matches!(data, Data::TruePosition(_))), 2);
+    assert!(records.is_sorted_by_key(|record| record.stamp));
+    for kind in [
+        ProblemKind::OutOfOrder,
+        ProblemKind::NotFinite,
+        ProblemKind::ColumnCount,
+        ProblemKind::BadStamp,
+        ProblemKind::NotANumber,
+        ProblemKind::Inconsistent,
+    ] {
+        assert_eq!(report.problems.get(&kind), Some(&1), "{kind}");
+    }
+    let named: Vec<String> = report.examples.iter().map(ToString::to_string).collect();
+    assert_eq!(named[0], "gps.csv:3: fix 100 m from the one before and 100 m from the one after");
+}
+
+#[test]
+fn gps_may_be_missing_the_other_files_not() {
+    let folder = tempfile::tempdir().unwrap();
+    set(folder.path());
+    fs::remove_file(folder.path().join("gps.csv")).unwrap();
+    let options = OpenOptions { format: Some(Format::VictoriaPark), ..Default::default() };
+    assert_eq!(open(folder.path(), &options).unwrap().count(), 4);
+    let file = open(folder.path().join("trees.csv"), &options).unwrap_err();
+    assert!(matches!(file, LogError::NotThisFormat { format: Format::VictoriaPark, .. }));
+    write(folder.path(), "odometry.csv", "time,speed,steering\n1,1,0\n");
+    let error = open(folder.path(), &options).unwrap_err().to_string();
+    assert!(error.contains("\"time,speed,steering\" instead of \"t_s,speed_mps,steering_rad\""), "{error}");
+    fs::remove_file(folder.path().join("odometry.csv")).unwrap();
+    assert!(matches!(open(folder.path(), &options), Err(LogError::NotFound { .. })));
+}
