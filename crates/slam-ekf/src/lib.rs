@@ -46,7 +46,7 @@ pub use models::{
     VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 pub use outcome::{Outcome, StepReport};
-pub use snapshot::{SavedLandmark, Snapshot};
+pub use snapshot::{SavedLandmark, SavedRetired, Snapshot};
 
 /// The matrix library of every public signature.
 pub use wayfix_estimation_traits::nalgebra;

@@ -15,6 +15,8 @@ pub struct Snapshot<R, L> {
     pub landmarks: Vec<SavedLandmark<L>>,
     /// Landmarks whose place is known exactly.
     pub anchors: Vec<(LandmarkId, L)>,
+    /// Landmarks that left the state and still correct it.
+    pub retired: Vec<SavedRetired<L>>,
     /// The joint covariance, robot first: its lower triangle, column by column, $`n (n + 1) / 2`$ numbers. Half a matrix cannot be asymmetric.
     pub covariance: Vec<f64>,
 }
@@ -33,4 +35,18 @@ pub struct SavedLandmark<L> {
     pub n_sightings: usize,
     /// The look in which it was seen last.
     pub last_seen: usize,
+}
+
+/// A landmark of a [`Snapshot`] that left the state.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct SavedRetired<L> {
+    /// Its identity.
+    pub id: LandmarkId,
+    /// Where it is.
+    pub mean: L,
+    /// Looks in which it was seen before it left.
+    pub n_sightings: usize,
+    /// Its marginal when it left, column by column.
+    pub covariance: Vec<f64>,
 }

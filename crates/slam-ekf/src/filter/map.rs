@@ -50,7 +50,7 @@ where
     /// Takes a landmark or an anchor out of the map; what it taught about everything else stays. `false` when it is not in the map.
     pub fn remove(&mut self, id: LandmarkId) -> bool {
         let Some(removed) = self.landmarks.remove(&id) else {
-            return self.anchors.remove(&id).is_some();
+            return self.anchors.remove(&id).is_some() || self.retired.remove(&id).is_some();
         };
         let size = LandmarkDim::<M>::DIM;
         self.covariance.remove(removed.offset..removed.offset + size);

@@ -7,6 +7,7 @@ mod map;
 mod params;
 mod predict;
 mod resume;
+mod retire;
 mod sight;
 mod state;
 mod step;

@@ -1,9 +1,16 @@
-use nalgebra::{DMatrix, DMatrixView, DefaultAllocator, DimName, linalg::Cholesky};
+use nalgebra::{DMatrix, DMatrixView, DefaultAllocator, DimName, allocator::Allocator, linalg::Cholesky};
+use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
-use super::{EkfSlam, SlamParams, map::check_finite, predict::LARGEST_VARIANCE, state::Slot};
+use super::{
+    EkfSlam, SlamParams,
+    map::check_finite,
+    predict::{LARGEST_VARIANCE, check_covariance},
+    retire::Retired,
+    state::Slot,
+};
 use crate::{
-    LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SavedLandmark, SlamAlloc, SlamError,
-    Snapshot, covariance::JointCovariance,
+    LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SavedLandmark, SavedRetired, SlamAlloc,
+    SlamError, Snapshot, covariance::JointCovariance,
 };
 
 impl<M: LandmarkModel> EkfSlam<M>
@@ -26,6 +33,7 @@ where
             robot: self.robot.clone(),
             landmarks: slots.into_iter().map(saved).collect(),
             anchors: self.anchors.iter().map(|(id, landmark)| (*id, landmark.clone())).collect(),
+            retired: self.retired.iter().map(|(id, retired)| saved_retired(*id, retired)).collect(),
             covariance: self.covariance.lower(),
         }
     }
@@ -61,12 +69,20 @@ where
         params: SlamParams,
         snapshot: Snapshot<M::Robot, M::Landmark>,
     ) -> Result<Self, SlamError> {
-        let Snapshot { look, robot, landmarks, anchors, covariance } = snapshot;
+        let Snapshot { look, robot, landmarks, anchors, retired, covariance } = snapshot;
         let mut slam = Self::new(model, params, robot)?;
         check_count("look", look, usize::MAX / 2)?;
         slam.look = look;
         for (id, landmark) in anchors {
             slam.add_anchor(id, landmark)?;
+        }
+        for saved in retired {
+            slam.check_free(saved.id)?;
+            check_finite(&saved.mean)?;
+            check_count("n_sightings", saved.n_sightings, usize::MAX / 2)?;
+            let covariance = marginal::<M::Landmark>(&saved.covariance)?;
+            let SavedRetired { id, mean, n_sightings, .. } = saved;
+            slam.retired.insert(id, Retired { mean, covariance, n_sightings });
         }
         let mut offset = RobotDim::<M>::DIM;
         for SavedLandmark { id, mean, first, n_sightings, last_seen } in landmarks {
@@ -80,6 +96,35 @@ where
         }
         slam.covariance = joint_covariance(offset, &covariance)?;
         Ok(slam)
+    }
+}
+
+fn saved_retired<L: Manifold<Scalar = f64, Dim: DimName>>(
+    id: LandmarkId,
+    retired: &Retired<L>,
+) -> SavedRetired<L>
+where
+    DefaultAllocator: Allocator<L::Dim, L::Dim>,
+{
+    let Retired { mean, covariance, n_sightings } = retired.clone();
+    SavedRetired { id, mean, n_sightings, covariance: covariance.iter().copied().collect() }
+}
+
+fn marginal<L: Manifold<Scalar = f64, Dim: DimName>>(entries: &[f64]) -> Result<TangentMatrix<L>, SlamError>
+where
+    DefaultAllocator: Allocator<L::Dim, L::Dim>,
+{
+    let (what, expected, got) =
+        ("covariance of a retired landmark", L::Dim::DIM * L::Dim::DIM, entries.len());
+    if expected != got {
+        return Err(SlamError::Dimension { what, expected, got });
+    }
+    let covariance = TangentMatrix::<L>::from_iterator(entries.iter().copied());
+    check_covariance(what, &covariance)?;
+    if covariance.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {
+        Ok(covariance)
+    } else {
+        Err(SlamError::NotFinite { what })
     }
 }
 
