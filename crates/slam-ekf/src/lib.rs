@@ -33,7 +33,10 @@ mod outcome;
 mod snapshot;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
-pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
+pub use association::{
+    Association, DataAssociation, JointCompatibility, JointCompatibilityParams, KnownIds, NearestNeighbour,
+    NearestNeighbourParams,
+};
 pub use error::SlamError;
 pub use filter::{
     Confirmation, EkfSlam, LandmarkEstimate, Linearization, OutlierRule, PredictedSighting, SlamParams,
@@ -41,9 +44,10 @@ pub use filter::{
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    IncrementMotion, MonobotMotion, MonobotSensor, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor,
-    RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor,
-    VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
+    AckermannControl, AckermannMotion, AckermannVehicle, IncrementMotion, MonobotMotion, MonobotSensor,
+    Mounted, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor,
+    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry,
+    pose_symmetry,
 };
 pub use outcome::{Outcome, StepReport};
 pub use snapshot::{SavedLandmark, SavedRetired, Snapshot};

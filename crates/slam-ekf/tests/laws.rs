@@ -7,8 +7,9 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Pose2, laws as general};
 use wayfix_slam_ekf::{
-    IncrementMotion, LandmarkModel, NewLandmark, RangeBearing, RangeBearingSensor, RelativePositionSensor,
-    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion, laws,
+    AckermannControl, AckermannMotion, IncrementMotion, LandmarkModel, Mounted, NewLandmark, RangeBearing,
+    RangeBearingSensor, RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor,
+    VelocityControl, VelocityMotion, laws,
 };
 
 fn poses() -> Vec<Pose2<f64>> {
@@ -36,6 +37,9 @@ fn of_every_landmark_model() {
     laws::landmark_model(&sensor, &poses(), &landmarks()).unwrap();
     laws::landmark_model(&RelativePositionSensor { sigma: 0.1 }, &poses(), &landmarks()).unwrap();
     laws::landmark_model(&ScaledRangeBearingSensor(sensor), &scaled(&poses()), &landmarks()).unwrap();
+    let mounted = Mounted { sensor, mount: Pose2::new(0.3, -0.2, 2.0) };
+    laws::landmark_model(&mounted, &poses(), &landmarks()).unwrap();
+    laws::landmark_model(&ScaledRangeBearingSensor(mounted), &scaled(&poses()), &landmarks()).unwrap();
 }
 
 #[test]
@@ -60,8 +64,17 @@ fn of_every_motion() {
     let controls = [control(0.5, 0.0), control(0.3, -0.7), control(0.0, 0.0), control(-0.2, 2.0)];
     let cases: Vec<_> =
         poses().into_iter().flat_map(|pose| controls.iter().map(move |u| (pose, u))).collect();
-    let lossy = VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() };
+    let lossy = VelocityMotion {
+        speed_loss_in_turns: 0.8,
+        linear_sigma_per_meter: 0.1,
+        angular_sigma_per_meter: 0.02,
+        ..VelocityMotion::default()
+    };
     general::motion(&lossy, &cases).unwrap();
+    let steer = |wheel_speed, steering| AckermannControl { wheel_speed, steering, duration: 0.2 };
+    let driven = [steer(3.0, 0.4), steer(-1.0, -0.2), steer(0.0, 0.3)];
+    let driven: Vec<_> = poses().into_iter().flat_map(|pose| driven.iter().map(move |u| (pose, u))).collect();
+    general::motion(&AckermannMotion::default(), &driven).unwrap();
     let cases: Vec<_> =
         scaled(&poses()).into_iter().flat_map(|state| controls.iter().map(move |u| (state, u))).collect();
     general::motion(&ScaledMotion(lossy), &cases).unwrap();

@@ -1,12 +1,19 @@
 //! Which landmark is each observation of: one rule a file, all behind [`DataAssociation`].
 
+mod candidates;
+mod joint_compatibility;
+mod joint_innovation;
 mod known_ids;
 mod nearest_neighbour;
+mod new_ids;
 
 use nalgebra::DefaultAllocator;
 
+pub use joint_compatibility::{JointCompatibility, JointCompatibilityParams};
 pub use known_ids::KnownIds;
 pub use nearest_neighbour::{NearestNeighbour, NearestNeighbourParams};
+
+use new_ids::NewIds;
 
 use crate::{
     EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, RobotDim, SlamAlloc,

@@ -1,11 +1,12 @@
-use std::cmp::Ordering;
-
 use nalgebra::DefaultAllocator;
 
-use super::{Association, DataAssociation};
+use super::{
+    Association, DataAssociation, NewIds,
+    candidates::{Candidate, Candidates},
+};
 use crate::{
-    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, PredictedSighting,
-    RobotDim, SlamAlloc, SlamError,
+    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, RobotDim, SlamAlloc,
+    SlamError,
 };
 
 /// Thresholds of [`NearestNeighbour`].
@@ -36,7 +37,7 @@ impl Default for NearestNeighbourParams {
 #[derive(Clone, Debug)]
 pub struct NearestNeighbour {
     params: NearestNeighbourParams,
-    next_id: u32,
+    ids: NewIds,
 }
 
 impl NearestNeighbour {
@@ -56,30 +57,18 @@ impl NearestNeighbour {
                 range: "at least accept",
             });
         }
-        Ok(Self { params, next_id: 0 })
+        Ok(Self { params, ids: NewIds::default() })
     }
 
     /// The same rule, numbering new landmarks from here on: a rule that goes on where another one stopped.
     pub fn numbering_from(self, next_id: u32) -> Self {
-        Self { next_id, ..self }
+        Self { ids: NewIds::from(next_id), ..self }
     }
 
     /// The smallest number that a new landmark can get. Saved with the map: numbers of landmarks that were forgotten are not
     /// used again, and the map alone does not tell them.
     pub fn next_id(&self) -> u32 {
-        self.next_id
-    }
-
-    fn next_free_id<M: LandmarkModel>(&mut self, filter: &EkfSlam<M>) -> LandmarkId
-    where
-        DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
-    {
-        while filter.knows(LandmarkId(self.next_id)) {
-            self.next_id = self.next_id.wrapping_add(1);
-        }
-        let free = LandmarkId(self.next_id);
-        self.next_id = self.next_id.wrapping_add(1);
-        free
+        self.ids.next()
     }
 }
 
@@ -92,36 +81,24 @@ where
         filter: &EkfSlam<M>,
         observations: &[Observation<M::Measurement>],
     ) -> Vec<Association> {
-        let sightings: Vec<_> = filter.predicted_sightings().collect();
-        let nearest_one =
-            |seen: &Observation<_>| nearest_landmark(filter.model(), &sightings, &seen.measurement);
-        let nearest: Vec<_> = observations.iter().map(nearest_one).collect();
+        let candidates = Candidates::within(self.params.certainly_new, filter, observations);
+        let nearest_one = |of_one: &Vec<_>| {
+            of_one.first().map(|candidate: &Candidate<M>| {
+                (candidates.sightings[candidate.sighting].landmark, candidate.innovation.nis)
+            })
+        };
+        let nearest: Vec<_> = candidates.of_observation.iter().map(nearest_one).collect();
         let associate_one = |(own, candidate): (usize, &Option<(LandmarkId, f64)>)| match *candidate {
             Some((id, nis)) if nis <= self.params.accept => {
                 let taken =
                     nearest.iter().enumerate().any(|(other, rival)| is_closer(*rival, other, id, (nis, own)));
                 if taken { Association::Ambiguous } else { Association::Matched(id) }
             }
-            Some((_, nis)) if nis <= self.params.certainly_new => Association::Ambiguous,
-            _ => Association::New(self.next_free_id(filter)),
+            Some(_) => Association::Ambiguous,
+            None => Association::New(self.ids.next_free(filter)),
         };
         nearest.iter().enumerate().map(associate_one).collect()
     }
-}
-
-fn nearest_landmark<M: LandmarkModel>(
-    model: &M,
-    sightings: &[PredictedSighting<M>],
-    measurement: &M::Measurement,
-) -> Option<(LandmarkId, f64)>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
-{
-    let noise = model.noise(measurement);
-    sightings
-        .iter()
-        .filter_map(|sighting| Some((sighting.landmark, sighting.innovation(measurement, &noise)?.nis)))
-        .min_by(|(_, a), (_, b)| a.partial_cmp(b).unwrap_or(Ordering::Equal))
 }
 
 /// Whether a rival observation is nearer to the same landmark; the earlier one wins a draw.

@@ -36,10 +36,26 @@ where
         measurement: &M::Measurement,
         noise: &TangentMatrix<M::Measurement>,
     ) -> Option<Innovation<M::Measurement>> {
+        self.innovation_within(f64::INFINITY, measurement, noise)
+    }
+
+    /// The innovation, when its NIS is at most `limit`.
+    ///
+    /// Most landmarks are far from most measurements in a single coordinate already, $`ν_i^2 / S_{ii} ≤ ν^T S^{-1} ν`$, and cost no more than that.
+    pub fn innovation_within(
+        &self,
+        limit: f64,
+        measurement: &M::Measurement,
+        noise: &TangentMatrix<M::Measurement>,
+    ) -> Option<Innovation<M::Measurement>> {
         let residual = self.expected.local(measurement);
+        let variance = |row: usize| self.covariance[(row, row)] + noise[(row, row)];
+        if (0..residual.len()).any(|row| residual[row] * residual[row] > limit * variance(row)) {
+            return None;
+        }
         let covariance = &self.covariance + noise;
         let nis = residual.dot(&Cholesky::new(covariance.clone())?.solve(&residual));
-        nis.is_finite().then_some(Innovation { residual, covariance, nis })
+        (nis.is_finite() && nis <= limit).then_some(Innovation { residual, covariance, nis })
     }
 }
 
@@ -57,6 +73,29 @@ where
         } else {
             self.predict_sighting(id, self.anchors.get(&id)?, None)
         }
+    }
+
+    /// $`H_a P H_b^T`$: how the expectations of two landmarks err together, without the noise of the sensor.
+    pub fn predicted_cross_covariance(
+        &self,
+        a: &PredictedSighting<M>,
+        b: &PredictedSighting<M>,
+    ) -> TangentMatrix<M::Measurement> {
+        let robot = 0..RobotDim::<M>::DIM;
+        let block = |offset: usize| offset..offset + LandmarkDim::<M>::DIM;
+        let mut cross = &a.robot_jacobian * self.robot_covariance() * b.robot_jacobian.transpose();
+        if let Some((offset, by_landmark)) = &a.landmark_jacobian {
+            let with_robot = self.covariance.block(block(*offset), robot.clone());
+            cross += by_landmark * with_robot * b.robot_jacobian.transpose();
+        }
+        if let Some((offset, by_landmark)) = &b.landmark_jacobian {
+            let with_robot = self.covariance.block(robot, block(*offset));
+            cross += &a.robot_jacobian * with_robot * by_landmark.transpose();
+        }
+        if let (Some((at_a, by_a)), Some((at_b, by_b))) = (&a.landmark_jacobian, &b.landmark_jacobian) {
+            cross += by_a * self.covariance.block(block(*at_a), block(*at_b)) * by_b.transpose();
+        }
+        cross
     }
 
     /// How everything in the map should look from here, anchors first.

@@ -1,15 +1,19 @@
 //! Motions and sensors of planar robots, and of one on a line.
 
+mod ackermann;
 mod increment;
 mod monobot;
+mod mounted;
 mod planar;
 mod range_bearing;
 mod relative_position;
 mod scaled;
 mod velocity;
 
+pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use increment::IncrementMotion;
 pub use monobot::{MonobotMotion, MonobotSensor};
+pub use mounted::Mounted;
 pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};

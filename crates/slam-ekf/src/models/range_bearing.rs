@@ -143,7 +143,7 @@ impl LandmarkModel for RangeBearingSensor {
 }
 
 /// $`∂m/∂(r, b)`$ of a point placed by one measurement.
-pub(super) fn placement_jacobian(robot: &Pose2<f64>, measurement: &RangeBearing) -> Matrix2<f64> {
+fn placement_jacobian(robot: &Pose2<f64>, measurement: &RangeBearing) -> Matrix2<f64> {
     let q = measurement.point();
     robot.rotation_matrix() * Matrix2::from_columns(&[q / measurement.range, Vector2::new(-q.y, q.x)])
 }

@@ -1,10 +1,7 @@
 use nalgebra::{Const, DMatrix, Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
 
-use super::{
-    PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, point_symmetry, pose_symmetry,
-    range_bearing::placement_jacobian,
-};
+use super::{RangeBearing, RangeBearingSensor};
 use crate::{LandmarkModel, NewLandmark};
 
 /// A pose together with the scale of the robot's range sensor, estimated on the way.
@@ -61,9 +58,12 @@ impl<M: MotionModel<State = Pose2<f64>>> MotionModel for ScaledMotion<M> {
 ///
 /// Triangulation by bearings along the path fixes the factor; with a start variance of zero it stays what it is.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct ScaledRangeBearingSensor(pub RangeBearingSensor);
+pub struct ScaledRangeBearingSensor<S = RangeBearingSensor>(pub S);
 
-impl LandmarkModel for ScaledRangeBearingSensor {
+impl<S> LandmarkModel for ScaledRangeBearingSensor<S>
+where
+    S: LandmarkModel<Robot = Pose2<f64>, Landmark = Vector2<f64>, Measurement = RangeBearing>,
+{
     type Robot = ScaledPose;
     type Landmark = Vector2<f64>;
     type Measurement = RangeBearing;
@@ -95,15 +95,15 @@ impl LandmarkModel for ScaledRangeBearingSensor {
     }
 
     fn symmetries(&self) -> &'static [&'static str] {
-        PLANAR_SYMMETRIES
+        self.0.symmetries()
     }
 
     fn robot_symmetry(&self, robot: &ScaledPose) -> DMatrix<f64> {
-        pose_symmetry(&robot.pose).insert_row(3, 0.0)
+        self.0.robot_symmetry(&robot.pose).insert_row(3, 0.0)
     }
 
     fn landmark_symmetry(&self, landmark: &Vector2<f64>) -> DMatrix<f64> {
-        point_symmetry(landmark)
+        self.0.landmark_symmetry(landmark)
     }
 
     fn initialize(
@@ -111,13 +111,15 @@ impl LandmarkModel for ScaledRangeBearingSensor {
         robot: &ScaledPose,
         measurement: &RangeBearing,
     ) -> NewLandmark<Vector2<f64>, ScaledPose> {
-        let shrinkage = (-robot.log_range_scale).exp();
-        let true_to_scale = RangeBearing { range: measurement.range * shrinkage, ..*measurement };
+        let true_to_scale =
+            RangeBearing { range: measurement.range * (-robot.log_range_scale).exp(), ..*measurement };
         let new = self.0.initialize(&robot.pose, &true_to_scale);
+        let undefined = || Matrix2::repeat(f64::NAN);
+        let by_measurement =
+            self.landmark_jacobian(robot, &new.landmark).try_inverse().unwrap_or_else(undefined);
+        let by_scale = by_measurement.column(0) * -measurement.range;
         let mut robot_jacobian = new.robot_jacobian.insert_column(3, 0.0);
-        robot_jacobian.set_column(3, &(robot.pose.translation - new.landmark));
-        let mut by_measurement = placement_jacobian(&robot.pose, &true_to_scale);
-        by_measurement.column_mut(0).scale_mut(shrinkage);
+        robot_jacobian.set_column(3, &by_scale);
         let covariance = by_measurement * self.noise(measurement) * by_measurement.transpose();
         NewLandmark { landmark: new.landmark, robot_jacobian, covariance }
     }

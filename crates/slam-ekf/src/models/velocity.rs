@@ -16,8 +16,8 @@ pub struct VelocityControl {
 ///
 /// $`f = \max(0.2, 1 - κ|ω|)`$ is what is left of the commanded speed in a turn; $`κ = 0`$ for a robot that drives as it is told.
 ///
-/// The noise is a random walk, $`\mathrm{var}(Δs) = σ_v^2 Δt`$ and $`\mathrm{var}(Δθ) = (σ_ω^2 + σ_t^2 |ω|) Δt`$, so that the
-/// result does not depend on how finely a log cuts time. Turning errs in heading at the middle of the arc, hence a little sideways.
+/// The noise is a random walk, $`\mathrm{var}(Δs) = (σ_v^2 + σ_d^2 |v|) Δt`$ and $`\mathrm{var}(Δθ) = (σ_ω^2 + σ_t^2 |ω| + σ_s^2 |v|) Δt`$, so
+/// that the result does not depend on how finely a log cuts time. Turning errs in heading at the middle of the arc, hence a little sideways.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -31,6 +31,10 @@ pub struct VelocityMotion {
     pub angular_sigma: f64,
     /// Standard deviation of the heading after turning by one radian, rad/√rad.
     pub turning_sigma: f64,
+    /// Standard deviation of the distance after driving one metre, m/√m.
+    pub linear_sigma_per_meter: f64,
+    /// Standard deviation of the heading after driving one metre, rad/√m.
+    pub angular_sigma_per_meter: f64,
     /// What the first two are multiplied with while there is no command to move.
     pub standing_factor: f64,
     /// κ: share of the forward speed that is lost per rad/s of turning, s/rad.
@@ -43,6 +47,8 @@ impl Default for VelocityMotion {
             linear_sigma: 0.02,
             angular_sigma: 0.02,
             turning_sigma: 0.1,
+            linear_sigma_per_meter: 0.0,
+            angular_sigma_per_meter: 0.0,
             standing_factor: 0.25,
             speed_loss_in_turns: 0.0,
         }
@@ -63,9 +69,11 @@ impl VelocityMotion {
     fn variances(&self, control: &VelocityControl) -> (f64, f64) {
         let standing = control.linear == 0.0 && control.angular == 0.0;
         let factor = if standing { self.standing_factor } else { 1.0 };
-        let distance = (factor * self.linear_sigma).powi(2);
-        let heading =
-            (factor * self.angular_sigma).powi(2) + self.turning_sigma.powi(2) * control.angular.abs();
+        let speed = control.linear.abs();
+        let distance = (factor * self.linear_sigma).powi(2) + self.linear_sigma_per_meter.powi(2) * speed;
+        let heading = (factor * self.angular_sigma).powi(2)
+            + self.turning_sigma.powi(2) * control.angular.abs()
+            + self.angular_sigma_per_meter.powi(2) * speed;
         (distance * control.duration, heading * control.duration)
     }
 }

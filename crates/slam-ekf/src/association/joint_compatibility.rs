@@ -1,0 +1,274 @@
+use nalgebra::{DefaultAllocator, DimName};
+use wayfix_gaussian_core::ChiSquaredGate;
+
+use super::{
+    Association, DataAssociation, NewIds,
+    candidates::{Candidate, Candidates},
+    joint_innovation::JointInnovation,
+};
+use crate::{
+    EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, Observation, PredictedSighting, RobotDim, SlamAlloc,
+    SlamError,
+};
+
+/// Thresholds of [`JointCompatibility`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct JointCompatibilityParams {
+    /// Probability with which the right pairings pass, each by itself and all together: chi-squared quantiles with their degrees of freedom.
+    pub probability: f64,
+    /// NIS above which an observation is certainly of no landmark. In between nothing happens with it.
+    pub certainly_new: f64,
+    /// Pairings that one look may try. When they are used up the best set so far counts, and the next look starts afresh; a bound in
+    /// pairings, unlike one in milliseconds, gives the same result on every machine.
+    pub n_trials: usize,
+}
+
+impl Default for JointCompatibilityParams {
+    fn default() -> Self {
+        Self { probability: 0.999, certainly_new: 40.0, n_trials: 2000 }
+    }
+}
+
+/// Joint compatibility branch and bound, for sensors that read no identity.
+///
+/// Pairings that are each plausible can contradict each other: their innovations are correlated through the robot. This rule finds the
+/// largest set of pairings whose *joint* NIS passes, $`ν^T S^{-1} ν ≤ χ^2_{\dim ν}(p)`$, and among the largest the one of smallest NIS.
+/// [Neira & Tardós 2001]
+///
+/// What is left over starts a landmark when it is further than `certainly_new` from everything, as with
+/// [`NearestNeighbour`](super::NearestNeighbour).
+///
+/// ```
+/// use wayfix_slam_ekf::{JointCompatibility, JointCompatibilityParams};
+/// let rule = JointCompatibility::new(JointCompatibilityParams::default())?;
+/// assert_eq!(rule.n_cut_short(), 0);
+/// # Ok::<(), wayfix_slam_ekf::SlamError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct JointCompatibility {
+    params: JointCompatibilityParams,
+    /// Quantiles by degrees of freedom, from 1.
+    gates: Vec<f64>,
+    ids: NewIds,
+    n_cut_short: usize,
+}
+
+impl JointCompatibility {
+    /// A rule that numbers new landmarks from 0.
+    ///
+    /// # Errors
+    /// When the probability is not between 0 and 1, or `certainly_new` is below the gate of one degree of freedom.
+    pub fn new(params: JointCompatibilityParams) -> Result<Self, SlamError> {
+        let JointCompatibilityParams { probability, certainly_new, .. } = params;
+        let Ok(first) = ChiSquaredGate::from_probability(1, probability) else {
+            let range = "between 0 and 1, exclusive";
+            return Err(SlamError::Parameter { name: "probability", value: probability, range });
+        };
+        if certainly_new.is_nan() || certainly_new < first.threshold() {
+            let range = "at least the gate";
+            return Err(SlamError::Parameter { name: "certainly_new", value: certainly_new, range });
+        }
+        Ok(Self { params, gates: vec![first.threshold()], ids: NewIds::default(), n_cut_short: 0 })
+    }
+
+    /// The same rule, numbering new landmarks from here on: a rule that goes on where another one stopped.
+    pub fn numbering_from(self, next_id: u32) -> Self {
+        Self { ids: NewIds::from(next_id), ..self }
+    }
+
+    /// The smallest number that a new landmark can get. Saved with the map: numbers of landmarks that were forgotten are not
+    /// used again, and the map alone does not tell them.
+    pub fn next_id(&self) -> u32 {
+        self.ids.next()
+    }
+
+    /// In how many looks the trials were used up before the best set was certain.
+    pub fn n_cut_short(&self) -> usize {
+        self.n_cut_short
+    }
+
+    /// Makes the quantiles up to `dimension` degrees of freedom known.
+    fn prepare_gates(&mut self, dimension: usize) {
+        for degrees in self.gates.len() + 1..=dimension {
+            let gate = ChiSquaredGate::from_probability(degrees, self.params.probability);
+            // The quantile grows with the degrees of freedom; where its computation gives up, the last one is stricter.
+            let last = self.gates.last().copied().unwrap_or(0.0);
+            self.gates.push(gate.map_or(last, |gate| gate.threshold()));
+        }
+    }
+}
+
+impl<M: LandmarkModel> DataAssociation<M> for JointCompatibility
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    fn associate(
+        &mut self,
+        filter: &EkfSlam<M>,
+        observations: &[Observation<M::Measurement>],
+    ) -> Vec<Association> {
+        let size = MeasurementDim::<M>::DIM;
+        self.prepare_gates(size * observations.len());
+        let candidates = Candidates::within(self.params.certainly_new, filter, observations);
+        let gate = self.gates.get(size.wrapping_sub(1)).copied().unwrap_or(0.0);
+        let mut search = Search::new(filter, &candidates, &self.gates, gate, self.params.n_trials);
+        search.run();
+        self.n_cut_short += usize::from(search.is_cut_short());
+        let pairings = search.best;
+
+        let associate_one = |(observation, pairing): (usize, Option<usize>)| match pairing {
+            Some(sighting) => Association::Matched(candidates.sightings[sighting].landmark),
+            None if candidates.of_observation[observation].is_empty() => {
+                Association::New(self.ids.next_free(filter))
+            }
+            None => Association::Ambiguous,
+        };
+        pairings.into_iter().enumerate().map(associate_one).collect()
+    }
+}
+
+/// Depth-first over the observations that have candidates, each paired with one of them or with none.
+struct Search<'a, M: LandmarkModel>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    filter: &'a EkfSlam<M>,
+    sightings: &'a [PredictedSighting<M>],
+    /// Observations that may be of something, and what they may be of.
+    open: Vec<(usize, Vec<&'a Candidate<M>>)>,
+    gates: &'a [f64],
+    trials_left: usize,
+    joint: JointInnovation,
+    /// For every open observation so far: which of its candidates it is paired with.
+    chosen: Vec<Option<&'a Candidate<M>>>,
+    n_paired: usize,
+    best: Vec<Option<usize>>,
+    best_score: (usize, f64),
+}
+
+impl<'a, M: LandmarkModel> Search<'a, M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    fn new(
+        filter: &'a EkfSlam<M>,
+        candidates: &'a Candidates<M>,
+        gates: &'a [f64],
+        gate: f64,
+        n_trials: usize,
+    ) -> Self {
+        let compatible = |(observation, all): (usize, &'a Vec<Candidate<M>>)| {
+            let near: Vec<_> = all.iter().take_while(|candidate| candidate.innovation.nis <= gate).collect();
+            (!near.is_empty()).then_some((observation, near))
+        };
+        let mut open: Vec<_> = candidates.of_observation.iter().enumerate().filter_map(compatible).collect();
+        open.sort_by_key(|(_, near)| near.len()); // the least doubtful first: their pairings prune the others
+        Self {
+            filter,
+            sightings: &candidates.sightings,
+            open,
+            gates,
+            trials_left: n_trials.max(1),
+            joint: JointInnovation::default(),
+            chosen: Vec::new(),
+            n_paired: 0,
+            best: vec![None; candidates.of_observation.len()],
+            best_score: (0, 0.0),
+        }
+    }
+
+    fn is_cut_short(&self) -> bool {
+        self.trials_left == 0
+    }
+
+    /// Branch and bound without recursion: `next` is the branch to take of each open observation on the way down.
+    fn run(&mut self) {
+        let mut next = vec![0];
+        while let (Some(branch), false) = (next.last_mut(), self.is_cut_short()) {
+            let depth = self.chosen.len();
+            let taken = *branch;
+            *branch += 1;
+            let n_candidates = self.open.get(depth).map_or(0, |(_, near)| near.len());
+            let is_exhausted = depth == self.open.len() || taken > n_candidates || !self.can_improve();
+            if is_exhausted {
+                self.keep_if_best();
+                next.pop();
+                self.step_back();
+            } else if self.step_down(self.open[depth].1.get(taken).copied()) {
+                next.push(0);
+            }
+        }
+        if self.is_cut_short() {
+            self.keep_if_best();
+        }
+    }
+
+    /// Whether a set at least as large as the best can still come of this one.
+    fn can_improve(&self) -> bool {
+        let most = self.n_paired + self.open.len() - self.chosen.len();
+        (most, -self.joint.nis()) > (self.best_score.0, -self.best_score.1)
+    }
+
+    fn keep_if_best(&mut self) {
+        let nis = self.joint.nis();
+        if (self.n_paired, -nis) > (self.best_score.0, -self.best_score.1) {
+            self.best_score = (self.n_paired, nis);
+            self.best.fill(None);
+            for ((observation, _), chosen) in self.open.iter().zip(&self.chosen) {
+                self.best[*observation] = chosen.map(|candidate| candidate.sighting);
+            }
+        }
+    }
+
+    /// Pairs the next open observation with a candidate, or with none; `false` when that contradicts the pairings so far.
+    fn step_down(&mut self, candidate: Option<&'a Candidate<M>>) -> bool {
+        if let Some(candidate) = candidate {
+            self.trials_left -= 1;
+            let is_free = self.chosen.iter().flatten().all(|other| other.sighting != candidate.sighting);
+            if !is_free || !self.join(candidate) {
+                return false;
+            }
+            self.n_paired += 1;
+        }
+        self.chosen.push(candidate);
+        true
+    }
+
+    fn step_back(&mut self) {
+        if let Some(Some(_)) = self.chosen.pop() {
+            self.n_paired -= 1;
+            self.joint.truncate(self.n_paired * MeasurementDim::<M>::DIM);
+        }
+    }
+
+    /// Adds a pairing to the joint innovation, if they are jointly compatible.
+    fn join(&mut self, candidate: &Candidate<M>) -> bool {
+        let before = self.joint.dimension();
+        let own = &self.sightings[candidate.sighting];
+        let paired = self.chosen.iter().flatten();
+        let blocks: Vec<_> = paired
+            .map(|other| self.filter.predicted_cross_covariance(own, &self.sightings[other.sighting]))
+            .collect();
+        let size = MeasurementDim::<M>::DIM;
+        for row in 0..size {
+            let with_others =
+                blocks.iter().flat_map(|block| block.row(row).iter().copied().collect::<Vec<_>>());
+            let with_own = (0..=row).map(|column| candidate.innovation.covariance[(row, column)]);
+            if self.joint.push(with_others.chain(with_own), candidate.innovation.residual[row]).is_none() {
+                self.joint.truncate(before);
+                return false;
+            }
+        }
+        let gate = self.gates.get(before + size - 1).copied().unwrap_or(0.0);
+        let fits = self.joint.nis() <= gate;
+        if !fits {
+            self.joint.truncate(before);
+        }
+        fits
+    }
+}

@@ -1,0 +1,92 @@
+use nalgebra::Matrix3;
+use wayfix_estimation_traits::{MotionModel, Pose2};
+
+use super::{VelocityControl, VelocityMotion};
+
+/// A car whose encoder sits at one rear wheel, seen from the middle of the rear axle.
+///
+/// $`v = \frac{v_e}{1 - \tan α \, H / L},\quad ω = \frac{v}{L} \tan α`$ [Guivant & Nebot 2001, Eqs. 1-3]
+///
+/// ```
+/// use wayfix_slam_ekf::AckermannVehicle;
+/// let truck = AckermannVehicle { wheel_base: 2.83, wheel_offset: 0.76 };
+/// let straight = truck.velocity(3.0, 0.0, 0.1);
+/// assert_eq!((straight.linear, straight.angular), (3.0, 0.0));
+/// let left = truck.velocity(3.0, 0.3, 0.1);
+/// assert!(left.linear > 3.0 && left.angular > 0.0); // the left wheel is on the inside of the turn
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct AckermannVehicle {
+    /// L: between the axles, m.
+    pub wheel_base: f64,
+    /// H: from the middle of the rear axle to the wheel with the encoder, m; positive to the left.
+    pub wheel_offset: f64,
+}
+
+impl Default for AckermannVehicle {
+    /// The utility truck of the Victoria Park set.
+    fn default() -> Self {
+        Self { wheel_base: 2.83, wheel_offset: 0.76 }
+    }
+}
+
+impl AckermannVehicle {
+    /// The velocity of the middle of the rear axle: what the wheel at `wheel_speed` m/s and the front wheels at `steering` rad (left positive)
+    /// make of `duration` seconds.
+    pub fn velocity(&self, wheel_speed: f64, steering: f64, duration: f64) -> VelocityControl {
+        let tangent = steering.tan();
+        let linear = wheel_speed / (1.0 - tangent * self.wheel_offset / self.wheel_base);
+        VelocityControl { linear, angular: linear * tangent / self.wheel_base, duration }
+    }
+}
+
+/// Speed of the encoder's wheel, m/s, and steering, rad, held for a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AckermannControl {
+    /// Of the wheel with the encoder, m/s.
+    pub wheel_speed: f64,
+    /// Of the front wheels, rad, left positive.
+    pub steering: f64,
+    /// How long, s.
+    pub duration: f64,
+}
+
+/// The motion of an [`AckermannVehicle`]: its velocity, with the noise of a [`VelocityMotion`].
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct AckermannMotion {
+    /// Measures of the car.
+    pub vehicle: AckermannVehicle,
+    /// How well it does what its encoder and its steering say.
+    pub velocity: VelocityMotion,
+}
+
+impl AckermannMotion {
+    fn velocity_of(&self, control: &AckermannControl) -> VelocityControl {
+        self.vehicle.velocity(control.wheel_speed, control.steering, control.duration)
+    }
+}
+
+impl MotionModel for AckermannMotion {
+    type State = Pose2<f64>;
+    type Control = AckermannControl;
+
+    fn propagate(&self, pose: &Pose2<f64>, control: &AckermannControl) -> Pose2<f64> {
+        self.velocity.propagate(pose, &self.velocity_of(control))
+    }
+    fn jacobian(&self, pose: &Pose2<f64>, control: &AckermannControl) -> Matrix3<f64> {
+        self.velocity.jacobian(pose, &self.velocity_of(control))
+    }
+    fn noise(&self, pose: &Pose2<f64>, control: &AckermannControl) -> Matrix3<f64> {
+        self.velocity.noise(pose, &self.velocity_of(control))
+    }
+}
