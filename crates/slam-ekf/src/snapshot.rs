@@ -45,8 +45,6 @@ pub struct SavedRetired<L> {
     pub id: LandmarkId,
     /// Where it is.
     pub mean: L,
-    /// Looks in which it was seen before it left.
-    pub n_sightings: usize,
     /// Its marginal when it left, column by column.
     pub covariance: Vec<f64>,
 }

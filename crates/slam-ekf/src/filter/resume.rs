@@ -79,10 +79,8 @@ where
         for saved in retired {
             slam.check_free(saved.id)?;
             check_finite(&saved.mean)?;
-            check_count("n_sightings", saved.n_sightings, usize::MAX / 2)?;
             let covariance = marginal::<M::Landmark>(&saved.covariance)?;
-            let SavedRetired { id, mean, n_sightings, .. } = saved;
-            slam.retired.insert(id, Retired { mean, covariance, n_sightings });
+            slam.retired.insert(saved.id, Retired { mean: saved.mean, covariance });
         }
         let mut offset = RobotDim::<M>::DIM;
         for SavedLandmark { id, mean, first, n_sightings, last_seen } in landmarks {
@@ -106,8 +104,8 @@ fn saved_retired<L: Manifold<Scalar = f64, Dim: DimName>>(
 where
     DefaultAllocator: Allocator<L::Dim, L::Dim>,
 {
-    let Retired { mean, covariance, n_sightings } = retired.clone();
-    SavedRetired { id, mean, n_sightings, covariance: covariance.iter().copied().collect() }
+    let Retired { mean, covariance } = retired.clone();
+    SavedRetired { id, mean, covariance: covariance.iter().copied().collect() }
 }
 
 fn marginal<L: Manifold<Scalar = f64, Dim: DimName>>(entries: &[f64]) -> Result<TangentMatrix<L>, SlamError>

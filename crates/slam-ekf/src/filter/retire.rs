@@ -13,7 +13,6 @@ where
     pub(super) mean: L,
     /// Its own marginal when it left.
     pub(super) covariance: TangentMatrix<L>,
-    pub(super) n_sightings: usize,
 }
 
 impl<L: Manifold<Scalar = f64>> Retired<L>
@@ -43,10 +42,8 @@ where
         let Some(estimate) = self.landmark(id).filter(|_| self.landmarks.contains_key(&id)) else {
             return false;
         };
-        let n_sightings = self.landmarks.get(&id).map_or(0, |slot| slot.n_sightings);
         self.remove(id);
-        self.retired
-            .insert(id, Retired { mean: estimate.mean, covariance: estimate.covariance, n_sightings });
+        self.retired.insert(id, Retired { mean: estimate.mean, covariance: estimate.covariance });
         true
     }
 
