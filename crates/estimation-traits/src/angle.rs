@@ -34,6 +34,7 @@ pub fn wrap_angle<T: RealField + Copy>(angle: T) -> T {
 /// assert!((almost_pi.local(&beyond_pi)[0] - (2.0 * std::f64::consts::PI - 6.2)).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
 pub struct Angle<T>(T);
 
 impl<T: RealField + Copy> Angle<T> {
@@ -44,6 +45,14 @@ impl<T: RealField + Copy> Angle<T> {
     /// The value in (−π, π].
     pub fn radians(self) -> T {
         self.0
+    }
+}
+
+/// A stored number is wrapped like any other, so that no file makes an angle outside (−π, π].
+#[cfg(feature = "serde")]
+impl<'de, T: RealField + Copy + serde::Deserialize<'de>> serde::Deserialize<'de> for Angle<T> {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::deserialize(deserializer).map(Self::new)
     }
 }
 

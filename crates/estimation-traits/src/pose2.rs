@@ -8,6 +8,14 @@ use crate::{Angle, LieGroup, Manifold, wrap_angle};
 /// $`(t, θ) ⊞ (δ_x, δ_y, δ_θ) = (t + R(θ)(δ_x, δ_y)^T, θ + δ_θ)`$.
 /// The group exponential, which drives along an arc, is [`LieGroup::exp`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "T: nalgebra::Scalar + serde::Serialize",
+        deserialize = "T: RealField + Copy + serde::Deserialize<'de>"
+    ))
+)]
 pub struct Pose2<T> {
     /// Position of the body's origin in the world, metres.
     pub translation: Vector2<T>,

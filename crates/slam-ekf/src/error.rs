@@ -35,6 +35,14 @@ pub enum SlamError {
     /// A landmark with this identity is in the map already.
     #[error("landmark {0} is in the map already")]
     LandmarkExists(LandmarkId),
+    /// A measurement fits so badly that it is rejected.
+    #[error("an outlier: its NIS is {nis}, the gate is at {threshold}")]
+    Outlier {
+        /// Normalized innovation squared.
+        nis: f64,
+        /// What would have passed.
+        threshold: f64,
+    },
     /// First-estimates and invariant filters need to know how robot and landmarks move together.
     #[error("this linearization needs a landmark model that implements `symmetries`")]
     NoSymmetry,

@@ -7,6 +7,7 @@ use crate::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 /// The identity of a landmark in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
 pub struct LandmarkId(pub u32);
 
 impl fmt::Display for LandmarkId {

@@ -28,7 +28,9 @@ mod filter;
 mod landmark;
 pub mod laws;
 mod models;
+pub mod observability;
 mod outcome;
+mod snapshot;
 
 pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{
@@ -42,11 +44,13 @@ pub use filter::{
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    AckermannControl, AckermannMotion, AckermannVehicle, IncrementMotion, Mounted, PLANAR_SYMMETRIES,
-    RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose,
-    ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
+    AckermannControl, AckermannMotion, AckermannVehicle, IncrementMotion, MonobotMotion, MonobotSensor,
+    Mounted, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor,
+    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry,
+    pose_symmetry,
 };
 pub use outcome::{Outcome, StepReport};
+pub use snapshot::{SavedLandmark, SavedRetired, Snapshot};
 
 /// The matrix library of every public signature.
 pub use wayfix_estimation_traits::nalgebra;

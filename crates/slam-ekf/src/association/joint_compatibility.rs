@@ -76,6 +76,17 @@ impl JointCompatibility {
         Ok(Self { params, gates: vec![first.threshold()], ids: NewIds::default(), n_cut_short: 0 })
     }
 
+    /// The same rule, numbering new landmarks from here on: a rule that goes on where another one stopped.
+    pub fn numbering_from(self, next_id: u32) -> Self {
+        Self { ids: NewIds::from(next_id), ..self }
+    }
+
+    /// The smallest number that a new landmark can get. Saved with the map: numbers of landmarks that were forgotten are not
+    /// used again, and the map alone does not tell them.
+    pub fn next_id(&self) -> u32 {
+        self.ids.next()
+    }
+
     /// In how many looks the trials were used up before the best set was certain.
     pub fn n_cut_short(&self) -> usize {
         self.n_cut_short

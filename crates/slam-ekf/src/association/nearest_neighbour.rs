@@ -59,6 +59,17 @@ impl NearestNeighbour {
         }
         Ok(Self { params, ids: NewIds::default() })
     }
+
+    /// The same rule, numbering new landmarks from here on: a rule that goes on where another one stopped.
+    pub fn numbering_from(self, next_id: u32) -> Self {
+        Self { ids: NewIds::from(next_id), ..self }
+    }
+
+    /// The smallest number that a new landmark can get. Saved with the map: numbers of landmarks that were forgotten are not
+    /// used again, and the map alone does not tell them.
+    pub fn next_id(&self) -> u32 {
+        self.ids.next()
+    }
 }
 
 impl<M: LandmarkModel> DataAssociation<M> for NearestNeighbour

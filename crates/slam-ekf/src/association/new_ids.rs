@@ -9,6 +9,16 @@ pub(super) struct NewIds {
 }
 
 impl NewIds {
+    /// Numbers from here on.
+    pub(super) fn from(next: u32) -> Self {
+        Self { next }
+    }
+
+    /// The smallest number that can come.
+    pub(super) fn next(&self) -> u32 {
+        self.next
+    }
+
     pub(super) fn next_free<M: LandmarkModel>(&mut self, filter: &EkfSlam<M>) -> LandmarkId
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,

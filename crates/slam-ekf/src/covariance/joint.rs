@@ -25,6 +25,23 @@ impl JointCovariance {
         Self { storage, dimension }
     }
 
+    /// From the lower triangle, column by column.
+    pub(crate) fn from_lower(dimension: usize, lower: &[f64]) -> Self {
+        let mut storage = DMatrix::zeros(dimension, dimension);
+        let places = (0..dimension).flat_map(|column| (column..dimension).map(move |row| (row, column)));
+        for ((row, column), entry) in places.zip(lower) {
+            storage[(row, column)] = *entry;
+            storage[(column, row)] = *entry;
+        }
+        Self { storage, dimension }
+    }
+
+    /// The lower triangle, column by column.
+    pub(crate) fn lower(&self) -> Vec<f64> {
+        let column = |column| (column..self.dimension).map(move |row| self.storage[(row, column)]);
+        (0..self.dimension).flat_map(column).collect()
+    }
+
     pub(crate) fn matrix(&self) -> DMatrixView<'_, f64> {
         self.storage.view((0, 0), (self.dimension, self.dimension))
     }

@@ -35,7 +35,8 @@ where
     /// Puts an anchor into the map: a landmark whose place in the world is known exactly.
     ///
     /// An anchor never enters the state; its observations correct robot and map, and tie both to the world. One anchor with
-    /// range and bearing, or two with range, make a planar map fully observable. [Andrade-Cetto 2003, section 2.3]
+    /// range and bearing fixes a planar map but for turning about the anchor; two make it fully observable. [Andrade-Cetto 2005,
+    /// Eqs. 20-25; a planar map turns freely about a single one, which the paper does not say]
     ///
     /// # Errors
     /// When the identity is taken or the landmark is not finite.
@@ -49,7 +50,7 @@ where
     /// Takes a landmark or an anchor out of the map; what it taught about everything else stays. `false` when it is not in the map.
     pub fn remove(&mut self, id: LandmarkId) -> bool {
         let Some(removed) = self.landmarks.remove(&id) else {
-            return self.anchors.remove(&id).is_some();
+            return self.anchors.remove(&id).is_some() || self.retired.remove(&id).is_some();
         };
         let size = LandmarkDim::<M>::DIM;
         self.covariance.remove(removed.offset..removed.offset + size);
@@ -79,7 +80,7 @@ where
         self.landmarks.insert(id, slot);
     }
 
-    fn check_free(&self, id: LandmarkId) -> Result<(), SlamError> {
+    pub(super) fn check_free(&self, id: LandmarkId) -> Result<(), SlamError> {
         if self.knows(id) { Err(SlamError::LandmarkExists(id)) } else { Ok(()) }
     }
 
@@ -101,7 +102,7 @@ where
     }
 }
 
-fn check_finite<L: Manifold<Scalar = f64>>(landmark: &L) -> Result<(), SlamError>
+pub(super) fn check_finite<L: Manifold<Scalar = f64>>(landmark: &L) -> Result<(), SlamError>
 where
     DefaultAllocator: Allocator<L::Dim>,
 {

@@ -6,10 +6,13 @@ mod linearization;
 mod map;
 mod params;
 mod predict;
+mod resume;
+mod retire;
 mod sight;
 mod state;
 mod step;
 mod update;
+mod update_robot;
 
 pub use confirmation::Confirmation;
 pub use linearization::Linearization;

@@ -21,6 +21,10 @@ pub struct SlamParams {
     pub order: UpdateOrder,
     /// Where derivatives are taken, and with that whether the filter stays consistent on long loops.
     pub linearization: Linearization,
+    /// Revisions after which a landmark leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, when not given. The
+    /// paper: 50.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub retire_after: Option<usize>,
     /// What a landmark must show before it counts.
     pub confirmation: Confirmation,
 }
@@ -64,6 +68,7 @@ impl Default for SlamParams {
             student_t_degrees_of_freedom: 4.0,
             order: UpdateOrder::Joint,
             linearization: Linearization::default(),
+            retire_after: None,
             confirmation: Confirmation::default(),
         }
     }

@@ -1,7 +1,7 @@
 use nalgebra::{DefaultAllocator, DimName, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
-use super::{EkfSlam, Linearization, state::Slot};
+use super::{EkfSlam, Linearization, retire::Retired, state::Slot};
 use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
 /// How a landmark of the map should look from here: what associations compare measurements with.
@@ -19,6 +19,8 @@ where
     pub(super) robot_jacobian: Jacobian<M::Measurement, M::Robot>,
     /// Where the landmark's block starts and the derivative by it; `None` for anchors.
     pub(super) landmark_jacobian: Option<Block<Jacobian<M::Measurement, M::Landmark>>>,
+    /// What the place of a retired landmark errs, as noise of the look; zero for all others.
+    pub(super) own_noise: TangentMatrix<M::Measurement>,
 }
 
 /// Columns of the observation Jacobian, and where in the state they start.
@@ -66,6 +68,8 @@ where
     pub fn predicted_sighting(&self, id: LandmarkId) -> Option<PredictedSighting<M>> {
         if let Some(slot) = self.landmarks.get(&id) {
             self.predict_sighting(id, &slot.mean, Some(slot))
+        } else if let Some(retired) = self.retired.get(&id) {
+            self.predict_retired(id, retired)
         } else {
             self.predict_sighting(id, self.anchors.get(&id)?, None)
         }
@@ -98,7 +102,9 @@ where
     pub fn predicted_sightings(&self) -> impl Iterator<Item = PredictedSighting<M>> {
         let anchors = self.anchors.iter().filter_map(|(id, mean)| self.predict_sighting(*id, mean, None));
         let landmarks = self.landmarks.iter();
-        anchors.chain(landmarks.filter_map(|(id, slot)| self.predict_sighting(*id, &slot.mean, Some(slot))))
+        let retired = self.retired.iter().filter_map(|(id, retired)| self.predict_retired(*id, retired));
+        let in_state = landmarks.filter_map(|(id, slot)| self.predict_sighting(*id, &slot.mean, Some(slot)));
+        anchors.chain(retired).chain(in_state)
     }
 
     fn predict_sighting(
@@ -131,6 +137,21 @@ where
             covariance,
             robot_jacobian,
             landmark_jacobian,
+            own_noise: TangentMatrix::<M::Measurement>::zeros(),
         })
+    }
+
+    /// As of an anchor, but for the marginal that it left the state with.
+    fn predict_retired(
+        &self,
+        id: LandmarkId,
+        retired: &Retired<M::Landmark>,
+    ) -> Option<PredictedSighting<M>> {
+        let sighting = self.predict_sighting(id, &retired.mean, None)?;
+        let jacobian = self.model.landmark_jacobian(&self.robot, &retired.mean);
+        let own_noise = &jacobian * &retired.covariance * jacobian.transpose();
+        let covariance = &sighting.covariance + &own_noise;
+        let is_finite = covariance.iter().all(|entry| entry.is_finite());
+        is_finite.then_some(PredictedSighting { covariance, own_noise, ..sighting })
     }
 }

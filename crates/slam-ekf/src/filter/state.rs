@@ -1,9 +1,9 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrixView, DefaultAllocator, DimName};
 use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
-use super::{Linearization, SlamParams, gates::Gates};
+use super::{Linearization, SlamParams, gates::Gates, retire::Retired};
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
     covariance::JointCovariance,
@@ -41,6 +41,7 @@ where
     pub(super) robot: M::Robot,
     pub(super) landmarks: BTreeMap<LandmarkId, Slot<M::Landmark>>,
     pub(super) anchors: BTreeMap<LandmarkId, M::Landmark>,
+    pub(super) retired: BTreeMap<LandmarkId, Retired<M::Landmark>>,
     pub(super) covariance: JointCovariance,
     /// How many looks there were.
     pub(super) look: usize,
@@ -112,6 +113,7 @@ where
             robot: start,
             landmarks: BTreeMap::new(),
             anchors: BTreeMap::new(),
+            retired: BTreeMap::new(),
             covariance: JointCovariance::from_robot(&covariance),
             look: 0,
         })
@@ -131,28 +133,34 @@ where
     }
     /// How many landmarks are confirmed; anchors are not among them.
     pub fn n_landmarks(&self) -> usize {
-        self.landmarks.values().filter(|slot| self.is_confirmed(slot)).count()
+        self.landmarks.values().filter(|slot| self.is_confirmed(slot)).count() + self.retired.len()
     }
     /// How many landmarks are in the state that still have to be confirmed.
     pub fn n_tentative(&self) -> usize {
-        self.landmarks.len() - self.n_landmarks()
+        self.landmarks.len() + self.retired.len() - self.n_landmarks()
     }
     /// Whether a landmark or an anchor with this identity is in the map.
     pub fn knows(&self, id: LandmarkId) -> bool {
-        self.landmarks.contains_key(&id) || self.anchors.contains_key(&id)
+        self.landmarks.contains_key(&id) || self.anchors.contains_key(&id) || self.retired.contains_key(&id)
     }
     /// The landmark model.
     pub fn model(&self) -> &M {
         &self.model
     }
-    /// One landmark of the state, confirmed or not.
-    pub fn landmark(&self, id: LandmarkId) -> Option<LandmarkEstimate<M::Landmark>> {
-        self.landmarks.get(&id).map(|slot| self.estimate(id, slot))
+    /// The parameters.
+    pub fn params(&self) -> &SlamParams {
+        &self.params
     }
-    /// All confirmed landmarks in the order of their identities.
+    /// One landmark, confirmed or not, in the state or retired.
+    pub fn landmark(&self, id: LandmarkId) -> Option<LandmarkEstimate<M::Landmark>> {
+        let in_state = self.landmarks.get(&id).map(|slot| self.estimate(id, slot));
+        in_state.or_else(|| self.retired.get(&id).map(|retired| retired.estimate(id)))
+    }
+    /// All confirmed landmarks in the order of their identities, retired ones as they were when they left the state.
     pub fn landmarks(&self) -> impl Iterator<Item = LandmarkEstimate<M::Landmark>> {
-        let confirmed = self.landmarks.iter().filter(|(_, slot)| self.is_confirmed(slot));
-        confirmed.map(|(id, slot)| self.estimate(*id, slot))
+        let confirmed = self.landmarks.iter().filter(|(_, slot)| self.is_confirmed(slot)).map(|(id, _)| *id);
+        let ids: BTreeSet<LandmarkId> = confirmed.chain(self.retired.keys().copied()).collect();
+        ids.into_iter().filter_map(|id| self.landmark(id))
     }
     /// The anchors in the order of their identities.
     pub fn anchors(&self) -> impl Iterator<Item = (LandmarkId, &M::Landmark)> {
@@ -161,6 +169,12 @@ where
 
     fn estimate(&self, id: LandmarkId, slot: &Slot<M::Landmark>) -> LandmarkEstimate<M::Landmark> {
         LandmarkEstimate { id, mean: slot.mean.clone(), covariance: self.landmark_covariance(slot) }
+    }
+
+    /// Where a landmark is, and where its block starts in the covariance; nowhere for an anchor.
+    pub(crate) fn place(&self, id: LandmarkId) -> Option<(&M::Landmark, Option<usize>)> {
+        let slot = self.landmarks.get(&id).map(|slot| (&slot.mean, Some(slot.offset)));
+        slot.or_else(|| self.anchors.get(&id).map(|mean| (mean, None)))
     }
 
     pub(super) fn landmark_covariance(&self, slot: &Slot<M::Landmark>) -> TangentMatrix<M::Landmark> {

@@ -60,6 +60,7 @@ where
             self.update_batch(observations, batch, &mut taken, &mut outcomes);
         }
         self.forget_missed();
+        self.retire_revised();
         Ok(StepReport { outcomes })
     }
 
@@ -127,7 +128,7 @@ where
             return Outcome::Gated { landmark, innovation, threshold };
         }
         let noise_scale = self.params.noise_scale(innovation.nis, threshold);
-        let noise = noise * noise_scale;
+        let noise = noise * noise_scale + &sighting.own_noise;
         if noise.amax() >= LARGEST_VARIANCE {
             return Outcome::Gated { landmark, innovation, threshold }; // so far out that it would weigh nothing
         }

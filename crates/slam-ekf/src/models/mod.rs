@@ -1,7 +1,8 @@
-//! Motions and sensors of planar robots.
+//! Motions and sensors of planar robots, and of one on a line.
 
 mod ackermann;
 mod increment;
+mod monobot;
 mod mounted;
 mod planar;
 mod range_bearing;
@@ -11,6 +12,7 @@ mod velocity;
 
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use increment::IncrementMotion;
+pub use monobot::{MonobotMotion, MonobotSensor};
 pub use mounted::Mounted;
 pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};

@@ -8,6 +8,7 @@ use crate::{LandmarkModel, NewLandmark};
 ///
 /// Tangent order `(x, y, θ, a)`, with $`e^a`$ what the sensor multiplies every range with.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ScaledPose {
     /// Where the robot is.
     pub pose: Pose2<f64>,

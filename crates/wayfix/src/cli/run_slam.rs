@@ -15,7 +15,9 @@ use super::{
 };
 use crate::{
     report::Run,
-    slam::{self, AssociationRule, EstimateLog, Profile, SlamRun, SlamSystemParams},
+    slam::{
+        self, AssociationRule, EstimateLog, Profile, SavedMap, Saver, SlamRun, SlamSystem, SlamSystemParams,
+    },
     system::Stopwatch,
 };
 
@@ -61,6 +63,24 @@ pub(super) struct Arguments {
     /// It is created where need be. Nothing is written without it.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// File to save map and filter to, at the end and every `--save-every` seconds.
+    ///
+    /// The file is replaced as a whole: losing power leaves the old or the new one.
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// Seconds of the log's time between two saves.
+    #[arg(long, value_name = "SECONDS", requires = "save", value_parser = not_negative)]
+    save_every: Option<f64>,
+    /// Go on from a saved map with what the log holds after it.
+    ///
+    /// Records up to the stamp it was saved at are left out; figures and events are those of the rest.
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+    /// Tell which directions of the map nothing has ever constrained.
+    ///
+    /// Sightings never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
+    #[arg(long)]
+    observability: bool,
     /// Print one JSON object instead of a table.
     ///
     /// `{"metrics": {name: number}, "events": {name: count}, "seed": n}`; units are in the names.
@@ -80,6 +100,8 @@ Examples:
   wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results         results/index.html
   wayfix run slam --log my.mcap --print-params > my.toml                a file to edit, for
   wayfix run slam --log my.mcap --params my.toml
+  wayfix run slam --log monday.mcap --save floor.map --save-every 10
+  wayfix run slam --log tuesday.mcap --resume floor.map --save floor.map
 
 A file of parameters names what differs from the defaults, for instance
   [sensor]
@@ -102,7 +124,12 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let stopwatch = Stopwatch::start();
     let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
-    let mut slam = run(&records, &params, estimates.as_mut())?;
+    let saved = arguments.resume.as_deref().map(saved_map).transpose()?;
+    let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
+    let mut slam = run(&records, &params, saved, estimates.as_mut(), saver.as_mut())?;
+    if let Some(saver) = saver {
+        saver.finish(&slam.system).context("cannot save the map")?;
+    }
     finish::account(slam.events(), &read);
 
     let mut run = Run {
@@ -110,6 +137,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..slam::summarize(&mut slam)
     };
+    run.notes.iter().for_each(tell);
     if let Some(estimates) = estimates {
         estimates.finish()?;
         run.log = Some(ESTIMATES.to_owned());
@@ -128,6 +156,7 @@ fn params(arguments: &Arguments, meta: &LogMeta) -> Result<SlamSystemParams> {
         None => SlamSystemParams::of(profile),
     };
     params.association = arguments.association.or(params.association);
+    params.record_observability = arguments.observability;
     Ok(params)
 }
 
@@ -141,16 +170,35 @@ fn open_estimates(out: &Path, origin: Format) -> Result<EstimateLog> {
 fn run(
     records: &[Record],
     params: &SlamSystemParams,
+    saved: Option<SavedMap>,
     mut estimates: Option<&mut EstimateLog>,
+    mut saver: Option<&mut Saver>,
 ) -> Result<SlamRun> {
     let bar = progress::bar(records.len(), "EKF-SLAM");
     let mut remaining = records.iter();
-    let slam = slam::run(records, params, |system| {
-        if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
+    let observe = |system: &SlamSystem| {
+        let Some(record) = remaining.next() else { return };
+        if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
+        if let Some(saver) = &mut saver {
+            saver.observe(record, remaining.as_slice().first(), system);
+        }
         bar.inc(1);
-    });
+    };
+    let slam = match saved {
+        Some(saved) => slam::run_on(saved, records, params, observe),
+        None => slam::run(records, params, observe),
+    };
     bar.finish_and_clear();
     slam
+}
+
+fn saved_map(path: &Path) -> Result<SavedMap> {
+    SavedMap::read(path).with_context(|| format!("cannot go on from {}", path.display()))
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if seconds >= 0.0 { Ok(seconds) } else { Err("must be 0 or more".to_owned()) }
 }

@@ -33,6 +33,11 @@ impl Commands {
         self.rows.push_back((stamp.nanoseconds().into(), velocity));
     }
 
+    /// Rows that may still act, oldest first.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (Stamp, Velocity)> {
+        self.rows.iter().map(|(stamp, velocity)| (Stamp::from_nanoseconds(*stamp as u64), *velocity))
+    }
+
     /// The motion between two times, cut where it changes.
     pub(super) fn between(&self, from: Stamp, to: Stamp) -> Vec<VelocityControl> {
         let (from, to) =

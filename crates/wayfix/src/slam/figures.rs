@@ -9,7 +9,20 @@ use crate::{
 /// The figures and events of a run, ready for the report.
 pub fn summarize(run: &mut SlamRun) -> Run {
     let (metrics, timings) = metrics(run);
-    Run { metrics, timings, events: run.events().counts(), ..Run::default() }
+    let mut summary = Run { metrics, timings, events: run.events().counts(), ..Run::default() };
+    if let Some(recorder) = run.system.observability() {
+        let free = recorder.free_directions();
+        summary.metrics.push(Metric::new("state_dimension", recorder.dimension() as f64, ""));
+        summary.metrics.push(Metric::new("n_free_directions", free.len() as f64, ""));
+        summary.notes.push(match free.as_slice() {
+            [] => "Everything about the map is tied to the world.".to_owned(),
+            free => {
+                let names: Vec<String> = free.iter().map(ToString::to_string).collect();
+                format!("Nothing has ever constrained: {}.", names.join("; "))
+            }
+        });
+    }
+    summary
 }
 
 /// Figures that the log decides, then those that change from call to call. Names as in the contract of `docs/architecture.md`.

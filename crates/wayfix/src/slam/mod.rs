@@ -8,11 +8,13 @@ mod params;
 mod pictures;
 mod ranges;
 mod run;
+mod saved;
 mod system;
 
 pub use estimates::EstimateLog;
 pub use figures::summarize;
 pub use params::{AssociationRule, MountingParams, Profile, RobotParams, SlamSystemParams};
 pub use pictures::pictures;
-pub use run::{SlamRun, run};
+pub use run::{SlamRun, run, run_on};
+pub use saved::{Odometry, SavedMap, SavedMapError, Saver, SystemState};
 pub use system::{Keyframe, PointSensor, SlamSystem};

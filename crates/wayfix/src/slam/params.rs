@@ -48,6 +48,9 @@ pub struct SlamSystemParams {
     pub joint_compatibility: JointCompatibilityParams,
     /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
     pub unlabelled_confirmation: Confirmation,
+    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    #[serde(skip)]
+    pub record_observability: bool,
 }
 
 /// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry tells.
@@ -143,6 +146,7 @@ impl SlamSystemParams {
                     patience: Some(20),
                     ..Confirmation::default()
                 },
+                record_observability: false,
             },
             Profile::RangeBearing => Self {
                 increment: IncrementMotion {

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Record, Stamp, Target};
 
-use super::{AssociationRule, Keyframe, SlamSystem, SlamSystemParams};
+use super::{AssociationRule, Keyframe, SavedMap, SlamSystem, SlamSystemParams};
 use crate::{
     evaluate::{Correspondence, Sample, TruePositions, TrueTrack, align},
     system::{Events, System, drive},
@@ -44,17 +44,7 @@ pub fn run(
             "the log has no odometry: EKF-SLAM needs velocities or increments (`wayfix info` shows what a log holds)"
         );
     };
-    let association = match (params.association, has_identities(records)) {
-        (Some(rule), _) => rule,
-        (None, Some(true)) => AssociationRule::Known,
-        (None, Some(false)) => AssociationRule::Nn,
-        (None, None) => bail!(
-            "the log has no range-bearing sightings of landmarks (`wayfix info` shows what a log holds)"
-        ),
-    };
-    if association == AssociationRule::Known && has_identities(records) == Some(false) {
-        bail!("no sighting carries an identity: use nearest neighbour (--association nn)");
-    }
+    let association = association(records, params.association)?;
     let truth = TrueTrack::from_records(records);
     let true_positions = TruePositions::from_records(records);
     let from = |start| SlamSystem::new(params.clone(), association, start_stamp, start);
@@ -64,7 +54,34 @@ pub fn run(
         (None, Some(pose)) => pose,
         (None, None) => fitted_start(from(origin)?, records, &true_positions),
     };
-    let mut system = from(start)?;
+    drive_through(from(start)?, association, truth, records, observe)
+}
+
+/// Goes on from a saved map with the records of a log that are later than it, and shows the system to `observe` after each.
+///
+/// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
+///
+/// # Errors
+/// When the map is of another kind or is no state of the filter, when no later sighting can be used, or a parameter is out of range.
+pub fn run_on(
+    saved: SavedMap,
+    records: &[Record],
+    params: &SlamSystemParams,
+    observe: impl FnMut(&SlamSystem),
+) -> Result<SlamRun> {
+    let association = saved.state.association;
+    let system = SlamSystem::resume(params.clone(), saved)?;
+    self::association(records, Some(association))?;
+    drive_through(system, association, TrueTrack::from_records(records), records, observe)
+}
+
+fn drive_through(
+    mut system: SlamSystem,
+    association: AssociationRule,
+    truth: TrueTrack,
+    records: &[Record],
+    observe: impl FnMut(&SlamSystem),
+) -> Result<SlamRun> {
     drive(&mut system, records, observe);
     if !has_used_a_sighting(system.events()) {
         bail!(
@@ -72,7 +89,8 @@ pub fn run(
             why(system.events())
         );
     }
-    let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or(start_stamp);
+    let true_positions = TruePositions::from_records(records);
+    let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or_default();
     let last_truth = truth.last_stamp().or(true_positions.last_stamp());
     let evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
     Ok(SlamRun {
@@ -168,6 +186,22 @@ fn start_stamp(records: &[Record]) -> Option<Stamp> {
 fn odometry_stamp(record: &Record) -> Option<Stamp> {
     matches!(record.data, Data::Velocity(_) | Data::Ackermann(_) | Data::OdometryIncrement(_))
         .then_some(record.stamp)
+}
+
+/// The rule that was asked for, else by identity where there are identities.
+fn association(records: &[Record], asked: Option<AssociationRule>) -> Result<AssociationRule> {
+    let association = match (asked, has_identities(records)) {
+        (Some(rule), _) => rule,
+        (None, Some(true)) => AssociationRule::Known,
+        (None, Some(false)) => AssociationRule::Nn,
+        (None, None) => bail!(
+            "the log has no range-bearing sightings of landmarks (`wayfix info` shows what a log holds)"
+        ),
+    };
+    if association == AssociationRule::Known && has_identities(records) == Some(false) {
+        bail!("no sighting carries an identity: use nearest neighbour (--association nn)");
+    }
+    Ok(association)
 }
 
 /// Whether any sighting of a landmark carries an identity; `None` when there are no such sightings.

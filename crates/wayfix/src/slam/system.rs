@@ -1,7 +1,4 @@
-use std::{
-    mem::{Discriminant, discriminant},
-    time::Duration,
-};
+use std::time::Duration;
 
 use nalgebra::{Matrix3, Matrix4, Vector2, Vector4};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
@@ -9,10 +6,13 @@ use wayfix_sensor_log::{AckermannDrive, Data, Record, Sighting, Stamp, Target, V
 use wayfix_slam_ekf::{
     EkfSlam, JointCompatibility, KnownIds, LandmarkId, Mounted, NearestNeighbour, Observation, Outcome,
     RangeBearing, RangeBearingSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor, SlamError,
-    SlamParams, StepReport,
+    SlamParams, StepReport, observability::ObservabilityRecorder,
 };
 
-use super::{AssociationRule, MountingParams, SlamSystemParams, commands::Commands, in_sequence::InSequence};
+use super::{
+    AssociationRule, MountingParams, SlamSystemParams, commands::Commands, in_sequence::InSequence,
+    saved::Odometry,
+};
 use crate::system::{Events, Stopwatch, System};
 
 /// The estimate at the stamp of one look of the sensor, from everything up to it.
@@ -39,15 +39,17 @@ pub type PointSensor = ScaledRangeBearingSensor<Mounted<RangeBearingSensor>>;
 
 /// EKF-SLAM that takes records.
 pub struct SlamSystem {
-    params: SlamSystemParams,
-    filter: EkfSlam<PointSensor>,
-    association: Rule,
-    commands: Commands,
+    pub(super) params: SlamSystemParams,
+    pub(super) filter: EkfSlam<PointSensor>,
+    pub(super) association: Rule,
+    pub(super) commands: Commands,
     /// Velocities or increments: whichever came first.
-    odometry: Option<Discriminant<Data>>,
+    pub(super) odometry: Option<Odometry>,
     /// The time that the filter's state is at.
-    time: Stamp,
-    dead_reckoning: Pose2<f64>,
+    pub(super) time: Stamp,
+    pub(super) past: Past,
+    observability: Option<ObservabilityRecorder>,
+    pub(super) dead_reckoning: Pose2<f64>,
     keyframes: Vec<Keyframe>,
     events: Events,
     step: Duration,
@@ -56,7 +58,16 @@ pub struct SlamSystem {
 /// No robot is faster, m/s and rad/s; a command in force moves the robot until the next, so it must not be nonsense.
 const FASTEST: f64 = 1e3;
 
-enum Rule {
+/// Which records were taken, in this run and in the one that it goes on from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Past {
+    /// Stamp of the last record that was taken.
+    pub(super) taken_until: Stamp,
+    /// Records up to this stamp were taken by the run before.
+    pub(super) resumed_at: Option<Stamp>,
+}
+
+pub(super) enum Rule {
     Known(KnownIds),
     NearestNeighbour(NearestNeighbour),
     JointCompatibility(JointCompatibility),
@@ -92,13 +103,16 @@ impl SlamSystem {
         let state = ScaledPose { pose: start, log_range_scale: 0.0 };
         let variances = Vector4::new(0.0, 0.0, 0.0, params.robot.range_scale_sigma.powi(2));
         let covariance = Matrix4::from_diagonal(&variances);
+        let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
         Ok(Self {
-            filter: EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?,
+            observability: params.record_observability.then(|| ObservabilityRecorder::new(&filter)),
+            filter,
             association,
             commands: Commands::new(&params.robot),
             odometry: None,
             params,
             time: start_stamp,
+            past: Past::default(),
             dead_reckoning: start,
             keyframes: Vec::new(),
             events: Events::default(),
@@ -124,9 +138,14 @@ impl SlamSystem {
         &self.keyframes
     }
 
+    /// What the run observed, when that was to be recorded.
+    pub fn observability(&self) -> Option<&ObservabilityRecorder> {
+        self.observability.as_ref()
+    }
+
     fn take_velocity(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
-        if !(velocity.linear.abs() <= FASTEST && velocity.angular.abs() <= FASTEST) {
-            let Velocity { linear, angular } = velocity;
+        let Velocity { linear, angular } = velocity;
+        if !is_possible(velocity) {
             return Err(format!(
                 "velocity ({linear} m/s, {angular} rad/s) is beyond {FASTEST} or not finite"
             ));
@@ -143,10 +162,13 @@ impl SlamSystem {
 
     fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
         let stopwatch = Stopwatch::start();
-        self.filter
-            .predict(&ScaledMotion(self.params.increment), increment)
-            .map_err(|error| error.to_string())?;
+        let motion = ScaledMotion(self.params.increment);
+        let before = *self.filter.robot();
+        self.filter.predict(&motion, increment).map_err(|error| error.to_string())?;
         self.step += stopwatch.elapsed();
+        if let Some(recorder) = &mut self.observability {
+            recorder.moved(&motion.jacobian(&before, increment));
+        }
         self.dead_reckoning = self.dead_reckoning.compose(increment);
         self.time = stamp;
         Ok(())
@@ -170,15 +192,17 @@ impl SlamSystem {
         };
         self.step += stopwatch.elapsed();
         let report = report.map_err(|error| error.to_string())?;
+        if let Some(recorder) = &mut self.observability {
+            recorder.record(&self.filter, &seen_landmarks(&report));
+        }
         self.count(&observations, &report);
         self.add_keyframe(stamp, &report);
         Ok(())
     }
 
     /// A log may tell of the same motion twice, as velocities and as increments; the first kind moves the robot.
-    fn moves_by(&mut self, odometry: &Data) -> bool {
-        let kind = discriminant(odometry);
-        *self.odometry.get_or_insert(kind) == kind
+    fn moves_by(&mut self, odometry: Odometry) -> bool {
+        *self.odometry.get_or_insert(odometry) == odometry
     }
 
     /// When the sensor saw what has this stamp.
@@ -195,8 +219,12 @@ impl SlamSystem {
         let stopwatch = Stopwatch::start();
         let controls = self.commands.between(self.time, time);
         let motion = InSequence(self.params.velocity);
+        let before = *self.filter.robot();
         let moved = self.filter.predict(&ScaledMotion(motion), controls.as_slice());
         moved.map_err(|error| error.to_string())?;
+        if let Some(recorder) = &mut self.observability {
+            recorder.moved(&ScaledMotion(motion).jacobian(&before, &controls));
+        }
         self.dead_reckoning = motion.propagate(&self.dead_reckoning, &controls);
         self.step += stopwatch.elapsed();
         self.commands.forget_before(time);
@@ -264,6 +292,21 @@ impl SlamSystem {
     }
 }
 
+/// Landmarks that corrected or started in a look.
+fn seen_landmarks(report: &StepReport<RangeBearing>) -> Vec<LandmarkId> {
+    let seen = |outcome: &Outcome<RangeBearing>| match outcome {
+        Outcome::Accepted { landmark, .. }
+        | Outcome::Initialized { landmark }
+        | Outcome::Restarted { landmark } => Some(*landmark),
+        _ => None,
+    };
+    report.outcomes.iter().filter_map(seen).collect()
+}
+
+pub(super) fn is_possible(velocity: Velocity) -> bool {
+    velocity.linear.abs() <= FASTEST && velocity.angular.abs() <= FASTEST
+}
+
 fn event_name(outcome: &Outcome<RangeBearing>) -> &'static str {
     match outcome {
         Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
@@ -281,10 +324,13 @@ fn event_name(outcome: &Outcome<RangeBearing>) -> &'static str {
 
 impl System for SlamSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
+        if self.past.resumed_at.is_some_and(|resumed_at| record.stamp <= resumed_at) {
+            self.events.count("before_resume");
+            return Ok(());
+        }
+        self.past.taken_until = record.stamp;
         match &record.data {
-            Data::Velocity(_) | Data::OdometryIncrement(_) | Data::Ackermann(_)
-                if !self.moves_by(&record.data) =>
-            {
+            odometry if Odometry::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
                 self.events.count("second_odometry");
                 Ok(())
             }

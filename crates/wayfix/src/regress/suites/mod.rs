@@ -1,6 +1,7 @@
 //! The suites: how a planned run of each goes through its system.
 
 mod color;
+mod consistency;
 mod slam;
 mod views;
 
@@ -12,7 +13,8 @@ use crate::report::Run;
 /// Does one run.
 pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
 
-const SUITES: [(&str, Runner); 3] = [("color", color::run), ("slam", slam::run), ("views", views::run)];
+const SUITES: [(&str, Runner); 4] =
+    [("color", color::run), ("consistency", consistency::run), ("slam", slam::run), ("views", views::run)];
 
 /// All suites, in the order of the report.
 pub fn names() -> Vec<&'static str> {

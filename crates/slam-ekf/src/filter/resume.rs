@@ -1,0 +1,179 @@
+use nalgebra::{DMatrix, DMatrixView, DefaultAllocator, DimName, allocator::Allocator, linalg::Cholesky};
+use wayfix_estimation_traits::{Manifold, TangentMatrix};
+
+use super::{
+    EkfSlam, SlamParams,
+    map::check_finite,
+    predict::{LARGEST_VARIANCE, check_covariance},
+    retire::Retired,
+    state::Slot,
+};
+use crate::{
+    LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SavedLandmark, SavedRetired, SlamAlloc,
+    SlamError, Snapshot, covariance::JointCovariance,
+};
+
+impl<M: LandmarkModel> EkfSlam<M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    /// All that the filter knows, as a plain value. Cost O(n²).
+    pub fn snapshot(&self) -> Snapshot<M::Robot, M::Landmark> {
+        let mut slots: Vec<(&LandmarkId, &Slot<M::Landmark>)> = self.landmarks.iter().collect();
+        slots.sort_unstable_by_key(|(_, slot)| slot.offset);
+        let saved = |(id, slot): (&LandmarkId, &Slot<M::Landmark>)| SavedLandmark {
+            id: *id,
+            mean: slot.mean.clone(),
+            first: slot.first.clone(),
+            n_sightings: slot.n_sightings,
+            n_missed: slot.n_missed,
+            n_missed_in_a_row: slot.n_missed_in_a_row,
+            last_seen: slot.last_seen,
+        };
+        Snapshot {
+            look: self.look,
+            robot: self.robot.clone(),
+            landmarks: slots.into_iter().map(saved).collect(),
+            anchors: self.anchors.iter().map(|(id, landmark)| (*id, landmark.clone())).collect(),
+            retired: self.retired.iter().map(|(id, retired)| saved_retired(*id, retired)).collect(),
+            covariance: self.covariance.lower(),
+        }
+    }
+
+    /// The filter that a snapshot was taken of: from here on both do the same, bit for bit, when model and parameters are the same.
+    ///
+    /// The snapshot may come from anywhere; nothing of it is taken on trust. Cost O(n³), once.
+    ///
+    /// ```
+    /// use wayfix_estimation_traits::Pose2;
+    /// use wayfix_slam_ekf::*;
+    /// let (sensor, params) = (RangeBearingSensor::default(), SlamParams::default());
+    /// let mut slam = EkfSlam::new(sensor, params, Pose2::new(0.0, 0.0, 0.0))?;
+    /// let seen = [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(2.0, 0.1) }];
+    /// slam.update(&seen, &mut KnownIds)?;
+    ///
+    /// let mut resumed = EkfSlam::resume(sensor, params, slam.snapshot())?;
+    /// slam.predict(&IncrementMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;
+    /// resumed.predict(&IncrementMotion::default(), &Pose2::new(1.0, 0.0, 0.2))?;
+    /// assert_eq!(resumed.snapshot(), slam.snapshot());
+    ///
+    /// let mut halved = slam.snapshot();
+    /// halved.covariance.truncate(3);
+    /// assert!(matches!(EkfSlam::resume(sensor, params, halved), Err(SlamError::Dimension { expected: 15, got: 3, .. })));
+    /// # Ok::<(), SlamError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When a parameter is out of range, a number is not finite, a count is absurd, an identity comes twice, or the covariance has another size or is not
+    /// positive semidefinite.
+    pub fn resume(
+        model: M,
+        params: SlamParams,
+        snapshot: Snapshot<M::Robot, M::Landmark>,
+    ) -> Result<Self, SlamError> {
+        let Snapshot { look, robot, landmarks, anchors, retired, covariance } = snapshot;
+        let mut slam = Self::new(model, params, robot)?;
+        check_count("look", look, usize::MAX / 2)?;
+        slam.look = look;
+        for (id, landmark) in anchors {
+            slam.add_anchor(id, landmark)?;
+        }
+        for saved in retired {
+            slam.check_free(saved.id)?;
+            check_finite(&saved.mean)?;
+            let covariance = marginal::<M::Landmark>(&saved.covariance)?;
+            slam.retired.insert(saved.id, Retired { mean: saved.mean, covariance });
+        }
+        let mut offset = RobotDim::<M>::DIM;
+        for saved in landmarks {
+            let SavedLandmark { id, mean, first, n_sightings, n_missed, n_missed_in_a_row, last_seen } =
+                saved;
+            slam.check_free(id)?;
+            check_finite(&mean)?;
+            check_finite(&first)?;
+            check_count("last_seen", last_seen, look)?;
+            check_count("n_sightings", n_sightings, usize::MAX / 2)?;
+            check_count("n_missed", n_missed, usize::MAX / 2)?;
+            check_count("n_missed_in_a_row", n_missed_in_a_row, n_missed)?;
+            let slot = Slot { mean, first, offset, n_sightings, n_missed, n_missed_in_a_row, last_seen };
+            slam.landmarks.insert(id, slot);
+            offset += LandmarkDim::<M>::DIM;
+        }
+        slam.covariance = joint_covariance(offset, &covariance)?;
+        Ok(slam)
+    }
+}
+
+fn saved_retired<L: Manifold<Scalar = f64, Dim: DimName>>(
+    id: LandmarkId,
+    retired: &Retired<L>,
+) -> SavedRetired<L>
+where
+    DefaultAllocator: Allocator<L::Dim, L::Dim>,
+{
+    let Retired { mean, covariance } = retired.clone();
+    SavedRetired { id, mean, covariance: covariance.iter().copied().collect() }
+}
+
+fn marginal<L: Manifold<Scalar = f64, Dim: DimName>>(entries: &[f64]) -> Result<TangentMatrix<L>, SlamError>
+where
+    DefaultAllocator: Allocator<L::Dim, L::Dim>,
+{
+    let (what, expected, got) =
+        ("covariance of a retired landmark", L::Dim::DIM * L::Dim::DIM, entries.len());
+    if expected != got {
+        return Err(SlamError::Dimension { what, expected, got });
+    }
+    let covariance = TangentMatrix::<L>::from_iterator(entries.iter().copied());
+    check_covariance(what, &covariance)?;
+    if covariance.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {
+        Ok(covariance)
+    } else {
+        Err(SlamError::NotFinite { what })
+    }
+}
+
+fn check_count(name: &'static str, count: usize, largest: usize) -> Result<(), SlamError> {
+    if count <= largest {
+        return Ok(());
+    }
+    Err(SlamError::Parameter {
+        name,
+        value: count as f64,
+        range: "no look later than the last one, and countable",
+    })
+}
+
+fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<JointCovariance, SlamError> {
+    let what = "saved covariance";
+    let (expected, got) = (dimension.saturating_mul(dimension + 1) / 2, lower.len());
+    if expected != got {
+        return Err(SlamError::Dimension { what, expected, got });
+    }
+    if !lower.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {
+        return Err(SlamError::NotFinite { what });
+    }
+    let joint = JointCovariance::from_lower(dimension, lower);
+    let smallest_variance = joint.matrix().diagonal().min();
+    if smallest_variance < 0.0 || !is_semidefinite(&joint.matrix()) {
+        return Err(SlamError::NotACovariance { what, value: smallest_variance, asymmetry: 0.0 });
+    }
+    Ok(joint)
+}
+
+/// Whether the correlations are positive semidefinite up to what a long run may have lost by rounding.
+fn is_semidefinite(covariance: &DMatrixView<'_, f64>) -> bool {
+    let deviations = covariance.diagonal().map(f64::sqrt);
+    let correlations =
+        DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |row, column| {
+            match covariance[(row, column)] {
+                _ if row == column => 1.0 + SLACK,
+                0.0 => 0.0,
+                entry => entry / deviations[row] / deviations[column],
+            }
+        });
+    Cholesky::new(correlations).is_some()
+}
+
+/// An eigenvalue of the correlations that is above minus this counts as zero. The filter itself stays within some thousand roundings.
+const SLACK: f64 = 1e-9;

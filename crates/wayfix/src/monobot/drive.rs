@@ -1,0 +1,117 @@
+use anyhow::Result;
+use nalgebra::{Matrix1, Vector1};
+use wayfix_scene_sim::monobot::{MonobotParams, MonobotRun};
+use wayfix_slam_ekf::{
+    Confirmation, EkfSlam, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, SlamParams,
+    observability::ObservabilityRecorder,
+};
+
+use super::{Camera, Reference};
+
+/// What the filter says after one look, beside the truth; of the first landmark, and of the mean over all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Where the robot is, m.
+    pub true_position: f64,
+    /// Where the filter says it is.
+    pub position: f64,
+    /// Standard deviation of that.
+    pub position_sigma: f64,
+    /// Where the filter says the first landmark is.
+    pub landmark: f64,
+    /// Standard deviation of that.
+    pub landmark_sigma: f64,
+    /// Mean error over all landmarks: estimate minus truth.
+    pub mean_landmark_error: f64,
+    /// Kalman gains of the look at the first landmark, robot and landmark.
+    pub gains: [f64; 2],
+}
+
+/// One drive through the filter.
+#[derive(Clone, Debug)]
+pub struct Drive {
+    /// One step a look; the first is the one that starts the landmarks.
+    pub steps: Vec<Step>,
+    /// True place of the landmarks, m.
+    pub true_landmark: f64,
+    /// What the looks said.
+    pub observability: ObservabilityRecorder,
+}
+
+/// The anchor's identity: after those of all landmarks.
+const ANCHOR: LandmarkId = LandmarkId(u32::MAX);
+/// A landmark on top of the robot is seen with this, m: noise in proportion to distance alone would make that look exact.
+const SMALLEST_SIGMA: f64 = 1e-6;
+
+/// The plain Kalman filter: every landmark counts at once, and no look is doubted.
+fn plain() -> SlamParams {
+    let confirmation = Confirmation { n_sightings: 1, ..Confirmation::default() };
+    SlamParams { gate_probability: 1.0 - 1e-12, confirmation, ..SlamParams::default() }
+}
+
+/// Runs a simulated drive through EKF-SLAM from the true start.
+///
+/// # Errors
+/// When the filter refuses what was simulated.
+pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> Result<Drive> {
+    let sensor = MonobotSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_noise };
+    let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_noise };
+    let camera = Camera(params.external_sigma_m);
+    let mut slam = EkfSlam::new(sensor, plain(), Vector1::new(run.positions[0]))?;
+    if reference == Reference::Anchor {
+        slam.add_anchor(ANCHOR, Vector1::zeros())?;
+    }
+    let mut observability = ObservabilityRecorder::new(&slam);
+    let mut steps = Vec::with_capacity(run.positions.len());
+    for (k, true_position) in run.positions.iter().enumerate() {
+        if let Some(before) = k.checked_sub(1) {
+            slam.predict(&motion, &Vector1::new(run.controls[before]))?;
+        }
+        if reference == Reference::Camera {
+            let innovation = slam.update_robot(&camera, &Vector1::new(run.external_positions[k]))?;
+            observability.record_robot(&slam, &Matrix1::identity(), &innovation.covariance);
+        }
+        let gains = gains(&slam, run.ranges[k].first().copied());
+        let seen = look(run, k, reference);
+        slam.update(&seen, &mut KnownIds)?;
+        observability.record(&slam, &seen.iter().filter_map(|seen| seen.label).collect::<Vec<_>>());
+        steps.extend(step(&slam, *true_position, params.landmark_m, gains));
+    }
+    Ok(Drive { steps, true_landmark: params.landmark_m, observability })
+}
+
+fn look(run: &MonobotRun, k: usize, reference: Reference) -> Vec<Observation<Vector1<f64>>> {
+    let ids = (0..).map(LandmarkId);
+    let anchor = (reference == Reference::Anchor).then_some((ANCHOR, run.anchor_ranges[k]));
+    let all = anchor.into_iter().chain(ids.zip(run.ranges[k].iter().copied()));
+    all.map(|(id, distance)| Observation { label: Some(id), measurement: Vector1::new(distance) }).collect()
+}
+
+/// $`K = P H^T s^{-1}`$ with $`H = (-1, 1)`$ for a look at the first landmark alone; none before it is in the map.
+fn gains(slam: &EkfSlam<MonobotSensor>, distance: Option<f64>) -> [f64; 2] {
+    use wayfix_slam_ekf::LandmarkModel;
+    let (Some(distance), true) = (distance, slam.knows(LandmarkId(0))) else { return [f64::NAN; 2] };
+    let p = slam.covariance();
+    let noise = slam.model().noise(&Vector1::new(distance)).x;
+    let s = p[(0, 0)] - 2.0 * p[(0, 1)] + p[(1, 1)] + noise;
+    [(p[(0, 1)] - p[(0, 0)]) / s, (p[(1, 1)] - p[(0, 1)]) / s]
+}
+
+fn step(
+    slam: &EkfSlam<MonobotSensor>,
+    true_position: f64,
+    true_landmark: f64,
+    gains: [f64; 2],
+) -> Option<Step> {
+    let first = slam.landmark(LandmarkId(0))?;
+    let errors: Vec<f64> = slam.landmarks().map(|landmark| landmark.mean.x - true_landmark).collect();
+    Some(Step {
+        true_position,
+        position: slam.robot().x,
+        position_sigma: slam.robot_covariance().x.sqrt(),
+        landmark: first.mean.x,
+        landmark_sigma: first.covariance.x.sqrt(),
+        mean_landmark_error: errors.iter().sum::<f64>() / errors.len() as f64,
+        gains,
+    })
+}

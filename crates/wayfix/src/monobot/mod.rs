@@ -1,0 +1,13 @@
+//! The experiments of [Andrade-Cetto 2005, Sec. 2.2, Figs. 3-6]: a robot on a line, and what its map can know of the world.
+
+mod drive;
+mod figures;
+mod fisher;
+mod pictures;
+mod reference;
+
+pub use drive::{Drive, Step, drive};
+pub use figures::{MonteCarlo, monte_carlo};
+pub use fisher::{expected_rate, first_entry};
+pub use pictures::{fisher_picture, pictures};
+pub use reference::{Camera, Reference};

@@ -1,0 +1,34 @@
+use nalgebra::{Matrix1, Vector1};
+use serde::Deserialize;
+use wayfix_estimation_traits::SensorModel;
+
+/// What ties the map of the monobot to the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reference {
+    /// Nothing: the standard filter. [Fig. 4]
+    None,
+    /// A landmark at the origin whose place is known. [Eq. 20, Fig. 5]
+    Anchor,
+    /// A sensor that measures the robot's position. [Eq. 23, Fig. 6]
+    Camera,
+}
+
+/// A fixed sensor that measures where the robot is on its line; its standard deviation in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera(pub f64);
+
+impl SensorModel for Camera {
+    type State = Vector1<f64>;
+    type Measurement = Vector1<f64>;
+
+    fn expected(&self, robot: &Vector1<f64>) -> Vector1<f64> {
+        *robot
+    }
+    fn jacobian(&self, _: &Vector1<f64>) -> Matrix1<f64> {
+        Matrix1::identity()
+    }
+    fn noise(&self, _: &Vector1<f64>) -> Matrix1<f64> {
+        Matrix1::new(self.0 * self.0)
+    }
+}
