@@ -9,6 +9,8 @@ mod chains;
 mod harness;
 #[path = "jobs.rs"]
 mod jobs;
+#[path = "../tests/support/mod.rs"]
+mod support;
 
 fn main() {
     jobs::run();
