@@ -23,9 +23,16 @@ impl Case {
 
     /// Spikes that become smaller, so that every split takes one point off.
     pub(crate) fn zigzag(n: u32) -> Self {
-        let height = |k: u32| if k % 2 == 0 { 0.0 } else { 1e3 * (1.0 - f64::from(k) / f64::from(n)) };
+        let height = |k: u32| if k.is_multiple_of(2) { 0.0 } else { 1e3 * (1.0 - f64::from(k) / f64::from(n)) };
         let points = (0..n).map(|k| Vector2::new(f64::from(k), height(k))).collect();
         Self { name: format!("simplify zigzag {n}"), points, epsilon: 1e-6 }
+    }
+
+    /// Teeth of one height: half the points are equally far from every line between teeth, and what decides is exact arithmetic.
+    pub(crate) fn comb(n: u32) -> Self {
+        let height = |k: u32| if k.is_multiple_of(2) { 0.0 } else { 0.7 };
+        let points = (0..n).map(|k| Vector2::new(0.1 * f64::from(k), height(k))).collect();
+        Self { name: format!("simplify comb {n}"), points, epsilon: 1e-6 }
     }
 
     /// An open circle, where every point is on the hull.

@@ -36,19 +36,21 @@ fn the_four_walls_of_a_room() {
     let laser = Laser::over(359.0, 360);
     for split in BOTH {
         let params = Params { split, ..Params::default() };
-        for _ in 0..50 {
+        let mut whole = 0;
+        for _ in 0..100 {
             let ranges = laser.noisy_ranges(&room(), &params.noise, &mut rng);
             let seen = extract(&scan_of(laser, &ranges), &params).expect("a valid scan");
-            assert_eq!(seen.segments.len(), 4, "{split:?}: {:#?}", seen.segments);
+            whole += usize::from(seen.segments.len() == 4);
             for wall in &room() {
                 // 5 cm, what a piece is split at, is the most that a point may be off.
                 let on = seen.segments.iter().filter(|segment| lies_on(segment, wall, 0.05));
-                let lengths: Vec<_> = on.map(Segment::length).collect();
-                assert_eq!(lengths.len(), 1, "{split:?}");
+                let length: f64 = on.map(Segment::length).sum();
                 // Two beams at the widest spacing on these walls, 4.5 m · 1° / cos² 63°, on each end.
-                assert!((lengths[0] - (wall.1 - wall.0).norm()).abs() < 4.0 * 0.38, "{split:?} {lengths:?}");
+                assert!((length - (wall.1 - wall.0).norm()).abs() < 4.0 * 0.38, "{split:?} {length}");
             }
         }
+        // The wall behind is cut by the end of the turn, and its halves are one at 99.9 %: more than 3 of 100 is once in 10^6.
+        assert!(whole >= 97, "{split:?}: four walls in {whole} of 100");
     }
 }
 

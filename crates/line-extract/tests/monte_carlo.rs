@@ -2,6 +2,8 @@
 
 mod support;
 
+use std::f64::consts::PI;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -45,8 +47,9 @@ fn fits(rho: f64, alpha: f64, bearings: (f64, f64), runs: usize) -> Vec<LineFit>
 #[test]
 fn the_covariance_of_a_fit_is_that_of_its_errors() {
     const RUNS: usize = 4000;
-    // Straight ahead, aslant, behind with α at the wrap, and so close that the sign of ρ is up to the noise.
-    for (rho, alpha, from, to) in [(3.0, 0.2, -0.8, 1.0), (1.5, 1.0, 1.3, 2.3), (4.0, 3.14, 2.6, 3.6), (2.0, -2.0, -2.9, -1.9)] {
+    // Ahead, aslant, behind with α at the wrap, and behind to the right.
+    let cases = [(3.0, 0.2, -0.8, 1.0), (1.5, 1.0, 1.3, 2.3), (4.0, PI, 2.6, 3.6), (2.0, -2.0, -2.9, -1.9)];
+    for (rho, alpha, from, to) in cases {
         let truth = exactly(rho, alpha);
         let fits = fits(rho, alpha, (from, to), RUNS);
         let nees: f64 = fits.iter().map(|fit| fit.estimate.mahalanobis_squared(&truth).expect("valid")).sum();
@@ -105,11 +108,16 @@ fn two_looks_at_a_wall_are_compatible_as_often_as_two_sigma_says() {
     let laser = Laser::over(60.0, 121);
     let ahead = [wall(3.0, -4.0, 3.0, 4.0)];
     let mut extractor = Extractor::new(Params { noise: NOISE, ..Params::default() }).expect("valid");
+    let mut in_pieces = 0;
     let mut look = || {
-        let ranges = laser.noisy_ranges(&ahead, &NOISE, &mut rng);
-        let seen = walls(&mut extractor, laser, &ranges);
-        assert_eq!(seen.len(), 1);
-        seen[0]
+        loop {
+            let ranges = laser.noisy_ranges(&ahead, &NOISE, &mut rng);
+            let seen = walls(&mut extractor, laser, &ranges);
+            if let [whole] = seen[..] {
+                return whole;
+            }
+            in_pieces += 1;
+        }
     };
     let mut found = 0;
     for _ in 0..RUNS {
@@ -122,6 +130,9 @@ fn two_looks_at_a_wall_are_compatible_as_often_as_two_sigma_says() {
         assert_eq!(hypothesis.find(&[other, second]), Ok(compatible.then_some(1)));
         found += usize::from(compatible);
     }
+    // An echo must be five deviations off the line through the end echoes, which are off as well, for a split: 121 chances of some
+    // 4e-5. Not all of those are merged again, since a point that far off is just what speaks against it.
+    assert!(in_pieces as f64 <= 0.005 * 2.0 * RUNS as f64, "{in_pieces} walls in pieces");
     // Binomial around 1 - exp(-2); 1 % for echoes left out at the ends and what is of second order.
     let (rate, expected) = (found as f64 / RUNS as f64, 1.0 - (-2.0_f64).exp());
     let bound = 4.0 * (expected * (1.0 - expected) / RUNS as f64).sqrt() + 0.01;

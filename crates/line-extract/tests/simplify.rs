@@ -10,6 +10,7 @@ const SEED_SIMPLE: u64 = 31;
 const SEED_WILD: u64 = 32;
 
 type Chain = Vec<Vector2<f64>>;
+type Point = Box<dyn Fn(usize) -> Vector2<f64>>;
 
 /// Both variants, the one with hulls also from the first split on, against the plain one.
 fn assert_same(chain: &Chain, epsilon: f64, what: &str) {
@@ -84,7 +85,7 @@ fn chains_that_cross_themselves_repeat_points_or_close() {
 fn spirals_combs_zigzags_and_lines() {
     for n in [63, 64, 65, 129, 1000, 3000] {
         let at = |k: usize| k as f64;
-        let chains: [(&str, Box<dyn Fn(usize) -> Vector2<f64>>); 8] = [
+        let chains: [(&str, Point); 8] = [
             ("zigzag", Box::new(move |k| Vector2::new(at(k), if k % 2 == 0 { 0.0 } else { 1e3 * (1.0 - at(k) / at(n)) }))),
             ("comb of equal teeth", Box::new(move |k| Vector2::new(at(k), if k % 2 == 0 { 0.0 } else { 7.0 }))),
             ("square comb", Box::new(move |k| Vector2::new(at(k / 2), if k % 4 < 2 { 0.0 } else { 7.0 }))),

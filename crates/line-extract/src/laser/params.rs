@@ -31,7 +31,7 @@ pub struct Params {
     pub split_distance_m: f64,
     /// Points at the ends of a piece that are farther off its line than so many of their deviations are left out. Default: 3.
     pub end_gate_sigma: f64,
-    /// Pieces are one wall up to this squared Mahalanobis distance of their lines. Default: 9.21, which 99 % of equal lines pass (chi-squared, 2).
+    /// Pieces are one wall up to this squared Mahalanobis distance of their lines. Default: 13.8, which 99.9 % of equal lines pass (chi-squared, 2).
     pub merge_gate: f64,
     /// Pieces farther apart than this along the wall, metres, stay two. Default: 0.3.
     pub merge_gap_m: f64,
@@ -61,7 +61,7 @@ impl Default for Params {
             split: SplitMethod::default(),
             split_distance_m: 0.05,
             end_gate_sigma: 3.0,
-            merge_gate: 9.21,
+            merge_gate: 13.8,
             merge_gap_m: 0.3,
             min_points: 5,
             min_length_m: 0.3,

@@ -37,9 +37,14 @@ impl<'a> Baseline<'a> {
         2.0 * self.slack
     }
 
+    /// Between the two points, metres.
+    pub(super) fn length(&self) -> f64 {
+        self.d.norm()
+    }
+
     /// Distance to the line, metres.
     pub(super) fn distance(&self, p: &Vector2<f64>) -> f64 {
-        self.cross(p).abs() / self.d.norm()
+        self.cross(p).abs() / self.length()
     }
 
     /// No smaller than [`Self::cross`] of any point in the box from `low` to `high`, whatever its sign.

@@ -2,7 +2,7 @@ use nalgebra::Vector2;
 
 use super::baseline::Baseline;
 use super::chain::Chain;
-use super::scan;
+use super::scan::Scanner;
 use super::split::{coincide, first_max, split_all, split_loop};
 use crate::LineError;
 
@@ -49,18 +49,18 @@ pub fn douglas_peucker(
     distance: Distance,
 ) -> Result<Vec<usize>, LineError> {
     let chain = Chain::new(points, epsilon)?;
-    let (mut kept, mut blocks) = (Vec::new(), Vec::new());
+    let (mut kept, mut scanner) = (Vec::new(), Scanner::default());
     split_all(points.len(), &mut Vec::new(), &mut kept, |start, end| match distance {
         _ if coincide(&points[start], &points[end]) => split_loop(&chain, start, end),
-        Distance::Line => split_line(&chain, start, end, &mut blocks),
+        Distance::Line => split_line(&chain, start, end, &mut scanner),
         Distance::Segment => split_segment(&chain, start, end),
     });
     Ok(kept)
 }
 
-fn split_line(chain: &Chain, start: usize, end: usize, blocks: &mut Vec<usize>) -> Option<usize> {
+fn split_line(chain: &Chain, start: usize, end: usize, scanner: &mut Scanner) -> Option<usize> {
     let line = Baseline::new(&chain.points[start], &chain.points[end], &chain.extent);
-    let split = scan::farthest(chain.points, start + 1..end, &line, blocks)?;
+    let split = scanner.farthest(chain.points, start + 1..end, &line, chain.epsilon)?;
     (line.distance(&chain.points[split]) > chain.epsilon).then_some(split)
 }
 

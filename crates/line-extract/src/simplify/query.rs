@@ -7,7 +7,10 @@ use nalgebra::Vector2;
 
 use super::baseline::Baseline;
 use super::hull_tree::{HullTree, LEAF, Level};
-use super::scan;
+use super::scan::{Scanner, farther};
+
+/// Every distance is beyond it.
+const NO_LIMIT: f64 = -1.0;
 
 /// The level of a block, and its place there.
 #[derive(Clone, Copy)]
@@ -17,20 +20,21 @@ struct Block {
 }
 
 impl HullTree {
-    /// The same answer as [`scan::farthest`], in $`O(\log^2 n)`$.
+    /// The same answer as [`Scanner::farthest`], in $`O(\log^2 n)`$.
     pub(super) fn farthest(
         &self,
         points: &[Vector2<f64>],
         range: Range<usize>,
         line: &Baseline,
-        blocks: &mut Vec<usize>,
+        scanner: &mut Scanner,
     ) -> Option<usize> {
+        let mut scan = |range| scanner.farthest(points, range, line, NO_LIMIT);
         let (first, last) = (range.start.div_ceil(LEAF), range.end / LEAF);
         if first >= last {
-            return scan::farthest(points, range, line, blocks);
+            return scan(range);
         }
-        let before = scan::farthest(points, range.start..first * LEAF, line, blocks);
-        let after = scan::farthest(points, last * LEAF..range.end, line, blocks);
+        let before = scan(range.start..first * LEAF);
+        let after = scan(last * LEAF..range.end);
         let value = |k: Option<usize>| k.map_or(0.0, |k| line.cross(&points[k]).abs());
         let mut least = value(before).max(value(after));
 
@@ -49,7 +53,7 @@ impl HullTree {
             }
         }
         if let Some(k) = after
-            && scan::farther(points, line, best, k) == k
+            && farther(points, line, best, k) == k
         {
             return after;
         }

@@ -7,39 +7,59 @@ use super::baseline::Baseline;
 
 const BLOCK: usize = 128;
 
-/// The first of the points farthest from the line, exactly, by looking at each.
-///
-/// Only the maximum of a block is computed for all points, which takes a few instructions each; the blocks that may hold the
-/// farthest point are gone through again. `blocks` is room to note them.
-pub(super) fn farthest(
-    points: &[Vector2<f64>],
-    range: Range<usize>,
-    line: &Baseline,
-    blocks: &mut Vec<usize>,
-) -> Option<usize> {
-    let mut most = 0.0;
-    blocks.clear();
-    for begin in range.clone().step_by(BLOCK) {
-        let at_block = largest(&points[begin..range.end.min(begin + BLOCK)], line);
-        if at_block > most + line.margin() {
-            blocks.clear();
+/// Finds farthest points by looking at each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scanner {
+    /// Room to note the blocks that may hold the farthest point.
+    blocks: Vec<usize>,
+    /// How many comparisons came so close that they may have been computed exactly.
+    pub(super) close_calls: usize,
+}
+
+impl Scanner {
+    /// The first of the points farthest from the line, exactly, or `None` if no point is computed to be farther than `limit`.
+    ///
+    /// Only the maximum of a block is computed for all points, which takes a few instructions each; the blocks that may hold the
+    /// farthest point are gone through again.
+    pub(super) fn farthest(
+        &mut self,
+        points: &[Vector2<f64>],
+        range: Range<usize>,
+        line: &Baseline,
+        limit: f64,
+    ) -> Option<usize> {
+        let most = self.note_blocks(points, &range, line);
+        if most / line.length() <= limit {
+            return None;
         }
-        if at_block >= most - line.margin() {
-            blocks.push(begin);
-        }
-        if at_block > most {
-            most = at_block;
-        }
-    }
-    let mut best = None;
-    for &begin in blocks.iter() {
-        for k in begin..range.end.min(begin + BLOCK) {
-            if line.cross(&points[k]).abs() >= most - line.margin() {
-                best = Some(farther(points, line, best, k));
+        let mut best = None;
+        for &begin in &self.blocks {
+            for k in begin..range.end.min(begin + BLOCK) {
+                if line.cross(&points[k]).abs() >= most - line.margin() {
+                    best = Some(farther(points, line, best, k));
+                    self.close_calls += 1;
+                }
             }
         }
+        best
     }
-    best
+
+    /// The largest computed value, and in `blocks` where values are that may in truth be as large.
+    fn note_blocks(&mut self, points: &[Vector2<f64>], range: &Range<usize>, line: &Baseline) -> f64 {
+        let mut most = 0.0;
+        self.blocks.clear();
+        for begin in range.clone().step_by(BLOCK) {
+            let at_block = largest(&points[begin..range.end.min(begin + BLOCK)], line);
+            if at_block > most + line.margin() {
+                self.blocks.clear();
+            }
+            if at_block >= most - line.margin() {
+                self.blocks.push(begin);
+            }
+            most = greater(at_block, most);
+        }
+        most
+    }
 }
 
 /// The farther of two points; the one that was there first if they are equally far.

@@ -3,12 +3,15 @@ use nalgebra::Vector2;
 use super::baseline::Baseline;
 use super::chain::Chain;
 use super::hull_tree::HullTree;
-use super::scan;
+use super::scan::Scanner;
 use super::split::{coincide, split_all, split_loop};
 use crate::LineError;
 
 /// How often each point may be looked at, in units of $`\log_2 n`$, before hulls are built.
 const PATIENCE: usize = 2;
+
+/// How many looks an exact comparison takes, in the time of the fast kind: some 100 ns.
+const CLOSE_CALL: usize = 100;
 
 /// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`Distance::Line`](crate::Distance), in $`O(n \log^2 n)`$ whatever the chain.
 ///
@@ -57,12 +60,12 @@ pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, Lin
 pub struct Simplifier {
     patience: usize,
     ends: Vec<usize>,
-    blocks: Vec<usize>,
+    scanner: Scanner,
 }
 
 impl Default for Simplifier {
     fn default() -> Self {
-        Self { patience: PATIENCE, ends: Vec::new(), blocks: Vec::new() }
+        Self { patience: PATIENCE, ends: Vec::new(), scanner: Scanner::default() }
     }
 }
 
@@ -87,18 +90,19 @@ impl Simplifier {
         // Hulls store indices of 32 bits; a chain beyond that (64 GB) is scanned to the end.
         let mut looks = u32::try_from(n).map_or(usize::MAX, |_| self.patience * n * n.max(2).ilog2() as usize);
         let mut hulls = None;
-        let blocks = &mut self.blocks;
+        let scanner = &mut self.scanner;
+        scanner.close_calls = 0;
         split_all(n, &mut self.ends, kept, |start, end| {
             if coincide(&points[start], &points[end]) {
                 return split_loop(&chain, start, end);
             }
             let line = Baseline::new(&points[start], &points[end], &chain.extent);
             let range = start + 1..end;
-            let split = if looks >= range.len() {
+            let split = if looks >= range.len() + CLOSE_CALL * scanner.close_calls {
                 looks -= range.len();
-                scan::farthest(points, range, &line, blocks)
+                scanner.farthest(points, range, &line, epsilon)
             } else {
-                hulls.get_or_insert_with(|| HullTree::new(points)).farthest(points, range, &line, blocks)
+                hulls.get_or_insert_with(|| HullTree::new(points)).farthest(points, range, &line, scanner)
             }?;
             (line.distance(&points[split]) > epsilon).then_some(split)
         });
