@@ -23,7 +23,8 @@ impl Case {
 
     /// Spikes that become smaller, so that every split takes one point off.
     pub(crate) fn zigzag(n: u32) -> Self {
-        let height = |k: u32| if k.is_multiple_of(2) { 0.0 } else { 1e3 * (1.0 - f64::from(k) / f64::from(n)) };
+        let height =
+            |k: u32| if k.is_multiple_of(2) { 0.0 } else { 1e3 * (1.0 - f64::from(k) / f64::from(n)) };
         let points = (0..n).map(|k| Vector2::new(f64::from(k), height(k))).collect();
         Self { name: format!("simplify zigzag {n}"), points, epsilon: 1e-6 }
     }

@@ -48,6 +48,14 @@ pub enum LineError {
         /// From one to the next.
         increment_rad: f64,
     },
+    /// Not one covariance for each point.
+    #[error("{covariances} covariances for {points} points")]
+    Sizes {
+        /// How many points.
+        points: usize,
+        /// How many covariances.
+        covariances: usize,
+    },
     /// Too few points for a line.
     #[error("{got} points, a line needs {needed}")]
     TooFewPoints {

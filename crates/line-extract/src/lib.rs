@@ -29,6 +29,7 @@
 //! # Ok::<(), wayfix_line_extract::LineError>(())
 //! ```
 
+mod check;
 mod error;
 mod laser;
 mod line;
@@ -36,7 +37,8 @@ mod simplify;
 
 pub use error::LineError;
 pub use laser::{
-    Counts, Extraction, Extractor, Params, RangeBearingNoise, Scan, Segment, SplitMethod, WallHypothesis, extract,
+    Counts, Extraction, Extractor, Params, RangeBearingNoise, Scan, Segment, SplitMethod, WallHypothesis,
+    extract,
 };
 pub use line::{HessianLine, LineEstimate, LineFit, fit_line};
 pub use simplify::{Distance, Simplifier, douglas_peucker, simplify};

@@ -99,12 +99,17 @@ fn every_invalid_range_is_counted_once_and_moves_nothing() {
     let laser = Laser::over(90.0, 181);
     let clean = laser.ranges(&[wall(2.0, -4.0, 2.0, 4.0)]);
     let mut ranges = clean.clone();
-    for (k, bad) in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, -1.0, 20.1, 1e300].iter().enumerate() {
+    for (k, bad) in
+        [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, -1.0, 20.1, 1e300].iter().enumerate()
+    {
         ranges[20 + 15 * k] = *bad;
     }
     let seen = extract(&scan_of(laser, &ranges), &Params::default()).expect("a valid geometry");
     let counts = seen.counts;
-    assert_eq!((counts.valid, counts.nan, counts.infinite, counts.not_positive, counts.beyond_max), (173, 1, 2, 3, 2));
+    assert_eq!(
+        (counts.valid, counts.nan, counts.infinite, counts.not_positive, counts.beyond_max),
+        (173, 1, 2, 3, 2)
+    );
     assert_eq!((counts.skipped(), seen.segments.len(), seen.segments[0].n_points), (8, 1, 173));
     let line = seen.segments[0].estimate.line;
     assert!((line.rho() - 2.0).abs() < 1e-9 && line.alpha().abs() < 1e-9);
@@ -131,7 +136,10 @@ fn geometry_and_parameters_without_meaning_are_refused() {
     let before = extractor.extract(&good);
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert!(matches!(extractor.extract(&Scan { angle_min: bad, ..good }), Err(LineError::Scan { .. })));
-        assert!(matches!(extractor.extract(&Scan { angle_increment: bad, ..good }), Err(LineError::Scan { .. })));
+        assert!(matches!(
+            extractor.extract(&Scan { angle_increment: bad, ..good }),
+            Err(LineError::Scan { .. })
+        ));
         assert!(matches!(extractor.extract(&Scan { max_range: bad, ..good }), Err(LineError::Scan { .. })));
     }
     for bad in [0.0, -1.0, 1e7] {
@@ -170,7 +178,10 @@ fn whatever_the_ranges_results_are_sound() {
     for case in 0..3000 {
         let params = Params {
             split: BOTH[case % 2],
-            noise: RangeBearingNoise { sigma_range_m: 10f64.powf(rng.random_range(-6.0..1.0)), sigma_bearing_rad: 0.0 },
+            noise: RangeBearingNoise {
+                sigma_range_m: 10f64.powf(rng.random_range(-6.0..1.0)),
+                sigma_bearing_rad: 0.0,
+            },
             split_distance_m: 10f64.powf(rng.random_range(-6.0..2.0)),
             max_missing_beams: rng.random_range(0..5),
             min_length_m: 0.0,
@@ -179,14 +190,22 @@ fn whatever_the_ranges_results_are_sound() {
         let n = rng.random_range(0..200);
         let ranges: Vec<f64> = (0..n).map(|_| junk(&mut rng)).collect();
         let angle_increment = rng.random_range(-0.03..0.03);
-        let scan = Scan { angle_min: rng.random_range(-10.0..10.0), angle_increment, ranges: &ranges, max_range: 1e6 };
+        let scan = Scan {
+            angle_min: rng.random_range(-10.0..10.0),
+            angle_increment,
+            ranges: &ranges,
+            max_range: 1e6,
+        };
         let seen = extract(&scan, &params).expect("a valid geometry");
         let counts = seen.counts;
         assert_eq!(counts.valid + counts.skipped(), n);
         assert!(counts.in_segments <= counts.valid && counts.surfaces <= counts.valid);
         for segment in &seen.segments {
             let (line, p) = (&segment.estimate.line, &segment.estimate.covariance);
-            assert!(line.rho() >= 0.0 && line.rho() < 1e7 && line.alpha().abs() <= std::f64::consts::PI, "{segment:?}");
+            assert!(
+                line.rho() >= 0.0 && line.rho() < 1e7 && line.alpha().abs() <= std::f64::consts::PI,
+                "{segment:?}"
+            );
             assert!(p[(0, 0)] > 0.0 && p[(1, 1)] > 0.0 && p.iter().all(|v| v.is_finite()), "{segment:?}");
             assert!(segment.rms_m.is_finite() && segment.length().is_finite() && segment.n_points >= 5);
             assert!(segment.beams.0 < segment.beams.1 && segment.beams.1 < n);

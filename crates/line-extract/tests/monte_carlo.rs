@@ -10,7 +10,8 @@ use rand_distr::{Distribution, StandardNormal};
 use support::{Laser, room, wall};
 use wayfix_line_extract::nalgebra::{Matrix2, Vector2};
 use wayfix_line_extract::{
-    Extractor, HessianLine, LineEstimate, LineFit, Params, RangeBearingNoise, Scan, Segment, WallHypothesis, fit_line,
+    Extractor, HessianLine, LineEstimate, LineFit, Params, RangeBearingNoise, Scan, Segment, WallHypothesis,
+    fit_line,
 };
 
 const SEED_FIT: u64 = 51;
@@ -69,7 +70,8 @@ fn each_entry_of_the_covariance_is_the_scatter() {
     const RUNS: usize = 4000;
     let fits = fits(3.0, 0.2, (0.0, 1.2), RUNS);
     let error = |fit: &LineFit| Vector2::new(fit.estimate.line.rho() - 3.0, fit.estimate.line.alpha() - 0.2);
-    let scatter = fits.iter().map(|fit| error(fit) * error(fit).transpose()).sum::<Matrix2<f64>>() / RUNS as f64;
+    let scatter =
+        fits.iter().map(|fit| error(fit) * error(fit).transpose()).sum::<Matrix2<f64>>() / RUNS as f64;
     let stated = fits.iter().map(|fit| fit.estimate.covariance).sum::<Matrix2<f64>>() / RUNS as f64;
     // An entry's deviation is at most √(2/N) of the geometric mean of its variances; four of those, and 3 % second order.
     let bound = 4.0 * (2.0 / RUNS as f64).sqrt() + 0.03;
@@ -78,7 +80,10 @@ fn each_entry_of_the_covariance_is_the_scatter() {
         let off = (scatter[(i, j)] - stated[(i, j)]) / unit;
         assert!(off.abs() < bound, "entry ({i}, {j}): {off} of its unit, bound {bound}");
     }
-    assert!(stated[(0, 1)].abs() > 0.5 * (stated[(0, 0)] * stated[(1, 1)]).sqrt(), "the case has a correlation to check");
+    assert!(
+        stated[(0, 1)].abs() > 0.5 * (stated[(0, 0)] * stated[(1, 1)]).sqrt(),
+        "the case has a correlation to check"
+    );
 }
 
 #[test]
@@ -98,7 +103,10 @@ fn walls_of_a_room_are_within_their_two_sigma_ellipse() {
     }
     let rate = inside as f64 / n as f64;
     // 1 - exp(-2) = 0.865 of exact Gaussians; a tenth of that is left to the corners' points, which may be on the wrong wall.
-    assert!(rate > 0.9 * 0.865 && rate < 0.865 + 4.0 * (0.865 * 0.135 / n as f64).sqrt() + 0.01, "{rate} of {n}");
+    assert!(
+        rate > 0.9 * 0.865 && rate < 0.865 + 4.0 * (0.865 * 0.135 / n as f64).sqrt() + 0.01,
+        "{rate} of {n}"
+    );
 }
 
 #[test]
@@ -126,6 +134,9 @@ fn two_looks_at_a_wall_are_compatible_as_often_as_two_sigma_says() {
         let hypothesis = WallHypothesis { estimate: first.estimate, start, end, n_sigma: 2.0, margin_m: 0.2 };
         let other = Segment { start, end, estimate: exactly(3.2, 0.0), ..second };
         assert_eq!(hypothesis.is_compatible(&other), Ok(false), "20 cm are some fifty deviations");
+        let aside = Vector2::new(0.0, first.length() + 0.5);
+        let elsewhere = Segment { start: start + aside, end: end + aside, ..second };
+        assert_eq!(hypothesis.find(&[elsewhere]), Ok(None), "30 cm beyond the end of the band");
         let compatible = hypothesis.is_compatible(&second).expect("valid");
         assert_eq!(hypothesis.find(&[other, second]), Ok(compatible.then_some(1)));
         found += usize::from(compatible);

@@ -86,12 +86,23 @@ fn spirals_combs_zigzags_and_lines() {
     for n in [63, 64, 65, 129, 1000, 3000] {
         let at = |k: usize| k as f64;
         let chains: [(&str, Point); 8] = [
-            ("zigzag", Box::new(move |k| Vector2::new(at(k), if k % 2 == 0 { 0.0 } else { 1e3 * (1.0 - at(k) / at(n)) }))),
-            ("comb of equal teeth", Box::new(move |k| Vector2::new(at(k), if k % 2 == 0 { 0.0 } else { 7.0 }))),
+            (
+                "zigzag",
+                Box::new(move |k| {
+                    Vector2::new(at(k), if k % 2 == 0 { 0.0 } else { 1e3 * (1.0 - at(k) / at(n)) })
+                }),
+            ),
+            (
+                "comb of equal teeth",
+                Box::new(move |k| Vector2::new(at(k), if k % 2 == 0 { 0.0 } else { 7.0 })),
+            ),
             ("square comb", Box::new(move |k| Vector2::new(at(k / 2), if k % 4 < 2 { 0.0 } else { 7.0 }))),
             ("upright comb", Box::new(move |k| Vector2::new(if k % 2 == 0 { 0.0 } else { 7.0 }, -at(k)))),
             ("spiral", Box::new(move |k| Vector2::new((0.1 * at(k)).cos(), (0.1 * at(k)).sin()) * at(k))),
-            ("tightening spiral", Box::new(move |k| Vector2::new((0.3 * at(k)).cos(), (0.3 * at(k)).sin()) / (1.0 + at(k)))),
+            (
+                "tightening spiral",
+                Box::new(move |k| Vector2::new((0.3 * at(k)).cos(), (0.3 * at(k)).sin()) / (1.0 + at(k))),
+            ),
             ("line", Box::new(move |k| Vector2::new(0.1 * at(k), 0.3 * at(k)))),
             ("one place", Box::new(|_| Vector2::new(0.1, 0.2))),
         ];
@@ -134,7 +145,8 @@ fn the_first_of_equally_far_points_splits() {
 
 #[test]
 fn a_closed_chain_is_split_farthest_from_its_end_point() {
-    let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)].map(|(x, y)| Vector2::new(x, y));
+    let square =
+        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)].map(|(x, y)| Vector2::new(x, y));
     assert_eq!(simplify(&square, 0.1), Ok(vec![0, 1, 2, 3, 4]));
     assert_eq!(simplify(&square, 1.0), Ok(vec![0, 2, 4]));
     assert_eq!(simplify(&square, 1.5), Ok(vec![0, 4]));
@@ -167,7 +179,8 @@ fn short_chains_and_extreme_sizes() {
     assert_eq!(simplify(&[Vector2::new(1.0, 2.0)], 0.1), Ok(vec![0]));
     assert_eq!(simplify(&[Vector2::new(1.0, 2.0); 2], 0.0), Ok(vec![0, 1]));
     for unit in [1e-300, 1e-150, 1e-20, 1e149] {
-        let chain: Chain = (0..300).map(|k| Vector2::new(f64::from(k), f64::from(k * k % 17)) * (unit / 300.0)).collect();
+        let chain: Chain =
+            (0..300).map(|k| Vector2::new(f64::from(k), f64::from(k * k % 17)) * (unit / 300.0)).collect();
         assert_same(&chain, 0.0, "a chain of extreme size");
         assert!(douglas_peucker(&chain, 0.0, Distance::Segment).is_ok());
     }

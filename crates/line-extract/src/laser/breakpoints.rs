@@ -1,4 +1,3 @@
-use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
 use super::points::Points;
@@ -9,7 +8,7 @@ use super::{Params, Scan};
 /// A surface that the beam at range $`r`$ meets at the angle $`λ`$ is met by the next beam, $`Δφ`$ further, at most
 /// $`r \sin Δφ / \sin(λ - Δφ)`$ away; three deviations of the range are added. What is farther is another surface, or too flat to tell.
 pub(super) fn surfaces(points: &Points, scan: &Scan, params: &Params, found: &mut Vec<Range<usize>>) {
-    let reach: Vec<f64> = (1..=params.max_missing_beams.min(scan.ranges.len()) + 1)
+    let reaches: Vec<f64> = (1..=params.max_missing_beams.min(scan.ranges.len()) + 1)
         .map(|beams| reach(beams as f64 * scan.angle_increment.abs(), params.breakpoint_angle_rad))
         .collect();
     let slack = 3.0 * params.noise.sigma_range_m;
@@ -19,7 +18,7 @@ pub(super) fn surfaces(points: &Points, scan: &Scan, params: &Params, found: &mu
         let step = points.beam[k] - points.beam[k - 1];
         // From the nearer of the two, so that both directions of turning cut at the same place.
         let near = points.range[k].min(points.range[k - 1]);
-        let together = reach.get(step - 1).is_some_and(|reach| {
+        let together = reaches.get(step - 1).is_some_and(|reach| {
             let limit = near * reach + slack;
             (points.at[k] - points.at[k - 1]).norm_squared() <= limit * limit
         });
@@ -35,5 +34,5 @@ pub(super) fn surfaces(points: &Points, scan: &Scan, params: &Params, found: &mu
 
 /// The largest step over the range; nothing for beams so far apart that a surface may hide between them.
 fn reach(turn: f64, flattest: f64) -> f64 {
-    if turn < flattest && flattest < FRAC_PI_2 { turn.sin() / (flattest - turn).sin() } else { 0.0 }
+    if turn < flattest { turn.sin() / (flattest - turn).sin() } else { 0.0 }
 }

@@ -51,10 +51,9 @@ impl WallHypothesis {
     /// Whether a point is where echoes of this wall are to be expected.
     pub fn in_search_band(&self, point: &Vector2<f64>, point_variance: f64) -> bool {
         let line = &self.estimate.line;
-        let direction = line.direction();
-        let along = direction.dot(point);
-        let (a, b) = (direction.dot(&self.start), direction.dot(&self.end));
-        let beside = a.min(b) - self.margin_m <= along && along <= a.max(b) + self.margin_m;
+        let along = line.direction().dot(point);
+        let (from, to) = self.reach();
+        let beside = from <= along && along <= to;
         beside && line.signed_distance(point).abs() <= self.half_width(along, point_variance)
     }
 
@@ -67,7 +66,7 @@ impl WallHypothesis {
         Ok(squared <= self.n_sigma * self.n_sigma)
     }
 
-    /// The most likely segment, if any is compatible and lies in the band with both ends.
+    /// The most likely segment of those that are compatible and reach into the band; more of a wall may show than was known.
     ///
     /// # Errors
     /// [`LineError::NotPositiveDefinite`] if a sum of covariances is not.
@@ -76,18 +75,25 @@ impl WallHypothesis {
         for (k, segment) in segments.iter().enumerate() {
             let squared = self.estimate.mahalanobis_squared(&segment.estimate)?;
             let nearest = best.is_none_or(|(_, least)| squared < least);
-            if nearest && squared <= self.n_sigma * self.n_sigma && self.holds(segment) {
+            if nearest && squared <= self.n_sigma * self.n_sigma && self.reaches_in(segment) {
                 best = Some((k, squared));
             }
         }
         Ok(best.map(|(k, _)| k))
     }
 
-    fn holds(&self, segment: &Segment) -> bool {
+    /// A compatible line is inside the band's width everywhere, so only the ends are left to look at.
+    fn reaches_in(&self, segment: &Segment) -> bool {
         let direction = self.estimate.line.direction();
-        [segment.start, segment.end].iter().all(|end| {
-            let variance = segment.estimate.variance_at(direction.dot(end));
-            self.in_search_band(end, variance)
-        })
+        let (a, b) = (direction.dot(&segment.start), direction.dot(&segment.end));
+        let (from, to) = self.reach();
+        a.max(b) >= from && a.min(b) <= to
+    }
+
+    /// From where to where the band goes, metres from the foot of the sensor's perpendicular.
+    fn reach(&self) -> (f64, f64) {
+        let direction = self.estimate.line.direction();
+        let (a, b) = (direction.dot(&self.start), direction.dot(&self.end));
+        (a.min(b) - self.margin_m, a.max(b) + self.margin_m)
     }
 }

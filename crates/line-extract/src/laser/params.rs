@@ -80,7 +80,12 @@ impl Params {
         let (noise, angle) = (&self.noise, self.breakpoint_angle_rad);
         let checks = [
             ("noise.sigma_range_m", noise.sigma_range_m, positive(noise.sigma_range_m), "positive"),
-            ("noise.sigma_bearing_rad", noise.sigma_bearing_rad, not_negative(noise.sigma_bearing_rad), "not negative"),
+            (
+                "noise.sigma_bearing_rad",
+                noise.sigma_bearing_rad,
+                not_negative(noise.sigma_bearing_rad),
+                "not negative",
+            ),
             ("breakpoint_angle_rad", angle, angle > 0.0 && angle < FRAC_PI_2, "in (0, π/2)"),
             ("split_distance_m", self.split_distance_m, positive(self.split_distance_m), "positive"),
             ("end_gate_sigma", self.end_gate_sigma, positive(self.end_gate_sigma), "positive"),

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{LineEstimate, Moments};
-use crate::LineError;
+use crate::{LineError, check};
 
 /// A fitted line and how well it fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,22 +34,27 @@ pub struct LineFit {
 /// ```
 ///
 /// # Errors
-/// [`LineError::TooFewPoints`] for fewer than two points or covariances, [`LineError::Point`] and [`LineError::Param`] for points or variances that
-/// are not finite (variances: positive), [`LineError::NoDirection`] if all points are in one place.
+/// [`LineError::Sizes`] unless there is a covariance for each point, [`LineError::TooFewPoints`] for fewer than two, [`LineError::Point`] and
+/// [`LineError::Param`] for points or variances that are not finite (variances: positive), [`LineError::NoDirection`] if all points are in one place.
 pub fn fit_line(points: &[Vector2<f64>], covariances: &[Matrix2<f64>]) -> Result<LineFit, LineError> {
-    let got = points.len().min(covariances.len());
-    if got < 2 || points.len() != covariances.len() {
-        return Err(LineError::TooFewPoints { got, needed: points.len().max(2) });
+    let got = points.len();
+    if covariances.len() != got {
+        return Err(LineError::Sizes { points: got, covariances: covariances.len() });
     }
-    if let Some(index) = points.iter().position(|p| !(p.amax() <= LARGEST)) {
-        return Err(LineError::Point { index, x: points[index].x, y: points[index].y, largest: LARGEST });
+    if got < 2 {
+        return Err(LineError::TooFewPoints { got, needed: 2 });
     }
+    check::points(points, LARGEST)?;
     let mut moments = Moments::new(points, |_| 1.0);
     for _ in 0..ROUNDS {
         let normal = moments.line()?.line.normal();
         let variance = |k: usize| normal.dot(&(covariances[k] * normal));
         if let Some(k) = (0..got).find(|k| !(variance(*k) > 0.0 && variance(*k).is_finite())) {
-            return Err(LineError::Param { what: "variance of a point (m²)", value: variance(k), must: "positive" });
+            return Err(LineError::Param {
+                what: "variance of a point (m²)",
+                value: variance(k),
+                must: "positive",
+            });
         }
         moments = Moments::new(points, |k| 1.0 / variance(k));
     }

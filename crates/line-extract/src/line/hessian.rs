@@ -16,7 +16,11 @@ use nalgebra::Vector2;
 /// assert!((wall.project(&Vector2::new(-5.0, 1.0)) - Vector2::new(-2.0, 1.0)).norm() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "Raw", into = "Raw"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "Raw", into = "Raw")
+)]
 pub struct HessianLine {
     rho: f64,
     alpha: f64,

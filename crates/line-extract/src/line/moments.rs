@@ -61,7 +61,9 @@ impl Moments {
         let alpha = 0.5 * (-2.0 * xy).atan2(yy - xx);
         let (normal, direction) =
             (Vector2::new(alpha.cos(), alpha.sin()), Vector2::new(-alpha.sin(), alpha.cos()));
-        let along = xx * direction.x * direction.x + 2.0 * xy * direction.x * direction.y + yy * direction.y * direction.y;
+        let along = xx * direction.x * direction.x
+            + 2.0 * xy * direction.x * direction.y
+            + yy * direction.y * direction.y;
         let extent_m = (along / self.weight).sqrt();
         // Below the resolution of the coordinates there is no direction, only rounding.
         if !(extent_m > 1e-12 * self.mean.amax() && along.is_finite()) {

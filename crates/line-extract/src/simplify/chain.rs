@@ -1,6 +1,6 @@
 use nalgebra::Vector2;
 
-use crate::LineError;
+use crate::{LineError, check};
 
 /// Beyond this, metres, the product of two differences may overflow.
 const LARGEST: f64 = 1e150;
@@ -23,16 +23,8 @@ impl<'a> Chain<'a> {
 }
 
 fn extent(points: &[Vector2<f64>]) -> Result<Vector2<f64>, LineError> {
+    check::points(points, LARGEST)?;
     let Some(first) = points.first() else { return Ok(Vector2::zeros()) };
     let (low, high) = points.iter().fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
-    // Comparisons let a NaN slip through; a sum of products with zero keeps it.
-    let poison: f64 = points.iter().map(|p| 0.0 * p.x + 0.0 * p.y).sum();
-    let usable = poison == 0.0 && low.amax() <= LARGEST && high.amax() <= LARGEST;
-    if usable { Ok(high - low) } else { Err(first_unusable(points)) }
-}
-
-fn first_unusable(points: &[Vector2<f64>]) -> LineError {
-    let unusable = |p: &Vector2<f64>| !(p.x.abs() <= LARGEST && p.y.abs() <= LARGEST);
-    let index = points.iter().position(unusable).unwrap_or(0);
-    LineError::Point { index, x: points[index].x, y: points[index].y, largest: LARGEST }
+    Ok(high - low)
 }

@@ -36,8 +36,8 @@ impl Scanner {
         for &begin in &self.blocks {
             for k in begin..range.end.min(begin + BLOCK) {
                 if line.cross(&points[k]).abs() >= most - line.margin() {
+                    self.close_calls += usize::from(best.is_some());
                     best = Some(farther(points, line, best, k));
-                    self.close_calls += 1;
                 }
             }
         }

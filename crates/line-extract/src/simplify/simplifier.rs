@@ -88,7 +88,8 @@ impl Simplifier {
         let chain = Chain::new(points, epsilon)?;
         let n = points.len();
         // Hulls store indices of 32 bits; a chain beyond that (64 GB) is scanned to the end.
-        let mut looks = u32::try_from(n).map_or(usize::MAX, |_| self.patience * n * n.max(2).ilog2() as usize);
+        let mut looks =
+            u32::try_from(n).map_or(usize::MAX, |_| self.patience * n * n.max(2).ilog2() as usize);
         let mut hulls = None;
         let scanner = &mut self.scanner;
         scanner.close_calls = 0;

@@ -73,10 +73,17 @@ impl Laser {
     }
 
     /// Ranges along directions that are off by the noise, off by the noise.
-    pub(crate) fn noisy_ranges(&self, walls: &[Wall], noise: &RangeBearingNoise, rng: &mut impl Rng) -> Vec<f64> {
+    pub(crate) fn noisy_ranges(
+        &self,
+        walls: &[Wall],
+        noise: &RangeBearingNoise,
+        rng: &mut impl Rng,
+    ) -> Vec<f64> {
         let mut normal = |sigma: f64| -> f64 { sigma * Distribution::<f64>::sample(&StandardNormal, rng) };
         (0..self.n_beams)
-            .map(|i| cast(self.bearing(i) + normal(noise.sigma_bearing_rad), walls) + normal(noise.sigma_range_m))
+            .map(|i| {
+                cast(self.bearing(i) + normal(noise.sigma_bearing_rad), walls) + normal(noise.sigma_range_m)
+            })
             .collect()
     }
 
