@@ -36,6 +36,12 @@ impl Case {
         Self { name: format!("simplify comb {n}"), points, epsilon: 1e-6 }
     }
 
+    /// A straight line but for the rounding of its coordinates, every bit of which is asked for.
+    pub(crate) fn straight(n: u32) -> Self {
+        let points = (0..n).map(|k| Vector2::new(0.1 * f64::from(k), 0.3 * f64::from(k))).collect();
+        Self { name: format!("simplify straight {n}"), points, epsilon: 0.0 }
+    }
+
     /// An open circle, where every point is on the hull.
     pub(crate) fn circle(n: u32) -> Self {
         let angle = |k: u32| std::f64::consts::TAU * 0.999 * f64::from(k) / f64::from(n - 1);

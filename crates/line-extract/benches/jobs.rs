@@ -19,7 +19,9 @@ pub(crate) fn run() {
             douglas_peucker(&case.points, case.epsilon, Distance::Line).expect("a valid chain")
         });
     }
-    simplify(&Case::comb(100_000), "wayfix", Simplifier::default());
+    for case in [Case::comb(100_000), Case::straight(100_000)] {
+        simplify(&case, "wayfix", Simplifier::default());
+    }
     for n in [100_000, 1_000_000] {
         simplify(&Case::zigzag(n), "wayfix", Simplifier::default());
         simplify(&Case::zigzag(n), "wayfix hulls only", Simplifier::impatient());
