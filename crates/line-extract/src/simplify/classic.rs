@@ -3,7 +3,7 @@ use nalgebra::Vector2;
 use super::baseline::Baseline;
 use super::chain::Chain;
 use super::scan::Scanner;
-use super::split::{coincide, first_max, split_all, split_loop};
+use super::split::{first_max, split_all, split_loop};
 use crate::LineError;
 
 /// What a point's distance is measured to.
@@ -51,7 +51,7 @@ pub fn douglas_peucker(
     let chain = Chain::new(points, epsilon)?;
     let (mut kept, mut scanner) = (Vec::new(), Scanner::default());
     split_all(points.len(), &mut Vec::new(), &mut kept, |start, end| match distance {
-        _ if coincide(&points[start], &points[end]) => split_loop(&chain, start, end),
+        _ if points[start] == points[end] => split_loop(&chain, start, end),
         Distance::Line => split_line(&chain, start, end, &mut scanner),
         Distance::Segment => split_segment(&chain, start, end),
     });

@@ -4,7 +4,7 @@ use super::baseline::Baseline;
 use super::chain::Chain;
 use super::hull_tree::HullTree;
 use super::scan::Scanner;
-use super::split::{coincide, split_all, split_loop};
+use super::split::{split_all, split_loop};
 use crate::LineError;
 
 /// How often each point may be looked at, in units of $`\log_2 n`$, before hulls are built.
@@ -88,13 +88,13 @@ impl Simplifier {
         let chain = Chain::new(points, epsilon)?;
         let n = points.len();
         // Hulls store indices of 32 bits; a chain beyond that (64 GB) is scanned to the end.
-        let mut looks =
-            u32::try_from(n).map_or(usize::MAX, |_| self.patience * n * n.max(2).ilog2() as usize);
+        let looks_each = self.patience * n.max(2).ilog2() as usize;
+        let mut looks = u32::try_from(n).map_or(usize::MAX, |_| n.saturating_mul(looks_each));
         let mut hulls = None;
         let scanner = &mut self.scanner;
         scanner.close_calls = 0;
         split_all(n, &mut self.ends, kept, |start, end| {
-            if coincide(&points[start], &points[end]) {
+            if points[start] == points[end] {
                 return split_loop(&chain, start, end);
             }
             let line = Baseline::new(&points[start], &points[end], &chain.extent);

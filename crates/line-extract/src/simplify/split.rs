@@ -1,7 +1,5 @@
 //! The order in which a chain is taken apart, common to all variants.
 
-use nalgebra::Vector2;
-
 use super::chain::Chain;
 
 /// Splits ranges until `find` names no more point, and writes the kept indices in order [Douglas & Peucker 1973].
@@ -55,9 +53,4 @@ pub(crate) fn first_max(range: std::ops::Range<usize>, value: impl Fn(usize) -> 
         }
     }
     best.map(|(k, _)| k)
-}
-
-/// Whether two points are the same place.
-pub(super) fn coincide(a: &Vector2<f64>, b: &Vector2<f64>) -> bool {
-    a == b
 }
