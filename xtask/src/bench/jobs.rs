@@ -106,7 +106,10 @@ fn python_peers(options: &Options) -> Vec<Job> {
     let mut resampling =
         job("particle particles", shell::command(&python, &["peers/particles_resampling.py"]));
     resampling.missing = pypi(&["particles"], "particles");
-    let mut jobs = vec![kalman, resampling];
+    let mut simplify =
+        job("line-extract shapely OpenCV", shell::command(&python, &["peers/shapely_opencv_simplify.py"]));
+    simplify.missing = pypi(&["numpy", "cv2", "shapely"], "numpy opencv-python-headless shapely");
+    let mut jobs = vec![kalman, resampling, simplify];
     jobs.extend(slam_jobs(options, "numpy", &KNOWN, |log, _, job| {
         job.command = shell::command(&python, &["peers/numpy_ekf_slam.py"]);
         job.command.arg(log);

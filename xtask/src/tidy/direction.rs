@@ -9,7 +9,7 @@ const MAY_KNOW: [(&str, &[&str]); 12] = [
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
     ("particle", &["estimation-traits", "gaussian-core"]),
-    ("line-extract", &["estimation-traits", "gaussian-core"]),
+    ("line-extract", &[]),
     ("slam-ekf", &["estimation-traits", "gaussian-core", "kalman", "line-extract"]),
     ("color-map", &["estimation-traits"]),
     ("color-model", &["estimation-traits", "gaussian-core", "kalman", "particle", "color-map"]),

@@ -1,0 +1,81 @@
+/// Why nothing was simplified, fitted or extracted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LineError {
+    /// A tolerance without meaning.
+    #[error("the tolerance is {value}, must be finite and not negative")]
+    Epsilon {
+        /// What came.
+        value: f64,
+    },
+    /// A point that is nowhere, or so far away that areas overflow.
+    #[error("point {index} is ({x}, {y}), must be finite and within ±{largest:e}")]
+    Point {
+        /// Which point.
+        index: usize,
+        /// Its coordinates.
+        x: f64,
+        /// Its coordinates.
+        y: f64,
+        /// The largest coordinate allowed.
+        largest: f64,
+    },
+    /// A parameter without meaning.
+    #[error("parameter {what} is {value}, must be {must}")]
+    Param {
+        /// Its name, with its unit.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// A number of a scan's geometry without meaning.
+    #[error("scan: {what} is {value}, must be {must}")]
+    Scan {
+        /// Which number, with its unit.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// Beams of one scan that go around more than once.
+    #[error("scan: {n_beams} beams of {increment_rad} rad go beyond a full turn")]
+    MoreThanATurn {
+        /// How many beams.
+        n_beams: usize,
+        /// From one to the next.
+        increment_rad: f64,
+    },
+    /// Not one covariance for each point.
+    #[error("{covariances} covariances for {points} points")]
+    Sizes {
+        /// How many points.
+        points: usize,
+        /// How many covariances.
+        covariances: usize,
+    },
+    /// Too few points for a line.
+    #[error("{got} points, a line needs {needed}")]
+    TooFewPoints {
+        /// How many came.
+        got: usize,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// Points that have no direction: all in one place, as far as their noise can tell.
+    #[error("{n_points} points of extent {extent_m:e} m have no direction")]
+    NoDirection {
+        /// How many points.
+        n_points: usize,
+        /// How far they spread (rms) along the line.
+        extent_m: f64,
+    },
+    /// A covariance that is not positive definite.
+    #[error("the covariance of (ρ, α) is not positive definite: determinant {determinant:e}")]
+    NotPositiveDefinite {
+        /// Its determinant.
+        determinant: f64,
+    },
+}

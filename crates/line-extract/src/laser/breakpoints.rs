@@ -1,0 +1,38 @@
+use std::ops::Range;
+
+use super::points::Points;
+use super::{Params, Scan};
+
+/// Cuts the echoes where the next one is too far away to be on the same surface [Borges & Aldon 2004, adaptive breakpoint detector].
+///
+/// A surface that the beam at range $`r`$ meets at the angle $`λ`$ is met by the next beam, $`Δφ`$ further, at most
+/// $`r \sin Δφ / \sin(λ - Δφ)`$ away; three deviations of the range are added. What is farther is another surface, or too flat to tell.
+pub(super) fn surfaces(points: &Points, scan: &Scan, params: &Params, found: &mut Vec<Range<usize>>) {
+    let reaches: Vec<f64> = (1..=params.max_missing_beams.min(scan.ranges.len()) + 1)
+        .map(|beams| reach(beams as f64 * scan.angle_increment.abs(), params.breakpoint_angle_rad))
+        .collect();
+    let slack = 3.0 * params.noise.sigma_range_m;
+    found.clear();
+    let mut start = 0;
+    for k in 1..points.at.len() {
+        let step = points.beam[k] - points.beam[k - 1];
+        // From the nearer of the two, so that both directions of turning cut at the same place.
+        let near = points.range[k].min(points.range[k - 1]);
+        let together = reaches.get(step - 1).is_some_and(|reach| {
+            let limit = near * reach + slack;
+            (points.at[k] - points.at[k - 1]).norm_squared() <= limit * limit
+        });
+        if !together {
+            found.push(start..k);
+            start = k;
+        }
+    }
+    if start < points.at.len() {
+        found.push(start..points.at.len());
+    }
+}
+
+/// The largest step over the range; nothing for beams so far apart that a surface may hide between them.
+fn reach(turn: f64, flattest: f64) -> f64 {
+    if turn < flattest { turn.sin() / (flattest - turn).sin() } else { 0.0 }
+}

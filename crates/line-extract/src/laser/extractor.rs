@@ -1,0 +1,131 @@
+use std::ops::Range;
+
+use super::breakpoints::surfaces;
+use super::merge::merge;
+use super::pieces::{Piece, split};
+use super::points::Points;
+use super::{Counts, Extraction, Params, Scan, Segment};
+use crate::LineError;
+use crate::simplify::Simplifier;
+
+/// The walls in one scan; [`Extractor`] does the same for many, faster.
+///
+/// ```
+/// use wayfix_line_extract::{Params, Scan, extract};
+///
+/// // A corner: a wall 2 m ahead (x = 2) and one 1 m to the left (y = 1), seen over a quarter turn.
+/// let increment = 0.5_f64.to_radians();
+/// let ranges: Vec<_> = (0..180)
+///     .map(|i| f64::from(i) * increment)
+///     .map(|bearing| (2.0 / bearing.cos()).min(1.0 / bearing.sin()))
+///     .collect();
+/// let scan = Scan { angle_min: 0.0, angle_increment: increment, ranges: &ranges, max_range: 8.0 };
+/// let walls = extract(&scan, &Params::default())?.segments;
+/// assert_eq!(walls.len(), 2);
+/// assert!((walls[0].estimate.line.rho() - 2.0).abs() < 1e-3 && walls[0].estimate.line.alpha().abs() < 1e-3);
+/// assert!((walls[1].estimate.line.rho() - 1.0).abs() < 1e-3);
+/// assert!((walls[1].length() - 2.0).abs() < 0.05);
+/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// ```
+///
+/// # Errors
+/// [`LineError::Param`] for parameters and [`LineError::Scan`] or [`LineError::MoreThanATurn`] for a scan geometry without meaning. Ranges are never an
+/// error: beams without a valid one are skipped and counted.
+pub fn extract(scan: &Scan, params: &Params) -> Result<Extraction, LineError> {
+    Extractor::new(*params)?.extract(scan)
+}
+
+/// Walls of scan after scan, with memory that is used again and directions computed once.
+///
+/// ```
+/// use wayfix_line_extract::{Extractor, Params, Scan};
+///
+/// let mut extractor = Extractor::new(Params::default())?;
+/// let mut ranges = vec![f64::NAN; 181];
+/// let scan = Scan { angle_min: -1.57, angle_increment: 0.01745, ranges: &ranges, max_range: 8.0 };
+/// let blind = extractor.extract(&scan)?;
+/// assert_eq!((blind.segments.len(), blind.counts.nan), (0, 181));
+/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Extractor {
+    params: Params,
+    points: Points,
+    surfaces: Vec<Range<usize>>,
+    simplifier: Simplifier,
+    corners: Vec<usize>,
+    pieces: Vec<Piece>,
+}
+
+impl Extractor {
+    /// # Errors
+    /// [`LineError::Param`] with the first value that has no meaning.
+    pub fn new(params: Params) -> Result<Self, LineError> {
+        params.check()?;
+        Ok(Self {
+            params,
+            points: Points::default(),
+            surfaces: Vec::new(),
+            simplifier: Simplifier::default(),
+            corners: Vec::new(),
+            pieces: Vec::new(),
+        })
+    }
+
+    /// The parameters it was made with.
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// Echoes to surfaces, surfaces to straight pieces, pieces to walls.
+    ///
+    /// # Errors
+    /// [`LineError::Scan`] or [`LineError::MoreThanATurn`] for a geometry without meaning.
+    pub fn extract(&mut self, scan: &Scan) -> Result<Extraction, LineError> {
+        scan.check()?;
+        let mut counts = Counts::default();
+        self.points.fill(scan, &mut counts);
+        surfaces(&self.points, scan, &self.params, &mut self.surfaces);
+        self.fit_pieces()?;
+        merge(&mut self.pieces, &self.params);
+        let segments: Vec<_> =
+            self.pieces.iter().map(segment).filter(|segment| self.is_a_wall(segment)).collect();
+        counts.surfaces = self.surfaces.len();
+        counts.in_segments = segments.iter().map(|segment| segment.n_points).sum();
+        Ok(Extraction { segments, counts })
+    }
+
+    fn fit_pieces(&mut self) -> Result<(), LineError> {
+        self.pieces.clear();
+        for surface in &self.surfaces {
+            let echoes = &self.points.at[surface.clone()];
+            split(echoes, &self.params, &mut self.simplifier, &mut self.corners)?;
+            let last = self.corners.len() - 1;
+            for (k, pair) in self.corners.windows(2).enumerate() {
+                // A corner is counted once: it belongs to the wall after it, the last point to the last wall.
+                let end = pair[1] + usize::from(k + 1 == last);
+                let range = surface.start + pair[0]..surface.start + end;
+                self.pieces.extend(Piece::fit(&self.points, range, &self.params));
+            }
+        }
+        Ok(())
+    }
+
+    fn is_a_wall(&self, segment: &Segment) -> bool {
+        segment.n_points >= self.params.min_points && segment.length() >= self.params.min_length_m
+    }
+}
+
+fn segment(piece: &Piece) -> Segment {
+    let line = &piece.estimate.line;
+    let [start, end] = piece.ends.map(|end| line.project(&end));
+    Segment {
+        estimate: piece.estimate,
+        start,
+        end,
+        n_points: piece.moments.n_points,
+        rms_m: piece.moments.rms(line),
+        chi_squared: piece.moments.chi_squared(line),
+        beams: piece.beams,
+    }
+}

@@ -1,0 +1,19 @@
+//! Range scans to walls.
+
+mod breakpoints;
+mod extraction;
+mod extractor;
+mod hypothesis;
+mod merge;
+mod noise;
+mod params;
+mod pieces;
+mod points;
+mod scan;
+
+pub use extraction::{Counts, Extraction, Segment};
+pub use extractor::{Extractor, extract};
+pub use hypothesis::WallHypothesis;
+pub use noise::RangeBearingNoise;
+pub use params::{Params, SplitMethod};
+pub use scan::Scan;

@@ -1,0 +1,102 @@
+use std::f64::consts::FRAC_PI_2;
+
+use super::RangeBearingNoise;
+use crate::LineError;
+
+/// How walls are found; the defaults suit a SICK LMS (σ about 1 cm, beams 0.25° to 1° apart) indoors.
+///
+/// ```
+/// use wayfix_line_extract::{Params, SplitMethod};
+///
+/// let params = Params { min_length_m: 1.0, split: SplitMethod::SplitAndMerge, ..Params::default() };
+/// assert!(params.check().is_ok());
+/// assert!(Params { split_distance_m: -0.1, ..params }.check().is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct Params {
+    /// What single beams are wrong by. Default: 1 cm and 0.002 rad.
+    pub noise: RangeBearingNoise,
+    /// The flattest angle, radians, between a beam and a surface that is still taken as one surface. Default: 10°.
+    pub breakpoint_angle_rad: f64,
+    /// As many missing beams in a row do not end a surface. Default: 2.
+    pub max_missing_beams: usize,
+    /// How pieces are told apart. Default: iterative end point fit.
+    pub split: SplitMethod,
+    /// A piece with a point farther off than this, metres, is split. Default: 0.05, five times the noise.
+    pub split_distance_m: f64,
+    /// Points at the ends of a piece that are farther off its line than so many of their deviations are left out. Default: 3.
+    pub end_gate_sigma: f64,
+    /// Pieces are one wall up to this squared Mahalanobis distance of their lines. Default: 13.8, which 99.9 % of equal lines pass (chi-squared, 2).
+    pub merge_gate: f64,
+    /// Pieces farther apart than this along the wall, metres, stay two. Default: 0.3.
+    pub merge_gap_m: f64,
+    /// A wall has at least so many points. Default: 5.
+    pub min_points: usize,
+    /// A wall is at least so long, metres. Default: 0.3.
+    pub min_length_m: f64,
+}
+
+/// How a surface is split into straight pieces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum SplitMethod {
+    /// By the distance to the line through the end points, as [Andrade-Cetto, Table 1].
+    #[default]
+    EndPointFit,
+    /// By the distance to the line fitted to all points [Pavlidis & Horowitz 1974].
+    SplitAndMerge,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            noise: RangeBearingNoise::default(),
+            breakpoint_angle_rad: 10_f64.to_radians(),
+            max_missing_beams: 2,
+            split: SplitMethod::default(),
+            split_distance_m: 0.05,
+            end_gate_sigma: 3.0,
+            merge_gate: 13.8,
+            merge_gap_m: 0.3,
+            min_points: 5,
+            min_length_m: 0.3,
+        }
+    }
+}
+
+impl Params {
+    /// Whether every value has a meaning; [`Extractor::new`](crate::Extractor::new) asks.
+    ///
+    /// # Errors
+    /// [`LineError::Param`] with the first that has none.
+    pub fn check(&self) -> Result<(), LineError> {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+        let (noise, angle) = (&self.noise, self.breakpoint_angle_rad);
+        let checks = [
+            ("noise.sigma_range_m", noise.sigma_range_m, positive(noise.sigma_range_m), "positive"),
+            (
+                "noise.sigma_bearing_rad",
+                noise.sigma_bearing_rad,
+                not_negative(noise.sigma_bearing_rad),
+                "not negative",
+            ),
+            ("breakpoint_angle_rad", angle, angle > 0.0 && angle < FRAC_PI_2, "in (0, π/2)"),
+            ("split_distance_m", self.split_distance_m, positive(self.split_distance_m), "positive"),
+            ("end_gate_sigma", self.end_gate_sigma, positive(self.end_gate_sigma), "positive"),
+            ("merge_gate", self.merge_gate, not_negative(self.merge_gate), "not negative"),
+            ("merge_gap_m", self.merge_gap_m, not_negative(self.merge_gap_m), "not negative"),
+            ("min_points", self.min_points as f64, self.min_points >= 3, "at least 3"),
+            ("min_length_m", self.min_length_m, not_negative(self.min_length_m), "not negative"),
+        ];
+        match checks.into_iter().find(|(_, _, good, _)| !good) {
+            Some((what, value, _, must)) => Err(LineError::Param { what, value, must }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,60 @@
+use nalgebra::Vector2;
+
+use super::{Counts, Scan};
+
+/// The echoes of a scan as points, with room that is used again.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Points {
+    pub(super) at: Vec<Vector2<f64>>,
+    pub(super) range: Vec<f64>,
+    pub(super) beam: Vec<usize>,
+    rays: Vec<Vector2<f64>>,
+    /// First bearing and increment of the rays.
+    geometry: (f64, f64),
+}
+
+impl Points {
+    /// Turns valid ranges into points and counts the others.
+    pub(super) fn fill(&mut self, scan: &Scan, counts: &mut Counts) {
+        self.aim(scan);
+        self.at.clear();
+        self.range.clear();
+        self.beam.clear();
+        for (beam, (&range, ray)) in scan.ranges.iter().zip(&self.rays).enumerate() {
+            if range > 0.0 && range <= scan.max_range {
+                self.at.push(ray * range);
+                self.range.push(range);
+                self.beam.push(beam);
+            } else {
+                *reason(range, counts) += 1;
+            }
+        }
+        counts.valid = self.at.len();
+    }
+
+    /// Sines and cosines take longer than everything else, and the next scan has the same.
+    fn aim(&mut self, scan: &Scan) {
+        let geometry = (scan.angle_min, scan.angle_increment);
+        if geometry != self.geometry {
+            self.rays.clear();
+            self.geometry = geometry;
+        }
+        for beam in self.rays.len()..scan.ranges.len() {
+            let (sin, cos) = (scan.angle_min + beam as f64 * scan.angle_increment).sin_cos();
+            self.rays.push(Vector2::new(cos, sin));
+        }
+    }
+}
+
+/// Why a range is none.
+fn reason(range: f64, counts: &mut Counts) -> &mut usize {
+    if range.is_nan() {
+        &mut counts.nan
+    } else if range.is_infinite() {
+        &mut counts.infinite
+    } else if range <= 0.0 {
+        &mut counts.not_positive
+    } else {
+        &mut counts.beyond_max
+    }
+}

@@ -1,0 +1,12 @@
+//! A straight line, how well it is known, and how it is fitted to points.
+
+mod estimate;
+mod fit;
+mod hessian;
+mod moments;
+
+pub use estimate::LineEstimate;
+pub use fit::{LineFit, fit_line};
+pub use hessian::HessianLine;
+
+pub(crate) use moments::Moments;

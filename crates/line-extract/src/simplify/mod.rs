@@ -1,0 +1,16 @@
+//! Fewer points that describe a chain as well: Douglas-Peucker, plain and with a tree of hulls.
+
+mod baseline;
+mod chain;
+mod classic;
+mod exact;
+mod hull_tree;
+mod query;
+mod scan;
+mod simplifier;
+mod split;
+
+pub use classic::{Distance, douglas_peucker};
+pub use simplifier::{Simplifier, simplify};
+
+pub(crate) use split::first_max;

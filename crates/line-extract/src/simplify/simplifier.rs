@@ -1,0 +1,122 @@
+use nalgebra::Vector2;
+
+use super::baseline::Baseline;
+use super::chain::Chain;
+use super::hull_tree::HullTree;
+use super::scan::Scanner;
+use super::split::{split_all, split_loop};
+use crate::LineError;
+
+/// How often each point may be looked at, in units of $`\log_2 n`$, before hulls are built.
+const PATIENCE: usize = 2;
+
+/// How many looks an exact comparison takes, in the time of the fast kind: some 100 ns.
+const CLOSE_CALL: usize = 100;
+
+/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`Distance::Line`](crate::Distance), in $`O(n \log^2 n)`$ whatever the chain.
+///
+/// As long as splits are balanced nothing is faster than looking at each point. When that has taken $`2 n \log_2 n`$ looks, convex
+/// hulls of the chain's blocks are built and answer for the rest: the farthest point of a block is a vertex of its hull, found by bisection. That is the
+/// idea of [Hershberger & Snoeyink 1992], whose hulls of paths need a chain that does not cross itself; hulls of index ranges do not, so
+/// there is no case to fall back from. All comparisons are exact, hence the same indices.
+///
+/// ```
+/// use nalgebra::Vector2;
+/// use wayfix_line_extract::{Distance, douglas_peucker, simplify};
+///
+/// // Each split takes one point off: looking at all of them every time would take 5e9 looks.
+/// let tooth = |k: i32| if k % 2 == 0 { 0.0 } else { 1e3 - 1e-2 * f64::from(k) };
+/// let zigzag: Vec<_> = (0..100_000).map(|k| Vector2::new(f64::from(k), tooth(k))).collect();
+/// assert_eq!(simplify(&zigzag, 1e-6)?.len(), zigzag.len());
+/// assert_eq!(simplify(&zigzag[..500], 400.0)?, douglas_peucker(&zigzag[..500], 400.0, Distance::Line)?);
+/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// ```
+///
+/// # Errors
+/// [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
+/// 1e150.
+pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, LineError> {
+    let mut kept = Vec::new();
+    Simplifier::default().simplify_into(points, epsilon, &mut kept)?;
+    Ok(kept)
+}
+
+/// [`simplify()`] for many chains one after the other, with memory that is used again.
+///
+/// ```
+/// use nalgebra::Vector2;
+/// use wayfix_line_extract::Simplifier;
+///
+/// let mut simplifier = Simplifier::default();
+/// let mut kept = Vec::new();
+/// for height in [0.1, 0.0] {
+///     let chain = [Vector2::new(0.0, 0.0), Vector2::new(1.0, height), Vector2::new(2.0, 0.0)];
+///     simplifier.simplify_into(&chain, 0.05, &mut kept)?;
+///     assert_eq!(kept.len(), if height > 0.05 { 3 } else { 2 });
+/// }
+/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Simplifier {
+    patience: usize,
+    ends: Vec<usize>,
+    scanner: Scanner,
+}
+
+impl Default for Simplifier {
+    fn default() -> Self {
+        Self { patience: PATIENCE, ends: Vec::new(), scanner: Scanner::default() }
+    }
+}
+
+impl Simplifier {
+    /// Asks the hulls from the beginning, which is slower on friendly chains and faster on the worst ones.
+    pub fn impatient() -> Self {
+        Self { patience: 0, ..Self::default() }
+    }
+
+    /// Replaces `kept` by the indices that [`simplify()`] returns.
+    ///
+    /// # Errors
+    /// As [`simplify()`]; `kept` stays as it was.
+    pub fn simplify_into(
+        &mut self,
+        points: &[Vector2<f64>],
+        epsilon: f64,
+        kept: &mut Vec<usize>,
+    ) -> Result<(), LineError> {
+        let chain = Chain::new(points, epsilon)?;
+        let n = points.len();
+        // Hulls store indices of 32 bits; a chain beyond that (64 GB) is scanned to the end.
+        let looks_each = self.patience * n.max(2).ilog2() as usize;
+        let mut looks = u32::try_from(n).map_or(usize::MAX, |_| n.saturating_mul(looks_each));
+        let mut hulls = None;
+        let scanner = &mut self.scanner;
+        scanner.close_calls = 0;
+        split_all(n, &mut self.ends, kept, |start, end| {
+            if points[start] == points[end] {
+                return split_loop(&chain, start, end);
+            }
+            let line = Baseline::new(&points[start], &points[end], &chain.extent);
+            let range = start + 1..end;
+            let split = if looks >= range.len() + CLOSE_CALL * scanner.close_calls {
+                looks -= range.len();
+                scanner.farthest(points, range, &line, epsilon)
+            } else {
+                hulls.get_or_insert_with(|| HullTree::new(points)).farthest(points, range, &line, scanner)
+            }?;
+            (line.distance(&points[split]) > epsilon).then_some(split)
+        });
+        Ok(())
+    }
+
+    /// Splits ranges as [`split_all`] does.
+    pub(crate) fn split_where(
+        &mut self,
+        n: usize,
+        kept: &mut Vec<usize>,
+        find: impl FnMut(usize, usize) -> Option<usize>,
+    ) {
+        split_all(n, &mut self.ends, kept, find);
+    }
+}

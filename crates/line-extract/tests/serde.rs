@@ -1,0 +1,35 @@
+//! Parameters as a user's file has them, and segments there and back.
+
+use wayfix_line_extract::{Extraction, HessianLine, LineError, Params, Scan, SplitMethod, extract};
+
+#[test]
+fn a_file_names_only_what_it_changes() {
+    let text = r#"{ "split": "split-and-merge", "min_points": 8, "noise": { "sigma_range_m": 0.03 } }"#;
+    let params: Params = serde_json::from_str(text).expect("valid JSON");
+    assert_eq!((params.split, params.min_points), (SplitMethod::SplitAndMerge, 8));
+    assert_eq!((params.noise.sigma_range_m, params.noise.sigma_bearing_rad), (0.03, 0.002));
+    assert_eq!(params.merge_gate, Params::default().merge_gate);
+    assert!(serde_json::from_str::<Params>(r#"{ "min_point": 8 }"#).is_err(), "a misspelt name is an error");
+}
+
+#[test]
+fn what_was_found_survives() -> Result<(), LineError> {
+    let scan = Scan { angle_min: -0.3, angle_increment: 0.01, ranges: &[2.0; 61], max_range: 8.0 };
+    let seen = extract(&scan, &Params { split_distance_m: 0.2, ..Params::default() })?;
+    assert!(!seen.segments.is_empty());
+    let text = serde_json::to_string(&seen).expect("serializable");
+    let back: Extraction = serde_json::from_str(&text).expect("what was written");
+    assert_eq!((back.counts, back.segments.len()), (seen.counts, seen.segments.len()));
+    for (a, b) in back.segments.iter().zip(&seen.segments) {
+        assert_eq!((a.beams, a.n_points), (b.beams, b.n_points));
+        // This reader of JSON may miss the last bit.
+        assert!((a.start - b.start).norm() < 1e-12 && (a.end - b.end).norm() < 1e-12);
+        assert!((a.estimate.line.rho() - b.estimate.line.rho()).abs() < 1e-12);
+        assert!((a.estimate.covariance - b.estimate.covariance).norm() < 1e-15);
+    }
+    // A line written by hand in another of its forms is brought to the one form.
+    let line: HessianLine = serde_json::from_str(r#"{ "rho": -2.0, "alpha": 0.0 }"#).expect("valid JSON");
+    assert_eq!(line, HessianLine::new(-2.0, 0.0));
+    assert_eq!(line.rho(), 2.0);
+    Ok(())
+}
