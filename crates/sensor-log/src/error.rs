@@ -36,7 +36,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A folder that is no log.
-    #[error("{}: is a folder without RobotN_*.dat, without odometry.csv and trees.csv and without PNG or JPEG images; give a log file, the folder of a UTIAS set, of the Victoria Park set or of images", path.display())]
+    #[error("{}: is a folder without RobotN_*.dat files, without odometry.csv and trees.csv and without PNG or JPEG images; give a log file, the folder of a UTIAS set or of images, or that of the Victoria Park set", path.display())]
     IsADirectory {
         /// The folder.
         path: PathBuf,

@@ -1,14 +1,15 @@
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{BufReader, Read};
+use std::io::{BufRead, Read};
 use std::path::Path;
 use std::str::FromStr;
 
 use mcap::MAGIC;
 
 use crate::LogError;
+use crate::compressed::{TextReader, open_text};
 use crate::image_folder::images_in;
-use crate::text::{Lines, range_bearing, tum, utias, victoria_park};
+use crate::text::{Lines, carmen, range_bearing, tum, utias, victoria_park};
 
 /// How a log is stored.
 ///
@@ -30,6 +31,10 @@ pub enum Format {
     RangeBearing,
     /// A trajectory as the TUM RGB-D benchmark writes it.
     Tum,
+    /// Messages of the Carnegie Mellon toolkit, one a line, as the Radish logs have them.
+    Carmen,
+    /// Scans with their poses as one JSON object, as the raw Intel Lab log is spread.
+    ScanJson,
     /// MCAP with Foxglove protobuf messages.
     Mcap,
     /// A folder of PNG and JPEG files, frames by name.
@@ -37,9 +42,18 @@ pub enum Format {
 }
 
 impl Format {
-    const ALL: [Self; 6] =
-        [Self::Utias, Self::VictoriaPark, Self::RangeBearing, Self::Tum, Self::Mcap, Self::Images];
-    pub(crate) const NAMES: &'static str = "utias, victoria-park, range-bearing, tum, mcap, images";
+    const ALL: [Self; 8] = [
+        Self::Utias,
+        Self::RangeBearing,
+        Self::Tum,
+        Self::Mcap,
+        Self::Images,
+        Self::VictoriaPark,
+        Self::Carmen,
+        Self::ScanJson,
+    ];
+    pub(crate) const NAMES: &'static str =
+        "utias, range-bearing, tum, mcap, images, victoria-park, carmen, scan-json";
 
     /// The format of what lies at `path`: by what is in it for folders, by name for `.mcap`, else by the first bytes.
     ///
@@ -62,15 +76,19 @@ impl Format {
         }
         let mut head = Vec::new();
         let file = File::open(path).map_err(io)?;
-        (&file).take(MAGIC.len() as u64).read_to_end(&mut head).map_err(io)?;
+        file.take(MAGIC.len() as u64).read_to_end(&mut head).map_err(io)?;
         if head == MAGIC {
             return Ok(Self::Mcap);
         }
-        let rest = BufReader::new(head.as_slice().chain(file));
-        Self::detect_text(&mut Lines::new(rest, path), path)
+        Self::detect_text(open_text(path)?, path)
     }
 
-    fn detect_text<R: std::io::BufRead>(lines: &mut Lines<'_, R>, path: &Path) -> Result<Self, LogError> {
+    fn detect_text(mut text: TextReader, path: &Path) -> Result<Self, LogError> {
+        let beginning = text.fill_buf().map_err(|source| LogError::io(path, source))?;
+        if beginning.trim_ascii_start().starts_with(b"{") {
+            return Ok(Self::ScanJson);
+        }
+        let mut lines = Lines::new(text, path);
         let Some(row) = lines.next_row()? else {
             return Err(LogError::Empty { path: path.into() });
         };
@@ -78,6 +96,7 @@ impl Format {
         match row.text {
             Ok(text) if range_bearing::looks_like(text) => Ok(Self::RangeBearing),
             Ok(text) if tum::looks_like(text) => Ok(Self::Tum),
+            Ok(text) if carmen::looks_like(text) => Ok(Self::Carmen),
             Ok(text) => unknown(format!("line {} is {:?}", row.number, shortened(text))),
             Err(error) => unknown(format!("line {}: {}", row.number, error.reason)),
         }
@@ -100,6 +119,8 @@ impl fmt::Display for Format {
             Self::VictoriaPark => "victoria-park",
             Self::RangeBearing => "range-bearing",
             Self::Tum => "tum",
+            Self::Carmen => "carmen",
+            Self::ScanJson => "scan-json",
             Self::Mcap => "mcap",
             Self::Images => "images",
         })

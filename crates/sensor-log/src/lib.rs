@@ -8,6 +8,8 @@
 //! | [`Format::VictoriaPark`] | a folder of the Victoria Park set as CSV | car odometry, trees, GPS |
 //! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, sightings, truth |
 //! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
+//! | [`Format::Carmen`] | messages of the Carnegie Mellon toolkit, one a line | scans, increments, poses |
+//! | [`Format::ScanJson`] | scans with their poses as a JSON object | scans, increments, poses |
 //! | [`Format::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
 //! | [`Format::Images`] | a folder of PNG and JPEG files | images |
 //!
@@ -29,6 +31,7 @@
 //! ```
 
 mod ackermann;
+mod compressed;
 mod convert;
 mod error;
 mod format;
@@ -40,6 +43,7 @@ mod open;
 mod planar;
 mod record;
 mod report;
+mod scan;
 mod stamp;
 mod summary;
 mod text;
@@ -55,6 +59,8 @@ pub use mcap_log::{Drawing, McapWriter, Shape, topics};
 pub use open::{OpenOptions, PoseKind, open};
 pub use record::{CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, Velocity};
 pub use report::{LogEnd, Problem, ProblemKind, ReadReport};
+pub use scan::{LaserScan, ScanSummary};
 pub use stamp::Stamp;
 pub use summary::{KindSummary, LogSummary};
+pub use text::{Relation, read_relations};
 pub use write::{WriteReport, write};

@@ -4,6 +4,7 @@ use std::vec;
 
 use crate::image_folder::ImageFolder;
 use crate::mcap_log::McapRecords;
+use crate::text::carmen::CarmenLog;
 use crate::{Format, ReadReport, Record};
 
 /// An open log: an iterator over its records in time order, and what is known about it.
@@ -42,6 +43,7 @@ impl LogMeta {
 pub(crate) enum Records {
     Memory(vec::IntoIter<Record>),
     Mcap(Box<McapRecords>),
+    Carmen(Box<CarmenLog>),
     Images(ImageFolder),
 }
 
@@ -51,6 +53,7 @@ impl Records {
         match self {
             Self::Memory(records) => records.next(),
             Self::Mcap(records) => records.next(report),
+            Self::Carmen(log) => log.next(report),
             Self::Images(folder) => folder.next(report),
         }
     }

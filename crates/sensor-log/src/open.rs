@@ -1,10 +1,12 @@
 use std::path::Path;
 
+use wayfix_estimation_traits::Pose2;
+
 use crate::image_folder::ImageFolder;
 use crate::log::Records;
 use crate::mcap_log::McapRecords;
-use crate::text::{range_bearing, tum, utias, victoria_park};
-use crate::{Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record};
+use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
+use crate::{Data, Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record};
 
 /// How to open a log. The default finds out what it can.
 #[derive(Clone, Debug)]
@@ -13,7 +15,7 @@ pub struct OpenOptions {
     pub format: Option<Format>,
     /// Which robot, in sets of several.
     pub robot: Option<u32>,
-    /// What the poses of a format that does not say (TUM) are.
+    /// What the poses of a format that does not say (TUM, CARMEN, JSON) are.
     pub poses: PoseKind,
     /// Frames a second of a folder of images, which has no clock: frame k is k / rate seconds after the start. 30 Hz by default.
     pub frame_rate_hz: f64,
@@ -25,7 +27,7 @@ impl Default for OpenOptions {
     }
 }
 
-/// What a bare trajectory means.
+/// What bare poses mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum PoseKind {
     /// Some program's estimate: [`Data::EstimatedPose`](crate::Data::EstimatedPose).
@@ -35,10 +37,20 @@ pub enum PoseKind {
     True,
 }
 
+impl PoseKind {
+    pub(crate) fn data(self, pose: Pose2<f64>) -> Data {
+        match self {
+            Self::Estimated => Data::EstimatedPose(pose),
+            Self::True => Data::TruePose(pose),
+        }
+    }
+}
+
 /// Opens the log at `path`.
 ///
 /// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings (MCAP: the order of the file).
-/// Text logs are read whole and sorted where rows go backwards, which is reported. MCAP files are read chunk by chunk;
+/// Text logs are read whole and sorted where rows go backwards, which is reported. CARMEN logs are read line by line, in whose order they
+/// stay: where time stands still, stamps are made up, which is reported. Text may be compressed with gzip, whatever the file is called. MCAP files are read chunk by chunk;
 /// what comes more than 256 records too late is left out, which is reported.
 /// Folders of images are read file by file, in the order of their names, where numbers count by value (`frame9` before `frame10`);
 /// other files are passed over. A file that cannot be read keeps its frame number, so that later stamps stay right.
@@ -63,6 +75,8 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Format::VictoriaPark => in_memory(victoria_park::read(path, &mut report)?),
         Format::RangeBearing => in_memory(range_bearing::read(path, &mut report)?),
         Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
+        Format::Carmen => Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses)?)),
+        Format::ScanJson => in_memory(scan_json::read(path, options.poses, &mut report)?),
         Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path)?)),
         Format::Images => Records::Images(ImageFolder::open(path, options.frame_rate_hz)?),
     };

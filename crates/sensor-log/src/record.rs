@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::{Pose2, Pose3};
 
-use crate::{AckermannDrive, EncodedImage, Stamp};
+use crate::{AckermannDrive, EncodedImage, LaserScan, Stamp};
 
 /// One thing that happened, and when.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +27,8 @@ pub enum Data {
     Sightings(Vec<Sighting>),
     /// How wide the things are that the look at the same stamp saw, in its order, metres. It comes before the look.
     SightedWidths(Vec<f64>),
+    /// What one sweep of a laser saw.
+    Scan(LaserScan),
     /// Where the robot truly was, from motion capture or a simulator.
     TruePose(Pose2<f64>),
     /// Where one point of the robot truly was, from a satellite receiver for instance; nothing is known of the heading.
@@ -54,6 +56,7 @@ impl Data {
             Self::Ackermann(_) => "ackermann drive",
             Self::Sightings(_) => "sightings",
             Self::SightedWidths(_) => "sighted widths",
+            Self::Scan(_) => "laser scan",
             Self::TruePose(_) => "true pose",
             Self::TruePosition(_) => "true position",
             Self::TrueLandmark(_) => "true landmark",
@@ -65,7 +68,7 @@ impl Data {
         }
     }
 
-    /// The kind, when one of its numbers is NaN or infinite.
+    /// The kind, when one of its numbers is NaN or infinite that has no business to be.
     pub(crate) fn check_finite(&self) -> Result<(), &'static str> {
         let is_finite = match self {
             Self::Velocity(velocity) => velocity.linear.is_finite() && velocity.angular.is_finite(),
@@ -75,6 +78,7 @@ impl Data {
             Self::Ackermann(drive) => drive.wheel_speed.is_finite() && drive.steering.is_finite(),
             Self::Sightings(look) => look.iter().all(|s| s.range.is_finite() && s.bearing.is_finite()),
             Self::SightedWidths(widths) => widths.iter().all(|width| width.is_finite()),
+            Self::Scan(scan) => scan.has_finite_angles(),
             Self::TruePosition(position) => position.x.is_finite() && position.y.is_finite(),
             Self::TrueLandmark(landmark) => landmark.x.is_finite() && landmark.y.is_finite(),
             Self::CameraInfo(info) => [info.fx, info.fy, info.cx, info.cy].iter().all(|v| v.is_finite()),

@@ -15,7 +15,7 @@ pub struct ReadReport {
     pub problems: BTreeMap<ProblemKind, u64>,
     /// The first problems, in the order of the log.
     pub examples: Vec<Problem>,
-    /// Messages of topics that this crate does not read: `topic (schema)` and how many.
+    /// Messages that this crate does not read: `topic (schema)`, or the first word of a CARMEN line, and how many.
     pub ignored: BTreeMap<String, u64>,
     /// Whether the log ends as it should.
     pub end: LogEnd,
@@ -25,7 +25,7 @@ pub struct ReadReport {
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum LogEnd {
-    /// As it should; text logs always do.
+    /// As it should; text logs that are not compressed always do.
     #[default]
     Complete,
     /// It breaks off, as after a crash of the recorder. Everything up to the last whole message was read.
@@ -37,7 +37,7 @@ pub enum LogEnd {
     },
     /// It cannot be followed beyond some point. Everything before was read.
     Damaged {
-        /// Where the reading stopped.
+        /// Where the reading stopped; of a compressed text, in the text.
         byte: u64,
         /// Why.
         reason: String,
@@ -49,7 +49,7 @@ pub enum LogEnd {
 pub struct Problem {
     /// The file's name, without its folder.
     pub file: String,
-    /// Line of a text file, index of a message in an MCAP file or of an image in its folder; all count from 1.
+    /// Line of a text file, index of a scan in a JSON file, of a message in an MCAP file or of an image in its folder; all count from 1.
     pub row: u64,
     /// What kind of trouble.
     pub kind: ProblemKind,
@@ -75,6 +75,8 @@ pub enum ProblemKind {
     Inconsistent,
     /// Earlier than the row before it. Text logs are sorted, so it is kept.
     OutOfOrder,
+    /// Not later than the row before it, in a log whose clock cannot be trusted. Kept, 0.1 s after the row before.
+    NotLater,
     /// Earlier than what a streamed log has already given out; left out.
     TooLate,
     /// A message that is not what its schema says; left out.
@@ -83,6 +85,13 @@ pub enum ProblemKind {
     DamagedChunk,
     /// A file that is no image, breaks off or claims too many pixels; left out.
     UnreadableImage,
+}
+
+impl ProblemKind {
+    /// Whether the row is used all the same.
+    pub(crate) fn keeps_the_row(self) -> bool {
+        matches!(self, Self::OutOfOrder | Self::NotLater)
+    }
 }
 
 impl ReadReport {
@@ -147,6 +156,7 @@ impl fmt::Display for ProblemKind {
             Self::Unrecognized => "not a row of this format",
             Self::Inconsistent => "inconsistent",
             Self::OutOfOrder => "out of time order",
+            Self::NotLater => "time stands still",
             Self::TooLate => "too late",
             Self::Undecodable => "undecodable message",
             Self::DamagedChunk => "damaged chunk",

@@ -1,7 +1,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use crate::{Data, ImageSummary, Log, LogMeta, ReadReport, Stamp, Target};
+use crate::{Data, ImageSummary, Log, LogMeta, ReadReport, ScanSummary, Stamp, Target};
 
 /// What a log holds; `Display` prints it for people.
 ///
@@ -39,6 +39,8 @@ pub struct LogSummary {
     pub n_unlabelled: u64,
     /// Images by kind of record.
     pub images: BTreeMap<&'static str, ImageSummary>,
+    /// Laser scans.
+    pub scans: ScanSummary,
     /// What could not be read.
     pub report: ReadReport,
 }
@@ -76,6 +78,7 @@ impl LogSummary {
             unknown_codes: BTreeMap::new(),
             n_unlabelled: 0,
             images: BTreeMap::new(),
+            scans: ScanSummary::default(),
             report: ReadReport::default(),
         };
         for record in log.by_ref() {
@@ -99,6 +102,7 @@ impl LogSummary {
         match data {
             Data::TrueLandmark(landmark) => drop(self.landmarks_surveyed.insert(landmark.id)),
             Data::Sightings(look) => look.iter().for_each(|sighting| self.add_sighting(sighting.target)),
+            Data::Scan(scan) => self.scans.add(scan),
             Data::Image(image) | Data::TrueLabels(image) => {
                 self.images.entry(data.kind()).or_default().add(image);
             }
@@ -139,6 +143,9 @@ impl fmt::Display for LogSummary {
         }
         for (kind, images) in &self.images {
             writeln!(f, "  {kind}: {images}")?;
+        }
+        if !self.scans.sizes.is_empty() {
+            writeln!(f, "  laser scans: {}", self.scans)?;
         }
         write!(f, "{}", self.report)
     }
@@ -188,5 +195,17 @@ mod tests {
             lines[5..],
             ["6 rows read, 1 problems", "not a number: 1", "walk.txt:7: \"far\" is not a number"]
         );
+    }
+
+    #[test]
+    fn scans_are_told_with_their_beams_and_what_did_not_come_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("walk.log");
+        let (near, far) = ("1 ".repeat(90), "81.91 ".repeat(90));
+        std::fs::write(&path, format!("FLASER 180 {near}{far}0 0 0 0 0 0 1 host 1\nNEFF 30\n")).unwrap();
+        let text = LogSummary::of(open(&path, &OpenOptions::default()).unwrap()).to_string();
+        assert!(text.contains("walk.log: carmen, 0.0 s\n"), "{text}");
+        assert!(text.contains("laser scans: 1 of 180 beams; 50.0 % of the beams without echo\n"), "{text}");
+        assert!(text.contains("ignored NEFF: 1 messages\n"), "{text}");
     }
 }

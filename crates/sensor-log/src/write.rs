@@ -24,7 +24,7 @@ impl WriteReport {
 
 /// Writes records into the file at `path`, replacing what is there.
 ///
-/// MCAP keeps everything; range-bearing text loses stamps, velocities, car odometry, bare positions, estimates, cameras and sightings of robots and unknown codes;
+/// MCAP keeps everything; range-bearing text loses stamps, velocities, car odometry, bare positions, scans, estimates, cameras and sightings of robots and unknown codes;
 /// TUM keeps poses only. The report counts what was left out.
 ///
 /// ```
@@ -39,7 +39,7 @@ impl WriteReport {
 /// ```
 ///
 /// # Errors
-/// When the format is read only (UTIAS, Victoria Park, images), a number is not finite, or the file cannot be written.
+/// When the format is read only (UTIAS, Victoria Park, CARMEN, JSON, images), a number is not finite, or the file cannot be written.
 pub fn write(
     path: impl AsRef<Path>,
     format: Format,
@@ -57,7 +57,7 @@ pub(crate) fn write_from(
 ) -> Result<WriteReport, LogError> {
     let mut report = WriteReport::default();
     match format {
-        Format::Utias | Format::VictoriaPark | Format::Images => {
+        Format::Utias | Format::VictoriaPark | Format::Carmen | Format::ScanJson | Format::Images => {
             return Err(LogError::NotWritable { format });
         }
         Format::Mcap => {

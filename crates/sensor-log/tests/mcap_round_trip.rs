@@ -13,8 +13,8 @@ use std::io::Cursor;
 use proptest::prelude::*;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    AckermannDrive, Data, Format, LogEnd, LogError, McapWriter, OpenOptions, PoseKind, Record, Sighting,
-    Stamp, Target, TrueLandmark, TruePosition, Velocity, convert, open, write,
+    AckermannDrive, Data, Format, LaserScan, LogEnd, LogError, McapWriter, OpenOptions, PoseKind, Record,
+    Sighting, Stamp, Target, TrueLandmark, TruePosition, Velocity, convert, open, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -43,6 +43,20 @@ fn target() -> impl Strategy<Value = Target> {
     ]
 }
 
+fn scan() -> impl Strategy<Value = LaserScan> {
+    let angle = || prop_oneof![-7.0..7.0, Just(0.5_f64.to_radians())];
+    let range_max = prop_oneof![Just(50.0), Just(f64::INFINITY), 0.0..100.0];
+    let range = prop_oneof![number(), Just(f64::NAN), Just(f64::INFINITY), Just(-0.0)];
+    (angle(), angle(), range_max, prop::collection::vec(range, 0..20)).prop_map(
+        |(angle_min, angle_increment, range_max, ranges)| LaserScan {
+            angle_min: angle_min + 0.0,
+            angle_increment,
+            range_max,
+            ranges,
+        },
+    )
+}
+
 fn data() -> impl Strategy<Value = Data> {
     let sighting = (target(), number(), number()).prop_map(|(target, range, bearing)| Sighting {
         target,
@@ -55,6 +69,7 @@ fn data() -> impl Strategy<Value = Data> {
         prop::collection::vec(sighting, 0..8).prop_map(Data::Sightings),
         (number(), number())
             .prop_map(|(wheel_speed, steering)| Data::Ackermann(AckermannDrive { wheel_speed, steering })),
+        scan().prop_map(Data::Scan),
         prop::collection::vec(number(), 0..8).prop_map(Data::SightedWidths),
         (number(), number()).prop_map(|(x, y)| Data::TruePosition(TruePosition { x, y })),
         pose().prop_map(Data::TruePose),
@@ -102,6 +117,9 @@ fn bits(record: &Record) -> (u64, String, Vec<u64>) {
             look.iter().flat_map(|sighting| [sighting.range, sighting.bearing]).collect()
         }
         Data::TrueLandmark(landmark) => vec![landmark.x, landmark.y],
+        Data::Scan(scan) => {
+            [&[scan.angle_min, scan.angle_increment, scan.range_max], scan.ranges.as_slice()].concat()
+        }
         Data::Ackermann(drive) => vec![drive.wheel_speed, drive.steering],
         Data::SightedWidths(widths) => widths.clone(),
         Data::TruePosition(position) => vec![position.x, position.y],

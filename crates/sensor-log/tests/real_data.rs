@@ -2,9 +2,13 @@
 //!
 //! Expected counts are those of the files' rows, counted with `grep -vc '^#'` and `sort -u`.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use wayfix_sensor_log::{Data, OpenOptions, Record, Target, open};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_sensor_log::{
+    Data, OpenOptions, ProblemKind, Record, Relation, Stamp, Target, open, read_relations,
+};
 
 fn data_folder() -> Option<PathBuf> {
     let folder = std::env::var_os("WAYFIX_DATA").map(PathBuf::from);
@@ -81,6 +85,91 @@ fn victoria_park() {
 }
 
 #[test]
+fn carmen_logs() {
+    let Some(folder) = data_folder() else { return };
+    for (name, n_scans, n_beams, n_not_later) in CARMEN_ROWS {
+        let path = folder.join("carmen").join(format!("{name}-corrected.log.gz"));
+        let (records, report) = open(path, &OpenOptions::default()).unwrap().read_all();
+        assert!(in_time_order(&records));
+        assert_eq!(
+            count(&records, |data| matches!(data, Data::Scan(s) if s.ranges.len() == n_beams)),
+            n_scans
+        );
+        assert_eq!(count(&records, |data| matches!(data, Data::EstimatedPose(_))), n_scans);
+        assert_eq!(count(&records, |data| matches!(data, Data::OdometryIncrement(_))), n_scans - 1);
+        assert_eq!(report.problems.get(&ProblemKind::NotLater).copied().unwrap_or(0), n_not_later, "{name}");
+        assert_eq!(report.n_problems(), n_not_later, "{name}: {report}");
+        assert_eq!(report.ignored["NEFF"], n_scans as u64);
+    }
+}
+
+/// Median and ninth decile of the distances between the translations of two rows of increments.
+fn distances(a: &[Pose2<f64>], b: &[Pose2<f64>]) -> (f64, f64) {
+    let distance = |(a, b): (&Pose2<f64>, &Pose2<f64>)| (a.x() - b.x()).hypot(a.y() - b.y());
+    let mut distances: Vec<f64> = a.iter().zip(b).map(distance).collect();
+    distances.sort_by(f64::total_cmp);
+    (distances[distances.len() / 2], distances[distances.len() * 9 / 10])
+}
+
+fn increments(records: &[Record]) -> Vec<Pose2<f64>> {
+    let increment = |record: &Record| match record.data {
+        Data::OdometryIncrement(step) => Some(step),
+        _ => None,
+    };
+    records.iter().filter_map(increment).collect()
+}
+
+#[test]
+fn the_odometry_of_a_corrected_carmen_log_is_that_of_the_raw_log() {
+    let Some(folder) = data_folder() else { return };
+    let read = |name: &str| open(folder.join(name), &OpenOptions::default()).unwrap().read_all().0;
+    let carmen = increments(&read("carmen/intel-corrected.log.gz"));
+    let raw = increments(&read("intel_raw/intel_gfs.json.gz"));
+    let corrected = increments(&read("intel_raw/intel_corrected.json.gz"));
+    assert_eq!((carmen.len(), raw.len(), corrected.len()), (909, 909, 909));
+    // Both files print some six digits of metres, rounded once more in each; a few scans are in another order.
+    let (median, ninth) = distances(&carmen, &raw);
+    assert!(median < 1e-4 && ninth < 1e-3, "{median} {ninth}");
+    let (median, _) = distances(&carmen, &corrected);
+    assert!(median > 1e-2, "corrections are centimetres a scan: {median}");
+}
+
+#[test]
+fn intel_relations_fit_the_corrected_poses() {
+    let Some(folder) = data_folder() else { return };
+    let (relations, report) = read_relations(folder.join("intel_raw/intel.relations")).unwrap();
+    assert_eq!(report.n_problems(), 0);
+    let mean_error = |name: &str| {
+        let log = open(folder.join("intel_raw").join(name), &OpenOptions::default()).unwrap();
+        let poses: BTreeMap<Stamp, Pose2<f64>> = log
+            .filter_map(|record| match record.data {
+                Data::EstimatedPose(pose) => Some((record.stamp, pose)),
+                _ => None,
+            })
+            .collect();
+        // The nearest pose, at most 10 ms away.
+        let pose_at = |stamp: Stamp| {
+            let near = [poses.range(..=stamp).next_back(), poses.range(stamp..).next()];
+            let away = |at: &Stamp| at.seconds_since(stamp).abs();
+            let nearest = near.into_iter().flatten().min_by(|a, b| away(a.0).total_cmp(&away(b.0)));
+            nearest.filter(|(at, _)| away(at) <= 0.01).map(|(_, pose)| *pose)
+        };
+        let error = |relation: &Relation| {
+            let moved = pose_at(relation.from)?.inverse().compose(&pose_at(relation.to)?);
+            let error = relation.pose.inverse().compose(&moved);
+            Some(error.x().hypot(error.y()))
+        };
+        let errors: Vec<f64> = relations.iter().filter_map(error).collect();
+        (errors.len(), errors.iter().sum::<f64>() / errors.len() as f64)
+    };
+    // 148 relations whose stamps match, 0.109 m and 4.48 m, by a separate program.
+    let (n_corrected, corrected) = mean_error("intel_corrected.json.gz");
+    let (n_raw, raw) = mean_error("intel_gfs.json.gz");
+    assert_eq!((n_corrected, n_raw), (148, 148));
+    assert!((corrected - 0.109).abs() < 1e-3 && (raw - 4.48).abs() < 1e-2, "{corrected} {raw}");
+}
+
+#[test]
 fn simulated_range_bearing_logs() {
     let Some(folder) = data_folder() else { return };
     for (name, n_landmarks) in [("slam_100", 100), ("slam_200", 200), ("slam_400", 400)] {
@@ -97,3 +186,12 @@ fn simulated_range_bearing_logs() {
 
 const UTIAS_ROWS: [(u32, usize, usize, usize, usize); 3] =
     [(1, 58389, 58598, 3228, 2032), (2, 56529, 60936, 4518, 2585), (3, 53545, 55085, 5399, 2719)];
+
+/// Log, scans, beams, and stamps that are not later than the one before, counted by a separate program.
+const CARMEN_ROWS: [(&str, usize, usize, u64); 5] = [
+    ("intel", 910, 180, 4),
+    ("freiburg-079", 4791, 360, 0),
+    ("csail", 406, 361, 404),
+    ("belgioioso", 395, 361, 394),
+    ("edmonton", 340, 180, 0),
+];

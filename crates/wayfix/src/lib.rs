@@ -1,12 +1,13 @@
 //! Probabilistic robot localization on logs: the application behind the command `wayfix`.
 //!
-//! Records of a log go through a [`system`] ([`slam`], [`color`]), pictures through [`views`]; [`evaluate`] compares its estimates with truth, [`plot`] draws them,
+//! Records of a log go through a [`system`] ([`slam`], [`color`], [`lines`]), pictures through [`views`]; [`evaluate`] compares its estimates with truth, [`plot`] draws them,
 //! [`report`] writes figures and pictures; [`monobot`] are the experiments of a robot on a line; [`fixtures`] are the stored logs; [`cli`] is the command line.
 
 pub mod cli;
 pub mod color;
 pub mod evaluate;
 pub mod fixtures;
+pub mod lines;
 pub mod monobot;
 pub mod plot;
 pub mod regress;

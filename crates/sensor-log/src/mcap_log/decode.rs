@@ -4,10 +4,9 @@ use foxglove::messages::{self, Odometry, PointCloud, PoseInFrame, Timestamp};
 use prost::Message;
 use wayfix_estimation_traits::Pose2;
 
-use super::camera;
 use super::cloud::{self, Slot};
 use super::routes::Route;
-use super::vehicle;
+use super::{camera, scan, vehicle};
 use crate::planar::heading_of;
 use crate::{Data, ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, Velocity};
 
@@ -29,7 +28,8 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
         Route::EstimatedPose => pose_record(bytes, log_time, Data::EstimatedPose),
         Route::CameraInfo => camera::info(bytes, log_time),
         Route::CameraMount => camera::mount(bytes, log_time),
-        Route::CameraOptical => Ok(Vec::new()),
+        Route::CameraOptical | Route::ScanPoints => Ok(Vec::new()),
+        Route::Scan(channel) => scan::scan(channel, bytes, log_time),
         Route::Image => camera::image(bytes, log_time, Data::Image),
         Route::TrueLabels => camera::image(bytes, log_time, Data::TrueLabels),
         Route::Sightings => {

@@ -20,6 +20,14 @@ impl<'a> Fields<'a> {
         self.0 = rest;
         std::str::from_utf8(bytes).ok()
     }
+    /// A map of strings: its length in 32 bits, then keys and values in turn.
+    pub(super) fn pairs(&mut self) -> Option<impl Iterator<Item = (&'a str, &'a str)> + use<'a>> {
+        let n_bytes = self.u32()? as usize;
+        let (bytes, rest) = self.0.split_at_checked(n_bytes)?;
+        self.0 = rest;
+        let mut pairs = Fields(bytes);
+        Some(std::iter::from_fn(move || Some((pairs.str()?, pairs.str()?))))
+    }
     fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (array, rest) = self.0.split_first_chunk()?;
         self.0 = rest;

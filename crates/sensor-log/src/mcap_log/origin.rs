@@ -22,14 +22,7 @@ pub(super) fn decode(body: &[u8]) -> Option<Format> {
     if fields.str()? != NAME {
         return None;
     }
-    let n_bytes = fields.u32()? as usize;
-    let mut pairs = Fields(fields.0.get(..n_bytes)?);
-    while let (Some(key), Some(value)) = (pairs.str(), pairs.str()) {
-        if key == KEY {
-            return value.parse().ok();
-        }
-    }
-    None
+    fields.pairs()?.find(|(key, _)| *key == KEY).and_then(|(_, origin)| origin.parse().ok())
 }
 
 #[cfg(test)]

@@ -145,7 +145,8 @@ impl Messages {
         let (id, schema_id) = (fields.u16()?, fields.u16()?);
         let (topic, encoding) = (fields.str()?, fields.str()?);
         let schema = self.schemas.get(&schema_id).map_or("no schema", String::as_str);
-        let route = Route::of(topic, schema, encoding);
+        let metadata = fields.pairs().into_iter().flatten();
+        let route = Route::of(topic, schema, encoding, metadata);
         self.channels.insert(id, Channel { name: format!("{} ({schema})", shortened(topic)), route });
         Some(())
     }

@@ -56,6 +56,7 @@ fn n_bytes(record: &Record) -> usize {
     match &record.data {
         Data::Sightings(look) => size_of_val(look.as_slice()),
         Data::SightedWidths(widths) => size_of_val(widths.as_slice()),
+        Data::Scan(scan) => size_of_val(scan.ranges.as_slice()),
         Data::Image(image) | Data::TrueLabels(image) => image.bytes.len(),
         _ => 0,
     }

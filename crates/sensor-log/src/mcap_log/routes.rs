@@ -1,13 +1,17 @@
+use super::scan::ScanChannel;
 use super::topics;
 
 /// Which kind of record a channel carries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Route {
     Velocity,
     Increment,
     Ackermann,
     Sightings,
     SightedWidths,
+    Scan(ScanChannel),
+    /// Known, and nothing to read: the same scan as points.
+    ScanPoints,
     TruePose,
     TruePosition,
     TrueLandmarks,
@@ -22,13 +26,20 @@ pub(super) enum Route {
 
 impl Route {
     /// The kind for a topic, when it has the schema that belongs there.
-    pub(super) fn of(topic: &str, schema: &str, encoding: &str) -> Option<Self> {
+    pub(super) fn of<'a>(
+        topic: &str,
+        schema: &str,
+        encoding: &str,
+        metadata: impl Iterator<Item = (&'a str, &'a str)>,
+    ) -> Option<Self> {
         let (route, expected) = match topic {
             topics::VELOCITY => (Self::Velocity, "foxglove.Odometry"),
             topics::INCREMENT => (Self::Increment, "foxglove.PoseInFrame"),
             topics::ACKERMANN => (Self::Ackermann, "foxglove.JointStates"),
             topics::SIGHTINGS => (Self::Sightings, "foxglove.PointCloud"),
             topics::SIGHTED_WIDTHS => (Self::SightedWidths, "foxglove.PointCloud"),
+            topics::SCAN => (Self::Scan(ScanChannel::of(metadata)), "foxglove.LaserScan"),
+            topics::SCAN_POINTS => (Self::ScanPoints, "foxglove.PointCloud"),
             topics::TRUE_POSITION => (Self::TruePosition, "foxglove.PointCloud"),
             topics::TRUE_POSE => (Self::TruePose, "foxglove.PoseInFrame"),
             topics::TRUE_LANDMARKS => (Self::TrueLandmarks, "foxglove.PointCloud"),

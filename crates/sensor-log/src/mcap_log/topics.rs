@@ -7,6 +7,7 @@
 //! | [`ACKERMANN`] | `foxglove.JointStates`, velocity of `wheel`, position of `steering` | | [`Data::Ackermann`](crate::Data::Ackermann) |
 //! | [`SIGHTINGS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Sightings`](crate::Data::Sightings) |
 //! | [`SIGHTED_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`Data::SightedWidths`](crate::Data::SightedWidths) |
+//! | [`SCAN`] | `foxglove.LaserScan`; `angle_increment` and `range_max` in the metadata of the channel | [`BODY_FRAME`] | [`Data::Scan`](crate::Data::Scan) |
 //! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`Data::TruePosition`](crate::Data::TruePosition) |
 //! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |
 //! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
@@ -17,6 +18,8 @@
 //! | [`TRUE_LABELS`] | `foxglove.CompressedImage`, grey PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::TrueLabels`](crate::Data::TrueLabels) |
 //!
 //! With every camera mount, [`CAMERA_OPTICAL`] places the optical frame (z forward, x right, y down) that viewers draw images in.
+//!
+//! With every scan, [`SCAN_POINTS`] has the beams that came back as a `foxglove.PointCloud`, for viewers that draw no scans.
 //!
 //! A metadata record `wayfix` with the key `origin` names the format that the records come from, when it was another one.
 //!
@@ -32,6 +35,10 @@ pub const ACKERMANN: &str = "/odom/ackermann";
 pub const SIGHTINGS: &str = "/sightings";
 /// How wide the sighted things are.
 pub const SIGHTED_WIDTHS: &str = "/sightings/widths";
+/// What a laser saw.
+pub const SCAN: &str = "/scan";
+/// The same as points; not read back.
+pub const SCAN_POINTS: &str = "/scan/points";
 /// Where a point of the robot truly was.
 pub const TRUE_POSITION: &str = "/truth/position";
 /// Where the robot truly was.

@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
 use std::path::Path;
@@ -11,8 +12,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::drawing::scene_update;
 use super::{Drawing, encode, origin, topics};
-use super::{camera, vehicle};
-use crate::{Data, Format, LogError, Record, Stamp, TrueLandmark};
+use crate::{Format, LogError, Stamp, TrueLandmark};
 
 /// Messages are flushed in chunks of about this size: a crash loses no more.
 const CHUNK_BYTES: u64 = 256 << 10;
@@ -35,7 +35,8 @@ const CHUNK_BYTES: u64 = 256 << 10;
 /// ```
 pub struct McapWriter<W: Write + Seek> {
     writer: mcap::Writer<W>,
-    channels: BTreeMap<(String, String), Channel>,
+    /// By topic, schema and metadata.
+    channels: BTreeMap<(String, String, BTreeMap<String, String>), Channel>,
     /// Landmarks in a row at one stamp become one cloud, so that viewers draw them together.
     landmarks: Vec<TrueLandmark>,
     landmarks_stamp: Stamp,
@@ -89,63 +90,6 @@ impl<W: Write + Seek> McapWriter<W> {
             self.writer.write_metadata(&origin::encode(origin))?;
         }
         Ok(())
-    }
-
-    /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).
-    ///
-    /// # Errors
-    /// When a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says, the stamp
-    /// is beyond the year 2106, or the output fails.
-    pub fn record(&mut self, record: &Record) -> Result<(), LogError> {
-        let stamp = record.stamp;
-        record.data.check_finite().map_err(|what| LogError::NotFinite { what, stamp })?;
-        camera::check(record)?;
-        if let Data::TrueLandmark(landmark) = record.data {
-            if stamp != self.landmarks_stamp {
-                self.flush_landmarks()?;
-                self.landmarks_stamp = stamp;
-            }
-            self.landmarks.push(landmark);
-            return Ok(());
-        }
-        self.flush_landmarks()?;
-        let timestamp = encode::timestamp(stamp)?;
-        match &record.data {
-            Data::Velocity(velocity) => {
-                self.message(topics::VELOCITY, stamp, &encode::velocity(timestamp, velocity))
-            }
-            Data::OdometryIncrement(step) => {
-                self.pose_in_frame(topics::INCREMENT, stamp, topics::BODY_FRAME, step)
-            }
-            Data::Ackermann(drive) => {
-                self.message(topics::ACKERMANN, stamp, &vehicle::encode_drive(timestamp, drive))
-            }
-            Data::SightedWidths(widths) => {
-                self.message(topics::SIGHTED_WIDTHS, stamp, &vehicle::encode_widths(timestamp, widths))
-            }
-            Data::TruePosition(position) => {
-                self.message(topics::TRUE_POSITION, stamp, &vehicle::encode_position(timestamp, position))
-            }
-            Data::Sightings(look) => {
-                self.message(topics::SIGHTINGS, stamp, &encode::sightings(timestamp, look))
-            }
-            Data::TruePose(pose) => self.pose_in_frame(topics::TRUE_POSE, stamp, topics::WORLD_FRAME, pose),
-            Data::EstimatedPose(pose) => {
-                self.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)
-            }
-            Data::TrueLandmark(_) => Ok(()),
-            Data::CameraInfo(info) => {
-                self.message(topics::CAMERA_INFO, stamp, &camera::encode_info(timestamp, info))
-            }
-            Data::CameraMount(pose) => {
-                self.message(topics::CAMERA_MOUNT, stamp, &camera::encode_mount(timestamp, pose))?;
-                self.message(topics::CAMERA_OPTICAL, stamp, &camera::encode_optical(timestamp))
-            }
-            Data::Image(image) => self.message(topics::IMAGE, stamp, &camera::encode_image(timestamp, image)),
-            Data::TrueLabels(image) => {
-                self.message(topics::TRUE_LABELS, stamp, &camera::encode_image(timestamp, image))
-            }
-        }
     }
 
     /// A pose in `frame`, as `foxglove.PoseInFrame`.
@@ -245,7 +189,17 @@ impl<W: Write + Seek> McapWriter<W> {
         Ok(())
     }
 
-    fn flush_landmarks(&mut self) -> Result<(), LogError> {
+    /// Keeps a landmark until another kind of record or stamp comes.
+    pub(super) fn hold_landmark(&mut self, stamp: Stamp, landmark: TrueLandmark) -> Result<(), LogError> {
+        if stamp != self.landmarks_stamp {
+            self.flush_landmarks()?;
+            self.landmarks_stamp = stamp;
+        }
+        self.landmarks.push(landmark);
+        Ok(())
+    }
+
+    pub(super) fn flush_landmarks(&mut self) -> Result<(), LogError> {
         if self.landmarks.is_empty() {
             return Ok(());
         }
@@ -254,16 +208,31 @@ impl<W: Write + Seek> McapWriter<W> {
         self.message(topics::TRUE_LANDMARKS, self.landmarks_stamp, &message)
     }
 
-    fn message<M>(&mut self, topic: &str, stamp: Stamp, message: &M) -> Result<(), LogError>
+    pub(super) fn message<M>(&mut self, topic: &str, stamp: Stamp, message: &M) -> Result<(), LogError>
+    where
+        M: Encode + prost::Message,
+    {
+        self.message_with(topic, &BTreeMap::new(), stamp, message)
+    }
+
+    /// A message on a channel with metadata; other metadata make another channel of the same topic.
+    pub(super) fn message_with<M>(
+        &mut self,
+        topic: &str,
+        metadata: &BTreeMap<String, String>,
+        stamp: Stamp,
+        message: &M,
+    ) -> Result<(), LogError>
     where
         M: Encode + prost::Message,
     {
         let schema = M::get_schema().expect("invariant: every Foxglove message has a schema");
-        let channel = match self.channels.entry((topic.to_owned(), schema.name.clone())) {
-            std::collections::btree_map::Entry::Occupied(entry) => entry.into_mut(),
-            std::collections::btree_map::Entry::Vacant(entry) => {
+        let key = (topic.to_owned(), schema.name.clone(), metadata.clone());
+        let channel = match self.channels.entry(key) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => {
                 let schema_id = self.writer.add_schema(&schema.name, &schema.encoding, &schema.data)?;
-                let id = self.writer.add_channel(schema_id, topic, "protobuf", &BTreeMap::new())?;
+                let id = self.writer.add_channel(schema_id, topic, "protobuf", metadata)?;
                 entry.insert(Channel { id, sequence: 0 })
             }
         };

@@ -1,18 +1,19 @@
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
-use std::path::Path;
+use std::io::{self, BufRead, Read};
+use std::path::{Path, PathBuf};
 
 use super::row::RowError;
-use crate::{LogError, Problem, ProblemKind, ReadReport};
+use crate::compressed::{TextReader, end_of_damaged, open_text};
+use crate::{LogEnd, LogError, Problem, ProblemKind, ReadReport};
 
 /// No row of a known format comes near; what is longer is garbage and must not fill the memory.
-const MAX_LINE_BYTES: u64 = 4096;
+const MAX_LINE_BYTES: u64 = 16 << 10;
 
 /// The rows of a text file: neither blank nor a `#` comment.
-pub(crate) struct Lines<'p, R> {
+pub(crate) struct Lines<R> {
     reader: R,
-    path: &'p Path,
+    path: PathBuf,
     number: u64,
+    n_bytes: u64,
     buffer: Vec<u8>,
 }
 
@@ -22,15 +23,15 @@ pub(crate) struct Row<'a> {
     pub(crate) text: Result<&'a str, RowError>,
 }
 
-impl<'p> Lines<'p, BufReader<File>> {
-    pub(crate) fn open(path: &'p Path) -> Result<Self, LogError> {
-        Ok(Self::new(BufReader::new(File::open(path).map_err(|source| LogError::io(path, source))?), path))
+impl Lines<TextReader> {
+    pub(crate) fn open(path: &Path) -> Result<Self, LogError> {
+        Ok(Self::new(open_text(path)?, path))
     }
 }
 
-impl<'p, R: BufRead> Lines<'p, R> {
-    pub(crate) fn new(reader: R, path: &'p Path) -> Self {
-        Self { reader, path, number: 0, buffer: Vec::new() }
+impl<R: BufRead> Lines<R> {
+    pub(crate) fn new(reader: R, path: &Path) -> Self {
+        Self { reader, path: path.into(), number: 0, n_bytes: 0, buffer: Vec::new() }
     }
 
     /// Hands every row to `read_row`; what it refuses goes into the report.
@@ -48,25 +49,27 @@ impl<'p, R: BufRead> Lines<'p, R> {
         report: &mut ReadReport,
         mut read_row: impl FnMut(u64, &str) -> Result<(), RowError>,
     ) -> Result<(), LogError> {
-        let file = self.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        while let Some(row) = self.next_row()? {
-            match row.text.and_then(|text| read_row(row.number, text)) {
-                Ok(()) => report.rows_read += 1,
-                Err(RowError { kind, reason }) => {
-                    // A row that only comes late is used all the same.
-                    report.rows_read += u64::from(kind == ProblemKind::OutOfOrder);
-                    report.add(Problem { file: file.clone(), row: row.number, kind, reason });
+        let file = self.file_name();
+        loop {
+            let row = match self.next_row() {
+                Ok(Some(row)) => row,
+                Ok(None) => return Ok(()),
+                Err(error) => {
+                    report.end = self.end_after(error)?;
+                    return Ok(());
                 }
-            }
+            };
+            let number = row.number;
+            let read = row.text.and_then(|text| read_row(number, text));
+            report.count_row(&file, number, read);
         }
-        Ok(())
     }
 
     /// The next row; `None` at the end of the file.
     pub(crate) fn next_row(&mut self) -> Result<Option<Row<'_>>, LogError> {
         loop {
             self.number += 1;
-            let too_long = match self.read_line().map_err(|source| LogError::io(self.path, source))? {
+            let too_long = match self.read_line().map_err(|source| LogError::io(&self.path, source))? {
                 0 => return Ok(None),
                 n_bytes => n_bytes > MAX_LINE_BYTES,
             };
@@ -87,13 +90,45 @@ impl<'p, R: BufRead> Lines<'p, R> {
         Ok(Some(Row { number: self.number, text }))
     }
 
+    /// The file's name, without its folder.
+    pub(crate) fn file_name(&self) -> String {
+        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Bytes of text read so far.
+    pub(crate) fn n_bytes(&self) -> u64 {
+        self.n_bytes
+    }
+
+    /// How the log ends when reading it failed: what was read before stays, if the file itself is damaged.
+    pub(crate) fn end_after(&self, error: LogError) -> Result<LogEnd, LogError> {
+        match &error {
+            LogError::Io { source, .. } => end_of_damaged(&self.path, source, self.n_bytes).ok_or(error),
+            _ => Err(error),
+        }
+    }
+
     /// Fills the buffer with one line, passes over what exceeds the limit; gives the length, 0 at the end.
     fn read_line(&mut self) -> io::Result<u64> {
         self.buffer.clear();
         let n_bytes = (&mut self.reader).take(MAX_LINE_BYTES + 1).read_until(b'\n', &mut self.buffer)? as u64;
+        self.n_bytes += n_bytes;
         if n_bytes > MAX_LINE_BYTES && self.buffer.last() != Some(&b'\n') {
-            self.reader.skip_until(b'\n')?;
+            self.n_bytes += self.reader.skip_until(b'\n')? as u64;
         }
         Ok(n_bytes)
+    }
+}
+
+impl ReadReport {
+    /// A row that was read, or what is wrong with it.
+    pub(super) fn count_row(&mut self, file: &str, row: u64, read: Result<(), RowError>) {
+        match read {
+            Ok(()) => self.rows_read += 1,
+            Err(RowError { kind, reason }) => {
+                self.rows_read += u64::from(kind.keeps_the_row());
+                self.add(Problem { file: file.to_owned(), row, kind, reason });
+            }
+        }
     }
 }

@@ -52,14 +52,23 @@ pub(crate) fn number(column: &str) -> Result<f64, RowError> {
     }
 }
 
+/// A range as it comes: NaN and infinity mean that nothing came back.
+pub(crate) fn range(column: &str) -> Result<f64, RowError> {
+    parse(column, "a range")
+}
+
 /// An identity.
 pub(crate) fn id(column: &str) -> Result<u32, RowError> {
     parse(column, "an identity")
 }
 
-/// Seconds as a stamp.
+/// A column of seconds as a stamp.
 pub(crate) fn stamp(column: &str) -> Result<Stamp, RowError> {
-    let seconds = number(column)?;
+    stamp_of(number(column)?)
+}
+
+/// Seconds as a stamp.
+pub(crate) fn stamp_of(seconds: f64) -> Result<Stamp, RowError> {
     Stamp::from_seconds(seconds)
         .ok_or_else(|| RowError::new(ProblemKind::BadStamp, format!("{seconds} s is no time stamp")))
 }

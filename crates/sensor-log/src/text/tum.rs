@@ -41,11 +41,7 @@ fn parse(row: &str, kind: PoseKind) -> Result<Record, RowError> {
         return Err(RowError::new(ProblemKind::Inconsistent, format!("quaternion of norm {norm}")));
     }
     let pose = Pose2::new(x, y, heading_of([qx, qy, qz, qw]));
-    let data = match kind {
-        PoseKind::Estimated => Data::EstimatedPose(pose),
-        PoseKind::True => Data::TruePose(pose),
-    };
-    Ok(Record { stamp, data })
+    Ok(Record { stamp, data: kind.data(pose) })
 }
 
 /// Writes true and estimated poses alike; the format does not tell them apart.

@@ -105,7 +105,7 @@ fn for_each_row<const N: usize>(
 
 /// Columns that mean something else would give a log that looks right and is not.
 fn check_header<R: std::io::BufRead, const N: usize>(
-    lines: &mut Lines<'_, R>,
+    lines: &mut Lines<R>,
     path: &Path,
     header: [&str; N],
 ) -> Result<(), LogError> {

@@ -3,7 +3,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Record, Sighting, Stamp, Target, TrueLandmark, Velocity};
 
-/// A log of `n_steps` steps with every kind of record.
+/// A log of `n_steps` steps of a robot that sees landmarks.
 pub(crate) fn drive(n_steps: u64) -> Vec<Record> {
     let mut records = vec![record(0, Data::TrueLandmark(TrueLandmark { id: 3, x: 5.0, y: 1.0 }))];
     for step in 0..n_steps {

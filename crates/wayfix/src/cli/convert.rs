@@ -8,7 +8,7 @@ use super::output::{print, tell};
 /// Write a log in another format.
 ///
 /// MCAP keeps everything, and where the records come from; Foxglove and Rerun open it. What the other formats have no place for is
-/// left out and counted: range-bearing text has no stamps and velocities, TUM has poses only.
+/// left out and counted: range-bearing text has no stamps, velocities and scans, TUM has poses only.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -16,7 +16,7 @@ pub(super) struct Arguments {
     input: PathBuf,
     /// The file to write: .mcap, .txt (range-bearing lines) or .tum (poses).
     output: PathBuf,
-    /// How the input is stored: utias, victoria-park, range-bearing, tum, mcap or images [default: found out by looking].
+    /// How the input is stored: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: found out by looking].
     #[arg(long, value_name = "FORMAT")]
     from: Option<Format>,
     /// How to store the output: mcap, range-bearing or tum [default: what its ending says].

@@ -11,7 +11,7 @@ use super::output::print;
 pub(super) struct Arguments {
     /// The log: a file, or the folder of a UTIAS set, of Victoria Park or of images.
     path: PathBuf,
-    /// How it is stored: utias, victoria-park, range-bearing, tum, mcap or images [default: found out by looking].
+    /// How it is stored: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: found out by looking].
     #[arg(long)]
     format: Option<Format>,
     /// Which robot, in sets of several.
@@ -31,16 +31,21 @@ Formats:
                    Z id range bearing    a sighting, m and rad, 0 ahead, counter-clockwise; id ? when unknown
                  L and P are for figures only and may be absent.
   tum            t x y z qx qy qz qw lines: poses only
+  carmen         FLASER lines with n = 180, 181, 360 or 361 ranges, and ODOM lines; the order is that of the lines
+  scan-json      an object \"map\" of objects by their seconds, each with the list \"range\", \"theta\", \"x\" and \"y\"
   mcap           Foxglove protobuf messages on /odom/velocity (Odometry) or /odom/increment (PoseInFrame),
-                 or /odom/ackermann (JointStates wheel, steering), /sightings (PointCloud with range, bearing, kind, id), /truth/pose (PoseInFrame),
+                 or /odom/ackermann (JointStates wheel, steering), /sightings (PointCloud with range, bearing, kind, id),
+                 /scan (LaserScan), /truth/pose (PoseInFrame), /truth/position (PointCloud with x, y),
                  /truth/landmarks (PointCloud with x, y, id), /camera/info (CameraCalibration), /camera/mount
                  (FrameTransform), /camera/image and /truth/labels (CompressedImage)
-  images         a folder of PNG and JPEG files, frames by name, 30 Hz";
+  images         a folder of PNG and JPEG files, frames by name, 30 Hz
+Text may be compressed with gzip.";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };
     let summary = LogSummary::of(wayfix_sensor_log::open(&arguments.path, &options)?);
-    print(format!("{summary}{}\n", usable_for(&summary)))?;
+    let lines = if summary.kinds.contains_key("laser scan") { "usable for `wayfix run lines`\n" } else { "" };
+    print(format!("{summary}{lines}{}\n", usable_for(&summary)))?;
     Ok(ExitCode::SUCCESS)
 }
 

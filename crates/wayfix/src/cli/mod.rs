@@ -9,6 +9,7 @@ mod output;
 mod progress;
 mod regress;
 mod run_color;
+mod run_lines;
 mod run_slam;
 mod run_views;
 
@@ -22,6 +23,7 @@ use clap::{Parser, Subcommand};
 ///   wayfix info slam_100.txt                      what a log holds
 ///   wayfix run slam --log slam_100.txt            trajectory and map, with figures where the log has truth
 ///   wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results
+///   wayfix run lines --log intel.log.gz           walls in laser scans
 ///   wayfix run color --log color_dark.mcap --map four-legged-field.toml
 ///   wayfix run views --scene china.jpg             where in a picture a camera looks, learned in other light
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
@@ -49,6 +51,7 @@ enum Command {
 #[derive(Subcommand)]
 enum Run {
     Slam(run_slam::Arguments),
+    Lines(run_lines::Arguments),
     Color(run_color::Arguments),
     Views(run_views::Arguments),
 }
@@ -57,6 +60,7 @@ enum Run {
 pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(Run::Slam(arguments)) => run_slam::main(arguments),
+        Command::Run(Run::Lines(arguments)) => run_lines::main(arguments),
         Command::Run(Run::Color(arguments)) => run_color::main(arguments),
         Command::Run(Run::Views(arguments)) => run_views::main(arguments),
         Command::Info(arguments) => info::main(arguments),

@@ -1,0 +1,63 @@
+use std::io::{Seek, Write};
+
+use super::{McapWriter, camera, encode, scan, topics, vehicle};
+use crate::{Data, LogError, Record};
+
+impl<W: Write + Seek> McapWriter<W> {
+    /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).
+    ///
+    /// # Errors
+    /// When a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says, the stamp
+    /// is beyond the year 2106, or the output fails.
+    pub fn record(&mut self, record: &Record) -> Result<(), LogError> {
+        let stamp = record.stamp;
+        record.data.check_finite().map_err(|what| LogError::NotFinite { what, stamp })?;
+        camera::check(record)?;
+        if let Data::TrueLandmark(landmark) = record.data {
+            return self.hold_landmark(stamp, landmark);
+        }
+        self.flush_landmarks()?;
+        let timestamp = encode::timestamp(stamp)?;
+        match &record.data {
+            Data::Velocity(velocity) => {
+                self.message(topics::VELOCITY, stamp, &encode::velocity(timestamp, velocity))
+            }
+            Data::OdometryIncrement(step) => {
+                self.pose_in_frame(topics::INCREMENT, stamp, topics::BODY_FRAME, step)
+            }
+            Data::Ackermann(drive) => {
+                self.message(topics::ACKERMANN, stamp, &vehicle::encode_drive(timestamp, drive))
+            }
+            Data::SightedWidths(widths) => {
+                self.message(topics::SIGHTED_WIDTHS, stamp, &vehicle::encode_widths(timestamp, widths))
+            }
+            Data::Scan(scan) => {
+                let message = scan::encode_scan(timestamp, scan);
+                self.message_with(topics::SCAN, &scan::metadata(scan), stamp, &message)?;
+                self.message(topics::SCAN_POINTS, stamp, &scan::encode_points(timestamp, scan))
+            }
+            Data::TruePosition(position) => {
+                self.message(topics::TRUE_POSITION, stamp, &vehicle::encode_position(timestamp, position))
+            }
+            Data::Sightings(look) => {
+                self.message(topics::SIGHTINGS, stamp, &encode::sightings(timestamp, look))
+            }
+            Data::TruePose(pose) => self.pose_in_frame(topics::TRUE_POSE, stamp, topics::WORLD_FRAME, pose),
+            Data::EstimatedPose(pose) => {
+                self.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)
+            }
+            Data::TrueLandmark(_) => Ok(()),
+            Data::CameraInfo(info) => {
+                self.message(topics::CAMERA_INFO, stamp, &camera::encode_info(timestamp, info))
+            }
+            Data::CameraMount(pose) => {
+                self.message(topics::CAMERA_MOUNT, stamp, &camera::encode_mount(timestamp, pose))?;
+                self.message(topics::CAMERA_OPTICAL, stamp, &camera::encode_optical(timestamp))
+            }
+            Data::Image(image) => self.message(topics::IMAGE, stamp, &camera::encode_image(timestamp, image)),
+            Data::TrueLabels(image) => {
+                self.message(topics::TRUE_LABELS, stamp, &camera::encode_image(timestamp, image))
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Laser scans as Foxglove messages, and back.
+//!
+//! `foxglove.LaserScan` has the bearings of the first and the last beam and no longest range. What that loses, the channel's metadata keep.
+
+use std::collections::BTreeMap;
+
+use foxglove::messages::{self, PointCloud, Timestamp};
+
+use super::decode::{Fault, decode, finite, inconsistent, stamp};
+use super::{encode, topics};
+use crate::{Data, LaserScan, Record, Stamp};
+
+const INCREMENT: &str = "angle_increment";
+const RANGE_MAX: &str = "range_max";
+
+/// What a channel says of all its scans; nothing in the files of other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(super) struct ScanChannel {
+    increment: Option<f64>,
+    range_max: Option<f64>,
+}
+
+impl ScanChannel {
+    pub(super) fn of<'a>(metadata: impl Iterator<Item = (&'a str, &'a str)>) -> Self {
+        let mut channel = Self::default();
+        for (key, value) in metadata {
+            match key {
+                INCREMENT => channel.increment = value.parse().ok().filter(|value: &f64| value.is_finite()),
+                RANGE_MAX => channel.range_max = value.parse().ok().filter(|value: &f64| !value.is_nan()),
+                _ => {}
+            }
+        }
+        channel
+    }
+}
+
+pub(super) fn metadata(scan: &LaserScan) -> BTreeMap<String, String> {
+    let pairs = [(INCREMENT, scan.angle_increment), (RANGE_MAX, scan.range_max)];
+    pairs.into_iter().map(|(key, value)| (key.to_owned(), value.to_string())).collect()
+}
+
+pub(super) fn encode_scan(timestamp: Timestamp, scan: &LaserScan) -> messages::LaserScan {
+    messages::LaserScan {
+        timestamp: Some(timestamp),
+        frame_id: topics::BODY_FRAME.to_owned(),
+        pose: Some(encode::identity()),
+        start_angle: scan.angle_min,
+        end_angle: scan.bearing(scan.ranges.len().saturating_sub(1)),
+        ranges: scan.ranges.clone(),
+        intensities: Vec::new(),
+    }
+}
+
+/// What came back, for viewers that do not draw scans.
+pub(super) fn encode_points(timestamp: Timestamp, scan: &LaserScan) -> PointCloud {
+    let point = |(bearing, range): (f64, f64)| {
+        let (sin, cos) = libm::sincos(bearing);
+        [range * cos, range * sin]
+    };
+    let points: Vec<[f64; 2]> = scan.echoes().map(point).collect();
+    encode::points(timestamp, topics::BODY_FRAME, &points)
+}
+
+pub(super) fn scan(channel: ScanChannel, bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
+    let message: messages::LaserScan = decode(bytes)?;
+    let stamp = stamp(message.timestamp, log_time)?;
+    finite([message.start_angle, message.end_angle])?;
+    if message.pose.is_some_and(|pose| !is_identity(&pose)) {
+        return Err(inconsistent("scan from elsewhere than the origin of its frame"));
+    }
+    let n_steps = message.ranges.len().saturating_sub(1).max(1);
+    let scan = LaserScan {
+        angle_min: message.start_angle,
+        angle_increment: channel
+            .increment
+            .unwrap_or((message.end_angle - message.start_angle) / n_steps as f64),
+        range_max: channel.range_max.unwrap_or(f64::INFINITY),
+        ranges: message.ranges,
+    };
+    Ok(vec![Record { stamp, data: Data::Scan(scan) }])
+}
+
+/// A quaternion that is not there, or all zeros, means no rotation to most writers.
+fn is_identity(pose: &messages::Pose) -> bool {
+    let (t, q) = (pose.position.unwrap_or_default(), pose.orientation.unwrap_or_default());
+    [t.x, t.y, t.z, q.x, q.y, q.z].iter().all(|number| *number == 0.0)
+}

@@ -1,0 +1,41 @@
+/// One sweep of a planar laser: a range for every beam, at equal angles.
+///
+/// Ranges stay as the device gave them: NaN, infinite, zero, negative and those of [`range_max`](Self::range_max) or more mean that
+/// nothing came back. [`echoes`](Self::echoes) passes over them.
+///
+/// ```
+/// use wayfix_sensor_log::LaserScan;
+/// let scan = LaserScan { angle_min: -0.1, angle_increment: 0.1, range_max: 50.0, ranges: vec![2.0, f64::NAN, 81.9] };
+/// assert_eq!(scan.echoes().collect::<Vec<_>>(), [(-0.1, 2.0)]);
+/// assert_eq!(scan.bearing(1), 0.0);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct LaserScan {
+    /// Direction of the first beam from the sensor, radians, 0 ahead, counter-clockwise.
+    pub angle_min: f64,
+    /// From one beam to the next, radians; negative for a clockwise sweep.
+    pub angle_increment: f64,
+    /// Ranges from here on are no echo, metres; infinite where the log does not say.
+    pub range_max: f64,
+    /// Metres, in the order of the beams.
+    pub ranges: Vec<f64>,
+}
+
+impl LaserScan {
+    /// Direction of a beam, radians.
+    pub fn bearing(&self, beam: usize) -> f64 {
+        self.angle_min + beam as f64 * self.angle_increment
+    }
+
+    /// Bearing and range of every beam that came back.
+    pub fn echoes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let is_echo = |range: f64| range.is_finite() && range > 0.0 && range < self.range_max;
+        let beams = self.ranges.iter().enumerate();
+        beams.filter(move |(_, range)| is_echo(**range)).map(|(beam, range)| (self.bearing(beam), *range))
+    }
+
+    /// Whether the numbers that hold for all beams are numbers; ranges may be anything.
+    pub(crate) fn has_finite_angles(&self) -> bool {
+        self.angle_min.is_finite() && self.angle_increment.is_finite() && !self.range_max.is_nan()
+    }
+}

@@ -1,0 +1,43 @@
+use std::collections::BTreeMap;
+use std::fmt;
+
+use super::LaserScan;
+
+/// What scans there are; `Display` prints it for people.
+///
+/// ```
+/// use wayfix_sensor_log::{LaserScan, ScanSummary};
+/// let mut summary = ScanSummary::default();
+/// summary.add(&LaserScan { angle_min: 0.0, angle_increment: 0.1, range_max: 8.0, ranges: vec![1.0, 9.0] });
+/// assert_eq!((summary.n_beams, summary.n_without_echo), (2, 1));
+/// assert_eq!(summary.to_string(), "1 of 2 beams; 50.0 % of the beams without echo");
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct ScanSummary {
+    /// How many scans have so many beams.
+    pub sizes: BTreeMap<usize, u64>,
+    /// Beams of all scans.
+    pub n_beams: u64,
+    /// Beams that did not come back.
+    pub n_without_echo: u64,
+}
+
+impl ScanSummary {
+    /// Counts a scan.
+    pub fn add(&mut self, scan: &LaserScan) {
+        let n_beams = scan.ranges.len();
+        *self.sizes.entry(n_beams).or_default() += 1;
+        self.n_beams += n_beams as u64;
+        self.n_without_echo += (n_beams - scan.echoes().count()) as u64;
+    }
+}
+
+impl fmt::Display for ScanSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sizes: Vec<String> =
+            self.sizes.iter().map(|(n_beams, count)| format!("{count} of {n_beams} beams")).collect();
+        let percent = 100.0 * self.n_without_echo as f64 / self.n_beams.max(1) as f64;
+        write!(f, "{}; {percent:.1} % of the beams without echo", sizes.join(", "))
+    }
+}

@@ -1,0 +1,56 @@
+use super::row::RowError;
+use crate::{ProblemKind, Stamp};
+
+/// Between two rows of which the second is not later, nanoseconds.
+const STEP_NANOSECONDS: u64 = 100_000_000;
+
+/// Stamps for a log whose order is that of its lines.
+///
+/// Some loggers print seconds since 1970 with six digits, so that all rows have the same stamp, and some go back for a moment.
+#[derive(Default)]
+pub(super) struct LineClock {
+    last: Option<Stamp>,
+}
+
+impl LineClock {
+    /// The stamp that a row gets: its own where it is later than the row before, else one made up, and a word about that.
+    pub(super) fn next(&mut self, own: Stamp) -> (Stamp, Result<(), RowError>) {
+        let (stamp, verdict) = match self.last {
+            Some(last) if own <= last => {
+                let made_up = Stamp::from_nanoseconds(last.nanoseconds().saturating_add(STEP_NANOSECONDS));
+                let reason = format!("{own} is not later than {last} before it; becomes {made_up}");
+                (made_up, Err(RowError::new(ProblemKind::NotLater, reason)))
+            }
+            _ => (own, Ok(())),
+        };
+        self.last = Some(stamp);
+        (stamp, verdict)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_goes_on_whatever_the_stamps_say() {
+        let mut clock = LineClock::default();
+        let mut next = |milliseconds: u64| {
+            let (stamp, verdict) = clock.next(Stamp::from_nanoseconds(milliseconds * 1_000_000));
+            (stamp.nanoseconds() / 1_000_000, verdict.is_ok())
+        };
+        let given = [5, 5, 5, 204, 206, 1000, 900, 1050, 2000].map(&mut next);
+        let expected = [
+            (5, true),
+            (105, false),
+            (205, false),
+            (305, false),
+            (405, false),
+            (1000, true),
+            (1100, false),
+            (1200, false),
+            (2000, true),
+        ];
+        assert_eq!(given, expected);
+    }
+}

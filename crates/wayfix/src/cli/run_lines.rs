@@ -1,0 +1,107 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use anyhow::{Context, Result, ensure};
+use wayfix_line_extract::Params;
+use wayfix_sensor_log::{Format, OpenOptions};
+
+use super::{
+    finish::{self, ESTIMATES},
+    input::read_toml,
+    output::{print, tell},
+    progress,
+};
+use crate::{
+    lines::{self, LineLog, LineSystem},
+    report::Run,
+    system::{Stopwatch, System, drive},
+};
+
+/// Walls: the straight pieces in every laser scan of a log, with their ends.
+///
+/// The figures are how many scans there are, how many could not be used (`n_skipped`, the events and standard error say why), walls per scan,
+/// how far the echoes are off their walls (root mean square), and the time that the search takes.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// The log: CARMEN, scans as JSON, or MCAP; text may be compressed with gzip.
+    #[arg(long, value_name = "PATH")]
+    log: PathBuf,
+    /// How the log is stored: carmen, scan-json or mcap [default: found out by looking].
+    #[arg(long)]
+    format: Option<Format>,
+    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// Print the parameters that would be used, as TOML, and end: a file to start from.
+    #[arg(long)]
+    print_params: bool,
+    /// Folder for index.html, report.json, the figures as SVG and the scans with their walls as MCAP.
+    ///
+    /// It is created where need be. Nothing is written without it.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the figures as one JSON object instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Goes into the report; nothing here is random.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run lines --log intel-corrected.log.gz
+  wayfix run lines --log my.mcap --out results";
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let params = match &arguments.params {
+        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        None => Params::default(),
+    };
+    if arguments.print_params {
+        print(toml::to_string(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut system = LineSystem::new(params)?;
+    let options = OpenOptions { format: arguments.format, ..OpenOptions::default() };
+    let log = wayfix_sensor_log::open(&arguments.log, &options)?;
+    let origin = log.meta().first_format();
+    let (records, read) = log.read_all();
+    if !read.is_clean() {
+        tell(&read);
+    }
+
+    let stopwatch = Stopwatch::start();
+    let mut walls = arguments.out.as_deref().map(|out| open_walls(out, origin)).transpose()?;
+    let bar = progress::bar(records.len(), "walls");
+    let mut remaining = records.iter();
+    drive(&mut system, &records, |system| {
+        if let (Some(walls), Some(record)) = (&mut walls, remaining.next()) {
+            walls.observe(record, system);
+        }
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    ensure!(system.n_scans() > 0, "{}: no laser scan in the log", arguments.log.display());
+    finish::account(system.events(), &read);
+
+    let name = arguments.log.display().to_string();
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let mut run = Run { name, seconds, ..lines::summarize(&mut system) };
+    if let Some(walls) = walls {
+        walls.finish()?;
+        run.log = Some(ESTIMATES.to_owned());
+        run.figures = lines::pictures(&system)?;
+    }
+    finish::show("lines", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn open_walls(out: &Path, origin: Format) -> Result<LineLog> {
+    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    Ok(LineLog::create(&out.join(ESTIMATES), origin)?)
+}

@@ -1,0 +1,35 @@
+use wayfix_line_extract::Segment;
+
+use super::LineSystem;
+use crate::report::{Metric, Run};
+use crate::system::System;
+
+/// The figures and events of a run, ready for the report. Names as in the contract of `docs/architecture.md`.
+pub fn summarize(system: &mut LineSystem) -> Run {
+    let n_used = system.scans().len() as f64;
+    let segments = || system.scans().iter().flat_map(|scan| &scan.segments);
+    let mut metrics = vec![
+        Metric::new("n_scans", system.n_scans() as f64, ""),
+        Metric::new("n_skipped", system.n_scans() as f64 - n_used, ""),
+    ];
+    if n_used > 0.0 {
+        metrics.push(Metric::new("segments_mean", segments().count() as f64 / n_used, ""));
+    }
+    metrics.extend(residual_rms(segments()).map(|rms| Metric::new("residual_rms_m", rms, "m")));
+    let seconds: f64 = system.scans().iter().map(|scan| scan.step.as_secs_f64()).sum();
+    let mut timings = Vec::new();
+    if seconds > 0.0 {
+        timings.push(Metric::new("scan_mean_us", 1e6 * seconds / n_used, "µs"));
+        timings.push(Metric::new("scans_per_second", n_used / seconds, "Hz"));
+    }
+    Run { metrics, timings, events: system.events().counts(), ..Run::default() }
+}
+
+/// Root of the mean squared distance of the echoes from the walls that were fitted to them.
+fn residual_rms<'a>(segments: impl Iterator<Item = &'a Segment>) -> Option<f64> {
+    let (sum, n_points) = segments.fold((0.0, 0.0), |(sum, n_points), segment| {
+        let n = segment.n_points as f64;
+        (sum + n * segment.rms_m.powi(2), n_points + n)
+    });
+    (n_points > 0.0).then(|| (sum / n_points).sqrt())
+}

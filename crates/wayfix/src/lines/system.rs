@@ -1,0 +1,86 @@
+use std::time::Duration;
+
+use wayfix_estimation_traits::Pose2;
+use wayfix_line_extract::{Extractor, LineError, Params, Scan, Segment};
+use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
+
+use crate::system::{Events, Stopwatch, System};
+
+/// Finds the walls of every scan of a log.
+pub struct LineSystem {
+    extractor: Extractor,
+    pose: Option<(Stamp, Pose2<f64>)>,
+    scans: Vec<ScanWalls>,
+    n_scans: u64,
+    events: Events,
+}
+
+/// A scan and the walls in it.
+#[derive(Clone, Debug)]
+pub struct ScanWalls {
+    /// When it was taken.
+    pub stamp: Stamp,
+    /// Where, if the log says so for this very stamp.
+    pub pose: Option<Pose2<f64>>,
+    /// What came back: bearing, radians, and range, metres.
+    pub echoes: Vec<(f64, f64)>,
+    /// The walls, in the frame of the sensor.
+    pub segments: Vec<Segment>,
+    /// How long the search took.
+    pub step: Duration,
+}
+
+impl LineSystem {
+    /// Looks for walls as `params` say.
+    ///
+    /// # Errors
+    /// When a parameter makes no sense.
+    pub fn new(params: Params) -> Result<Self, LineError> {
+        let extractor = Extractor::new(params)?;
+        Ok(Self { extractor, pose: None, scans: Vec::new(), n_scans: 0, events: Events::default() })
+    }
+
+    /// The scans that walls were looked for in, in the order of the log.
+    pub fn scans(&self) -> &[ScanWalls] {
+        &self.scans
+    }
+
+    /// Scans of the log, with those that could not be used; the events say why.
+    pub fn n_scans(&self) -> u64 {
+        self.n_scans
+    }
+
+    fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
+        self.n_scans += 1;
+        let echoes: Vec<(f64, f64)> = scan.echoes().collect();
+        if echoes.is_empty() {
+            return Err(format!("none of {} beams came back", scan.ranges.len()));
+        }
+        // A range of `range_max` is no echo to the log, and still one to the extractor.
+        let max_range = scan.range_max.next_down();
+        let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
+        let scan = Scan { angle_min: *angle_min, angle_increment: *angle_increment, ranges, max_range };
+        let stopwatch = Stopwatch::start();
+        let found = self.extractor.extract(&scan).map_err(|error| error.to_string())?;
+        let step = stopwatch.elapsed();
+        let pose = self.pose.filter(|(at, _)| *at == stamp).map(|(_, pose)| pose);
+        self.events.add("beam_without_echo", found.counts.skipped() as u64);
+        self.scans.push(ScanWalls { stamp, pose, echoes, segments: found.segments, step });
+        Ok(())
+    }
+}
+
+impl System for LineSystem {
+    fn take(&mut self, record: &Record) -> Result<(), String> {
+        match &record.data {
+            Data::TruePose(pose) | Data::EstimatedPose(pose) => self.pose = Some((record.stamp, *pose)),
+            Data::Scan(scan) => return self.take_scan(record.stamp, scan),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn events(&mut self) -> &mut Events {
+        &mut self.events
+    }
+}
