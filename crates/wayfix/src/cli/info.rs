@@ -53,7 +53,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 fn usable_for(summary: &LogSummary) -> &'static str {
     let has = |kinds: &[&str]| kinds.iter().any(|kind| summary.kinds.contains_key(kind));
     let sees_landmarks = !summary.landmarks_seen.is_empty() || summary.n_unlabelled > 0;
-    match (has(&["velocity", "odometry increment"]), sees_landmarks, has(&["true pose"])) {
+    match (
+        has(&["velocity", "odometry increment", "ackermann drive"]),
+        sees_landmarks,
+        has(&["true pose", "true position"]),
+    ) {
         (true, true, true) => "usable for `wayfix run slam`, with figures of accuracy",
         (true, true, false) => {
             "usable for `wayfix run slam`; without true poses there are no figures of accuracy"
