@@ -34,7 +34,7 @@ pub use alloc::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 pub use association::{Association, DataAssociation, KnownIds, NearestNeighbour, NearestNeighbourParams};
 pub use error::SlamError;
 pub use filter::{
-    Confirmation, EkfSlam, LandmarkEstimate, OutlierRule, PredictedSighting, SlamParams, UpdateOrder,
+    Confirmation, EkfSlam, LandmarkEstimate, MapForm, OutlierRule, PredictedSighting, SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{

@@ -32,7 +32,8 @@ impl JointCovariance {
             return None;
         }
 
-        let given_back = self.matrix().diagonal() * ROUNDING;
+        // Nothing to the influences of a compressed map: they are no variances, and never positive.
+        let given_back = self.matrix().diagonal().map(|variance| variance.max(0.0) * ROUNDING);
         let mut p = self.matrix_mut();
         subtract_square_from_lower(&mut p, &whitened);
         for (i, variance) in given_back.iter().enumerate() {

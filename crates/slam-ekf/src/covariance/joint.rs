@@ -25,6 +25,10 @@ impl JointCovariance {
         Self { storage, dimension }
     }
 
+    pub(super) fn from_matrix(storage: DMatrix<f64>) -> Self {
+        Self { dimension: storage.nrows(), storage }
+    }
+
     pub(crate) fn matrix(&self) -> DMatrixView<'_, f64> {
         self.storage.view((0, 0), (self.dimension, self.dimension))
     }
@@ -33,8 +37,21 @@ impl JointCovariance {
         self.storage.view_mut((0, 0), (self.dimension, self.dimension))
     }
 
-    pub(crate) fn block(&self, rows: Range<usize>, columns: Range<usize>) -> DMatrixView<'_, f64> {
-        self.storage.view((rows.start, columns.start), (rows.len(), columns.len()))
+    pub(super) fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// $`P_{mr}`$ and $`P_{mm}`$ of the landmark block at `offset`.
+    pub(crate) fn landmark_blocks<L: DimName, R: DimName>(
+        &self,
+        offset: usize,
+    ) -> (OMatrix<f64, L, R>, OMatrix<f64, L, L>)
+    where
+        DefaultAllocator: Allocator<L, R> + Allocator<L, L>,
+    {
+        let at = |row: usize, column: usize| self.storage[(offset + row, column)];
+        let with_robot = OMatrix::<f64, L, R>::from_fn(&at);
+        (with_robot, OMatrix::<f64, L, L>::from_fn(|row, column| at(row, offset + column)))
     }
 
     pub(crate) fn robot<R: DimName>(&self) -> OMatrix<f64, R, R>
@@ -90,6 +107,15 @@ impl JointCovariance {
         self.storage.view_mut((offset, offset), (L::DIM, L::DIM)).copy_from(&own);
         self.dimension += L::DIM;
         offset
+    }
+
+    /// Appends rows and columns of zeros.
+    pub(super) fn extend_with_zeros(&mut self, n: usize) {
+        let (start, end) = (self.dimension, self.dimension + n);
+        self.reserve(end);
+        self.storage.view_mut((0, start), (end, n)).fill(0.0);
+        self.storage.view_mut((start, 0), (n, start)).fill(0.0);
+        self.dimension = end;
     }
 
     /// Takes a block out: what is left is the marginal of the rest.

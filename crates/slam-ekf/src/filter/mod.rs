@@ -10,6 +10,6 @@ mod state;
 mod update;
 
 pub use confirmation::Confirmation;
-pub use params::{OutlierRule, SlamParams, UpdateOrder};
+pub use params::{MapForm, OutlierRule, SlamParams, UpdateOrder};
 pub use sight::PredictedSighting;
 pub use state::{EkfSlam, LandmarkEstimate};

@@ -19,6 +19,8 @@ pub struct SlamParams {
     pub student_t_degrees_of_freedom: f64,
     /// Whether observations of one look correct together.
     pub order: UpdateOrder,
+    /// Whether the covariance of a large map is kept up to date as a whole.
+    pub map: MapForm,
     /// What a landmark must show before it counts.
     pub confirmation: Confirmation,
 }
@@ -45,6 +47,19 @@ pub enum UpdateOrder {
     Sequential,
 }
 
+/// How the covariance of robot and map is kept. The estimates are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum MapForm {
+    /// One matrix, up to date: a correction costs the square of the number of landmarks in the map.
+    #[default]
+    Full,
+    /// The area around the robot up to date, and for the rest what it has to be told later: a correction costs the square of the
+    /// number of landmarks around. Landmarks whose `retract` adds, as points do, get the same means but for rounding.
+    /// [Guivant & Nebot 2001]
+    Compressed,
+}
+
 impl UpdateOrder {
     pub(super) fn batch_size(self, n_observations: usize) -> usize {
         match self {
@@ -61,6 +76,7 @@ impl Default for SlamParams {
             gate_probability: 0.9999,
             student_t_degrees_of_freedom: 4.0,
             order: UpdateOrder::Joint,
+            map: MapForm::default(),
             confirmation: Confirmation::default(),
         }
     }

@@ -1,4 +1,4 @@
-use nalgebra::{DefaultAllocator, DimName, linalg::Cholesky};
+use nalgebra::{DefaultAllocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
 use super::EkfSlam;
@@ -49,7 +49,7 @@ where
     /// gives no finite measurement).
     pub fn predicted_sighting(&self, id: LandmarkId) -> Option<PredictedSighting<M>> {
         if let Some(slot) = self.landmarks.get(&id) {
-            self.predict_sighting(id, &slot.mean, Some(slot.offset))
+            self.predict_sighting(id, &self.mean(slot), Some(slot.offset))
         } else {
             self.predict_sighting(id, self.anchors.get(&id)?, None)
         }
@@ -60,7 +60,8 @@ where
         let anchors = self.anchors.iter().filter_map(|(id, mean)| self.predict_sighting(*id, mean, None));
         let landmarks = self.landmarks.iter();
         anchors.chain(
-            landmarks.filter_map(|(id, slot)| self.predict_sighting(*id, &slot.mean, Some(slot.offset))),
+            landmarks
+                .filter_map(|(id, slot)| self.predict_sighting(*id, &self.mean(slot), Some(slot.offset))),
         )
     }
 
@@ -77,9 +78,7 @@ where
 
         let mut covariance = &robot_jacobian * self.robot_covariance() * robot_jacobian.transpose();
         if let Some((offset, jacobian)) = &landmark_jacobian {
-            let block = *offset..*offset + LandmarkDim::<M>::DIM;
-            let cross = self.covariance.block(block.clone(), 0..RobotDim::<M>::DIM);
-            let own = self.covariance.block(block.clone(), block);
+            let (cross, own) = self.covariance.landmark_blocks::<LandmarkDim<M>, RobotDim<M>>(*offset);
             let mixed = jacobian * cross * robot_jacobian.transpose();
             covariance += jacobian * own * jacobian.transpose() + &mixed + mixed.transpose();
         }

@@ -1,12 +1,12 @@
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrixView, DefaultAllocator, DimName};
+use nalgebra::{DMatrix, DefaultAllocator, DimName};
 use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
 use super::{SlamParams, gates::Gates};
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
-    covariance::JointCovariance,
+    covariance::MapCovariance,
 };
 
 /// EKF-SLAM over one kind of landmark.
@@ -41,7 +41,7 @@ where
     pub(super) robot: M::Robot,
     pub(super) landmarks: BTreeMap<LandmarkId, Slot<M::Landmark>>,
     pub(super) anchors: BTreeMap<LandmarkId, M::Landmark>,
-    pub(super) covariance: JointCovariance,
+    pub(super) covariance: MapCovariance,
     /// How many looks there were.
     pub(super) look: usize,
 }
@@ -103,7 +103,7 @@ where
             robot: start,
             landmarks: BTreeMap::new(),
             anchors: BTreeMap::new(),
-            covariance: JointCovariance::from_robot(&covariance),
+            covariance: MapCovariance::from_robot(params.map, &covariance),
             look: 0,
         })
     }
@@ -116,8 +116,9 @@ where
     pub fn robot_covariance(&self) -> TangentMatrix<M::Robot> {
         self.covariance.robot()
     }
-    /// The joint covariance: robot first, then the landmarks in the order in which they came.
-    pub fn covariance(&self) -> DMatrixView<'_, f64> {
+    /// The joint covariance: robot first, then the landmarks in the order in which they came. A copy, with everything that a compressed
+    /// map defers worked in.
+    pub fn covariance(&self) -> DMatrix<f64> {
         self.covariance.matrix()
     }
     /// How many landmarks are confirmed; anchors are not among them.
@@ -151,13 +152,17 @@ where
     }
 
     fn estimate(&self, id: LandmarkId, slot: &Slot<M::Landmark>) -> LandmarkEstimate<M::Landmark> {
-        LandmarkEstimate { id, mean: slot.mean.clone(), covariance: self.landmark_covariance(slot) }
+        LandmarkEstimate { id, mean: self.mean(slot), covariance: self.landmark_covariance(slot) }
+    }
+
+    /// The mean up to date: what a compressed map defers is added.
+    pub(super) fn mean(&self, slot: &Slot<M::Landmark>) -> M::Landmark {
+        let deferred = self.covariance.deferred_step::<LandmarkDim<M>>(slot.offset);
+        deferred.map_or_else(|| slot.mean.clone(), |step| slot.mean.retract(&step))
     }
 
     pub(super) fn landmark_covariance(&self, slot: &Slot<M::Landmark>) -> TangentMatrix<M::Landmark> {
-        let block = slot.offset..slot.offset + LandmarkDim::<M>::DIM;
-        let view = self.covariance.block(block.clone(), block);
-        TangentMatrix::<M::Landmark>::from_fn(|row, column| view[(row, column)])
+        self.covariance.landmark_blocks::<LandmarkDim<M>, RobotDim<M>>(slot.offset).1
     }
 }
 

@@ -60,6 +60,7 @@ where
             self.update_batch(observations, batch, &mut taken, &mut outcomes);
         }
         self.forget_unconfirmed();
+        self.covariance.end_look();
         Ok(StepReport { outcomes })
     }
 

@@ -1,0 +1,70 @@
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DefaultAllocator, DimName, OMatrix, OVector, allocator::Allocator};
+
+use super::area::CompressedCovariance;
+
+/// A landmark as seen from the area.
+pub(super) struct Reach {
+    /// Covariance with all rows of the area and the influences: one column a state of the landmark.
+    pub(super) with_local: DMatrix<f64>,
+    /// Its own covariance.
+    pub(super) own: DMatrix<f64>,
+}
+
+impl CompressedCovariance {
+    /// Covariance of a landmark block with the robot, and its own. In the size of the area when the landmark is inside, squared when outside.
+    pub(in crate::covariance) fn landmark_blocks<L: DimName, R: DimName>(
+        &self,
+        offset: usize,
+    ) -> (OMatrix<f64, L, R>, OMatrix<f64, L, L>)
+    where
+        DefaultAllocator: Allocator<L, R> + Allocator<L, L>,
+    {
+        if let Some(row) = self.rows[offset] {
+            return self.local.landmark_blocks(row);
+        }
+        let Reach { with_local, own } = self.reach(offset..offset + L::DIM);
+        let with_robot = OMatrix::<f64, L, R>::from_fn(|i, robot| with_local[(robot, i)]);
+        (with_robot, OMatrix::<f64, L, L>::from_fn(|i, j| own[(i, j)]))
+    }
+
+    /// What the mean that the filter holds of a landmark block still lacks; `None` when nothing.
+    pub(in crate::covariance) fn deferred_step<L: DimName>(&self, offset: usize) -> Option<OVector<f64, L>>
+    where
+        DefaultAllocator: Allocator<L>,
+    {
+        let step = OVector::<f64, L>::from_fn(|i, _| self.lag[offset + i] + self.influenced(offset + i));
+        step.iter().any(|entry| *entry != 0.0).then_some(step)
+    }
+
+    /// $`P_{ba,0} θ`$ of one state; nothing for a state of the area, which is corrected at once.
+    pub(super) fn influenced(&self, state: usize) -> f64 {
+        let base = self.base.matrix();
+        match self.rows[state] {
+            Some(_) => 0.0,
+            None => self.influences.iter().map(|v| base[(state, v.state)] * v.step).sum(),
+        }
+    }
+
+    /// Covariances of states outside the area: $`P_{ja,0}`$ times the rows of the influences.
+    pub(super) fn reach(&self, states: Range<usize>) -> Reach {
+        let (base, local) = (self.base.matrix(), self.local.matrix());
+        let mut with_local = DMatrix::zeros(local.nrows(), states.len());
+        for (state, mut column) in states.clone().zip(with_local.column_iter_mut()) {
+            for v in &self.influences {
+                column.axpy(base[(state, v.state)], &local.column(v.row), 1.0);
+            }
+        }
+        let own = DMatrix::from_fn(states.len(), states.len(), |i, j| {
+            let (one, other) = (states.start + i.min(j), states.start + i.max(j)); // the same bits on both sides
+            let through_influences: f64 = self
+                .influences
+                .iter()
+                .map(|v| base[(one, v.state)] * with_local[(v.row, other - states.start)])
+                .sum();
+            base[(one, other)] - self.backlog.owed(one, other) + through_influences
+        });
+        Reach { with_local, own }
+    }
+}
