@@ -1,11 +1,11 @@
 use nalgebra::{DMatrix, DVector, DefaultAllocator, DimName, OMatrix, allocator::Allocator};
 
 use super::{backlog::Backlog, schedule::Schedule};
-use crate::covariance::{JointCovariance, SparseJacobian};
+use crate::covariance::{JointCovariance, ROUNDING, SparseJacobian};
 
 /// A covariance in two parts: the area around the robot, and the whole map as it was when the area was chosen.
 #[derive(Clone, Debug)]
-pub(in crate::covariance) struct CompressedCovariance {
+pub(crate) struct CompressedCovariance {
     /// Area and influences. The robot comes first.
     pub(super) local: JointCovariance,
     /// The row in `local` of every state of the map; `None` outside the area.
@@ -18,6 +18,8 @@ pub(in crate::covariance) struct CompressedCovariance {
     pub(super) backlog: Backlog,
     /// By how much the means that the filter holds lag behind, but for what the influences add outside the area.
     pub(super) lag: DVector<f64>,
+    /// Corrections since the area was chosen: each owes every variance a little for its rounding.
+    pub(super) n_corrections: usize,
     pub(super) schedule: Schedule,
 }
 
@@ -45,6 +47,7 @@ impl CompressedCovariance {
             base: JointCovariance::from_robot(robot),
             backlog: Backlog::default(),
             lag: DVector::zeros(R::DIM),
+            n_corrections: 0,
             schedule: Schedule::for_robot_states(R::DIM),
         }
     }
@@ -111,8 +114,14 @@ impl CompressedCovariance {
         for influence in &mut self.influences {
             influence.step += step[influence.row];
         }
+        self.n_corrections += 1;
         self.schedule.note_rows(jacobian.nrows());
         let caught_up = DVector::zeros(self.lag.len());
         Some(std::mem::replace(&mut self.lag, caught_up))
+    }
+
+    /// What the corrections of this area give back to a variance outside, as a share of it: as much as if they had reached it one by one.
+    pub(super) fn given_back(&self) -> f64 {
+        ROUNDING * self.n_corrections as f64
     }
 }

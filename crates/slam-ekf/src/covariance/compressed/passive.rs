@@ -63,7 +63,8 @@ impl CompressedCovariance {
                 .iter()
                 .map(|v| base[(one, v.state)] * with_local[(v.row, other - states.start)])
                 .sum();
-            base[(one, other)] - self.backlog.owed(one, other) + through_influences
+            let given_back = if one == other { self.given_back() * base[(one, one)] } else { 0.0 };
+            base[(one, other)] - self.backlog.owed(one, other) + through_influences + given_back
         });
         Reach { with_local, own }
     }

@@ -7,7 +7,7 @@ use super::{
     backlog::Backlog,
     factor::semidefinite_factor,
 };
-use crate::covariance::{JointCovariance, ROUNDING};
+use crate::covariance::JointCovariance;
 
 impl CompressedCovariance {
     /// The whole covariance.
@@ -54,6 +54,7 @@ impl CompressedCovariance {
     /// Brings the base up to date, but for a new backlog: $`P_{ba} = P_{ba,0} Φ^T`$, $`P_{bb} = P_{bb,0} - W W^T`$ with $`W W^T = P_{ba,0} Ψ P_{ab,0}`$.
     fn hand_over(&mut self) {
         self.backlog.finish(&mut self.base);
+        let given_back = self.given_back();
         let local = self.local.matrix();
         let n = self.rows.len();
         let outside: Vec<usize> = (0..n).filter(|state| self.rows[*state].is_none()).collect();
@@ -89,11 +90,12 @@ impl CompressedCovariance {
             }
         }
         for &state in &outside {
-            base[(state, state)] *= 1.0 + ROUNDING;
+            base[(state, state)] *= 1.0 + given_back;
         }
         self.backlog = Backlog::from_factor(&cross * semidefinite_factor(psi));
         for v in &mut self.influences {
             v.step = 0.0;
         }
+        self.n_corrections = 0;
     }
 }
