@@ -32,8 +32,7 @@ impl JointCovariance {
             return None;
         }
 
-        // Nothing to the influences of a compressed map: they are no variances, and never positive.
-        let given_back = self.matrix().diagonal().map(|variance| variance.max(0.0) * ROUNDING);
+        let given_back = self.matrix().diagonal() * ROUNDING;
         let mut p = self.matrix_mut();
         subtract_square_from_lower(&mut p, &whitened);
         for (i, variance) in given_back.iter().enumerate() {

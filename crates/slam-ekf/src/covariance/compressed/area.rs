@@ -13,7 +13,7 @@ pub(crate) struct CompressedCovariance {
     /// The states that have a row.
     pub(super) area: Vec<usize>,
     pub(super) influences: Vec<Influence>,
-    /// The whole map: right for pairs outside the area but for the backlog; between area and outside as it was when the area was chosen.
+    /// The whole map as it was when the area was chosen, for pairs outside the area; the backlog is still to be subtracted.
     pub(super) base: JointCovariance,
     pub(super) backlog: Backlog,
     /// By how much the means that the filter holds lag behind, but for what the influences add outside the area.
@@ -23,13 +23,14 @@ pub(crate) struct CompressedCovariance {
     pub(super) schedule: Schedule,
 }
 
-/// How the states outside depend on one state that the area began with.
-#[derive(Clone, Copy, Debug)]
+/// One of the variables $`v`$ through which the area and the rest of the map are correlated.
+#[derive(Clone, Debug)]
 pub(super) struct Influence {
-    pub(super) state: usize,
     /// Its row in `local`.
     pub(super) row: usize,
-    /// Its share of $`θ`$.
+    /// Its column of $`B`$, one entry a state of the map; those of the area mean nothing.
+    pub(super) loadings: Vec<f64>,
+    /// By how much its mean has moved.
     pub(super) step: f64,
 }
 
@@ -87,6 +88,9 @@ impl CompressedCovariance {
         let row = self.local.append(robot_jacobian, noise);
         let state = self.rows.len();
         self.base.extend_with_zeros(L::DIM);
+        for influence in &mut self.influences {
+            influence.loadings.resize(state + L::DIM, 0.0);
+        }
         self.rows.extend((0..L::DIM).map(|i| Some(row + i)));
         self.area.extend(state..state + L::DIM);
         self.lag.resize_vertically_mut(state + L::DIM, 0.0);
@@ -107,12 +111,15 @@ impl CompressedCovariance {
             self.schedule.note_landmark(landmark);
         }
         let in_area = jacobian.relocated(|state| self.rows[state].expect("activated above"));
+        let lifted: Vec<f64> = self.influences.iter().map(|v| ROUNDING * self.variance(v)).collect();
         let step = self.local.correct(&in_area, noise, residual)?;
         for &state in &self.area {
             self.lag[state] += self.rows[state].map_or(0.0, |row| step[row]);
         }
-        for influence in &mut self.influences {
+        for (influence, lifted) in self.influences.iter_mut().zip(lifted) {
             influence.step += step[influence.row];
+            // What stands behind it gets this back, not the influence: it would correlate what it stands for.
+            self.local.matrix_mut()[(influence.row, influence.row)] -= lifted;
         }
         self.n_corrections += 1;
         self.schedule.note_rows(jacobian.nrows());
@@ -120,8 +127,13 @@ impl CompressedCovariance {
         Some(std::mem::replace(&mut self.lag, caught_up))
     }
 
-    /// What the corrections of this area give back to a variance outside, as a share of it: as much as if they had reached it one by one.
-    pub(super) fn given_back(&self) -> f64 {
-        ROUNDING * self.n_corrections as f64
+    fn variance(&self, influence: &Influence) -> f64 {
+        self.local.matrix()[(influence.row, influence.row)]
+    }
+
+    /// What a full map would have given back to a variance outside for the rounding of every correction since the area was chosen, when the
+    /// variance was `first`, until now.
+    pub(super) fn given_back(&self, first: f64, now: f64) -> f64 {
+        0.5 * (first + now) * ROUNDING * self.n_corrections as f64
     }
 }

@@ -1,22 +1,22 @@
 //! The covariance of a large map of which only the area around the robot is kept up to date. [Guivant & Nebot 2001, section III]
 //!
-//! Let `a` be the robot and the landmarks that were seen of late, the *area*, and `b` the rest. As long as only `a` is observed, everything that
-//! happens to `b` goes through the cross covariance at the time when the area was chosen, $`P_{ba,0}`$:
+//! Let `a` be the robot and the landmarks that were seen of late, the *area*, and `b` the rest. When the area is chosen, $`P_{aa,0} = L L^T`$: its state is
+//! $`L v`$ with standardized, uncorrelated variables $`v`$, the *influences*, and the rest of the map is $`B v`$ and something that no observation of the area
+//! tells about, with $`B = P_{ba,0} L^{-T}`$. The joint covariance of area and influences
 //!
 //! ```math
-//! P_{ab} = Φ P_{ab,0}, \qquad P_{bb} = P_{bb,0} - P_{ba,0} Ψ P_{ab,0}, \qquad x_b = x_{b,0} + P_{ba,0} θ
+//! \begin{pmatrix} P_{aa} & P_{av} \\ P_{va} & P_{vv} \end{pmatrix}, \quad \text{at first} \quad \begin{pmatrix} L L^T & L \\ L^T & I \end{pmatrix},
 //! ```
 //!
-//! $`Φ, Ψ, θ`$ start as identity, zero and zero. They need no algebra of their own: bordered with *influences* $`v`$, one for each state that the area
-//! began with,
+//! is one more [`JointCovariance`](super::JointCovariance), of twice the size of the area whatever the size of the map, and is moved, corrected and extended as
+//! such. At any time
 //!
 //! ```math
-//! \begin{pmatrix} P_{aa} & Φ \\ Φ^T & -Ψ \end{pmatrix}
+//! P_{ba} = B P_{va}, \qquad P_{bb} = P_{bb,0} - B (I - P_{vv}) B^T, \qquad x_b = x_{b,0} + B \, δv .
 //! ```
 //!
-//! is moved, corrected and extended by the very formulas of a covariance, and the step of the mean at $`v`$ adds up to $`θ`$. So the area is one more
-//! [`JointCovariance`](super::JointCovariance), of twice the size of the area and not of the size of the map. A landmark that comes into the area is
-//! $`x_j = P_{ja,0}\, v + …`$ and takes its covariances from the influences.
+//! These are the $`Φ, Ψ, θ`$ of the paper in other coordinates: $`Φ = P_{av} L^{-1}`$, $`Ψ = L^{-T} (I - P_{vv}) L^{-1}`$, $`θ = L^{-T} δv`$. In these nothing is larger
+//! than the covariances themselves, however nearly singular $`P_{aa,0}`$ is.
 //!
 //! Now and then the area starts anew with what is near then. What that owes to the rest of the map is a square, $`-W W^T`$, which is
 //! subtracted a few columns a look; until then it is accounted for whenever something is read.
@@ -25,6 +25,7 @@ mod activate;
 mod area;
 mod backlog;
 mod factor;
+mod influence;
 mod passive;
 mod remove;
 mod restart;

@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DefaultAllocator, DimName, OMatrix, OVector, allocator::Allocator};
 
-use super::area::CompressedCovariance;
+use super::area::{CompressedCovariance, Influence};
 
 /// A landmark as seen from the area.
 pub(super) struct Reach {
@@ -38,33 +38,31 @@ impl CompressedCovariance {
         step.iter().any(|entry| *entry != 0.0).then_some(step)
     }
 
-    /// $`P_{ba,0} θ`$ of one state; nothing for a state of the area, which is corrected at once.
+    /// $`B \, δv`$ of one state; nothing for a state of the area, which is corrected at once.
     pub(super) fn influenced(&self, state: usize) -> f64 {
-        let base = self.base.matrix();
         match self.rows[state] {
             Some(_) => 0.0,
-            None => self.influences.iter().map(|v| base[(state, v.state)] * v.step).sum(),
+            None => self.influences.iter().map(|v| v.loadings[state] * v.step).sum(),
         }
     }
 
-    /// Covariances of states outside the area: $`P_{ja,0}`$ times the rows of the influences.
+    /// Covariances of states outside the area: $`P_{j·} = B_j P_{v·}`$, $`P_{jj} = P_{jj,0} - B_j (I - P_{vv}) B_j^T`$.
     pub(super) fn reach(&self, states: Range<usize>) -> Reach {
         let (base, local) = (self.base.matrix(), self.local.matrix());
         let mut with_local = DMatrix::zeros(local.nrows(), states.len());
         for (state, mut column) in states.clone().zip(with_local.column_iter_mut()) {
             for v in &self.influences {
-                column.axpy(base[(state, v.state)], &local.column(v.row), 1.0);
+                column.axpy(v.loadings[state], &local.column(v.row), 1.0);
             }
         }
         let own = DMatrix::from_fn(states.len(), states.len(), |i, j| {
             let (one, other) = (states.start + i.min(j), states.start + i.max(j)); // the same bits on both sides
-            let through_influences: f64 = self
-                .influences
-                .iter()
-                .map(|v| base[(one, v.state)] * with_local[(v.row, other - states.start)])
-                .sum();
-            let given_back = if one == other { self.given_back() * base[(one, one)] } else { 0.0 };
-            base[(one, other)] - self.backlog.owed(one, other) + through_influences + given_back
+            let change = |v: &Influence| {
+                v.loadings[one] * (with_local[(v.row, other - states.start)] - v.loadings[other])
+            };
+            let first = base[(one, other)] - self.backlog.owed(one, other);
+            let now = first + self.influences.iter().map(change).sum::<f64>();
+            now + if one == other { self.given_back(first, now) } else { 0.0 }
         });
         Reach { with_local, own }
     }

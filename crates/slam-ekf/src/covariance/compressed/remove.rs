@@ -1,18 +1,12 @@
-use std::{collections::BTreeSet, ops::Range};
+use std::ops::Range;
 
 use nalgebra::DVector;
 
 use super::area::CompressedCovariance;
 
 impl CompressedCovariance {
-    /// As [`JointCovariance::remove`](crate::covariance::JointCovariance::remove).
+    /// As [`JointCovariance::remove`](crate::covariance::JointCovariance::remove). The influences stay: what they carry is of the rest of the map too.
     pub(in crate::covariance) fn remove(&mut self, block: Range<usize>) {
-        if self.influences.iter().any(|influence| block.contains(&influence.state)) {
-            // The rest of the map depends on it: that has to be worked off first.
-            let others: BTreeSet<usize> =
-                self.area.iter().copied().filter(|state| !block.contains(state)).collect();
-            self.restart(&others);
-        }
         if let Some(row) = self.rows[block.start] {
             let removed = row..row + block.len();
             self.local.remove(removed.clone());
@@ -26,12 +20,13 @@ impl CompressedCovariance {
         self.backlog.remove(&block);
         self.schedule.remove(&block);
         self.rows.drain(block.clone());
+        for influence in &mut self.influences {
+            influence.loadings.drain(block.clone());
+        }
         self.lag = std::mem::replace(&mut self.lag, DVector::zeros(0)).remove_rows(block.start, block.len());
         self.area.retain(|state| !block.contains(state));
-        for state in self.area.iter_mut().chain(self.influences.iter_mut().map(|v| &mut v.state)) {
-            if *state >= block.end {
-                *state -= block.len();
-            }
+        for state in self.area.iter_mut().filter(|state| **state >= block.end) {
+            *state -= block.len();
         }
     }
 }

@@ -2,11 +2,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{
-    area::{CompressedCovariance, Influence},
-    backlog::Backlog,
-    factor::semidefinite_factor,
-};
+use super::{area::CompressedCovariance, backlog::Backlog, factor::semidefinite_factor};
 use crate::covariance::JointCovariance;
 
 impl CompressedCovariance {
@@ -26,76 +22,67 @@ impl CompressedCovariance {
         let n = self.rows.len();
         self.rows = (0..n).map(Some).collect();
         self.area = (0..n).collect();
-        self.influences.clear();
     }
 
     /// Hands on to the rest of the map what the area has learnt, and goes on with an area of these states only.
     pub(super) fn restart(&mut self, area: &BTreeSet<usize>) {
         self.hand_over();
-        let kept: Vec<usize> = area.iter().copied().collect();
-        let n = kept.len();
-        let row = |i: usize| self.rows[kept[i]].expect("the new area is part of the old one");
-        let local = self.local.matrix();
-        let bordered = DMatrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
-            (true, true) => local[(row(i), row(j))],
-            (false, false) => 0.0,
-            _ => f64::from(i % n == j % n),
-        });
-        self.local = JointCovariance::from_matrix(bordered);
+        self.area = area.iter().copied().collect();
+        let n = self.area.len();
+        let base = self.base.matrix();
+        let kept = DMatrix::from_fn(n, n, |i, j| base[(self.area[i], self.area[j])]);
+        self.local = JointCovariance::from_matrix(kept);
         self.rows.fill(None);
-        for (row, state) in kept.iter().enumerate() {
+        for (row, state) in self.area.iter().enumerate() {
             self.rows[*state] = Some(row);
         }
-        let influence = |(i, state): (usize, &usize)| Influence { state: *state, row: n + i, step: 0.0 };
-        self.influences = kept.iter().enumerate().map(influence).collect();
-        self.area = kept;
+        self.add_influences(&self.area.clone());
     }
 
-    /// Brings the base up to date, but for a new backlog: $`P_{ba} = P_{ba,0} Φ^T`$, $`P_{bb} = P_{bb,0} - W W^T`$ with $`W W^T = P_{ba,0} Ψ P_{ab,0}`$.
+    /// Brings the base up to date, but for a new backlog: $`P_{ba} = B P_{va}`$, $`P_{bb} = P_{bb,0} - W W^T`$ with
+    /// $`W W^T = B (I - P_{vv}) B^T`$. There are no influences then.
     fn hand_over(&mut self) {
         self.backlog.finish(&mut self.base);
-        let given_back = self.given_back();
-        let local = self.local.matrix();
         let n = self.rows.len();
+        let influences = std::mem::take(&mut self.influences);
         let outside: Vec<usize> = (0..n).filter(|state| self.rows[*state].is_none()).collect();
-        let cross = {
-            let base = self.base.matrix();
-            let mut cross = DMatrix::zeros(n, self.influences.len());
-            for (v, mut column) in self.influences.iter().zip(cross.column_iter_mut()) {
-                for &state in &outside {
-                    column[state] = base[(state, v.state)];
-                }
+        let inside: Vec<usize> = self.area.iter().filter_map(|state| self.rows[*state]).collect();
+        let mut loadings = DMatrix::zeros(outside.len(), influences.len());
+        for (v, mut column) in influences.iter().zip(loadings.column_iter_mut()) {
+            for (loading, state) in column.iter_mut().zip(&outside) {
+                *loading = v.loadings[*state];
             }
-            cross
-        };
-        let area_rows: Vec<usize> = self.area.iter().filter_map(|state| self.rows[*state]).collect();
-        let phi_transposed = DMatrix::from_fn(self.influences.len(), area_rows.len(), |v, a| {
-            local[(self.influences[v].row, area_rows[a])]
+        }
+        let local = self.local.matrix();
+        let at = |v: usize, row: usize| local[(influences[v].row, row)];
+        let with_area = DMatrix::from_fn(influences.len(), inside.len(), |v, a| at(v, inside[a]));
+        let learnt = DMatrix::from_fn(influences.len(), influences.len(), |v, w| {
+            f64::from(v == w) - at(v, influences[w].row)
         });
-        let psi = DMatrix::from_fn(self.influences.len(), self.influences.len(), |v, w| {
-            -local[(self.influences[v].row, self.influences[w].row)]
-        });
-        let theta = DVector::from_iterator(self.influences.len(), self.influences.iter().map(|v| v.step));
+        let steps = DVector::from_iterator(influences.len(), influences.iter().map(|v| v.step));
 
-        self.lag += &cross * theta;
-        let moved = &cross * phi_transposed;
+        let outside_steps = &loadings * steps;
+        let moved = &loadings * with_area;
+        let square_root = &loadings * semidefinite_factor(&learnt);
+        let mut factor = DMatrix::zeros(n, square_root.ncols());
+        for (b, &state) in outside.iter().enumerate() {
+            self.lag[state] += outside_steps[b];
+            factor.row_mut(state).copy_from(&square_root.row(b));
+            let first = self.base.matrix()[(state, state)];
+            let now = first - square_root.row(b).norm_squared();
+            self.base.matrix_mut()[(state, state)] += self.given_back(first, now);
+        }
         let mut base = self.base.matrix_mut();
         for (a, &state) in self.area.iter().enumerate() {
-            for &other in &outside {
-                base[(other, state)] = moved[(other, a)];
-                base[(state, other)] = moved[(other, a)];
+            for (b, &other) in outside.iter().enumerate() {
+                base[(other, state)] = moved[(b, a)];
+                base[(state, other)] = moved[(b, a)];
             }
-            for (b, &other) in self.area.iter().enumerate() {
-                base[(other, state)] = local[(area_rows[b], area_rows[a])];
+            for (row, &other) in inside.iter().zip(&self.area) {
+                base[(other, state)] = local[(*row, inside[a])];
             }
         }
-        for &state in &outside {
-            base[(state, state)] *= 1.0 + given_back;
-        }
-        self.backlog = Backlog::from_factor(&cross * semidefinite_factor(psi));
-        for v in &mut self.influences {
-            v.step = 0.0;
-        }
+        self.backlog = Backlog::from_factor(factor);
         self.n_corrections = 0;
     }
 }
