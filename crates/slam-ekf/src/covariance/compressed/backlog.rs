@@ -52,7 +52,8 @@ impl Backlog {
 
     /// Settles these states with all others.
     pub(super) fn settle(&mut self, states: Range<usize>, map: &mut JointCovariance) {
-        if self.is_done() || states.end > self.factor.nrows() || states.start < self.next {
+        let states = states.start.max(self.next)..states.end;
+        if self.is_done() || states.end > self.factor.nrows() || states.is_empty() {
             return; // came after, or was settled before
         }
         let (open, below) = (self.next, self.factor.nrows() - self.next);

@@ -1,4 +1,4 @@
-//! The covariance of a large map of which only the area around the robot is kept up to date. [Guivant & Nebot 2001, section III]
+//! The covariance of a large map of which only the area around the robot is kept up to date. [Guivant & Nebot 2001]
 //!
 //! Let `a` be the robot and the landmarks that were seen of late, the *area*, and `b` the rest. When the area is chosen, $`P_{aa,0} = L L^T`$: its state is
 //! $`L v`$ with standardized, uncorrelated variables $`v`$, the *influences*, and the rest of the map is $`B v`$ and something that no observation of the area
