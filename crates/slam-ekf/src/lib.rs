@@ -12,6 +12,8 @@
 //! forget       tentative ones not seen again        O(n²)     [Confirmation]
 //! ```
 //!
+//! With [`MapForm::Compressed`] the `n` in predict and correct is the number of landmarks around the robot, with the same estimates.
+//!
 //! A robot meets new kinds of landmarks through [`LandmarkModel`]: what to expect, how noisy, how to start. Everything else
 //! is the same for points, walls or radio beacons (`examples/range_only.rs`); [`laws`] checks a model of your own.
 //! `examples/slam_in_a_loop.rs` is a whole filter in six steps.

@@ -48,6 +48,23 @@ pub enum UpdateOrder {
 }
 
 /// How the covariance of robot and map is kept. The estimates are the same.
+///
+/// ```
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_slam_ekf::*;
+///
+/// let look = [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(2.0, 0.1) }];
+/// let robot = |map| {
+///     let params = SlamParams { map, ..SlamParams::default() };
+///     let mut slam = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0))?;
+///     slam.update(&look, &mut KnownIds)?;
+///     slam.predict(&IncrementMotion::default(), &Pose2::new(0.1, 0.0, 0.0))?;
+///     slam.update(&look, &mut KnownIds)?;
+///     Ok::<_, SlamError>(slam.robot().x())
+/// };
+/// assert!((robot(MapForm::Full)? - robot(MapForm::Compressed)?).abs() < 1e-12);
+/// # Ok::<(), SlamError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MapForm {

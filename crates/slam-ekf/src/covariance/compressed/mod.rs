@@ -25,6 +25,7 @@ mod activate;
 mod area;
 mod backlog;
 mod factor;
+mod hand_over;
 mod influence;
 mod passive;
 mod remove;

@@ -1,8 +1,8 @@
 use std::collections::BTreeSet;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-use super::{area::CompressedCovariance, backlog::Backlog, factor::semidefinite_factor};
+use super::area::CompressedCovariance;
 use crate::covariance::JointCovariance;
 
 impl CompressedCovariance {
@@ -37,52 +37,5 @@ impl CompressedCovariance {
             self.rows[*state] = Some(row);
         }
         self.add_influences(&self.area.clone());
-    }
-
-    /// Brings the base up to date, but for a new backlog: $`P_{ba} = B P_{va}`$, $`P_{bb} = P_{bb,0} - W W^T`$ with
-    /// $`W W^T = B (I - P_{vv}) B^T`$. There are no influences then.
-    fn hand_over(&mut self) {
-        self.backlog.finish(&mut self.base);
-        let n = self.rows.len();
-        let influences = std::mem::take(&mut self.influences);
-        let outside: Vec<usize> = (0..n).filter(|state| self.rows[*state].is_none()).collect();
-        let inside: Vec<usize> = self.area.iter().filter_map(|state| self.rows[*state]).collect();
-        let mut loadings = DMatrix::zeros(outside.len(), influences.len());
-        for (v, mut column) in influences.iter().zip(loadings.column_iter_mut()) {
-            for (loading, state) in column.iter_mut().zip(&outside) {
-                *loading = v.loadings[*state];
-            }
-        }
-        let local = self.local.matrix();
-        let at = |v: usize, row: usize| local[(influences[v].row, row)];
-        let with_area = DMatrix::from_fn(influences.len(), inside.len(), |v, a| at(v, inside[a]));
-        let learnt = DMatrix::from_fn(influences.len(), influences.len(), |v, w| {
-            f64::from(v == w) - at(v, influences[w].row)
-        });
-        let steps = DVector::from_iterator(influences.len(), influences.iter().map(|v| v.step));
-
-        let outside_steps = &loadings * steps;
-        let moved = &loadings * with_area;
-        let square_root = &loadings * semidefinite_factor(&learnt);
-        let mut factor = DMatrix::zeros(n, square_root.ncols());
-        for (b, &state) in outside.iter().enumerate() {
-            self.lag[state] += outside_steps[b];
-            factor.row_mut(state).copy_from(&square_root.row(b));
-            let first = self.base.matrix()[(state, state)];
-            let now = first - square_root.row(b).norm_squared();
-            self.base.matrix_mut()[(state, state)] += self.given_back(first, now);
-        }
-        let mut base = self.base.matrix_mut();
-        for (a, &state) in self.area.iter().enumerate() {
-            for (b, &other) in outside.iter().enumerate() {
-                base[(other, state)] = moved[(b, a)];
-                base[(state, other)] = moved[(b, a)];
-            }
-            for (row, &other) in inside.iter().zip(&self.area) {
-                base[(other, state)] = local[(*row, inside[a])];
-            }
-        }
-        self.backlog = Backlog::from_factor(factor);
-        self.n_corrections = 0;
     }
 }

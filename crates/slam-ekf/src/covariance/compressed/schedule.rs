@@ -37,6 +37,8 @@ impl Schedule {
 impl CompressedCovariance {
     /// Housekeeping after a look: works off some of the backlog, or starts the area anew when that pays.
     ///
+    /// With its influences an area is twice as large as what it covers, and a correction costs the square: it pays from a quarter of the map down.
+    ///
     /// Rent or buy: a too large area costs a little in every look, a new one costs once. Changing when the rents have
     /// added up to the price costs at most twice what is best, whatever comes. It waits for the backlog, which is worked off with
     /// as much work a look as the look itself was, so that no look is much longer than others.
