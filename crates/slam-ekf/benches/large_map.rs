@@ -23,7 +23,7 @@ struct World {
     n_steps: usize,
 }
 
-/// The first three are as dense as the `range_bearing` logs: 14, 26 and 51 landmarks in sight. The last one is a large hall: 27.
+/// The first three are nearly as dense as the `range_bearing` logs: some 13, 24 and 46 landmarks in sight. The last one is a large hall: 27.
 const WORLDS: [World; 4] = [
     World { n_landmarks: 84, lap_radius: 13.0, half_width: 8.0, n_steps: 500 },
     World { n_landmarks: 156, lap_radius: 13.0, half_width: 8.0, n_steps: 500 },
