@@ -28,7 +28,7 @@ const WORLDS: [World; 4] = [
     World { n_landmarks: 84, lap_radius: 13.0, half_width: 8.0, n_steps: 500 },
     World { n_landmarks: 156, lap_radius: 13.0, half_width: 8.0, n_steps: 500 },
     World { n_landmarks: 301, lap_radius: 13.0, half_width: 8.0, n_steps: 500 },
-    World { n_landmarks: 1000, lap_radius: 60.0, half_width: 10.0, n_steps: 1600 },
+    World { n_landmarks: 1000, lap_radius: 75.0, half_width: 8.0, n_steps: 2000 },
 ];
 const N_RUNS: usize = 4;
 const SIGHT: f64 = 8.0;

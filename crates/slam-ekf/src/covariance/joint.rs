@@ -147,7 +147,8 @@ impl JointCovariance {
     fn reserve(&mut self, dimension: usize) {
         if dimension > self.storage.nrows() {
             let capacity = dimension.max(2 * self.storage.nrows());
-            let mut grown = DMatrix::zeros(capacity, capacity);
+            // Zeroed by the system page by page as they are used, and not all in the step that grows.
+            let mut grown = DMatrix::from_vec(capacity, capacity, vec![0.0; capacity * capacity]);
             grown.view_mut((0, 0), (self.dimension, self.dimension)).copy_from(&self.matrix());
             self.storage = grown;
         }
