@@ -46,6 +46,11 @@ pub enum SlamError {
     /// First-estimates and invariant filters need to know how robot and landmarks move together.
     #[error("this linearization needs a landmark model that implements `symmetries`")]
     NoSymmetry,
+    /// The invariant filter moves the whole map with every correction; a compressed map defers just that.
+    #[error(
+        "the invariant linearization moves the whole map at every correction: it needs the full form of the map"
+    )]
+    MovesTheWholeMap,
     /// A parameter is outside its range.
     #[error("parameter {name} is {value}, must be {range}")]
     Parameter {

@@ -12,6 +12,8 @@
 //! forget       tentative ones not seen again        O(n²)     [Confirmation]
 //! ```
 //!
+//! With [`MapForm::Compressed`] the `n` in predict and correct is the number of landmarks around the robot, with the same estimates.
+//!
 //! A robot meets new kinds of landmarks through [`LandmarkModel`]: what to expect, how noisy, how to start. Everything else
 //! is the same for points, walls or radio beacons (`examples/range_only.rs`); [`laws`] checks a model of your own.
 //! `examples/slam_in_a_loop.rs` is a whole filter in six steps.
@@ -39,8 +41,8 @@ pub use association::{
 };
 pub use error::SlamError;
 pub use filter::{
-    Confirmation, EkfSlam, LandmarkEstimate, Linearization, OutlierRule, PredictedSighting, SlamParams,
-    UpdateOrder,
+    Confirmation, EkfSlam, LandmarkEstimate, Linearization, MapForm, OutlierRule, PredictedSighting,
+    SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{

@@ -84,13 +84,19 @@ fn crates_with(path: &str) -> Result<Vec<String>> {
 }
 
 fn slam_ours(options: &Options) -> Vec<Job> {
-    slam_jobs(options, "wayfix", &[&KNOWN[..], &UNKNOWN].concat(), |log, association, job| {
+    let mut jobs = slam_form(options, "wayfix", &[&KNOWN[..], &UNKNOWN].concat(), &[]);
+    jobs.extend(slam_form(options, "wayfix compressed", &KNOWN, &["--params", "params/compressed.toml"]));
+    jobs
+}
+
+fn slam_form(options: &Options, program: &'static str, cases: &[SlamCase], args: &[&str]) -> Vec<Job> {
+    slam_jobs(options, program, cases, |log, association, job| {
         job.command = shell::wayfix(&["run", "slam", "--format", "range-bearing", "--json"]);
-        job.command.args(["--association", association, "--log"]).arg(log);
+        job.command.args(args).args(["--association", association, "--log"]).arg(log);
         let name = job_name(log, association);
         job.read = Box::new(move |line| {
             let nanoseconds = 1e3 * json_number(line, "step_mean_us")?;
-            Some(Measurement { job: name.clone(), program: "wayfix".into(), nanoseconds })
+            Some(Measurement { job: name.clone(), program: program.into(), nanoseconds })
         });
     })
 }
@@ -196,7 +202,7 @@ mod tests {
         let options =
             Options { peers: false, data: Some(PathBuf::from("no-such-folder")), filter: String::new() };
         let jobs = slam_ours(&options);
-        assert_eq!(jobs.len(), KNOWN.len() + UNKNOWN.len());
+        assert_eq!(jobs.len(), 2 * KNOWN.len() + UNKNOWN.len());
         assert!(
             jobs.iter().all(|job| job.missing.as_deref().is_some_and(|text| text.ends_with("is not there")))
         );

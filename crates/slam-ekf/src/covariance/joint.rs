@@ -25,21 +25,8 @@ impl JointCovariance {
         Self { storage, dimension }
     }
 
-    /// From the lower triangle, column by column.
-    pub(crate) fn from_lower(dimension: usize, lower: &[f64]) -> Self {
-        let mut storage = DMatrix::zeros(dimension, dimension);
-        let places = (0..dimension).flat_map(|column| (column..dimension).map(move |row| (row, column)));
-        for ((row, column), entry) in places.zip(lower) {
-            storage[(row, column)] = *entry;
-            storage[(column, row)] = *entry;
-        }
-        Self { storage, dimension }
-    }
-
-    /// The lower triangle, column by column.
-    pub(crate) fn lower(&self) -> Vec<f64> {
-        let column = |column| (column..self.dimension).map(move |row| self.storage[(row, column)]);
-        (0..self.dimension).flat_map(column).collect()
+    pub(super) fn from_matrix(storage: DMatrix<f64>) -> Self {
+        Self { dimension: storage.nrows(), storage }
     }
 
     pub(crate) fn matrix(&self) -> DMatrixView<'_, f64> {
@@ -50,8 +37,21 @@ impl JointCovariance {
         self.storage.view_mut((0, 0), (self.dimension, self.dimension))
     }
 
-    pub(crate) fn block(&self, rows: Range<usize>, columns: Range<usize>) -> DMatrixView<'_, f64> {
-        self.storage.view((rows.start, columns.start), (rows.len(), columns.len()))
+    pub(super) fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// $`P_{mr}`$ and $`P_{mm}`$ of the landmark block at `offset`.
+    pub(crate) fn landmark_blocks<L: DimName, R: DimName>(
+        &self,
+        offset: usize,
+    ) -> (OMatrix<f64, L, R>, OMatrix<f64, L, L>)
+    where
+        DefaultAllocator: Allocator<L, R> + Allocator<L, L>,
+    {
+        let at = |row: usize, column: usize| self.storage[(offset + row, column)];
+        let with_robot = OMatrix::<f64, L, R>::from_fn(&at);
+        (with_robot, OMatrix::<f64, L, L>::from_fn(|row, column| at(row, offset + column)))
     }
 
     pub(crate) fn robot<R: DimName>(&self) -> OMatrix<f64, R, R>
@@ -82,7 +82,7 @@ impl JointCovariance {
     ///
     /// Cost $`O(n^2)`$ for each column of `A` that is not zero. The rows of the robot must be zero: [`move_robot`](Self::move_robot) moves it.
     pub(crate) fn shear(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>) {
-        let leaned_on = b * self.block(0..b.ncols(), 0..self.dimension); // B P_r·
+        let leaned_on = b * self.matrix().rows(0, b.ncols()); // B P_r·
         let own = leaned_on.columns(0, b.ncols()) * b.transpose() * 0.5;
         let half = leaned_on + own * a.transpose();
         let half = half.transpose();
@@ -133,6 +133,15 @@ impl JointCovariance {
         offset
     }
 
+    /// Appends rows and columns of zeros.
+    pub(super) fn extend_with_zeros(&mut self, n: usize) {
+        let (start, end) = (self.dimension, self.dimension + n);
+        self.reserve(end);
+        self.storage.view_mut((0, start), (end, n)).fill(0.0);
+        self.storage.view_mut((start, 0), (n, start)).fill(0.0);
+        self.dimension = end;
+    }
+
     /// Takes a block out: what is left is the marginal of the rest.
     pub(crate) fn remove(&mut self, block: Range<usize>) {
         let kept = |index: usize| if index < block.start { index } else { index + block.len() };
@@ -162,7 +171,8 @@ impl JointCovariance {
     fn reserve(&mut self, dimension: usize) {
         if dimension > self.storage.nrows() {
             let capacity = dimension.max(2 * self.storage.nrows());
-            let mut grown = DMatrix::zeros(capacity, capacity);
+            // Zeroed by the system page by page as they are used, and not all in the step that grows.
+            let mut grown = DMatrix::from_vec(capacity, capacity, vec![0.0; capacity * capacity]);
             grown.view_mut((0, 0), (self.dimension, self.dimension)).copy_from(&self.matrix());
             self.storage = grown;
         }

@@ -39,6 +39,21 @@ impl SparseJacobian {
         self.rows.len()
     }
 
+    /// The landmark blocks that it touches, one a row.
+    pub(super) fn landmarks(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        let touching = self.rows.iter().filter(|row| !row.landmark.is_empty());
+        touching.map(|row| row.offset..row.offset + row.landmark.len())
+    }
+
+    /// The same rows for states in another order: `place` says where a landmark block starts there.
+    pub(super) fn relocated(&self, place: impl Fn(usize) -> usize) -> Self {
+        let mut relocated = self.clone();
+        for row in &mut relocated.rows {
+            row.offset = place(row.offset);
+        }
+        relocated
+    }
+
     /// $`P H^T`$ of a symmetric `P`.
     pub(super) fn times_transpose(&self, p: &DMatrixView<'_, f64>) -> DMatrix<f64> {
         let mut product = DMatrix::zeros(p.nrows(), self.nrows());

@@ -72,9 +72,12 @@ where
             return;
         };
         let mut forgotten = Vec::new();
-        for (id, slot) in &mut self.landmarks {
-            let is_missed = slot.last_seen < self.look
-                && self.model.should_see(&self.model.expected(&self.robot, &slot.mean));
+        let is_missed = |slot: &Slot<M::Landmark>| {
+            slot.last_seen < self.look
+                && self.model.should_see(&self.model.expected(&self.robot, &self.mean(slot)))
+        };
+        let missed: Vec<bool> = self.landmarks.values().map(is_missed).collect();
+        for ((id, slot), is_missed) in self.landmarks.iter_mut().zip(missed) {
             slot.n_missed_in_a_row += usize::from(is_missed);
             slot.n_missed += usize::from(is_missed);
             let share = slot.n_sightings as f64 / (slot.n_sightings + slot.n_missed) as f64;

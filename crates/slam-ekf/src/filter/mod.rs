@@ -16,6 +16,6 @@ mod update_robot;
 
 pub use confirmation::Confirmation;
 pub use linearization::Linearization;
-pub use params::{OutlierRule, SlamParams, UpdateOrder};
+pub use params::{MapForm, OutlierRule, SlamParams, UpdateOrder};
 pub use sight::PredictedSighting;
 pub use state::{EkfSlam, LandmarkEstimate};

@@ -19,6 +19,8 @@ pub struct SlamParams {
     pub student_t_degrees_of_freedom: f64,
     /// Whether observations of one look correct together.
     pub order: UpdateOrder,
+    /// Whether the covariance of a large map is kept up to date as a whole.
+    pub map: MapForm,
     /// Where derivatives are taken, and with that whether the filter stays consistent on long loops.
     pub linearization: Linearization,
     /// Revisions after which a landmark leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, when not given. The
@@ -51,6 +53,36 @@ pub enum UpdateOrder {
     Sequential,
 }
 
+/// How the covariance of robot and map is kept. The estimates are the same.
+///
+/// ```
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_slam_ekf::*;
+///
+/// let look = [Observation { label: Some(LandmarkId(7)), measurement: RangeBearing::new(2.0, 0.1) }];
+/// let robot = |map| {
+///     let params = SlamParams { map, ..SlamParams::default() };
+///     let mut slam = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0))?;
+///     slam.update(&look, &mut KnownIds)?;
+///     slam.predict(&IncrementMotion::default(), &Pose2::new(0.1, 0.0, 0.0))?;
+///     slam.update(&look, &mut KnownIds)?;
+///     Ok::<_, SlamError>(slam.robot().x())
+/// };
+/// assert!((robot(MapForm::Full)? - robot(MapForm::Compressed)?).abs() < 1e-12);
+/// # Ok::<(), SlamError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum MapForm {
+    /// One matrix, up to date: a correction costs the square of the number of landmarks in the map.
+    #[default]
+    Full,
+    /// The area around the robot up to date, and for the rest what it has to be told later: a correction costs the square of the
+    /// number of landmarks around. Landmarks whose `retract` adds, as points do, get the same means but for rounding.
+    /// [Guivant & Nebot 2001]
+    Compressed,
+}
+
 impl UpdateOrder {
     pub(super) fn batch_size(self, n_observations: usize) -> usize {
         match self {
@@ -67,6 +99,7 @@ impl Default for SlamParams {
             gate_probability: 0.9999,
             student_t_degrees_of_freedom: 4.0,
             order: UpdateOrder::Joint,
+            map: MapForm::default(),
             linearization: Linearization::default(),
             retire_after: None,
             confirmation: Confirmation::default(),

@@ -1,4 +1,4 @@
-use nalgebra::{DMatrix, DMatrixView, DefaultAllocator, DimName, allocator::Allocator, linalg::Cholesky};
+use nalgebra::{DMatrix, DefaultAllocator, DimName, allocator::Allocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
 use super::{
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SavedLandmark, SavedRetired, SlamAlloc,
-    SlamError, Snapshot, covariance::JointCovariance,
+    SlamError, Snapshot, covariance::MapCovariance,
 };
 
 impl<M: LandmarkModel> EkfSlam<M>
@@ -23,7 +23,7 @@ where
         slots.sort_unstable_by_key(|(_, slot)| slot.offset);
         let saved = |(id, slot): (&LandmarkId, &Slot<M::Landmark>)| SavedLandmark {
             id: *id,
-            mean: slot.mean.clone(),
+            mean: self.mean(slot),
             first: slot.first.clone(),
             n_sightings: slot.n_sightings,
             n_missed: slot.n_missed,
@@ -36,11 +36,12 @@ where
             landmarks: slots.into_iter().map(saved).collect(),
             anchors: self.anchors.iter().map(|(id, landmark)| (*id, landmark.clone())).collect(),
             retired: self.retired.iter().map(|(id, retired)| saved_retired(*id, retired)).collect(),
-            covariance: self.covariance.lower(),
+            covariance: lower(&self.covariance.matrix()),
         }
     }
 
-    /// The filter that a snapshot was taken of: from here on both do the same, bit for bit, when model and parameters are the same.
+    /// The filter that a snapshot was taken of: from here on both do the same, bit for bit, when model and parameters are the same. A compressed
+    /// map is exact, but not to the last bit: what was deferred when the snapshot was taken is rounded once more.
     ///
     /// The snapshot may come from anywhere; nothing of it is taken on trust. Cost O(n³), once.
     ///
@@ -99,7 +100,11 @@ where
             slam.landmarks.insert(id, slot);
             offset += LandmarkDim::<M>::DIM;
         }
-        slam.covariance = joint_covariance(offset, &covariance)?;
+        slam.covariance = MapCovariance::from_matrix(
+            params.map,
+            RobotDim::<M>::DIM,
+            joint_covariance(offset, &covariance)?,
+        );
         Ok(slam)
     }
 }
@@ -144,7 +149,7 @@ fn check_count(name: &'static str, count: usize, largest: usize) -> Result<(), S
     })
 }
 
-fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<JointCovariance, SlamError> {
+fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<DMatrix<f64>, SlamError> {
     let what = "saved covariance";
     let (expected, got) = (dimension.saturating_mul(dimension + 1) / 2, lower.len());
     if expected != got {
@@ -153,16 +158,32 @@ fn joint_covariance(dimension: usize, lower: &[f64]) -> Result<JointCovariance, 
     if !lower.iter().all(|entry| entry.abs() < LARGEST_VARIANCE) {
         return Err(SlamError::NotFinite { what });
     }
-    let joint = JointCovariance::from_lower(dimension, lower);
-    let smallest_variance = joint.matrix().diagonal().min();
-    if smallest_variance < 0.0 || !is_semidefinite(&joint.matrix()) {
+    let joint = from_lower(dimension, lower);
+    let smallest_variance = joint.diagonal().min();
+    if smallest_variance < 0.0 || !is_semidefinite(&joint) {
         return Err(SlamError::NotACovariance { what, value: smallest_variance, asymmetry: 0.0 });
     }
     Ok(joint)
 }
 
+/// The lower triangle, column by column.
+fn lower(covariance: &DMatrix<f64>) -> Vec<f64> {
+    let n = covariance.nrows();
+    (0..n).flat_map(|column| (column..n).map(move |row| covariance[(row, column)])).collect()
+}
+
+fn from_lower(dimension: usize, lower: &[f64]) -> DMatrix<f64> {
+    let mut covariance = DMatrix::zeros(dimension, dimension);
+    let places = (0..dimension).flat_map(|column| (column..dimension).map(move |row| (row, column)));
+    for ((row, column), entry) in places.zip(lower) {
+        covariance[(row, column)] = *entry;
+        covariance[(column, row)] = *entry;
+    }
+    covariance
+}
+
 /// Whether the correlations are positive semidefinite up to what a long run may have lost by rounding.
-fn is_semidefinite(covariance: &DMatrixView<'_, f64>) -> bool {
+fn is_semidefinite(covariance: &DMatrix<f64>) -> bool {
     let deviations = covariance.diagonal().map(f64::sqrt);
     let correlations =
         DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |row, column| {

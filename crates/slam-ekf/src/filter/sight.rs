@@ -1,4 +1,4 @@
-use nalgebra::{DefaultAllocator, DimName, linalg::Cholesky};
+use nalgebra::{DefaultAllocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
 use super::{EkfSlam, Linearization, retire::Retired, state::Slot};
@@ -67,7 +67,7 @@ where
     /// gives no finite measurement).
     pub fn predicted_sighting(&self, id: LandmarkId) -> Option<PredictedSighting<M>> {
         if let Some(slot) = self.landmarks.get(&id) {
-            self.predict_sighting(id, &slot.mean, Some(slot))
+            self.predict_sighting(id, &self.mean(slot), Some(slot))
         } else if let Some(retired) = self.retired.get(&id) {
             self.predict_retired(id, retired)
         } else {
@@ -81,19 +81,20 @@ where
         a: &PredictedSighting<M>,
         b: &PredictedSighting<M>,
     ) -> TangentMatrix<M::Measurement> {
-        let robot = 0..RobotDim::<M>::DIM;
-        let block = |offset: usize| offset..offset + LandmarkDim::<M>::DIM;
         let mut cross = &a.robot_jacobian * self.robot_covariance() * b.robot_jacobian.transpose();
         if let Some((offset, by_landmark)) = &a.landmark_jacobian {
-            let with_robot = self.covariance.block(block(*offset), robot.clone());
+            let with_robot = self.covariance.landmark_blocks::<LandmarkDim<M>, RobotDim<M>>(*offset).0;
             cross += by_landmark * with_robot * b.robot_jacobian.transpose();
         }
         if let Some((offset, by_landmark)) = &b.landmark_jacobian {
-            let with_robot = self.covariance.block(robot, block(*offset));
-            cross += &a.robot_jacobian * with_robot * by_landmark.transpose();
+            let with_robot = self.covariance.landmark_blocks::<LandmarkDim<M>, RobotDim<M>>(*offset).0;
+            cross += &a.robot_jacobian * with_robot.transpose() * by_landmark.transpose();
         }
         if let (Some((at_a, by_a)), Some((at_b, by_b))) = (&a.landmark_jacobian, &b.landmark_jacobian) {
-            cross += by_a * self.covariance.block(block(*at_a), block(*at_b)) * by_b.transpose();
+            let between = TangentMatrix::<M::Landmark>::from_fn(|row, column| {
+                self.covariance.entry(at_a + row, at_b + column)
+            });
+            cross += by_a * between * by_b.transpose();
         }
         cross
     }
@@ -103,7 +104,8 @@ where
         let anchors = self.anchors.iter().filter_map(|(id, mean)| self.predict_sighting(*id, mean, None));
         let landmarks = self.landmarks.iter();
         let retired = self.retired.iter().filter_map(|(id, retired)| self.predict_retired(*id, retired));
-        let in_state = landmarks.filter_map(|(id, slot)| self.predict_sighting(*id, &slot.mean, Some(slot)));
+        let in_state =
+            landmarks.filter_map(|(id, slot)| self.predict_sighting(*id, &self.mean(slot), Some(slot)));
         anchors.chain(retired).chain(in_state)
     }
 
@@ -124,9 +126,7 @@ where
 
         let mut covariance = &robot_jacobian * self.robot_covariance() * robot_jacobian.transpose();
         if let Some((offset, jacobian)) = &landmark_jacobian {
-            let block = *offset..*offset + LandmarkDim::<M>::DIM;
-            let cross = self.covariance.block(block.clone(), 0..RobotDim::<M>::DIM);
-            let own = self.covariance.block(block.clone(), block);
+            let (cross, own) = self.covariance.landmark_blocks::<LandmarkDim<M>, RobotDim<M>>(*offset);
             let mixed = jacobian * cross * robot_jacobian.transpose();
             covariance += jacobian * own * jacobian.transpose() + &mixed + mixed.transpose();
         }

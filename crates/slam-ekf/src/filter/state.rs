@@ -1,12 +1,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
-use nalgebra::{DMatrixView, DefaultAllocator, DimName};
+use nalgebra::{DMatrix, DefaultAllocator, DimName};
 use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
-use super::{Linearization, SlamParams, gates::Gates, retire::Retired};
+use super::{Linearization, MapForm, SlamParams, gates::Gates, retire::Retired};
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
-    covariance::JointCovariance,
+    covariance::MapCovariance,
 };
 
 /// EKF-SLAM over one kind of landmark.
@@ -42,7 +42,7 @@ where
     pub(super) landmarks: BTreeMap<LandmarkId, Slot<M::Landmark>>,
     pub(super) anchors: BTreeMap<LandmarkId, M::Landmark>,
     pub(super) retired: BTreeMap<LandmarkId, Retired<M::Landmark>>,
-    pub(super) covariance: JointCovariance,
+    pub(super) covariance: MapCovariance,
     /// How many looks there were.
     pub(super) look: usize,
 }
@@ -106,6 +106,9 @@ where
         if params.linearization != Linearization::Newest && model.symmetries().is_empty() {
             return Err(SlamError::NoSymmetry);
         }
+        if params.linearization == Linearization::Invariant && params.map == MapForm::Compressed {
+            return Err(SlamError::MovesTheWholeMap);
+        }
         Ok(Self {
             model,
             gates: Gates::from_probability(params.validated()?.gate_probability, MeasurementDim::<M>::DIM)?,
@@ -114,7 +117,7 @@ where
             landmarks: BTreeMap::new(),
             anchors: BTreeMap::new(),
             retired: BTreeMap::new(),
-            covariance: JointCovariance::from_robot(&covariance),
+            covariance: MapCovariance::from_robot(params.map, &covariance),
             look: 0,
         })
     }
@@ -127,8 +130,9 @@ where
     pub fn robot_covariance(&self) -> TangentMatrix<M::Robot> {
         self.covariance.robot()
     }
-    /// The joint covariance: robot first, then the landmarks in the order in which they came.
-    pub fn covariance(&self) -> DMatrixView<'_, f64> {
+    /// The joint covariance: robot first, then the landmarks in the order in which they came. A copy, with everything that a compressed
+    /// map defers worked in.
+    pub fn covariance(&self) -> DMatrix<f64> {
         self.covariance.matrix()
     }
     /// How many landmarks are confirmed; anchors are not among them.
@@ -168,19 +172,23 @@ where
     }
 
     fn estimate(&self, id: LandmarkId, slot: &Slot<M::Landmark>) -> LandmarkEstimate<M::Landmark> {
-        LandmarkEstimate { id, mean: slot.mean.clone(), covariance: self.landmark_covariance(slot) }
+        LandmarkEstimate { id, mean: self.mean(slot), covariance: self.landmark_covariance(slot) }
+    }
+
+    /// The mean up to date: what a compressed map defers is added.
+    pub(super) fn mean(&self, slot: &Slot<M::Landmark>) -> M::Landmark {
+        let deferred = self.covariance.deferred_step::<LandmarkDim<M>>(slot.offset);
+        deferred.map_or_else(|| slot.mean.clone(), |step| slot.mean.retract(&step))
     }
 
     /// Where a landmark is, and where its block starts in the covariance; nowhere for an anchor.
-    pub(crate) fn place(&self, id: LandmarkId) -> Option<(&M::Landmark, Option<usize>)> {
-        let slot = self.landmarks.get(&id).map(|slot| (&slot.mean, Some(slot.offset)));
-        slot.or_else(|| self.anchors.get(&id).map(|mean| (mean, None)))
+    pub(crate) fn place(&self, id: LandmarkId) -> Option<(M::Landmark, Option<usize>)> {
+        let slot = self.landmarks.get(&id).map(|slot| (self.mean(slot), Some(slot.offset)));
+        slot.or_else(|| self.anchors.get(&id).map(|mean| (mean.clone(), None)))
     }
 
     pub(super) fn landmark_covariance(&self, slot: &Slot<M::Landmark>) -> TangentMatrix<M::Landmark> {
-        let block = slot.offset..slot.offset + LandmarkDim::<M>::DIM;
-        let view = self.covariance.block(block.clone(), block);
-        TangentMatrix::<M::Landmark>::from_fn(|row, column| view[(row, column)])
+        self.covariance.landmark_blocks::<LandmarkDim<M>, RobotDim<M>>(slot.offset).1
     }
 }
 

@@ -61,6 +61,7 @@ where
         }
         self.forget_missed();
         self.retire_revised();
+        self.covariance.end_look();
         Ok(StepReport { outcomes })
     }
 

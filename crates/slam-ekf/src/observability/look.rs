@@ -70,13 +70,13 @@ impl Linearized {
     {
         let (mean, offset) = slam.place(id)?;
         let (model, robot) = (slam.model(), slam.robot());
-        let expected = model.expected(robot, mean);
+        let expected = model.expected(robot, &mean);
         let dense = |rows: usize, columns: usize, entry: &dyn Fn(usize, usize) -> f64| {
             DMatrix::from_fn(rows, columns, entry)
         };
         let (size, rows) = (LandmarkDim::<M>::DIM, MeasurementDim::<M>::DIM);
-        let by_robot = model.robot_jacobian(robot, mean);
-        let by_landmark = model.landmark_jacobian(robot, mean);
+        let by_robot = model.robot_jacobian(robot, &mean);
+        let by_landmark = model.landmark_jacobian(robot, &mean);
         let noise = model.noise(&expected);
         let linearized = Self {
             id,
@@ -84,7 +84,7 @@ impl Linearized {
             robot: dense(rows, RobotDim::<M>::DIM, &|i, j| by_robot[(i, j)]),
             landmark: dense(rows, size, &|i, j| by_landmark[(i, j)]),
             noise: dense(rows, rows, &|i, j| noise[(i, j)]),
-            motion: model.landmark_symmetry(mean),
+            motion: model.landmark_symmetry(&mean),
         };
         let mut all =
             linearized.robot.iter().chain(linearized.landmark.iter()).chain(linearized.noise.iter());

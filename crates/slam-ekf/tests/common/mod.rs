@@ -10,6 +10,7 @@ use wayfix_slam_ekf::{LandmarkId, Observation, RangeBearing};
 pub(crate) const ODOMETRY: [f64; 3] = [0.02, 0.02, 0.005];
 pub(crate) const SIGHTING: [f64; 2] = [0.05, 0.01];
 const RANGE: f64 = 7.0;
+const LAP_RADIUS: f64 = 3.0;
 
 pub(crate) struct Step {
     pub(crate) truth: Pose2<f64>,
@@ -25,9 +26,14 @@ pub(crate) fn normal(rng: &mut ChaCha8Rng) -> f64 {
 
 /// Landmarks on a jittered ring of 6 m around the origin.
 pub(crate) fn landmarks(n: usize, rng: &mut ChaCha8Rng) -> Vec<[f64; 2]> {
+    landmarks_around(LAP_RADIUS, n, rng)
+}
+
+/// Landmarks outside of a lap of this radius, one to five metres from it.
+pub(crate) fn landmarks_around(lap_radius: f64, n: usize, rng: &mut ChaCha8Rng) -> Vec<[f64; 2]> {
     let place = |i: usize| {
         let angle = std::f64::consts::TAU * i as f64 / n as f64;
-        let radius = 4.0 + 4.0 * rng.random::<f64>();
+        let radius = lap_radius + 1.0 + 4.0 * rng.random::<f64>();
         [radius * angle.cos(), radius * angle.sin()]
     };
     (0..n).map(place).collect()
@@ -35,8 +41,18 @@ pub(crate) fn landmarks(n: usize, rng: &mut ChaCha8Rng) -> Vec<[f64; 2]> {
 
 /// A drive on a circle of 3 m from (3, 0), in steps of a quarter of a metre.
 pub(crate) fn drive(n_steps: usize, landmarks: &[[f64; 2]], rng: &mut ChaCha8Rng) -> Vec<Step> {
-    let motion = Pose2::new(0.25, 0.0, 0.25 / 3.0);
-    let mut truth = start();
+    drive_around(LAP_RADIUS, n_steps, landmarks, rng)
+}
+
+/// A drive on a circle of this radius, in steps of a quarter of a metre.
+pub(crate) fn drive_around(
+    radius: f64,
+    n_steps: usize,
+    landmarks: &[[f64; 2]],
+    rng: &mut ChaCha8Rng,
+) -> Vec<Step> {
+    let motion = Pose2::new(0.25, 0.0, 0.25 / radius);
+    let mut truth = start_at(radius);
     let mut step = |k: usize| {
         let mut increment = Pose2::new(0.0, 0.0, 0.0);
         if k > 0 {
@@ -50,7 +66,11 @@ pub(crate) fn drive(n_steps: usize, landmarks: &[[f64; 2]], rng: &mut ChaCha8Rng
 }
 
 pub(crate) fn start() -> Pose2<f64> {
-    Pose2::new(3.0, 0.0, std::f64::consts::FRAC_PI_2)
+    start_at(LAP_RADIUS)
+}
+
+pub(crate) fn start_at(radius: f64) -> Pose2<f64> {
+    Pose2::new(radius, 0.0, std::f64::consts::FRAC_PI_2)
 }
 
 /// Laps of a circle in a ring of landmarks.

@@ -1,0 +1,28 @@
+use std::ops::Range;
+
+use super::{area::CompressedCovariance, passive::Reach};
+
+impl CompressedCovariance {
+    /// Takes a landmark block into the area. Its value does not change, only where it is kept.
+    pub(super) fn activate(&mut self, states: Range<usize>) {
+        if self.rows[states.start].is_some() {
+            return;
+        }
+        self.backlog.settle(states.clone(), &mut self.base);
+        let Reach { with_local, own } = self.reach(states.clone());
+        for state in states.clone() {
+            self.lag[state] += self.influenced(state);
+        }
+        let (start, size) = (self.local.dimension(), states.len());
+        self.local.extend_with_zeros(size);
+        let mut local = self.local.matrix_mut();
+        local.view_mut((0, start), (start, size)).copy_from(&with_local);
+        local.view_mut((start, 0), (size, start)).copy_from(&with_local.transpose());
+        local.view_mut((start, start), (size, size)).copy_from(&own);
+        for (i, state) in states.clone().enumerate() {
+            self.rows[state] = Some(start + i);
+            self.area.push(state);
+        }
+        self.add_influences(&states.collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,41 @@
+use std::collections::BTreeSet;
+
+use nalgebra::DMatrix;
+
+use super::area::CompressedCovariance;
+use crate::covariance::JointCovariance;
+
+impl CompressedCovariance {
+    /// The whole covariance.
+    pub(in crate::covariance) fn matrix(&self) -> DMatrix<f64> {
+        let mut settled = self.clone();
+        settled.hand_over();
+        settled.backlog.finish(&mut settled.base);
+        settled.base.matrix().into_owned()
+    }
+
+    /// Takes the whole map for the area: nothing is outside, so nothing is deferred.
+    pub(super) fn unite(&mut self) {
+        self.hand_over();
+        self.backlog.finish(&mut self.base);
+        self.local = self.base.clone();
+        let n = self.rows.len();
+        self.rows = (0..n).map(Some).collect();
+        self.area = (0..n).collect();
+    }
+
+    /// Hands on to the rest of the map what the area has learnt, and goes on with an area of these states only.
+    pub(super) fn restart(&mut self, area: &BTreeSet<usize>) {
+        self.hand_over();
+        self.area = area.iter().copied().collect();
+        let n = self.area.len();
+        let base = self.base.matrix();
+        let kept = DMatrix::from_fn(n, n, |i, j| base[(self.area[i], self.area[j])]);
+        self.local = JointCovariance::from_matrix(kept);
+        self.rows.fill(None);
+        for (row, state) in self.area.iter().enumerate() {
+            self.rows[*state] = Some(row);
+        }
+        self.add_influences(&self.area.clone());
+    }
+}

@@ -1,0 +1,152 @@
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector, DefaultAllocator, DimName, OMatrix, OVector, allocator::Allocator};
+
+use super::{JointCovariance, SparseJacobian, compressed::CompressedCovariance};
+use crate::MapForm;
+
+/// The joint covariance of robot and map in either form: what the filter works with.
+#[derive(Clone, Debug)]
+pub(crate) enum MapCovariance {
+    Full(JointCovariance),
+    Compressed(Box<CompressedCovariance>),
+}
+
+impl MapCovariance {
+    pub(crate) fn from_robot<R: DimName>(form: MapForm, robot: &OMatrix<f64, R, R>) -> Self
+    where
+        DefaultAllocator: Allocator<R, R>,
+    {
+        match form {
+            MapForm::Full => Self::Full(JointCovariance::from_robot(robot)),
+            MapForm::Compressed => Self::Compressed(Box::new(CompressedCovariance::from_robot(robot))),
+        }
+    }
+
+    /// A whole matrix, of which the first `n_robot` rows are the robot's.
+    pub(crate) fn from_matrix(form: MapForm, n_robot: usize, matrix: DMatrix<f64>) -> Self {
+        match form {
+            MapForm::Full => Self::Full(JointCovariance::from_matrix(matrix)),
+            MapForm::Compressed => {
+                Self::Compressed(Box::new(CompressedCovariance::from_matrix(n_robot, matrix)))
+            }
+        }
+    }
+
+    /// Covariance of one state with another, each by its row of the matrix.
+    pub(crate) fn entry(&self, one: usize, other: usize) -> f64 {
+        match self {
+            Self::Full(full) => full.matrix()[(one, other)],
+            Self::Compressed(compressed) => compressed.entry(one, other),
+        }
+    }
+
+    /// [`JointCovariance::shear`]. A compressed map cannot lean as a whole; the filter refuses to be built so.
+    pub(crate) fn shear(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>) {
+        if let Self::Full(full) = self {
+            full.shear(a, b);
+        }
+    }
+
+    /// The whole matrix, robot first.
+    pub(crate) fn matrix(&self) -> DMatrix<f64> {
+        match self {
+            Self::Full(full) => full.matrix().into_owned(),
+            Self::Compressed(compressed) => compressed.matrix(),
+        }
+    }
+
+    pub(crate) fn robot<R: DimName>(&self) -> OMatrix<f64, R, R>
+    where
+        DefaultAllocator: Allocator<R, R>,
+    {
+        match self {
+            Self::Full(full) => full.robot(),
+            Self::Compressed(compressed) => compressed.robot(),
+        }
+    }
+
+    /// $`P_{mr}`$ and $`P_{mm}`$ of the landmark block at `offset`.
+    pub(crate) fn landmark_blocks<L: DimName, R: DimName>(
+        &self,
+        offset: usize,
+    ) -> (OMatrix<f64, L, R>, OMatrix<f64, L, L>)
+    where
+        DefaultAllocator: Allocator<L, R> + Allocator<L, L>,
+    {
+        match self {
+            Self::Full(full) => full.landmark_blocks(offset),
+            Self::Compressed(compressed) => compressed.landmark_blocks(offset),
+        }
+    }
+
+    /// What the mean that the filter holds of the landmark block at `offset` lacks; `None` when nothing.
+    pub(crate) fn deferred_step<L: DimName>(&self, offset: usize) -> Option<OVector<f64, L>>
+    where
+        DefaultAllocator: Allocator<L>,
+    {
+        match self {
+            Self::Full(_) => None,
+            Self::Compressed(compressed) => compressed.deferred_step(offset),
+        }
+    }
+
+    /// [`JointCovariance::move_robot`].
+    pub(crate) fn move_robot<R: DimName>(&mut self, jacobian: &OMatrix<f64, R, R>, noise: &OMatrix<f64, R, R>)
+    where
+        DefaultAllocator: Allocator<R, R> + Allocator<R>,
+    {
+        match self {
+            Self::Full(full) => full.move_robot(jacobian, noise),
+            Self::Compressed(compressed) => compressed.move_robot(jacobian, noise),
+        }
+    }
+
+    /// [`JointCovariance::append`].
+    pub(crate) fn append<L: DimName, R: DimName>(
+        &mut self,
+        robot_jacobian: &OMatrix<f64, L, R>,
+        noise: &OMatrix<f64, L, L>,
+    ) -> usize
+    where
+        DefaultAllocator: Allocator<L, L>
+            + Allocator<L, R>
+            + Allocator<R, L>
+            + Allocator<R, R>
+            + Allocator<R>
+            + Allocator<L>,
+    {
+        match self {
+            Self::Full(full) => full.append(robot_jacobian, noise),
+            Self::Compressed(compressed) => compressed.append(robot_jacobian, noise),
+        }
+    }
+
+    /// [`JointCovariance::remove`].
+    pub(crate) fn remove(&mut self, block: Range<usize>) {
+        match self {
+            Self::Full(full) => full.remove(block),
+            Self::Compressed(compressed) => compressed.remove(block),
+        }
+    }
+
+    /// [`JointCovariance::correct`]. The step is the one of the means as the filter holds them.
+    pub(crate) fn correct(
+        &mut self,
+        jacobian: &SparseJacobian,
+        noise: &DMatrix<f64>,
+        residual: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        match self {
+            Self::Full(full) => full.correct(jacobian, noise, residual),
+            Self::Compressed(compressed) => compressed.correct(jacobian, noise, residual),
+        }
+    }
+
+    /// Says that a look of the sensor is done with: time for what was deferred. No value changes.
+    pub(crate) fn end_look(&mut self) {
+        if let Self::Compressed(compressed) = self {
+            compressed.end_look();
+        }
+    }
+}
