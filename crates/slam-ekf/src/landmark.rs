@@ -73,6 +73,23 @@ where
         measurement.local(measurement).iter().all(|entry| entry.is_finite())
     }
 
+    /// Whether the landmark that should look like `expected` can be what was measured, beyond what the estimated coordinates tell: the stretch
+    /// of a wall, a colour. Association asks. By default: always.
+    fn may_be(&self, _expected: &Self::Measurement, _measurement: &Self::Measurement) -> bool {
+        true
+    }
+
+    /// The landmark after a look at it, with what the look tells beyond the estimated coordinates: the ends of a wall. It must be at the
+    /// same place. By default: as it was.
+    fn extended(
+        &self,
+        _robot: &Self::Robot,
+        landmark: &Self::Landmark,
+        _measurement: &Self::Measurement,
+    ) -> Self::Landmark {
+        landmark.clone()
+    }
+
     /// Whether a landmark that should look like this is within reach and view, so that not seeing it means something. By default: always.
     fn should_see(&self, _expected: &Self::Measurement) -> bool {
         true

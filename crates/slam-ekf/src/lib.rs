@@ -51,6 +51,8 @@ pub use models::{
     ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry,
     pose_symmetry,
 };
+#[cfg(feature = "lines")]
+pub use models::{SeenWall, Wall, WallLine, WallSensor};
 pub use outcome::{Outcome, StepReport};
 pub use snapshot::{SavedLandmark, SavedRetired, Snapshot};
 

@@ -41,6 +41,9 @@ where
             let noise = filter.model().noise(&observation.measurement);
             let mut candidates: Vec<Candidate<M>> = Vec::new();
             for (sighting, predicted) in sightings.iter().enumerate() {
+                if !filter.model().may_be(&predicted.expected, &observation.measurement) {
+                    continue;
+                }
                 if let Some(innovation) = predicted.innovation_within(limit, &observation.measurement, &noise)
                 {
                     candidates.push(Candidate { sighting, innovation });

@@ -64,6 +64,13 @@ where
         }
     }
 
+    /// Takes from a look what it tells beyond the estimated coordinates.
+    pub(super) fn extend(&mut self, id: LandmarkId, measurement: &M::Measurement) {
+        if let Some(slot) = self.landmarks.get_mut(&id) {
+            slot.mean = self.model.extended(&self.robot, &slot.mean, measurement);
+        }
+    }
+
     /// Forgets what should have been seen and was not: tentative landmarks in time, confirmed ones that are seen too seldom.
     pub(super) fn forget_missed(&mut self) {
         let Confirmation { n_sightings, patience: Some(patience), least_share_seen, .. } =

@@ -93,6 +93,7 @@ where
         for Accepted { index, sighting, .. } in &accepted {
             if corrected {
                 self.note_sighting(sighting.landmark);
+                self.extend(sighting.landmark, &observations[*index].measurement);
             } else {
                 outcomes[*index] = Outcome::Unusable;
             }

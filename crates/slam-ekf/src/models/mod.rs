@@ -9,6 +9,8 @@ mod range_bearing;
 mod relative_position;
 mod scaled;
 mod velocity;
+#[cfg(feature = "lines")]
+mod wall;
 
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use increment::IncrementMotion;
@@ -19,3 +21,5 @@ pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};
 pub use scaled::{ScaledMotion, ScaledPose, ScaledRangeBearingSensor};
 pub use velocity::{VelocityControl, VelocityMotion};
+#[cfg(feature = "lines")]
+pub use wall::{SeenWall, Wall, WallLine, WallSensor};

@@ -1,0 +1,138 @@
+use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2, linalg::Cholesky};
+use wayfix_estimation_traits::Pose2;
+
+use super::{SeenWall, Wall, WallLine};
+use crate::{
+    LandmarkModel, NewLandmark,
+    models::planar::{PLANAR_SYMMETRIES, pose_symmetry},
+};
+
+/// Walls seen by a laser: $`ρ' = ρ - n^T t,\; α' = α - θ`$ with $`n = (\cos α, \sin α)`$, in the frame of the sensor.
+///
+/// The noise of a look is the covariance that its own points give the line, and what walls lack of being straight.
+/// [Andrade-Cetto 2005, Sec. 2.5; Garulli et al. 2005]
+///
+/// ```
+/// use std::f64::consts::PI;
+/// use nalgebra::Vector2;
+/// use wayfix_estimation_traits::{Manifold, Pose2};
+/// use wayfix_slam_ekf::{LandmarkModel, Wall, WallLine, WallSensor};
+/// let wall = Wall::between(WallLine::new(2.0, 0.0), [Vector2::new(2.0, -1.0), Vector2::new(2.0, 1.0)]);
+/// let seen = WallSensor::default().expected(&Pose2::new(5.0, 0.0, 0.0), &wall); // from the other side: 3 m behind
+/// assert!(seen.line.local(&WallLine::new(3.0, PI)).norm() < 1e-12);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct WallSensor {
+    /// What the distance of a wall errs by beyond the noise of the beams, m: skirting boards, door frames, walls that bulge.
+    pub rho_sigma: f64,
+    /// The same for its direction, rad.
+    pub alpha_sigma: f64,
+    /// How far apart along a wall two pieces may be and still be taken for one, m.
+    pub largest_gap: f64,
+    /// Distance up to which the middle of a wall is seen as a rule, m.
+    pub reach: f64,
+    /// The same for its direction to either side, rad.
+    pub half_field_of_view: f64,
+}
+
+impl Default for WallSensor {
+    /// A laser of half a turn in a building of plaster and doors.
+    fn default() -> Self {
+        Self { rho_sigma: 0.02, alpha_sigma: 0.01, largest_gap: 0.5, reach: 8.0, half_field_of_view: 1.4 }
+    }
+}
+
+impl LandmarkModel for WallSensor {
+    type Robot = Pose2<f64>;
+    type Landmark = Wall;
+    type Measurement = SeenWall;
+
+    fn expected(&self, robot: &Pose2<f64>, wall: &Wall) -> SeenWall {
+        let rho = wall.line.rho - wall.line.normal().dot(&robot.translation);
+        SeenWall {
+            line: WallLine::new(rho, wall.line.alpha - robot.heading()),
+            covariance: Matrix2::zeros(),
+            ends: wall.ends().map(|end| robot.inverse_transform(&end)),
+        }
+    }
+
+    fn robot_jacobian(&self, robot: &Pose2<f64>, wall: &Wall) -> Matrix2x3<f64> {
+        let normal = robot.rotation_matrix().tr_mul(&wall.line.normal()); // in the body frame
+        Matrix2x3::new(
+            -normal.x, -normal.y, 0.0, //
+            0.0, 0.0, -1.0,
+        )
+    }
+
+    fn landmark_jacobian(&self, robot: &Pose2<f64>, wall: &Wall) -> Matrix2<f64> {
+        Matrix2::new(
+            1.0,
+            -wall.line.along(&robot.translation), //
+            0.0,
+            1.0,
+        )
+    }
+
+    fn noise(&self, measurement: &SeenWall) -> Matrix2<f64> {
+        let own = Vector2::new(self.rho_sigma.powi(2), self.alpha_sigma.powi(2));
+        measurement.covariance + Matrix2::from_diagonal(&own)
+    }
+
+    fn is_usable(&self, measurement: &SeenWall) -> bool {
+        let SeenWall { line, covariance, ends } = measurement;
+        let is_finite = line.rho.is_finite()
+            && line.alpha.is_finite()
+            && covariance.iter().chain(ends.iter().flatten()).all(|entry| entry.is_finite());
+        is_finite && (Cholesky::new(*covariance).is_some() || *covariance == Matrix2::zeros())
+    }
+
+    /// Parallel pieces far apart along their line are different walls.
+    fn may_be(&self, expected: &SeenWall, measurement: &SeenWall) -> bool {
+        measurement.overlap(expected) > -self.largest_gap
+    }
+
+    fn should_see(&self, expected: &SeenWall) -> bool {
+        let middle = (expected.ends[0] + expected.ends[1]) * 0.5;
+        middle.norm() <= self.reach && middle.y.atan2(middle.x).abs() <= self.half_field_of_view
+    }
+
+    fn extended(&self, robot: &Pose2<f64>, wall: &Wall, measurement: &SeenWall) -> Wall {
+        wall.extended_to(measurement.ends.map(|end| robot.transform(&end)))
+    }
+
+    fn symmetries(&self) -> &'static [&'static str] {
+        PLANAR_SYMMETRIES
+    }
+
+    fn robot_symmetry(&self, robot: &Pose2<f64>) -> DMatrix<f64> {
+        pose_symmetry(robot)
+    }
+
+    /// Turning the world about the origin turns the normal and leaves the distance.
+    fn landmark_symmetry(&self, wall: &Wall) -> DMatrix<f64> {
+        let normal = wall.line.normal();
+        DMatrix::from_row_slice(2, 3, &[normal.x, normal.y, 0.0, 0.0, 0.0, 1.0])
+    }
+
+    fn initialize(&self, robot: &Pose2<f64>, measurement: &SeenWall) -> NewLandmark<Wall, Pose2<f64>> {
+        let alpha = measurement.line.alpha + robot.heading();
+        let line = WallLine::new(0.0, alpha);
+        let line = WallLine { rho: measurement.line.rho + line.normal().dot(&robot.translation), ..line };
+        let lever = line.along(&robot.translation);
+        let normal = measurement.line.normal();
+        let by_measurement = Matrix2::new(1.0, lever, 0.0, 1.0);
+        NewLandmark {
+            landmark: Wall::between(line, measurement.ends.map(|end| robot.transform(&end))),
+            robot_jacobian: Matrix2x3::new(
+                normal.x, normal.y, lever, //
+                0.0, 0.0, 1.0,
+            ),
+            covariance: by_measurement * self.noise(measurement) * by_measurement.transpose(),
+        }
+    }
+}
