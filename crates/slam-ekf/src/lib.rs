@@ -46,10 +46,10 @@ pub use filter::{
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    AckermannControl, AckermannMotion, AckermannVehicle, IncrementMotion, MonobotMotion, MonobotSensor,
-    Mounted, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor,
-    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry,
-    pose_symmetry,
+    AckermannControl, AckermannMotion, AckermannVehicle, DriftingMotion, DriftingPose, IncrementMotion,
+    MonobotMotion, MonobotSensor, Mounted, OnDrifting, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor,
+    RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor,
+    VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 #[cfg(feature = "lines")]
 pub use models::{SeenWall, Wall, WallLine, WallSensor};

@@ -51,11 +51,14 @@ fn of_walls() {
     let line = |(rho, alpha): (f64, f64)| WallLine::new(rho, alpha);
     let lines = [(4.0, 0.3), (-0.5, 2.0), (0.0, -1.5), (30.0, PI), (2.0, -PI + 1e-6)].map(line);
     // A line has turned into itself after half a turn, so tangents are unique up to a quarter only.
-    for (line, delta) in lines.iter().flat_map(|line| [(line, 1.5), (line, -1.5), (line, 1e-8), (line, 0.0)]) {
+    for (line, delta) in lines.iter().flat_map(|line| [(line, 1.5), (line, -1.5), (line, 1e-8), (line, 0.0)])
+    {
         let delta = Vector2::new(0.7, delta);
         assert!((line.local(&line.retract(&delta)) - delta).norm() < 1e-12);
         let same = WallLine::new(-line.rho, line.alpha + PI);
-        assert!(line.local(&same).norm() < 1e-12 && (same.local(&line.retract(&delta)).x + 0.7).abs() < 1e-12);
+        assert!(
+            line.local(&same).norm() < 1e-12 && (same.local(&line.retract(&delta)).x + 0.7).abs() < 1e-12
+        );
     }
     let ends = |line: WallLine| [line.point_at(-1.0), line.point_at(2.5)];
     let walls = lines.map(|line| Wall::between(line, ends(line)));

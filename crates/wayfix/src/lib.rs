@@ -16,3 +16,4 @@ mod settings;
 pub mod slam;
 pub mod system;
 pub mod views;
+pub mod walls;

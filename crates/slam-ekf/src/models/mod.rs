@@ -1,6 +1,7 @@
 //! Motions and sensors of planar robots, and of one on a line.
 
 mod ackermann;
+mod drifting;
 mod increment;
 mod monobot;
 mod mounted;
@@ -13,6 +14,7 @@ mod velocity;
 mod wall;
 
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
+pub use drifting::{DriftingMotion, DriftingPose, OnDrifting};
 pub use increment::IncrementMotion;
 pub use monobot::{MonobotMotion, MonobotSensor};
 pub use mounted::Mounted;

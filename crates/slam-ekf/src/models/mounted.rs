@@ -59,6 +59,19 @@ where
         self.sensor.is_usable(measurement)
     }
 
+    fn may_be(&self, expected: &S::Measurement, measurement: &S::Measurement) -> bool {
+        self.sensor.may_be(expected, measurement)
+    }
+
+    fn extended(
+        &self,
+        robot: &Pose2<f64>,
+        landmark: &S::Landmark,
+        measurement: &S::Measurement,
+    ) -> S::Landmark {
+        self.sensor.extended(&robot.compose(&self.mount), landmark, measurement)
+    }
+
     fn should_see(&self, expected: &S::Measurement) -> bool {
         self.sensor.should_see(expected)
     }

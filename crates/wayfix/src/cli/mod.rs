@@ -12,6 +12,7 @@ mod run_color;
 mod run_lines;
 mod run_slam;
 mod run_views;
+mod run_walls;
 
 use std::process::ExitCode;
 

@@ -11,7 +11,7 @@ use super::{
     finish::{self, ESTIMATES},
     input::read_toml,
     output::{print, tell},
-    progress,
+    progress, run_walls,
 };
 use crate::{
     report::Run,
@@ -37,60 +37,64 @@ use crate::{
 pub(super) struct Arguments {
     /// The log: an MCAP file, the folder of a UTIAS set, or a text file of range-bearing lines.
     #[arg(long, value_name = "PATH")]
-    log: PathBuf,
+    pub(super) log: PathBuf,
     /// How the log is stored: utias, range-bearing or mcap [default: found out by looking].
     #[arg(long)]
-    format: Option<Format>,
+    pub(super) format: Option<Format>,
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
-    robot: Option<u32>,
+    pub(super) robot: Option<u32>,
     /// How sightings find their landmarks [default: known where the log has identities, else nn].
     #[arg(long, value_name = "RULE")]
-    association: Option<AssociationRule>,
+    pub(super) association: Option<AssociationRule>,
     /// The kind of robot whose noise and timing are the defaults [default: by the format of the log, else generic].
     #[arg(long)]
-    profile: Option<Profile>,
+    pub(super) profile: Option<Profile>,
     /// A TOML file of parameters.
     ///
     /// What it does not name keeps the default of the profile. `--print-params` shows all of them.
     #[arg(long, value_name = "FILE")]
-    params: Option<PathBuf>,
+    pub(super) params: Option<PathBuf>,
+    /// A file of relations between poses that are known from elsewhere, for logs of scans: `t1 t2 x y z roll pitch yaw` lines of the Freiburg
+    /// SLAM benchmark.
+    #[arg(long, value_name = "FILE")]
+    pub(super) relations: Option<PathBuf>,
     /// Print the parameters that would be used, as TOML, and end: a file to start from.
     #[arg(long)]
-    print_params: bool,
+    pub(super) print_params: bool,
     /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP.
     ///
     /// It is created where need be. Nothing is written without it.
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     /// File to save map and filter to, at the end and every `--save-every` seconds.
     ///
     /// The file is replaced as a whole: losing power leaves the old or the new one.
     #[arg(long, value_name = "FILE")]
-    save: Option<PathBuf>,
+    pub(super) save: Option<PathBuf>,
     /// Seconds of the log's time between two saves.
     #[arg(long, value_name = "SECONDS", requires = "save", value_parser = not_negative)]
-    save_every: Option<f64>,
+    pub(super) save_every: Option<f64>,
     /// Go on from a saved map with what the log holds after it.
     ///
     /// Records up to the stamp it was saved at are left out; figures and events are those of the rest.
     #[arg(long, value_name = "FILE")]
-    resume: Option<PathBuf>,
+    pub(super) resume: Option<PathBuf>,
     /// Tell which directions of the map nothing has ever constrained.
     ///
     /// Sightings never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
     #[arg(long)]
-    observability: bool,
+    pub(super) observability: bool,
     /// Print one JSON object instead of a table.
     ///
     /// `{"metrics": {name: number}, "events": {name: count}, "seed": n}`; units are in the names.
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
     /// Seed of every generator.
     ///
     /// EKF-SLAM draws nothing; the seed is passed on to the output.
     #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    pub(super) seed: u64,
 }
 
 const EXAMPLES: &str = "\
@@ -111,16 +115,20 @@ A file of parameters names what differs from the defaults, for instance
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };
     let log = wayfix_sensor_log::open(&arguments.log, &options)?;
-    let params = params(&arguments, log.meta())?;
-    if arguments.print_params {
-        print(toml::to_string(&params)?)?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    let origin = log.meta().first_format();
+    let meta = log.meta().clone();
     let (records, read) = log.read_all();
     if !read.is_clean() {
         tell(&read);
     }
+    if run_walls::is_for(&records) {
+        return run_walls::main(&arguments, &records, &read);
+    }
+    let params = params(&arguments, &meta)?;
+    if arguments.print_params {
+        print(toml::to_string(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let origin = meta.first_format();
 
     let stopwatch = Stopwatch::start();
     let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;

@@ -25,6 +25,19 @@ impl TrueTrack {
         Self { poses }
     }
 
+    /// The true poses, or those that another program estimated, where the log has no true ones.
+    pub fn from_records_or_estimates(records: &[Record]) -> Self {
+        let truth = Self::from_records(records);
+        if !truth.poses.is_empty() {
+            return truth;
+        }
+        let as_truth = |record: &Record| match record.data {
+            Data::EstimatedPose(pose) => Some(Record { stamp: record.stamp, data: Data::TruePose(pose) }),
+            _ => None,
+        };
+        Self::from_records(&records.iter().filter_map(as_truth).collect::<Vec<_>>())
+    }
+
     /// Last stamp with a true pose.
     pub fn last_stamp(&self) -> Option<Stamp> {
         self.poses.last().map(|(stamp, _)| *stamp)

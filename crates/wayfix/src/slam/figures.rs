@@ -78,7 +78,8 @@ fn position_metrics(run: &SlamRun) -> Vec<Metric> {
     metrics
 }
 
-fn timings(keyframes: &[Keyframe]) -> Vec<Metric> {
+/// Mean and largest computing time of a step.
+pub(crate) fn timings(keyframes: &[Keyframe]) -> Vec<Metric> {
     let steps = keyframes.iter().map(|keyframe| keyframe.step.as_secs_f64() * 1e6);
     let (sum, max) = steps.fold((0.0, 0.0), |(sum, max): (f64, f64), step| (sum + step, max.max(step)));
     let mean = sum / keyframes.len() as f64;

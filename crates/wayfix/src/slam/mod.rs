@@ -13,6 +13,7 @@ mod system;
 
 pub use estimates::EstimateLog;
 pub use figures::summarize;
+pub(crate) use figures::timings;
 pub use params::{AssociationRule, MountingParams, Profile, RobotParams, SlamSystemParams};
 pub use pictures::pictures;
 pub use run::{SlamRun, run, run_on};

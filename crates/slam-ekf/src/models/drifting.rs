@@ -1,0 +1,150 @@
+use nalgebra::{Const, DMatrix, DefaultAllocator, Matrix4, OMatrix, Vector4};
+use wayfix_estimation_traits::{Jacobian, Manifold, MotionModel, Pose2, TangentMatrix};
+
+use super::IncrementMotion;
+use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, SlamAlloc};
+
+/// A pose together with what its odometry turns by without turning.
+///
+/// Wheels of unequal size make a straight drive look like an arc, so that heading drifts in proportion to the way. Tangent order
+/// `(x, y, θ, κ)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriftingPose {
+    /// Where the robot is.
+    pub pose: Pose2<f64>,
+    /// κ: how much further than odometry says the robot turns on every metre, rad/m.
+    pub heading_drift: f64,
+}
+
+impl Manifold for DriftingPose {
+    type Scalar = f64;
+    type Dim = Const<4>;
+    fn dim(&self) -> Const<4> {
+        Const
+    }
+    fn retract(&self, delta: &Vector4<f64>) -> Self {
+        Self { pose: self.pose.retract(&delta.xyz()), heading_drift: self.heading_drift + delta.w }
+    }
+    fn local(&self, other: &Self) -> Vector4<f64> {
+        self.pose.local(&other.pose).push(other.heading_drift - self.heading_drift)
+    }
+    fn chart_jacobian(&self, at: &Self) -> Matrix4<f64> {
+        self.pose.chart_jacobian(&at.pose).to_homogeneous()
+    }
+}
+
+/// Odometry increments whose heading drifts: $`x' = x ∘ (u_x, u_y, u_θ + κ ‖u_{xy}‖)`$; κ stays what it is.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct DriftingMotion(pub IncrementMotion);
+
+impl DriftingMotion {
+    fn increment(state: &DriftingPose, increment: &Pose2<f64>) -> Pose2<f64> {
+        let turn = increment.heading() + state.heading_drift * increment.translation.norm();
+        Pose2::new(increment.x(), increment.y(), turn)
+    }
+}
+
+impl MotionModel for DriftingMotion {
+    type State = DriftingPose;
+    type Control = Pose2<f64>;
+
+    fn propagate(&self, state: &DriftingPose, increment: &Pose2<f64>) -> DriftingPose {
+        let moved = Self::increment(state, increment);
+        DriftingPose { pose: self.0.propagate(&state.pose, &moved), ..*state }
+    }
+    fn jacobian(&self, state: &DriftingPose, increment: &Pose2<f64>) -> Matrix4<f64> {
+        let moved = Self::increment(state, increment);
+        let mut jacobian = self.0.jacobian(&state.pose, &moved).to_homogeneous();
+        jacobian.m34 = increment.translation.norm();
+        jacobian
+    }
+    fn noise(&self, state: &DriftingPose, increment: &Pose2<f64>) -> Matrix4<f64> {
+        let mut noise = Matrix4::zeros();
+        let of_pose = self.0.noise(&state.pose, &Self::increment(state, increment));
+        noise.fixed_view_mut::<3, 3>(0, 0).copy_from(&of_pose);
+        noise
+    }
+}
+
+/// Any sensor of a pose on a robot whose odometry drifts: what it sees does not depend on the drift.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct OnDrifting<S>(pub S);
+
+impl<S> LandmarkModel for OnDrifting<S>
+where
+    S: LandmarkModel<Robot = Pose2<f64>>,
+    DefaultAllocator: SlamAlloc<RobotDim<S>, LandmarkDim<S>, MeasurementDim<S>>
+        + SlamAlloc<Const<4>, LandmarkDim<S>, MeasurementDim<S>>,
+{
+    type Robot = DriftingPose;
+    type Landmark = S::Landmark;
+    type Measurement = S::Measurement;
+
+    fn expected(&self, robot: &DriftingPose, landmark: &S::Landmark) -> S::Measurement {
+        self.0.expected(&robot.pose, landmark)
+    }
+    fn robot_jacobian(
+        &self,
+        robot: &DriftingPose,
+        landmark: &S::Landmark,
+    ) -> Jacobian<S::Measurement, DriftingPose> {
+        widened(&self.0.robot_jacobian(&robot.pose, landmark))
+    }
+    fn landmark_jacobian(
+        &self,
+        robot: &DriftingPose,
+        landmark: &S::Landmark,
+    ) -> OMatrix<f64, MeasurementDim<S>, LandmarkDim<S>> {
+        self.0.landmark_jacobian(&robot.pose, landmark)
+    }
+    fn noise(&self, measurement: &S::Measurement) -> TangentMatrix<S::Measurement> {
+        self.0.noise(measurement)
+    }
+    fn is_usable(&self, measurement: &S::Measurement) -> bool {
+        self.0.is_usable(measurement)
+    }
+    fn may_be(&self, expected: &S::Measurement, measurement: &S::Measurement) -> bool {
+        self.0.may_be(expected, measurement)
+    }
+    fn extended(
+        &self,
+        robot: &DriftingPose,
+        landmark: &S::Landmark,
+        measurement: &S::Measurement,
+    ) -> S::Landmark {
+        self.0.extended(&robot.pose, landmark, measurement)
+    }
+    fn should_see(&self, expected: &S::Measurement) -> bool {
+        self.0.should_see(expected)
+    }
+    fn symmetries(&self) -> &'static [&'static str] {
+        self.0.symmetries()
+    }
+    fn robot_symmetry(&self, robot: &DriftingPose) -> DMatrix<f64> {
+        self.0.robot_symmetry(&robot.pose).insert_row(3, 0.0)
+    }
+    fn landmark_symmetry(&self, landmark: &S::Landmark) -> DMatrix<f64> {
+        self.0.landmark_symmetry(landmark)
+    }
+    fn initialize(
+        &self,
+        robot: &DriftingPose,
+        measurement: &S::Measurement,
+    ) -> NewLandmark<S::Landmark, DriftingPose> {
+        let new = self.0.initialize(&robot.pose, measurement);
+        NewLandmark {
+            landmark: new.landmark,
+            robot_jacobian: widened(&new.robot_jacobian),
+            covariance: new.covariance,
+        }
+    }
+}
+
+/// A column of zeros for the drift.
+fn widened<R: nalgebra::DimName>(jacobian: &OMatrix<f64, R, Const<3>>) -> OMatrix<f64, R, Const<4>>
+where
+    DefaultAllocator:
+        nalgebra::allocator::Allocator<R, Const<3>> + nalgebra::allocator::Allocator<R, Const<4>>,
+{
+    OMatrix::<f64, R, Const<4>>::from_fn(|row, column| if column < 3 { jacobian[(row, column)] } else { 0.0 })
+}

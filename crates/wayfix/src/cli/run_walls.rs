@@ -1,0 +1,77 @@
+use std::{fs, process::ExitCode};
+
+use anyhow::{Context, Result};
+use wayfix_sensor_log::{Data, ReadReport, Record, read_relations};
+
+use super::{
+    finish,
+    input::read_toml,
+    output::{print, tell},
+    progress, run_slam,
+};
+use crate::{
+    report::Run,
+    slam::AssociationRule,
+    system::Stopwatch,
+    walls::{self, WallSlamParams},
+};
+
+/// Whether a log is one of scans: walls are its landmarks then.
+pub(super) fn is_for(records: &[Record]) -> bool {
+    let has = |is: fn(&Data) -> bool| records.iter().any(|record| is(&record.data));
+    has(|data| matches!(data, Data::Scan(_))) && !has(|data| matches!(data, Data::Sightings(_)))
+}
+
+/// `wayfix run slam` on a log of scans.
+pub(super) fn main(
+    arguments: &run_slam::Arguments,
+    records: &[Record],
+    read: &ReadReport,
+) -> Result<ExitCode> {
+    let params = params(arguments)?;
+    if arguments.print_params {
+        print(toml::to_string(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let stopwatch = Stopwatch::start();
+    let bar = progress::bar(records.len(), "EKF-SLAM with walls");
+    let slam = walls::run(records, &params, |_| bar.inc(1));
+    bar.finish_and_clear();
+    let mut slam = slam?;
+    finish::account(slam.events(), read);
+    let mut run = Run {
+        name: arguments.log.display().to_string(),
+        seconds: stopwatch.elapsed().as_secs_f64(),
+        ..walls::summarize(&mut slam)
+    };
+    if let Some(path) = &arguments.relations {
+        let (relations, read) = read_relations(path)?;
+        if !read.is_clean() {
+            tell(&read);
+        }
+        run.metrics.extend(walls::relation_metrics(&slam, &relations));
+    }
+    if let Some(out) = &arguments.out {
+        fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+        run.figures = walls::pictures(&slam)?;
+    }
+    finish::show("slam", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn params(arguments: &run_slam::Arguments) -> Result<WallSlamParams> {
+    let mut params = match &arguments.params {
+        Some(path) => read_toml(path, WallSlamParams::from_toml)?
+            .validated()
+            .with_context(|| format!("parameters in {} are not usable", path.display()))?,
+        None => WallSlamParams::default(),
+    };
+    match arguments.association {
+        Some(AssociationRule::Known) => {
+            anyhow::bail!("walls have no identities: use --association nn or jcbb")
+        }
+        Some(rule) => params.association = rule,
+        None => {}
+    }
+    Ok(params)
+}

@@ -1,0 +1,81 @@
+use wayfix_estimation_traits::{LieGroup, wrap_angle};
+use wayfix_sensor_log::{Relation, Stamp};
+
+use super::WallRun;
+use crate::{
+    evaluate::{Sample, trajectory_errors},
+    report::{Metric, Run},
+    slam::{Keyframe, timings},
+};
+
+/// The figures and events of a run, ready for the report.
+pub fn summarize(run: &mut WallRun) -> Run {
+    let samples: Vec<(Keyframe, Sample)> = run.samples();
+    let errors_of = |samples: Vec<Sample>| trajectory_errors(&samples);
+    let mut metrics = Vec::new();
+    if let Some(errors) = errors_of(samples.iter().map(|(_, sample)| *sample).collect()) {
+        metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
+        metrics.push(Metric::new("ate_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
+        metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
+        metrics.extend(errors.nees_mean.map(|nees| Metric::new("nees_mean", nees, "")));
+    }
+    let reckoned =
+        |(keyframe, sample): &(Keyframe, Sample)| Sample { estimate: keyframe.dead_reckoning, ..*sample };
+    if let Some(errors) = errors_of(samples.iter().map(reckoned).collect()) {
+        metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
+    }
+    let events = run.events();
+    let n_rejected =
+        ["gated", "duplicate", "unusable", "record_refused"].map(|name| events.get(name)).iter().sum::<u64>();
+    metrics.push(Metric::new("n_landmarks", run.system.filter().n_landmarks() as f64, ""));
+    metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
+    let events = run.events().counts();
+    Run { metrics, timings: timings(run.system.keyframes()), events, ..Run::default() }
+}
+
+/// How well the path keeps relations between poses that are known from elsewhere: the mean translational and rotational error, and the
+/// same of dead reckoning. [Kümmerle et al. 2009, Eq. 2]
+///
+/// Relations count whose stamps both have a keyframe within 10 ms.
+pub fn relation_metrics(run: &WallRun, relations: &[Relation]) -> Vec<Metric> {
+    let keyframes = run.system.keyframes();
+    let pairs: Vec<(&Relation, &Keyframe, &Keyframe)> = relations
+        .iter()
+        .filter_map(|relation| {
+            Some((relation, near(keyframes, relation.from)?, near(keyframes, relation.to)?))
+        })
+        .collect();
+    if pairs.is_empty() {
+        return Vec::new();
+    }
+    let mean = |error: &dyn Fn(&(&Relation, &Keyframe, &Keyframe)) -> f64| {
+        pairs.iter().map(error).sum::<f64>() / pairs.len() as f64
+    };
+    let translation = mean(&|(relation, from, to)| {
+        (from.pose.inverse().compose(&to.pose).translation - relation.pose.translation).norm()
+    });
+    let rotation = mean(&|(relation, from, to)| {
+        wrap_angle(from.pose.inverse().compose(&to.pose).heading() - relation.pose.heading()).abs()
+    });
+    let reckoned = mean(&|(relation, from, to)| {
+        let moved = from.dead_reckoning.inverse().compose(&to.dead_reckoning);
+        (moved.translation - relation.pose.translation).norm()
+    });
+    vec![
+        Metric::new("relation_translation_mean_m", translation, "m"),
+        Metric::new("relation_rotation_mean_deg", rotation.to_degrees(), "°"),
+        Metric::new("relation_dead_reckoning_mean_m", reckoned, "m"),
+        Metric::new("n_relations", pairs.len() as f64, ""),
+    ]
+}
+
+/// The keyframe nearest in time, when it is within 10 ms.
+fn near(keyframes: &[Keyframe], stamp: Stamp) -> Option<&Keyframe> {
+    const LONGEST_WAIT: f64 = 0.01;
+    let distance = |keyframe: &Keyframe| keyframe.stamp.seconds_since(stamp).abs();
+    let after = keyframes.partition_point(|keyframe| keyframe.stamp < stamp);
+    let neighbours = keyframes[after.saturating_sub(1)..keyframes.len().min(after + 1)].iter();
+    neighbours
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .filter(|keyframe| distance(keyframe) <= LONGEST_WAIT)
+}

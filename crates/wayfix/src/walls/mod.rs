@@ -1,0 +1,13 @@
+//! EKF-SLAM on laser scans: walls in every scan → map of walls, path, figures, pictures.
+
+mod figures;
+mod params;
+mod pictures;
+mod run;
+mod system;
+
+pub use figures::{relation_metrics, summarize};
+pub use params::WallSlamParams;
+pub use pictures::pictures;
+pub use run::{WallRun, run};
+pub use system::{WallModel, WallSystem};

@@ -1,0 +1,106 @@
+use serde::{Deserialize, Serialize};
+use wayfix_line_extract::Params as LineParams;
+use wayfix_slam_ekf::{
+    Confirmation, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
+    NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
+};
+
+use crate::{settings::over_defaults, slam::AssociationRule};
+
+/// Everything that can be set for EKF-SLAM with walls.
+///
+/// ```
+/// use wayfix::walls::WallSlamParams;
+/// let params = WallSlamParams::from_toml("[sensor]\nrho_sigma = 0.05")?;
+/// assert_eq!(params.sensor.rho_sigma, 0.05);
+/// assert_eq!(params.lines, WallSlamParams::default().lines); // not named in the text
+/// # Ok::<(), toml::de::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WallSlamParams {
+    /// How pieces of walls find their walls: `nn` or `jcbb`; walls have no identities.
+    pub association: AssociationRule,
+    /// Start pose, m and rad; when not given, that of the log where odometry starts, or the origin.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub start: Option<[f64; 3]>,
+    /// Where the laser sits on the robot: x forward, y left, heading; m and rad.
+    pub laser: [f64; 3],
+    /// How walls are found in a scan.
+    pub lines: LineParams,
+    /// Pieces shorter than this correct nothing, m: legs, posters and door leaves.
+    pub min_wall_length: f64,
+    /// How walls are seen.
+    pub sensor: WallSensor,
+    /// Standard deviation, before anything is seen, of what odometry turns by without turning, rad/m; it is estimated.
+    pub heading_drift_sigma: f64,
+    /// Noise of odometry increments.
+    pub increment: IncrementMotion,
+    /// Gate and outliers.
+    pub filter: SlamParams,
+    /// Thresholds of nearest neighbour.
+    pub nearest_neighbour: NearestNeighbourParams,
+    /// Thresholds of joint compatibility.
+    pub joint_compatibility: JointCompatibilityParams,
+}
+
+impl Default for WallSlamParams {
+    fn default() -> Self {
+        Self {
+            association: AssociationRule::Jcbb,
+            start: None,
+            laser: [0.0; 3],
+            lines: LineParams::default(),
+            min_wall_length: 0.7,
+            sensor: WallSensor::default(),
+            heading_drift_sigma: 0.05,
+            increment: IncrementMotion {
+                translation_variance_per_meter: 3e-3,
+                heading_variance_per_meter: 5e-3,
+                heading_variance_per_radian: 1e-3,
+                ..IncrementMotion::default()
+            },
+            filter: SlamParams {
+                linearization: Linearization::FirstEstimates,
+                confirmation: Confirmation { n_sightings: 3, patience: Some(10), ..Confirmation::default() },
+                ..SlamParams::default()
+            },
+            nearest_neighbour: NearestNeighbourParams::default(),
+            joint_compatibility: JointCompatibilityParams::default(),
+        }
+    }
+}
+
+impl WallSlamParams {
+    /// Parameters from TOML text; what it does not name keeps its default.
+    ///
+    /// # Errors
+    /// When the text is not TOML, a key is unknown or a value has the wrong type.
+    pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
+        over_defaults(&Self::default(), text)
+    }
+
+    /// The same parameters, when each is within its range.
+    ///
+    /// # Errors
+    /// [`SlamError::Parameter`] for the first that is not.
+    pub fn validated(self) -> Result<Self, SlamError> {
+        NearestNeighbour::new(self.nearest_neighbour)?;
+        JointCompatibility::new(self.joint_compatibility)?;
+        let WallSensor { rho_sigma, alpha_sigma, .. } = self.sensor;
+        for (name, value) in [
+            ("sensor.rho_sigma", rho_sigma),
+            ("sensor.alpha_sigma", alpha_sigma),
+            ("min_wall_length", self.min_wall_length),
+            ("heading_drift_sigma", self.heading_drift_sigma),
+        ] {
+            if !(1e-9..=1e6).contains(&value) {
+                return Err(SlamError::Parameter { name, value, range: "from 1e-9 to 1e6" });
+            }
+        }
+        if let Some(value) = self.laser.iter().chain(self.start.iter().flatten()).find(|v| !v.is_finite()) {
+            return Err(SlamError::Parameter { name: "laser or start", value: *value, range: "finite" });
+        }
+        Ok(self)
+    }
+}

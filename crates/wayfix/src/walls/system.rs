@@ -1,0 +1,159 @@
+use std::time::Duration;
+
+use nalgebra::{Matrix4, Vector4};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_line_extract::{Extractor, Scan};
+use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
+use wayfix_slam_ekf::{
+    DriftingMotion, DriftingPose, EkfSlam, JointCompatibility, Mounted, NearestNeighbour, Observation,
+    OnDrifting, Outcome, SeenWall, SlamError, StepReport, WallSensor,
+};
+
+use super::WallSlamParams;
+use crate::{
+    slam::{AssociationRule, Keyframe},
+    system::{Events, Stopwatch, System},
+};
+
+/// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
+pub type WallModel = OnDrifting<Mounted<WallSensor>>;
+
+/// EKF-SLAM that takes scans and keeps a map of walls.
+pub struct WallSystem {
+    params: WallSlamParams,
+    extractor: Extractor,
+    filter: EkfSlam<WallModel>,
+    association: Rule,
+    time: Stamp,
+    dead_reckoning: Pose2<f64>,
+    keyframes: Vec<Keyframe>,
+    events: Events,
+    step: Duration,
+}
+
+enum Rule {
+    NearestNeighbour(NearestNeighbour),
+    JointCompatibility(JointCompatibility),
+}
+
+impl WallSystem {
+    /// A robot at `start` among walls that it does not know.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub(super) fn new(params: WallSlamParams, start: Pose2<f64>) -> Result<Self, SlamError> {
+        let params = params.validated()?;
+        let association = match params.association {
+            AssociationRule::Jcbb => {
+                Rule::JointCompatibility(JointCompatibility::new(params.joint_compatibility)?)
+            }
+            _ => Rule::NearestNeighbour(NearestNeighbour::new(params.nearest_neighbour)?),
+        };
+        let [x, y, heading] = params.laser;
+        let sensor = OnDrifting(Mounted { sensor: params.sensor, mount: Pose2::new(x, y, heading) });
+        let state = DriftingPose { pose: start, heading_drift: 0.0 };
+        let drift_variance = params.heading_drift_sigma.powi(2);
+        let covariance = Matrix4::from_diagonal(&Vector4::new(0.0, 0.0, 0.0, drift_variance));
+        let extractor = Extractor::new(params.lines).map_err(|_| SlamError::Parameter {
+            name: "lines",
+            value: f64::NAN,
+            range: "as wayfix-line-extract asks",
+        })?;
+        Ok(Self {
+            filter: EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?,
+            extractor,
+            association,
+            params,
+            time: Stamp::default(),
+            dead_reckoning: start,
+            keyframes: Vec::new(),
+            events: Events::default(),
+            step: Duration::ZERO,
+        })
+    }
+
+    /// The filter: robot, walls, covariance.
+    pub fn filter(&self) -> &EkfSlam<WallModel> {
+        &self.filter
+    }
+    /// One estimate for every scan.
+    pub fn keyframes(&self) -> &[Keyframe] {
+        &self.keyframes
+    }
+
+    fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
+        let stopwatch = Stopwatch::start();
+        self.filter
+            .predict(&DriftingMotion(self.params.increment), increment)
+            .map_err(|error| error.to_string())?;
+        self.step += stopwatch.elapsed();
+        self.dead_reckoning = self.dead_reckoning.compose(increment);
+        self.time = stamp;
+        Ok(())
+    }
+
+    fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
+        let stopwatch = Stopwatch::start();
+        let observations = self.walls_in(scan)?;
+        let report = match &mut self.association {
+            Rule::NearestNeighbour(rule) => self.filter.update(&observations, rule),
+            Rule::JointCompatibility(rule) => self.filter.update(&observations, rule),
+        };
+        self.step += stopwatch.elapsed();
+        let report = report.map_err(|error| error.to_string())?;
+        self.count(&report);
+        self.keyframes.push(Keyframe {
+            stamp,
+            pose: self.filter.robot().pose,
+            covariance: self.filter.robot_covariance().fixed_view::<3, 3>(0, 0).into_owned(),
+            dead_reckoning: self.dead_reckoning,
+            n_landmarks: self.filter.n_landmarks(),
+            nis: report.innovations().fold((0.0, 0), |(sum, n), innovation| (sum + innovation.nis, n + 1)),
+            step: std::mem::take(&mut self.step),
+        });
+        Ok(())
+    }
+
+    /// The walls of a scan that are long enough to be walls.
+    fn walls_in(&mut self, scan: &LaserScan) -> Result<Vec<Observation<SeenWall>>, String> {
+        let LaserScan { angle_min, angle_increment, range_max, ranges } = scan;
+        let scan = Scan {
+            angle_min: *angle_min,
+            angle_increment: *angle_increment,
+            ranges,
+            max_range: range_max.next_down(), // a range of `range_max` is no echo
+        };
+        let found = self.extractor.extract(&scan).map_err(|error| error.to_string())?;
+        let long = found.segments.iter().filter(|segment| segment.length() >= self.params.min_wall_length);
+        Ok(long.map(|segment| Observation { label: None, measurement: SeenWall::from(segment) }).collect())
+    }
+
+    fn count(&mut self, report: &StepReport<SeenWall>) {
+        for outcome in &report.outcomes {
+            self.events.count(match outcome {
+                Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
+                Outcome::Accepted { .. } => "accepted",
+                Outcome::Gated { .. } => "gated",
+                Outcome::Initialized { .. } => "new_landmark",
+                Outcome::Restarted { .. } => "restarted_landmark",
+                Outcome::Ambiguous => "ambiguous",
+                Outcome::Duplicate { .. } => "duplicate",
+                Outcome::Unusable => "unusable",
+                _ => "other",
+            });
+        }
+    }
+}
+
+impl System for WallSystem {
+    fn take(&mut self, record: &Record) -> Result<(), String> {
+        match &record.data {
+            Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
+            Data::Scan(scan) => self.take_scan(record.stamp, scan),
+            _ => Ok(()),
+        }
+    }
+    fn events(&mut self) -> &mut Events {
+        &mut self.events
+    }
+}
