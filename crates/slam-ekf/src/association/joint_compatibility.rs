@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use nalgebra::{DefaultAllocator, DimName};
 use wayfix_gaussian_core::ChiSquaredGate;
 
@@ -23,6 +25,9 @@ pub struct JointCompatibilityParams {
     pub probability: f64,
     /// NIS above which an observation is certainly of no landmark. In between nothing happens with it.
     pub certainly_new: f64,
+    /// By how much the NIS of a pairing must be below that of every other landmark which the observation could be of, or it is ambiguous and
+    /// nothing happens with it; 0 takes the best whatever else there is. Parallel walls and hedges of trees ask for more.
+    pub ambiguity_margin: f64,
     /// Pairings that one look may try. When they are used up the best set so far counts, and the next look starts afresh; a bound in
     /// pairings, unlike one in milliseconds, gives the same result on every machine.
     pub n_trials: usize,
@@ -30,7 +35,7 @@ pub struct JointCompatibilityParams {
 
 impl Default for JointCompatibilityParams {
     fn default() -> Self {
-        Self { probability: 0.999, certainly_new: 40.0, n_trials: 2000 }
+        Self { probability: 0.999, certainly_new: 40.0, ambiguity_margin: 0.0, n_trials: 2000 }
     }
 }
 
@@ -69,6 +74,10 @@ impl JointCompatibility {
             let range = "between 0 and 1, exclusive";
             return Err(SlamError::Parameter { name: "probability", value: probability, range });
         };
+        if params.ambiguity_margin.is_nan() || params.ambiguity_margin < 0.0 {
+            let (name, value) = ("ambiguity_margin", params.ambiguity_margin);
+            return Err(SlamError::Parameter { name, value, range: "not negative" });
+        }
         if certainly_new.is_nan() || certainly_new < first.threshold() {
             let range = "at least the gate";
             return Err(SlamError::Parameter { name: "certainly_new", value: certainly_new, range });
@@ -120,8 +129,15 @@ where
         search.run();
         self.n_cut_short += usize::from(search.is_cut_short());
         let pairings = search.best;
+        let taken: BTreeSet<usize> = pairings.iter().flatten().copied().collect();
 
+        let margin = self.params.ambiguity_margin;
         let associate_one = |(observation, pairing): (usize, Option<usize>)| match pairing {
+            Some(sighting)
+                if has_rival(&candidates.of_observation[observation], sighting, &taken, margin) =>
+            {
+                Association::Ambiguous
+            }
             Some(sighting) => Association::Matched(candidates.sightings[sighting].landmark),
             None if candidates.of_observation[observation].is_empty() => {
                 Association::New(self.ids.next_free(filter))
@@ -130,6 +146,22 @@ where
         };
         pairings.into_iter().enumerate().map(associate_one).collect()
     }
+}
+
+/// Whether a landmark that no other observation takes fits almost as well.
+fn has_rival<M: LandmarkModel>(
+    candidates: &[Candidate<M>],
+    chosen: usize,
+    taken: &BTreeSet<usize>,
+    margin: f64,
+) -> bool
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    let nis_of = |candidate: &&Candidate<M>| candidate.innovation.nis;
+    let own = candidates.iter().find(|candidate| candidate.sighting == chosen).as_ref().map_or(0.0, nis_of);
+    let mut others = candidates.iter().filter(|other| !taken.contains(&other.sighting));
+    others.any(|other| other.innovation.nis < own + margin)
 }
 
 /// Depth-first over the observations that have candidates, each paired with one of them or with none.

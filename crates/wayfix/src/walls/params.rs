@@ -66,7 +66,10 @@ impl Default for WallSlamParams {
                 ..SlamParams::default()
             },
             nearest_neighbour: NearestNeighbourParams::default(),
-            joint_compatibility: JointCompatibilityParams::default(),
+            joint_compatibility: JointCompatibilityParams {
+                ambiguity_margin: 9.0,
+                ..JointCompatibilityParams::default()
+            },
         }
     }
 }
