@@ -40,5 +40,7 @@ pub mod space;
 pub mod world;
 
 pub use error::SimError;
-pub use scenario::{OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams};
+pub use scenario::{
+    LaserDriveParams, OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams,
+};
 pub use simulation::Simulation;

@@ -1,4 +1,4 @@
-use wayfix_sensor_log::{Data, Record, Stamp};
+use wayfix_sensor_log::{Data, Record, Stamp, TrueWall};
 
 use crate::drive::{DifferentialDrive, DriveParams, Pursuit};
 use crate::random::Streams;
@@ -38,6 +38,8 @@ pub struct Simulation<'a> {
     pub duration_ms: u64,
     /// Time from one true pose in the log to the next, milliseconds. Default 100.
     pub truth_period_ms: u32,
+    /// Whether the walls go to the log as truth, after the landmarks and numbered from 0. Default false.
+    pub true_walls: bool,
     /// Stamp of the start. Default 1.6e9 s: on the clock of a robot's computer, so that who keeps stamps in too few bits notices.
     pub start: Stamp,
 }
@@ -51,6 +53,7 @@ impl<'a> Simulation<'a> {
             drive: DriveParams::default(),
             duration_ms: 60_000,
             truth_period_ms: 100,
+            true_walls: false,
             start: Stamp::from_nanoseconds(1_600_000_000_000_000_000),
         }
     }
@@ -67,7 +70,7 @@ impl<'a> Simulation<'a> {
         self.validate(sensors)?;
         let mut robot = DifferentialDrive::new(self.drive, self.route.at(0.0))?;
         let mut driver = Pursuit::default();
-        let mut records = self.landmarks();
+        let mut records = self.surveyed();
         for milliseconds in 0..=self.duration_ms {
             let moment = Moment {
                 milliseconds,
@@ -92,9 +95,12 @@ impl<'a> Simulation<'a> {
         sensors.iter().try_for_each(|sensor| check::period("period of a sensor (ms)", sensor.period_ms()))
     }
 
-    fn landmarks(&self) -> Vec<Record> {
-        let record = |landmark| Record { stamp: self.start, data: Data::TrueLandmark(landmark) };
-        self.world.landmarks().into_iter().map(record).collect()
+    /// What stands still, with its true place.
+    fn surveyed(&self) -> Vec<Record> {
+        let walls = if self.true_walls { self.world.walls() } else { Vec::new() };
+        let walls = walls.iter().zip(0..).map(|(wall, id)| TrueWall { id, start: wall.from, end: wall.to });
+        let landmarks = self.world.landmarks().into_iter().map(Data::TrueLandmark);
+        landmarks.chain(walls.map(Data::TrueWall)).map(|data| Record { stamp: self.start, data }).collect()
     }
 
     /// Whatever is due at this moment.

@@ -8,10 +8,13 @@ use wayfix_scene_sim::drive::{DriveParams, SlipParams};
 use wayfix_scene_sim::monobot::MonobotParams;
 use wayfix_scene_sim::random::{Source, Tail};
 use wayfix_scene_sim::route::{Circle, LawnMower, Piece, RoundedRectangle, Route, Waypoints};
+use wayfix_scene_sim::sensor::laser::People;
 use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
-use wayfix_scene_sim::sensor::{GaussianOdometryParams, RangeBearingParams, Sensor, WheelOdometryParams};
+use wayfix_scene_sim::sensor::{
+    GaussianOdometryParams, LaserParams, RangeBearingParams, Sensor, WheelOdometryParams,
+};
 use wayfix_scene_sim::sensor::{Moment, Reading};
-use wayfix_scene_sim::world::{CorridorLoop, Office, Roadside, UniformField};
+use wayfix_scene_sim::world::{CorridorLoop, Office, OfficeFloor, Roadside, UniformField};
 use wayfix_scene_sim::{Scenario, ScenarioParams, SimError, Simulation};
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, -1.0];
@@ -62,6 +65,43 @@ fn sensor_parameters() {
     assert_refused(RangeBearingParams { period_ms: 0, ..honest }.validate(), 0.0);
     let tail = Tail::StudentT { degrees_of_freedom: 2.0 };
     assert_refused(RangeBearingParams { tail, ..honest }.validate(), 2.0);
+}
+
+#[test]
+fn laser_parameters() {
+    let honest = LaserParams::default();
+    let people = |people| LaserParams { people, ..honest };
+    let nobody = People::default();
+    for bad in BAD {
+        for params in [
+            LaserParams { max_range_m: bad, ..honest },
+            LaserParams { no_echo_m: bad, ..honest },
+            LaserParams { range_noise: RangeSigma { constant_m: bad, per_metre: 0.0 }, ..honest },
+            LaserParams { tail: Tail::StudentT { degrees_of_freedom: bad }, ..honest },
+            LaserParams { bearing_sigma_rad: bad, ..honest },
+            LaserParams { quantum_m: bad, ..honest },
+            LaserParams { beam_width_rad: bad, ..honest },
+            LaserParams { mixed_share: bad, ..honest },
+            LaserParams { dropout_share: bad, ..honest },
+            LaserParams { spurious_share: bad, ..honest },
+            people(People { mean: bad, ..nobody }),
+            people(People { radius_m: bad, ..nobody }),
+            people(People { nearest_m: bad, ..nobody }),
+            people(People { farthest_m: bad, ..nobody }),
+        ] {
+            assert_refused(params.validate(), bad);
+        }
+    }
+    for bad in [f64::NAN, f64::INFINITY] {
+        assert_refused(LaserParams { first_beam_rad: bad, ..honest }.validate(), bad);
+        assert_refused(LaserParams { beam_step_rad: bad, ..honest }.validate(), bad);
+        assert_refused(LaserParams { range_bias_m: bad, ..honest }.validate(), bad);
+    }
+    assert_refused(LaserParams { period_ms: 0, ..honest }.validate(), 0.0);
+    assert_refused(LaserParams { beam_step_rad: 0.05, ..honest }.validate(), 180.0 * 0.05);
+    assert_refused(people(People { mean: 101.0, ..nobody }).validate(), 101.0);
+    let endless = LaserParams { n_beams: usize::MAX, ..honest };
+    assert!(matches!(endless.validate(), Err(SimError::TooMany { .. })));
 }
 
 #[test]
@@ -153,6 +193,30 @@ fn worlds() {
         assert_refused(Office { room_m: bad, ..office }.plan(rng).map(drop), bad);
         assert_refused(Office { door_m: bad, ..office }.plan(rng).map(drop), bad);
         assert_refused(Office { jitter_m: bad, ..office }.plan(rng).map(drop), bad);
+        let floor = OfficeFloor {
+            length_m: 28.0,
+            width_m: 17.0,
+            corridor_m: 2.0,
+            n_rooms: 5,
+            room_m: 4.0,
+            room_depth_m: 3.0,
+            door_m: 0.9,
+            spacing_m: 5.0,
+        };
+        for floor in [
+            OfficeFloor { length_m: bad, ..floor },
+            OfficeFloor { width_m: bad, ..floor },
+            OfficeFloor { corridor_m: bad, ..floor },
+            OfficeFloor { room_m: bad, ..floor },
+            OfficeFloor { room_depth_m: bad, ..floor },
+            OfficeFloor { door_m: bad, ..floor },
+            OfficeFloor { spacing_m: bad, ..floor },
+        ] {
+            assert_refused(floor.plan(rng).map(drop), bad);
+        }
+        assert_refused(OfficeFloor { n_rooms: 8, ..floor }.plan(rng).map(drop), 32.0);
+        let crowded = OfficeFloor { spacing_m: 1e-300, ..floor };
+        assert!(matches!(crowded.plan(rng), Err(SimError::TooMany { .. })));
         let rocks = Roadside { n_landmarks: 2, clear_m: 1.0, verge_m: 1.0 };
         assert_refused(Roadside { clear_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
         assert_refused(Roadside { verge_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);

@@ -7,7 +7,7 @@ use wayfix_estimation_traits::nalgebra::Vector2;
 use wayfix_scene_sim::random::Source;
 use wayfix_scene_sim::route::{Circle, Piece, Route};
 use wayfix_scene_sim::world::{
-    CorridorLoop, Office, OtherRobot, Plan, PlanarWorld, Roadside, UniformField, World,
+    CorridorLoop, Office, OfficeFloor, OtherRobot, Plan, PlanarWorld, Roadside, UniformField, World,
 };
 use wayfix_sensor_log::{Target, TrueLandmark};
 
@@ -71,6 +71,49 @@ fn offices_have_posts_in_the_corners_and_doors_between_the_rooms() {
     assert!(!world.hides(&left, &middle) && !world.hides(&middle, &above), "doors are open");
     assert!(world.hides(&at(-4.0, -3.0), &at(0.0, -3.0)), "walls beside doors are not");
     assert!(world.hides(&middle, &at(0.0, -5.0)), "nor are outer walls");
+}
+
+#[test]
+fn an_office_floor_is_closed_but_for_its_doors() {
+    let floor = OfficeFloor {
+        length_m: 28.4,
+        width_m: 17.4,
+        corridor_m: 2.0,
+        n_rooms: 5,
+        room_m: 4.0,
+        room_depth_m: 3.0,
+        door_m: 0.9,
+        spacing_m: 5.0,
+    };
+    let plan = floor.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
+    // From the corridor into all directions: no sight leads out of the building, which ends 1 m (short sides, and the niches' depth) or 4 m
+    // (long sides) beyond the centre line, and none into the block.
+    for (eye, into_block) in [((0.0, -8.7), 1.0), ((0.0, 8.7), -1.0), ((14.2, 0.0), 0.0), ((-14.2, 0.0), 0.0)]
+    {
+        let eye = Vector2::new(eye.0, eye.1);
+        for k in 0..3600 {
+            let direction = wayfix_scene_sim::plane::direction(f64::from(k).to_radians() / 10.0 + 1e-4);
+            let hit = plan.walls.iter().filter_map(|wall| wall.distance(&eye, &direction)).reduce(f64::min);
+            let hit = eye + direction * hit.unwrap_or(f64::INFINITY);
+            assert!(hit.x.abs() <= 15.3 + 1e-9 && hit.y.abs() <= 12.7 + 1e-9, "{hit:?} from {eye:?}");
+            assert!(
+                hit.x.abs() >= 13.2 - 1e-9 || hit.y.abs() >= 7.7 - 1e-9,
+                "{hit:?} is in the block, from {eye:?}"
+            );
+            assert!(
+                direction.y * into_block <= 0.9 || (hit.y - eye.y).abs() <= 1.0 + 1e-9,
+                "through the block: {hit:?}"
+            );
+        }
+    }
+    // On each long side five doors of 0.9 m are open: so much of the wall is missing, less what the leaves hide, 4 mm each, and two steps of 1 mm.
+    let samples = 20_000;
+    let open = (0..samples).filter(|k| {
+        let x = -10.0 + 20.0 * f64::from(*k) / f64::from(samples);
+        let (inside, outside) = (Vector2::new(x, -9.6), Vector2::new(x, -9.71));
+        !plan.walls.iter().any(|wall| wall.hides(&inside, &outside))
+    });
+    assert!((open.count() as f64 * 20.0 / f64::from(samples) - 5.0 * 0.9).abs() < 0.04);
 }
 
 #[test]

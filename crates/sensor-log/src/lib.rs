@@ -57,7 +57,9 @@ pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummar
 pub use log::{Log, LogMeta};
 pub use mcap_log::{Drawing, McapWriter, Shape, topics};
 pub use open::{OpenOptions, PoseKind, open};
-pub use record::{CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, Velocity};
+pub use record::{
+    CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, TrueWall, Velocity,
+};
 pub use report::{LogEnd, Problem, ProblemKind, ReadReport};
 pub use scan::{LaserScan, ScanSummary};
 pub use stamp::Stamp;

@@ -1,3 +1,4 @@
+use nalgebra::Vector2;
 use wayfix_estimation_traits::{Pose2, Pose3};
 
 use crate::{AckermannDrive, EncodedImage, LaserScan, Stamp};
@@ -35,6 +36,8 @@ pub enum Data {
     TruePosition(TruePosition),
     /// Where a landmark truly is.
     TrueLandmark(TrueLandmark),
+    /// Where a wall truly is.
+    TrueWall(TrueWall),
     /// A pose some program estimated.
     EstimatedPose(Pose2<f64>),
     /// How the camera projects; it holds until the next one.
@@ -60,6 +63,7 @@ impl Data {
             Self::TruePose(_) => "true pose",
             Self::TruePosition(_) => "true position",
             Self::TrueLandmark(_) => "true landmark",
+            Self::TrueWall(_) => "true wall",
             Self::EstimatedPose(_) => "estimated pose",
             Self::CameraInfo(_) => "camera info",
             Self::CameraMount(_) => "camera mount",
@@ -81,6 +85,7 @@ impl Data {
             Self::Scan(scan) => scan.has_finite_angles(),
             Self::TruePosition(position) => position.x.is_finite() && position.y.is_finite(),
             Self::TrueLandmark(landmark) => landmark.x.is_finite() && landmark.y.is_finite(),
+            Self::TrueWall(wall) => wall.start.iter().chain(wall.end.iter()).all(|v| v.is_finite()),
             Self::CameraInfo(info) => [info.fx, info.fy, info.cx, info.cy].iter().all(|v| v.is_finite()),
             Self::CameraMount(pose) => {
                 pose.translation.iter().chain(pose.rotation.coords.iter()).all(|v| v.is_finite())
@@ -167,4 +172,15 @@ pub struct TrueLandmark {
     pub x: f64,
     /// y in the world, metres.
     pub y: f64,
+}
+
+/// A surveyed wall, or another straight surface that a laser sees. Which end is the start says nothing of its sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrueWall {
+    /// Its identity.
+    pub id: u32,
+    /// One end in the world, metres.
+    pub start: Vector2<f64>,
+    /// The other end, metres.
+    pub end: Vector2<f64>,
 }

@@ -11,10 +11,10 @@ mod common;
 use std::io::Cursor;
 
 use proptest::prelude::*;
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_sensor_log::{
     AckermannDrive, Data, Format, LaserScan, LogEnd, LogError, McapWriter, OpenOptions, PoseKind, Record,
-    Sighting, Stamp, Target, TrueLandmark, TruePosition, Velocity, convert, open, write,
+    Sighting, Stamp, Target, TrueLandmark, TruePosition, TrueWall, Velocity, convert, open, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -78,6 +78,9 @@ fn data() -> impl Strategy<Value = Data> {
             x,
             y
         })),
+        (any::<u32>(), [number(), number(), number(), number()]).prop_map(|(id, [a, b, c, d])| {
+            Data::TrueWall(TrueWall { id, start: Vector2::new(a, b), end: Vector2::new(c, d) })
+        }),
         pose().prop_map(Data::EstimatedPose),
     ]
 }
@@ -117,6 +120,7 @@ fn bits(record: &Record) -> (u64, String, Vec<u64>) {
             look.iter().flat_map(|sighting| [sighting.range, sighting.bearing]).collect()
         }
         Data::TrueLandmark(landmark) => vec![landmark.x, landmark.y],
+        Data::TrueWall(wall) => vec![wall.start.x, wall.start.y, wall.end.x, wall.end.y],
         Data::Scan(scan) => {
             [&[scan.angle_min, scan.angle_increment, scan.range_max], scan.ranges.as_slice()].concat()
         }

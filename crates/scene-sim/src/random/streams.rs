@@ -62,6 +62,10 @@ pub enum Source {
     Objects,
     /// Noise of the camera before a flat scene.
     Pixels,
+    /// Where the beams of a laser that fall on two surfaces find their mean.
+    MixedPixels,
+    /// People in front of a laser.
+    People,
     /// A user's own.
     Other(u32),
 }
@@ -98,6 +102,8 @@ impl Source {
             Self::Texture => 26,
             Self::Objects => 27,
             Self::Pixels => 28,
+            Self::MixedPixels => 29,
+            Self::People => 30,
             Self::Other(n) => (1 << 32) | n as u64,
         }
     }

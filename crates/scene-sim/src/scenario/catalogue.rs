@@ -1,5 +1,6 @@
 use std::f64::consts::FRAC_PI_3;
 
+use super::laser::office_laser;
 use super::{OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams};
 use crate::drive::{DriveParams, SlipParams};
 use crate::monobot::MonobotParams;
@@ -19,6 +20,7 @@ pub(super) fn all() -> Vec<Scenario> {
         planar("rough_known", 4, rough_known()),
         planar("long_loop", 5, long_loop()),
         Scenario { name: "monobot", seed: 6, params: ScenarioParams::Monobot(MonobotParams::default()) },
+        office_laser(),
     ]
 }
 

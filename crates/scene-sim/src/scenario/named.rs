@@ -1,7 +1,7 @@
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{Record, Stamp};
 
-use super::{PlanarParams, catalogue, league};
+use super::{LaserDriveParams, PlanarParams, catalogue, league};
 use crate::SimError;
 use crate::league::LeagueParams;
 use crate::monobot::MonobotParams;
@@ -33,6 +33,8 @@ pub struct Scenario {
 pub enum ScenarioParams {
     /// A robot in the plane.
     Planar(Box<PlanarParams>),
+    /// A robot in the plane with a laser.
+    Laser(Box<LaserDriveParams>),
     /// A robot on a line, one step every 100 ms.
     Monobot(MonobotParams),
     /// A robot with a camera on the field of the four-legged league.
@@ -85,6 +87,7 @@ impl Scenario {
         let mut streams = Streams::new(rng);
         match &self.params {
             ScenarioParams::Planar(params) => params.simulate(&mut streams),
+            ScenarioParams::Laser(params) => params.simulate(&mut streams),
             ScenarioParams::League(params) => params.simulate(streams),
             ScenarioParams::Monobot(params) => {
                 let run = params.simulate(&mut streams)?;

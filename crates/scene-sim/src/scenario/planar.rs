@@ -110,7 +110,7 @@ impl PlanarParams {
 }
 
 impl OdometryParams {
-    fn instrument(&self) -> Result<Box<dyn Sensor>, SimError> {
+    pub(super) fn instrument(&self) -> Result<Box<dyn Sensor>, SimError> {
         Ok(match self {
             Self::Gaussian(params) => Box::new(GaussianOdometry::new(*params)?),
             Self::Wheels(params) => Box::new(WheelOdometry::new(*params)?),

@@ -2,10 +2,12 @@
 
 mod gaussian_odometry;
 mod instrument;
+pub mod laser;
 pub mod range_bearing;
 mod wheel_odometry;
 
 pub use gaussian_odometry::{GaussianOdometry, GaussianOdometryParams};
 pub use instrument::{Moment, Reading, Sensor};
+pub use laser::{Laser, LaserParams};
 pub use range_bearing::{RangeBearing, RangeBearingParams};
 pub use wheel_odometry::{OdometryKind, WheelOdometry, WheelOdometryParams};

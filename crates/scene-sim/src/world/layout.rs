@@ -2,7 +2,7 @@ use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_sensor_log::TrueLandmark;
 
-use super::{CorridorLoop, Office, Roadside, UniformField, Wall};
+use super::{CorridorLoop, Office, OfficeFloor, Roadside, UniformField, Wall};
 use crate::SimError;
 use crate::route::Route;
 
@@ -36,6 +36,8 @@ pub enum Layout {
     CorridorLoop(CorridorLoop),
     /// Rooms in rows and columns, with doors.
     Office(Office),
+    /// A corridor around a block, with rooms, doors, pillars and furniture: walls only.
+    OfficeFloor(OfficeFloor),
     /// Rocks along the robot's route.
     Roadside(Roadside),
 }
@@ -50,6 +52,7 @@ impl Layout {
             Self::UniformField(field) => field.plan(rng),
             Self::CorridorLoop(corridor) => corridor.plan(rng),
             Self::Office(office) => office.plan(rng),
+            Self::OfficeFloor(floor) => floor.plan(rng),
             Self::Roadside(rocks) => rocks.plan(route, rng),
         }
     }

@@ -12,6 +12,11 @@ pub trait World {
     /// The surveyed landmarks: what the log gives as truth.
     fn landmarks(&self) -> Vec<TrueLandmark>;
 
+    /// The surfaces that a laser sees. By default there are none.
+    fn walls(&self) -> Vec<Wall> {
+        Vec::new()
+    }
+
     /// Everything that could be seen `seconds` after the start, wherever from, and where it is (metres).
     fn targets(&self, seconds: f64) -> Vec<(Target, Vector2<f64>)>;
 
@@ -62,6 +67,10 @@ impl PlanarWorld {
 impl World for PlanarWorld {
     fn landmarks(&self) -> Vec<TrueLandmark> {
         self.plan.landmarks.clone()
+    }
+
+    fn walls(&self) -> Vec<Wall> {
+        self.plan.walls.clone()
     }
 
     fn targets(&self, seconds: f64) -> Vec<(Target, Vector2<f64>)> {

@@ -24,14 +24,30 @@ impl Wall {
     /// assert!(!wall.hides(&eye, &Vector2::new(1.0, 0.5)) && !wall.hides(&eye, &Vector2::new(2.0, 3.0)));
     /// ```
     pub fn hides(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
-        let (sight, wall, offset) = (point - eye, self.to - self.from, self.from - eye);
+        self.crossing(eye, &(point - eye)).is_some_and(|along| (0.0..1.0 - SURFACE).contains(&along))
+    }
+
+    /// How far it is from `eye` along the unit vector `direction` to the wall, metres; `None` when the ray misses it.
+    ///
+    /// ```
+    /// use wayfix_estimation_traits::nalgebra::Vector2;
+    /// use wayfix_scene_sim::world::Wall;
+    /// let wall = Wall { from: Vector2::new(2.0, -1.0), to: Vector2::new(2.0, 1.0) };
+    /// let eye = Vector2::new(0.0, 0.0);
+    /// assert_eq!(wall.distance(&eye, &Vector2::new(1.0, 0.0)), Some(2.0));
+    /// assert_eq!(wall.distance(&eye, &Vector2::new(-1.0, 0.0)), None);
+    /// ```
+    pub fn distance(&self, eye: &Vector2<f64>, direction: &Vector2<f64>) -> Option<f64> {
+        self.crossing(eye, direction).filter(|along| *along >= 0.0)
+    }
+
+    /// Where the line through `eye` along `sight` crosses the wall, in lengths of `sight`.
+    fn crossing(&self, eye: &Vector2<f64>, sight: &Vector2<f64>) -> Option<f64> {
+        let (wall, offset) = (self.to - self.from, self.from - eye);
         let determinant = sight.perp(&wall);
-        if determinant == 0.0 {
-            return false;
-        }
-        let along_sight = offset.perp(&wall) / determinant;
-        let along_wall = offset.perp(&sight) / determinant;
-        (0.0..1.0 - SURFACE).contains(&along_sight) && (0.0..=1.0).contains(&along_wall)
+        let along_wall = offset.perp(sight) / determinant;
+        let crosses = determinant != 0.0 && (0.0..=1.0).contains(&along_wall);
+        crosses.then(|| offset.perp(&wall) / determinant)
     }
 
     /// The four sides of a rectangle about the origin.

@@ -1,6 +1,7 @@
 //! Foxglove messages as records.
 
 use foxglove::messages::{self, Odometry, PointCloud, PoseInFrame, Timestamp};
+use nalgebra::Vector2;
 use prost::Message;
 use wayfix_estimation_traits::Pose2;
 
@@ -8,7 +9,7 @@ use super::cloud::{self, Slot};
 use super::routes::Route;
 use super::{camera, scan, vehicle};
 use crate::planar::heading_of;
-use crate::{Data, ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, Velocity};
+use crate::{Data, ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, TrueWall, Velocity};
 
 /// What is wrong with a message.
 pub(super) type Fault = (ProblemKind, String);
@@ -44,6 +45,12 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
             let stamp = stamp(cloud.timestamp, log_time)?;
             let to_record = |landmark| Record { stamp, data: Data::TrueLandmark(landmark) };
             Ok(landmarks(&cloud)?.into_iter().map(to_record).collect())
+        }
+        Route::TrueWalls => {
+            let cloud: PointCloud = decode(bytes)?;
+            let stamp = stamp(cloud.timestamp, log_time)?;
+            let to_record = |wall| Record { stamp, data: Data::TrueWall(wall) };
+            Ok(walls(&cloud)?.into_iter().map(to_record).collect())
         }
     }
 }
@@ -115,6 +122,18 @@ fn landmarks(cloud: &PointCloud) -> Result<Vec<TrueLandmark>, Fault> {
     let landmarks = read_points(cloud, read)?;
     finite(landmarks.iter().flat_map(|landmark| [landmark.x, landmark.y]))?;
     Ok(landmarks)
+}
+
+fn walls(cloud: &PointCloud) -> Result<Vec<TrueWall>, Fault> {
+    let [x, y, end_x, end_y, id] = slots(cloud, ["x", "y", "end_x", "end_y", "id"])?;
+    let read = |point: &[u8]| {
+        let start = Vector2::new(x.float(point)?, y.float(point)?);
+        let end = Vector2::new(end_x.float(point)?, end_y.float(point)?);
+        Some(TrueWall { id: id.whole(point)?, start, end })
+    };
+    let walls = read_points(cloud, read)?;
+    finite(walls.iter().flat_map(|wall| [wall.start.x, wall.start.y, wall.end.x, wall.end.y]))?;
+    Ok(walls)
 }
 
 pub(super) fn slots<const N: usize>(cloud: &PointCloud, names: [&str; N]) -> Result<[Slot; N], Fault> {

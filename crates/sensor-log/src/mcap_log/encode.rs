@@ -7,7 +7,7 @@ use wayfix_estimation_traits::Pose2;
 use super::cloud::{self, Column};
 use super::topics;
 use crate::planar::quaternion_of;
-use crate::{LogError, Sighting, Stamp, Target, TrueLandmark, Velocity};
+use crate::{LogError, Sighting, Stamp, Target, TrueLandmark, TrueWall, Velocity};
 
 /// Bytes 0-15 hold what is read back, the rest lets viewers draw it.
 const SIGHTING_COLUMNS: [Column; 7] = [
@@ -21,6 +21,10 @@ const SIGHTING_COLUMNS: [Column; 7] = [
 ];
 
 const LANDMARK_COLUMNS: [Column; 4] = [("x", Float64), ("y", Float64), ("z", Float64), ("id", Uint32)];
+
+/// The first three are what viewers draw.
+const WALL_COLUMNS: [Column; 6] =
+    [("x", Float64), ("y", Float64), ("z", Float64), ("end_x", Float64), ("end_y", Float64), ("id", Uint32)];
 
 pub(super) fn timestamp(stamp: Stamp) -> Result<Timestamp, LogError> {
     const NANOSECONDS: u64 = 1_000_000_000;
@@ -93,6 +97,15 @@ pub(super) fn landmarks(timestamp: Timestamp, landmarks: &[TrueLandmark]) -> Poi
         data.extend(landmark.y.to_le_bytes());
         data.extend(0.0_f64.to_le_bytes());
         data.extend(landmark.id.to_le_bytes());
+    })
+}
+
+pub(super) fn walls(timestamp: Timestamp, walls: &[TrueWall]) -> PointCloud {
+    cloud::pack(timestamp, topics::WORLD_FRAME, &WALL_COLUMNS, walls, |wall, data| {
+        for coordinate in [wall.start.x, wall.start.y, 0.0, wall.end.x, wall.end.y] {
+            data.extend(coordinate.to_le_bytes());
+        }
+        data.extend(wall.id.to_le_bytes());
     })
 }
 

@@ -8,6 +8,7 @@ mod drawing;
 mod encode;
 mod fields;
 mod frames;
+mod held;
 mod origin;
 mod reader;
 mod record;

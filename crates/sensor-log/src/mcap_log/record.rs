@@ -13,10 +13,10 @@ impl<W: Write + Seek> McapWriter<W> {
         let stamp = record.stamp;
         record.data.check_finite().map_err(|what| LogError::NotFinite { what, stamp })?;
         camera::check(record)?;
-        if let Data::TrueLandmark(landmark) = record.data {
-            return self.hold_landmark(stamp, landmark);
+        if let Data::TrueLandmark(_) | Data::TrueWall(_) = record.data {
+            return self.hold(record);
         }
-        self.flush_landmarks()?;
+        self.flush_held()?;
         let timestamp = encode::timestamp(stamp)?;
         match &record.data {
             Data::Velocity(velocity) => {
@@ -46,7 +46,7 @@ impl<W: Write + Seek> McapWriter<W> {
             Data::EstimatedPose(pose) => {
                 self.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)
             }
-            Data::TrueLandmark(_) => Ok(()),
+            Data::TrueLandmark(_) | Data::TrueWall(_) => Ok(()),
             Data::CameraInfo(info) => {
                 self.message(topics::CAMERA_INFO, stamp, &camera::encode_info(timestamp, info))
             }

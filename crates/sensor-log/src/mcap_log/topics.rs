@@ -11,6 +11,7 @@
 //! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`Data::TruePosition`](crate::Data::TruePosition) |
 //! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |
 //! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
+//! | [`TRUE_WALLS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `end_x`, `end_y`, `id` | [`WORLD_FRAME`] | [`Data::TrueWall`](crate::Data::TrueWall) |
 //! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
 //! | [`CAMERA_INFO`] | `foxglove.CameraCalibration` | [`CAMERA_OPTICAL_FRAME`] | [`Data::CameraInfo`](crate::Data::CameraInfo) |
 //! | [`CAMERA_MOUNT`] | `foxglove.FrameTransform` | [`CAMERA_FRAME`] in [`BODY_FRAME`] | [`Data::CameraMount`](crate::Data::CameraMount) |
@@ -45,6 +46,8 @@ pub const TRUE_POSITION: &str = "/truth/position";
 pub const TRUE_POSE: &str = "/truth/pose";
 /// Where the landmarks truly are.
 pub const TRUE_LANDMARKS: &str = "/truth/landmarks";
+/// Where the walls truly are.
+pub const TRUE_WALLS: &str = "/truth/walls";
 /// Where some program thinks the robot was.
 pub const ESTIMATED_POSE: &str = "/estimate/pose";
 

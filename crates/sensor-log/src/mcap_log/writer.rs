@@ -11,8 +11,9 @@ use mcap::records::MessageHeader;
 use wayfix_estimation_traits::Pose2;
 
 use super::drawing::scene_update;
-use super::{Drawing, encode, origin, topics};
-use crate::{Format, LogError, Stamp, TrueLandmark};
+use super::held::Held;
+use super::{Drawing, encode, origin};
+use crate::{Format, LogError, Record, Stamp};
 
 /// Messages are flushed in chunks of about this size: a crash loses no more.
 const CHUNK_BYTES: u64 = 256 << 10;
@@ -37,9 +38,7 @@ pub struct McapWriter<W: Write + Seek> {
     writer: mcap::Writer<W>,
     /// By topic, schema and metadata.
     channels: BTreeMap<(String, String, BTreeMap<String, String>), Channel>,
-    /// Landmarks in a row at one stamp become one cloud, so that viewers draw them together.
-    landmarks: Vec<TrueLandmark>,
-    landmarks_stamp: Stamp,
+    held: Held,
 }
 
 struct Channel {
@@ -70,12 +69,7 @@ impl<W: Write + Seek> McapWriter<W> {
             .library("wayfix")
             .chunk_size(Some(CHUNK_BYTES))
             .create(out)?;
-        Ok(Self {
-            writer,
-            channels: BTreeMap::new(),
-            landmarks: Vec::new(),
-            landmarks_stamp: Stamp::default(),
-        })
+        Ok(Self { writer, channels: BTreeMap::new(), held: Held::default() })
     }
 
     /// Says which format the records come from; reading gives it back as [`LogMeta::origin`](crate::LogMeta::origin).
@@ -183,29 +177,26 @@ impl<W: Write + Seek> McapWriter<W> {
     /// # Errors
     /// When the output fails.
     pub fn finish(mut self) -> Result<(), LogError> {
-        self.flush_landmarks()?;
+        self.flush_held()?;
         self.writer.finish()?;
         self.writer.into_inner().flush().map_err(mcap::McapError::from)?;
         Ok(())
     }
 
-    /// Keeps a landmark until another kind of record or stamp comes.
-    pub(super) fn hold_landmark(&mut self, stamp: Stamp, landmark: TrueLandmark) -> Result<(), LogError> {
-        if stamp != self.landmarks_stamp {
-            self.flush_landmarks()?;
-            self.landmarks_stamp = stamp;
+    /// Keeps a landmark or a wall until another kind of record or stamp comes.
+    pub(super) fn hold(&mut self, record: &Record) -> Result<(), LogError> {
+        if !self.held.goes_with(record) {
+            self.flush_held()?;
         }
-        self.landmarks.push(landmark);
+        self.held.push(record);
         Ok(())
     }
 
-    pub(super) fn flush_landmarks(&mut self) -> Result<(), LogError> {
-        if self.landmarks.is_empty() {
-            return Ok(());
+    pub(super) fn flush_held(&mut self) -> Result<(), LogError> {
+        match std::mem::take(&mut self.held).into_cloud()? {
+            Some((topic, stamp, cloud)) => self.message(topic, stamp, &cloud),
+            None => Ok(()),
         }
-        let landmarks = std::mem::take(&mut self.landmarks);
-        let message = encode::landmarks(encode::timestamp(self.landmarks_stamp)?, &landmarks);
-        self.message(topics::TRUE_LANDMARKS, self.landmarks_stamp, &message)
     }
 
     pub(super) fn message<M>(&mut self, topic: &str, stamp: Stamp, message: &M) -> Result<(), LogError>

@@ -66,7 +66,7 @@ impl RangeSigma {
         self.constant_m + self.per_metre * range
     }
 
-    pub(super) fn validate(&self) -> Result<(), SimError> {
+    pub(in crate::sensor) fn validate(&self) -> Result<(), SimError> {
         check::not_negative("σ of range (m)", self.constant_m)?;
         check::not_negative("growth of σ with range", self.per_metre)
     }

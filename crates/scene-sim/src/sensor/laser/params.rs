@@ -1,0 +1,105 @@
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use super::People;
+use crate::random::Tail;
+use crate::sensor::range_bearing::RangeSigma;
+use crate::{SimError, check};
+
+/// The most beams a scan has.
+const MOST_BEAMS: usize = 100_000;
+
+/// Everything about a laser scanner. The default is the data sheet of a SICK LMS 200 in a clean room: half a turn in steps of 1°, a
+/// statistical error of 5 mm, ranges in whole centimetres, a beam of 4.4 mrad; of its sins, only that beams mix what they hit at an edge.
+///
+/// ```
+/// use wayfix_scene_sim::sensor::LaserParams;
+/// let params = LaserParams { n_beams: 361, beam_step_rad: 0.5_f64.to_radians(), ..Default::default() };
+/// assert!(params.validate().is_ok());
+/// assert!(LaserParams { quantum_m: -0.01, ..params }.validate().is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserParams {
+    /// Time from one scan to the next, milliseconds; each is taken in an instant. Default 200.
+    pub period_ms: u32,
+    /// Direction of the first beam, radians, 0 ahead, counter-clockwise. Default −π/2.
+    pub first_beam_rad: f64,
+    /// From one beam to the next, radians. Default 1°.
+    pub beam_step_rad: f64,
+    /// Beams of a scan. Default 181.
+    pub n_beams: usize,
+    /// What is farther away does not come back, metres. Default 30.
+    pub max_range_m: f64,
+    /// What the device says of a beam that does not come back, metres; scans state it as their `range_max`. Default 81.91.
+    pub no_echo_m: f64,
+    /// Standard deviation of the white range error. Default 0.005 m, not growing.
+    pub range_noise: RangeSigma,
+    /// Shape of the white range error. Default Gaussian.
+    pub tail: Tail,
+    /// Added to every range, metres. Default 0.
+    pub range_bias_m: f64,
+    /// Standard deviation of each beam's true direction about its stated one, radians. Default 0.0005.
+    pub bearing_sigma_rad: f64,
+    /// Ranges are whole multiples of this, metres; 0 for any range. Default 0.01.
+    pub quantum_m: f64,
+    /// Opening angle of a beam, radians. Default 0.0044.
+    pub beam_width_rad: f64,
+    /// Share of the beams on the edge between two surfaces that report a range in between. Default 0.5.
+    pub mixed_share: f64,
+    /// Share of beams that do not come back, whatever they hit. Default 0.
+    pub dropout_share: f64,
+    /// Share of beams that report a range anywhere before what they hit: dust, glare. Default 0.
+    pub spurious_share: f64,
+    /// Who stands in the way. Default nobody.
+    pub people: People,
+}
+
+impl Default for LaserParams {
+    fn default() -> Self {
+        Self {
+            period_ms: 200,
+            first_beam_rad: -FRAC_PI_2,
+            beam_step_rad: 1.0_f64.to_radians(),
+            n_beams: 181,
+            max_range_m: 30.0,
+            no_echo_m: 81.91,
+            range_noise: RangeSigma { constant_m: 0.005, per_metre: 0.0 },
+            tail: Tail::Gaussian,
+            range_bias_m: 0.0,
+            bearing_sigma_rad: 0.0005,
+            quantum_m: 0.01,
+            beam_width_rad: 0.0044,
+            mixed_share: 0.5,
+            dropout_share: 0.0,
+            spurious_share: 0.0,
+            people: People::default(),
+        }
+    }
+}
+
+impl LaserParams {
+    /// Whether the numbers make a scanner.
+    ///
+    /// # Errors
+    /// Names the first that does not.
+    pub fn validate(&self) -> Result<(), SimError> {
+        check::period("period of the scans (ms)", self.period_ms)?;
+        check::finite("direction of the first beam (rad)", self.first_beam_rad)?;
+        check::finite("angle between beams (rad)", self.beam_step_rad)?;
+        check::count("beams of a scan", self.n_beams, MOST_BEAMS)?;
+        let view = self.beam_step_rad.abs() * self.n_beams.saturating_sub(1) as f64;
+        check::at_most("field of view (rad)", view, TAU, "at most a turn")?;
+        check::positive("farthest range of the laser (m)", self.max_range_m)?;
+        let must = "finite and above the farthest range";
+        check::above("range of a beam without echo (m)", self.no_echo_m, self.max_range_m, must)?;
+        self.range_noise.validate()?;
+        self.tail.validate()?;
+        check::finite("range bias of the laser (m)", self.range_bias_m)?;
+        check::not_negative("σ of a beam's direction (rad)", self.bearing_sigma_rad)?;
+        check::not_negative("quantum of the ranges (m)", self.quantum_m)?;
+        check::not_negative("opening angle of a beam (rad)", self.beam_width_rad)?;
+        check::share("share of mixed beams", self.mixed_share)?;
+        check::share("share of beams that are lost", self.dropout_share)?;
+        check::share("share of spurious echoes", self.spurious_share)?;
+        self.people.validate()
+    }
+}

@@ -1,0 +1,149 @@
+use nalgebra::Vector2;
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Data, LaserScan};
+
+use super::LaserParams;
+use super::people::Person;
+use crate::random::{Source, Streams, deviate};
+use crate::sensor::{Moment, Reading, Sensor};
+use crate::world::Wall;
+use crate::{SimError, plane};
+
+/// The instrument to [`LaserParams`], at the robot's origin.
+///
+/// Every scan draws the same number of deviates for every beam, whatever it hits.
+///
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
+/// use wayfix_scene_sim::{random::Streams, sensor::{Laser, LaserParams, Moment, Sensor}, world::{Plan, PlanarWorld, Wall}};
+/// use wayfix_sensor_log::Data;
+///
+/// let ahead = Wall { from: Vector2::new(3.0, -1.0), to: Vector2::new(3.0, 1.0) };
+/// let world = PlanarWorld::new(Plan { landmarks: vec![], walls: vec![ahead] });
+/// let pose = Pose2::new(0.0, 0.0, 0.0);
+/// let moment = Moment { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
+/// let mut laser = Laser::new(LaserParams::default())?;
+/// let reading = laser.sense(&moment, &mut Streams::new(ChaCha8Rng::seed_from_u64(1)));
+/// let Some(Data::Scan(scan)) = reading.map(|r| r.data) else { panic!("no scan") };
+/// assert!((scan.ranges[90] - 3.0).abs() < 0.03); // straight ahead: 5σ and half a quantum
+/// assert_eq!(scan.echoes().count(), 37); // those within atan(1/3) = 18.4°
+/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Laser {
+    params: LaserParams,
+}
+
+/// A surface is smooth where the beam's middle is within this of the mean of its two edges, metres; else there is an edge.
+const SMOOTH_M: f64 = 0.1;
+
+impl Laser {
+    /// A scanner.
+    ///
+    /// # Errors
+    /// When the parameters have no meaning.
+    pub fn new(params: LaserParams) -> Result<Self, SimError> {
+        params.validate()?;
+        Ok(Self { params })
+    }
+
+    /// What the device reports of a beam.
+    fn range(&self, bearing: f64, scene: &Scene<'_>, errors: &Errors) -> f64 {
+        let hit = self.hit(bearing + self.params.bearing_sigma_rad * errors.direction, scene, errors);
+        let Some(hit) = hit.filter(|hit| *hit <= self.params.max_range_m && !errors.lost) else {
+            return self.params.no_echo_m;
+        };
+        let range = match errors.spurious {
+            Some(share) => share * hit,
+            None => hit + self.params.range_bias_m + self.params.range_noise.at(hit) * errors.range,
+        };
+        quantized(range, self.params.quantum_m).clamp(0.0, self.params.max_range_m)
+    }
+
+    /// How far the beam goes: to the surface in its middle, or on an edge to somewhere between the two that it falls on.
+    fn hit(&self, bearing: f64, scene: &Scene<'_>, errors: &Errors) -> Option<f64> {
+        let half = 0.5 * self.params.beam_width_rad;
+        let middle = scene.distance(bearing);
+        let edges = scene.distance(bearing - half).zip(scene.distance(bearing + half));
+        match (middle, edges, errors.mixed) {
+            (Some(middle), Some((right, left)), Some(share))
+                if (middle - 0.5 * (right + left)).abs() > SMOOTH_M =>
+            {
+                Some(right + share * (left - right))
+            }
+            _ => middle,
+        }
+    }
+}
+
+impl Sensor for Laser {
+    fn period_ms(&self) -> u32 {
+        self.params.period_ms
+    }
+
+    fn sense(&mut self, moment: &Moment<'_>, streams: &mut Streams) -> Option<Reading> {
+        let LaserParams { first_beam_rad, beam_step_rad, n_beams, no_echo_m, .. } = self.params;
+        let mut scan = LaserScan {
+            angle_min: first_beam_rad,
+            angle_increment: beam_step_rad,
+            range_max: no_echo_m,
+            ranges: vec![],
+        };
+        let people = self.params.people.draw(first_beam_rad, scan.bearing(n_beams), streams);
+        let scene = Scene { pose: moment.pose, walls: &moment.world.walls(), people: &people };
+        scan.ranges = (0..n_beams)
+            .map(|beam| self.range(scan.bearing(beam), &scene, &Errors::draw(&self.params, streams)))
+            .collect();
+        Some(Reading { data: Data::Scan(scan), late_ms: 0 })
+    }
+}
+
+/// What there is to hit.
+struct Scene<'a> {
+    pose: Pose2<f64>,
+    walls: &'a [Wall],
+    people: &'a [Person],
+}
+
+impl Scene<'_> {
+    /// To the nearest surface in a direction of the robot's frame.
+    fn distance(&self, bearing: f64) -> Option<f64> {
+        let (in_world, in_body): (Vector2<f64>, Vector2<f64>) =
+            (plane::direction(self.pose.heading() + bearing), plane::direction(bearing));
+        let walls = self.walls.iter().filter_map(|wall| wall.distance(&self.pose.translation, &in_world));
+        let people = self.people.iter().filter_map(|person| person.distance(&in_body));
+        walls.chain(people).reduce(f64::min)
+    }
+}
+
+/// Everything random about one beam, drawn before it is known what it hits.
+struct Errors {
+    direction: f64,
+    range: f64,
+    /// Where between the two surfaces, if the beam mixes them.
+    mixed: Option<f64>,
+    lost: bool,
+    /// At which share of the way, if something in the air sends the beam back.
+    spurious: Option<f64>,
+}
+
+impl Errors {
+    fn draw(params: &LaserParams, streams: &mut Streams) -> Self {
+        let direction = deviate::normal(streams.of(Source::BearingNoise));
+        let range = params.tail.draw(streams.of(Source::RangeNoise));
+        let lost = deviate::chance(params.dropout_share, streams.of(Source::Dropout));
+        let mut share_if = |share, source| {
+            let rng = streams.of(source);
+            let (happens, where_between) = (deviate::chance(share, rng), deviate::unit(rng));
+            happens.then_some(where_between)
+        };
+        let mixed = share_if(params.mixed_share, Source::MixedPixels);
+        let spurious = share_if(params.spurious_share, Source::Clutter);
+        Self { direction, range, mixed, lost, spurious }
+    }
+}
+
+fn quantized(range: f64, quantum_m: f64) -> f64 {
+    if quantum_m > 0.0 { (range / quantum_m).round() * quantum_m } else { range }
+}
