@@ -34,7 +34,9 @@ pub struct MapPlot {
     pub landmarks: Vec<EstimatedLandmark>,
     /// Where the landmarks are.
     pub true_landmarks: Vec<(f64, f64)>,
-    /// Lines on the floor, walls: drawn faintly beneath.
+    /// Walls of the map, from end to end.
+    pub walls: Vec<[(f64, f64); 2]>,
+    /// Lines on the floor, true walls: drawn faintly beneath.
     pub surroundings: Vec<Vec<(f64, f64)>>,
 }
 
@@ -74,6 +76,7 @@ impl MapPlot {
         panel.path(&self.dead_reckoning, Ink::DEAD_RECKONING, 1.1)?;
         panel.path(&self.truth, Ink::TRUTH, 1.4)?;
         panel.path(&self.estimate, Ink::ESTIMATE, 1.4)?;
+        self.walls.iter().try_for_each(|wall| panel.path(wall, Ink::LANDMARK, 1.8))?;
         for ellipse in ellipses {
             panel.outline(ellipse, Ink::LANDMARK)?;
         }
@@ -89,6 +92,7 @@ impl MapPlot {
             .with_if(!self.estimate.is_empty(), Mark::Line(Ink::ESTIMATE), "estimate")
             .with_if(!self.dead_reckoning.is_empty(), Mark::Line(Ink::DEAD_RECKONING), "dead reckoning")
             .with_if(!self.landmarks.is_empty(), Mark::Dot(Ink::LANDMARK), "landmark, 2σ")
+            .with_if(!self.walls.is_empty(), Mark::Line(Ink::LANDMARK), "wall")
             .with_if(!self.true_landmarks.is_empty(), Mark::Cross(Ink::Text), "true landmark")
     }
 
@@ -110,6 +114,7 @@ impl MapPlot {
             .chain(&self.surroundings)
             .flatten()
             .copied()
+            .chain(self.walls.iter().flatten().copied())
             .chain(means)
             .collect();
         let rest: Vec<_> = self.dead_reckoning.iter().chain(ellipses.iter().flatten()).copied().collect();

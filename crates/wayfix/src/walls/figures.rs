@@ -24,6 +24,10 @@ pub fn summarize(run: &mut WallRun) -> Run {
     if let Some(errors) = errors_of(samples.iter().map(reckoned).collect()) {
         metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
     }
+    if let Some((_, last)) = samples.last() {
+        metrics.push(Metric::new("end_error_m", last.position_error(), "m"));
+    }
+    metrics.extend(wall_metrics(&run.wall_nees()));
     let events = run.events();
     let n_rejected =
         ["gated", "duplicate", "unusable", "record_refused"].map(|name| events.get(name)).iter().sum::<u64>();
@@ -31,6 +35,20 @@ pub fn summarize(run: &mut WallRun) -> Run {
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
     let events = run.events().counts();
     Run { metrics, timings: timings(run.system.keyframes()), events, ..Run::default() }
+}
+
+/// How many walls of the map are walls of the world, and which share of them is within two standard deviations (in two dimensions: the ellipse
+/// of 95.45 %).
+fn wall_metrics(nees: &[f64]) -> Vec<Metric> {
+    const TWO_SIGMA: f64 = 6.18; // chi-squared quantile, two degrees of freedom
+    if nees.is_empty() {
+        return Vec::new();
+    }
+    let n_within = nees.iter().filter(|nees| **nees <= TWO_SIGMA).count();
+    vec![
+        Metric::new("n_true_walls_found", nees.len() as f64, ""),
+        Metric::new("walls_within_2_sigma", n_within as f64 / nees.len() as f64, ""),
+    ]
 }
 
 /// How well the path keeps relations between poses that are known from elsewhere: the mean translational and rotational error, and the

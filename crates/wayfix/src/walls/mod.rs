@@ -5,6 +5,7 @@ mod params;
 mod pictures;
 mod run;
 mod system;
+mod truth;
 
 pub use figures::{relation_metrics, summarize};
 pub use params::WallSlamParams;

@@ -26,6 +26,9 @@ pub struct WallSlamParams {
     pub start: Option<[f64; 3]>,
     /// Where the laser sits on the robot: x forward, y left, heading; m and rad.
     pub laser: [f64; 3],
+    /// How many true walls of the log, nearest to the start first, the robot is given as known: anchors that tie the map to the world. For
+    /// experiments with logs that have true walls.
+    pub n_anchors: usize,
     /// How walls are found in a scan.
     pub lines: LineParams,
     /// Pieces shorter than this correct nothing, m: legs, posters and door leaves.
@@ -50,6 +53,7 @@ impl Default for WallSlamParams {
             association: AssociationRule::Jcbb,
             start: None,
             laser: [0.0; 3],
+            n_anchors: 0,
             lines: LineParams::default(),
             min_wall_length: 0.7,
             sensor: WallSensor::default(),

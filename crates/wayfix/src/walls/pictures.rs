@@ -1,4 +1,4 @@
-use wayfix_estimation_traits::Pose2;
+use nalgebra::Vector2;
 
 use super::WallRun;
 use crate::plot::{MapPlot, Picture, PlotError};
@@ -8,15 +8,16 @@ use crate::plot::{MapPlot, Picture, PlotError};
 /// # Errors
 /// When a picture cannot be drawn.
 pub fn pictures(run: &WallRun) -> Result<Vec<Picture>, PlotError> {
-    let point = |pose: &Pose2<f64>| (pose.x(), pose.y());
+    let point = |position: Vector2<f64>| (position.x, position.y);
     let keyframes = run.system.keyframes();
     let walls = run.system.filter().landmarks();
     let map = MapPlot {
         title: "Path and walls".to_owned(),
-        truth: run.samples().iter().map(|(_, sample)| point(&sample.truth)).collect(),
-        estimate: keyframes.iter().map(|keyframe| point(&keyframe.pose)).collect(),
-        dead_reckoning: keyframes.iter().map(|keyframe| point(&keyframe.dead_reckoning)).collect(),
-        surroundings: walls.map(|wall| wall.mean.ends().map(|end| (end.x, end.y)).to_vec()).collect(),
+        truth: run.samples().iter().map(|(_, sample)| point(sample.truth.translation)).collect(),
+        estimate: keyframes.iter().map(|keyframe| point(keyframe.pose.translation)).collect(),
+        dead_reckoning: keyframes.iter().map(|keyframe| point(keyframe.dead_reckoning.translation)).collect(),
+        walls: walls.map(|wall| wall.mean.ends().map(point)).collect(),
+        surroundings: run.true_walls.iter().map(|wall| vec![point(wall.start), point(wall.end)]).collect(),
         ..MapPlot::default()
     };
     Ok(vec![map.draw()?])

@@ -1,8 +1,9 @@
 use anyhow::{Result, bail};
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_sensor_log::{Data, Record};
+use wayfix_sensor_log::{Data, Record, TrueWall};
+use wayfix_slam_ekf::LandmarkId;
 
-use super::{WallSlamParams, WallSystem};
+use super::{WallSlamParams, WallSystem, truth};
 use crate::{
     evaluate::{Sample, TrueTrack},
     slam::Keyframe,
@@ -15,6 +16,8 @@ pub struct WallRun {
     pub system: WallSystem,
     /// True poses, or those that another program corrected, where the log has them.
     pub truth: TrueTrack,
+    /// True walls, where the log has them.
+    pub true_walls: Vec<TrueWall>,
 }
 
 /// Runs EKF-SLAM with walls over the records of a log and shows the system to `observe` after each.
@@ -33,17 +36,22 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
             "the log has no odometry increments, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
         );
     }
-    let truth = TrueTrack::from_records_or_estimates(records);
+    let track = TrueTrack::from_records_or_estimates(records);
     let start = match params.start {
         Some([x, y, heading]) => Pose2::new(x, y, heading),
-        None => truth.at(scan.stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0)),
+        None => track.at(scan.stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0)),
     };
     let mut system = WallSystem::new(params.clone(), start)?;
+    let true_walls = truth::true_walls(records);
+    for (wall, id) in truth::nearest_to(&start, &true_walls, params.n_anchors).into_iter().zip(FIRST_ANCHOR..)
+    {
+        system.add_anchor(LandmarkId(id), truth::landmark(wall))?;
+    }
     drive(&mut system, records, observe);
     if system.keyframes().is_empty() {
         bail!("none of the scans could be used; the events tell why");
     }
-    let mut run = WallRun { system, truth };
+    let mut run = WallRun { system, truth: track, true_walls };
     if run
         .samples()
         .iter()
@@ -53,6 +61,9 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
     }
     Ok(run)
 }
+
+/// Identities of anchors, out of the way of those that association gives.
+const FIRST_ANCHOR: u32 = 1 << 31;
 
 /// Below this distance poses are the same but for printed digits, m and rad.
 const SAME: f64 = 1e-3;
@@ -65,6 +76,10 @@ impl WallRun {
             Some((*keyframe, Sample { estimate: keyframe.pose, covariance: keyframe.covariance, truth }))
         };
         self.system.keyframes().iter().filter_map(sample).collect()
+    }
+    /// How far each estimated wall is from its true one, in units of its covariance: see [`summarize`](super::summarize).
+    pub(super) fn wall_nees(&self) -> Vec<f64> {
+        self.system.filter().landmarks().filter_map(|wall| truth::nees(&wall, &self.true_walls)).collect()
     }
     /// What happened.
     pub fn events(&mut self) -> &mut Events {

@@ -5,8 +5,8 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{Extractor, Scan};
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
 use wayfix_slam_ekf::{
-    DriftingMotion, DriftingPose, EkfSlam, JointCompatibility, Mounted, NearestNeighbour, Observation,
-    OnDrifting, Outcome, SeenWall, SlamError, StepReport, WallSensor,
+    DriftingMotion, DriftingPose, EkfSlam, JointCompatibility, LandmarkId, Mounted, NearestNeighbour,
+    Observation, OnDrifting, Outcome, SeenWall, SlamError, StepReport, Wall, WallSensor,
 };
 
 use super::WallSlamParams;
@@ -72,6 +72,10 @@ impl WallSystem {
         })
     }
 
+    /// Tells the robot of a wall whose place is known.
+    pub(super) fn add_anchor(&mut self, id: LandmarkId, wall: Wall) -> Result<(), SlamError> {
+        self.filter.add_anchor(id, wall)
+    }
     /// The filter: robot, walls, covariance.
     pub fn filter(&self) -> &EkfSlam<WallModel> {
         &self.filter
