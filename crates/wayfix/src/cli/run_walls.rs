@@ -1,6 +1,6 @@
 use std::{fs, process::ExitCode};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail, ensure};
 use wayfix_sensor_log::{Data, ReadReport, Record, read_relations};
 
 use super::{
@@ -28,6 +28,14 @@ pub(super) fn main(
     records: &[Record],
     read: &ReadReport,
 ) -> Result<ExitCode> {
+    for (given, option) in [
+        (arguments.save.is_some(), "--save"),
+        (arguments.resume.is_some(), "--resume"),
+        (arguments.observability, "--observability"),
+        (arguments.profile.is_some(), "--profile"),
+    ] {
+        ensure!(!given, "{option} is for logs of range-bearing sightings; this one has laser scans");
+    }
     let params = params(arguments)?;
     if arguments.print_params {
         print(toml::to_string(&params)?)?;
@@ -68,7 +76,7 @@ fn params(arguments: &run_slam::Arguments) -> Result<WallSlamParams> {
     };
     match arguments.association {
         Some(AssociationRule::Known) => {
-            anyhow::bail!("walls have no identities: use --association nn or jcbb")
+            bail!("walls have no identities: use --association nn or jcbb")
         }
         Some(rule) => params.association = rule,
         None => {}

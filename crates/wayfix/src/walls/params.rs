@@ -90,8 +90,9 @@ impl WallSlamParams {
     /// The same parameters, when each is within its range.
     ///
     /// # Errors
-    /// [`SlamError::Parameter`] for the first that is not.
-    pub fn validated(self) -> Result<Self, SlamError> {
+    /// The first that is not, by name.
+    pub fn validated(self) -> anyhow::Result<Self> {
+        self.lines.check()?;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
         let WallSensor { rho_sigma, alpha_sigma, .. } = self.sensor;
@@ -102,11 +103,13 @@ impl WallSlamParams {
             ("heading_drift_sigma", self.heading_drift_sigma),
         ] {
             if !(1e-9..=1e6).contains(&value) {
-                return Err(SlamError::Parameter { name, value, range: "from 1e-9 to 1e6" });
+                return Err(SlamError::Parameter { name, value, range: "from 1e-9 to 1e6" }.into());
             }
         }
         if let Some(value) = self.laser.iter().chain(self.start.iter().flatten()).find(|v| !v.is_finite()) {
-            return Err(SlamError::Parameter { name: "laser or start", value: *value, range: "finite" });
+            return Err(
+                SlamError::Parameter { name: "laser or start", value: *value, range: "finite" }.into()
+            );
         }
         Ok(self)
     }

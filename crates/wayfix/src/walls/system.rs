@@ -41,7 +41,7 @@ impl WallSystem {
     ///
     /// # Errors
     /// When a parameter is out of range.
-    pub(super) fn new(params: WallSlamParams, start: Pose2<f64>) -> Result<Self, SlamError> {
+    pub(super) fn new(params: WallSlamParams, start: Pose2<f64>) -> anyhow::Result<Self> {
         let params = params.validated()?;
         let association = match params.association {
             AssociationRule::Jcbb => {
@@ -54,11 +54,7 @@ impl WallSystem {
         let state = DriftingPose { pose: start, heading_drift: 0.0 };
         let drift_variance = params.heading_drift_sigma.powi(2);
         let covariance = Matrix4::from_diagonal(&Vector4::new(0.0, 0.0, 0.0, drift_variance));
-        let extractor = Extractor::new(params.lines).map_err(|_| SlamError::Parameter {
-            name: "lines",
-            value: f64::NAN,
-            range: "as wayfix-line-extract asks",
-        })?;
+        let extractor = Extractor::new(params.lines)?;
         Ok(Self {
             filter: EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?,
             extractor,

@@ -1,0 +1,125 @@
+//! Walls as landmarks: a lap around a free-standing wall in a hall, which is seen from both sides, with normals across the wrap of angles.
+#![cfg(feature = "lines")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot build its filter has failed")]
+
+mod common;
+
+use nalgebra::{Matrix2, Vector2};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
+use wayfix_gaussian_core::ChiSquaredBand;
+use wayfix_slam_ekf::{
+    EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization, Observation,
+    SeenWall, SlamParams, Wall, WallLine, WallSensor,
+};
+
+const N_STEPS: usize = 120;
+const ODOMETRY: [f64; 2] = [0.02, 0.01];
+/// m at either end of what is seen of a wall.
+const END_SIGMA: f64 = 0.01;
+
+/// A hall of 12 × 10 m around the origin, and a wall of 3 m in the middle of it.
+fn walls() -> Vec<[Vector2<f64>; 2]> {
+    let corners = [(6.0, 5.0), (-6.0, 5.0), (-6.0, -5.0), (6.0, -5.0)].map(|(x, y)| Vector2::new(x, y));
+    let sides = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]);
+    sides.chain([[Vector2::new(-1.5, 0.0), Vector2::new(1.5, 0.0)]]).collect()
+}
+
+fn through([a, b]: [Vector2<f64>; 2]) -> WallLine {
+    let along = (b - a).normalize();
+    let normal = Vector2::new(along.y, -along.x);
+    WallLine::new(normal.dot(&a), normal.y.atan2(normal.x))
+}
+
+/// What the points of a wall give: noise across it at both ends, and the covariance that this means for its line.
+fn look(robot: &Pose2<f64>, ends: &[Vector2<f64>; 2], rng: &mut ChaCha8Rng) -> Observation<SeenWall> {
+    let seen = ends.map(|end| robot.inverse_transform(&end));
+    let along = (seen[1] - seen[0]).normalize();
+    let across = Vector2::new(along.y, -along.x);
+    let noisy = seen.map(|end| end + across * END_SIGMA * common::normal(rng));
+    let line = through(noisy);
+    let [a, b] = noisy.map(|end| line.along(&end));
+    // ρ + (s - s_end) dα = error at either end, for the two ends.
+    let by_line = Matrix2::new(1.0, a, 1.0, b).try_inverse().unwrap();
+    let covariance = by_line * by_line.transpose() * END_SIGMA * END_SIGMA;
+    Observation { label: None, measurement: SeenWall { line, covariance, ends: noisy } }
+}
+
+fn lap(seed: u64, linearization: Linearization) -> (EkfSlam<WallSensor>, Pose2<f64>) {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let motion = IncrementMotion {
+        translation_variance_per_meter: 0.0,
+        heading_variance_per_meter: 0.0,
+        heading_variance_per_radian: 0.0,
+        translation_variance_per_step: ODOMETRY[0].powi(2),
+        heading_variance_per_step: ODOMETRY[1].powi(2),
+    };
+    let sensor = WallSensor { rho_sigma: 1e-6, alpha_sigma: 1e-6, ..WallSensor::default() };
+    let mut rule = JointCompatibility::new(JointCompatibilityParams::default()).unwrap();
+    let mut truth = Pose2::new(3.0, 0.5, std::f64::consts::FRAC_PI_2);
+    let mut slam =
+        EkfSlam::new(sensor, SlamParams { linearization, ..SlamParams::default() }, truth).unwrap();
+    let turn = std::f64::consts::TAU / N_STEPS as f64;
+    for _ in 0..N_STEPS {
+        let step = Pose2::new(3.0 * turn, 0.0, turn);
+        truth = truth.compose(&step);
+        let [x, y] = [0, 1].map(|_| ODOMETRY[0] * common::normal(&mut rng));
+        let heading = step.heading() + ODOMETRY[1] * common::normal(&mut rng);
+        slam.predict(&motion, &Pose2::new(step.x() + x, step.y() + y, heading)).unwrap();
+        let observations: Vec<_> = walls().iter().map(|ends| look(&truth, ends, &mut rng)).collect();
+        slam.update(&observations, &mut rule).unwrap();
+    }
+    (slam, truth)
+}
+
+#[test]
+fn every_wall_is_one_landmark_where_it_is_and_as_long_as_it_is() {
+    let (slam, truth) = lap(1, Linearization::Newest);
+    assert_eq!(slam.n_landmarks(), walls().len()); // the free-standing one was seen from both sides
+    let error = slam.robot().local(&truth);
+    assert!(error.xy().norm() < 0.05 && error.z.abs() < 0.02, "{error}"); // five deviations of a look, odometry alone: 0.2 m
+    for ends in walls() {
+        let distance = |wall: &Wall| wall.line.local(&through(ends)).norm();
+        let found =
+            slam.landmarks().map(|estimate| estimate.mean).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let found = found.unwrap();
+        let [from, to] = found.stretch;
+        assert!(distance(&found) < 0.05, "{found:?} for {ends:?}");
+        assert!(((to - from) - (ends[1] - ends[0]).norm()).abs() < 0.3);
+    }
+}
+
+#[test]
+fn the_filters_are_as_sure_as_they_should_be() {
+    const N_RUNS: u64 = 50;
+    let band = ChiSquaredBand::for_average(3, N_RUNS as usize, 0.99).unwrap();
+    for linearization in [Linearization::Newest, Linearization::FirstEstimates, Linearization::Invariant] {
+        let nees = |seed| {
+            let (slam, truth) = lap(seed, linearization);
+            let error = slam.robot().local(&truth);
+            error.dot(&slam.robot_covariance().cholesky().unwrap().solve(&error))
+        };
+        let mean = (0..N_RUNS).map(nees).sum::<f64>() / N_RUNS as f64;
+        assert!(band.contains(mean), "{linearization:?}: {mean} outside {} to {}", band.low, band.high);
+    }
+}
+
+#[test]
+fn looks_that_are_no_walls_are_unusable_and_change_nothing() {
+    let (mut slam, truth) = lap(2, Linearization::Newest);
+    let good = look(&truth, &walls()[0], &mut ChaCha8Rng::seed_from_u64(3)).measurement;
+    let mut rule = JointCompatibility::new(JointCompatibilityParams::default()).unwrap();
+    let before = slam.snapshot();
+    for bad in [
+        SeenWall { line: WallLine { rho: f64::NAN, ..good.line }, ..good },
+        SeenWall { line: WallLine { alpha: f64::INFINITY, ..good.line }, ..good },
+        SeenWall { covariance: -good.covariance, ..good },
+        SeenWall { covariance: good.covariance * f64::NAN, ..good },
+        SeenWall { ends: [Vector2::new(f64::NAN, 0.0), good.ends[1]], ..good },
+    ] {
+        let report = slam.update(&[Observation { label: None, measurement: bad }], &mut rule).unwrap();
+        assert!(matches!(report.outcomes[0], wayfix_slam_ekf::Outcome::Unusable), "{bad:?}");
+        assert_eq!(slam.snapshot().covariance, before.covariance);
+    }
+}
