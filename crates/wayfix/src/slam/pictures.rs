@@ -50,7 +50,7 @@ fn map(run: &SlamRun, samples: &[(Keyframe, Sample)]) -> MapPlot {
             })
             .collect(),
         true_landmarks: run.true_landmarks.values().map(|position| (position.x, position.y)).collect(),
-        surroundings: Vec::new(),
+        ..MapPlot::default()
     }
 }
 
