@@ -75,8 +75,8 @@ impl MapPlot {
 
     fn fill(&self, panel: &Panel, ellipses: &[Vec<(f64, f64)>]) -> Result<(), PlotError> {
         self.surroundings.iter().try_for_each(|line| panel.path(line, Ink::Grid, 1.6))?;
-        self.walls.iter().try_for_each(|wall| panel.path(wall, Ink::LANDMARK, 0.8))?;
         self.echoes.iter().try_for_each(|echo| panel.dot(*echo, 1.2, Ink::ESTIMATE, 1.0))?;
+        self.walls.iter().try_for_each(|wall| panel.path(wall, Ink::LANDMARK, 1.0))?;
         panel.path(&self.dead_reckoning, Ink::DEAD_RECKONING, 1.1)?;
         panel.path(&self.truth, Ink::TRUTH, 1.4)?;
         panel.path(&self.estimate, Ink::ESTIMATE, 1.4)?;
