@@ -9,6 +9,8 @@
 //!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
 //!   [`GaussianOdometry`](sensor::GaussianOdometry) and the default [`RangeBearing`](sensor::RangeBearing) match what an extended
 //!   Kalman filter assumes, for tests of its consistency.
+//! * **A laser** ([`sensor::Laser`]) casts its beams against the walls of a plan, such as [`world::OfficeFloor`]; it mixes what a beam hits on an edge, loses
+//!   and invents echoes, meets people, and rounds.
 //! * **One stream of randomness per sin** ([`random::Streams`]): switching one on leaves the draws of the others as they were.
 //! * **The same bits on every machine**: transcendental functions come from `libm` ([`plane`], [`space`], [`random`]).
 //! * **Yours plug in**: [`world::World`] and [`sensor::Sensor`] are the two places to extend (`examples/custom_sensor.rs`).

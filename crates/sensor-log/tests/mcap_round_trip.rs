@@ -13,8 +13,9 @@ use std::io::Cursor;
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_sensor_log::{
-    AckermannDrive, Data, Format, LaserScan, LogEnd, LogError, McapWriter, OpenOptions, PoseKind, Record,
-    Sighting, Stamp, Target, TrueLandmark, TruePosition, TrueWall, Velocity, convert, open, write,
+    AckermannDrive, Data, Format, LaserScan, LogEnd, LogError, McapWriter, OpenOptions, PoseKind,
+    ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, TruePosition, TrueWall, Velocity, convert,
+    open, topics, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -203,6 +204,35 @@ fn range_bearing_keeps_what_it_has_a_place_for_and_says_what_not() {
 }
 
 #[test]
+fn landmarks_and_walls_in_a_row_share_a_message_and_keep_their_order() {
+    let at = |id: u32| Vector2::new(f64::from(id), 1.0);
+    let landmark = |id| Data::TrueLandmark(TrueLandmark { id, x: at(id).x, y: at(id).y });
+    let wall = |id| Data::TrueWall(TrueWall { id, start: at(id), end: at(id + 1) });
+    let data = (0..5).map(landmark).chain((0..7).map(wall)).chain([landmark(9)]);
+    let records: Vec<Record> = data.map(|data| Record { stamp: Stamp::default(), data }).collect();
+    let bytes = to_bytes(&records);
+    assert_eq!(mcap::MessageStream::new(&bytes).unwrap().count(), 3);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mcap");
+    std::fs::write(&path, &bytes).unwrap();
+    assert_eq!(open(&path, &OpenOptions::default()).unwrap().collect::<Vec<_>>(), records);
+}
+
+#[test]
+fn a_cloud_without_the_ends_is_no_cloud_of_walls() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log.mcap");
+    let mut writer = McapWriter::create(&path).unwrap();
+    writer
+        .record(&Record { stamp: Stamp::default(), data: Data::TruePose(Pose2::new(0.0, 0.0, 0.0)) })
+        .unwrap();
+    writer.point_cloud(topics::TRUE_WALLS, Stamp::default(), topics::WORLD_FRAME, &[[1.0, 2.0]]).unwrap();
+    writer.finish().unwrap();
+    let (records, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
+    assert_eq!((records.len(), report.problems[&ProblemKind::Inconsistent]), (1, 1));
+}
+
+#[test]
 fn what_cannot_be_stored_is_refused() {
     let record = |nanoseconds, linear| Record {
         stamp: Stamp::from_nanoseconds(nanoseconds),
@@ -214,6 +244,9 @@ fn what_cannot_be_stored_is_refused() {
         Err(LogError::NotFinite { what: "velocity", stamp }) if stamp.nanoseconds() == 5
     ));
     assert!(matches!(writer.record(&record(u64::MAX, 1.0)), Err(LogError::StampTooLate { .. })));
+    let endless = TrueWall { id: 1, start: Vector2::zeros(), end: Vector2::new(0.0, f64::INFINITY) };
+    let endless = Record { stamp: Stamp::default(), data: Data::TrueWall(endless) };
+    assert!(matches!(writer.record(&endless), Err(LogError::NotFinite { what: "true wall", .. })));
     assert!(matches!(write("nowhere", Format::Utias, []), Err(LogError::NotWritable { .. })));
     let folder = tempfile::tempdir().unwrap();
     let bad = Record { stamp: Stamp::default(), data: Data::TruePose(Pose2::new(f64::INFINITY, 0.0, 0.0)) };

@@ -60,3 +60,15 @@ fn a_log_without_scans_is_refused() {
     let told = String::from_utf8_lossy(&result.get_output().stderr).into_owned();
     assert!(told.contains("walk.txt: no laser scan in the log"), "{told}");
 }
+
+#[test]
+fn true_walls_in_the_log_are_compared_with() {
+    let log = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/office_laser.mcap");
+    let result = wayfix(&["run", "lines", "--log", log, "--json"]).assert().success();
+    let report: Value = serde_json::from_slice(&result.get_output().stdout).unwrap();
+    let metric = |name: &str| report["metrics"][name].as_f64().unwrap_or_else(|| panic!("{report}"));
+    // What each bound comes from stands in fixtures/lines.toml.
+    assert!((0.865..=1.0).contains(&metric("within_2_sigma_share")), "{report}");
+    assert!((0.95..=1.0).contains(&metric("found_share")), "{report}");
+    assert!(metric("false_share") < 0.1 && metric("nees_mean") > 0.0, "{report}");
+}

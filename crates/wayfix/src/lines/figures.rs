@@ -1,6 +1,6 @@
 use wayfix_line_extract::Segment;
 
-use super::LineSystem;
+use super::{LineSystem, WallScore};
 use crate::report::{Metric, Run};
 use crate::system::System;
 
@@ -16,6 +16,7 @@ pub fn summarize(system: &mut LineSystem) -> Run {
         metrics.push(Metric::new("segments_mean", segments().count() as f64 / n_used, ""));
     }
     metrics.extend(residual_rms(segments()).map(|rms| Metric::new("residual_rms_m", rms, "m")));
+    metrics.extend(WallScore::of(system.scans(), system.true_walls()).into_iter().flat_map(beside_truth));
     let seconds: f64 = system.scans().iter().map(|scan| scan.step.as_secs_f64()).sum();
     let mut timings = Vec::new();
     if seconds > 0.0 {
@@ -23,6 +24,17 @@ pub fn summarize(system: &mut LineSystem) -> Run {
         timings.push(Metric::new("scans_per_second", n_used / seconds, "Hz"));
     }
     Run { metrics, timings, events: system.events().counts(), ..Run::default() }
+}
+
+fn beside_truth(score: WallScore) -> Vec<Metric> {
+    let WallScore { n_true, n_false, n_within_2_sigma, squared_sum, n_in_sight, n_missed } = score;
+    let share = |n: usize, of: usize| if of > 0 { n as f64 / of as f64 } else { f64::NAN };
+    vec![
+        Metric::new("within_2_sigma_share", share(n_within_2_sigma, n_true), ""),
+        Metric::new("nees_mean", squared_sum / n_true as f64, ""),
+        Metric::new("false_share", share(n_false, n_true + n_false), ""),
+        Metric::new("found_share", share(n_in_sight - n_missed, n_in_sight), ""),
+    ]
 }
 
 /// Root of the mean squared distance of the echoes from the walls that were fitted to them.

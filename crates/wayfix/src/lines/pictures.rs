@@ -1,7 +1,7 @@
 use nalgebra::Vector2;
 
 use super::{LineSystem, ScanWalls};
-use crate::plot::{LinesPlot, MapPlot, Picture, PlotError, Series};
+use crate::plot::{MapPlot, Picture, PlotError};
 
 /// So many scans are drawn, evenly over the log.
 const N_SCANS: usize = 3;
@@ -14,7 +14,7 @@ pub fn pictures(system: &LineSystem) -> Result<Vec<Picture>, PlotError> {
     let scans = system.scans();
     let mut pictures = Vec::new();
     if scans.iter().any(|scan| scan.pose.is_some()) {
-        pictures.push(map(scans).draw()?);
+        pictures.push(map(system).draw()?);
     }
     let n_drawn = N_SCANS.min(scans.len());
     for k in 0..n_drawn {
@@ -23,32 +23,35 @@ pub fn pictures(system: &LineSystem) -> Result<Vec<Picture>, PlotError> {
     Ok(pictures)
 }
 
-fn map(scans: &[ScanWalls]) -> MapPlot {
-    let placed = || scans.iter().filter_map(|scan| Some((scan.pose?, scan)));
-    let wall = |start: Vector2<f64>, end: Vector2<f64>| vec![(start.x, start.y), (end.x, end.y)];
-    MapPlot {
+fn map(system: &LineSystem) -> MapPlot {
+    let placed = || system.scans().iter().filter_map(|scan| Some((scan.pose?, scan)));
+    let path = placed().map(|(pose, _)| (pose.x(), pose.y())).collect();
+    let walls = placed().flat_map(|(pose, scan)| {
+        scan.segments.iter().map(move |s| line(pose.transform(&s.start), pose.transform(&s.end)))
+    });
+    let plot = MapPlot {
         title: "The walls of all scans, from the poses of the log".to_owned(),
-        estimate: placed().map(|(pose, _)| (pose.x(), pose.y())).collect(),
-        surroundings: placed()
-            .flat_map(|(pose, scan)| {
-                let segments = scan.segments.iter();
-                segments.map(move |s| wall(pose.transform(&s.start), pose.transform(&s.end)))
-            })
-            .collect(),
+        walls: walls.collect(),
+        ..MapPlot::default()
+    };
+    if system.true_walls().is_empty() {
+        return MapPlot { estimate: path, ..plot };
+    }
+    let title = format!("{}; grey: the true ones", plot.title);
+    let surroundings = system.true_walls().iter().map(|wall| line(wall.start, wall.end)).collect();
+    MapPlot { title, truth: path, surroundings, ..plot }
+}
+
+fn one(scan: &ScanWalls) -> MapPlot {
+    let echoes = scan.echoes.iter().map(|(bearing, range)| (range * bearing.cos(), range * bearing.sin()));
+    MapPlot {
+        title: format!("Scan at {:.1} s: {} walls", scan.stamp.seconds(), scan.segments.len()),
+        walls: scan.segments.iter().map(|segment| line(segment.start, segment.end)).collect(),
+        echoes: echoes.collect(),
         ..MapPlot::default()
     }
 }
 
-fn one(scan: &ScanWalls) -> LinesPlot {
-    // What is not finite leaves a gap between one wall and the next.
-    let gap = (f64::NAN, f64::NAN);
-    let walls = scan.segments.iter().flat_map(|s| [(s.start.x, s.start.y), (s.end.x, s.end.y), gap]);
-    let echoes = scan.echoes.iter().map(|(bearing, range)| (range * bearing.cos(), range * bearing.sin()));
-    LinesPlot {
-        title: format!("Scan at {:.1} s: {} walls", scan.stamp.seconds(), scan.segments.len()),
-        x_label: "x, m".to_owned(),
-        y_label: "y, m".to_owned(),
-        series: vec![Series::new("echoes in turn", echoes.collect()), Series::new("walls", walls.collect())],
-        ..LinesPlot::default()
-    }
+fn line(start: Vector2<f64>, end: Vector2<f64>) -> Vec<(f64, f64)> {
+    vec![(start.x, start.y), (end.x, end.y)]
 }

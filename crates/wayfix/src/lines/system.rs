@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_line_extract::{Extractor, LineError, Params, Scan, Segment};
-use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
+use wayfix_sensor_log::{Data, LaserScan, Record, Stamp, TrueWall};
 
 use crate::system::{Events, Stopwatch, System};
 
@@ -11,6 +11,7 @@ pub struct LineSystem {
     extractor: Extractor,
     pose: Option<(Stamp, Pose2<f64>)>,
     scans: Vec<ScanWalls>,
+    true_walls: Vec<TrueWall>,
     n_scans: u64,
     events: Events,
 }
@@ -20,7 +21,7 @@ pub struct LineSystem {
 pub struct ScanWalls {
     /// When it was taken.
     pub stamp: Stamp,
-    /// Where, if the log says so for this very stamp.
+    /// Where, if the log says so for this very stamp; truth before estimates.
     pub pose: Option<Pose2<f64>>,
     /// What came back: bearing, radians, and range, metres.
     pub echoes: Vec<(f64, f64)>,
@@ -37,12 +38,24 @@ impl LineSystem {
     /// When a parameter makes no sense.
     pub fn new(params: Params) -> Result<Self, LineError> {
         let extractor = Extractor::new(params)?;
-        Ok(Self { extractor, pose: None, scans: Vec::new(), n_scans: 0, events: Events::default() })
+        Ok(Self {
+            extractor,
+            pose: None,
+            scans: Vec::new(),
+            true_walls: Vec::new(),
+            n_scans: 0,
+            events: Events::default(),
+        })
     }
 
     /// The scans that walls were looked for in, in the order of the log.
     pub fn scans(&self) -> &[ScanWalls] {
         &self.scans
+    }
+
+    /// The true walls that the log gives.
+    pub fn true_walls(&self) -> &[TrueWall] {
+        &self.true_walls
     }
 
     /// Scans of the log, with those that could not be used; the events say why.
@@ -73,7 +86,11 @@ impl LineSystem {
 impl System for LineSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
-            Data::TruePose(pose) | Data::EstimatedPose(pose) => self.pose = Some((record.stamp, *pose)),
+            Data::TruePose(pose) => self.pose = Some((record.stamp, *pose)),
+            Data::EstimatedPose(pose) if self.pose.is_none_or(|(at, _)| at != record.stamp) => {
+                self.pose = Some((record.stamp, *pose));
+            }
+            Data::TrueWall(wall) => self.true_walls.push(*wall),
             Data::Scan(scan) => return self.take_scan(record.stamp, scan),
             _ => {}
         }

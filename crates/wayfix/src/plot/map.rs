@@ -34,10 +34,12 @@ pub struct MapPlot {
     pub landmarks: Vec<EstimatedLandmark>,
     /// Where the landmarks are.
     pub true_landmarks: Vec<(f64, f64)>,
-    /// Walls of the map, from end to end.
-    pub walls: Vec<[(f64, f64); 2]>,
     /// Lines on the floor, true walls: drawn faintly beneath.
     pub surroundings: Vec<Vec<(f64, f64)>>,
+    /// Walls that were found.
+    pub walls: Vec<Vec<(f64, f64)>>,
+    /// What a laser's beams hit.
+    pub echoes: Vec<(f64, f64)>,
 }
 
 /// A landmark of the map.
@@ -73,10 +75,11 @@ impl MapPlot {
 
     fn fill(&self, panel: &Panel, ellipses: &[Vec<(f64, f64)>]) -> Result<(), PlotError> {
         self.surroundings.iter().try_for_each(|line| panel.path(line, Ink::Grid, 1.6))?;
+        self.echoes.iter().try_for_each(|echo| panel.dot(*echo, 1.2, Ink::ESTIMATE, 1.0))?;
+        self.walls.iter().try_for_each(|wall| panel.path(wall, Ink::LANDMARK, 1.6))?;
         panel.path(&self.dead_reckoning, Ink::DEAD_RECKONING, 1.1)?;
         panel.path(&self.truth, Ink::TRUTH, 1.4)?;
         panel.path(&self.estimate, Ink::ESTIMATE, 1.4)?;
-        self.walls.iter().try_for_each(|wall| panel.path(wall, Ink::LANDMARK, 1.8))?;
         for ellipse in ellipses {
             panel.outline(ellipse, Ink::LANDMARK)?;
         }
@@ -93,10 +96,14 @@ impl MapPlot {
             .with_if(!self.dead_reckoning.is_empty(), Mark::Line(Ink::DEAD_RECKONING), "dead reckoning")
             .with_if(!self.landmarks.is_empty(), Mark::Dot(Ink::LANDMARK), "landmark, 2σ")
             .with_if(!self.walls.is_empty(), Mark::Line(Ink::LANDMARK), "wall")
+            .with_if(!self.echoes.is_empty(), Mark::Dot(Ink::ESTIMATE), "echo")
             .with_if(!self.true_landmarks.is_empty(), Mark::Cross(Ink::Text), "true landmark")
     }
 
     fn alt(&self) -> String {
+        if self.landmarks.is_empty() && !self.walls.is_empty() {
+            return format!("{}: map of {} walls that were found", self.title, self.walls.len());
+        }
         let landmarks = self.landmarks.len();
         let plural = if landmarks == 1 { "" } else { "s" };
         let against = if self.truth.is_empty() { "" } else { " with the true path" };
@@ -109,12 +116,11 @@ impl MapPlot {
     /// Axes of one scale around everything that belongs to the map, and the height of the panel in pixels.
     fn axes(&self, ellipses: &[Vec<(f64, f64)>]) -> Option<(Axis, Axis, f64)> {
         let means = self.landmarks.iter().map(|landmark| landmark.position);
-        let core: Vec<_> = [&self.truth, &self.estimate, &self.true_landmarks]
+        let core: Vec<_> = [&self.truth, &self.estimate, &self.true_landmarks, &self.echoes]
             .into_iter()
-            .chain(&self.surroundings)
+            .chain(self.surroundings.iter().chain(&self.walls))
             .flatten()
             .copied()
-            .chain(self.walls.iter().flatten().copied())
             .chain(means)
             .collect();
         let rest: Vec<_> = self.dead_reckoning.iter().chain(ellipses.iter().flatten()).copied().collect();

@@ -16,7 +16,7 @@ pub fn pictures(run: &WallRun) -> Result<Vec<Picture>, PlotError> {
         truth: run.samples().iter().map(|(_, sample)| point(sample.truth.translation)).collect(),
         estimate: keyframes.iter().map(|keyframe| point(keyframe.pose.translation)).collect(),
         dead_reckoning: keyframes.iter().map(|keyframe| point(keyframe.dead_reckoning.translation)).collect(),
-        walls: walls.map(|wall| wall.mean.ends().map(point)).collect(),
+        walls: walls.map(|wall| wall.mean.ends().map(point).to_vec()).collect(),
         surroundings: run.true_walls.iter().map(|wall| vec![point(wall.start), point(wall.end)]).collect(),
         ..MapPlot::default()
     };

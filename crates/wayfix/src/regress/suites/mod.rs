@@ -2,6 +2,7 @@
 
 mod color;
 mod consistency;
+mod lines;
 mod slam;
 mod views;
 
@@ -13,8 +14,13 @@ use crate::report::Run;
 /// Does one run.
 pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
 
-const SUITES: [(&str, Runner); 4] =
-    [("color", color::run), ("consistency", consistency::run), ("slam", slam::run), ("views", views::run)];
+const SUITES: [(&str, Runner); 5] = [
+    ("color", color::run),
+    ("consistency", consistency::run),
+    ("lines", lines::run),
+    ("slam", slam::run),
+    ("views", views::run),
+];
 
 /// All suites, in the order of the report.
 pub fn names() -> Vec<&'static str> {

@@ -1,0 +1,179 @@
+use std::collections::BTreeSet;
+
+use nalgebra::{Matrix2, Vector2};
+use wayfix_estimation_traits::Pose2;
+use wayfix_line_extract::{HessianLine, LineEstimate, Segment};
+use wayfix_sensor_log::TrueWall;
+
+use super::ScanWalls;
+
+/// The walls found beside the true ones, over all scans with a pose.
+///
+/// A segment is of the true wall that both its ends are nearest to, if that is within 0.15 m. It is within 2σ if
+/// $`d^2 = Δ^T P^{-1} Δ \le 4`$ for the difference $`Δ`$ of $`(ρ, α)`$ in the sensor's frame: 86.5 % of them, were every covariance right.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WallScore {
+    /// Segments of a true wall.
+    pub n_true: usize,
+    /// Segments of no true wall.
+    pub n_false: usize,
+    /// Those of `n_true` within 2σ.
+    pub n_within_2_sigma: usize,
+    /// Sum of $`d^2`$ over `n_true`; its mean is 2, were every covariance right.
+    pub squared_sum: f64,
+    /// True walls in sight, scan by scan: with at least 10 echoes within 3 cm that are nearest to this wall and span at least 0.6 m.
+    pub n_in_sight: usize,
+    /// Those of `n_in_sight` that no segment of the scan is of.
+    pub n_missed: usize,
+}
+
+const SAME_WALL_M: f64 = 0.15;
+const ON_WALL_M: f64 = 0.03;
+/// Twice what [`Params`](wayfix_line_extract::Params) ask of a wall.
+const IN_SIGHT: (usize, f64) = (10, 0.6);
+
+impl WallScore {
+    /// Compares the walls of scans with the true ones; `None` when there is nothing to compare.
+    pub fn of(scans: &[ScanWalls], truth: &[TrueWall]) -> Option<Self> {
+        let mut score = Self::default();
+        for scan in scans {
+            if let Some(pose) = &scan.pose {
+                score.add(scan, &truth.iter().map(|wall| Wall::seen_from(pose, wall)).collect::<Vec<_>>());
+            }
+        }
+        (score.n_true + score.n_false + score.n_in_sight > 0 && !truth.is_empty()).then_some(score)
+    }
+
+    fn add(&mut self, scan: &ScanWalls, truth: &[Wall]) {
+        let mut found = BTreeSet::new();
+        for segment in &scan.segments {
+            let apart = |wall: &Wall| wall.distance(&segment.start).max(wall.distance(&segment.end));
+            match nearest(truth, apart).filter(|(_, apart)| *apart < SAME_WALL_M) {
+                Some((wall, _)) => {
+                    found.insert(wall);
+                    self.compare(segment, &truth[wall]);
+                }
+                None => self.n_false += 1,
+            }
+        }
+        let in_sight = in_sight(scan, truth);
+        self.n_in_sight += in_sight.len();
+        self.n_missed += in_sight.iter().filter(|wall| !found.contains(wall)).count();
+    }
+
+    fn compare(&mut self, segment: &Segment, wall: &Wall) {
+        let exact = LineEstimate { line: wall.line(), covariance: Matrix2::zeros() };
+        let squared = segment.estimate.mahalanobis_squared(&exact).unwrap_or(f64::INFINITY);
+        self.n_true += 1;
+        self.n_within_2_sigma += usize::from(squared <= 4.0);
+        self.squared_sum += squared;
+    }
+}
+
+/// Walls with enough echoes on them, by what the laser truly saw.
+fn in_sight(scan: &ScanWalls, truth: &[Wall]) -> Vec<usize> {
+    let mut places: Vec<Vec<f64>> = vec![Vec::new(); truth.len()];
+    for (bearing, range) in &scan.echoes {
+        let echo = Vector2::new(bearing.cos(), bearing.sin()) * *range;
+        let on_wall = nearest(truth, |wall| wall.distance(&echo)).filter(|(_, apart)| *apart < ON_WALL_M);
+        if let Some((wall, _)) = on_wall {
+            places[wall].push(truth[wall].along(&echo));
+        }
+    }
+    let (least_echoes, least_m) = IN_SIGHT;
+    let span = |places: &[f64]| {
+        let (low, high) = (places.iter().copied().reduce(f64::min), places.iter().copied().reduce(f64::max));
+        high.zip(low).map_or(0.0, |(high, low)| high - low)
+    };
+    let is_in_sight = |wall: &usize| places[*wall].len() >= least_echoes && span(&places[*wall]) >= least_m;
+    (0..truth.len()).filter(is_in_sight).collect()
+}
+
+/// The wall with the least distance, and the distance.
+fn nearest(walls: &[Wall], distance: impl Fn(&Wall) -> f64) -> Option<(usize, f64)> {
+    let distances = walls.iter().map(distance).enumerate();
+    distances.min_by(|(_, a), (_, b)| a.total_cmp(b))
+}
+
+/// A true wall in the sensor's frame.
+struct Wall {
+    start: Vector2<f64>,
+    end: Vector2<f64>,
+}
+
+impl Wall {
+    fn seen_from(pose: &Pose2<f64>, wall: &TrueWall) -> Self {
+        Self { start: pose.inverse_transform(&wall.start), end: pose.inverse_transform(&wall.end) }
+    }
+
+    /// Metres from its start to the foot of a point.
+    fn along(&self, point: &Vector2<f64>) -> f64 {
+        let wall = self.end - self.start;
+        (point - self.start).dot(&wall) / wall.norm()
+    }
+
+    /// Metres to its nearest point.
+    fn distance(&self, point: &Vector2<f64>) -> f64 {
+        let wall = self.end - self.start;
+        let share = (point - self.start).dot(&wall) / wall.norm_squared().max(f64::MIN_POSITIVE);
+        (point - self.start - wall * share.clamp(0.0, 1.0)).norm()
+    }
+
+    fn line(&self) -> HessianLine {
+        let wall = self.end - self.start;
+        let normal = Vector2::new(wall.y, -wall.x) / wall.norm();
+        HessianLine::new(normal.dot(&self.start), normal.y.atan2(normal.x))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use wayfix_line_extract::{Params, Scan, extract};
+    use wayfix_sensor_log::Stamp;
+
+    use super::*;
+
+    /// A wall 2 m ahead of a robot at (1, 1) that looks along y, seen by 61 beams `off` metres too far.
+    fn scan(off: f64) -> ScanWalls {
+        let step = 1_f64.to_radians();
+        let bearing = |beam: usize| (beam as f64 - 30.0) * step;
+        let ranges: Vec<f64> = (0..61).map(|beam| (2.0 + off) / bearing(beam).cos()).collect();
+        let scan = Scan { angle_min: bearing(0), angle_increment: step, ranges: &ranges, max_range: 8.0 };
+        ScanWalls {
+            stamp: Stamp::default(),
+            pose: Some(Pose2::new(1.0, 1.0, std::f64::consts::FRAC_PI_2)),
+            echoes: ranges.iter().enumerate().map(|(beam, range)| (bearing(beam), *range)).collect(),
+            segments: extract(&scan, &Params::default()).unwrap().segments,
+            step: Duration::ZERO,
+        }
+    }
+
+    fn wall(x1: f64, x2: f64) -> TrueWall {
+        TrueWall { id: 0, start: Vector2::new(x1, 3.0), end: Vector2::new(x2, 3.0) }
+    }
+
+    #[test]
+    fn a_wall_in_its_place_is_within_two_sigma_and_one_beside_it_is_not() {
+        let score = |off: f64| WallScore::of(&[scan(off)], &[wall(-9.0, 9.0)]).unwrap();
+        let right = score(0.0);
+        assert_eq!((right.n_true, right.n_within_2_sigma, right.n_in_sight, right.n_missed), (1, 1, 1, 0));
+        assert!(right.squared_sum < 1e-12);
+        // 61 echoes of 1 cm: 10 mm are some 7σ, and still the same wall.
+        let beside = score(0.01);
+        assert_eq!((beside.n_true, beside.n_within_2_sigma, beside.n_false), (1, 0, 0));
+        let elsewhere = score(0.3);
+        assert_eq!((elsewhere.n_true, elsewhere.n_false, elsewhere.n_in_sight), (0, 1, 0));
+    }
+
+    #[test]
+    fn a_wall_that_is_not_found_is_missed() {
+        let blind = ScanWalls { segments: Vec::new(), ..scan(0.0) };
+        let score = WallScore::of(std::slice::from_ref(&blind), &[wall(-9.0, 9.0)]).unwrap();
+        assert_eq!((score.n_in_sight, score.n_missed), (1, 1));
+        let nowhere = ScanWalls { pose: None, ..blind };
+        assert_eq!(WallScore::of(&[nowhere], &[wall(-9.0, 9.0)]), None);
+        assert_eq!(WallScore::of(&[scan(0.0)], &[]), None);
+    }
+}
