@@ -59,7 +59,7 @@ fn filter(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<EkfSlam<R
     if kind == FilterKind::Anchored {
         for record in records {
             match &record.data {
-                Data::TrueLandmark(landmark) if landmark.id < laps.n_anchors => {
+                Data::TrueLandmark(landmark) if landmark.id.is_multiple_of(laps.anchor_every) => {
                     slam.add_anchor(LandmarkId(landmark.id), [landmark.x, landmark.y].into())?;
                 }
                 _ => {}

@@ -8,18 +8,18 @@ use wayfix_scene_sim::{
     OdometryParams, PlanarParams,
     drive::DriveParams,
     random::Streams,
-    route::{Circle, RouteParams},
+    route::{RoundedRectangle, RouteParams},
     sensor::{GaussianOdometryParams, RangeBearingParams, range_bearing::RangeSigma},
-    world::{Layout, Roadside},
+    world::{CorridorLoop, Layout},
 };
 use wayfix_sensor_log::Record;
 use wayfix_slam_ekf::{IncrementMotion, RangeBearingSensor};
 
-/// Laps of a circle among landmarks, with exactly the noise that filters assume.
+/// Laps of a corridor with landmarks on its walls, with exactly the noise that filters assume.
 ///
 /// ```
 /// use wayfix::consistency::Laps;
-/// let laps = Laps { radius_m: 5.0, n_laps: 1, ..Laps::default() };
+/// let laps = Laps { length_m: 20.0, width_m: 10.0, n_laps: 1, ..Laps::default() };
 /// assert_ne!(laps.simulate(1)?, laps.simulate(2)?);
 /// assert_eq!(laps.motion().heading_variance_per_step, laps.odometry_sigma_rad.powi(2));
 /// # Ok::<(), anyhow::Error>(())
@@ -27,14 +27,18 @@ use wayfix_slam_ekf::{IncrementMotion, RangeBearingSensor};
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Laps {
-    /// Radius of the circle, m.
-    pub radius_m: f64,
+    /// Along the middle of the corridor, m.
+    pub length_m: f64,
+    /// Across, m.
+    pub width_m: f64,
+    /// From wall to wall, m.
+    pub corridor_m: f64,
+    /// From one landmark to the next on the same wall, m.
+    pub spacing_m: f64,
     /// How often around.
     pub n_laps: u32,
-    /// Landmarks on both sides of the way.
-    pub n_landmarks: usize,
-    /// Of these, how many places the anchored filter is told.
-    pub n_anchors: u32,
+    /// The anchored filter is told the place of every so many-th landmark.
+    pub anchor_every: u32,
     /// How far the sensor sees, all around, m.
     pub reach_m: f64,
     /// Standard deviation of x and of y of every increment of two metres, m.
@@ -50,27 +54,30 @@ pub struct Laps {
 /// Odometry and looks come together, this often; two metres apart.
 const PERIOD_MS: u32 = 500;
 const SPEED_MPS: f64 = 4.0;
+const CORNER_RADIUS_M: f64 = 3.0;
 /// More laps are a slip of the pen.
 const MOST_LAPS: u32 = 1000;
 
 impl Default for Laps {
     fn default() -> Self {
         Self {
-            radius_m: 30.0,
+            length_m: 60.0,
+            width_m: 36.0,
+            corridor_m: 6.0,
+            spacing_m: 4.0,
             n_laps: 3,
-            n_landmarks: 60,
-            n_anchors: 6,
-            reach_m: 10.0,
-            odometry_sigma_m: 0.07,
-            odometry_sigma_rad: 0.012,
+            anchor_every: 12,
+            reach_m: 8.0,
+            odometry_sigma_m: 0.06,
+            odometry_sigma_rad: 0.02,
             range_sigma_m: 0.1,
-            bearing_sigma_rad: 0.02,
+            bearing_sigma_rad: 0.025,
         }
     }
 }
 
 impl Laps {
-    /// A log of the laps: other landmarks and other noise for every seed.
+    /// A log of the laps: other noise for every seed.
     ///
     /// # Errors
     /// When a number has no meaning.
@@ -100,17 +107,27 @@ impl Laps {
     }
 
     fn scene(&self) -> PlanarParams {
-        let lap_s = TAU * self.radius_m / SPEED_MPS;
+        let around = RoundedRectangle {
+            length_m: self.length_m,
+            width_m: self.width_m,
+            corner_radius_m: CORNER_RADIUS_M,
+        };
+        let lap_m = 2.0 * (self.length_m + self.width_m) - (8.0 - TAU) * CORNER_RADIUS_M;
         let odometry = GaussianOdometryParams {
             period_ms: PERIOD_MS,
             sigma_m: self.odometry_sigma_m,
             sigma_rad: self.odometry_sigma_rad,
         };
         PlanarParams {
-            layout: Layout::Roadside(Roadside { n_landmarks: self.n_landmarks, clear_m: 1.0, verge_m: 7.0 }),
+            layout: Layout::CorridorLoop(CorridorLoop {
+                length_m: self.length_m,
+                width_m: self.width_m,
+                corridor_m: self.corridor_m,
+                spacing_m: self.spacing_m,
+            }),
             n_unknown_codes: 0,
             other_robots: Vec::new(),
-            route: RouteParams::Circle(Circle { radius_m: self.radius_m }),
+            route: RouteParams::RoundedRectangle(around),
             drive: DriveParams {
                 speed_mps: SPEED_MPS,
                 acceleration_mps2: 2.0,
@@ -125,7 +142,7 @@ impl Laps {
                 bearing_sigma_rad: self.bearing_sigma_rad,
                 ..RangeBearingParams::default()
             },
-            duration_ms: (1e3 * f64::from(self.n_laps) * lap_s) as u64,
+            duration_ms: (1e3 * f64::from(self.n_laps) * lap_m / SPEED_MPS) as u64,
             truth_period_ms: PERIOD_MS,
         }
     }
