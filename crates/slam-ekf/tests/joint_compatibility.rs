@@ -9,8 +9,8 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredGate;
 use wayfix_slam_ekf::{
-    Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds, LandmarkId,
-    LandmarkModel, NearestNeighbour, NearestNeighbourParams, Observation, Outcome, RangeBearing,
+    Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds,
+    LandmarkId, LandmarkModel, NearestNeighbour, NearestNeighbourParams, Observation, Outcome, RangeBearing,
     RangeBearingSensor, SlamError, SlamParams,
 };
 
@@ -27,8 +27,11 @@ fn gate(n_pairs: usize) -> f64 {
 }
 
 fn rule(n_trials: usize) -> JointCompatibility {
-    let params =
-        JointCompatibilityParams { probability: PROBABILITY, n_trials, ..JointCompatibilityParams::default() };
+    let params = JointCompatibilityParams {
+        probability: PROBABILITY,
+        n_trials,
+        ..JointCompatibilityParams::default()
+    };
     JointCompatibility::new(params).unwrap()
 }
 
@@ -116,12 +119,12 @@ fn small_looks_are_paired_as_by_trying_everything() {
     let (mut n_unlike_nearest, mut n_left_over, mut n_pairs) = (0, 0, 0);
     for seed in 0..N_LOOKS {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let place = |rng: &mut ChaCha8Rng| {
-            Vector2::new(rng.random_range(2.0..4.0), rng.random_range(-1.0..1.0))
-        };
+        let place =
+            |rng: &mut ChaCha8Rng| Vector2::new(rng.random_range(2.0..4.0), rng.random_range(-1.0..1.0));
         let landmarks: Vec<_> = (0..6).map(|_| place(&mut rng)).collect();
         let mut slam = map(&landmarks, 0.1, [0.2, 0.2, 0.1]);
-        let true_pose = slam.robot().retract(&Vector3::from([0.2, 0.2, 0.1].map(|s| s * common::normal(&mut rng))));
+        let true_pose =
+            slam.robot().retract(&Vector3::from([0.2, 0.2, 0.1].map(|s| s * common::normal(&mut rng))));
         // A look at two that are told apart makes everything hang together.
         let first: Vec<_> = (0..2)
             .map(|k| Observation {

@@ -35,10 +35,10 @@ use crate::{
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log: an MCAP file, the folder of a UTIAS set, or a text file of range-bearing lines.
+    /// The log: an MCAP file, the folder of a UTIAS or Victoria Park set, or a text file of range-bearing lines.
     #[arg(long, value_name = "PATH")]
     log: PathBuf,
-    /// How the log is stored: utias, range-bearing or mcap [default: found out by looking].
+    /// How the log is stored: utias, victoria-park, range-bearing or mcap [default: found out by looking].
     #[arg(long)]
     format: Option<Format>,
     /// Which robot, in sets of several.

@@ -31,6 +31,16 @@ const POSE: usize = 3;
 
 /// Runs the filters over `n_runs` logs that differ in everything that is drawn.
 ///
+/// ```
+/// use wayfix::consistency::{Laps, monte_carlo};
+/// let laps = Laps { length_m: 20.0, width_m: 10.0, n_laps: 1, ..Laps::default() };
+/// let all = monte_carlo(&laps, 2, 1)?;
+/// assert_eq!(all.courses.len(), 4);
+/// assert!(all.whole_run_band.low < all.band.low && all.band.high < all.whole_run_band.high);
+/// assert!(monte_carlo(&laps, 0, 1).is_err());
+/// # Ok::<(), anyhow::Error>(())
+/// ```
+///
 /// # Errors
 /// When a parameter has no meaning or a filter refuses.
 pub fn monte_carlo(laps: &Laps, n_runs: u32, seed: u64) -> Result<MonteCarlo> {

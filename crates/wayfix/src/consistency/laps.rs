@@ -37,7 +37,7 @@ pub struct Laps {
     pub spacing_m: f64,
     /// How often around.
     pub n_laps: u32,
-    /// The anchored filter is told the place of every so many-th landmark.
+    /// The anchored filter is told the place of every so many-th landmark; of the first alone when this is 0.
     pub anchor_every: u32,
     /// How far the sensor sees, all around, m.
     pub reach_m: f64,
@@ -145,5 +145,28 @@ impl Laps {
             duration_ms: (1e3 * f64::from(self.n_laps) * lap_m / SPEED_MPS) as u64,
             truth_period_ms: PERIOD_MS,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_without_meaning_are_refused() {
+        let good = Laps { n_laps: 1, ..Laps::default() };
+        for bad in [
+            Laps { length_m: f64::NAN, ..good },
+            Laps { width_m: f64::INFINITY, ..good },
+            Laps { width_m: 1.0, ..good }, // no block inside the corridor
+            Laps { spacing_m: 0.0, ..good },
+            Laps { reach_m: -1.0, ..good },
+            Laps { odometry_sigma_m: -0.1, ..good },
+            Laps { bearing_sigma_rad: f64::NAN, ..good },
+            Laps { n_laps: u32::MAX, ..good },
+        ] {
+            assert!(bad.simulate(1).is_err(), "{bad:?}");
+        }
+        assert!(good.simulate(1).is_ok());
     }
 }
