@@ -212,7 +212,7 @@ fn looks_without_anything_usable_leave_the_map_as_it_is() {
         assert_eq!(report.outcomes, vec![Outcome::Unusable; looks.len()]);
         assert_eq!((*slam.robot(), slam.covariance().into_owned()), before);
     }
-    let mixed = [nan[0].clone(), unlabelled(RangeBearing::new(3.0, 0.0))];
+    let mixed = [nan[0], unlabelled(RangeBearing::new(3.0, 0.0))];
     let report = slam.update(&mixed, &mut joint).unwrap();
     assert!(matches!(report.outcomes[..], [Outcome::Unusable, Outcome::Accepted { .. }]), "{report:?}");
 }
