@@ -88,7 +88,7 @@ fn the_antenna_and_not_the_axle_is_compared_with_the_fixes() {
     let scratch = Scratch::new();
     let set = folder(&scratch, "set", 100, true);
     let params = scratch.file("params.toml", "[mounting]\nantenna_x = 0.0\nantenna_y = 0.0\n");
-    // The axle runs on a circle of 14.0 m, the mast on one of 14.0: the fit of a start hides what is left of 3.8 m ahead but for their radii.
+    // Axle and mast turn about the same point at 13.96 m and 13.98 m: a fit hides all of the 3.8 m between them but these two centimetres.
     let outcome = run_slam(&set, &["--params", params.to_str().unwrap()]);
     assert!(outcome.metric("ate_aligned_rmse_m") > 1e3 * ROUNDING, "{}", outcome.stdout);
 }

@@ -7,7 +7,7 @@ use super::{Picture, PlotError};
 /// Several named series against one abscissa.
 ///
 /// ```
-/// use wayfix::plot::{LinesPlot, Scale, Series};
+/// use wayfix::plot::{LinesPlot, NamedBand, Scale, Series};
 /// let powers = |exponent: i32| (1..50).map(|n| (f64::from(n), f64::from(n).powi(exponent))).collect();
 /// let plot = LinesPlot {
 ///     title: "Cost".to_owned(),
@@ -16,9 +16,10 @@ use super::{Picture, PlotError};
 ///     series: vec![Series::new("dense", powers(3)), Series::new("sparse", powers(2))],
 ///     x_scale: Scale::Log10,
 ///     y_scale: Scale::Log10,
-///     band: None,
+///     band: Some(NamedBand { name: "a millisecond".to_owned(), low: 1e5, high: 1e6 }),
 /// };
-/// assert!(plot.draw()?.svg.contains("sparse"));
+/// let svg = plot.draw()?.svg;
+/// assert!(svg.contains("sparse") && svg.contains("a millisecond"));
 /// # Ok::<(), wayfix::plot::PlotError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
