@@ -97,6 +97,7 @@ fn invented_run(n: u64, seed: u64) -> Result<Run, PlotError> {
         ],
         x_scale: Scale::Log10,
         y_scale: Scale::Log10,
+        band: None,
     };
     let mut figures = vec![
         map.draw()?,

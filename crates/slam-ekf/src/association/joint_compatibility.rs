@@ -42,8 +42,8 @@ impl Default for JointCompatibilityParams {
 /// Joint compatibility branch and bound, for sensors that read no identity.
 ///
 /// Pairings that are each plausible can contradict each other: their innovations are correlated through the robot. This rule finds the
-/// largest set of pairings whose *joint* NIS passes, $`ν^T S^{-1} ν ≤ χ^2_{\dim ν}(p)`$, and among the largest the one of smallest NIS.
-/// [Neira & Tardós 2001]
+/// largest set of pairings whose *joint* NIS passes, $`ν^T S^{-1} ν ≤ χ^2_{\dim ν}(p)`$, and among the largest the one of smallest NIS. A
+/// set grows by one pairing at a time, observations with the fewest candidates first, and must pass at every size. [Neira & Tardós 2001]
 ///
 /// What is left over starts a landmark when it is further than `certainly_new` from everything, as with
 /// [`NearestNeighbour`](super::NearestNeighbour).

@@ -21,7 +21,7 @@ use crate::{
     system::Stopwatch,
 };
 
-/// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing sightings.
+/// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing sightings or laser scans.
 ///
 /// Where the log holds true poses, the run starts at the true pose where odometry starts, and the figures tell how far it strays:
 /// `ate_rmse_m` as it is, `ate_aligned_rmse_m` after the best rigid fit of the path, `landmark_…` the same for the map, `nees_mean`
@@ -30,15 +30,18 @@ use crate::{
 /// `n_rejected` counts what the filter refused: outside the gate, twice in one look, not usable, back in time. `step_…_us` is computing
 /// time a look of the sensor.
 ///
+/// In logs of laser scans the landmarks are walls; the parameters are others then (`--print-params` shows them). What another program
+/// estimated stands in for the truth there, when the log has no true poses. `--relations` adds the errors of known relations.
+///
 /// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
 /// It ends with 1 when nothing could be done, with 2 when the command line is wrong.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log: an MCAP file, the folder of a UTIAS set, or a text file of range-bearing lines.
+    /// The log: an MCAP file, the folder of a UTIAS or Victoria Park set, a text file of range-bearing lines, or laser scans of CARMEN or JSON.
     #[arg(long, value_name = "PATH")]
     pub(super) log: PathBuf,
-    /// How the log is stored: utias, range-bearing or mcap [default: found out by looking].
+    /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: found out by looking].
     #[arg(long)]
     pub(super) format: Option<Format>,
     /// Which robot, in sets of several.

@@ -1,5 +1,5 @@
 use nalgebra::{Matrix3, Vector3, linalg::Cholesky};
-use wayfix_estimation_traits::{Manifold, Pose2, wrap_angle};
+use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, wrap_angle};
 
 use super::{align, rms_distance};
 
@@ -20,6 +20,11 @@ impl Sample {
         self.estimate.local(&self.truth)
     }
 
+    /// The same in exponential coordinates, $`\log(\hat x^{-1} x)`$.
+    pub fn exponential_error(&self) -> Vector3<f64> {
+        self.estimate.inverse().compose(&self.truth).log()
+    }
+
     /// Distance between the positions, m.
     pub fn position_error(&self) -> f64 {
         (self.estimate.translation - self.truth.translation).norm()
@@ -33,8 +38,12 @@ impl Sample {
     /// Normalized estimation error squared, $`e^T P^{-1} e`$ with $`e`$ the truth seen from the estimate; chi-squared with three degrees
     /// of freedom for an honest filter. `None` while some direction is known exactly.
     pub fn nees(&self) -> Option<f64> {
-        let error = self.error();
-        let nees = error.dot(&Cholesky::new(self.covariance)?.solve(&error));
+        self.nees_of(&self.error())
+    }
+
+    /// The same of an error in other coordinates, in which the covariance is the filter's.
+    pub fn nees_of(&self, error: &Vector3<f64>) -> Option<f64> {
+        let nees = error.dot(&Cholesky::new(self.covariance)?.solve(error));
         nees.is_finite().then_some(nees)
     }
 }

@@ -44,7 +44,7 @@ const ANCHOR: LandmarkId = LandmarkId(u32::MAX);
 const SMALLEST_SIGMA: f64 = 1e-6;
 
 /// The plain Kalman filter: every landmark counts at once, and no look is doubted.
-fn plain() -> SlamParams {
+pub(crate) fn plain_filter() -> SlamParams {
     let confirmation = Confirmation { n_sightings: 1, ..Confirmation::default() };
     SlamParams { gate_probability: 1.0 - 1e-12, confirmation, ..SlamParams::default() }
 }
@@ -57,7 +57,7 @@ pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> 
     let sensor = MonobotSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_noise };
     let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_noise };
     let camera = Camera(params.external_sigma_m);
-    let mut slam = EkfSlam::new(sensor, plain(), Vector1::new(run.positions[0]))?;
+    let mut slam = EkfSlam::new(sensor, plain_filter(), Vector1::new(run.positions[0]))?;
     if reference == Reference::Anchor {
         slam.add_anchor(ANCHOR, Vector1::zeros())?;
     }

@@ -6,6 +6,7 @@ mod fisher;
 mod pictures;
 mod reference;
 
+pub(crate) use drive::plain_filter;
 pub use drive::{Drive, Step, drive};
 pub use figures::{MonteCarlo, monte_carlo};
 pub use fisher::{expected_rate, first_entry};

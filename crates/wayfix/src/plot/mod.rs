@@ -42,7 +42,7 @@ pub use error::PlotError;
 pub use error_plot::{ErrorPlot, ErrorSample};
 pub use film_strip::{FilmFrame, FilmStrip};
 pub(crate) use ink::{DARK_PALETTE, LIGHT_PALETTE};
-pub use lines::{LinesPlot, Series};
+pub use lines::{LinesPlot, NamedBand, Series};
 pub use map::{EstimatedLandmark, MapPlot};
 pub(crate) use markup::escape;
 pub use picture::Picture;

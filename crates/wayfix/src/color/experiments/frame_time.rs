@@ -52,6 +52,7 @@ pub fn frame_time(
         series: vec![Series::new("median of 40 frames", points)],
         x_scale: Scale::Log10,
         y_scale: Scale::Log10,
+        ..LinesPlot::default()
     };
     Ok(Run { timings, figures: vec![plot.draw()?], ..Run::default() })
 }

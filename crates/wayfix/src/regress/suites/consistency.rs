@@ -4,6 +4,7 @@ use wayfix_scene_sim::monobot::MonobotParams;
 
 use super::super::Job;
 use crate::{
+    consistency::{self, Laps},
     monobot::{self, Reference},
     report::{Metric, Run},
 };
@@ -28,6 +29,8 @@ enum Settings {
         #[serde(flatten)]
         noise: Noise,
     },
+    /// Laps of a loop in the plane, through all kinds of filters.
+    Laps { n_runs: u32, n_runs_quick: u32, laps: Laps },
 }
 
 /// Noise of the monobot: the paper gives none.
@@ -38,7 +41,7 @@ struct Noise {
     external_sigma_m: f64,
 }
 
-/// The paper's one-dimensional experiments.
+/// The paper's one-dimensional experiments, and laps in the plane.
 pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     match job.planned.settings()? {
         Settings::Fisher { n_landmarks, n_steps } => fisher(&n_landmarks, n_steps),
@@ -46,6 +49,9 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
             let all = monobot::monte_carlo(&noise.params(1), reference, n_runs, job.options.seed)?;
             let figures = all.drives.first().map(monobot::pictures).transpose()?.unwrap_or_default();
             Ok(Run { metrics: all.metrics(), figures, ..Run::default() })
+        }
+        Settings::Laps { n_runs, n_runs_quick, laps } => {
+            run_laps(job, &laps, if job.options.quick { n_runs_quick } else { n_runs })
         }
         Settings::Landmarks { n_landmarks, n_runs, noise } => landmarks(job, &n_landmarks, n_runs, noise),
     }
@@ -71,6 +77,16 @@ fn landmarks(job: &Job<'_>, n_landmarks: &[usize], n_runs: u64, noise: Noise) ->
     let fall = metrics.first().zip(metrics.last()).map_or(f64::NAN, |(few, many)| few.value / many.value);
     metrics.push(Metric::new("fall", fall, ""));
     Ok(Run { metrics, ..Run::default() })
+}
+
+fn run_laps(job: &Job<'_>, laps: &Laps, n_runs: u32) -> Result<Run> {
+    let all = consistency::monte_carlo(laps, n_runs, job.options.seed)?;
+    let note = format!(
+        "{n_runs} logs; a consistent filter's average NEES is in {:.2} to {:.2} at any one look, and in {:.2} to {:.2} at all looks, with 95 %.",
+        all.band.low, all.band.high, all.whole_run_band.low, all.whole_run_band.high
+    );
+    let figures = vec![consistency::picture(&all)?];
+    Ok(Run { metrics: all.metrics(), figures, notes: vec![note], ..Run::default() })
 }
 
 impl Noise {

@@ -1,0 +1,130 @@
+//! Which landmarks leave the map: those that should have been seen and were not, counted by looks.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot build its filter has failed")]
+
+use wayfix_estimation_traits::Pose2;
+use wayfix_slam_ekf::{
+    Confirmation, EkfSlam, KnownIds, LandmarkId, LandmarkModel, Observation, RangeBearing,
+    RangeBearingSensor, SlamError, SlamParams,
+};
+
+/// Sees 5 m far and 1 rad to either side.
+fn sensor() -> RangeBearingSensor {
+    RangeBearingSensor { reach: 5.0, half_field_of_view: 1.0, ..RangeBearingSensor::default() }
+}
+
+fn slam(confirmation: Confirmation) -> EkfSlam<RangeBearingSensor> {
+    let params = SlamParams { confirmation, ..SlamParams::default() };
+    EkfSlam::new(sensor(), params, Pose2::new(0.0, 0.0, 0.0)).unwrap()
+}
+
+/// One look at landmarks `(id, range, bearing)`.
+fn look(slam: &mut EkfSlam<RangeBearingSensor>, seen: &[(u32, f64, f64)]) {
+    let observation = |(id, range, bearing): &(u32, f64, f64)| Observation {
+        label: Some(LandmarkId(*id)),
+        measurement: RangeBearing::new(*range, *bearing),
+    };
+    let seen: Vec<_> = seen.iter().map(observation).collect();
+    slam.update(&seen, &mut KnownIds).unwrap();
+}
+
+/// After how many empty looks a landmark is gone; `None` when a hundred leave it.
+fn looks_survived(slam: &mut EkfSlam<RangeBearingSensor>, id: u32) -> Option<usize> {
+    (1..=100).find(|_| {
+        look(slam, &[]);
+        !slam.knows(LandmarkId(id))
+    })
+}
+
+const AHEAD: (u32, f64, f64) = (1, 3.0, 0.0);
+
+#[test]
+fn a_sensor_should_see_what_is_within_reach_and_view() {
+    for (range, bearing, expected) in
+        [(5.0, 1.0, true), (5.0, -1.0, true), (5.01, 0.0, false), (1.0, 1.01, false), (1.0, -3.0, false)]
+    {
+        assert_eq!(sensor().should_see(&RangeBearing::new(range, bearing)), expected, "{range} {bearing}");
+    }
+    assert!(RangeBearingSensor::default().should_see(&RangeBearing::new(1e9, 3.1)), "no limits by default");
+}
+
+#[test]
+fn a_tentative_landmark_outlives_as_many_misses_as_there_is_patience() {
+    for patience in [0, 1, 5] {
+        let mut slam = slam(Confirmation { patience: Some(patience), ..Confirmation::default() });
+        look(&mut slam, &[AHEAD]);
+        assert_eq!(looks_survived(&mut slam, 1), Some(patience + 1), "patience {patience}");
+    }
+}
+
+#[test]
+fn looks_that_could_not_show_a_landmark_do_not_count() {
+    for hidden in [(1, 5.5, 0.0), (1, 3.0, 1.2)] {
+        let mut slam = slam(Confirmation { patience: Some(2), ..Confirmation::default() });
+        look(&mut slam, &[hidden]);
+        assert_eq!(looks_survived(&mut slam, 1), None, "{hidden:?}");
+    }
+}
+
+#[test]
+fn a_sighting_renews_the_patience() {
+    let mut slam = slam(Confirmation { n_sightings: 3, patience: Some(2), ..Confirmation::default() });
+    look(&mut slam, &[AHEAD]);
+    look(&mut slam, &[]);
+    look(&mut slam, &[]);
+    look(&mut slam, &[AHEAD]); // the second of three sightings
+    assert_eq!(looks_survived(&mut slam, 1), Some(3));
+}
+
+#[test]
+fn a_confirmed_landmark_leaves_when_it_is_seen_in_too_few_looks() {
+    let confirmation = Confirmation { patience: Some(2), least_share_seen: 0.5, ..Confirmation::default() };
+    let mut slam = slam(confirmation);
+    for _ in 0..4 {
+        look(&mut slam, &[AHEAD]);
+    }
+    assert_eq!(slam.n_landmarks(), 1);
+    // Four of four, of five, …: 4/8 is the wanted half still, 4/9 is less.
+    assert_eq!(looks_survived(&mut slam, 1), Some(5));
+}
+
+#[test]
+fn a_share_is_not_judged_before_patience_is_out() {
+    let confirmation = Confirmation { patience: Some(7), least_share_seen: 1.0, ..Confirmation::default() };
+    let mut slam = slam(confirmation);
+    look(&mut slam, &[AHEAD]);
+    look(&mut slam, &[AHEAD]);
+    assert_eq!(looks_survived(&mut slam, 1), Some(8), "2/3 is below 1 at once, but it takes eight misses");
+}
+
+#[test]
+fn without_a_share_or_without_patience_nothing_that_is_confirmed_leaves() {
+    let share_only = Confirmation { least_share_seen: 1.0, ..Confirmation::default() };
+    let patience_only = Confirmation { patience: Some(1), ..Confirmation::default() };
+    for confirmation in [share_only, patience_only] {
+        let mut slam = slam(confirmation);
+        look(&mut slam, &[AHEAD]);
+        look(&mut slam, &[AHEAD]);
+        assert_eq!(looks_survived(&mut slam, 1), None, "{confirmation:?}");
+    }
+}
+
+#[test]
+fn an_anchor_stays_whatever_is_seen() {
+    let confirmation = Confirmation { patience: Some(0), least_share_seen: 1.0, ..Confirmation::default() };
+    let mut slam = slam(confirmation);
+    slam.add_anchor(LandmarkId(1), [3.0, 0.0].into()).unwrap();
+    assert_eq!(looks_survived(&mut slam, 1), None);
+}
+
+#[test]
+fn a_share_is_between_nothing_and_all() {
+    for share in [-0.1, 1.1, f64::NAN, f64::INFINITY] {
+        let confirmation = Confirmation { least_share_seen: share, ..Confirmation::default() };
+        let params = SlamParams { confirmation, ..SlamParams::default() };
+        let built = EkfSlam::new(sensor(), params, Pose2::new(0.0, 0.0, 0.0));
+        assert!(
+            matches!(built, Err(SlamError::Parameter { name: "least_share_seen", .. })),
+            "{share}: {built:?}"
+        );
+    }
+}

@@ -1,0 +1,91 @@
+use anyhow::{Context, Result};
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Data, Record, Sighting, Target};
+use wayfix_slam_ekf::{
+    EkfSlam, KnownIds, LandmarkId, Observation, RangeBearing, RangeBearingSensor, SlamParams,
+};
+
+use super::{FilterKind, Laps};
+use crate::{evaluate::Sample, monobot::plain_filter};
+
+/// What the filter says after one look, beside the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Since the first record, s.
+    pub seconds: f64,
+    /// Normalized estimation error squared of the pose, in the filter's own coordinates.
+    pub nees: f64,
+    /// Distance from the true position, m.
+    pub position_error: f64,
+    /// Standard deviation of the heading, rad.
+    pub heading_sigma: f64,
+}
+
+/// Runs a simulated log through one filter from the true start: one entry a look, from the first after which the robot moved.
+///
+/// # Errors
+/// When the log has no true start, or the filter refuses what was simulated.
+pub fn drive(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<Vec<Look>> {
+    let mut slam = filter(laps, records, kind)?;
+    let start_stamp = records.first().context("an empty log")?.stamp;
+    let motion = laps.motion();
+    let (mut truth, mut has_moved, mut looks) = (*slam.robot(), false, Vec::new());
+    for record in records {
+        match &record.data {
+            Data::TruePose(pose) => truth = *pose,
+            Data::OdometryIncrement(increment) => {
+                slam.predict(&motion, increment)?;
+                has_moved = true;
+            }
+            Data::Sightings(sightings) => {
+                slam.update(&observations(sightings), &mut KnownIds)?;
+                if has_moved {
+                    looks.push(look(&slam, kind, truth, record.stamp.seconds_since(start_stamp)));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(looks)
+}
+
+fn filter(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<EkfSlam<RangeBearingSensor>> {
+    let start = records.iter().find_map(|record| match record.data {
+        Data::TruePose(pose) => Some(pose),
+        _ => None,
+    });
+    let params = SlamParams { linearization: kind.linearization(), ..plain_filter() };
+    let mut slam = EkfSlam::new(laps.sensor(), params, start.context("a log without truth")?)?;
+    if kind == FilterKind::Anchored {
+        for record in records {
+            match &record.data {
+                Data::TrueLandmark(landmark) if landmark.id.is_multiple_of(laps.anchor_every) => {
+                    slam.add_anchor(LandmarkId(landmark.id), [landmark.x, landmark.y].into())?;
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(slam)
+}
+
+fn observations(sightings: &[Sighting]) -> Vec<Observation<RangeBearing>> {
+    let observation = |sighting: &Sighting| match sighting.target {
+        Target::Landmark(id) => {
+            let measurement = RangeBearing::new(sighting.range, sighting.bearing);
+            Some(Observation { label: Some(LandmarkId(id)), measurement })
+        }
+        _ => None,
+    };
+    sightings.iter().filter_map(observation).collect()
+}
+
+fn look(slam: &EkfSlam<RangeBearingSensor>, kind: FilterKind, truth: Pose2<f64>, seconds: f64) -> Look {
+    let sample = Sample { estimate: *slam.robot(), covariance: slam.robot_covariance(), truth };
+    Look {
+        seconds,
+        nees: sample.nees_of(&kind.error(&sample)).unwrap_or(f64::NAN),
+        position_error: sample.position_error(),
+        heading_sigma: sample.covariance.m33.sqrt(),
+    }
+}
