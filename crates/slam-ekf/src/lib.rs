@@ -39,17 +39,17 @@ pub use association::{
 };
 pub use error::SlamError;
 pub use filter::{
-    Confirmation, EkfSlam, LandmarkEstimate, Linearization, OutlierRule, PredictedSighting, SlamParams,
-    UpdateOrder,
+    Confirmation, EkfSlam, LandmarkEstimate, Linearization, Merging, OutlierRule, PredictedSighting,
+    SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    AckermannControl, AckermannMotion, AckermannVehicle, IncrementMotion, MonobotMotion, MonobotSensor,
-    Mounted, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor,
-    ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry,
-    pose_symmetry,
+    AckermannControl, AckermannMotion, AckermannVehicle, IncrementMotion, LookErrors, MonobotMotion,
+    MonobotSensor, Mounted, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor, RelativePosition,
+    RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor, VelocityControl,
+    VelocityMotion, point_symmetry, pose_symmetry,
 };
-pub use outcome::{Outcome, StepReport};
+pub use outcome::{Merge, Outcome, StepReport};
 pub use snapshot::{SavedLandmark, SavedRetired, Snapshot};
 
 /// The matrix library of every public signature.

@@ -23,7 +23,7 @@ fn drive(seed: u64, retire_after: Option<usize>) -> (EkfSlam<RangeBearingSensor>
         heading_variance_per_step: turn * turn,
     };
     let [range_sigma, bearing_sigma] = common::SIGHTING;
-    let sensor = RangeBearingSensor { range_sigma, range_sigma_per_meter: 0.0, bearing_sigma };
+    let sensor = RangeBearingSensor { range_sigma, bearing_sigma, ..RangeBearingSensor::default() };
     let params = SlamParams { retire_after, ..SlamParams::default() };
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let landmarks = common::landmarks(12, &mut rng);

@@ -13,6 +13,7 @@ where
 {
     /// Which of the predicted sightings.
     pub(super) sighting: usize,
+    pub(super) measurement: M::Measurement,
     pub(super) innovation: Innovation<M::Measurement>,
 }
 
@@ -38,12 +39,13 @@ where
     ) -> Self {
         let sightings: Vec<_> = filter.predicted_sightings().collect();
         let of_one = |observation: &Observation<M::Measurement>| {
-            let noise = filter.model().noise(&observation.measurement);
+            let noise = filter.model().association_noise(&observation.measurement);
             let mut candidates: Vec<Candidate<M>> = Vec::new();
             for (sighting, predicted) in sightings.iter().enumerate() {
                 if let Some(innovation) = predicted.innovation_within(limit, &observation.measurement, &noise)
                 {
-                    candidates.push(Candidate { sighting, innovation });
+                    let measurement = observation.measurement.clone();
+                    candidates.push(Candidate { sighting, measurement, innovation });
                 }
             }
             candidates.sort_by(|a, b| a.innovation.nis.total_cmp(&b.innovation.nis));

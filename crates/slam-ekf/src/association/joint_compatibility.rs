@@ -252,7 +252,10 @@ where
         let own = &self.sightings[candidate.sighting];
         let paired = self.chosen.iter().flatten();
         let blocks: Vec<_> = paired
-            .map(|other| self.filter.predicted_cross_covariance(own, &self.sightings[other.sighting]))
+            .map(|other| {
+                let common = self.filter.model().common_noise(&candidate.measurement, &other.measurement);
+                self.filter.predicted_cross_covariance(own, &self.sightings[other.sighting]) + common
+            })
             .collect();
         let size = MeasurementDim::<M>::DIM;
         for row in 0..size {

@@ -135,12 +135,14 @@ impl JointCovariance {
 
     /// Takes a block out: what is left is the marginal of the rest.
     pub(crate) fn remove(&mut self, block: Range<usize>) {
-        let kept = |index: usize| if index < block.start { index } else { index + block.len() };
         let dimension = self.dimension - block.len();
+        let (capacity, n) = (self.storage.nrows(), self.dimension);
+        let entries = self.storage.as_mut_slice();
         for column in 0..dimension {
-            for row in 0..dimension {
-                self.storage[(row, column)] = self.storage[(kept(row), kept(column))]; // sources lie behind: never yet overwritten
-            }
+            let source = capacity * if column < block.start { column } else { column + block.len() };
+            let target = capacity * column;
+            entries.copy_within(source..source + block.start, target); // sources lie behind: never yet overwritten
+            entries.copy_within(source + block.end..source + n, target + block.start);
         }
         self.dimension = dimension;
     }

@@ -4,6 +4,7 @@ mod confirmation;
 mod gates;
 mod linearization;
 mod map;
+mod merge;
 mod params;
 mod predict;
 mod resume;
@@ -16,6 +17,7 @@ mod update_robot;
 
 pub use confirmation::Confirmation;
 pub use linearization::Linearization;
+pub use merge::Merging;
 pub use params::{OutlierRule, SlamParams, UpdateOrder};
 pub use sight::PredictedSighting;
 pub use state::{EkfSlam, LandmarkEstimate};

@@ -2,6 +2,7 @@
 
 mod ackermann;
 mod increment;
+mod look_errors;
 mod monobot;
 mod mounted;
 mod planar;
@@ -12,6 +13,7 @@ mod velocity;
 
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use increment::IncrementMotion;
+pub use look_errors::LookErrors;
 pub use monobot::{MonobotMotion, MonobotSensor};
 pub use mounted::Mounted;
 pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};

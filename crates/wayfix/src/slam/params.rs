@@ -173,6 +173,7 @@ impl SlamSystemParams {
                     bearing_sigma: 0.05,
                     reach: 30.0,
                     half_field_of_view: 1.3,
+                    look_errors: None,
                 },
                 velocity: VelocityMotion {
                     linear_sigma: 0.0,
@@ -214,6 +215,7 @@ impl SlamSystemParams {
                     bearing_sigma: 0.035,
                     reach: 5.0,
                     half_field_of_view: 0.45,
+                    look_errors: None,
                 },
                 velocity: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
                 filter: SlamParams {

@@ -196,6 +196,9 @@ impl SlamSystem {
             recorder.record(&self.filter, &seen_landmarks(&report));
         }
         self.count(&observations, &report);
+        for _ in &report.merges {
+            self.events.count("merged_landmark");
+        }
         self.add_keyframe(stamp, &report);
         Ok(())
     }
