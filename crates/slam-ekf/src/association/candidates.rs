@@ -1,8 +1,9 @@
 use nalgebra::DefaultAllocator;
 
+use super::Association;
 use crate::{
-    EkfSlam, Innovation, LandmarkDim, LandmarkModel, MeasurementDim, Observation, PredictedSighting,
-    RobotDim, SlamAlloc,
+    EkfSlam, Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation,
+    PredictedSighting, RobotDim, SlamAlloc,
 };
 
 /// A landmark that an observation may be of.
@@ -37,7 +38,9 @@ where
         filter: &EkfSlam<M>,
         observations: &[Observation<M::Measurement>],
     ) -> Self {
-        let sightings: Vec<_> = filter.predicted_sightings().collect();
+        let within_reach: Vec<_> =
+            observations.iter().map(|observation| filter.reach(limit, &observation.measurement)).collect();
+        let sightings: Vec<_> = filter.sightings_within(Some(&within_reach)).collect();
         let of_one = |observation: &Observation<M::Measurement>| {
             let noise = filter.model().association_noise(&observation.measurement);
             let mut candidates: Vec<Candidate<M>> = Vec::new();
@@ -53,5 +56,21 @@ where
         };
         let of_observation = observations.iter().map(of_one).collect();
         Self { sightings, of_observation }
+    }
+
+    /// What every observation is of, given the sighting that it is paired with: what has no pairing and no candidate left is new.
+    pub(super) fn settle(
+        &self,
+        pairings: &[Option<usize>],
+        never_twice: bool,
+        mut new_id: impl FnMut() -> LandmarkId,
+    ) -> Vec<Association> {
+        let is_taken = |sighting: usize| never_twice && pairings.contains(&Some(sighting));
+        let settle_one = |(of_one, pairing): (&Vec<Candidate<M>>, &Option<usize>)| match *pairing {
+            Some(sighting) => Association::Matched(self.sightings[sighting].landmark),
+            None if of_one.iter().all(|candidate| is_taken(candidate.sighting)) => Association::New(new_id()),
+            None => Association::Ambiguous,
+        };
+        self.of_observation.iter().zip(pairings).map(settle_one).collect()
     }
 }

@@ -26,11 +26,14 @@ pub struct JointCompatibilityParams {
     /// Pairings that one look may try. When they are used up the best set so far counts, and the next look starts afresh; a bound in
     /// pairings, unlike one in milliseconds, gives the same result on every machine.
     pub n_trials: usize,
+    /// Whether the sensor never tells of one landmark twice in a look, as with bar codes: what lies beside a sighting that found its landmark is
+    /// then of another one. Detectors that break a trunk in two must say no.
+    pub never_twice: bool,
 }
 
 impl Default for JointCompatibilityParams {
     fn default() -> Self {
-        Self { probability: 0.999, certainly_new: 40.0, n_trials: 2000 }
+        Self { probability: 0.999, certainly_new: 40.0, n_trials: 2000, never_twice: false }
     }
 }
 
@@ -121,14 +124,7 @@ where
         self.n_cut_short += usize::from(search.is_cut_short());
         let pairings = search.best;
 
-        let associate_one = |(observation, pairing): (usize, Option<usize>)| match pairing {
-            Some(sighting) => Association::Matched(candidates.sightings[sighting].landmark),
-            None if candidates.of_observation[observation].is_empty() => {
-                Association::New(self.ids.next_free(filter))
-            }
-            None => Association::Ambiguous,
-        };
-        pairings.into_iter().enumerate().map(associate_one).collect()
+        candidates.settle(&pairings, self.params.never_twice, || self.ids.next_free(filter))
     }
 }
 

@@ -20,14 +20,14 @@ impl JointCovariance {
         DefaultAllocator: Allocator<R, R>,
     {
         let dimension = R::DIM;
-        let mut storage = DMatrix::zeros(2 * dimension + 8, 2 * dimension + 8);
+        let mut storage = DMatrix::zeros(stride(2 * dimension), 2 * dimension);
         storage.view_mut((0, 0), (dimension, dimension)).copy_from(robot);
         Self { storage, dimension }
     }
 
     /// From the lower triangle, column by column.
     pub(crate) fn from_lower(dimension: usize, lower: &[f64]) -> Self {
-        let mut storage = DMatrix::zeros(dimension, dimension);
+        let mut storage = DMatrix::zeros(stride(dimension), dimension);
         let places = (0..dimension).flat_map(|column| (column..dimension).map(move |row| (row, column)));
         for ((row, column), entry) in places.zip(lower) {
             storage[(row, column)] = *entry;
@@ -162,13 +162,19 @@ impl JointCovariance {
     }
 
     fn reserve(&mut self, dimension: usize) {
-        if dimension > self.storage.nrows() {
-            let capacity = dimension.max(2 * self.storage.nrows());
-            let mut grown = DMatrix::zeros(capacity, capacity);
+        if dimension > self.storage.ncols() {
+            let capacity = dimension.max(2 * self.storage.ncols());
+            let mut grown = DMatrix::zeros(stride(capacity), capacity);
             grown.view_mut((0, 0), (self.dimension, self.dimension)).copy_from(&self.matrix());
             self.storage = grown;
         }
     }
+}
+
+/// Rows to store for a matrix of this size: an odd number of cache lines, so that the entries of a row do not all compete for the same
+/// few places of a cache.
+fn stride(dimension: usize) -> usize {
+    dimension.next_multiple_of(16) + 8
 }
 
 #[cfg(test)]

@@ -116,8 +116,7 @@ where
             let size = LandmarkDim::<M>::DIM;
             let block = |slot: &Slot<M::Landmark>| slot.offset..slot.offset + size;
             let cross = self.covariance.block(block(a), block(b)).trace();
-            let variance =
-                self.landmark_covariance(a).trace() + self.landmark_covariance(b).trace() - 2.0 * cross;
+            let variance = self.landmark_variance(a) + self.landmark_variance(b) - 2.0 * cross;
             merging.n_sigmas * variance.max(0.0).sqrt() <= left
         }
     }

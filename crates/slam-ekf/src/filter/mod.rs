@@ -7,6 +7,7 @@ mod map;
 mod merge;
 mod params;
 mod predict;
+mod reach;
 mod resume;
 mod retire;
 mod sight;

@@ -177,6 +177,12 @@ where
         slot.or_else(|| self.anchors.get(&id).map(|mean| (mean, None)))
     }
 
+    /// Trace of a landmark's covariance, for which its block need not be gathered.
+    pub(super) fn landmark_variance(&self, slot: &Slot<M::Landmark>) -> f64 {
+        let block = slot.offset..slot.offset + LandmarkDim::<M>::DIM;
+        self.covariance.block(block.clone(), block).trace()
+    }
+
     pub(super) fn landmark_covariance(&self, slot: &Slot<M::Landmark>) -> TangentMatrix<M::Landmark> {
         let block = slot.offset..slot.offset + LandmarkDim::<M>::DIM;
         let view = self.covariance.block(block.clone(), block);
