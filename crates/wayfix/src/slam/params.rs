@@ -2,8 +2,8 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{Format, LogMeta};
 use wayfix_slam_ekf::{
-    AckermannVehicle, Confirmation, IncrementMotion, JointCompatibilityParams, NearestNeighbourParams,
-    OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
+    AckermannVehicle, Confirmation, IncrementMotion, JointCompatibilityParams, LookErrors, Merging,
+    NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
 use crate::settings::over_defaults;
@@ -215,14 +215,33 @@ impl SlamSystemParams {
                     bearing_sigma: 0.035,
                     reach: 5.0,
                     half_field_of_view: 0.45,
-                    look_errors: None,
+                    // By the differences of sightings in one frame and the next, set 7: 0.004-0.006 rad and 0.02-0.04 m within a frame.
+                    look_errors: Some(LookErrors {
+                        own_range_sigma: 0.03,
+                        own_range_sigma_per_meter: 0.0,
+                        own_bearing_sigma: 0.006,
+                        common_range_sigma_per_meter: 0.03,
+                        common_bearing_sigma: 0.012,
+                    }),
                 },
                 velocity: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
                 filter: SlamParams {
                     // Errors hang together in time and have heavy tails: doubt begins at the average misfit, d² = 2.
                     outliers: OutlierRule::Downweight,
                     gate_probability: 0.632,
+                    // The tubes of a group stand 0.18-0.3 m apart.
+                    merging: Some(Merging { separation: 0.13, n_sigmas: 2.0 }),
                     ..SlamParams::default()
+                },
+                joint_compatibility: JointCompatibilityParams {
+                    certainly_new: 20.0,
+                    never_twice: true,
+                    ..JointCompatibilityParams::default()
+                },
+                unlabelled_confirmation: Confirmation {
+                    n_sightings: 8,
+                    patience: Some(20),
+                    ..Confirmation::default()
                 },
                 ..Self::of(Profile::Generic)
             }
