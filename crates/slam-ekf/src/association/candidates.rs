@@ -59,25 +59,18 @@ where
     }
 
     /// What every observation is of, given the sighting that it is paired with: what has no pairing and no candidate left is new.
-    /// Nothing happens with the doubtful ones.
     pub(super) fn settle(
         &self,
         pairings: &[Option<usize>],
-        doubtful: &[bool],
         never_twice: bool,
         mut new_id: impl FnMut() -> LandmarkId,
     ) -> Vec<Association> {
         let is_taken = |sighting: usize| never_twice && pairings.contains(&Some(sighting));
-        let settle_one = |((of_one, pairing), is_doubtful): ((&Vec<Candidate<M>>, &Option<usize>), &bool)| {
-            match *pairing {
-                _ if *is_doubtful => Association::Ambiguous,
-                Some(sighting) => Association::Matched(self.sightings[sighting].landmark),
-                None if of_one.iter().all(|candidate| is_taken(candidate.sighting)) => {
-                    Association::New(new_id())
-                }
-                None => Association::Ambiguous,
-            }
+        let settle_one = |(of_one, pairing): (&Vec<Candidate<M>>, &Option<usize>)| match *pairing {
+            Some(sighting) => Association::Matched(self.sightings[sighting].landmark),
+            None if of_one.iter().all(|candidate| is_taken(candidate.sighting)) => Association::New(new_id()),
+            None => Association::Ambiguous,
         };
-        self.of_observation.iter().zip(pairings).zip(doubtful).map(settle_one).collect()
+        self.of_observation.iter().zip(pairings).map(settle_one).collect()
     }
 }

@@ -29,14 +29,11 @@ pub struct JointCompatibilityParams {
     /// Whether the sensor never tells of one landmark twice in a look, as with bar codes: what lies beside a sighting that found its landmark is
     /// then of another one. Detectors that break a trunk in two must say no.
     pub never_twice: bool,
-    /// By how much the joint NIS must be smaller than that of any other set as large that pairs an observation otherwise; else the observation is
-    /// ambiguous. 0 takes the best set as it is; neighbours that stand close need some 4 to 9, two to three standard deviations.
-    pub margin: f64,
 }
 
 impl Default for JointCompatibilityParams {
     fn default() -> Self {
-        Self { probability: 0.999, certainly_new: 40.0, n_trials: 2000, never_twice: false, margin: 0.0 }
+        Self { probability: 0.999, certainly_new: 40.0, n_trials: 2000, never_twice: false }
     }
 }
 
@@ -78,10 +75,6 @@ impl JointCompatibility {
         if certainly_new.is_nan() || certainly_new < first.threshold() {
             let range = "at least the gate";
             return Err(SlamError::Parameter { name: "certainly_new", value: certainly_new, range });
-        }
-        if !(params.margin >= 0.0 && params.margin.is_finite()) {
-            let range = "finite and not negative";
-            return Err(SlamError::Parameter { name: "margin", value: params.margin, range });
         }
         Ok(Self { params, gates: vec![first.threshold()], ids: NewIds::default(), n_cut_short: 0 })
     }
@@ -126,12 +119,12 @@ where
         self.prepare_gates(size * observations.len());
         let candidates = Candidates::within(self.params.certainly_new, filter, observations);
         let gate = self.gates.get(size.wrapping_sub(1)).copied().unwrap_or(0.0);
-        let mut search = Search::new(filter, &candidates, &self.gates, gate, &self.params);
+        let mut search = Search::new(filter, &candidates, &self.gates, gate, self.params.n_trials);
         search.run();
         self.n_cut_short += usize::from(search.is_cut_short());
-        let (pairings, doubtful) = (search.best_set(), search.doubtful());
+        let pairings = search.best;
 
-        candidates.settle(&pairings, &doubtful, self.params.never_twice, || self.ids.next_free(filter))
+        candidates.settle(&pairings, self.params.never_twice, || self.ids.next_free(filter))
     }
 }
 
@@ -146,14 +139,11 @@ where
     open: Vec<(usize, Vec<&'a Candidate<M>>)>,
     gates: &'a [f64],
     trials_left: usize,
-    margin: f64,
     joint: JointInnovation,
     /// For every open observation so far: which of its candidates it is paired with.
     chosen: Vec<Option<&'a Candidate<M>>>,
     n_paired: usize,
-    n_observations: usize,
-    /// The largest sets so far, of a joint NIS within the margin of the best: the NIS, and the sighting of every open observation.
-    best: Vec<(f64, Vec<Option<usize>>)>,
+    best: Vec<Option<usize>>,
     best_score: (usize, f64),
 }
 
@@ -166,7 +156,7 @@ where
         candidates: &'a Candidates<M>,
         gates: &'a [f64],
         gate: f64,
-        params: &JointCompatibilityParams,
+        n_trials: usize,
     ) -> Self {
         let compatible = |(observation, all): (usize, &'a Vec<Candidate<M>>)| {
             let near: Vec<_> = all.iter().take_while(|candidate| candidate.innovation.nis <= gate).collect();
@@ -179,13 +169,11 @@ where
             sightings: &candidates.sightings,
             open,
             gates,
-            trials_left: params.n_trials.max(1),
-            margin: params.margin,
+            trials_left: n_trials.max(1),
             joint: JointInnovation::default(),
             chosen: Vec::new(),
             n_paired: 0,
-            n_observations: candidates.of_observation.len(),
-            best: Vec::new(),
+            best: vec![None; candidates.of_observation.len()],
             best_score: (0, 0.0),
         }
     }
@@ -204,7 +192,7 @@ where
             let n_candidates = self.open.get(depth).map_or(0, |(_, near)| near.len());
             let is_exhausted = depth == self.open.len() || taken > n_candidates || !self.can_improve();
             if is_exhausted {
-                self.keep_if_it_counts();
+                self.keep_if_best();
                 next.pop();
                 self.step_back();
             } else if self.step_down(self.open[depth].1.get(taken).copied()) {
@@ -212,59 +200,25 @@ where
             }
         }
         if self.is_cut_short() {
-            self.keep_if_it_counts();
+            self.keep_if_best();
         }
     }
 
-    /// Whether a set that counts can still come of this one.
+    /// Whether a set at least as large as the best can still come of this one.
     fn can_improve(&self) -> bool {
-        self.counts(self.n_paired + self.open.len() - self.chosen.len())
+        let most = self.n_paired + self.open.len() - self.chosen.len();
+        (most, -self.joint.nis()) > (self.best_score.0, -self.best_score.1)
     }
 
-    /// Whether a set of this size and the present NIS is the best so far or within the margin of it.
-    fn counts(&self, n_paired: usize) -> bool {
-        let (most, least_nis) = self.best_score;
+    fn keep_if_best(&mut self) {
         let nis = self.joint.nis();
-        n_paired > most
-            || n_paired == most && (nis < least_nis || nis <= least_nis + self.margin && self.margin > 0.0)
-    }
-
-    fn keep_if_it_counts(&mut self) {
-        if self.n_paired == 0 || !self.counts(self.n_paired) {
-            return;
-        }
-        let nis = self.joint.nis();
-        if self.n_paired > self.best_score.0 {
-            self.best.clear();
-        }
         if (self.n_paired, -nis) > (self.best_score.0, -self.best_score.1) {
             self.best_score = (self.n_paired, nis);
-        }
-        let sightings = self.chosen.iter().map(|chosen| chosen.map(|candidate| candidate.sighting));
-        self.best.push((nis, sightings.collect()));
-        let most = self.best_score.1 + self.margin;
-        self.best.retain(|(nis, _)| *nis <= most);
-    }
-
-    /// For every observation the sighting that the best set pairs it with.
-    fn best_set(&self) -> Vec<Option<usize>> {
-        let mut pairings = vec![None; self.n_observations];
-        let best = self.best.iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
-        for ((observation, _), sighting) in self.open.iter().zip(best.iter().flat_map(|(_, set)| set)) {
-            pairings[*observation] = *sighting;
-        }
-        pairings
-    }
-
-    /// Which observations a set within the margin pairs otherwise than the best.
-    fn doubtful(&self) -> Vec<bool> {
-        let (best, mut doubtful) = (self.best_set(), vec![false; self.n_observations]);
-        for (_, set) in &self.best {
-            for ((observation, _), sighting) in self.open.iter().zip(set) {
-                doubtful[*observation] |= *sighting != best[*observation];
+            self.best.fill(None);
+            for ((observation, _), chosen) in self.open.iter().zip(&self.chosen) {
+                self.best[*observation] = chosen.map(|candidate| candidate.sighting);
             }
         }
-        doubtful
     }
 
     /// Pairs the next open observation with a candidate, or with none; `false` when that contradicts the pairings so far.

@@ -98,9 +98,7 @@ where
             (!is_taken).then_some(sighting)
         };
         let pairings: Vec<Option<usize>> = nearest.iter().enumerate().map(keeps_its_own).collect();
-        candidates.settle(&pairings, &vec![false; pairings.len()], self.params.never_twice, || {
-            self.ids.next_free(filter)
-        })
+        candidates.settle(&pairings, self.params.never_twice, || self.ids.next_free(filter))
     }
 }
 

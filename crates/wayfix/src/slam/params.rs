@@ -40,7 +40,7 @@ pub struct SlamSystemParams {
     pub velocity: VelocityMotion,
     /// Noise of odometry increments.
     pub increment: IncrementMotion,
-    /// Gate and outliers.
+    /// Gate and outliers; its `merging` is for landmarks that were found without identities.
     pub filter: SlamParams,
     /// Thresholds of nearest neighbour.
     pub nearest_neighbour: NearestNeighbourParams,
@@ -188,6 +188,7 @@ impl SlamSystemParams {
                     ..NearestNeighbourParams::default()
                 },
                 joint_compatibility: JointCompatibilityParams {
+                    probability: 0.99,
                     certainly_new: 60.0,
                     ..JointCompatibilityParams::default()
                 },
