@@ -9,6 +9,7 @@
 //! gate         is it compatible with it             O(k)      [Outcome::Gated]
 //! correct      all accepted sightings together      O(k n²)   sparse H, lower triangle, never indefinite
 //! augment      certainly new ones enter the map     O(n)      tentative until confirmed
+//! merge        duplicates                           O(n²)     [Merging]
 //! forget       tentative ones not seen again        O(n²)     [Confirmation]
 //! ```
 //!

@@ -7,7 +7,10 @@ use crate::{
     covariance::SparseJacobian,
 };
 
-/// When two landmarks of the map are taken for one.
+/// When two landmarks of the map are taken for one: when they are certainly nearer to each other than two landmarks stand.
+///
+/// $`‖d‖ + k \sqrt{\operatorname{tr} P_d} ≤ s`$ with $`d = m_b ⊟ m_a`$ and $`P_d`$ its covariance. A test of $`d = 0`$ alone would take every two
+/// neighbours for one that are still uncertain, and keep duplicates that errors which hang together in time hold apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -48,6 +51,19 @@ where
     ///
     /// A measurement $`0 = m_{gone} ⊟ m_{kept} + v`$. The filter's covariance of the difference is often too small where errors hang together in time, so `v`
     /// is as large as what the two differ by, $`σ_v^2 = ‖m_{gone} ⊟ m_{kept}‖^2`$: the map bends towards the truth and does not tear.
+    ///
+    /// ```
+    /// use nalgebra::{Matrix2, Vector2};
+    /// use wayfix_estimation_traits::Pose2;
+    /// use wayfix_slam_ekf::{EkfSlam, LandmarkId, RangeBearingSensor, SlamParams};
+    /// let mut slam = EkfSlam::new(RangeBearingSensor::default(), SlamParams::default(), Pose2::new(0.0, 0.0, 0.0))?;
+    /// slam.insert(LandmarkId(1), Vector2::new(2.0, 0.0), Matrix2::identity() * 0.01)?;
+    /// slam.insert(LandmarkId(2), Vector2::new(2.1, 0.0), Matrix2::identity() * 0.01)?;
+    /// assert!(slam.merge(LandmarkId(1), LandmarkId(2)));
+    /// // Gain 0.01 / (0.01 + 0.01 + 0.1²) = 1/3.
+    /// assert!((slam.landmark(LandmarkId(1)).unwrap().mean.x - (2.0 + 0.1 / 3.0)).abs() < 1e-9);
+    /// # Ok::<(), wayfix_slam_ekf::SlamError>(())
+    /// ```
     pub fn merge(&mut self, kept: LandmarkId, gone: LandmarkId) -> bool {
         let (Some(kept_slot), Some(gone_slot)) = (self.landmarks.get(&kept), self.landmarks.get(&gone))
         else {
@@ -108,7 +124,7 @@ where
         Some(if own_is_kept { (id, *other_id) } else { (*other_id, id) })
     }
 
-    /// $`‖d‖ + k \sqrt{λ_{\max}(P_d)} ≤ s`$, with the trace for the largest eigenvalue, which it bounds.
+    /// The trace bounds the largest variance of the difference in any direction.
     fn are_nearer_than(&self, merging: &Merging, a: &Slot<M::Landmark>, b: &Slot<M::Landmark>) -> bool {
         let difference: Tangent<M::Landmark> = a.mean.local(&b.mean);
         let left = merging.separation - difference.norm();

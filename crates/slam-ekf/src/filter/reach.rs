@@ -30,7 +30,7 @@ where
     pub(crate) fn has(&self, landmark: &L, variance: f64) -> bool {
         let distance = self.place.local(landmark).norm();
         let most = MARGIN * self.n_sigmas * (self.deviation + variance.max(0.0).sqrt());
-        !(distance > most) // NaN is within reach
+        distance <= most || (distance - most).is_nan()
     }
 }
 
