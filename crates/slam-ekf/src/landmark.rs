@@ -68,6 +68,23 @@ where
     /// $`R`$ at a measurement, where it grows with distance.
     fn noise(&self, measurement: &Self::Measurement) -> TangentMatrix<Self::Measurement>;
 
+    /// Covariance of a measurement where it only tells landmarks apart. By default [`noise`](Self::noise), which some robots inflate to correct no more
+    /// than their errors, which hang together in time, allow.
+    fn association_noise(&self, measurement: &Self::Measurement) -> TangentMatrix<Self::Measurement> {
+        self.noise(measurement)
+    }
+
+    /// Covariance of what two measurements of one look err together, a share of their association noise. By default nothing.
+    ///
+    /// **Law**: the joint covariance of a look, with this off its diagonal blocks, is positive definite.
+    fn common_noise(
+        &self,
+        _a: &Self::Measurement,
+        _b: &Self::Measurement,
+    ) -> TangentMatrix<Self::Measurement> {
+        TangentMatrix::<Self::Measurement>::zeros()
+    }
+
     /// Whether the measurement can be used at all. By default: whether it is finite.
     fn is_usable(&self, measurement: &Self::Measurement) -> bool {
         measurement.local(measurement).iter().all(|entry| entry.is_finite())

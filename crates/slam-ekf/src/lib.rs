@@ -9,6 +9,7 @@
 //! gate         is it compatible with it             O(k)      [Outcome::Gated]
 //! correct      all accepted sightings together      O(k n²)   sparse H, lower triangle, never indefinite
 //! augment      certainly new ones enter the map     O(n)      tentative until confirmed
+//! merge        duplicates                           O(n²)     [Merging]
 //! forget       tentative ones not seen again        O(n²)     [Confirmation]
 //! ```
 //!
@@ -41,19 +42,19 @@ pub use association::{
 };
 pub use error::SlamError;
 pub use filter::{
-    Confirmation, EkfSlam, LandmarkEstimate, Linearization, MapForm, OutlierRule, PredictedSighting,
+    Confirmation, EkfSlam, LandmarkEstimate, Linearization, MapForm, Merging, OutlierRule, PredictedSighting,
     SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
     AckermannControl, AckermannMotion, AckermannVehicle, DriftingMotion, DriftingPose, IncrementMotion,
-    MonobotMotion, MonobotSensor, Mounted, OnDrifting, PLANAR_SYMMETRIES, RangeBearing, RangeBearingSensor,
-    RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor,
-    VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
+    LookErrors, MonobotMotion, MonobotSensor, Mounted, OnDrifting, PLANAR_SYMMETRIES, RangeBearing,
+    RangeBearingSensor, RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose,
+    ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 #[cfg(feature = "lines")]
 pub use models::{SeenWall, Wall, WallLine, WallSensor};
-pub use outcome::{Outcome, StepReport};
+pub use outcome::{Merge, Outcome, StepReport};
 pub use snapshot::{SavedLandmark, SavedRetired, Snapshot};
 
 /// The matrix library of every public signature.

@@ -60,6 +60,17 @@ where
 {
     /// One outcome an observation.
     pub outcomes: Vec<Outcome<Z>>,
+    /// Landmarks that were found to be one.
+    pub merges: Vec<Merge>,
+}
+
+/// Two landmarks of the map that were found to be one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Merge {
+    /// The one that stays.
+    pub kept: LandmarkId,
+    /// The one that left the map.
+    pub gone: LandmarkId,
 }
 
 impl<Z: Manifold<Scalar = f64>> StepReport<Z>

@@ -132,6 +132,7 @@ const GOOD: RangeBearingSensor = RangeBearingSensor {
     bearing_sigma: 0.01,
     reach: f64::INFINITY,
     half_field_of_view: PI,
+    look_errors: None,
 };
 
 impl LandmarkModel for Wrong {

@@ -195,7 +195,14 @@ fn bad_parameters_and_landmarks_are_typed_errors() {
         let params = SlamParams { confirmation, ..SlamParams::default() };
         assert!(EkfSlam::new(RangeBearingSensor::default(), params, start).is_err(), "{contradiction}");
     }
-    assert!(NearestNeighbour::new(NearestNeighbourParams { accept: 9.0, certainly_new: 3.0 }).is_err());
+    assert!(
+        NearestNeighbour::new(NearestNeighbourParams {
+            accept: 9.0,
+            certainly_new: 3.0,
+            ..NearestNeighbourParams::default()
+        })
+        .is_err()
+    );
     let mut slam = slam(SlamParams::default());
     let nan = Vector2::new(f64::NAN, 0.0);
     assert_eq!(slam.add_anchor(LandmarkId(1), nan), Err(SlamError::NotFinite { what: "landmark" }));

@@ -1,8 +1,9 @@
 use nalgebra::DefaultAllocator;
 
+use super::Association;
 use crate::{
-    EkfSlam, Innovation, LandmarkDim, LandmarkModel, MeasurementDim, Observation, PredictedSighting,
-    RobotDim, SlamAlloc,
+    EkfSlam, Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation,
+    PredictedSighting, RobotDim, SlamAlloc,
 };
 
 /// A landmark that an observation may be of.
@@ -13,6 +14,7 @@ where
 {
     /// Which of the predicted sightings.
     pub(super) sighting: usize,
+    pub(super) measurement: M::Measurement,
     pub(super) innovation: Innovation<M::Measurement>,
 }
 
@@ -36,9 +38,11 @@ where
         filter: &EkfSlam<M>,
         observations: &[Observation<M::Measurement>],
     ) -> Self {
-        let sightings: Vec<_> = filter.predicted_sightings().collect();
+        let within_reach: Vec<_> =
+            observations.iter().map(|observation| filter.reach(limit, &observation.measurement)).collect();
+        let sightings: Vec<_> = filter.sightings_within(Some(&within_reach)).collect();
         let of_one = |observation: &Observation<M::Measurement>| {
-            let noise = filter.model().noise(&observation.measurement);
+            let noise = filter.model().association_noise(&observation.measurement);
             let mut candidates: Vec<Candidate<M>> = Vec::new();
             for (sighting, predicted) in sightings.iter().enumerate() {
                 if !filter.model().may_be(&predicted.expected, &observation.measurement) {
@@ -46,7 +50,8 @@ where
                 }
                 if let Some(innovation) = predicted.innovation_within(limit, &observation.measurement, &noise)
                 {
-                    candidates.push(Candidate { sighting, innovation });
+                    let measurement = observation.measurement.clone();
+                    candidates.push(Candidate { sighting, measurement, innovation });
                 }
             }
             candidates.sort_by(|a, b| a.innovation.nis.total_cmp(&b.innovation.nis));
@@ -54,5 +59,21 @@ where
         };
         let of_observation = observations.iter().map(of_one).collect();
         Self { sightings, of_observation }
+    }
+
+    /// What every observation is of, given the sighting that it is paired with: what has no pairing and no candidate left is new.
+    pub(super) fn settle(
+        &self,
+        pairings: &[Option<usize>],
+        never_twice: bool,
+        mut new_id: impl FnMut() -> LandmarkId,
+    ) -> Vec<Association> {
+        let is_taken = |sighting: usize| never_twice && pairings.contains(&Some(sighting));
+        let settle_one = |(of_one, pairing): (&Vec<Candidate<M>>, &Option<usize>)| match *pairing {
+            Some(sighting) => Association::Matched(self.sightings[sighting].landmark),
+            None if of_one.iter().all(|candidate| is_taken(candidate.sighting)) => Association::New(new_id()),
+            None => Association::Ambiguous,
+        };
+        self.of_observation.iter().zip(pairings).map(settle_one).collect()
     }
 }

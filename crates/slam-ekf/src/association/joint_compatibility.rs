@@ -31,11 +31,20 @@ pub struct JointCompatibilityParams {
     /// Pairings that one look may try. When they are used up the best set so far counts, and the next look starts afresh; a bound in
     /// pairings, unlike one in milliseconds, gives the same result on every machine.
     pub n_trials: usize,
+    /// Whether the sensor never tells of one landmark twice in a look, as with bar codes: what lies beside a sighting that found its landmark is
+    /// then of another one. Detectors that break a trunk in two must say no.
+    pub never_twice: bool,
 }
 
 impl Default for JointCompatibilityParams {
     fn default() -> Self {
-        Self { probability: 0.999, certainly_new: 40.0, ambiguity_margin: 0.0, n_trials: 2000 }
+        Self {
+            probability: 0.999,
+            certainly_new: 40.0,
+            ambiguity_margin: 0.0,
+            n_trials: 2000,
+            never_twice: false,
+        }
     }
 }
 
@@ -132,19 +141,15 @@ where
         let taken: BTreeSet<usize> = pairings.iter().flatten().copied().collect();
 
         let margin = self.params.ambiguity_margin;
-        let associate_one = |(observation, pairing): (usize, Option<usize>)| match pairing {
-            Some(sighting)
-                if has_rival(&candidates.of_observation[observation], sighting, &taken, margin) =>
-            {
-                Association::Ambiguous
-            }
-            Some(sighting) => Association::Matched(candidates.sightings[sighting].landmark),
-            None if candidates.of_observation[observation].is_empty() => {
-                Association::New(self.ids.next_free(filter))
-            }
-            None => Association::Ambiguous,
+        let is_contested = |(observation, pairing): (usize, &Option<usize>)| {
+            pairing.is_some_and(|sighting| {
+                has_rival(&candidates.of_observation[observation], sighting, &taken, margin)
+            })
         };
-        pairings.into_iter().enumerate().map(associate_one).collect()
+        let contested: Vec<bool> = pairings.iter().enumerate().map(is_contested).collect();
+        let settled = candidates.settle(&pairings, self.params.never_twice, || self.ids.next_free(filter));
+        let judge = |(association, contested)| if contested { Association::Ambiguous } else { association };
+        settled.into_iter().zip(contested).map(judge).collect()
     }
 }
 
@@ -284,7 +289,10 @@ where
         let own = &self.sightings[candidate.sighting];
         let paired = self.chosen.iter().flatten();
         let blocks: Vec<_> = paired
-            .map(|other| self.filter.predicted_cross_covariance(own, &self.sightings[other.sighting]))
+            .map(|other| {
+                let common = self.filter.model().common_noise(&candidate.measurement, &other.measurement);
+                self.filter.predicted_cross_covariance(own, &self.sightings[other.sighting]) + common
+            })
             .collect();
         let size = MeasurementDim::<M>::DIM;
         for row in 0..size {

@@ -5,8 +5,7 @@ use super::{
     candidates::{Candidate, Candidates},
 };
 use crate::{
-    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, RobotDim, SlamAlloc,
-    SlamError,
+    EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, Observation, RobotDim, SlamAlloc, SlamError,
 };
 
 /// Thresholds of [`NearestNeighbour`].
@@ -21,11 +20,14 @@ pub struct NearestNeighbourParams {
     pub accept: f64,
     /// NIS above which it is certainly of none. In between nothing happens with it: it neither corrects nor becomes a landmark.
     pub certainly_new: f64,
+    /// Whether the sensor never tells of one landmark twice in a look, as with bar codes: what lies beside a sighting that found its landmark is
+    /// then of another one. Detectors that break a trunk in two must say no.
+    pub never_twice: bool,
 }
 
 impl Default for NearestNeighbourParams {
     fn default() -> Self {
-        Self { accept: 13.8155, certainly_new: 40.0 }
+        Self { accept: 13.8155, certainly_new: 40.0, never_twice: false }
     }
 }
 
@@ -46,7 +48,7 @@ impl NearestNeighbour {
     /// # Errors
     /// When the thresholds are not positive and ordered.
     pub fn new(params: NearestNeighbourParams) -> Result<Self, SlamError> {
-        let NearestNeighbourParams { accept, certainly_new } = params;
+        let NearestNeighbourParams { accept, certainly_new, .. } = params;
         if !(accept > 0.0 && accept.is_finite()) {
             return Err(SlamError::Parameter { name: "accept", value: accept, range: "positive" });
         }
@@ -82,31 +84,39 @@ where
         observations: &[Observation<M::Measurement>],
     ) -> Vec<Association> {
         let candidates = Candidates::within(self.params.certainly_new, filter, observations);
-        let nearest_one = |of_one: &Vec<_>| {
-            of_one.first().map(|candidate: &Candidate<M>| {
-                (candidates.sightings[candidate.sighting].landmark, candidate.innovation.nis)
-            })
+        let nearest: Vec<Option<(usize, f64)>> = candidates
+            .of_observation
+            .iter()
+            .map(|of_one| nearest_within(self.params.accept, of_one))
+            .collect();
+        let keeps_its_own = |(own, candidate): (usize, &Option<(usize, f64)>)| {
+            let (sighting, nis) = (*candidate)?;
+            let is_taken = nearest
+                .iter()
+                .enumerate()
+                .any(|(other, rival)| is_closer(*rival, other, sighting, (nis, own)));
+            (!is_taken).then_some(sighting)
         };
-        let nearest: Vec<_> = candidates.of_observation.iter().map(nearest_one).collect();
-        let associate_one = |(own, candidate): (usize, &Option<(LandmarkId, f64)>)| match *candidate {
-            Some((id, nis)) if nis <= self.params.accept => {
-                let taken =
-                    nearest.iter().enumerate().any(|(other, rival)| is_closer(*rival, other, id, (nis, own)));
-                if taken { Association::Ambiguous } else { Association::Matched(id) }
-            }
-            Some(_) => Association::Ambiguous,
-            None => Association::New(self.ids.next_free(filter)),
-        };
-        nearest.iter().enumerate().map(associate_one).collect()
+        let pairings: Vec<Option<usize>> = nearest.iter().enumerate().map(keeps_its_own).collect();
+        candidates.settle(&pairings, self.params.never_twice, || self.ids.next_free(filter))
     }
+}
+
+/// The nearest candidate of an observation, when it is near enough, and its NIS.
+fn nearest_within<M: LandmarkModel>(accept: f64, of_one: &[Candidate<M>]) -> Option<(usize, f64)>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    let nearest = of_one.first().filter(|candidate| candidate.innovation.nis <= accept)?;
+    Some((nearest.sighting, nearest.innovation.nis))
 }
 
 /// Whether a rival observation is nearer to the same landmark; the earlier one wins a draw.
 fn is_closer(
-    rival: Option<(LandmarkId, f64)>,
+    rival: Option<(usize, f64)>,
     rival_idx: usize,
-    id: LandmarkId,
+    sighting: usize,
     (nis, own_idx): (f64, usize),
 ) -> bool {
-    rival.is_some_and(|(rival_id, rival_nis)| rival_id == id && (rival_nis, rival_idx) < (nis, own_idx))
+    rival.is_some_and(|(of_rival, rival_nis)| of_rival == sighting && (rival_nis, rival_idx) < (nis, own_idx))
 }

@@ -20,13 +20,16 @@ impl JointCovariance {
         DefaultAllocator: Allocator<R, R>,
     {
         let dimension = R::DIM;
-        let mut storage = DMatrix::zeros(2 * dimension + 8, 2 * dimension + 8);
+        let mut storage = DMatrix::zeros(stride(2 * dimension), 2 * dimension);
         storage.view_mut((0, 0), (dimension, dimension)).copy_from(robot);
         Self { storage, dimension }
     }
 
-    pub(super) fn from_matrix(storage: DMatrix<f64>) -> Self {
-        Self { dimension: storage.nrows(), storage }
+    pub(super) fn from_matrix(matrix: DMatrix<f64>) -> Self {
+        let dimension = matrix.nrows();
+        let mut storage = DMatrix::zeros(stride(dimension), dimension);
+        storage.view_mut((0, 0), (dimension, dimension)).copy_from(&matrix);
+        Self { storage, dimension }
     }
 
     pub(crate) fn matrix(&self) -> DMatrixView<'_, f64> {
@@ -144,12 +147,14 @@ impl JointCovariance {
 
     /// Takes a block out: what is left is the marginal of the rest.
     pub(crate) fn remove(&mut self, block: Range<usize>) {
-        let kept = |index: usize| if index < block.start { index } else { index + block.len() };
         let dimension = self.dimension - block.len();
+        let (capacity, n) = (self.storage.nrows(), self.dimension);
+        let entries = self.storage.as_mut_slice();
         for column in 0..dimension {
-            for row in 0..dimension {
-                self.storage[(row, column)] = self.storage[(kept(row), kept(column))]; // sources lie behind: never yet overwritten
-            }
+            let source = capacity * if column < block.start { column } else { column + block.len() };
+            let target = capacity * column;
+            entries.copy_within(source..source + block.start, target); // sources lie behind: never yet overwritten
+            entries.copy_within(source + block.end..source + n, target + block.start);
         }
         self.dimension = dimension;
     }
@@ -169,14 +174,21 @@ impl JointCovariance {
     }
 
     fn reserve(&mut self, dimension: usize) {
-        if dimension > self.storage.nrows() {
-            let capacity = dimension.max(2 * self.storage.nrows());
+        if dimension > self.storage.ncols() {
+            let capacity = dimension.max(2 * self.storage.ncols());
+            let rows = stride(capacity);
             // Zeroed by the system page by page as they are used, and not all in the step that grows.
-            let mut grown = DMatrix::from_vec(capacity, capacity, vec![0.0; capacity * capacity]);
+            let mut grown = DMatrix::from_vec(rows, capacity, vec![0.0; rows * capacity]);
             grown.view_mut((0, 0), (self.dimension, self.dimension)).copy_from(&self.matrix());
             self.storage = grown;
         }
     }
+}
+
+/// Rows to store for a matrix of this size: an odd number of cache lines, so that the entries of a row do not all compete for the same
+/// few places of a cache.
+fn stride(dimension: usize) -> usize {
+    dimension.next_multiple_of(16) + 8
 }
 
 #[cfg(test)]

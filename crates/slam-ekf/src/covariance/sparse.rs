@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DMatrixView, DVector};
 
-/// Rows of an observation Jacobian: each touches the robot and one landmark.
+/// Rows of a Jacobian, each of which touches two blocks of the state: the robot and one landmark, or two landmarks.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SparseJacobian {
     rows: Vec<Row>,
@@ -11,10 +11,12 @@ pub(crate) struct SparseJacobian {
 
 #[derive(Clone, Debug)]
 struct Row {
-    robot: Range<usize>,
-    offset: usize,
-    landmark: Range<usize>,
+    first: Block,
+    second: Block,
 }
+
+/// Where a block starts in the state, and which coefficients are its own.
+type Block = (usize, Range<usize>);
 
 impl SparseJacobian {
     /// Adds one row: what it takes of the robot, and of the landmark block at `offset` (nothing, for an anchor).
@@ -24,9 +26,18 @@ impl SparseJacobian {
         offset: usize,
         landmark: impl IntoIterator<Item = f64>,
     ) {
-        let robot = self.push(robot);
-        let landmark = self.push(landmark);
-        self.rows.push(Row { robot, offset, landmark });
+        self.push_blocks((0, robot), (offset, landmark));
+    }
+
+    /// Adds one row: what it takes of two blocks that start at these offsets.
+    pub(crate) fn push_blocks(
+        &mut self,
+        first: (usize, impl IntoIterator<Item = f64>),
+        second: (usize, impl IntoIterator<Item = f64>),
+    ) {
+        let first = (first.0, self.push(first.1));
+        let second = (second.0, self.push(second.1));
+        self.rows.push(Row { first, second });
     }
 
     fn push(&mut self, coefficients: impl IntoIterator<Item = f64>) -> Range<usize> {
@@ -39,17 +50,19 @@ impl SparseJacobian {
         self.rows.len()
     }
 
-    /// The landmark blocks that it touches, one a row.
+    /// The landmark blocks that it touches, those of one row after those of another.
     pub(super) fn landmarks(&self) -> impl Iterator<Item = Range<usize>> + '_ {
-        let touching = self.rows.iter().filter(|row| !row.landmark.is_empty());
-        touching.map(|row| row.offset..row.offset + row.landmark.len())
+        let blocks = self.rows.iter().flat_map(|row| [&row.first, &row.second]);
+        let touched = blocks.filter(|(offset, coefficients)| *offset > 0 && !coefficients.is_empty());
+        touched.map(|(offset, coefficients)| *offset..offset + coefficients.len())
     }
 
-    /// The same rows for states in another order: `place` says where a landmark block starts there.
+    /// The same rows for states in another order: `place` says where a block starts there.
     pub(super) fn relocated(&self, place: impl Fn(usize) -> usize) -> Self {
         let mut relocated = self.clone();
         for row in &mut relocated.rows {
-            row.offset = place(row.offset);
+            row.first.0 = place(row.first.0);
+            row.second.0 = place(row.second.0);
         }
         relocated
     }
@@ -81,7 +94,7 @@ impl SparseJacobian {
     }
 
     fn entries<'a>(&'a self, row: &'a Row) -> impl Iterator<Item = (usize, f64)> + 'a {
-        let of = |range: &Range<usize>| self.coefficients[range.clone()].iter().copied();
-        (0..).zip(of(&row.robot)).chain((row.offset..).zip(of(&row.landmark)))
+        let of = |(offset, range): &Block| (*offset..).zip(self.coefficients[range.clone()].iter().copied());
+        of(&row.first).chain(of(&row.second))
     }
 }

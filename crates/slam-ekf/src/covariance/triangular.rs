@@ -8,6 +8,8 @@ use nalgebra::{DMatrix, DMatrixViewMut};
 const PANEL: usize = 64;
 /// Columns solved one by one between two matrix products.
 const SOLVE_PANEL: usize = 24;
+/// Side of the tiles that are mirrored: two of them, 2 kB each, stay in the nearest cache.
+const MIRROR_TILE: usize = 16;
 
 /// `P ← P − W Wᵀ` on the lower triangle.
 pub(super) fn subtract_square_from_lower(p: &mut DMatrixViewMut<'_, f64>, w: &DMatrix<f64>) {
@@ -24,15 +26,18 @@ pub(super) fn subtract_square_from_lower(p: &mut DMatrixViewMut<'_, f64>, w: &DM
     }
 }
 
-/// Copies the lower triangle onto the upper one.
+/// Copies the lower triangle onto the upper one, tile by tile: of a row of the upper triangle every entry lies in another cache line.
 pub(super) fn mirror_lower(p: &mut DMatrixViewMut<'_, f64>) {
     let n = p.nrows();
-    for rows in panels(n, PANEL) {
-        for columns in panels(rows.end, PANEL) {
-            for column in columns {
-                for row in rows.start.max(column + 1)..rows.end {
-                    p[(column, row)] = p[(row, column)];
-                }
+    for columns in panels(n, MIRROR_TILE) {
+        for rows in panels(n, MIRROR_TILE).skip(columns.start / MIRROR_TILE + 1) {
+            let (mut source, mut target) = p.columns_range_pair_mut(columns.clone(), rows.clone());
+            let source = source.rows_mut(rows.start, rows.len());
+            target.rows_mut(columns.start, columns.len()).tr_copy_from(&source);
+        }
+        for column in columns.clone() {
+            for row in column + 1..columns.end {
+                p[(column, row)] = p[(row, column)];
             }
         }
     }

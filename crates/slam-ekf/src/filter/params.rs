@@ -1,4 +1,4 @@
-use super::{Confirmation, Linearization};
+use super::{Confirmation, Linearization, Merging};
 use crate::SlamError;
 
 /// Parameters of the filter, the same for every kind of landmark.
@@ -29,6 +29,9 @@ pub struct SlamParams {
     pub retire_after: Option<usize>,
     /// What a landmark must show before it counts.
     pub confirmation: Confirmation,
+    /// When two landmarks of the map are taken for one; never, when not given.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub merging: Option<Merging>,
 }
 
 /// What happens to observations that fit badly.
@@ -103,6 +106,7 @@ impl Default for SlamParams {
             linearization: Linearization::default(),
             retire_after: None,
             confirmation: Confirmation::default(),
+            merging: None,
         }
     }
 }
@@ -127,6 +131,7 @@ impl SlamParams {
                 range: "from 0 to 1",
             });
         }
+        self.merging.map(Merging::validated).transpose()?;
         Ok(self)
     }
 

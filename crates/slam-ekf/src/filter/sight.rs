@@ -1,7 +1,7 @@
 use nalgebra::{DefaultAllocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
-use super::{EkfSlam, Linearization, retire::Retired, state::Slot};
+use super::{EkfSlam, Linearization, reach::Reach, retire::Retired, state::Slot};
 use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
 /// How a landmark of the map should look from here: what associations compare measurements with.
@@ -101,11 +101,26 @@ where
 
     /// How everything in the map should look from here, anchors first.
     pub fn predicted_sightings(&self) -> impl Iterator<Item = PredictedSighting<M>> {
-        let anchors = self.anchors.iter().filter_map(|(id, mean)| self.predict_sighting(*id, mean, None));
-        let landmarks = self.landmarks.iter();
-        let retired = self.retired.iter().filter_map(|(id, retired)| self.predict_retired(*id, retired));
+        self.sightings_within(None)
+    }
+
+    /// How the landmarks within any of the reaches should look from here, anchors first; all of them without reaches.
+    pub(crate) fn sightings_within<'a>(
+        &'a self,
+        reaches: Option<&'a [Reach<M::Landmark>]>,
+    ) -> impl Iterator<Item = PredictedSighting<M>> + 'a {
+        let is_near = move |mean: &M::Landmark, variance: f64| {
+            reaches.is_none_or(|reaches| reaches.iter().any(|reach| reach.has(mean, variance)))
+        };
+        let anchors = self.anchors.iter().filter(move |(_, mean)| is_near(mean, 0.0));
+        let retired = self.retired.iter().filter(move |(_, old)| is_near(&old.mean, old.covariance.trace()));
+        let in_state = self.landmarks.iter();
         let in_state =
-            landmarks.filter_map(|(id, slot)| self.predict_sighting(*id, &self.mean(slot), Some(slot)));
+            in_state.filter(move |(_, slot)| is_near(&self.mean(slot), self.landmark_variance(slot)));
+        let anchors = anchors.filter_map(|(id, mean)| self.predict_sighting(*id, mean, None));
+        let retired = retired.filter_map(|(id, old)| self.predict_retired(*id, old));
+        let in_state =
+            in_state.filter_map(|(id, slot)| self.predict_sighting(*id, &self.mean(slot), Some(slot)));
         anchors.chain(retired).chain(in_state)
     }
 

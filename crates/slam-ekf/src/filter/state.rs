@@ -187,6 +187,13 @@ where
         slot.or_else(|| self.anchors.get(&id).map(|mean| (mean.clone(), None)))
     }
 
+    /// Trace of a landmark's covariance, for which its block need not be gathered.
+    pub(super) fn landmark_variance(&self, slot: &Slot<M::Landmark>) -> f64 {
+        (slot.offset..slot.offset + LandmarkDim::<M>::DIM)
+            .map(|state| self.covariance.entry(state, state))
+            .sum()
+    }
+
     pub(super) fn landmark_covariance(&self, slot: &Slot<M::Landmark>) -> TangentMatrix<M::Landmark> {
         self.covariance.landmark_blocks::<LandmarkDim<M>, RobotDim<M>>(slot.offset).1
     }

@@ -59,10 +59,11 @@ where
         for batch in associated.chunks(self.params.order.batch_size(associated.len())) {
             self.update_batch(observations, batch, &mut taken, &mut outcomes);
         }
+        let merges = self.merge_duplicates();
         self.forget_missed();
         self.retire_revised();
         self.covariance.end_look();
-        Ok(StepReport { outcomes })
+        Ok(StepReport { outcomes, merges })
     }
 
     /// Observations that are linearized at the same state: weigh each, correct with all, start new landmarks.

@@ -3,6 +3,7 @@
 mod ackermann;
 mod drifting;
 mod increment;
+mod look_errors;
 mod monobot;
 mod mounted;
 mod planar;
@@ -16,6 +17,7 @@ mod wall;
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
 pub use drifting::{DriftingMotion, DriftingPose, OnDrifting};
 pub use increment::IncrementMotion;
+pub use look_errors::LookErrors;
 pub use monobot::{MonobotMotion, MonobotSensor};
 pub use mounted::Mounted;
 pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};

@@ -55,6 +55,14 @@ where
         self.sensor.noise(measurement)
     }
 
+    fn association_noise(&self, measurement: &S::Measurement) -> TangentMatrix<S::Measurement> {
+        self.sensor.association_noise(measurement)
+    }
+
+    fn common_noise(&self, a: &S::Measurement, b: &S::Measurement) -> TangentMatrix<S::Measurement> {
+        self.sensor.common_noise(a, b)
+    }
+
     fn is_usable(&self, measurement: &S::Measurement) -> bool {
         self.sensor.is_usable(measurement)
     }

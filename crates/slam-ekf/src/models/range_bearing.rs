@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use nalgebra::{Const, DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Angle, Manifold, Pose2, wrap_angle};
 
-use super::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
+use super::{LookErrors, PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 use crate::{LandmarkModel, NewLandmark};
 
 /// Distance and direction of a point, seen from the robot.
@@ -72,6 +72,9 @@ pub struct RangeBearingSensor {
     pub reach: f64,
     /// The same for the bearing to either side, rad.
     pub half_field_of_view: f64,
+    /// What tells landmarks apart, where that is less than the noise that corrects; when not given, the noise that corrects.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub look_errors: Option<LookErrors>,
 }
 
 impl Default for RangeBearingSensor {
@@ -83,6 +86,7 @@ impl Default for RangeBearingSensor {
             bearing_sigma: 0.01,
             reach: f64::INFINITY,
             half_field_of_view: PI,
+            look_errors: None,
         }
     }
 }
@@ -114,6 +118,14 @@ impl LandmarkModel for RangeBearingSensor {
     fn noise(&self, measurement: &RangeBearing) -> Matrix2<f64> {
         let range_sigma = self.range_sigma + self.range_sigma_per_meter * measurement.range;
         Matrix2::from_diagonal(&Vector2::new(range_sigma.powi(2), self.bearing_sigma.powi(2)))
+    }
+
+    fn association_noise(&self, measurement: &RangeBearing) -> Matrix2<f64> {
+        self.look_errors.map_or_else(|| self.noise(measurement), |errors| errors.noise(measurement))
+    }
+
+    fn common_noise(&self, a: &RangeBearing, b: &RangeBearing) -> Matrix2<f64> {
+        self.look_errors.map_or_else(Matrix2::zeros, |errors| errors.common_noise(a, b))
     }
 
     /// A range must be positive: a bearing alone does not place a point.

@@ -90,6 +90,14 @@ where
         self.0.noise(measurement)
     }
 
+    fn association_noise(&self, measurement: &RangeBearing) -> Matrix2<f64> {
+        self.0.association_noise(measurement)
+    }
+
+    fn common_noise(&self, a: &RangeBearing, b: &RangeBearing) -> Matrix2<f64> {
+        self.0.common_noise(a, b)
+    }
+
     fn is_usable(&self, measurement: &RangeBearing) -> bool {
         self.0.is_usable(measurement)
     }

@@ -78,10 +78,15 @@ fn position_metrics(run: &SlamRun) -> Vec<Metric> {
     metrics
 }
 
-/// Mean and largest computing time of a step.
+/// Mean, median and largest computing time of a step.
 pub(crate) fn timings(keyframes: &[Keyframe]) -> Vec<Metric> {
-    let steps = keyframes.iter().map(|keyframe| keyframe.step.as_secs_f64() * 1e6);
-    let (sum, max) = steps.fold((0.0, 0.0), |(sum, max): (f64, f64), step| (sum + step, max.max(step)));
-    let mean = sum / keyframes.len() as f64;
-    vec![Metric::new("step_mean_us", mean, "µs"), Metric::new("step_max_us", max, "µs")]
+    let mut steps: Vec<f64> = keyframes.iter().map(|keyframe| keyframe.step.as_secs_f64() * 1e6).collect();
+    steps.sort_unstable_by(f64::total_cmp);
+    let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+    let of_rank = |rank: usize| steps.get(rank).copied().unwrap_or(f64::NAN);
+    vec![
+        Metric::new("step_mean_us", mean, "µs"),
+        Metric::new("step_median_us", of_rank(steps.len() / 2), "µs"),
+        Metric::new("step_max_us", of_rank(steps.len().saturating_sub(1)), "µs"),
+    ]
 }

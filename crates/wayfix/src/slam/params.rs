@@ -2,8 +2,8 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{Format, LogMeta};
 use wayfix_slam_ekf::{
-    AckermannVehicle, Confirmation, IncrementMotion, JointCompatibilityParams, NearestNeighbourParams,
-    OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
+    AckermannVehicle, Confirmation, IncrementMotion, JointCompatibilityParams, LookErrors, Merging,
+    NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
 use crate::settings::over_defaults;
@@ -40,7 +40,7 @@ pub struct SlamSystemParams {
     pub velocity: VelocityMotion,
     /// Noise of odometry increments.
     pub increment: IncrementMotion,
-    /// Gate and outliers.
+    /// Gate and outliers; its `merging` is for landmarks that were found without identities.
     pub filter: SlamParams,
     /// Thresholds of nearest neighbour.
     pub nearest_neighbour: NearestNeighbourParams,
@@ -173,6 +173,7 @@ impl SlamSystemParams {
                     bearing_sigma: 0.05,
                     reach: 30.0,
                     half_field_of_view: 1.3,
+                    look_errors: None,
                 },
                 velocity: VelocityMotion {
                     linear_sigma: 0.0,
@@ -187,6 +188,7 @@ impl SlamSystemParams {
                     ..NearestNeighbourParams::default()
                 },
                 joint_compatibility: JointCompatibilityParams {
+                    probability: 0.99,
                     certainly_new: 60.0,
                     ..JointCompatibilityParams::default()
                 },
@@ -214,13 +216,33 @@ impl SlamSystemParams {
                     bearing_sigma: 0.035,
                     reach: 5.0,
                     half_field_of_view: 0.45,
+                    // By the differences of sightings in one frame and the next, set 7: 0.004-0.006 rad and 0.02-0.04 m within a frame.
+                    look_errors: Some(LookErrors {
+                        own_range_sigma: 0.03,
+                        own_range_sigma_per_meter: 0.0,
+                        own_bearing_sigma: 0.006,
+                        common_range_sigma_per_meter: 0.03,
+                        common_bearing_sigma: 0.012,
+                    }),
                 },
                 velocity: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
                 filter: SlamParams {
                     // Errors hang together in time and have heavy tails: doubt begins at the average misfit, d² = 2.
                     outliers: OutlierRule::Downweight,
                     gate_probability: 0.632,
+                    // The tubes of a group stand 0.18-0.3 m apart.
+                    merging: Some(Merging { separation: 0.13, n_sigmas: 2.0 }),
                     ..SlamParams::default()
+                },
+                joint_compatibility: JointCompatibilityParams {
+                    certainly_new: 20.0,
+                    never_twice: true,
+                    ..JointCompatibilityParams::default()
+                },
+                unlabelled_confirmation: Confirmation {
+                    n_sightings: 8,
+                    patience: Some(20),
+                    ..Confirmation::default()
                 },
                 ..Self::of(Profile::Generic)
             }

@@ -39,6 +39,9 @@ impl SlamSystemParams {
         let unlabelled_confirmation = &self.unlabelled_confirmation;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
+        let look_errors = sensor.look_errors.unwrap_or_default();
+        let merging = filter.merging.unwrap_or_default();
+        let nearest_own_range_sigma = look_errors.own_range_sigma + look_errors.own_range_sigma_per_meter;
         let nearest_range_sigma = sensor.range_sigma + sensor.range_sigma_per_meter;
         let times_seen = |confirmation: &Confirmation| confirmation.n_sightings as f64;
         for (name, value, (range, words)) in [
@@ -57,6 +60,22 @@ impl SlamSystemParams {
             ("sensor.range_sigma_per_meter", sensor.range_sigma_per_meter, NOT_NEGATIVE),
             ("sensor.range_sigma at one metre", nearest_range_sigma, SENSOR_NOISE),
             ("sensor.bearing_sigma", sensor.bearing_sigma, SENSOR_NOISE),
+            ("sensor.look_errors.own_range_sigma", look_errors.own_range_sigma, NOT_NEGATIVE),
+            (
+                "sensor.look_errors.own_range_sigma_per_meter",
+                look_errors.own_range_sigma_per_meter,
+                NOT_NEGATIVE,
+            ),
+            ("sensor.look_errors.own_range_sigma at one metre", nearest_own_range_sigma, SENSOR_NOISE),
+            ("sensor.look_errors.own_bearing_sigma", look_errors.own_bearing_sigma, SENSOR_NOISE),
+            (
+                "sensor.look_errors.common_range_sigma_per_meter",
+                look_errors.common_range_sigma_per_meter,
+                NOT_NEGATIVE,
+            ),
+            ("sensor.look_errors.common_bearing_sigma", look_errors.common_bearing_sigma, NOT_NEGATIVE),
+            ("filter.merging.separation", merging.separation, NOT_NEGATIVE),
+            ("filter.merging.n_sigmas", merging.n_sigmas, NOT_NEGATIVE),
             ("sensor.reach", sensor.reach, THRESHOLD),
             ("sensor.half_field_of_view", sensor.half_field_of_view, THRESHOLD),
             ("velocity.linear_sigma", velocity.linear_sigma, NOT_NEGATIVE),

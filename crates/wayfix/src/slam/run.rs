@@ -193,7 +193,7 @@ fn association(records: &[Record], asked: Option<AssociationRule>) -> Result<Ass
     let association = match (asked, has_identities(records)) {
         (Some(rule), _) => rule,
         (None, Some(true)) => AssociationRule::Known,
-        (None, Some(false)) => AssociationRule::Nn,
+        (None, Some(false)) => AssociationRule::Jcbb,
         (None, None) => bail!(
             "the log has no range-bearing sightings of landmarks (`wayfix info` shows what a log holds)"
         ),

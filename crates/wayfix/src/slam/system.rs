@@ -92,11 +92,14 @@ impl SlamSystem {
                 Rule::JointCompatibility(JointCompatibility::new(params.joint_compatibility)?)
             }
         };
-        let confirmation = match rule {
-            AssociationRule::Known => params.filter.confirmation,
-            AssociationRule::Nn | AssociationRule::Jcbb => params.unlabelled_confirmation,
+        // Two identities are two landmarks, however near they stand.
+        let (confirmation, merging) = match rule {
+            AssociationRule::Known => (params.filter.confirmation, None),
+            AssociationRule::Nn | AssociationRule::Jcbb => {
+                (params.unlabelled_confirmation, params.filter.merging)
+            }
         };
-        let filter_params = SlamParams { confirmation, ..params.filter };
+        let filter_params = SlamParams { confirmation, merging, ..params.filter };
         let MountingParams { sensor_x, sensor_y, sensor_heading, .. } = params.mounting;
         let mount = Pose2::new(sensor_x, sensor_y, sensor_heading);
         let sensor = ScaledRangeBearingSensor(Mounted { sensor: params.sensor, mount });
@@ -196,6 +199,9 @@ impl SlamSystem {
             recorder.record(&self.filter, &seen_landmarks(&report));
         }
         self.count(&observations, &report);
+        for _ in &report.merges {
+            self.events.count("merged_landmark");
+        }
         self.add_keyframe(stamp, &report);
         Ok(())
     }
