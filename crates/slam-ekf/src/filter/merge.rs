@@ -129,11 +129,8 @@ where
         let difference: Tangent<M::Landmark> = self.mean(a).local(&self.mean(b));
         let left = merging.separation - difference.norm();
         left >= 0.0 && {
-            let size = LandmarkDim::<M>::DIM;
-            let block = |slot: &Slot<M::Landmark>| slot.offset..slot.offset + size;
-            let cross = (0..LandmarkDim::<M>::DIM)
-                .map(|i| self.covariance.entry(a.offset + i, b.offset + i))
-                .sum::<f64>();
+            let between = |i| self.covariance.entry(a.offset + i, b.offset + i);
+            let cross = (0..LandmarkDim::<M>::DIM).map(between).sum::<f64>();
             let variance = self.landmark_variance(a) + self.landmark_variance(b) - 2.0 * cross;
             merging.n_sigmas * variance.max(0.0).sqrt() <= left
         }

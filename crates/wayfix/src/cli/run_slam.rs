@@ -47,7 +47,7 @@ pub(super) struct Arguments {
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
     pub(super) robot: Option<u32>,
-    /// How sightings find their landmarks [default: known where the log has identities, else nn].
+    /// How sightings find their landmarks [default: known where the log has identities, else jcbb].
     #[arg(long, value_name = "RULE")]
     pub(super) association: Option<AssociationRule>,
     /// The kind of robot whose noise and timing are the defaults [default: by the format of the log, else generic].

@@ -34,6 +34,15 @@ impl Job<'_> {
         (name, path)
     }
 
+    /// Where a file of the recordings is.
+    ///
+    /// # Errors
+    /// When there is no folder of recordings.
+    pub fn recording(&self, file: &Path) -> Result<PathBuf> {
+        let data = self.options.data.as_ref().context("recordings need `--data`")?;
+        Ok(data.join(file))
+    }
+
     /// A file beside the plan, as text.
     ///
     /// # Errors

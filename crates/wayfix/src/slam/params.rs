@@ -22,7 +22,7 @@ use crate::settings::over_defaults;
 pub struct SlamSystemParams {
     /// The robot whose defaults these are.
     pub profile: Profile,
-    /// How sightings find their landmarks; when not given, by identity where the log has identities, else nearest neighbour.
+    /// How sightings find their landmarks; when not given, by identity where the log has identities, else joint compatibility.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub association: Option<AssociationRule>,
     /// Start pose, m and rad; when not given, the truth where odometry starts, a fit to the first true positions, or the origin.

@@ -2,12 +2,13 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use serde::Deserialize;
-use wayfix_sensor_log::OpenOptions;
+use wayfix_sensor_log::{OpenOptions, read_relations};
 
 use super::super::Job;
 use crate::{
     report::Run,
     slam::{self, AssociationRule, EstimateLog, Profile, SlamSystemParams},
+    walls::{self, WallSlamParams},
 };
 
 /// What the plan says of a run.
@@ -22,11 +23,19 @@ struct Settings {
     profile: Option<Profile>,
     /// A file of parameters, relative to the folder of the plan.
     params: Option<PathBuf>,
+    /// Whether the landmarks are walls in laser scans.
+    #[serde(default)]
+    walls: bool,
+    /// Relations between poses that are known from elsewhere, relative to the folder of recordings.
+    relations: Option<PathBuf>,
 }
 
 /// A log through EKF-SLAM.
 pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     let settings: Settings = job.planned.settings()?;
+    if settings.walls {
+        return with_walls(job, &settings);
+    }
     let options = OpenOptions { robot: settings.robot, ..OpenOptions::default() };
     let log = wayfix_sensor_log::open(job.log()?, &options)?;
     let profile = settings.profile.unwrap_or(Profile::of_log(log.meta()));
@@ -48,4 +57,21 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     estimates.finish()?;
     slam.events().add("log_problem", read.n_problems());
     Ok(Run { log: Some(name), figures: slam::pictures(&slam)?, ..slam::summarize(&mut slam) })
+}
+
+/// A log of laser scans through EKF-SLAM with walls.
+fn with_walls(job: &Job<'_>, settings: &Settings) -> Result<Run> {
+    let params = match &settings.params {
+        Some(file) => WallSlamParams::from_toml(&job.read(file)?)?,
+        None => WallSlamParams::default(),
+    };
+    let (records, read) = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all();
+    let mut slam = walls::run(&records, &params, |_| ())?;
+    slam.events().add("log_problem", read.n_problems());
+    let mut run = Run { figures: walls::pictures(&slam)?, ..walls::summarize(&mut slam) };
+    if let Some(relations) = &settings.relations {
+        let (relations, _) = read_relations(job.recording(relations)?)?;
+        run.metrics.extend(walls::relation_metrics(&slam, &relations));
+    }
+    Ok(run)
 }
