@@ -201,7 +201,7 @@ fn parameters_that_make_no_sense_are_refused_by_name() {
         ("[sensor]\nrange_sgima = 1", "range_sgima"),
         ("colour = 1", "colour"),
         ("[sensor]\nrange_sigma = 'small'", "sensor.range_sigma"),
-        ("association = 'jcbb'", "association"),
+        ("association = 'icp'", "association"),
         ("[sensor", "line 1"),
     ] {
         let file = scratch.file("params.toml", text);
@@ -218,8 +218,8 @@ fn a_wrong_command_line_ends_with_2_and_lists_what_is_right() {
     let scratch = Scratch::new();
     let log = scratch.file("walk.txt", walk(5));
     for (arguments, what_is_right) in [
-        (["--association", "jcbb"], "[possible values: known, nn]"),
-        (["--profile", "submarine"], "[possible values: generic, range-bearing, utias]"),
+        (["--association", "icp"], "[possible values: known, nn, jcbb]"),
+        (["--profile", "submarine"], "[possible values: generic, range-bearing, victoria-park, utias]"),
         (["--format", "rosbag"], "the formats are utias, range-bearing, tum, mcap"),
         (["--robot", "two"], "--robot <N>"),
     ] {

@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 
 use common::{Scratch, run_slam, utias_walk, walk, walk_without_truth, wayfix};
 
-const ALWAYS: [&str; 4] = ["n_landmarks", "n_rejected", "step_mean_us", "step_max_us"];
+const ALWAYS: [&str; 5] = ["n_landmarks", "n_rejected", "step_mean_us", "step_median_us", "step_max_us"];
 const WITH_TRUTH: [&str; 6] = [
     "ate_rmse_m",
     "ate_aligned_rmse_m",

@@ -44,8 +44,9 @@ fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
         metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
     }
     metrics.extend(position_metrics(run));
+    let of_path = align(samples.iter().map(|sample| (sample.estimate.translation, sample.truth.translation)));
     if let Some((rmse, aligned)) =
-        landmark_errors(&run.landmarks(), &run.true_landmarks, run.correspondence())
+        landmark_errors(&run.landmarks(), &run.true_landmarks, run.correspondence(), &of_path)
     {
         metrics.push(Metric::new("landmark_rmse_m", rmse, "m"));
         metrics.push(Metric::new("landmark_aligned_rmse_m", aligned, "m"));
