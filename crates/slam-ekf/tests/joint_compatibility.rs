@@ -235,3 +235,23 @@ fn thresholds_without_meaning_are_refused() {
         );
     }
 }
+
+#[test]
+fn a_pairing_with_a_rival_is_ambiguous_unless_the_rival_is_taken() {
+    // Two landmarks of 0.1 m deviation, 0.4 m apart across the line of sight; what is seen is half a deviation nearer to the first.
+    let landmarks = [Vector2::new(5.0, 0.2), Vector2::new(5.0, -0.2)];
+    let slam = map(&landmarks, 0.1, [1e-3; 3]);
+    let between = unlabelled(RangeBearing::new(5.0, 0.005));
+    let second = unlabelled(RangeBearing::new(5.0, -0.04));
+    let with_margin = |ambiguity_margin: f64, looks: &[Observation<RangeBearing>]| {
+        let params = JointCompatibilityParams { ambiguity_margin, ..JointCompatibilityParams::default() };
+        JointCompatibility::new(params).unwrap().associate(&slam, looks)
+    };
+    assert_eq!(with_margin(0.0, &[between]), [Association::Matched(LandmarkId(0))]);
+    assert_eq!(with_margin(9.0, &[between]), [Association::Ambiguous]);
+    assert_eq!(with_margin(9.0, &[between, second]), [0, 1].map(|id| Association::Matched(LandmarkId(id))));
+    assert!(
+        JointCompatibility::new(JointCompatibilityParams { ambiguity_margin: -1.0, ..Default::default() })
+            .is_err()
+    );
+}

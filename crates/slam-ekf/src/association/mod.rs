@@ -3,6 +3,7 @@
 mod candidates;
 mod joint_compatibility;
 mod joint_innovation;
+mod joint_search;
 mod known_ids;
 mod nearest_neighbour;
 mod new_ids;

@@ -2,6 +2,7 @@
 
 mod commands;
 mod estimates;
+mod event_name;
 mod figures;
 mod in_sequence;
 mod params;
@@ -12,6 +13,7 @@ mod saved;
 mod system;
 
 pub use estimates::EstimateLog;
+pub(crate) use event_name::event_name;
 pub use figures::summarize;
 pub(crate) use figures::timings;
 pub use params::{AssociationRule, MountingParams, Profile, RobotParams, SlamSystemParams};

@@ -10,8 +10,8 @@ use wayfix_slam_ekf::{
 };
 
 use super::{
-    AssociationRule, MountingParams, SlamSystemParams, commands::Commands, in_sequence::InSequence,
-    saved::Odometry,
+    AssociationRule, MountingParams, SlamSystemParams, commands::Commands, event_name,
+    in_sequence::InSequence, saved::Odometry,
 };
 use crate::system::{Events, Stopwatch, System};
 
@@ -311,21 +311,6 @@ fn seen_landmarks(report: &StepReport<RangeBearing>) -> Vec<LandmarkId> {
 
 pub(super) fn is_possible(velocity: Velocity) -> bool {
     velocity.linear.abs() <= FASTEST && velocity.angular.abs() <= FASTEST
-}
-
-fn event_name(outcome: &Outcome<RangeBearing>) -> &'static str {
-    match outcome {
-        Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
-        Outcome::Accepted { .. } => "accepted",
-        Outcome::Gated { .. } => "gated",
-        Outcome::Initialized { .. } => "new_landmark",
-        Outcome::Restarted { .. } => "restarted_landmark",
-        Outcome::Ambiguous => "ambiguous",
-        Outcome::Unlabelled => "unlabelled",
-        Outcome::Duplicate { .. } => "duplicate",
-        Outcome::Unusable => "unusable",
-        _ => "other",
-    }
 }
 
 impl System for SlamSystem {

@@ -6,12 +6,12 @@ use wayfix_line_extract::{Extractor, Scan};
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
 use wayfix_slam_ekf::{
     DriftingMotion, DriftingPose, EkfSlam, JointCompatibility, LandmarkId, Mounted, NearestNeighbour,
-    Observation, OnDrifting, Outcome, SeenWall, SlamError, StepReport, Wall, WallSensor,
+    Observation, OnDrifting, SeenWall, SlamError, StepReport, Wall, WallSensor,
 };
 
 use super::WallSlamParams;
 use crate::{
-    slam::{AssociationRule, Keyframe},
+    slam::{AssociationRule, Keyframe, event_name},
     system::{Events, Stopwatch, System},
 };
 
@@ -130,17 +130,7 @@ impl WallSystem {
 
     fn count(&mut self, report: &StepReport<SeenWall>) {
         for outcome in &report.outcomes {
-            self.events.count(match outcome {
-                Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
-                Outcome::Accepted { .. } => "accepted",
-                Outcome::Gated { .. } => "gated",
-                Outcome::Initialized { .. } => "new_landmark",
-                Outcome::Restarted { .. } => "restarted_landmark",
-                Outcome::Ambiguous => "ambiguous",
-                Outcome::Duplicate { .. } => "duplicate",
-                Outcome::Unusable => "unusable",
-                _ => "other",
-            });
+            self.events.count(event_name(outcome));
         }
     }
 }
