@@ -68,6 +68,9 @@ fn what_makes_no_sense_is_refused_by_name() {
         ("[sensor]\nrho_sigma = -1.0", "rho_sigma"),
         ("[lines]\nmin_points = 1", "min_points"),
         ("[sensor]\nrho = 1.0", "rho"),
+        ("[sensor]\nreach = nan", "reach"),
+        ("association = 'known'", "association"),
+        ("[increment]\nheading_variance_per_meter = -1.0", "heading_variance_per_meter"),
         ("laser = [0.0, inf, 0.0]", "laser"),
     ] {
         let path = folder.path().join("params.toml");

@@ -1,3 +1,4 @@
+use anyhow::ensure;
 use serde::{Deserialize, Serialize};
 use wayfix_line_extract::Params as LineParams;
 use wayfix_slam_ekf::{
@@ -78,6 +79,11 @@ impl Default for WallSlamParams {
     }
 }
 
+/// Smallest value, and the range in words.
+type Range = (f64, &'static str);
+const POSITIVE: Range = (1e-9, "from 1e-9 to 1e6");
+const NOT_NEGATIVE: Range = (0.0, "from 0 to 1e6");
+
 impl WallSlamParams {
     /// Parameters from TOML text; what it does not name keeps its default.
     ///
@@ -95,15 +101,36 @@ impl WallSlamParams {
         self.lines.check()?;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
-        let WallSensor { rho_sigma, alpha_sigma, .. } = self.sensor;
-        for (name, value) in [
-            ("sensor.rho_sigma", rho_sigma),
-            ("sensor.alpha_sigma", alpha_sigma),
-            ("min_wall_length", self.min_wall_length),
-            ("heading_drift_sigma", self.heading_drift_sigma),
+        ensure!(
+            self.association != AssociationRule::Known,
+            "parameter association is known, but walls have no identities: use nn or jcbb"
+        );
+        let WallSensor { rho_sigma, alpha_sigma, largest_gap, reach, half_field_of_view } = self.sensor;
+        let increment = &self.increment;
+        for (name, value, (low, range)) in [
+            ("sensor.rho_sigma", rho_sigma, POSITIVE),
+            ("sensor.alpha_sigma", alpha_sigma, POSITIVE),
+            ("sensor.largest_gap", largest_gap, NOT_NEGATIVE),
+            ("sensor.reach", reach, POSITIVE),
+            ("sensor.half_field_of_view", half_field_of_view, POSITIVE),
+            ("min_wall_length", self.min_wall_length, NOT_NEGATIVE),
+            ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
+            (
+                "increment.translation_variance_per_meter",
+                increment.translation_variance_per_meter,
+                NOT_NEGATIVE,
+            ),
+            ("increment.heading_variance_per_meter", increment.heading_variance_per_meter, NOT_NEGATIVE),
+            ("increment.heading_variance_per_radian", increment.heading_variance_per_radian, NOT_NEGATIVE),
+            (
+                "increment.translation_variance_per_step",
+                increment.translation_variance_per_step,
+                NOT_NEGATIVE,
+            ),
+            ("increment.heading_variance_per_step", increment.heading_variance_per_step, NOT_NEGATIVE),
         ] {
-            if !(1e-9..=1e6).contains(&value) {
-                return Err(SlamError::Parameter { name, value, range: "from 1e-9 to 1e6" }.into());
+            if !(low..=1e6).contains(&value) {
+                return Err(SlamError::Parameter { name, value, range }.into());
             }
         }
         if let Some(value) = self.laser.iter().chain(self.start.iter().flatten()).find(|v| !v.is_finite()) {
