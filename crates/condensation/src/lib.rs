@@ -17,6 +17,7 @@ mod features;
 mod learning;
 mod navigation;
 mod normalization;
+mod tracking;
 
 pub use discrete::{
     Axis, BestState, DenseTransition, DiffusionKernel, DiscreteFilter, Evidence, Follow, Graph, Grid,
@@ -35,3 +36,4 @@ pub use navigation::{
     ActionChoice, Arrival, Localizer, LocalizerParams, Navigator, NavigatorParams, Routes, RunReport, World,
 };
 pub use normalization::{Light, affine_match, histogram_match, light_match};
+pub use tracking::{BoundingBox, Target, TrackStatus, Tracker};

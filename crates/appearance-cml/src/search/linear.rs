@@ -1,0 +1,59 @@
+use std::collections::BTreeMap;
+
+use super::{Descriptor, Match, ReferenceId, ReferenceSearch};
+use crate::AppearanceError;
+
+/// Compares with every reference: the plain search that faster ones must agree with.
+#[derive(Clone, Debug)]
+pub struct LinearSearch<D> {
+    references: BTreeMap<ReferenceId, D>,
+}
+
+impl<D> Default for LinearSearch<D> {
+    fn default() -> Self {
+        Self { references: BTreeMap::new() }
+    }
+}
+
+impl<D: Descriptor> LinearSearch<D> {
+    fn sorted(&self, view: &D, max_distance: f64) -> Vec<Match> {
+        let compare =
+            |(id, reference): (&ReferenceId, &D)| Match { id: *id, comparison: view.compare(reference) };
+        let mut found: Vec<Match> = self.references.iter().map(compare).collect();
+        found.retain(|found| found.comparison.distance < max_distance);
+        found.sort_by(|a, b| a.comparison.distance.total_cmp(&b.comparison.distance).then(a.id.cmp(&b.id)));
+        found
+    }
+}
+
+impl<D: Descriptor> ReferenceSearch<D> for LinearSearch<D> {
+    fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError> {
+        if self.references.contains_key(&id) {
+            return Err(AppearanceError::TwiceTheSame { id: id.0 });
+        }
+        self.references.insert(id, descriptor);
+        Ok(())
+    }
+
+    fn remove(&mut self, id: ReferenceId) -> Option<D> {
+        self.references.remove(&id)
+    }
+
+    fn get(&self, id: ReferenceId) -> Option<&D> {
+        self.references.get(&id)
+    }
+
+    fn len(&self) -> usize {
+        self.references.len()
+    }
+
+    fn within(&self, view: &D, max_distance: f64) -> Vec<Match> {
+        self.sorted(view, max_distance)
+    }
+
+    fn nearest(&self, view: &D, n: usize) -> Vec<Match> {
+        let mut found = self.sorted(view, f64::INFINITY);
+        found.truncate(n);
+        found
+    }
+}

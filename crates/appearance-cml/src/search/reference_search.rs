@@ -1,0 +1,46 @@
+use super::{Comparison, Descriptor};
+use crate::AppearanceError;
+
+/// Names a reference view for as long as the map lives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ReferenceId(pub u32);
+
+/// A reference view that was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Match {
+    /// Which one.
+    pub id: ReferenceId,
+    /// How it compares with the view that was asked for.
+    pub comparison: Comparison,
+}
+
+/// Holds the descriptors of all reference views and finds those that are near a view.
+///
+/// **Law**: whatever the order of insertions and removals, the answers are those of [`LinearSearch`](super::LinearSearch).
+pub trait ReferenceSearch<D: Descriptor> {
+    /// Takes a reference in.
+    ///
+    /// # Errors
+    /// [`AppearanceError::TwiceTheSame`] when there is one of that number.
+    fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError>;
+
+    /// Takes a reference out, if there is one of that number.
+    fn remove(&mut self, id: ReferenceId) -> Option<D>;
+
+    /// The descriptor of a reference.
+    fn get(&self, id: ReferenceId) -> Option<&D>;
+
+    /// How many references there are.
+    fn len(&self) -> usize;
+
+    /// Whether there are none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// All references nearer than `max_distance`, the nearest first, by number where they are equally near.
+    fn within(&self, view: &D, max_distance: f64) -> Vec<Match>;
+
+    /// The `n` nearest references (all of them where there are fewer), the nearest first, by number where they are equally near.
+    fn nearest(&self, view: &D, n: usize) -> Vec<Match>;
+}
