@@ -13,7 +13,7 @@
 //!   and invents echoes, meets people, and rounds.
 //! * **One stream of randomness per sin** ([`random::Streams`]): switching one on leaves the draws of the others as they were.
 //! * **The same bits on every machine**: transcendental functions come from `libm` ([`plane`], [`space`], [`random`]).
-//! * **Yours plug in**: [`world::World`] and [`sensor::Sensor`] are the two places to extend (`examples/custom_sensor.rs`).
+//! * **Yours plug in**: [`world::World`] and [`sensor::Sensor`] are the two places to extend (`examples/02_custom_sensor.rs`).
 //!
 //! ```
 //! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

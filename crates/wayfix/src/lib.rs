@@ -5,6 +5,7 @@
 
 pub mod cli;
 pub mod color;
+mod commented;
 pub mod consistency;
 pub mod evaluate;
 pub mod fixtures;

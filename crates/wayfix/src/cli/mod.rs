@@ -1,5 +1,6 @@
 //! The command line: one command a file.
 
+mod completions;
 mod convert;
 mod finish;
 mod fixtures;
@@ -7,6 +8,7 @@ mod info;
 mod input;
 mod merge_reports;
 mod output;
+mod params;
 mod progress;
 mod regress;
 mod run_color;
@@ -42,10 +44,12 @@ enum Command {
     /// Run a system on a log.
     #[command(subcommand)]
     Run(Run),
+    Params(params::Arguments),
     Info(info::Arguments),
     Convert(convert::Arguments),
     Regress(regress::Arguments),
     MergeReports(merge_reports::Arguments),
+    Completions(completions::Arguments),
     /// Build or check the stored logs.
     #[command(subcommand)]
     Fixtures(fixtures::Command),
@@ -66,10 +70,12 @@ pub fn main() -> ExitCode {
         Command::Run(Run::Lines(arguments)) => run_lines::main(arguments),
         Command::Run(Run::Color(arguments)) => run_color::main(arguments),
         Command::Run(Run::Views(arguments)) => run_views::main(arguments),
+        Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
         Command::Regress(arguments) => regress::main(arguments),
         Command::MergeReports(arguments) => merge_reports::main(arguments),
+        Command::Completions(arguments) => completions::main(arguments),
         Command::Fixtures(command) => fixtures::main(command),
     };
     match result {

@@ -18,6 +18,7 @@ use super::{
 };
 use crate::{
     color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, StartPose, priors},
+    commented::commented,
     plot::Picture,
     report::Run,
     system::{Stopwatch, System},
@@ -112,7 +113,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         None => ColorSystemParams::default(),
     };
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let map = Arc::new(color::read_map(&arguments.map)?);

@@ -15,6 +15,7 @@ use super::{
     progress,
 };
 use crate::{
+    commented::commented,
     lines::{self, LineLog, LineSystem},
     report::Run,
     system::{Stopwatch, System, drive},
@@ -64,7 +65,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         None => Params::default(),
     };
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut system = LineSystem::new(params)?;

@@ -14,6 +14,7 @@ use super::{
     progress, run_walls,
 };
 use crate::{
+    commented::commented,
     report::Run,
     slam::{
         self, AssociationRule, EstimateLog, Profile, SavedMap, Saver, SlamRun, SlamSystem, SlamSystemParams,
@@ -128,7 +129,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     let params = params(&arguments, &meta)?;
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let origin = meta.first_format();

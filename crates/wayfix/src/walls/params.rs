@@ -1,4 +1,5 @@
 use anyhow::ensure;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_line_extract::Params as LineParams;
 use wayfix_slam_ekf::{
@@ -17,7 +18,7 @@ use crate::{settings::over_defaults, slam::AssociationRule};
 /// assert_eq!(params.lines, WallSlamParams::default().lines); // not named in the text
 /// # Ok::<(), toml::de::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallSlamParams {
     /// How pieces of walls find their walls: `nn` or `jcbb`; walls have no identities.

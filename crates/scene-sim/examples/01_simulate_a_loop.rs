@@ -1,4 +1,4 @@
-//! Simulates a named scenario and prints the first rows of its log: `cargo run --example simulate_a_loop [NAME]`.
+//! Simulates a named scenario and prints the first rows of its log: `cargo run --example 01_simulate_a_loop [NAME]`.
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_scene_sim::{Scenario, SimError};

@@ -1,6 +1,6 @@
 //! A consumer of spans of one's own: the box around every colour in view, without ever making an image.
 //!
-//! `cargo run -p wayfix-color-map --example custom_span_consumer`
+//! `cargo run -p wayfix-color-map --example 02_custom_span_consumer`
 
 use std::{collections::BTreeMap, sync::Arc};
 

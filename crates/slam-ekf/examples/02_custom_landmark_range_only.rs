@@ -1,7 +1,7 @@
 //! A kind of landmark of your own: radio beacons that tell how far away they are, and nothing else.
 //!
 //! A single range leaves a circle, which no Gaussian describes. So the beacons come from a plan of the site, right to within a metre or
-//! so, and the filter corrects the plan while it drives. `cargo run -p wayfix-slam-ekf --example range_only`
+//! so, and the filter corrects the plan while it drives. `cargo run -p wayfix-slam-ekf --example 02_custom_landmark_range_only`
 
 use nalgebra::{Matrix1, Matrix2, Matrix2x3, Vector1, Vector2};
 use rand::{RngExt, SeedableRng};

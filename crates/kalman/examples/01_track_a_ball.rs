@@ -1,6 +1,6 @@
 //! A rolling ball, seen by a camera that sometimes misses it and sometimes sees something else.
 //!
-//! `cargo run -p wayfix-kalman --example track_a_ball`
+//! `cargo run -p wayfix-kalman --example 01_track_a_ball`
 
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};

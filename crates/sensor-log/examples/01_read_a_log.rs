@@ -1,6 +1,6 @@
 //! Says what a log holds, then follows the robot's true path.
 //!
-//! `cargo run -p wayfix-sensor-log --example read_a_log -- PATH [ROBOT]`
+//! `cargo run -p wayfix-sensor-log --example 01_read_a_log -- PATH [ROBOT]`
 
 use std::error::Error;
 

@@ -1,6 +1,6 @@
 //! Converts a log into another format and reads it back.
 //!
-//! `cargo run -p wayfix-sensor-log --example convert_log -- IN OUT FORMAT [ROBOT]`
+//! `cargo run -p wayfix-sensor-log --example 02_convert_a_log -- IN OUT FORMAT [ROBOT]`
 
 use std::error::Error;
 

@@ -1,4 +1,4 @@
-//! Three walls of a room from one synthetic scan: `cargo run -p wayfix-line-extract --example walls_of_a_scan`
+//! Three walls of a room from one synthetic scan: `cargo run -p wayfix-line-extract --example 01_walls_of_a_scan`
 
 use wayfix_line_extract::{LineError, Params, Scan, extract};
 

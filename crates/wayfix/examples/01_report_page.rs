@@ -1,6 +1,6 @@
 //! Writes a report of an invented robot into a folder: what the page looks like, and what the browser check reads.
 //!
-//! `cargo run -p wayfix --example report_page -- target/report-page`
+//! `cargo run -p wayfix --example 01_report_page -- target/report-page`
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

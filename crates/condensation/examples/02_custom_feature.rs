@@ -1,4 +1,4 @@
-//! A feature of your own: how much of the view is edges, across and along. `cargo run --release -p wayfix-condensation --example own_feature`
+//! A feature of your own: how much of the view is edges, across and along. `cargo run --release -p wayfix-condensation --example 02_custom_feature`
 //!
 //! Two methods are enough; learning, the light and the localizer need to know nothing about it.
 

@@ -1,4 +1,4 @@
-//! Drives over the field in good and in bad light, and prints what each frame shows: `cargo run --example photograph_the_field [SEED]`.
+//! Drives over the field in good and in bad light, and prints what each frame shows: `cargo run --example 04_photograph_the_field [SEED]`.
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_scene_sim::SimError;

@@ -1,7 +1,7 @@
 //! A motion model and a sensor of your own, in any form, through the public interface only.
 //!
 //! A bicycle on the plane, steered by speed and steering angle, that sees where two lighthouses stand.
-//! `cargo run -p wayfix-kalman --example custom_motion_model`
+//! `cargo run -p wayfix-kalman --example 02_custom_motion_model`
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorModel};

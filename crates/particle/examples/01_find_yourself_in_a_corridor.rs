@@ -1,6 +1,6 @@
 //! A robot in a corridor: it knows where the doors are, and learns where it is by passing them.
 //!
-//! `cargo run -p wayfix-particle --example find_yourself_in_a_corridor`
+//! `cargo run -p wayfix-particle --example 01_find_yourself_in_a_corridor`
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

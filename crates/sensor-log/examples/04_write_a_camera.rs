@@ -1,6 +1,6 @@
 //! Writes a log in which a camera on a robot pans over stripes; Foxglove and Rerun draw its frames and where it looks.
 //!
-//!     cargo run -p wayfix-sensor-log --example write_a_camera -- OUT.mcap
+//!     cargo run -p wayfix-sensor-log --example 04_write_a_camera -- OUT.mcap
 
 use nalgebra::{UnitQuaternion, Vector3};
 use wayfix_estimation_traits::Pose3;

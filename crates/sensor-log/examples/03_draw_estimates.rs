@@ -1,6 +1,6 @@
 //! Writes a log with everything that viewers draw: path, transform, covariance ellipse, landmark with its number, points.
 //!
-//! `cargo run -p wayfix-sensor-log --example draw_estimates -- OUT.mcap`
+//! `cargo run -p wayfix-sensor-log --example 03_draw_estimates -- OUT.mcap`
 
 use std::error::Error;
 

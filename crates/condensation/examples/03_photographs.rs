@@ -1,6 +1,6 @@
 //! Runs to random goals in photographs, learned in one light and seen in another: successes of 100, for each feature.
 //!
-//! `cargo run --release -p wayfix-condensation --example photographs -- FOLDER [first_seed [dx dy]]`, where the folder holds `china.jpg`, `coffee.png`,
+//! `cargo run --release -p wayfix-condensation --example 03_photographs -- FOLDER [first_seed [dx dy]]`, where the folder holds `china.jpg`, `coffee.png`,
 //! `building.jpg` and the pair `motorcycle_left.png`, `motorcycle_right.png`.
 
 use std::error::Error;

@@ -1,6 +1,6 @@
 //! Two programs say where the robot is. What do they say together?
 //!
-//! `cargo run -p wayfix-gaussian-core --example fuse_two_estimates`
+//! `cargo run -p wayfix-gaussian-core --example 01_fuse_two_estimates`
 
 use nalgebra::Vector3;
 use wayfix_estimation_traits::Pose2;

@@ -1,6 +1,6 @@
 //! A state of your own: a robot arm's wrist that points somewhere, with a gripper that opens. Public API only.
 //!
-//! `cargo run -p wayfix-estimation-traits --example custom_state`
+//! `cargo run -p wayfix-estimation-traits --example 02_custom_state`
 
 use nalgebra::{Const, Matrix3, Unit, UnitQuaternion, Vector3};
 use wayfix_estimation_traits::{Manifold, MotionModel, laws};

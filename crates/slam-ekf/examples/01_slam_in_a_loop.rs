@@ -1,7 +1,7 @@
 //! From nothing to a map in six steps to copy.
 //!
 //! A robot drives two laps among ten posts; its camera reads the posts' numbers. Everything below `main` only plays the robot.
-//! `cargo run -p wayfix-slam-ekf --example slam_in_a_loop`
+//! `cargo run -p wayfix-slam-ekf --example 01_slam_in_a_loop`
 
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};

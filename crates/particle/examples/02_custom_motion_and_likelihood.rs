@@ -1,6 +1,6 @@
 //! Your own motion and your own sensor: a boat that drifts at sea and hears how strong a beacon is.
 //!
-//! Nothing here is Gaussian or has a Jacobian. `cargo run -p wayfix-particle --example custom_motion_and_likelihood`
+//! Nothing here is Gaussian or has a Jacobian. `cargo run -p wayfix-particle --example 02_custom_motion_and_likelihood`
 
 use nalgebra::Vector2;
 use rand::{Rng, RngExt, SeedableRng};

@@ -1,6 +1,6 @@
 //! Prints what a robot's camera sees of one end of a field, a letter a pixel.
 //!
-//! `cargo run -p wayfix-color-map --example what_a_camera_sees`
+//! `cargo run -p wayfix-color-map --example 01_what_a_camera_sees`
 
 use std::sync::Arc;
 
