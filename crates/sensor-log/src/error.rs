@@ -91,6 +91,36 @@ pub enum LogError {
         /// Topics and schemas that are there.
         ignored: Vec<String>,
     },
+    /// A topic was asked for that is not there, or that has nothing which is read.
+    #[error("{}: nothing that is read on the topic {topic:?}; the topics of the file are {}", path.display(), listed(present))]
+    NoSuchTopic {
+        /// The file.
+        path: PathBuf,
+        /// The topic that was asked for.
+        topic: String,
+        /// Topics and schemas that are there.
+        present: Vec<String>,
+    },
+    /// Two topics were asked for that are of one kind: their records could not be told apart.
+    #[error("{}: {first} and {second} are both {what}; choose one of them", path.display())]
+    TwoTopics {
+        /// The file.
+        path: PathBuf,
+        /// The kind.
+        what: &'static str,
+        /// The topic that was asked for first.
+        first: String,
+        /// The other one.
+        second: String,
+    },
+    /// Topics were asked for in a format that has none.
+    #[error("{}: {format} logs have no topics to choose from", path.display())]
+    NoTopics {
+        /// The file or folder.
+        path: PathBuf,
+        /// Its format.
+        format: Format,
+    },
     /// The file goes bad, or breaks off, before the first record.
     #[error("{}: {end} before the first record", path.display())]
     Damaged {
@@ -170,6 +200,10 @@ impl LogError {
             _ => Self::Io { path: path.into(), source },
         }
     }
+}
+
+fn listed(topics: &[String]) -> String {
+    if topics.is_empty() { "none".to_owned() } else { topics.join(", ") }
 }
 
 impl From<mcap::McapError> for LogError {

@@ -1,4 +1,4 @@
-//! MCAP files with Foxglove protobuf messages.
+//! MCAP files: with Foxglove protobuf messages, read and written, and with those of ROS 2, read.
 
 mod camera;
 mod chunk;
@@ -15,6 +15,8 @@ mod record;
 mod reorder;
 mod routes;
 mod scan;
+mod stream;
+mod survey;
 pub mod topics;
 mod vehicle;
 mod writer;
