@@ -4,14 +4,17 @@
     pip install rosbags mcap mcap-protobuf-support numpy
     ros_bags.py write DIR                   DIR/little and DIR/big, a bag each; they differ in the byte order of the messages
     ros_bags.py check BAG CONVERTED.mcap    compares the converted bag with the numbers that were written
+    ros_bags.py golden FILE.mcap            the small bag in crates/sensor-log/tests/data: every third step, compressed
 
-The robot drives a circle in a room of 8 m x 6 m. Its laser hangs head down, turned by 0.5 rad, 0.3 m before the middle.
+The robot drives a part of a circle in a room of 8 m x 6 m; its odometry says that it went 5 % further. The laser hangs head down, turned
+by 0.5 rad, 0.3 m before the middle.
 """
 
 import math
 import pathlib
 import shutil
 import sys
+import tempfile
 
 import numpy as np
 
@@ -22,10 +25,11 @@ RADIUS, SPEED = 1.5, 0.5
 ROOM = (4.0, 3.0)  # half its sides, m
 LASER = (0.3, 0.0, 0.4)
 LASER_YAW = 0.5
-BEAMS, FIRST_BEAM, BEAM_STEP = 181, -math.pi / 2, math.pi / 180
+BEAMS, FIRST_BEAM, BEAM_STEP = 91, -math.pi / 2, math.pi / 90
 RANGE_MIN, RANGE_MAX = 0.1, 12.0
 WIDTH, HEIGHT, PADDING = 16, 12, 4
 CAMERA_HEIGHT = 0.6
+ODOMETRY_SCALE = 1.05
 
 
 def true_pose(step):
@@ -35,8 +39,9 @@ def true_pose(step):
 
 
 def odometry_pose(step):
-    """The same, from another origin, turned by 1 rad."""
+    """The same, too large, from another origin, turned by 1 rad."""
     x, y, heading = true_pose(step)
+    x, y = ODOMETRY_SCALE * x, ODOMETRY_SCALE * y
     sin, cos = math.sin(1.0), math.cos(1.0)
     return 5.0 + cos * x - sin * y, -2.0 + sin * x + cos * y, heading + 1.0
 
@@ -69,8 +74,15 @@ def write(folder):
         write_bag(pathlib.Path(folder) / name, is_little_endian)
 
 
-def write_bag(path, is_little_endian):
-    from rosbags.rosbag2 import StoragePlugin, Writer
+def write_golden(file):
+    with tempfile.TemporaryDirectory() as folder:
+        bag = pathlib.Path(folder) / "golden"
+        write_bag(bag, True, steps=range(0, STEPS, 3), compress=True)
+        shutil.copyfile(bag / "golden.mcap", file)
+
+
+def write_bag(path, is_little_endian, steps=range(STEPS), compress=False):
+    from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_JAZZY)
@@ -177,7 +189,10 @@ def write_bag(path, is_little_endian):
         transform(0, "camera_link", "camera_optical_frame", (0.0, 0.0, 0.0), optical),
     )
 
-    with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+    writer = Writer(path, version=9, storage_plugin=StoragePlugin.MCAP)
+    if compress:
+        writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    with writer:
         connections = {}
 
         def put(topic, kind, step, message):
@@ -188,11 +203,11 @@ def write_bag(path, is_little_endian):
 
         put("/tf_static", "tf2_msgs/msg/TFMessage", 0, still)
         put("/chatter", "std_msgs/msg/String", 0, types["std_msgs/msg/String"](data="not a record"))
-        for step in range(STEPS):
+        for step in steps:
             put("/odom", "nav_msgs/msg/Odometry", step, odometry(step))
             put("/scan", "sensor_msgs/msg/LaserScan", step, scan(step, "laser", ranges(step)))
             put("/mocap/pose", "geometry_msgs/msg/PoseStamped", step, stamped_pose(step))
-            if step % 10 == 0:
+            if step % (10 * steps.step) == 0:
                 put("/camera/camera_info", "sensor_msgs/msg/CameraInfo", step, camera_info(step))
                 put("/camera/image_raw", "sensor_msgs/msg/Image", step, image(step))
                 nothing = np.full(BEAMS, np.inf, np.float32)
@@ -267,6 +282,8 @@ if __name__ == "__main__":
     match sys.argv[1:]:
         case ["write", folder]:
             write(folder)
+        case ["golden", file]:
+            write_golden(file)
         case ["check", bag, converted]:
             check(bag, converted)
         case _:

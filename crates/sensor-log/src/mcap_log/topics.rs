@@ -16,7 +16,7 @@
 //! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
 //! | [`CAMERA_INFO`] | `foxglove.CameraCalibration` | [`CAMERA_OPTICAL_FRAME`] | [`Data::CameraInfo`](crate::Data::CameraInfo) |
 //! | [`CAMERA_MOUNT`] | `foxglove.FrameTransform` | [`CAMERA_FRAME`] in [`BODY_FRAME`] | [`Data::CameraMount`](crate::Data::CameraMount) |
-//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::Image`](crate::Data::Image) |
+//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG, or `foxglove.RawImage` | [`CAMERA_OPTICAL_FRAME`] | [`Data::Image`](crate::Data::Image) |
 //! | [`TRUE_LABELS`] | `foxglove.CompressedImage`, grey PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::TrueLabels`](crate::Data::TrueLabels) |
 //!
 //! With every camera mount, [`CAMERA_OPTICAL`] places the optical frame (z forward, x right, y down) that viewers draw images in.

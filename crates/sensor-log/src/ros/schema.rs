@@ -86,7 +86,8 @@ impl RosSchema {
 
     /// Reads a message of this type.
     ///
-    /// Nothing beyond the definition is looked at: recorders fill up to a multiple of some bytes. Memory stays within the message's own size.
+    /// Nothing beyond the definition is looked at: recorders fill up to a multiple of some bytes. Memory grows with the bytes that are there,
+    /// whatever lengths they claim.
     ///
     /// # Errors
     /// When the bytes are not plain CDR or end too early.

@@ -41,7 +41,8 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
         Some([x, y, heading]) => Pose2::new(x, y, heading),
         None => track.at(scan.stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0)),
     };
-    let mut system = WallSystem::new(params.clone(), start)?;
+    let laser = params.laser.or_else(|| laser_mount(records));
+    let mut system = WallSystem::new(WallSlamParams { laser, ..params.clone() }, start)?;
     let true_walls = truth::true_walls(records);
     for (wall, id) in truth::nearest_to(&start, &true_walls, params.n_anchors).into_iter().zip(FIRST_ANCHOR..)
     {
@@ -60,6 +61,14 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
         run.truth = TrueTrack::default(); // the log's poses are its odometry
     }
     Ok(run)
+}
+
+/// Where the log says that the laser is; a laser that moves on its robot is where it was first.
+fn laser_mount(records: &[Record]) -> Option<[f64; 3]> {
+    records.iter().find_map(|record| match record.data {
+        Data::LaserMount(mount) => Some([mount.x(), mount.y(), mount.heading()]),
+        _ => None,
+    })
 }
 
 /// Identities of anchors, out of the way of those that association gives.

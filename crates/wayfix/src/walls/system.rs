@@ -49,7 +49,7 @@ impl WallSystem {
             }
             _ => Rule::NearestNeighbour(NearestNeighbour::new(params.nearest_neighbour)?),
         };
-        let [x, y, heading] = params.laser;
+        let [x, y, heading] = params.laser.unwrap_or_default();
         let sensor = OnDrifting(Mounted { sensor: params.sensor, mount: Pose2::new(x, y, heading) });
         let state = DriftingPose { pose: start, heading_drift: 0.0 };
         let drift_variance = params.heading_drift_sigma.powi(2);
