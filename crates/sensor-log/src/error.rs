@@ -36,10 +36,18 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A folder that is no log.
-    #[error("{}: is a folder without RobotN_*.dat files, without odometry.csv and trees.csv and without PNG or JPEG images; give a log file, the folder of a UTIAS set or of images, or that of the Victoria Park set", path.display())]
+    #[error("{}: is a folder without RobotN_*.dat files, without odometry.csv and trees.csv and without MCAP, PNG or JPEG files; give a log file, the folder of a UTIAS set, of a bag or of images, or that of the Victoria Park set", path.display())]
     IsADirectory {
         /// The folder.
         path: PathBuf,
+    },
+    /// A folder of several MCAP files, as a recorder leaves it that splits its bags.
+    #[error("{}: holds {} MCAP files; give one of them", path.display(), files.len())]
+    SeveralFiles {
+        /// The folder.
+        path: PathBuf,
+        /// The files, by name.
+        files: Vec<PathBuf>,
     },
     /// The content looks like no known format.
     #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), Format::NAMES)]

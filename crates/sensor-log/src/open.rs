@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose2;
 
 use crate::image_folder::ImageFolder;
 use crate::log::Records;
-use crate::mcap_log::McapRecords;
+use crate::mcap_log::{McapRecords, file_of};
 use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
 use crate::{Data, Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record};
 
@@ -59,7 +59,7 @@ impl PoseKind {
 /// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings (MCAP: the order of the file).
 /// Text logs are read whole and sorted where rows go backwards, which is reported. CARMEN logs are read line by line, in whose order they
 /// stay: where time stands still, stamps are made up, which is reported. Text may be compressed with gzip, whatever the file is called. MCAP files are read chunk by chunk;
-/// what comes more than 256 records too late is left out, which is reported.
+/// what comes more than 256 records too late is left out, which is reported. A folder with one MCAP file in it is that file.
 /// In ROS 2 bags a kind of record comes from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] tells what became of the others.
 /// Folders of images are read file by file, in the order of their names, where numbers count by value (`frame9` before `frame10`);
 /// other files are passed over. A file that cannot be read keeps its frame number, so that later stamps stay right.
@@ -72,6 +72,8 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Some(format) => format,
         None => Format::detect(path)?,
     };
+    let file = if format == Format::Mcap { file_of(path)? } else { path.into() };
+    let path = file.as_path();
     if format != Format::Mcap && !options.topics.is_empty() {
         return Err(LogError::NoTopics { path: path.into(), format });
     }

@@ -215,6 +215,19 @@ fn a_bag_converted_to_foxglove_reads_the_same() {
 }
 
 #[test]
+fn a_folder_is_the_bag_in_it_unless_there_are_several() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::copy(DRIVE, folder.path().join("bag_0.mcap")).unwrap();
+    fs::write(folder.path().join("metadata.yaml"), "rosbag2_bagfile_information:\n").unwrap();
+    let log = open(folder.path(), &OpenOptions::default()).unwrap();
+    assert_eq!(log.meta().source, folder.path().join("bag_0.mcap"));
+    assert_eq!(log.count(), 88);
+    fs::copy(DRIVE, folder.path().join("bag_1.mcap")).unwrap();
+    let error = open(folder.path(), &OpenOptions::default()).unwrap_err();
+    assert!(matches!(&error, LogError::SeveralFiles { files, .. } if files.len() == 2), "{error}");
+}
+
+#[test]
 fn another_laser_is_read_when_it_is_asked_for() {
     let topics = vec!["/scan_rear".to_owned()];
     let log = open(DRIVE, &OpenOptions { topics, ..Default::default() }).unwrap();

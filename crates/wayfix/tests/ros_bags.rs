@@ -7,6 +7,7 @@ mod common;
 use std::{fs, path::PathBuf};
 
 use common::{Outcome, wayfix};
+use wayfix_sensor_log::{Data, Format, OpenOptions, Record, Stamp, Velocity, open, write};
 
 /// A drive in a room of 8 m by 6 m, recorded with the Python package rosbags (xtask/clients/ros_bags.py): the laser hangs head down, turned
 /// by 0.5 rad, and odometry says 5 % too much.
@@ -49,6 +50,27 @@ fn the_walls_of_a_bag_correct_its_odometry_because_the_laser_is_where_its_transf
     fs::write(&params, "laser = [0.0, 0.0, 0.0]\n").unwrap();
     let misplaced = with_bag(&slam, &["--params", params.to_str().unwrap()]);
     assert!(misplaced.metric("ate_rmse_m") > 4.0 * placed.metric("ate_rmse_m"), "{}", misplaced.stdout);
+}
+
+#[test]
+fn a_robot_that_tells_its_velocity_only_maps_the_same_walls() {
+    // What the bag says by increments, this log says by the velocity of the circle: 0.5 m/s, and 0.5 / 1.5 rad/s.
+    let velocity = Data::Velocity(Velocity { linear: 0.5, angular: 0.5 / 1.5 });
+    let is_first = |stamp: &mut Option<Stamp>, now: Stamp| stamp.replace(now) != Some(now);
+    let mut last = None;
+    let records = open(bag(), &OpenOptions::default()).unwrap().flat_map(|record| {
+        let told = Record { stamp: record.stamp, data: velocity.clone() };
+        let told = is_first(&mut last, record.stamp).then_some(told);
+        let kept = (!matches!(record.data, Data::OdometryIncrement(_))).then_some(record);
+        told.into_iter().chain(kept)
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("velocities.mcap");
+    write(&path, Format::Mcap, records).unwrap();
+    let outcome = wayfix(["run", "slam", "--json", "--log", path.to_str().unwrap()]);
+    assert_eq!(outcome.metric("n_landmarks"), 4.0, "{}", outcome.stdout);
+    let info = wayfix(["info", path.to_str().unwrap()]);
+    assert!(info.stdout.contains("usable for `wayfix run slam`, with figures"), "{}", info.stdout);
 }
 
 #[test]

@@ -86,6 +86,7 @@ impl Choice {
     pub(crate) fn uses(&self, topics: &[SurveyedTopic]) -> Vec<Topic> {
         let describe = |(index, topic): (usize, &SurveyedTopic)| {
             let r#use = match Candidate::of((index, topic)) {
+                None if topic.n_messages == 0 => TopicUse::Empty,
                 None => TopicUse::NotUnderstood,
                 Some(Candidate { kind, .. }) if self.route(&topic.name, &topic.schema).is_some() => {
                     TopicUse::Read(kind.name())

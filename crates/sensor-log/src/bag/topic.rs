@@ -24,6 +24,8 @@ pub enum TopicUse {
     NotChosen(&'static str),
     /// Messages of this type, or of this name, are not read.
     NotUnderstood,
+    /// There is no message on it.
+    Empty,
 }
 
 /// A topic as a file announces it.
@@ -55,6 +57,7 @@ impl fmt::Display for Topic {
             TopicUse::Read(what) => f.write_str(what),
             TopicUse::NotChosen(what) => write!(f, "not read; choose it as {what} with --topic {name}"),
             TopicUse::NotUnderstood => f.write_str("not understood"),
+            TopicUse::Empty => f.write_str("nothing to read"),
         }
     }
 }

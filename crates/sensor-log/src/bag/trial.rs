@@ -60,7 +60,9 @@ impl Trial {
         match (self, schema.decode(bytes)) {
             (Self::Image, message) => Some(match message {
                 Ok(RosMessage::Image(image)) => image.pixels().uncompressed().is_ok(),
-                Ok(RosMessage::CompressedImage(image)) => ImageFormat::of_bytes(image.data).is_some(),
+                Ok(RosMessage::CompressedImage(image)) => {
+                    !is_depth(image.format) && ImageFormat::of_bytes(image.data).is_some()
+                }
                 _ => false,
             }),
             (Self::Poses { first }, Ok(RosMessage::Odometry(odometry))) => {
@@ -75,4 +77,9 @@ impl Trial {
             _ => None,
         }
     }
+}
+
+/// Whether the name of a compressed image tells of distances, which are no picture even where they are a PNG file.
+fn is_depth(format: &str) -> bool {
+    format.starts_with("16UC1") || format.starts_with("32FC1")
 }

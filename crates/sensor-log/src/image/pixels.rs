@@ -25,7 +25,8 @@ impl Pixels<'_> {
         let unreadable = |reason: String| (ProblemKind::UnreadableImage, reason);
         let row_bytes = u64::from(width) * channels.n_bytes as u64;
         // The last row need not be padded.
-        let needed = u64::from(step) * u64::from(height.saturating_sub(1)) + row_bytes;
+        let rows_before = u64::from(step) * u64::from(height.saturating_sub(1));
+        let needed = rows_before.saturating_add(row_bytes);
         if u64::from(step) < row_bytes || (data.len() as u64) < needed {
             let reason = format!(
                 "{width} x {height} pixels {encoding} in rows of {step} bytes do not fit into {} bytes",

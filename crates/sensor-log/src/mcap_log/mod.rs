@@ -7,6 +7,7 @@ mod decode;
 mod drawing;
 mod encode;
 mod fields;
+mod folder;
 mod frames;
 mod held;
 mod origin;
@@ -22,5 +23,6 @@ mod vehicle;
 mod writer;
 
 pub use drawing::{Drawing, Shape};
+pub(crate) use folder::{file_of, files_in};
 pub(crate) use reader::McapRecords;
 pub use writer::McapWriter;

@@ -98,6 +98,11 @@ fn read_summary(bytes: &[u8]) -> Option<Vec<SurveyedTopic>> {
         }
     }
     let counts = counts?;
+    // A writer may leave schemas and channels out of the index.
+    let is_known = |channel| announced.channels.contains_key(channel);
+    if !counts.keys().all(is_known) || announced.topics.iter().any(|topic| topic.schema.is_empty()) {
+        return None;
+    }
     for (channel, topic) in &announced.channels {
         announced.topics[*topic].n_messages += counts.get(channel).copied().unwrap_or_default();
     }

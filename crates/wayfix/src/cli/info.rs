@@ -67,8 +67,8 @@ fn usable_for(summary: &LogSummary) -> &'static str {
     let sees_walls = !sees_landmarks && has(&["laser scan"]);
     let moves = has(&["velocity", "odometry increment", "ackermann drive"]);
     match (moves, sees_landmarks || sees_walls, has(&["true pose", "true position"])) {
-        (true, true, _) if sees_walls && !has(&["odometry increment"]) => {
-            "not usable for `wayfix run slam`: maps of walls need odometry increments"
+        (true, true, _) if sees_walls && !has(&["odometry increment", "velocity"]) => {
+            "not usable for `wayfix run slam`: maps of walls need odometry increments or velocities"
         }
         (true, true, true) => "usable for `wayfix run slam`, with figures of accuracy",
         (true, true, false) => {
