@@ -23,7 +23,7 @@ fuzz_target!(|input: &[u8]| {
     let held = match schema.decode(bytes) {
         Ok(RosMessage::LaserScan(scan)) => 4 * (scan.ranges.capacity() + scan.intensities.capacity()),
         Ok(RosMessage::CameraInfo(info)) => 8 * info.d.capacity(),
-        Ok(RosMessage::Transforms(transforms)) => 80 * transforms.len(),
+        Ok(RosMessage::Transforms(transforms)) => 72 * transforms.len(),
         _ => 0,
     };
     assert!(held <= bytes.len(), "{held} bytes held of {}", bytes.len());

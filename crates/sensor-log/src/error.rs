@@ -36,7 +36,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A folder that is no log.
-    #[error("{}: is a folder without RobotN_*.dat files, without odometry.csv and trees.csv and without MCAP, PNG or JPEG files; give a log file, the folder of a UTIAS set, of a bag or of images, or that of the Victoria Park set", path.display())]
+    #[error("{}: is a folder without RobotN_*.dat files, without odometry.csv and trees.csv and without MCAP, PNG or JPEG files; give a log file, the folder of a UTIAS set or of images, of a ROS 2 bag, or that of the Victoria Park set", path.display())]
     IsADirectory {
         /// The folder.
         path: PathBuf,

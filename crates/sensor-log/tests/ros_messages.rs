@@ -124,12 +124,12 @@ fn a_message_cut_anywhere_is_an_error_that_says_where() {
 }
 
 /// What a message holds beside itself cannot be larger than the bytes that it came in, but for the memory that a transform takes more than
-/// its 80 bytes or more.
+/// its 72 bytes or more.
 fn is_within(message: &RosMessage<'_>, n_bytes: usize) -> bool {
     let held = match message {
         RosMessage::LaserScan(scan) => 4 * (scan.ranges.capacity() + scan.intensities.capacity()),
         RosMessage::CameraInfo(info) => 8 * info.d.capacity(),
-        RosMessage::Transforms(transforms) => 80 * transforms.len(),
+        RosMessage::Transforms(transforms) => 72 * transforms.len(),
         _ => 0,
     };
     held <= n_bytes

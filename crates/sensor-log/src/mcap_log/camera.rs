@@ -29,7 +29,8 @@ pub(super) fn check(record: &Record) -> Result<(), LogError> {
 }
 
 fn is_image(image: &EncodedImage) -> bool {
-    let is_whole = || Anymap::of(&image.bytes).is_some_and(|anymap| anymap.is_whole());
+    let is_whole =
+        || Anymap::of(&image.bytes).is_some_and(|anymap| !anymap.pixels.is_empty() && anymap.is_whole());
     ImageFormat::of_bytes(&image.bytes) == Some(image.format)
         && (image.format != ImageFormat::Pnm || is_whole())
 }
@@ -95,7 +96,7 @@ pub(super) fn encode_raw_image(timestamp: Timestamp, image: &EncodedImage) -> Ra
         message.width = width;
         message.height = height;
         message.encoding = if channels == 1 { "mono8" } else { "rgb8" }.to_owned();
-        message.step = width * channels;
+        message.step = width.saturating_mul(channels);
         message.data = Bytes::copy_from_slice(pixels);
     }
     message

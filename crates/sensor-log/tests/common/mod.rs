@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses its share")]
 
+pub(crate) mod bag;
 pub(crate) mod cdr;
 
 use wayfix_estimation_traits::Pose2;
