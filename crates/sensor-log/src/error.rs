@@ -165,8 +165,8 @@ pub enum LogError {
         /// Stamp of the record.
         stamp: Stamp,
     },
-    /// Bytes that are no image of the format that they should have.
-    #[error("{what} at {stamp}: {n_bytes} bytes that do not begin as {} does", format.name())]
+    /// Bytes that are no image of the format that they should have, or true labels that are not compressed.
+    #[error("{what} at {stamp}: {n_bytes} bytes cannot be written as a {} image", format.name())]
     NotAnImage {
         /// Kind of the record.
         what: &'static str,

@@ -29,8 +29,8 @@ pub(super) fn check(record: &Record) -> Result<(), LogError> {
 }
 
 fn is_image(image: &EncodedImage) -> bool {
-    let is_whole =
-        || Anymap::of(&image.bytes).is_some_and(|anymap| !anymap.pixels.is_empty() && anymap.is_whole());
+    let has_pixels = |anymap: Anymap<'_>| anymap.width > 0 && anymap.height > 0 && anymap.is_whole();
+    let is_whole = || Anymap::of(&image.bytes).is_some_and(has_pixels);
     ImageFormat::of_bytes(&image.bytes) == Some(image.format)
         && (image.format != ImageFormat::Pnm || is_whole())
 }

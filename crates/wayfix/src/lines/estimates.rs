@@ -10,6 +10,7 @@ pub struct LineLog {
     n_written: usize,
     /// Walls of the scan before: those that the next has not are drawn over with nothing.
     n_walls: usize,
+    /// What the walls are given in: the laser's frame once the log has placed it, else the robot's.
     frame: &'static str,
     failure: Option<LogError>,
 }
