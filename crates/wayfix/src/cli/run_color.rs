@@ -12,7 +12,7 @@ use wayfix_sensor_log::{Format, OpenOptions, Record};
 
 use super::{
     finish::{self, ESTIMATES},
-    input::read_toml,
+    input::{Topics, read_toml},
     output::{print, tell},
     progress,
 };
@@ -37,9 +37,11 @@ use crate::{
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log, an MCAP file.
+    /// The log, an MCAP file; it may be a ROS 2 bag with rectified images and the transforms from the robot to its camera.
     #[arg(long, value_name = "PATH")]
     log: PathBuf,
+    #[command(flatten)]
+    topics: Topics,
     /// The map: coloured polygons and posts, TOML or JSON.
     #[arg(long, value_name = "FILE")]
     map: PathBuf,
@@ -125,7 +127,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         priors.colors()
     );
     let bank = priors::bank(&priors, &params)?;
-    let log = wayfix_sensor_log::open(&arguments.log, &OpenOptions::default())?;
+    let options = OpenOptions { topics: arguments.topics.topics, ..OpenOptions::default() };
+    let log = wayfix_sensor_log::open(&arguments.log, &options)?;
     let origin = log.meta().first_format();
     let (records, read) = log.read_all();
     if !read.is_clean() {
