@@ -1,6 +1,6 @@
 use foxglove::messages::{
-    Color, LinePrimitive, Point3, Pose, SceneEntity, SceneUpdate, SpherePrimitive, TextPrimitive, Timestamp,
-    Vector3, line_primitive,
+    Color, ImageAnnotations, LinePrimitive, Point2, Point3, PointsAnnotation, Pose, SceneEntity, SceneUpdate,
+    SpherePrimitive, TextPrimitive, Timestamp, Vector3, line_primitive, points_annotation,
 };
 use wayfix_estimation_traits::Pose2;
 
@@ -47,6 +47,31 @@ pub enum Shape {
         /// The text; may be empty.
         text: String,
     },
+}
+
+/// A closed line in an image, in pixels from the upper left corner of the upper left pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageOutline {
+    /// Red, green, blue and alpha in [0, 1].
+    pub color: [f64; 4],
+    /// Its corners, column and row.
+    pub points: Vec<[f64; 2]>,
+}
+
+pub(super) fn image_annotations(timestamp: Timestamp, outlines: &[ImageOutline]) -> ImageAnnotations {
+    let annotation = |outline: &ImageOutline| {
+        let [r, g, b, a] = outline.color;
+        PointsAnnotation {
+            timestamp: Some(timestamp),
+            r#type: points_annotation::Type::LineLoop.into(),
+            points: outline.points.iter().map(|[x, y]| Point2 { x: *x, y: *y }).collect(),
+            outline_color: Some(Color { r, g, b, a }),
+            thickness: LINE_PIXELS,
+            ..Default::default()
+        }
+    };
+    let points = outlines.iter().map(annotation).collect();
+    ImageAnnotations { timestamp: Some(timestamp), points, ..Default::default() }
 }
 
 pub(super) fn scene_update(timestamp: Timestamp, frame: &str, drawings: &[Drawing]) -> SceneUpdate {

@@ -57,6 +57,8 @@ pub const CAMERA_INFO: &str = "/camera/info";
 pub const CAMERA_MOUNT: &str = "/camera/mount";
 /// The camera's axes turned as viewers want them; not read back.
 pub const CAMERA_OPTICAL: &str = "/camera/optical";
+/// Outlines of a target in the images; not read back.
+pub const TARGET: &str = "/estimate/target";
 /// What the camera saw.
 pub const IMAGE: &str = "/camera/image";
 /// What each pixel shows.

@@ -1,0 +1,74 @@
+use super::Story;
+use crate::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, PlotError, Series};
+
+/// Frames of the film beside each other.
+const FRAMES_A_ROW: usize = 4;
+
+/// Frames with the target drawn in, the overlap with the truth over the frames, and the path of the target's colour where it is known.
+///
+/// # Errors
+/// When a picture cannot be drawn.
+pub fn pictures(story: &Story) -> Result<Vec<Picture>, PlotError> {
+    let mut pictures = vec![film(story).draw()?, overlap(story).draw()?];
+    if story.points.kept().iter().any(|point| point.color.is_some()) {
+        pictures.push(color(story).draw()?);
+    }
+    Ok(pictures)
+}
+
+fn film(story: &Story) -> FilmStrip {
+    let frame = |(index, image): &(usize, _)| FilmFrame {
+        image: wayfix_sensor_log::EncodedImage::clone(image),
+        caption: format!("frame {index}"),
+    };
+    let frames: Vec<FilmFrame> = story.film.kept().iter().map(frame).collect();
+    let legend = |row: usize| match row {
+        0 => "yellow: tracked, red: lost, green: true box".to_owned(),
+        _ => String::new(),
+    };
+    FilmStrip {
+        title: "The target in the pictures".to_owned(),
+        rows: frames
+            .chunks(FRAMES_A_ROW)
+            .enumerate()
+            .map(|(row, frames)| (legend(row), frames.to_vec()))
+            .collect(),
+        frame_size: story.frame_size,
+    }
+}
+
+fn overlap(story: &Story) -> LinesPlot {
+    let points = story.points.kept();
+    let iou = points.iter().filter_map(|point| Some((point.index as f64, point.iou?))).collect();
+    let quality = points.iter().map(|point| (point.index as f64, point.quality)).collect();
+    let series = [Series::new("overlap with the truth", iou), Series::new("the tracker's quality", quality)];
+    LinesPlot {
+        title: "Overlap over the frames".to_owned(),
+        x_label: frames(story),
+        y_label: "intersection over union; quality".to_owned(),
+        series: series.into_iter().filter(|series| !series.points.is_empty()).collect(),
+        ..LinesPlot::default()
+    }
+}
+
+/// Where the mean of the target's colours was. [Andrade-Cetto, Figs. 8 and 13]
+fn color(story: &Story) -> LinesPlot {
+    let channel = |c: usize, name: &str| {
+        let point = |point: &super::story::Point| Some((point.index as f64, point.color?[c]));
+        Series::new(name, story.points.kept().iter().filter_map(point).collect())
+    };
+    LinesPlot {
+        title: "Mean colour of the target".to_owned(),
+        x_label: frames(story),
+        y_label: "share of full scale".to_owned(),
+        series: vec![channel(0, "red"), channel(1, "green"), channel(2, "blue")],
+        ..LinesPlot::default()
+    }
+}
+
+fn frames(story: &Story) -> String {
+    match story.points.stride() {
+        1 => "frame".to_owned(),
+        stride => format!("frame, one in {stride}"),
+    }
+}

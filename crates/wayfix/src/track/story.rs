@@ -1,0 +1,67 @@
+use wayfix_condensation::{Target, TrackStatus};
+use wayfix_sensor_log::{EncodedImage, ImageError};
+
+use super::{FrameResult, Truth, overlay, thinned::Thinned};
+
+/// Frames of the film, and points of the curves, at most.
+const MOST_FRAMES: usize = 12;
+const MOST_POINTS: usize = 4000;
+const JPEG_QUALITY: u8 = 85;
+
+/// What is kept of a run to be drawn, of even a very long one.
+pub struct Story {
+    pub(super) film: Thinned<(usize, EncodedImage)>,
+    pub(super) points: Thinned<Point>,
+    pub(super) frame_size: (u32, u32),
+}
+
+/// One frame in the curves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    pub(super) index: usize,
+    pub(super) iou: Option<f64>,
+    pub(super) quality: f64,
+    pub(super) color: Option<[f64; 3]>,
+}
+
+impl Default for Story {
+    fn default() -> Self {
+        let (film, points) = (Thinned::new(MOST_FRAMES), Thinned::new(MOST_POINTS));
+        Self { film, points, frame_size: (0, 0) }
+    }
+}
+
+impl Story {
+    /// Takes the next frame in.
+    ///
+    /// # Errors
+    /// When its picture cannot be encoded.
+    pub fn observe(&mut self, frame: &FrameResult) -> Result<(), ImageError> {
+        let point =
+            Point { index: frame.index, iou: frame.iou, quality: frame.target.quality, color: frame.color };
+        self.points.offer(|| Ok::<_, ImageError>(point))?;
+        let (width, height) = (frame.picture.width() as u32, frame.picture.height() as u32);
+        if self.frame_size == (0, 0) {
+            self.frame_size = (width, height);
+        }
+        self.film.offer(|| {
+            let mut pixels = frame.picture.pixels().to_vec();
+            if let Truth::At(truth) = frame.truth {
+                overlay::draw(&mut pixels, frame.picture.width(), &overlay::corners(&truth), overlay::TRUTH);
+            }
+            let color =
+                if frame.target.status == TrackStatus::Lost { overlay::LOST } else { overlay::ESTIMATE };
+            overlay::draw(&mut pixels, frame.picture.width(), &outline(&frame.target), color);
+            Ok((frame.index, EncodedImage::jpeg(width, height, pixels.as_flattened(), JPEG_QUALITY)?))
+        })
+    }
+}
+
+/// The outline of a target, or its box when it has none.
+pub(super) fn outline(target: &Target) -> Vec<[f64; 2]> {
+    if target.outline.is_empty() {
+        overlay::corners(&target.bounding_box).to_vec()
+    } else {
+        target.outline.clone()
+    }
+}
