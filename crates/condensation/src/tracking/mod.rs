@@ -1,7 +1,13 @@
 //! A target followed from picture to picture while the light changes.
 
 mod bounding_box;
+mod color;
+mod mask;
+mod pixel_rect;
 mod tracker;
 
 pub use bounding_box::BoundingBox;
+pub use color::{BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram};
+pub use mask::{BitMask, Blob, Blobs, Connectivity, Element};
+pub use pixel_rect::PixelRect;
 pub use tracker::{Target, TrackStatus, Tracker};
