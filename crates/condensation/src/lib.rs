@@ -38,5 +38,6 @@ pub use navigation::{
 pub use normalization::{Light, affine_match, histogram_match, light_match};
 pub use tracking::{
     BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, ColorHistogram, ColorQuantizer, ColorSpace,
-    Connectivity, Element, PixelRect, RowSpans, SlidingHistogram, Target, TrackStatus, Tracker,
+    Connectivity, CorrelationTracker, CorrelationTrackerParams, Element, PixelRect, RowSpans,
+    SlidingHistogram, Target, TrackStatus, Tracker,
 };

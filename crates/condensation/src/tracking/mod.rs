@@ -2,12 +2,14 @@
 
 mod bounding_box;
 mod color;
+mod correlation;
 mod mask;
 mod pixel_rect;
 mod tracker;
 
 pub use bounding_box::BoundingBox;
 pub use color::{BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram};
+pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
 pub use mask::{BitMask, Blob, Blobs, Connectivity, Element};
 pub use pixel_rect::PixelRect;
 pub use tracker::{Target, TrackStatus, Tracker};

@@ -1,13 +1,14 @@
 use clap::ValueEnum;
-use rand::Rng;
-use wayfix_condensation::{BoundingBox, CondensationError, Picture, Target, TrackStatus, Tracker};
+use wayfix_condensation::{
+    BoundingBox, CondensationError, CorrelationTracker, CorrelationTrackerParams, Picture,
+};
 
 use super::{Follower, TrackParams};
 
 /// Which tracker follows the target.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Method {
-    /// Stand-in.
+    /// A correlation filter over gradients and colours: for boxes around anything.
     #[default]
     Box,
 }
@@ -19,23 +20,10 @@ impl Method {
     /// What the tracker says of the box or its parameters.
     pub fn begin(
         self,
-        params: &TrackParams,
+        _params: &TrackParams,
         picture: &Picture,
         init: BoundingBox,
     ) -> Result<Box<dyn Follower>, CondensationError> {
-        let _ = (params, picture);
-        Ok(Box::new(Still(init)))
-    }
-}
-
-struct Still(BoundingBox);
-
-impl Tracker for Still {
-    fn track<R: Rng + ?Sized>(
-        &mut self,
-        _picture: &Picture,
-        _rng: &mut R,
-    ) -> Result<Target, CondensationError> {
-        Ok(Target { bounding_box: self.0, outline: Vec::new(), status: TrackStatus::Tracked, quality: 1.0 })
+        Ok(Box::new(CorrelationTracker::new(picture, init, CorrelationTrackerParams::default())?))
     }
 }

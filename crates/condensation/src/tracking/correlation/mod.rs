@@ -1,0 +1,18 @@
+//! A target followed by how its shape and its colours stand out from what is around it.
+
+mod color_channels;
+mod color_ratio;
+mod features;
+mod filter;
+mod fourier;
+mod gradient_channels;
+mod lane;
+mod params;
+mod patch;
+mod planes;
+mod response;
+mod scale_filter;
+mod tracker;
+
+pub use params::CorrelationTrackerParams;
+pub use tracker::CorrelationTracker;
