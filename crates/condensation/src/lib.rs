@@ -36,4 +36,7 @@ pub use navigation::{
     ActionChoice, Arrival, Localizer, LocalizerParams, Navigator, NavigatorParams, Routes, RunReport, World,
 };
 pub use normalization::{Light, affine_match, histogram_match, light_match};
-pub use tracking::{BoundingBox, Target, TrackStatus, Tracker};
+pub use tracking::{
+    BoundingBox, COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorVector, ColorWarp, LearnedDynamics,
+    PrincipalColors, Target, TrackStatus, Tracker,
+};
