@@ -37,6 +37,9 @@ pub use navigation::{
 };
 pub use normalization::{Light, affine_match, histogram_match, light_match};
 pub use tracking::{
-    BoundingBox, COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorVector, ColorWarp, LearnedDynamics,
-    PrincipalColors, Target, TrackStatus, Tracker,
+    AffineMap, AffineSnake, Agreement, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, COLOR_DIM,
+    ColorCloud, ColorDynamics, ColorEdges, ColorHistogram, ColorQuantizer, ColorSpace, ColorState,
+    ColorVector, ColorWarp, Connectivity, ContourTracker, ContourTrackerParams, EdgeSearch, Element,
+    LearnedDynamics, MaskEdges, Outline, PixelRect, PrincipalColors, RowSpans, SlidingHistogram, SnakeFit,
+    SnakeParams, Target, TrackStatus, Tracker, TrackingCues,
 };

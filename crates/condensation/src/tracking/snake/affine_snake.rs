@@ -7,11 +7,16 @@ use crate::error::checked;
 
 /// How a snake is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct SnakeParams {
     /// Points along the contour. Default 80.
     pub n_points: usize,
-    /// How far along the normals an edge is looked for at first, in pixels; it shrinks to a quarter. Default 12.
+    /// How far along the normals an edge is looked for at first, in radii of a circle of the same area, but 3 pixels at least; it shrinks to
+    /// a quarter. Default 0.5.
     pub reach: f64,
     /// A point this near to an edge is on it, in pixels. Default 1.5.
     pub tolerance: f64,
@@ -24,7 +29,7 @@ pub struct SnakeParams {
 
 impl Default for SnakeParams {
     fn default() -> Self {
-        Self { n_points: 80, reach: 12.0, tolerance: 1.5, stiffness: 0.02, max_iterations: 10 }
+        Self { n_points: 80, reach: 0.5, tolerance: 1.5, stiffness: 0.02, max_iterations: 10 }
     }
 }
 
@@ -34,12 +39,22 @@ impl SnakeParams {
     pub fn validate(&self) -> Result<(), CondensationError> {
         let n_points = self.n_points as f64;
         checked("n_points", n_points, (8..=10_000).contains(&self.n_points), "from 8 to 10000")?;
-        checked("reach", self.reach, self.reach >= 1.0 && self.reach <= 1e3, "from 1 to 1000")?;
-        checked("tolerance", self.tolerance, self.tolerance > 0.0 && self.tolerance <= 1e3, "from 0 to 1000")?;
+        checked("reach", self.reach, (0.0..=10.0).contains(&self.reach), "from 0 to 10")?;
+        checked(
+            "tolerance",
+            self.tolerance,
+            self.tolerance > 0.0 && self.tolerance <= 1e3,
+            "from 0 to 1000",
+        )?;
         let stiffness = self.stiffness;
         checked("stiffness", stiffness, stiffness > 0.0 && stiffness.is_finite(), "positive")?;
         let max_iterations = self.max_iterations as f64;
-        checked("max_iterations", max_iterations, (1..=1000).contains(&self.max_iterations), "from 1 to 1000")?;
+        checked(
+            "max_iterations",
+            max_iterations,
+            (1..=1000).contains(&self.max_iterations),
+            "from 1 to 1000",
+        )?;
         Ok(())
     }
 }
@@ -99,6 +114,11 @@ impl AffineSnake {
         &self.map
     }
 
+    /// The area that a map gives it, in square pixels.
+    pub fn area_at(&self, map: &AffineMap) -> f64 {
+        std::f64::consts::PI * map.linear.determinant().abs()
+    }
+
     /// Lays it somewhere else.
     ///
     /// # Errors
@@ -106,7 +126,7 @@ impl AffineSnake {
     pub fn moved_to(&self, map: &AffineMap) -> Result<Self, CondensationError> {
         self.outline_at(map)?;
         checked("determinant", map.linear.determinant(), map.linear.determinant() > 0.0, "positive")?;
-        Ok(Self { shape: self.shape.clone(), map: *map })
+        Ok(Self { map: *map, ..self.clone() })
     }
 
     /// The contour.

@@ -105,8 +105,7 @@ impl EdgeSearch for ColorEdges<'_> {
     fn find(&self, point: [f64; 2], normal: [f64; 2], reach: f64) -> Option<f64> {
         let n = reach.clamp(0.0, 1e3).floor() as i32;
         let at = |k: i32| [0, 1].map(|axis| point[axis] + f64::from(k) * normal[axis]);
-        let difference =
-            |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        let difference = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
         let profile: Vec<[f64; 3]> = (-n - 1..=n + 1).map(|k| self.color(at(k))).collect();
         let contrast: Vec<f64> = profile.windows(3).map(|near| difference(near[0], near[2])).collect();
         // Of equal edges the nearer one.
@@ -114,9 +113,14 @@ impl EdgeSearch for ColorEdges<'_> {
             let k = i as i32 - n;
             let away = f64::from(k) / f64::from(n + 1);
             let allowed = self.band.is_none_or(|band| band.is_on(at(k)) == Some(true));
-            if allowed && contrast[i] >= self.least_contrast { contrast[i] * (1.0 - 0.5 * away * away) } else { 0.0 }
+            if allowed && contrast[i] >= self.least_contrast {
+                contrast[i] * (1.0 - 0.5 * away * away)
+            } else {
+                0.0
+            }
         };
-        let best = (0..contrast.len()).map(|i| (score(i), i)).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
+        let best =
+            (0..contrast.len()).map(|i| (score(i), i)).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
         (best.0 > 0.0).then(|| f64::from(best.1 as i32 - n) + vertex(&contrast, best.1))
     }
 
@@ -127,7 +131,8 @@ impl EdgeSearch for ColorEdges<'_> {
 
 /// Where between -½ and ½ the parabola through a value and its neighbours has its top.
 fn vertex(values: &[f64], i: usize) -> f64 {
-    let (Some(&next), Some(&before)) = (values.get(i + 1), i.checked_sub(1).and_then(|i| values.get(i))) else {
+    let (Some(&next), Some(&before)) = (values.get(i + 1), i.checked_sub(1).and_then(|i| values.get(i)))
+    else {
         return 0.0;
     };
     let bend = before - 2.0 * values[i] + next;
@@ -140,7 +145,8 @@ mod tests {
 
     #[test]
     fn a_step_between_two_colours_is_found_where_it_is() {
-        let bytes = (0..20 * 10).flat_map(|i| if i % 20 < 8 { [200, 60, 60] } else { [60, 60, 60] }).collect();
+        let bytes =
+            (0..20 * 10).flat_map(|i| if i % 20 < 8 { [200, 60, 60] } else { [60, 60, 60] }).collect();
         let picture = Picture::from_rgb(20, 10, bytes).unwrap();
         let edges = ColorEdges::new(&picture, 20.0);
         for start in [5.0, 6.5, 8.0, 9.5] {

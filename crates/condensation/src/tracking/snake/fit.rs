@@ -2,12 +2,15 @@ use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
 
 use super::{AffineMap, EdgeSearch, SnakeFit, SnakeParams};
 
-/// The start is kept a hundred times less in place than in shape: motion is what a snake is for.
-const PLACE_STIFFNESS: f64 = 0.01;
+/// The start is hardly kept in place, only as far as no edge says otherwise: motion is what a snake is for.
+const PLACE_STIFFNESS: f64 = 2e-4;
 
 /// By how much a step shrinks the radius in which edges count, and the share of it that stays.
-const SHRINK: f64 = 0.75;
+const SHRINK: f64 = 0.6;
 const LAST_REACH: f64 = 0.25;
+
+/// While edges count from far away the shape is all but kept: an edge that is not the target's must not bend it.
+const STIFF: f64 = 10.0;
 
 /// A step of less than this many pixels is the last.
 const STILL: f64 = 0.02;
@@ -19,10 +22,11 @@ pub(super) fn fit(
     params: &SnakeParams,
 ) -> SnakeFit {
     let mut map = *start;
-    let mut reach = params.reach;
-    let last_reach = (LAST_REACH * params.reach).max(params.tolerance);
+    let mut reach = (params.reach * start.linear.determinant().abs().sqrt()).clamp(3.0, 1e3);
+    let last_reach = (LAST_REACH * reach).max(params.tolerance);
     for _ in 0..params.max_iterations {
-        let Some(next) = step(shape, &map, start, edges, reach, params.stiffness) else { break };
+        let stiffness = if reach > last_reach { STIFF } else { params.stiffness };
+        let Some(next) = step(shape, &map, start, edges, reach, [stiffness, PLACE_STIFFNESS]) else { break };
         if !is_sound(&next, start) {
             break;
         }
@@ -44,7 +48,7 @@ fn step(
     start: &AffineMap,
     edges: &impl EdgeSearch,
     reach: f64,
-    stiffness: f64,
+    [shape_stiffness, place_stiffness]: [f64; 2],
 ) -> Option<AffineMap> {
     let mut information = Matrix6::zeros();
     let mut pull = Vector6::zeros();
@@ -61,7 +65,7 @@ fn step(
     }
     let behind = numbers(start) - numbers(map);
     for i in 0..6 {
-        let stiffness = shape.len() as f64 * if i < 4 { stiffness } else { PLACE_STIFFNESS * stiffness };
+        let stiffness = shape.len() as f64 * if i < 4 { shape_stiffness } else { place_stiffness };
         information[(i, i)] += stiffness;
         pull[i] += stiffness * behind[i];
     }

@@ -1,5 +1,5 @@
 use crate::tracking::BoundingBox;
-use crate::{AffineMap, CondensationError};
+use crate::{AffineMap, BitMask, CondensationError};
 
 /// A closed polygon around a target; points `[u, v]` in pixels, where the pixel in column `u` and row `v` covers
 /// $`[u, u+1) × [v, v+1)`$.
@@ -48,6 +48,17 @@ impl Outline {
         Self::from_points((0..n_points).map(|i| [u + a * angle(i).cos(), v + b * angle(i).sin()]).collect())
     }
 
+    /// The outer contour of a mask with one blob, whose top left pixel is pixel `corner` of the picture: round the rim of its pixels, without
+    /// their steps. `None` for a mask without a pixel or too thin to have an inside.
+    pub fn of_mask(mask: &BitMask, corner: (usize, usize)) -> Option<Self> {
+        let middle = |[u, v]: [usize; 2]| [(u + corner.0) as f64 + 0.5, (v + corner.1) as f64 + 0.5];
+        let middles = Self::from_points(mask.outer_contour().into_iter().map(middle).collect()).ok()?;
+        let smooth = middles.smoothed(2).unwrap_or(middles);
+        // From the middles of the pixels out to their rim.
+        let rim = smooth.points.iter().zip(smooth.normals());
+        Self::from_points(rim.map(|(p, n)| [p[0] + 0.5 * n[0], p[1] + 0.5 * n[1]]).collect()).ok()
+    }
+
     /// The points.
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points
@@ -76,7 +87,11 @@ impl Outline {
     /// The upright box around it.
     pub fn bounding_box(&self) -> BoundingBox {
         let limit = |axis: usize, pick: fn(f64, f64) -> f64| {
-            self.points.iter().map(|point| point[axis]).reduce(pick).expect("invariant: an outline has points")
+            self.points
+                .iter()
+                .map(|point| point[axis])
+                .reduce(pick)
+                .expect("invariant: an outline has points")
         };
         let [left, top] = [0, 1].map(|axis| limit(axis, f64::min));
         let [right, bottom] = [0, 1].map(|axis| limit(axis, f64::max));
