@@ -1,4 +1,5 @@
 use wayfix_gaussian_core::GaussianError;
+use wayfix_particle::ParticleError;
 
 /// Why an operation was refused. Whatever it was called on is as it was before.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -86,6 +87,9 @@ pub enum CondensationError {
     /// A covariance cannot be used.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),
+    /// Samples cannot be drawn or weighed.
+    #[error(transparent)]
+    Particle(#[from] ParticleError),
 }
 
 /// `value`, if it lies in `range`.

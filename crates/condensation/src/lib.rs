@@ -37,7 +37,10 @@ pub use navigation::{
 };
 pub use normalization::{Light, affine_match, histogram_match, light_match};
 pub use tracking::{
-    BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, ColorHistogram, ColorQuantizer, ColorSpace,
-    Connectivity, CorrelationTracker, CorrelationTrackerParams, Element, PixelRect, RowSpans,
-    SlidingHistogram, Target, TrackStatus, Tracker,
+    AffineMap, AffineSnake, Agreement, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, COLOR_DIM,
+    ColorCloud, ColorDynamics, ColorEdges, ColorHistogram, ColorQuantizer, ColorSpace, ColorState,
+    ColorVector, ColorWarp, Connectivity, ContourTracker, ContourTrackerParams, CorrelationTracker,
+    CorrelationTrackerParams, EdgeSearch, Element, LearnedDynamics, MaskEdges, Outline, PixelRect,
+    PrincipalColors, RowSpans, SlidingHistogram, SnakeFit, SnakeParams, Target, TrackStatus, Tracker,
+    TrackingCues,
 };

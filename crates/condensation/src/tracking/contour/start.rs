@@ -1,0 +1,47 @@
+use super::region::Region;
+use crate::tracking::Element;
+use crate::{
+    BinSet, BitMask, BoundingBox, ColorQuantizer, CondensationError, Connectivity, Outline, Picture,
+};
+
+/// Corners of the ellipse that stands for a target of unknown shape.
+const N_ELLIPSE: usize = 80;
+
+/// The blob in a box must agree with it that well (intersection over union of the boxes) to be the target.
+const LEAST_IOU: f64 = 0.6;
+
+/// The outline of what a box is drawn round: the blob of the colours that are more frequent in the ellipse in the box than round the box,
+/// if it fills the box, else that ellipse.
+pub(super) fn outline_in_box(
+    picture: &Picture,
+    quantizer: &ColorQuantizer,
+    bounds: &BoundingBox,
+) -> Result<Outline, CondensationError> {
+    let ellipse = Outline::ellipse(bounds, N_ELLIPSE)?;
+    let margin = 0.25 * (bounds.width() + bounds.height());
+    let Some(region) = Region::around(picture, quantizer, bounds, margin)? else {
+        return Err(CondensationError::Empty { what: "target in the picture" });
+    };
+    let [x, y] = bounds.corner();
+    let (right, bottom) = (x + bounds.width(), y + bounds.height());
+    let box_mask = region.inside(&[[x, y], [right, y], [right, bottom], [x, bottom]])?;
+    let inner = region.shares(&region.inside(ellipse.points())?);
+    let outer = region.shares(&box_mask.dilated(Element::Square { radius: 2 }).not());
+    let set = BinSet::from_fn(quantizer, |bin| inner[usize::from(bin)] > outer[usize::from(bin)]);
+    let smooth = |mask: BitMask| {
+        let (wide, narrow) = (Element::Square { radius: 2 }, Element::Square { radius: 1 });
+        mask.closed(wide).opened(narrow)
+    };
+    let blobs = smooth(region.segment(&set).and(&box_mask)?).blobs(Connectivity::Eight);
+    let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
+    let outline = blob.and_then(|mask| Outline::of_mask(&mask, region.rect.corner()));
+    Ok(outline.filter(|outline| outline.bounding_box().iou(bounds) >= LEAST_IOU).unwrap_or(ellipse))
+}
+
+/// The outline of the largest blob of a mask as large as a picture.
+pub(super) fn outline_of_mask(mask: &BitMask) -> Result<Outline, CondensationError> {
+    let blobs = mask.blobs(Connectivity::Eight);
+    let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
+    blob.and_then(|blob| Outline::of_mask(&blob, (0, 0)))
+        .ok_or(CondensationError::Empty { what: "target in the mask" })
+}
