@@ -164,7 +164,9 @@ fn unusable_truth_is_named_with_its_line() {
 #[test]
 fn a_start_that_makes_no_sense_is_refused() {
     let shot = Shot::new();
-    for (init, code) in [("1,2,3", 2), ("a,b,c,d", 2), ("10,10,0,20", 2), ("NaN,1,2,3", 2), ("900,10,20,20", 1)] {
+    for (init, code) in
+        [("1,2,3", 2), ("a,b,c,d", 2), ("10,10,0,20", 2), ("NaN,1,2,3", 2), ("900,10,20,20", 1)]
+    {
         let outcome = shot.run(&["--init", init]);
         assert_eq!(outcome.code, code, "{init}: {}", outcome.stderr);
     }
@@ -208,10 +210,11 @@ fn what_is_written_reads_back() {
     }
     let (boxes, log) = (out.join("boxes.txt"), out.join("estimates.mcap"));
     let again = wayfix(
-        ["run", "track", "--json", "--init", &shot.boxes[0], "--truth"]
-            .map(OsStr::new)
-            .into_iter()
-            .chain([boxes.as_os_str(), OsStr::new("--log"), log.as_os_str()]),
+        ["run", "track", "--json", "--init", &shot.boxes[0], "--truth"].map(OsStr::new).into_iter().chain([
+            boxes.as_os_str(),
+            OsStr::new("--log"),
+            log.as_os_str(),
+        ]),
     );
     assert_eq!(again.metric("n_frames"), first.metric("n_frames"));
     // Two decimals of boxes of some fifty pixels.

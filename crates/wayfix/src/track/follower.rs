@@ -1,5 +1,8 @@
+use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
-use wayfix_condensation::{CondensationError, Picture, Target, Tracker};
+use wayfix_condensation::{
+    ColorSpace, CondensationError, ContourTracker, CorrelationTracker, Picture, Target, Tracker,
+};
 
 /// Any tracker, behind one type.
 pub trait Follower {
@@ -9,14 +12,51 @@ pub trait Follower {
     /// As [`Tracker::track`].
     fn follow(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError>;
 
-    /// Mean colour of what is followed, red, green and blue from 0 to 1, for trackers that know it.
-    fn color(&self) -> Option<[f64; 3]> {
+    /// The colours of what is followed, for trackers that know them.
+    fn colors(&self) -> Option<TargetColors> {
         None
     }
 }
 
-impl<T: Tracker> Follower for T {
+/// Where the colours of a target are in a colour space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetColors {
+    /// The space.
+    pub space: ColorSpace,
+    /// Their mean, each axis scaled to [0, 1].
+    pub mean: Vector3<f64>,
+}
+
+impl Follower for CorrelationTracker {
     fn follow(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
         self.track(picture, rng)
+    }
+}
+
+/// A contour tracker, and the space of its colours.
+pub(super) struct ContourFollower {
+    pub(super) tracker: ContourTracker,
+    pub(super) space: ColorSpace,
+}
+
+impl Follower for ContourFollower {
+    fn follow(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+        self.tracker.track(picture, rng)
+    }
+
+    fn colors(&self) -> Option<TargetColors> {
+        Some(TargetColors { space: self.space, mean: self.tracker.colors().mean })
+    }
+}
+
+/// What the axes of a space are called.
+pub(super) fn axis_names(space: ColorSpace) -> [&'static str; 3] {
+    match space {
+        ColorSpace::Rgb => ["R", "G", "B"],
+        ColorSpace::NormalizedRgb => ["r", "g", "b"],
+        ColorSpace::Hsi => ["H", "S", "I"],
+        ColorSpace::Yuv => ["Y", "U", "V"],
+        ColorSpace::Opponent => ["B − G", "G − R", "R + G + B"],
+        _ => ["first axis", "second axis", "third axis"],
     }
 }

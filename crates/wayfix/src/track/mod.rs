@@ -2,7 +2,7 @@
 //!
 //! A [`TrackSystem`] takes the images of a log one by one through the tracker of a [`Method`]; [`TrueBoxes`] say where the target truly
 //! was, and a [`Score`] how well it was followed; [`summarize`] gives the figures and [`pictures`] the pictures. Nothing grows with the
-//! number of frames.
+//! number of frames. [`films`] are the experiments of `wayfix regress track`.
 //!
 //! ```
 //! use wayfix::track::{Score, TrueBoxes};
@@ -19,6 +19,7 @@
 mod error;
 mod estimates;
 mod figures;
+pub mod films;
 mod follower;
 mod method;
 mod overlay;
@@ -34,8 +35,8 @@ mod truth;
 pub use error::TrackError;
 pub use estimates::TrackLog;
 pub use figures::summarize;
-pub use follower::Follower;
-pub use method::Method;
+pub use follower::{Follower, TargetColors};
+pub use method::{Method, Start};
 pub use params::TrackParams;
 pub use pictures::pictures;
 pub use run::{TrackRun, run};

@@ -1,4 +1,4 @@
-use super::Story;
+use super::{Story, follower::axis_names, story::Point};
 use crate::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, PlotError, Series};
 
 /// Frames of the film beside each other.
@@ -10,8 +10,8 @@ const FRAMES_A_ROW: usize = 4;
 /// When a picture cannot be drawn.
 pub fn pictures(story: &Story) -> Result<Vec<Picture>, PlotError> {
     let mut pictures = vec![film(story).draw()?, overlap(story).draw()?];
-    if story.points.kept().iter().any(|point| point.color.is_some()) {
-        pictures.push(color(story).draw()?);
+    if let Some(colors) = story.points.kept().iter().find_map(|point| point.colors) {
+        pictures.push(color_path(story, axis_names(colors.space)).draw()?);
     }
     Ok(pictures)
 }
@@ -52,16 +52,16 @@ fn overlap(story: &Story) -> LinesPlot {
 }
 
 /// Where the mean of the target's colours was. [Andrade-Cetto, Figs. 8 and 13]
-fn color(story: &Story) -> LinesPlot {
-    let channel = |c: usize, name: &str| {
-        let point = |point: &super::story::Point| Some((point.index as f64, point.color?[c]));
-        Series::new(name, story.points.kept().iter().filter_map(point).collect())
+fn color_path(story: &Story, names: [&str; 3]) -> LinesPlot {
+    let axis = |c: usize| {
+        let point = |point: &Point| Some((point.index as f64, point.colors?.mean[c]));
+        Series::new(names[c], story.points.kept().iter().filter_map(point).collect())
     };
     LinesPlot {
-        title: "Mean colour of the target".to_owned(),
+        title: "Path of the colour distribution: its mean".to_owned(),
         x_label: frames(story),
-        y_label: "share of full scale".to_owned(),
-        series: vec![channel(0, "red"), channel(1, "green"), channel(2, "blue")],
+        y_label: "share of the axis".to_owned(),
+        series: [0, 1, 2].map(axis).to_vec(),
         ..LinesPlot::default()
     }
 }

@@ -1,7 +1,7 @@
 use wayfix_condensation::{Target, TrackStatus};
 use wayfix_sensor_log::{EncodedImage, ImageError};
 
-use super::{FrameResult, Truth, overlay, thinned::Thinned};
+use super::{FrameResult, TargetColors, Truth, overlay, thinned::Thinned};
 
 /// Frames of the film, and points of the curves, at most.
 const MOST_FRAMES: usize = 12;
@@ -21,7 +21,7 @@ pub(super) struct Point {
     pub(super) index: usize,
     pub(super) iou: Option<f64>,
     pub(super) quality: f64,
-    pub(super) color: Option<[f64; 3]>,
+    pub(super) colors: Option<TargetColors>,
 }
 
 impl Default for Story {
@@ -38,7 +38,7 @@ impl Story {
     /// When its picture cannot be encoded.
     pub fn observe(&mut self, frame: &FrameResult) -> Result<(), ImageError> {
         let point =
-            Point { index: frame.index, iou: frame.iou, quality: frame.target.quality, color: frame.color };
+            Point { index: frame.index, iou: frame.iou, quality: frame.target.quality, colors: frame.colors };
         self.points.offer(|| Ok::<_, ImageError>(point))?;
         let (width, height) = (frame.picture.width() as u32, frame.picture.height() as u32);
         if self.frame_size == (0, 0) {

@@ -4,7 +4,7 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_condensation::{BoundingBox, Picture, Target, TrackStatus};
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
-use super::{Follower, Method, Score, TrackError, TrackParams, TrueBoxes, Truth};
+use super::{Follower, Method, Score, Start, TargetColors, TrackError, TrackParams, TrueBoxes, Truth};
 use crate::system::{Events, Stopwatch, System};
 
 /// A tracker, fed with the images of a log.
@@ -43,8 +43,8 @@ pub struct FrameResult {
     pub truth: Truth,
     /// Overlap with the truth, 0 when the tracker says that it has lost the target; `None` where there is no true box.
     pub iou: Option<f64>,
-    /// Mean colour of the target, where the tracker knows it.
-    pub color: Option<[f64; 3]>,
+    /// The colours of the target, where the tracker knows them.
+    pub colors: Option<TargetColors>,
     /// Computing time of the tracker, without decoding; zero in the frame it begins with.
     pub step: Duration,
 }
@@ -175,7 +175,7 @@ impl TrackSystem {
             return Ok(Some((picture, target, stopwatch.elapsed())));
         }
         let Some(init) = self.init.or(self.truth.at(self.next_index).target()) else { return Ok(None) };
-        match self.method.begin(&self.params, &picture, init) {
+        match self.method.begin(&self.params, &picture, &Start::Box(init)) {
             Ok(tracker) => self.tracker = Some(tracker),
             Err(source) => {
                 let ([x, y], w, h) = (init.corner(), init.width(), init.height());
@@ -215,9 +215,9 @@ impl TrackSystem {
             self.totals.longest = self.totals.longest.max(step);
         }
         let iou = truth.target().map(|truth| estimate.map_or(0.0, |estimate| estimate.iou(&truth)));
-        let color = self.tracker.as_ref().and_then(|tracker| tracker.color());
+        let colors = self.tracker.as_ref().and_then(|tracker| tracker.colors());
         self.next_index += 1;
-        self.last = Some(FrameResult { index, stamp, picture, target, truth, iou, color, step });
+        self.last = Some(FrameResult { index, stamp, picture, target, truth, iou, colors, step });
     }
 }
 
