@@ -5,6 +5,7 @@ mod finish;
 mod fixtures;
 mod info;
 mod input;
+mod merge_reports;
 mod output;
 mod progress;
 mod regress;
@@ -47,6 +48,7 @@ enum Command {
     Info(info::Arguments),
     Convert(convert::Arguments),
     Regress(regress::Arguments),
+    MergeReports(merge_reports::Arguments),
     /// Build or check the stored logs.
     #[command(subcommand)]
     Fixtures(fixtures::Command),
@@ -72,6 +74,7 @@ pub fn main() -> ExitCode {
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
         Command::Regress(arguments) => regress::main(arguments),
+        Command::MergeReports(arguments) => merge_reports::main(arguments),
         Command::Fixtures(command) => fixtures::main(command),
     };
     match result {
