@@ -1,4 +1,4 @@
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
     ColorSpace, CondensationError, ContourTracker, CorrelationTracker, Picture, Target, Tracker,
@@ -25,6 +25,8 @@ pub struct TargetColors {
     pub space: ColorSpace,
     /// Their mean, each axis scaled to [0, 1].
     pub mean: Vector3<f64>,
+    /// Their covariance.
+    pub covariance: Matrix3<f64>,
 }
 
 impl Follower for CorrelationTracker {
@@ -45,7 +47,10 @@ impl Follower for ContourFollower {
     }
 
     fn colors(&self) -> Option<TargetColors> {
-        Some(TargetColors { space: self.space, mean: self.tracker.colors().mean })
+        let colors = self.tracker.colors();
+        let variances = Matrix3::from_diagonal(&colors.magnitudes.map(|magnitude| magnitude * magnitude));
+        let covariance = colors.axes * variances * colors.axes.transpose();
+        Some(TargetColors { space: self.space, mean: colors.mean, covariance })
     }
 }
 

@@ -1,5 +1,5 @@
-use super::{Story, follower::axis_names, story::Point};
-use crate::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, PlotError, Series};
+use super::{Story, TargetColors, follower::axis_names, story::Point};
+use crate::plot::{EllipsesPlot, FilmFrame, FilmStrip, LinesPlot, NamedEllipse, Picture, PlotError, Series};
 
 /// Frames of the film beside each other.
 const FRAMES_A_ROW: usize = 4;
@@ -11,7 +11,9 @@ const FRAMES_A_ROW: usize = 4;
 pub fn pictures(story: &Story) -> Result<Vec<Picture>, PlotError> {
     let mut pictures = vec![film(story).draw()?, overlap(story).draw()?];
     if let Some(colors) = story.points.kept().iter().find_map(|point| point.colors) {
-        pictures.push(color_path(story, axis_names(colors.space)).draw()?);
+        let names = axis_names(colors.space);
+        pictures.push(clouds(story, names).draw()?);
+        pictures.push(color_path(story, names).draw()?);
     }
     Ok(pictures)
 }
@@ -51,14 +53,32 @@ fn overlap(story: &Story) -> LinesPlot {
     }
 }
 
-/// Where the mean of the target's colours was. [Andrade-Cetto, Figs. 8 and 13]
+/// The colour distribution along its path, as ellipses over two planes of the space. [Andrade-Cetto, Figs. 8 and 13]
+fn clouds(story: &Story, names: [&str; 3]) -> EllipsesPlot {
+    let plane = |v: usize| {
+        let ellipse = |(index, colors): &(usize, TargetColors)| NamedEllipse {
+            name: format!("frame {index}"),
+            center: (colors.mean[0], colors.mean[v]),
+            covariance: [0, v].map(|i| [0, v].map(|j| colors.covariance[(i, j)])),
+        };
+        (format!("{} over {}", names[v], names[0]), story.clouds.kept().iter().map(ellipse).collect())
+    };
+    EllipsesPlot {
+        title: "Path of the colour distribution (1σ)".to_owned(),
+        x_label: names[0].to_owned(),
+        sigmas: 1.0,
+        groups: [1, 2].map(plane).to_vec(),
+    }
+}
+
+/// Where the mean of the target's colours was.
 fn color_path(story: &Story, names: [&str; 3]) -> LinesPlot {
     let axis = |c: usize| {
         let point = |point: &Point| Some((point.index as f64, point.colors?.mean[c]));
         Series::new(names[c], story.points.kept().iter().filter_map(point).collect())
     };
     LinesPlot {
-        title: "Path of the colour distribution: its mean".to_owned(),
+        title: "Mean colour of the target".to_owned(),
         x_label: frames(story),
         y_label: "share of the axis".to_owned(),
         series: [0, 1, 2].map(axis).to_vec(),

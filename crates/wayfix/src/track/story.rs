@@ -6,12 +6,15 @@ use super::{FrameResult, TargetColors, Truth, overlay, thinned::Thinned};
 /// Frames of the film, and points of the curves, at most.
 const MOST_FRAMES: usize = 12;
 const MOST_POINTS: usize = 4000;
+/// Colour distributions along their path, at most: each has an ink of its own.
+const MOST_CLOUDS: usize = 6;
 const JPEG_QUALITY: u8 = 85;
 
 /// What is kept of a run to be drawn, of even a very long one.
 pub struct Story {
     pub(super) film: Thinned<(usize, EncodedImage)>,
     pub(super) points: Thinned<Point>,
+    pub(super) clouds: Thinned<(usize, TargetColors)>,
     pub(super) frame_size: (u32, u32),
 }
 
@@ -26,8 +29,12 @@ pub(super) struct Point {
 
 impl Default for Story {
     fn default() -> Self {
-        let (film, points) = (Thinned::new(MOST_FRAMES), Thinned::new(MOST_POINTS));
-        Self { film, points, frame_size: (0, 0) }
+        Self {
+            film: Thinned::new(MOST_FRAMES),
+            points: Thinned::new(MOST_POINTS),
+            clouds: Thinned::new(MOST_CLOUDS),
+            frame_size: (0, 0),
+        }
     }
 }
 
@@ -37,9 +44,12 @@ impl Story {
     /// # Errors
     /// When its picture cannot be encoded.
     pub fn observe(&mut self, frame: &FrameResult) -> Result<(), ImageError> {
-        let point =
-            Point { index: frame.index, iou: frame.iou, quality: frame.target.quality, colors: frame.colors };
-        self.points.offer(|| Ok::<_, ImageError>(point))?;
+        let (index, colors) = (frame.index, frame.colors);
+        let point = Point { index, iou: frame.iou, quality: frame.target.quality, colors };
+        self.points.push(point);
+        if let Some(colors) = colors {
+            self.clouds.push((index, colors));
+        }
         let (width, height) = (frame.picture.width() as u32, frame.picture.height() as u32);
         if self.frame_size == (0, 0) {
             self.frame_size = (width, height);

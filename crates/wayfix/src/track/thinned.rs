@@ -1,3 +1,5 @@
+use std::convert::Infallible;
+
 /// Values at even distances of a stream whose length is not known: when there are too many, every second one goes.
 #[derive(Clone, Debug)]
 pub(super) struct Thinned<T> {
@@ -11,6 +13,11 @@ impl<T> Thinned<T> {
     /// Keeps at most `most` of them, and from then on at least half as many.
     pub(super) fn new(most: usize) -> Self {
         Self { most: most.max(2), stride: 1, n_seen: 0, kept: Vec::new() }
+    }
+
+    /// Offers the next value.
+    pub(super) fn push(&mut self, value: T) {
+        let Ok(()) = self.offer(|| Ok::<_, Infallible>(value));
     }
 
     /// Offers the next value, which is made only when it is kept.
@@ -52,15 +59,13 @@ impl<T> Thinned<T> {
 
 #[cfg(test)]
 mod tests {
-    use std::convert::Infallible;
-
     use super::Thinned;
 
     #[test]
     fn what_is_kept_is_evenly_spaced_and_never_too_much() {
         let mut thinned = Thinned::new(10);
         for value in 0..1000_usize {
-            let Ok(()) = thinned.offer(|| Ok::<_, Infallible>(value));
+            thinned.push(value);
             let (kept, stride) = (thinned.kept(), thinned.stride());
             assert!(kept.len() <= 10);
             assert!(kept.iter().enumerate().all(|(k, v)| *v == k * stride), "{kept:?}");

@@ -7,7 +7,7 @@ use wayfix_scene_sim::film::{Film, Incident};
 use super::{FilmScore, follow, score::mean};
 use crate::{
     evaluate::MeanInterval,
-    report::{Metric, Run},
+    report::{Metric, Run, Spread},
     track::{Method, Story, TrackParams, pictures},
 };
 
@@ -55,14 +55,12 @@ fn over_seeds(scores: &[&FilmScore], incident: Incident) -> Vec<Metric> {
     };
     let ious: Vec<f64> = scores.iter().map(|score| mean(&score.iou)).collect();
     let sum = |count: fn(&FilmScore) -> usize| scores.iter().map(|score| count(score)).sum::<usize>() as f64;
-    let mut metrics = vec![Metric::new("iou_mean", mean(&ious), "")];
-    if let Some(interval) = MeanInterval::of(&ious) {
-        metrics.push(Metric::new("iou_ci95", interval.half_width, ""));
-    }
-    metrics.extend([
+    let spread = MeanInterval::of(&ious).map(|MeanInterval { half_width, n, .. }| Spread { half_width, n });
+    let mut metrics = vec![
+        Metric { spread, ..Metric::new("iou_mean", mean(&ious), "") },
         Metric::new("iou_lowest_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
         Metric::new("frames_lost", sum(|score| score.n_lost), ""),
-    ]);
+    ];
     // A tracker that loses the target at once has no centre.
     let centers = all(|score| &score.center_error);
     if !centers.is_empty() {
