@@ -6,7 +6,7 @@ use rayon::prelude::*;
 /// What `job` makes of every item.
 #[cfg(feature = "parallel")]
 pub(super) fn map_each<T: Sync, O: Send>(items: &[T], job: impl Fn(&T) -> O + Sync) -> Vec<O> {
-    items.par_iter().map(job).collect()
+    items.par_iter().map(&job).collect()
 }
 
 /// What `job` makes of every item.
