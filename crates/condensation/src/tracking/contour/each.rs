@@ -5,12 +5,12 @@ use rayon::prelude::*;
 
 /// What `job` makes of every item.
 #[cfg(feature = "parallel")]
-pub(super) fn map_each<T: Sync, O: Send>(items: &[T], job: impl Fn(&T) -> O + Send + Sync) -> Vec<O> {
-    items.par_iter().map(job).collect()
+pub(super) fn map_each<T: Sync, O: Send>(items: &[T], job: impl Fn(&T) -> O + Sync) -> Vec<O> {
+    items.par_iter().map(&job).collect()
 }
 
 /// What `job` makes of every item.
 #[cfg(not(feature = "parallel"))]
-pub(super) fn map_each<T: Sync, O: Send>(items: &[T], job: impl Fn(&T) -> O + Send + Sync) -> Vec<O> {
+pub(super) fn map_each<T: Sync, O: Send>(items: &[T], job: impl Fn(&T) -> O + Sync) -> Vec<O> {
     items.iter().map(job).collect()
 }

@@ -5,11 +5,15 @@ use crate::{BinSet, BitMask, ColorCloud, CondensationError};
 /// Share of the expected area that the pixels of a new colour set must have.
 const LEAST_SHARE: f64 = 0.25;
 
+/// Support of a contour from which on nothing covers the target.
+const SEEN_ALL_ROUND: f64 = 0.8;
+
 impl Scene<'_> {
     /// The colours inside the contour of the best candidate; none when there are too few pixels to tell.
     ///
     /// Pixels at the rim are mixed with the background and left out. With a background model so are bins that are more frequent outside,
-    /// and bins that do not touch one of the best hypothesis, since they are of what covers the target.
+    /// and, unless the contour is seen nearly all round, bins that do not touch one of the best hypothesis: they may be of what covers the
+    /// target.
     pub(super) fn colors_of(
         &self,
         candidate: &Candidate,
@@ -20,10 +24,11 @@ impl Scene<'_> {
         let n_expected = LEAST_SHARE * self.expected_area;
         let plain = self.params.background_odds == 0.0;
         let shares = self.region.shares(&inside);
+        let is_open = candidate.agreement.affine >= SEEN_ALL_ROUND;
         let near = set.dilated(self.quantizer);
         let is_target = |bin: u16| {
             let i = usize::from(bin);
-            plain || (shares[i] > self.background[i] && near.contains(bin))
+            plain || (shares[i] > self.background[i] && (is_open || near.contains(bin)))
         };
         let (left, top) = self.region.rect.corner();
         let pixel = |u: usize, v: usize| self.picture.pixels()[(top + v) * self.picture.width() + left + u];

@@ -8,10 +8,15 @@ use crate::{
 const N_ELLIPSE: usize = 80;
 
 /// The blob in a box must agree with it that well (intersection over union of the boxes) to be the target.
-const LEAST_IOU: f64 = 0.6;
+const LEAST_IOU: f64 = 0.75;
+
+/// It must fill so much of its convex hull to be a body with some notches, which a few colours that the target shares with what is
+/// behind it leave; and so much not to have any.
+const LEAST_SOLIDITY: f64 = 0.75;
+const SOLID: f64 = 0.95;
 
 /// The outline of what a box is drawn round: the blob of the colours that are more frequent in the ellipse in the box than round the box,
-/// if it fills the box, else that ellipse.
+/// without notches, if it fills the box, else that ellipse.
 pub(super) fn outline_in_box(
     picture: &Picture,
     quantizer: &ColorQuantizer,
@@ -34,8 +39,8 @@ pub(super) fn outline_in_box(
     };
     let blobs = smooth(region.segment(&set).and(&box_mask)?).blobs(Connectivity::Eight);
     let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
-    let outline = blob.and_then(|mask| Outline::of_mask(&mask, region.rect.corner()));
-    Ok(outline.filter(|outline| outline.bounding_box().iou(bounds) >= LEAST_IOU).unwrap_or(ellipse))
+    let body = blob.and_then(|mask| Outline::of_mask(&mask, region.rect.corner())).and_then(without_notches);
+    Ok(body.filter(|body| body.bounding_box().iou(bounds) >= LEAST_IOU).unwrap_or(ellipse))
 }
 
 /// The outline of the largest blob of a mask as large as a picture.
@@ -44,4 +49,13 @@ pub(super) fn outline_of_mask(mask: &BitMask) -> Result<Outline, CondensationErr
     let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
     blob.and_then(|blob| Outline::of_mask(&blob, (0, 0)))
         .ok_or(CondensationError::Empty { what: "target in the mask" })
+}
+
+fn without_notches(blob: Outline) -> Option<Outline> {
+    let hull = blob.convex_hull();
+    match blob.area() / hull.area() {
+        solidity if solidity >= SOLID => Some(blob),
+        solidity if solidity >= LEAST_SOLIDITY => Some(hull),
+        _ => None,
+    }
 }

@@ -148,6 +148,31 @@ impl Outline {
         (0..n).map(normal).collect()
     }
 
+    /// The smallest convex outline around it, by Andrew's monotone chain.
+    pub fn convex_hull(&self) -> Self {
+        let mut sorted = self.points.clone();
+        sorted.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+        let turn = |o: [f64; 2], p: [f64; 2], q: [f64; 2]| {
+            (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
+        };
+        let half = |points: &mut dyn Iterator<Item = &[f64; 2]>| {
+            let mut chain: Vec<[f64; 2]> = Vec::new();
+            for &point in points {
+                while let [.., o, p] = chain[..]
+                    && turn(o, p, point) <= 0.0
+                {
+                    chain.pop();
+                }
+                chain.push(point);
+            }
+            chain.pop();
+            chain
+        };
+        let mut hull = half(&mut sorted.iter());
+        hull.extend(half(&mut sorted.iter().rev()));
+        Self::from_points(hull).expect("invariant: a hull is no smaller than what it holds")
+    }
+
     /// The outline under an affine map.
     ///
     /// # Errors
@@ -186,6 +211,14 @@ mod tests {
             assert!((normal[0].hypot(normal[1]) - 1.0).abs() < 1e-12);
         }
         assert!(ellipse.bounding_box().iou(&bounds) > 0.999);
+    }
+
+    #[test]
+    fn a_hull_spans_the_notch_and_leaves_out_the_points_inside() {
+        let l_shape = [[0.0, 0.0], [10.0, 0.0], [10.0, 2.0], [2.0, 2.0], [2.0, 10.0], [0.0, 10.0]];
+        let hull = Outline::from_points(l_shape.to_vec()).unwrap().convex_hull();
+        assert_eq!((hull.points().len(), hull.area()), (5, 68.0));
+        assert_eq!(hull.convex_hull(), hull);
     }
 
     #[test]
