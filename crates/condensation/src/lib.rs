@@ -37,6 +37,7 @@ pub use navigation::{
 };
 pub use normalization::{Light, affine_match, histogram_match, light_match};
 pub use tracking::{
-    BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, ColorHistogram, ColorQuantizer, ColorSpace,
-    Connectivity, Element, PixelRect, RowSpans, SlidingHistogram, Target, TrackStatus, Tracker,
+    BackProjection, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, ColorHistogram, ColorQuantizer,
+    ColorSpace, Connectivity, Element, MeanShift, MeanShiftParams, Moments, PixelRect, RowSpans,
+    SlidingHistogram, Target, TrackStatus, Tracker,
 };
