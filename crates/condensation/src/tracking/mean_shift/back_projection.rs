@@ -76,6 +76,20 @@ impl BackProjection {
         &self.weights
     }
 
+    /// How much denser the weights are in a window than in the rest of the picture, from -1 to 1: with 0 colour tells nothing of the target.
+    /// What of the window is beyond the edges weighs nothing; where it leaves no rest, there is no contrast.
+    pub fn contrast(&self, window: &BoundingBox) -> f64 {
+        let inside = self.moments(window).map_or(0.0, |moments| moments.mass);
+        let covered = PixelRect::covering(window, (self.width, self.height()))
+            .map_or(0, |rect| rect.width * rect.height);
+        let rest = self.weights.len() - covered;
+        if rest == 0 {
+            0.0
+        } else {
+            inside / window.area().max(covered as f64) - (self.mass() - inside) / rest as f64
+        }
+    }
+
     /// The moments of the pixels that a window touches; none where there is no mass.
     pub fn moments(&self, window: &BoundingBox) -> Option<Moments> {
         let rect = PixelRect::covering(window, (self.width, self.height()))?;
@@ -133,6 +147,12 @@ impl BackProjection {
             }
         }
         best.map(|(_, window)| window)
+    }
+
+    /// The sum of all weights; parts that fit into 32 bits vectorize.
+    fn mass(&self) -> f64 {
+        let part = |weights: &[u8]| f64::from(weights.iter().map(|&weight| u32::from(weight)).sum::<u32>());
+        self.weights.chunks(1 << 16).map(part).sum::<f64>() / 255.0
     }
 }
 

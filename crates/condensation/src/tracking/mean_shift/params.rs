@@ -21,7 +21,7 @@ pub struct MeanShiftParams {
     pub margin: f64,
     /// How much the window may grow or shrink from one picture to the next, as a factor; 1 for a window of fixed size.
     pub growth: f64,
-    /// Below this share of the density of colour at the start the target is lost.
+    /// Below this share of the contrast of colour at the start the target is lost.
     pub lost_below: f64,
     /// From this share on it is found again.
     pub found_from: f64,

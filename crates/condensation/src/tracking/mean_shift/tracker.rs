@@ -35,13 +35,16 @@ pub struct MeanShift {
     /// Of each bin, in 255ths.
     weights: Vec<u8>,
     picture_size: (usize, usize),
-    /// Mass per area at the start.
-    density: f64,
+    /// How much the target's colours stood out at the start.
+    contrast: f64,
     /// Sides of the window by standard deviations of what it held at the start.
     sides_per_sigma: [f64; 2],
     window: BoundingBox,
     status: TrackStatus,
 }
+
+/// Colours that stand out less are everywhere: a target of such colours is lost from the start.
+const LEAST_CONTRAST: f64 = 0.05;
 
 impl MeanShift {
     /// Learns the colours in the ellipse that fits into a box.
@@ -63,7 +66,7 @@ impl MeanShift {
         let mut tracker = Self {
             params,
             picture_size: (picture.width(), picture.height()),
-            density: 0.0,
+            contrast: 0.0,
             sides_per_sigma: [0.0; 2],
             window: *bounding_box,
             status: TrackStatus::Tracked,
@@ -72,9 +75,9 @@ impl MeanShift {
         };
         let projection = BackProjection::new(&image, &tracker.weights)?;
         let around = tracker.enlarged(bounding_box)?;
-        let held = projection.moments(bounding_box).zip(projection.moments(&around));
-        let (inside, around) = held.ok_or(CondensationError::Empty { what: "pixels in the box" })?;
-        tracker.density = inside.mass / bounding_box.area();
+        let nothing = CondensationError::Empty { what: "pixels of the picture in the box" };
+        let around = projection.moments(&around).ok_or(nothing)?;
+        tracker.contrast = projection.contrast(bounding_box).max(LEAST_CONTRAST);
         let sides = [bounding_box.width(), bounding_box.height()];
         tracker.sides_per_sigma = [0, 1].map(|axis| sides[axis] / around.sigma[axis]);
         Ok(tracker)
@@ -115,8 +118,7 @@ impl Tracker for MeanShift {
             }
         };
         let mut window = projection.climb(from, self.params.max_iterations, self.params.tolerance);
-        let mass = projection.moments(&window).map_or(0.0, |moments| moments.mass);
-        let quality = (mass / window.area() / self.density).min(1.0);
+        let quality = (projection.contrast(&window) / self.contrast).clamp(0.0, 1.0);
         self.status = if quality >= enough { TrackStatus::Tracked } else { TrackStatus::Lost };
         if self.status == TrackStatus::Tracked {
             window = self.fitted(&projection, &window)?;
