@@ -123,6 +123,10 @@ fn what_cannot_be_followed_is_refused_and_changes_nothing() {
     let other = Picture::from_rgb(120, 160, vec![0; 3 * 120 * 160]).unwrap();
     assert!(matches!(tracker.track(&other, &mut rng), Err(CondensationError::Dimension { .. })));
     assert_eq!(format!("{tracker:?}"), before);
+    let narrow = Picture::from_rgb(1, 9, (0..27).map(|i| if i < 9 { 200 } else { i }).collect()).unwrap();
+    let top = BoundingBox::from_corner(0.0, 0.0, 1.0, 3.0).unwrap();
+    let mut tracker = MeanShift::start(&narrow, &top, defaults).unwrap();
+    assert!(tracker.track(&narrow, &mut rng).is_ok());
     // A box of one pixel, and one larger than the picture, are odd but no errors.
     for (center, side) in [([80.0, 60.0], 1.0), ([80.0, 60.0], 300.0)] {
         let odd = BoundingBox::from_center(center, side, side).unwrap();

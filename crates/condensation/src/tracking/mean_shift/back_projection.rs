@@ -104,7 +104,7 @@ impl BackProjection {
         let axis = |first: f64, second: f64| {
             let mean = first / mass;
             // Every pixel is as wide as one, which alone is a variance of a twelfth.
-            (mean, (second / mass - mean * mean + 1.0 / 12.0).max(0.0).sqrt())
+            (mean, ((second / mass - mean * mean).max(0.0) + 1.0 / 12.0).sqrt())
         };
         let ((u, sigma_u), (v, sigma_v)) = (axis(sums[1], sums[2]), axis(sums[3], sums[4]));
         (mass > 0.0).then(|| Moments {
@@ -131,10 +131,11 @@ impl BackProjection {
         window
     }
 
-    /// The window of that width and height which holds the most, of those that overlap their neighbours by half.
+    /// The window of that width and height which holds the most, of those that overlap their neighbours by half; none where there is nothing.
     pub fn densest(&self, width: f64, height: f64) -> Option<BoundingBox> {
         let places = |side: f64, len: usize| {
-            (0..).map(move |k| k as f64 * side / 2.0).take_while(move |&x| x < len as f64)
+            let step = (side / 2.0).max(1.0); // less than a pixel finds nothing new
+            (0..).map(move |k| f64::from(k) * step).take_while(move |&x| x < len as f64)
         };
         let mut best: Option<(f64, BoundingBox)> = None;
         for y in places(height, self.height()) {

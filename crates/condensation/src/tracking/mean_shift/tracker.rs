@@ -46,6 +46,9 @@ pub struct MeanShift {
 /// Colours that stand out less are everywhere: a target of such colours is lost from the start.
 const LEAST_CONTRAST: f64 = 0.05;
 
+/// Less is too small to tell by its moments that it should grow, pixels.
+const LEAST_SIDE: f64 = 2.0;
+
 impl MeanShift {
     /// Learns the colours in the ellipse that fits into a box.
     ///
@@ -92,7 +95,9 @@ impl MeanShift {
         let Some(around) = projection.moments(&self.enlarged(window)?) else { return Ok(*window) };
         let side = |axis: usize, before: f64, len: usize| {
             let side = self.sides_per_sigma[axis] * around.sigma[axis];
-            side.clamp(before / self.params.growth, before * self.params.growth).clamp(2.0, len as f64)
+            side.clamp(before / self.params.growth, before * self.params.growth)
+                .min(len as f64)
+                .max(LEAST_SIDE)
         };
         let width = side(0, window.width(), projection.width());
         BoundingBox::from_center(window.center(), width, side(1, window.height(), projection.height()))
@@ -117,12 +122,13 @@ impl Tracker for MeanShift {
                 (projection.densest(width, height).unwrap_or(self.window), self.params.found_from)
             }
         };
-        let mut window = projection.climb(from, self.params.max_iterations, self.params.tolerance);
+        let window = projection.climb(from, self.params.max_iterations, self.params.tolerance);
         let quality = (projection.contrast(&window) / self.contrast).clamp(0.0, 1.0);
-        self.status = if quality >= enough { TrackStatus::Tracked } else { TrackStatus::Lost };
-        if self.status == TrackStatus::Tracked {
-            window = self.fitted(&projection, &window)?;
-            self.window = window;
+        if quality >= enough {
+            self.window = self.fitted(&projection, &window)?;
+            self.status = TrackStatus::Tracked;
+        } else {
+            self.status = TrackStatus::Lost;
         }
         Ok(Target { bounding_box: self.window, outline: Vec::new(), status: self.status, quality })
     }
