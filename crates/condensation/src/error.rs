@@ -83,6 +83,14 @@ pub enum CondensationError {
         /// Width and height of the picture.
         picture: (usize, usize),
     },
+    /// There is no such pixel.
+    #[error("pixel {pixel:?} is outside {size:?}")]
+    Outside {
+        /// Its column and row.
+        pixel: (usize, usize),
+        /// Width and height.
+        size: (usize, usize),
+    },
     /// A covariance cannot be used.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),

@@ -7,6 +7,7 @@
 //! | learning | [`Appearance`]: features of every state and how they answer to shift and light; [`Traverse`]; [`MoveLog`]; p-values |
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceParams::online`] |
 //! | navigation | [`Localizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
+//! | colours and masks | bins of a [`ColorSpace`], [`ColorHistogram`], [`BitMask`] with 64 pixels a word, [`MeanShift`] |
 //!
 //! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. The crate opens no files: pictures are
 //! buffers of red, green and blue.
@@ -36,4 +37,8 @@ pub use navigation::{
     ActionChoice, Arrival, Localizer, LocalizerParams, Navigator, NavigatorParams, Routes, RunReport, World,
 };
 pub use normalization::{Light, affine_match, histogram_match, light_match};
-pub use tracking::{BoundingBox, CorrelationTracker, CorrelationTrackerParams, Target, TrackStatus, Tracker};
+pub use tracking::{
+    BackProjection, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, ColorHistogram, ColorQuantizer,
+    ColorSpace, Connectivity, CorrelationTracker, CorrelationTrackerParams, Element, MeanShift,
+    MeanShiftParams, Moments, PixelRect, RowSpans, SlidingHistogram, Target, TrackStatus, Tracker,
+};

@@ -1,9 +1,17 @@
 //! A target followed from picture to picture while the light changes.
 
 mod bounding_box;
+mod color;
 mod correlation;
+mod mask;
+mod mean_shift;
+mod pixel_rect;
 mod tracker;
 
 pub use bounding_box::BoundingBox;
+pub use color::{BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram};
 pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
+pub use mask::{BitMask, Blob, Blobs, Connectivity, Element};
+pub use mean_shift::{BackProjection, MeanShift, MeanShiftParams, Moments};
+pub use pixel_rect::PixelRect;
 pub use tracker::{Target, TrackStatus, Tracker};
