@@ -30,12 +30,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ];
     for film in Film::ALL.into_iter().filter(|film| only.is_none_or(|only| only == film.name)) {
         for (name, params) in methods.iter().filter(|(name, _)| method.is_none_or(|method| method == *name)) {
-            let runs: Vec<Run> = (1..=n_seeds).map(|seed| follow(&Film { seed, incident, ..film }, params)).collect::<Result<_, _>>()?;
+            let runs: Vec<Run> = (1..=n_seeds)
+                .map(|seed| follow(&Film { seed, incident, ..film }, params))
+                .collect::<Result<_, _>>()?;
             let mean = |value: fn(&Run) -> f64| runs.iter().map(value).sum::<f64>() / runs.len() as f64;
             let worst = runs.iter().map(|run| run.overlap).fold(1.0, f64::min);
             println!(
                 "{:10} {name:14} overlap {:.3} (worst film {worst:.3}) lost {:.1} frames, wrong {:.1}, decoy inside {:.3}",
-                film.name, mean(|run| run.overlap), mean(|run| run.n_lost), mean(|run| run.n_wrong), mean(|run| run.decoy)
+                film.name,
+                mean(|run| run.overlap),
+                mean(|run| run.n_lost),
+                mean(|run| run.n_wrong),
+                mean(|run| run.decoy)
             );
         }
     }
@@ -81,19 +87,43 @@ fn follow(film: &Film, params: &ContourTrackerParams) -> Result<Run, Box<dyn std
         n_decoy += decoy.area();
         if std::env::var_os("FRAMES").is_some() {
             let m = tracker.colors().mean;
-            println!("{:4} {:.3} q {:.3} lost {} color {:.3} {:.3} {:.3} area {:.0} / {}", index + 1, overlap, target.quality, lost, m.x, m.y, m.z, found.area(), truth.area());
+            println!(
+                "{:4} {:.3} q {:.3} lost {} color {:.3} {:.3} {:.3} area {:.0} / {}",
+                index + 1,
+                overlap,
+                target.quality,
+                lost,
+                m.x,
+                m.y,
+                m.z,
+                found.area(),
+                truth.area()
+            );
         }
         if std::env::var("DUMP").is_ok_and(|every| index % every.parse::<usize>().unwrap_or(10) == 0) {
             let mut bytes = frame.picture.rgb.clone();
             let rim = found.boundary();
             for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
-                if rim.get(i % 320, i / 320) { pixel.copy_from_slice(if lost { &[255, 0, 0] } else { &[0, 255, 255] }); }
+                if rim.get(i % 320, i / 320) {
+                    pixel.copy_from_slice(if lost { &[255, 0, 0] } else { &[0, 255, 255] });
+                }
             }
-            image::save_buffer(format!("/tmp/s6/cc/{}_{}_{:03}.png", film.name, film.seed, index + 1), &bytes, 320, 240, image::ColorType::Rgb8)?;
+            image::save_buffer(
+                format!("/tmp/s6/cc/{}_{}_{:03}.png", film.name, film.seed, index + 1),
+                &bytes,
+                320,
+                240,
+                image::ColorType::Rgb8,
+            )?;
         }
     }
     let overlap = overlaps.iter().sum::<f64>() / overlaps.len() as f64;
-    Ok(Run { overlap, n_lost: n_lost as f64, n_wrong: n_wrong as f64, decoy: inside as f64 / n_decoy.max(1) as f64 })
+    Ok(Run {
+        overlap,
+        n_lost: n_lost as f64,
+        n_wrong: n_wrong as f64,
+        decoy: inside as f64 / n_decoy.max(1) as f64,
+    })
 }
 
 fn picture(frame: &Frame) -> Result<Picture, Box<dyn std::error::Error>> {

@@ -19,35 +19,34 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::env::args().skip(1).partition(|argument| argument.contains('='));
     let mut params = CorrelationTrackerParams::default();
     let mut out = None;
-    let mut verbose = false;
     for option in &options {
         let (name, value) = option.split_once('=').ok_or("name=value")?;
-        let f = || value.parse::<f64>();
+        let number = || value.parse::<f64>();
         match name {
-            "padding" => params.padding = f()?,
-            "inertia" => params.inertia = f()?,
-            "penalty" => params.penalty = f()?,
-            "width" => params.response_width = f()?,
-            "margin" => params.support_margin = f()?,
-            "color_share" => params.color_share = f()?,
-            "grey_share" => params.grey_share = f()?,
-            "color" => params.color_weight = f()?,
-            "color_rate" => params.color_rate = f()?,
+            "padding" => params.padding = number()?,
+            "response_width" => params.response_width = number()?,
+            "inertia" => params.inertia = number()?,
+            "color_share" => params.color_share = number()?,
+            "color_weight" => params.color_weight = number()?,
+            "motion_width" => params.motion_width = number()?,
             "n_scales" => params.n_scales = value.parse()?,
-            "scale_step" => params.scale_step = f()?,
-            "scale_rate" => params.scale_rate = f()?,
-            "scale_reg" => params.scale_regularization = f()?,
-            "learn" => params.learn_above = f()?,
-            "prior" => params.motion_prior = f()?,
+            "scale_step" => params.scale_step = number()?,
+            "recognize_share" => params.recognize_share = number()?,
+            "recognize_above" => params.recognize_above = number()?,
+            "forget_after" => params.forget_after = value.parse()?,
+            "learn_above" => params.learn_above = number()?,
+            "patience" => params.patience = value.parse()?,
             "out" => out = Some(PathBuf::from(value)),
-            "verbose" => verbose = true,
             _ => return Err(format!("no parameter {name}").into()),
         }
     }
-    println!("{:28} {:>6} {:>6} {:>6} {:>5} {:>5} {:>7}", "sequence", "iou", "auc", "p20", "n", "lost", "ms");
+    println!(
+        "{:28} {:>6} {:>6} {:>6} {:>5} {:>5} {:>5} {:>7}",
+        "sequence", "iou", "auc", "p20", "n", "lost", "alone", "ms"
+    );
     let mut total = [0.0; 3];
     for folder in &folders {
-        let row = follow(Path::new(folder), &params, out.as_deref(), verbose)?;
+        let row = follow(Path::new(folder), &params, out.as_deref())?;
         for i in 0..3 {
             total[i] += row[i] / folders.len() as f64;
         }
@@ -60,9 +59,8 @@ fn follow(
     folder: &Path,
     params: &CorrelationTrackerParams,
     out: Option<&Path>,
-    verbose: bool,
 ) -> Result<[f64; 3], Box<dyn Error>> {
-    let truth: Vec<BoundingBox> = fs::read_to_string(folder.join("groundtruth_rect.txt"))?
+    let truth: Vec<Option<BoundingBox>> = fs::read_to_string(folder.join("groundtruth_rect.txt"))?
         .lines()
         .map(parse)
         .collect::<Result<_, _>>()?;
@@ -72,9 +70,9 @@ fn follow(
     frames.sort();
     let mut rng = ChaCha8Rng::seed_from_u64(0);
     let mut tracker: Option<CorrelationTracker> = None;
-    let (mut overlaps, mut near, mut lost, mut seconds) = (Vec::new(), 0, 0, 0.0);
+    let (mut overlaps, mut near, mut lost, mut alone, mut seconds) = (Vec::new(), 0, 0, 0, 0.0);
     let mut lines = String::new();
-    for (path, truth) in frames.iter().zip(&truth) {
+    for (path, &truth) in frames.iter().zip(&truth) {
         let decoded = image::open(path)?.to_rgb8();
         let picture =
             Picture::from_rgb(decoded.width() as usize, decoded.height() as usize, decoded.into_raw())?;
@@ -82,8 +80,9 @@ fn follow(
         let start = Instant::now();
         let (found, status) = match &mut tracker {
             None => {
-                tracker = Some(CorrelationTracker::new(&picture, *truth, params.clone())?);
-                (*truth, TrackStatus::Tracked)
+                let first = truth.ok_or("no box in the first frame")?;
+                tracker = Some(CorrelationTracker::new(&picture, first, params.clone())?);
+                (first, TrackStatus::Tracked)
             }
             Some(tracker) => {
                 let target = tracker.track(&picture, &mut rng)?;
@@ -91,23 +90,15 @@ fn follow(
             }
         };
         seconds += start.elapsed().as_secs_f64();
-        let iou = if status == TrackStatus::Tracked { found.iou(truth) } else { 0.0 };
+        let Some(truth) = truth else {
+            alone += usize::from(status == TrackStatus::Tracked);
+            continue;
+        };
+        let iou = if status == TrackStatus::Tracked { found.iou(&truth) } else { 0.0 };
         lost += usize::from(status == TrackStatus::Lost);
         let [a, b] = [found.center(), truth.center()];
         near += usize::from(status == TrackStatus::Tracked && (a[0] - b[0]).hypot(a[1] - b[1]) <= 20.0);
         overlaps.push(iou);
-        if verbose {
-            let d = tracker.as_ref().map(|t| t.debug).unwrap_or_default();
-            println!(
-                "{:4} iou {iou:.3} {status:?} own {:.3} psr {:.2} sum {:.3} psr {:.2} color {:.3}",
-                overlaps.len(),
-                d[0],
-                d[1],
-                d[2],
-                d[3],
-                d[4]
-            );
-        }
         let corner = found.corner();
         lines += &format!(
             "{:.2},{:.2},{:.2},{:.2},{}\n",
@@ -128,17 +119,20 @@ fn follow(
     let auc = (0..=20).map(|i| share(f64::from(i) * 0.05)).sum::<f64>() / 21.0;
     let near = f64::from(near as u32) / n;
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    println!("{name:28} {iou:6.3} {auc:6.3} {near:6.3} {n:5} {lost:5} {:7.2}", 1000.0 * seconds / n);
+    println!(
+        "{name:28} {iou:6.3} {auc:6.3} {near:6.3} {n:5} {lost:5} {alone:5} {:7.2}",
+        1000.0 * seconds / n
+    );
     Ok([iou, auc, near])
 }
 
 /// Corners of such files count from 1.
-fn parse(line: &str) -> Result<BoundingBox, Box<dyn Error>> {
+fn parse(line: &str) -> Result<Option<BoundingBox>, Box<dyn Error>> {
     let numbers: Vec<f64> = line
         .split(|c: char| c == ',' || c.is_whitespace())
         .filter(|part| !part.is_empty())
         .map(str::parse)
         .collect::<Result<_, _>>()?;
     let [x, y, w, h] = numbers[..] else { return Err("four numbers a line".into()) };
-    Ok(BoundingBox::from_corner(x - 1.0, y - 1.0, w, h)?)
+    Ok(if w > 0.0 && h > 0.0 { Some(BoundingBox::from_corner(x - 1.0, y - 1.0, w, h)?) } else { None })
 }

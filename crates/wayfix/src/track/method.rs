@@ -1,8 +1,7 @@
 use clap::ValueEnum;
 use serde::Deserialize;
 use wayfix_condensation::{
-    BitMask, BoundingBox, CondensationError, ContourTracker, CorrelationTracker, CorrelationTrackerParams,
-    Picture, TrackingCues,
+    BitMask, BoundingBox, CondensationError, ContourTracker, CorrelationTracker, Picture, TrackingCues,
 };
 
 use super::{Follower, TrackParams, follower::ContourFollower};
@@ -59,7 +58,7 @@ impl Method {
         match self {
             Self::Box => {
                 let bounds = start.bounding_box()?;
-                let tracker = CorrelationTracker::new(picture, bounds, CorrelationTrackerParams::default())?;
+                let tracker = CorrelationTracker::new(picture, bounds, params.correlation.clone())?;
                 return Ok(Box::new(tracker));
             }
             Self::Contour => {}

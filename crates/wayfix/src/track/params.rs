@@ -1,5 +1,5 @@
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::ContourTrackerParams;
+use wayfix_condensation::{ContourTrackerParams, CorrelationTrackerParams};
 
 use crate::settings::over_defaults;
 
@@ -15,6 +15,8 @@ use crate::settings::over_defaults;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrackParams {
+    /// The box tracker.
+    pub correlation: CorrelationTrackerParams,
     /// The contour tracker.
     pub contour: ContourTrackerParams,
 }

@@ -15,7 +15,6 @@ pub(super) struct CorrelationFilter {
     /// Spectrum of $`y`$, real because $`y`$ is even.
     desired: Vec<f32>,
     support: Vec<f32>,
-    filter: Option<Spectrum>,
 }
 
 /// How a filter is learned.
@@ -23,9 +22,12 @@ pub(super) struct CorrelationFilter {
 pub(super) struct Learning {
     /// $`μ`$, in units of the mean energy of a frequency of the sample.
     pub(super) inertia: f32,
-    /// Weight of the agreement between the two domains, in the first and the later rounds.
-    pub(super) penalties: [f32; 2],
+    /// Weight of the agreement between the two domains, in the same units.
+    pub(super) penalty: f32,
 }
+
+/// Rounds of alternating directions; more change the filter by less than the next picture does.
+const ROUNDS: usize = 2;
 
 impl CorrelationFilter {
     /// For grids of `side` cells; `sigma` is the width of the desired response in cells, `support` is 1 on the target and 0 elsewhere.
@@ -38,7 +40,7 @@ impl CorrelationFilter {
             cell[0] = libm::exp(-0.5 * squared / (sigma * sigma)) as f32;
         }
         let desired = fourier.forward(&planes).bins.iter().map(|bin| bin.re[0]).collect();
-        Self { fourier, desired, support, filter: None }
+        Self { fourier, desired, support }
     }
 
     /// The transform the samples come from.
@@ -46,24 +48,27 @@ impl CorrelationFilter {
         &self.fourier
     }
 
-    /// How the filter answers to a sample at every shift in cells, row by row with shift zero at the top left; about 1 at the target.
-    pub(super) fn response(&self, sample: &Spectrum) -> Vec<f32> {
+    /// How a filter answers to a sample at every shift in cells, row by row with shift zero at the top left; about 1 at the target.
+    pub(super) fn response(&self, filter: &Spectrum, sample: &Spectrum) -> Vec<f32> {
         let mut sums = vec![ComplexLane::default(); self.fourier.n_bins()];
-        if let Some(filter) = &self.filter {
-            for (f, x) in filter.groups().zip(sample.groups()) {
-                for ((sum, f), x) in sums.iter_mut().zip(f).zip(x) {
-                    let [re, im] = f.dot(x);
-                    sum.re[0] += re;
-                    sum.im[0] += im;
-                }
+        for (f, x) in filter.groups().zip(sample.groups()) {
+            for ((sum, f), x) in sums.iter_mut().zip(f).zip(x) {
+                let [re, im] = f.dot(x);
+                sum.re[0] += re;
+                sum.im[0] += im;
             }
         }
         let sums = self.fourier.spectrum(sums);
         self.fourier.backward(&sums).cells.iter().map(|cell| cell[0]).collect()
     }
 
-    /// Learns a sample with the target in the middle.
-    pub(super) fn learn(&mut self, sample: &Spectrum, learning: Learning) {
+    /// The filter learned from a sample with the target in the middle, near the one before.
+    pub(super) fn learned(
+        &self,
+        before: Option<&Spectrum>,
+        sample: &Spectrum,
+        learning: Learning,
+    ) -> Spectrum {
         let n_bins = self.fourier.n_bins();
         let mut energy = vec![0.0_f32; n_bins];
         for group in sample.groups() {
@@ -71,13 +76,17 @@ impl CorrelationFilter {
                 *sum += x.energy();
             }
         }
-        let inertia = if self.filter.is_some() { learning.inertia } else { 0.0 };
-        let mut constrained = self.filter.clone();
+        let inertia = if before.is_some() { learning.inertia } else { 0.0 };
+        let mut constrained: Option<Spectrum> = before.cloned();
         let mut dual: Option<Spectrum> = None;
-        for penalty in learning.penalties {
-            let weight = inertia + penalty;
+        let penalty = learning.penalty;
+        let weight = inertia + penalty;
+        for _ in 0..ROUNDS {
             // Q = x ŷ + μ f_{t−1} + γ (g − u), and F = (Q − x (xᴴ Q) / (w + xᴴ x)) / w
-            let mut free = self.pulled(sample, constrained.as_ref(), dual.as_ref(), inertia, penalty);
+            let mut free = self.pulled(
+                sample,
+                &[(before, inertia), (constrained.as_ref(), penalty), (dual.as_ref(), -penalty)],
+            );
             let mut along = vec![[0.0_f32; 2]; n_bins];
             for (x, q) in sample.groups().zip(free.groups()) {
                 for ((sum, x), q) in along.iter_mut().zip(x).zip(q) {
@@ -97,31 +106,21 @@ impl CorrelationFilter {
             constrained = Some(self.constrain(&mut free, dual.as_ref()));
             dual = Some(free);
         }
-        self.filter = constrained;
+        constrained.expect("invariant: there is at least one round")
     }
 
-    /// $`x ŷ + μ f_{t−1} + γ (g − u)`$; without a $`g`$ yet, only the first.
-    fn pulled(
-        &self,
-        sample: &Spectrum,
-        constrained: Option<&Spectrum>,
-        dual: Option<&Spectrum>,
-        inertia: f32,
-        penalty: f32,
-    ) -> Spectrum {
+    /// $`x ŷ`$ and weighted others.
+    fn pulled(&self, sample: &Spectrum, others: &[(Option<&Spectrum>, f32)]) -> Spectrum {
         let n_bins = self.fourier.n_bins();
         let mut pulled = sample.clone();
         for (i, q) in pulled.bins.iter_mut().enumerate() {
             *q = q.scaled(self.desired[i % n_bins]);
         }
-        let mut add = |other: Option<&Spectrum>, by: f32| {
-            for (q, value) in pulled.bins.iter_mut().zip(other.into_iter().flat_map(|s| &s.bins)) {
-                *q = *q + value.scaled(by);
+        for (other, weight) in others {
+            for (q, value) in pulled.bins.iter_mut().zip(other.iter().flat_map(|s| &s.bins)) {
+                *q = *q + value.scaled(*weight);
             }
-        };
-        add(self.filter.as_ref(), inertia);
-        add(constrained, penalty);
-        add(dual, -penalty);
+        }
         pulled
     }
 

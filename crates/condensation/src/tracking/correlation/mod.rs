@@ -10,9 +10,11 @@ mod lane;
 mod params;
 mod patch;
 mod planes;
+mod recognizer;
 mod response;
 mod scale_filter;
 mod tracker;
+mod window;
 
 pub use params::CorrelationTrackerParams;
 pub use tracker::CorrelationTracker;

@@ -9,8 +9,10 @@ use crate::Picture;
 const CELL: usize = 4;
 /// Pixels of such a picture.
 const AREA: f64 = 1024.0;
+/// Keeps frequencies without energy from deciding.
+const REGULARIZATION: f32 = 0.01;
 /// Width of the desired response, in scales.
-const SIGMA: f64 = 1.0;
+const SIGMA: f64 = 1.5;
 
 /// A correlation filter over scales alone. [Danelljan et al. 2017, sec. 4.2]
 #[derive(Clone, Debug)]
@@ -22,7 +24,6 @@ pub(super) struct ScaleFilter {
     waves: Vec<Vec<[f32; 2]>>,
     desired: Vec<f32>,
     taper: Vec<f32>,
-    regularization: f32,
     /// Per frequency: $`\sum x \hat y`$ for every feature, and $`\sum |x|^2`$.
     numerator: Vec<Vec<[f32; 2]>>,
     denominator: Vec<f32>,
@@ -30,7 +31,7 @@ pub(super) struct ScaleFilter {
 
 impl ScaleFilter {
     /// `n_scales` (odd) steps of the factor `step` for a target of `target` pixels.
-    pub(super) fn new(n_scales: usize, step: f64, target: [f64; 2], regularization: f64) -> Self {
+    pub(super) fn new(n_scales: usize, step: f64, target: [f64; 2]) -> Self {
         let middle = (n_scales / 2) as i32;
         let factors = (0..n_scales).map(|i| step.powi(i as i32 - middle)).collect();
         let wave = |k: usize| {
@@ -59,7 +60,6 @@ impl ScaleFilter {
             waves,
             desired,
             taper: (0..n_scales).map(|s| hann(s) as f32).collect(),
-            regularization: regularization as f32,
             numerator: Vec::new(),
             denominator: Vec::new(),
         }
@@ -111,7 +111,7 @@ impl ScaleFilter {
             re += f[0] * x[0] + f[1] * x[1];
             im += f[0] * x[1] - f[1] * x[0];
         }
-        let energy = self.denominator[k] + self.regularization;
+        let energy = self.denominator[k] + REGULARIZATION;
         [re / energy, im / energy]
     }
 
