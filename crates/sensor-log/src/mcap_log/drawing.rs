@@ -155,4 +155,17 @@ mod tests {
         assert!((outline[0][0] - (center[0] + a * angle.cos())).abs() < 1e-12);
         assert!((outline[0][1] - (center[1] + a * angle.sin())).abs() < 1e-12);
     }
+
+    #[test]
+    fn an_outline_in_an_image_is_closed_and_keeps_its_pixels() {
+        let points = vec![[0.0, 0.0], [320.0, 0.0], [160.5, 240.0]];
+        let outline = ImageOutline { color: [1.0, 0.5, 0.0, 1.0], points: points.clone() };
+        let message = image_annotations(Timestamp::new(1, 5), &[outline]);
+        let [annotation] = &message.points[..] else { panic!("one outline") };
+        assert_eq!(annotation.r#type, points_annotation::Type::LineLoop as i32);
+        let corners: Vec<[f64; 2]> = annotation.points.iter().map(|point| [point.x, point.y]).collect();
+        assert_eq!(corners, points);
+        assert_eq!(message.timestamp, annotation.timestamp);
+        assert!(image_annotations(Timestamp::new(1, 5), &[]).points.is_empty(), "nothing to draw is a message too");
+    }
 }

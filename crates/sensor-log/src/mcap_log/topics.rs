@@ -22,6 +22,8 @@
 //!
 //! With every scan, [`SCAN_POINTS`] has the beams that came back as a `foxglove.PointCloud`, for viewers that draw no scans.
 //!
+//! [`TARGET`] has outlines that a tracker saw in the image of the same stamp, as `foxglove.ImageAnnotations`; it is not read back.
+//!
 //! A metadata record `wayfix` with the key `origin` names the format that the records come from, when it was another one.
 //!
 //! `docs/adr/0002-mcap-topics.md` gives the reasons.
