@@ -9,7 +9,7 @@ pub enum Incident {
     None,
     /// A lath passes before the target and hides about a third of it.
     PartlyHidden,
-    /// A board passes before the target and hides all of it for a quarter of a second.
+    /// A board passes before the target and hides all of it for a fifth of a second or more.
     Hidden,
     /// The target leaves the picture, is away for more than half a second, and comes back.
     Away,

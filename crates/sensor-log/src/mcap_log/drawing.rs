@@ -166,6 +166,9 @@ mod tests {
         let corners: Vec<[f64; 2]> = annotation.points.iter().map(|point| [point.x, point.y]).collect();
         assert_eq!(corners, points);
         assert_eq!(message.timestamp, annotation.timestamp);
-        assert!(image_annotations(Timestamp::new(1, 5), &[]).points.is_empty(), "nothing to draw is a message too");
+        assert!(
+            image_annotations(Timestamp::new(1, 5), &[]).points.is_empty(),
+            "nothing to draw is a message too"
+        );
     }
 }

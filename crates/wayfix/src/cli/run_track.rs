@@ -18,7 +18,7 @@ use super::{
 use crate::{
     report::Run,
     system::{Stopwatch, System},
-    track::{self, Method, TrackLog, TrackParams, TrackSystem, TrueBoxes, parse_box},
+    track::{self, Method, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
 };
 
 /// Tracking: where a target is in every picture, from where it is in the first one.
@@ -109,13 +109,14 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let stopwatch = Stopwatch::start();
     let init = arguments.init.map(|init| init.0);
-    let system = TrackSystem::new(arguments.method, params, init, truth, rate_hz, arguments.seed);
+    let setup = TrackSetup { method: arguments.method, params, init, truth, rate_hz };
+    let system = TrackSystem::new(setup, arguments.seed);
     let bar = progress::counter("tracking");
     let track = track::run(system, &mut log, |system, record| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
-        bar.inc(1);
+        bar.set_position(system.n_frames() as u64);
     });
     bar.finish_and_clear();
     if !log.report().is_clean() {

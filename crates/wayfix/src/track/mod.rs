@@ -42,5 +42,5 @@ pub use pictures::pictures;
 pub use run::{TrackRun, run};
 pub use score::Score;
 pub use story::Story;
-pub use system::{FrameResult, TrackSystem};
+pub use system::{FrameResult, TrackSetup, TrackSystem};
 pub use truth::{TrueBoxes, Truth, parse_box};

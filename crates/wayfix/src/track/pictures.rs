@@ -2,7 +2,7 @@ use super::{Story, TargetColors, follower::axis_names, story::Point};
 use crate::plot::{EllipsesPlot, FilmFrame, FilmStrip, LinesPlot, NamedEllipse, Picture, PlotError, Series};
 
 /// Frames of the film beside each other.
-const FRAMES_A_ROW: usize = 4;
+const FRAMES_A_ROW: usize = 3;
 
 /// Frames with the target drawn in, the overlap with the truth over the frames, and the path of the target's colour where it is known.
 ///

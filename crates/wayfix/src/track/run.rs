@@ -1,4 +1,4 @@
-use wayfix_sensor_log::{Log, ProblemKind, Record};
+use wayfix_sensor_log::{Data, Log, ProblemKind, Record};
 
 use super::{Story, TrackError, TrackSystem};
 use crate::system::{System, stream};
@@ -23,7 +23,8 @@ pub fn run(
     let mut story = Story::default();
     let mut kept = Ok(());
     stream(&mut system, log.by_ref(), |system, record| {
-        if let (Ok(()), Some(frame)) = (&kept, system.frame()) {
+        // Other records leave the frame as it was.
+        if let (Ok(()), Data::Image(_), Some(frame)) = (&kept, &record.data, system.frame()) {
             kept = story.observe(frame);
         }
         observe(system, record);

@@ -12,11 +12,7 @@ use crate::system::{Events, Stopwatch, System};
 /// It begins in the first frame that can be read, with the box it is given, or else with the first true box. A frame that cannot be read or is refused has no
 /// estimate: where the truth is known it counts with overlap 0, like a frame in which the tracker says that it has lost the target.
 pub struct TrackSystem {
-    method: Method,
-    params: TrackParams,
-    init: Option<BoundingBox>,
-    truth: TrueBoxes,
-    rate_hz: Option<f64>,
+    setup: TrackSetup,
     rng: ChaCha8Rng,
     tracker: Option<Box<dyn Follower>>,
     failure: Option<TrackError>,
@@ -26,6 +22,21 @@ pub struct TrackSystem {
     score: Score,
     totals: Totals,
     events: Events,
+}
+
+/// Which tracker follows what.
+#[derive(Clone, Debug, Default)]
+pub struct TrackSetup {
+    /// The tracker.
+    pub method: Method,
+    /// Its parameters.
+    pub params: TrackParams,
+    /// Where the target is in the first frame; `None` is in its first true box.
+    pub init: Option<BoundingBox>,
+    /// Where it truly is.
+    pub truth: TrueBoxes,
+    /// Frames a second of a folder, whose stamps tell the number of each frame; without it frames are counted.
+    pub rate_hz: Option<f64>,
 }
 
 /// What one frame gave.
@@ -61,22 +72,9 @@ pub(super) struct Totals {
 
 impl TrackSystem {
     /// A system that has seen nothing yet.
-    ///
-    /// `rate_hz` are the frames a second of a folder, whose stamps tell the number of each frame; without it frames are counted.
-    pub fn new(
-        method: Method,
-        params: TrackParams,
-        init: Option<BoundingBox>,
-        truth: TrueBoxes,
-        rate_hz: Option<f64>,
-        seed: u64,
-    ) -> Self {
+    pub fn new(setup: TrackSetup, seed: u64) -> Self {
         Self {
-            method,
-            params,
-            init,
-            truth,
-            rate_hz,
+            setup,
             rng: ChaCha8Rng::seed_from_u64(seed),
             tracker: None,
             failure: None,
@@ -101,7 +99,7 @@ impl TrackSystem {
 
     /// What is known of the target.
     pub fn truth(&self) -> &TrueBoxes {
-        &self.truth
+        &self.setup.truth
     }
 
     /// How many frames there were so far, with those that could not be read.
@@ -133,7 +131,7 @@ impl TrackSystem {
     /// Counts the next frame as one without an estimate.
     fn without_estimate(&mut self) {
         self.last = None;
-        if let (true, Truth::At(truth)) = (self.has_begun(), self.truth.at(self.next_index)) {
+        if let (true, Truth::At(truth)) = (self.has_begun(), self.setup.truth.at(self.next_index)) {
             self.score.add(None, &truth);
         }
         self.totals.n_without_estimate += 1;
@@ -141,7 +139,7 @@ impl TrackSystem {
     }
 
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
-        if let Some(rate_hz) = self.rate_hz {
+        if let Some(rate_hz) = self.setup.rate_hz {
             self.pass_over((stamp.nanoseconds() as f64 * 1e-9 * rate_hz).round() as usize);
         }
         match self.follow(image) {
@@ -155,6 +153,7 @@ impl TrackSystem {
                 Ok(())
             }
             Err(reason) => {
+                let reason = format!("frame {}: {reason}", self.next_index);
                 self.without_estimate();
                 Err(reason)
             }
@@ -174,8 +173,10 @@ impl TrackSystem {
             let target = tracker.follow(&picture, &mut self.rng).map_err(|error| error.to_string())?;
             return Ok(Some((picture, target, stopwatch.elapsed())));
         }
-        let Some(init) = self.init.or(self.truth.at(self.next_index).target()) else { return Ok(None) };
-        match self.method.begin(&self.params, &picture, &Start::Box(init)) {
+        let Some(init) = self.setup.init.or(self.setup.truth.at(self.next_index).target()) else {
+            return Ok(None);
+        };
+        match self.setup.method.begin(&self.setup.params, &picture, &Start::Box(init)) {
             Ok(tracker) => self.tracker = Some(tracker),
             Err(source) => {
                 let ([x, y], w, h) = (init.corner(), init.width(), init.height());
@@ -191,7 +192,7 @@ impl TrackSystem {
 
     fn account(&mut self, stamp: Stamp, picture: Picture, target: Target, step: Duration) {
         let index = self.next_index;
-        let truth = self.truth.at(index);
+        let truth = self.setup.truth.at(index);
         let lost = target.status == TrackStatus::Lost;
         let estimate = (!lost).then_some(&target.bounding_box);
         if let Truth::At(truth) = &truth {

@@ -8,7 +8,7 @@ use wayfix_sensor_log::{Format, OpenOptions};
 use super::super::Job;
 use crate::{
     report::Run,
-    track::{self, Method, TrackLog, TrackParams, TrackSystem, TrueBoxes, films},
+    track::{self, Method, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, films},
 };
 
 /// What the plan says of a run.
@@ -87,8 +87,9 @@ fn recording(job: &Job<'_>, settings: &Settings) -> Result<Run> {
     let truth = settings.truth.as_ref().context("a recording needs `truth`")?;
     let truth = TrueBoxes::read(&job.recording(truth)?)?;
     let method = *settings.methods.first().context("give `methods`")?;
-    let (rate_hz, seed) = (Some(options.frame_rate_hz), job.options.seed);
-    let system = TrackSystem::new(method, TrackParams::default(), None, truth, rate_hz, seed);
+    let rate_hz = Some(options.frame_rate_hz);
+    let setup = TrackSetup { method, truth, rate_hz, ..TrackSetup::default() };
+    let system = TrackSystem::new(setup, job.options.seed);
     let (name, path) = job.estimates();
     let mut estimates = TrackLog::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
     let mut run = track::run(system, &mut log, |system, record| estimates.observe(record, system))?;

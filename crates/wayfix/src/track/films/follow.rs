@@ -39,6 +39,7 @@ pub fn follow(
             let stopwatch = Stopwatch::start();
             let target = tracker.follow(&picture, &mut rngs[k])?;
             let step = stopwatch.elapsed();
+            let n_judged = scores[k].iou.len();
             scores[k].add(&target, &frame)?;
             if k == 0 {
                 observe(&FrameResult {
@@ -47,7 +48,7 @@ pub fn follow(
                     picture: picture.clone(),
                     target,
                     truth: bounds(&frame.target).map_or(Truth::Absent, Truth::At),
-                    iou: scores[0].iou.last().copied(),
+                    iou: scores[0].iou.get(n_judged).copied(),
                     colors: tracker.colors(),
                     step,
                 })?;
