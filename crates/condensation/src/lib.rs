@@ -39,6 +39,7 @@ pub use navigation::{
 pub use normalization::{Light, affine_match, histogram_match, light_match};
 pub use tracking::{
     BackProjection, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, ColorHistogram, ColorQuantizer,
-    ColorSpace, Connectivity, CorrelationTracker, CorrelationTrackerParams, Element, MeanShift,
-    MeanShiftParams, Moments, PixelRect, RowSpans, SlidingHistogram, Target, TrackStatus, Tracker,
+    ColorSpace, Connectivity, CorrelationTracker, CorrelationTrackerParams, Element, HeadTracker,
+    HeadTrackerParams, LocalScale, MeanShift, MeanShiftParams, Moments, PixelRect, RowSpans, ScaleSource,
+    SlidingHistogram, Target, TrackStatus, Tracker,
 };

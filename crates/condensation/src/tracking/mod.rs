@@ -3,6 +3,7 @@
 mod bounding_box;
 mod color;
 mod correlation;
+mod head;
 mod mask;
 mod mean_shift;
 mod pixel_rect;
@@ -11,6 +12,7 @@ mod tracker;
 pub use bounding_box::BoundingBox;
 pub use color::{BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram};
 pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
+pub use head::{HeadTracker, HeadTrackerParams, LocalScale, ScaleSource};
 pub use mask::{BitMask, Blob, Blobs, Connectivity, Element};
 pub use mean_shift::{BackProjection, MeanShift, MeanShiftParams, Moments};
 pub use pixel_rect::PixelRect;
