@@ -12,8 +12,9 @@ use harness::measure;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_condensation::{
-    BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, Connectivity, Element, MeanShift,
-    MeanShiftParams, Picture, PixelRect, RowSpans, SlidingHistogram, Tracker,
+    BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, Connectivity, CorrelationTracker,
+    CorrelationTrackerParams, Element, HeadTracker, HeadTrackerParams, MeanShift, MeanShiftParams, Picture,
+    PixelRect, RowSpans, SlidingHistogram, Tracker,
 };
 
 const SIZE: (usize, usize) = (320, 240);
@@ -48,6 +49,12 @@ fn main() {
         MeanShift::start(&picture, &start, MeanShiftParams::default()).expect("a box in the picture");
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     measure("track mean shift", 300, || tracker.track(&picture, &mut rng));
+    let mut tracker = CorrelationTracker::new(&picture, start, CorrelationTrackerParams::default())
+        .expect("a disc that stands out");
+    measure("track correlation", 50, || tracker.track(&picture, &mut rng));
+    let mut tracker =
+        HeadTracker::new(&picture, start, HeadTrackerParams::default()).expect("a box in the picture");
+    measure("track head", 50, || tracker.track(&picture, &mut rng));
 }
 
 /// Intersections of the histograms of windows of 60 × 60 with that of the target, 8 × 8 bins of hue and saturation; from the pixels on.

@@ -5,6 +5,7 @@ mod color;
 mod contour;
 mod correlation;
 mod distribution;
+mod head;
 mod mask;
 mod mean_shift;
 mod pixel_rect;
@@ -19,6 +20,7 @@ pub use distribution::{
     COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorVector, ColorWarp, LearnedDynamics,
     PrincipalColors,
 };
+pub use head::{HeadTracker, HeadTrackerParams, LocalScale, ScaleSource};
 pub use mask::{BitMask, Blob, Blobs, Connectivity, Element};
 pub use mean_shift::{BackProjection, MeanShift, MeanShiftParams, Moments};
 pub use pixel_rect::PixelRect;

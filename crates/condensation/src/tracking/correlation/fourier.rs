@@ -54,13 +54,11 @@ impl Stage {
         let n_left = from.len() / (done * radix);
         for j in 0..n_left {
             for k in 0..done {
-                let turns = &self.turns[k * radix..(k + 1) * radix];
-                let part = |s: usize| from[(j + n_left * s) * done + k].turned(turns[s]);
-                let first = from[j * done + k];
+                let first = self.part(from, j, k, 0);
                 let at = j * done * radix + k;
                 match radix {
                     4 => {
-                        let (a, b, c) = (part(1), part(2), part(3));
+                        let [a, b, c] = [1, 2, 3].map(|s| self.part(from, j + n_left * s, k, s));
                         let (even, odd) = (first + b, first - b);
                         let (sum, difference) = (a + c, (a - c).over_i());
                         to[at] = even + sum;
@@ -69,7 +67,7 @@ impl Stage {
                         to[at + 3 * done] = odd - difference;
                     }
                     3 => {
-                        let (a, b) = (part(1), part(2));
+                        let [a, b] = [1, 2].map(|s| self.part(from, j + n_left * s, k, s));
                         let sum = a + b;
                         let middle = ComplexLane {
                             re: lane(|c| first.re[c] - 0.5 * sum.re[c]),
@@ -81,13 +79,20 @@ impl Stage {
                         to[at + 2 * done] = middle - difference;
                     }
                     _ => {
-                        let a = part(1);
+                        let a = self.part(from, j + n_left, k, 1);
                         to[at] = first + a;
                         to[at + done] = first - a;
                     }
                 }
             }
         }
+    }
+
+    /// Frequency `k` of the `s`-th transform to be joined, `j` being its place; frequency 0 needs no turn.
+    #[inline(always)]
+    fn part(&self, from: &[ComplexLane], j: usize, k: usize, s: usize) -> ComplexLane {
+        let value = from[j * self.done + k];
+        if k == 0 || s == 0 { value } else { value.turned(self.turns[k * self.radix + s]) }
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn gradient_channels(patch: &Patch, cell: usize) -> Vec<[f32; N_GRADI
     channels
 }
 
-/// Energy of a block below which its orientations are noise: gradients of about one grey level.
+/// Energy of a block below which its orientations are noise: gradients of about two grey levels.
 const NOISE: f32 = 400.0;
 
 fn normalize(histogram: &[f32; N_SIGNED], blocks: [f32; 4], channels: &mut [f32; N_GRADIENT]) {
@@ -59,6 +59,7 @@ fn normalize(histogram: &[f32; N_SIGNED], blocks: [f32; 4], channels: &mut [f32;
 fn orientation_histograms(patch: &Patch, cell: usize, columns: usize, rows: usize) -> Vec<[f32; N_SIGNED]> {
     let mut histograms = vec![[0.0; N_SIGNED]; columns * rows];
     let (width, height) = (columns * cell, rows * cell);
+    let sides: Vec<_> = (0..width).map(|x| neighbours(x, cell, columns)).collect();
     for y in 0..height {
         let (up, down) = (y.saturating_sub(1), (y + 1).min(patch.height - 1));
         let (top, bottom) = neighbours(y, cell, rows);
@@ -71,10 +72,11 @@ fn orientation_histograms(patch: &Patch, cell: usize, columns: usize, rows: usiz
                 continue;
             }
             let turn = angle(gx, gy) * (N_SIGNED as f32 / (2.0 * PI));
-            let (low, share) = (turn as usize, turn - turn.floor());
-            let (low, high) = (low % N_SIGNED, (low + 1) % N_SIGNED);
+            let whole = turn as usize;
+            let share = turn - whole as f32;
+            let (low, high) = (whole % N_SIGNED, (whole + 1) % N_SIGNED);
             for (row, row_share) in [top, bottom] {
-                let (west, east) = neighbours(x, cell, columns);
+                let (west, east) = sides[x];
                 for (column, column_share) in [west, east] {
                     let histogram = &mut histograms[row * columns + column];
                     let weight = magnitude * row_share * column_share;
@@ -91,8 +93,9 @@ fn orientation_histograms(patch: &Patch, cell: usize, columns: usize, rows: usiz
 #[inline(always)]
 fn neighbours(pixel: usize, cell: usize, n_cells: usize) -> ((usize, f32), (usize, f32)) {
     let at = (pixel as f32 + 0.5) / cell as f32 + 0.5; // in cells, one too many so that it is positive
-    let (whole, share) = (at as usize, at - at.floor());
-    (((whole.max(1) - 1), 1.0 - share), (whole.min(n_cells - 1), share))
+    let whole = at as usize;
+    let share = at - whole as f32;
+    ((whole.max(1) - 1, 1.0 - share), (whole.min(n_cells - 1), share))
 }
 
 #[inline(always)]

@@ -191,8 +191,9 @@ impl CorrelationTracker {
     }
 
     fn recognized(&self, evidence: Evidence) -> bool {
-        evidence.standing_out > self.params.recognize_above
-            && evidence.value > self.params.recognize_share * self.usual
+        // a lost target has changed more since it was learned, and nothing is given up for it
+        let share = self.params.recognize_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
+        evidence.standing_out > self.params.recognize_above && evidence.value > share * self.usual
     }
 
     fn learn(&mut self, picture: &Picture, sight: &Sight, evidence: Evidence, trust: Evidence) {
