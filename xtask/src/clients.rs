@@ -43,7 +43,8 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
+/// Whether a program is there; what is missing is an error where CI requires it.
+pub(crate) fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
     let required = std::env::var("CI").is_ok_and(|value| value == "true");
     if !found && required {
         bail!("{what} is missing, and CI=true requires it ({remedy})");

@@ -1,6 +1,7 @@
 //! The workspace's tasks, one file each; every task shells out to the tools that do the work.
 
 mod bench;
+mod campaign;
 mod ci;
 mod clients;
 mod docs;
@@ -22,6 +23,7 @@ Usage: cargo xtask TASK [OPTIONS]
   tidy               check the invariants of docs/architecture.md that a machine can check
   docs [PACKAGE…]    build the API reference with formulas; --open shows it
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
+  campaign           run the recipe for GNU parallel of docs/campaigns
   clients [DIR]      read the report and the logs in DIR (default target/regress) with other people's programs
 ";
 
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
         "docs" => docs::run(&args),
         "bench" => bench::run(&args),
         "clients" => clients::run(&args),
+        "campaign" => campaign::run(&args),
         "" | "help" | "--help" | "-h" => {
             print!("{HELP}");
             Ok(ExitCode::SUCCESS)

@@ -7,6 +7,7 @@
 //! | learning | [`Appearance`]: features of every state and how they answer to shift and light; [`Traverse`]; [`MoveLog`]; p-values |
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceParams::online`] |
 //! | navigation | [`Localizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
+//! | colours and masks | bins of a [`ColorSpace`], [`ColorHistogram`], [`BitMask`] with 64 pixels a word, [`MeanShift`] |
 //!
 //! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. The crate opens no files: pictures are
 //! buffers of red, green and blue.
@@ -37,9 +38,10 @@ pub use navigation::{
 };
 pub use normalization::{Light, affine_match, histogram_match, light_match};
 pub use tracking::{
-    AffineMap, AffineSnake, Agreement, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, COLOR_DIM,
-    ColorCloud, ColorDynamics, ColorEdges, ColorHistogram, ColorQuantizer, ColorSpace, ColorState,
-    ColorVector, ColorWarp, Connectivity, ContourTracker, ContourTrackerParams, EdgeSearch, Element,
-    LearnedDynamics, MaskEdges, Outline, PixelRect, PrincipalColors, RowSpans, SlidingHistogram, SnakeFit,
-    SnakeParams, Target, TrackStatus, Tracker, TrackingCues,
+    AffineMap, AffineSnake, Agreement, BackProjection, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox,
+    COLOR_DIM, ColorCloud, ColorDynamics, ColorEdges, ColorHistogram, ColorQuantizer, ColorSpace, ColorState,
+    ColorVector, ColorWarp, Connectivity, ContourTracker, ContourTrackerParams, CorrelationTracker,
+    CorrelationTrackerParams, EdgeSearch, Element, LearnedDynamics, MaskEdges, MeanShift, MeanShiftParams,
+    Moments, Outline, PixelRect, PrincipalColors, RowSpans, SlidingHistogram, SnakeFit, SnakeParams, Target,
+    TrackStatus, Tracker, TrackingCues,
 };

@@ -19,6 +19,6 @@ pub mod topics;
 mod vehicle;
 mod writer;
 
-pub use drawing::{Drawing, Shape};
+pub use drawing::{Drawing, ImageOutline, Shape};
 pub(crate) use reader::McapRecords;
 pub use writer::McapWriter;

@@ -83,7 +83,8 @@ impl BinSet {
         self.words.iter().enumerate().flat_map(|(i, &word)| ones(word).map(move |bit| (64 * i + bit) as u16))
     }
 
-    /// The set and all bins that touch it, also at edges and corners; hues go round.
+    /// The set and all bins that touch it, also at edges and corners; hues go round. The quantizer is the one whose
+    /// bins they are.
     pub fn dilated(&self, quantizer: &ColorQuantizer) -> Self {
         let mut set = self.clone();
         for axis in 0..3 {

@@ -19,8 +19,16 @@ use crate::error::checked;
 #[derive(Clone, Debug)]
 pub struct ColorQuantizer {
     space: ColorSpace,
-    bins: [usize; 3],
+    axes: [Axis; 3],
     tables: Tables,
+}
+
+/// How a coordinate becomes part of an index, in 32 bits, since conversion to 64 takes several instructions.
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    n: f64,
+    last: u32,
+    stride: u32,
 }
 
 /// Where an axis is a function of one small whole number, its bins are looked up: one cache line or two per pixel instead of divisions.
@@ -49,7 +57,12 @@ impl ColorQuantizer {
         }
         let n_bins = bins.iter().product::<usize>();
         checked("bins of a colour space", n_bins as f64, n_bins <= 65536, "at most 65536")?;
-        let mut quantizer = Self { space, bins, tables: Tables::None };
+        let axis = |axis: usize| Axis {
+            n: bins[axis] as f64,
+            last: bins[axis] as u32 - 1,
+            stride: bins[axis + 1..].iter().product::<usize>() as u32,
+        };
+        let mut quantizer = Self { space, axes: [0, 1, 2].map(axis), tables: Tables::None };
         quantizer.tables = quantizer.tables();
         Ok(quantizer)
     }
@@ -61,12 +74,12 @@ impl ColorQuantizer {
 
     /// Bins of each axis.
     pub fn bins(&self) -> [usize; 3] {
-        self.bins
+        self.axes.map(|axis| axis.last as usize + 1)
     }
 
     /// Bins of all axes together.
     pub fn n_bins(&self) -> usize {
-        self.bins.iter().product()
+        self.bins().iter().product()
     }
 
     /// The bin of an 8-bit colour, that of its point in the space.
@@ -92,14 +105,13 @@ impl ColorQuantizer {
 
     /// The place of a bin on each axis.
     pub fn axes_of_bin(&self, bin: u16) -> [usize; 3] {
-        let bin = usize::from(bin);
-        [bin / (self.bins[1] * self.bins[2]), bin / self.bins[2] % self.bins[1], bin % self.bins[2]]
+        self.axes.map(|Axis { last, stride, .. }| (u32::from(bin) / stride % (last + 1)) as usize)
     }
 
     /// The point in the middle of a bin.
     pub fn center_of_bin(&self, bin: u16) -> [f64; 3] {
         let axes = self.axes_of_bin(bin);
-        [0, 1, 2].map(|axis| (axes[axis] as f64 + 0.5) / self.bins[axis] as f64)
+        [0, 1, 2].map(|axis| (axes[axis] as f64 + 0.5) / self.axes[axis].n)
     }
 
     /// The bins of many pixels; `bins` is as long as `pixels`.
@@ -130,9 +142,8 @@ impl ColorQuantizer {
     /// What a coordinate adds to the index of the bin. Conversion to integers saturates, which cuts to the range.
     #[inline]
     fn offset(&self, axis: usize, x: f64) -> u16 {
-        let n = self.bins[axis];
-        let stride: usize = self.bins[axis + 1..].iter().product();
-        (((x * n as f64) as usize).min(n - 1) * stride) as u16
+        let Axis { n, last, stride } = self.axes[axis];
+        (((x * n) as u32).min(last) * stride) as u16
     }
 
     fn tables(&self) -> Tables {
@@ -158,7 +169,7 @@ impl ColorQuantizer {
 /// Two quantizers are the same when they divide the same space alike; the tables follow from that.
 impl PartialEq for ColorQuantizer {
     fn eq(&self, other: &Self) -> bool {
-        self.space == other.space && self.bins == other.bins
+        self.space == other.space && self.bins() == other.bins()
     }
 }
 

@@ -30,10 +30,9 @@ pub struct SlidingHistogram<'a> {
 impl<'a> SlidingHistogram<'a> {
     /// Counts the pixels of a shape whose centre is in column and row `center`.
     pub fn new(image: &'a BinImage, spans: RowSpans, center: [i64; 2]) -> Self {
-        let mut histogram = ColorHistogram::of_size(image.n_bins());
-        for v in spans.rows_within(center, image.height()) {
-            histogram.add(&image.row(v)[spans.columns_within(center, v, image.width())]);
-        }
+        let rows = spans.rows_within(center, image.height());
+        let covered = rows.map(|v| &image.row(v)[spans.columns_within(center, v, image.width())]);
+        let histogram = ColorHistogram::counted(image.n_bins(), covered);
         Self { image, spans, center, histogram }
     }
 
