@@ -3,6 +3,7 @@
 mod agreement;
 mod candidate;
 mod each;
+mod history;
 mod params;
 mod reference;
 mod refine;

@@ -45,6 +45,9 @@ pub struct ContourTrackerParams {
     /// A bin is the target's if it is this many times as frequent among the predicted colours as around the target; 0 takes every bin with
     /// a colour in it, as the paper does. Default 1.
     pub background_odds: f64,
+    /// How much the colours of before still count in the set of colours, carried along with the change of light: a part of the target that
+    /// one contour missed is not forgotten at once. 0 forgets them, as the paper does. Default 0.8.
+    pub color_memory: f64,
     /// Most points in a colour set. Default 512.
     pub max_colors: usize,
     /// $`μ_1, μ_2, μ_3`$: what the affine similarity, the area and the Euler number count. Default 1, 1, 0.5.
@@ -53,6 +56,9 @@ pub struct ContourTrackerParams {
     pub sigma: f64,
     /// $`μ`$ of the predicted area, how much of its change goes on. Default 0.5.
     pub area_gain: f64,
+    /// How much the mean area of the last seconds counts in the predicted area, against a contour that shrinks or grows step by step; 0 is
+    /// the paper's. Default 0.3.
+    pub area_memory: f64,
     /// An Euler number this far from 1 makes a segmentation worthless. Default 10.
     pub euler_range: f64,
     /// Radius of closing and opening in pixels; 0 leaves the segmentation as it is. Default 1.
@@ -65,9 +71,9 @@ pub struct ContourTrackerParams {
     pub edge_contrast: f64,
     /// Below this quality the target is lost. Default 0.6.
     pub lost_below: f64,
-    /// From this quality on it is found again. Default 0.75.
+    /// From this quality on it is found again. Default 0.8.
     pub found_above: f64,
-    /// Hypotheses about the colours when the whole picture is searched. Default 12.
+    /// Hypotheses about the colours when the whole picture is searched. Default 25.
     pub n_search_samples: usize,
 }
 
@@ -83,23 +89,39 @@ impl Default for ContourTrackerParams {
             damping: 0.5,
             noise: [0.015, 0.015, 0.015, 0.006, 0.006, 0.006, 0.05, 0.05],
             background_odds: 1.0,
+            color_memory: 0.8,
             max_colors: 512,
             mu: [1.0, 1.0, 0.5],
             sigma: 0.15,
             area_gain: 0.5,
+            area_memory: 0.3,
             euler_range: 10.0,
             morphology_radius: 1,
             snake: SnakeParams::default(),
             band_radius: 2,
             edge_contrast: 20.0,
             lost_below: 0.6,
-            found_above: 0.75,
-            n_search_samples: 12,
+            found_above: 0.8,
+            n_search_samples: 25,
         }
     }
 }
 
 impl ContourTrackerParams {
+    /// The method as it was published: no model of the background, no memory of colours and areas, samples only from samples, in bins as large
+    /// as the dynamics and a hundred samples can fill.
+    pub fn as_published() -> Self {
+        Self {
+            background_odds: 0.0,
+            color_memory: 0.0,
+            area_gain: 1.0,
+            area_memory: 0.0,
+            anchored_share: 0.0,
+            bins: [16; 3],
+            ..Self::default()
+        }
+    }
+
     /// # Errors
     /// [`CondensationError::Parameter`] with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), CondensationError> {
@@ -111,6 +133,8 @@ impl ContourTrackerParams {
         count("n_search_samples", self.n_search_samples, 1_000_000)?;
         for (what, value) in [
             ("anchored_share", self.anchored_share),
+            ("color_memory", self.color_memory),
+            ("area_memory", self.area_memory),
             ("lost_below", self.lost_below),
             ("found_above", self.found_above),
         ] {

@@ -45,6 +45,11 @@ impl Samples {
         Ok(states)
     }
 
+    /// The samples one picture later, when there was nothing to weigh them by: they spread.
+    pub(super) fn drift<R: Rng + ?Sized>(&mut self, dynamics: &ColorDynamics, rng: &mut R) {
+        self.particles.propagate(|state, rng| *state = dynamics.propagate(state, rng), rng);
+    }
+
     /// The samples after weighing.
     pub(super) fn weighed(
         &self,

@@ -43,7 +43,7 @@ impl<'a> Scene<'a> {
             expected.dilated(Element::Square { radius: (0.25 * radius).max(LEAST_MARGIN / 2.0) as usize });
         let mut background = region.shares(&near.not());
         background.iter_mut().for_each(|share| *share *= params.background_odds as f32);
-        let expected_area = reference.expected_area(params.area_gain);
+        let expected_area = reference.expected_area(params.area_gain, params.area_memory);
         Ok(Some(Self {
             params,
             quantizer,

@@ -27,7 +27,7 @@ impl<'a> Scene<'a> {
             region,
             start: *reference.snake.map(),
             expected: everywhere,
-            expected_area: reference.areas[0],
+            expected_area: reference.steady_area,
             background,
         })
     }

@@ -10,6 +10,9 @@ const N_ELLIPSE: usize = 80;
 /// The blob in a box must agree with it that well (intersection over union of the boxes) to be the target.
 const LEAST_IOU: f64 = 0.75;
 
+/// Half the width of limbs that are no part of the body, in sides of the box.
+const LIMB: f64 = 0.08;
+
 /// It must fill so much of its convex hull to be a body with some notches, which a few colours that the target shares with what is
 /// behind it leave; and so much not to have any.
 const LEAST_SOLIDITY: f64 = 0.75;
@@ -33,11 +36,13 @@ pub(super) fn outline_in_box(
     let inner = region.shares(&region.inside(ellipse.points())?);
     let outer = region.shares(&box_mask.dilated(Element::Square { radius: 2 }).not());
     let set = BinSet::from_fn(quantizer, |bin| inner[usize::from(bin)] > outer[usize::from(bin)]);
-    let smooth = |mask: BitMask| {
-        let (wide, narrow) = (Element::Square { radius: 2 }, Element::Square { radius: 1 });
-        mask.closed(wide).opened(narrow)
-    };
-    let blobs = smooth(region.segment(&set).and(&box_mask)?).blobs(Connectivity::Eight);
+    // Closes small gaps in the colours of the target and cuts off what is thin beside it.
+    let limb = (LIMB * (bounds.width() * bounds.height()).sqrt()).max(1.0) as usize;
+    let closed = region.segment(&set).and(&box_mask)?.closed(Element::Square { radius: 2 });
+    let blobs = closed
+        .without_holes(Connectivity::Eight)
+        .opened(Element::Square { radius: limb })
+        .blobs(Connectivity::Eight);
     let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
     let body = blob.and_then(|mask| Outline::of_mask(&mask, region.rect.corner())).and_then(without_notches);
     Ok(body.filter(|body| body.bounding_box().iou(bounds) >= LEAST_IOU).unwrap_or(ellipse))

@@ -2,6 +2,7 @@ use rand::Rng;
 
 use super::candidate::Candidate;
 use super::each::map_each;
+use super::history::History;
 use super::reference::Reference;
 use super::samples::Samples;
 use super::scene::Scene;
@@ -47,6 +48,7 @@ pub struct ContourTracker {
     dynamics: ColorDynamics,
     size: (usize, usize),
     reference: Reference,
+    history: History,
     samples: Samples,
     status: TrackStatus,
 }
@@ -79,7 +81,8 @@ impl ContourTracker {
         )?;
         let reference = Reference::at_start(cloud, snake)?;
         let samples = Samples::at_start(&reference.colors, params.n_samples)?;
-        Ok(Self { params, quantizer, dynamics, size, reference, samples, status: TrackStatus::Tracked })
+        let (history, status) = (History::at_start(&reference), TrackStatus::Tracked);
+        Ok(Self { params, quantizer, dynamics, size, reference, history, samples, status })
     }
 
     /// Starts from a mask of the first picture, the largest blob in it.
@@ -136,7 +139,14 @@ impl ContourTracker {
         let Some(scene) = scene else { return Ok(None) };
         if self.params.cues == TrackingCues::Shape {
             let candidate = Candidate::of_edges(&scene);
-            return Ok(Some(Found { candidate, outline: None, cloud: None, samples: self.samples.clone() }));
+            let quality = candidate.agreement.score(&self.params);
+            return Ok(Some(Found {
+                candidate,
+                quality,
+                outline: None,
+                cloud: None,
+                samples: self.samples.clone(),
+            }));
         }
         let states = self.hypotheses(rng)?;
         let candidates = map_each(&states, |state| Candidate::of_colors(&scene, state));
@@ -159,8 +169,9 @@ impl ContourTracker {
             return Ok(None);
         }
         let scene = Scene::whole(&self.params, &self.quantizer, picture, &self.reference)?;
-        let mut states = self.hypotheses(rng)?;
-        states.truncate(self.params.n_search_samples);
+        let states = self.hypotheses(rng)?;
+        let stride = states.len().div_ceil(self.params.n_search_samples);
+        let states: Vec<ColorState> = states.into_iter().step_by(stride).collect();
         let found = map_each(&states, |state| scene.find(state));
         let better = |best: usize, i: usize| {
             let score = |i: usize| found[i].as_ref().map_or(0.0, |(candidate, _)| scene.score(candidate));
@@ -181,11 +192,12 @@ impl ContourTracker {
         mask: &BitMask,
         samples: Samples,
     ) -> Result<Found, CondensationError> {
+        let quality = scene.confidence(&candidate, mask)?;
         let candidate = candidate.refined(scene, mask);
         let cloud = if self.params.adapts { scene.colors_of(&candidate, set, mask)? } else { None };
         let blob_outline = || Outline::of_mask(mask, scene.region.rect.corner());
         let outline = if self.params.cues == TrackingCues::Color { blob_outline() } else { None };
-        Ok(Found { candidate, outline, cloud, samples })
+        Ok(Found { candidate, quality, outline, cloud, samples })
     }
 
     fn hypotheses<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<ColorState>, CondensationError> {
@@ -196,7 +208,7 @@ impl ContourTracker {
     }
 
     /// The target is where it was found.
-    fn accept(&mut self, found: Found, quality: f64) -> Result<Target, CondensationError> {
+    fn accept(&mut self, found: Found) -> Result<Target, CondensationError> {
         let mut reference = self.reference.clone();
         let mut samples = found.samples;
         let Candidate { map, area, .. } = found.candidate;
@@ -207,30 +219,39 @@ impl ContourTracker {
         if let Some(cloud) = found.cloud {
             let before = reference.colors;
             reference.colors = cloud.principal(Some(&before))?;
-            reference.cloud = cloud;
+            let (memory, now) = (self.params.color_memory, &reference.colors);
+            reference.cloud =
+                cloud.with_memory_of(&reference.cloud, [&before, now], memory, self.params.max_colors)?;
             samples.measure(&before, &reference.colors);
         }
         let outline = found.outline.unwrap_or_else(|| reference.snake.outline());
+        self.history.push(&reference);
         (self.reference, self.samples, self.status) = (reference, samples, TrackStatus::Tracked);
         Ok(Target {
             bounding_box: outline.bounding_box(),
             outline: outline.points().to_vec(),
             status: TrackStatus::Tracked,
-            quality,
+            quality: found.quality,
         })
     }
 
-    /// The target is not to be seen.
-    fn lose(&mut self, quality: f64) -> Target {
-        self.reference.motion = [0.0; 2];
-        self.status = TrackStatus::Lost;
+    /// The target is not to be seen: it is looked for as it was before it began to vanish, in colours that may have changed by as much as the
+    /// dynamics allow.
+    fn lose<R: Rng + ?Sized>(&mut self, quality: f64, rng: &mut R) -> Result<Target, CondensationError> {
         let outline = self.reference.snake.outline();
-        Target {
+        if self.status == TrackStatus::Tracked {
+            let before = self.history.restart().left_at(&self.reference);
+            self.samples = Samples::at_start(&before.colors, self.params.n_samples)?;
+            self.reference = before;
+        }
+        self.samples.drift(&self.dynamics, rng);
+        self.status = TrackStatus::Lost;
+        Ok(Target {
             bounding_box: outline.bounding_box(),
             outline: outline.points().to_vec(),
             status: TrackStatus::Lost,
             quality,
-        }
+        })
     }
 }
 
@@ -250,20 +271,17 @@ impl Tracker for ContourTracker {
             TrackStatus::Tracked => self.params.lost_below,
             TrackStatus::Lost => self.params.found_above,
         };
-        let score = |found: &Option<Found>| {
-            found.as_ref().map_or(0.0, |found| found.candidate.agreement.score(&self.params))
-        };
+        let quality = |found: &Option<Found>| found.as_ref().map_or(0.0, |found| found.quality);
         let mut found = self.follow(picture, rng)?;
-        if self.status == TrackStatus::Lost && score(&found) < least {
+        if self.status == TrackStatus::Lost && quality(&found) < least {
             let elsewhere = self.search(picture, rng)?;
-            if score(&elsewhere) > score(&found) {
+            if quality(&elsewhere) > quality(&found) {
                 found = elsewhere;
             }
         }
-        let quality = score(&found);
         match found {
-            Some(found) if quality >= least => self.accept(found, quality),
-            _ => Ok(self.lose(quality)),
+            Some(found) if found.quality >= least => self.accept(found),
+            found => self.lose(quality(&found), rng),
         }
     }
 }
@@ -271,6 +289,7 @@ impl Tracker for ContourTracker {
 /// Where the target was found, and what is to be learned from it.
 struct Found {
     candidate: Candidate,
+    quality: f64,
     /// Where it is not the snake that says.
     outline: Option<Outline>,
     cloud: Option<crate::ColorCloud>,

@@ -1,6 +1,6 @@
 use nalgebra::{Matrix2, Vector2};
 
-use super::fit::fit;
+use super::fit::{LEAST_AREA, fit};
 use super::{AffineMap, EdgeSearch, Outline};
 use crate::CondensationError;
 use crate::error::checked;
@@ -98,10 +98,12 @@ impl AffineSnake {
     /// A snake with the shape of an outline, which it lies on.
     ///
     /// # Errors
-    /// [`CondensationError::Parameter`] for parameters out of range or an outline that `n_points` points do not hold.
+    /// [`CondensationError::Parameter`] for parameters out of range or an outline of less than four square pixels.
     pub fn new(outline: &Outline, params: &SnakeParams) -> Result<Self, CondensationError> {
         params.validate()?;
         let outline = outline.resampled(params.n_points)?;
+        let area = outline.area();
+        checked("area of a snake", area, area >= LEAST_AREA, "at least four pixels")?;
         let center = Vector2::from(outline.centroid());
         let radius = (outline.area() / std::f64::consts::PI).sqrt();
         let shape = outline.points().iter().map(|point| (Vector2::from(*point) - center) / radius).collect();

@@ -15,6 +15,9 @@ const STIFF: f64 = 10.0;
 /// A step of less than this many pixels is the last.
 const STILL: f64 = 0.02;
 
+/// Least area of a snake in square pixels: there is nothing to fit in less.
+pub(super) const LEAST_AREA: f64 = 4.0;
+
 pub(super) fn fit(
     shape: &[Vector2<f64>],
     start: &AffineMap,
@@ -82,7 +85,8 @@ fn numbers(map: &AffineMap) -> Vector6<f64> {
 /// Whether a map keeps the bounds that [`AffineSnake::fit`](super::AffineSnake::fit) promises.
 fn is_sound(map: &AffineMap, start: &AffineMap) -> bool {
     let growth = map.linear.determinant() / start.linear.determinant();
-    if !map.is_finite() || !(0.5..=2.0).contains(&growth) {
+    let area = std::f64::consts::PI * map.linear.determinant();
+    if !map.is_finite() || !(0.5..=2.0).contains(&growth) || area < LEAST_AREA {
         return false;
     }
     let gram = map.linear.transpose() * map.linear;
