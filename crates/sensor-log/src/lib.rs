@@ -61,7 +61,7 @@ pub use error::LogError;
 pub use format::Format;
 pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummary, PixelLayout};
 pub use log::{Log, LogMeta};
-pub use mcap_log::{Drawing, McapWriter, Shape, topics};
+pub use mcap_log::{Drawing, ImageOutline, McapWriter, Shape, topics};
 pub use open::{OpenOptions, PoseKind, open};
 pub use record::{
     CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, TrueWall, Velocity,

@@ -66,6 +66,10 @@ pub enum Source {
     MixedPixels,
     /// People in front of a laser.
     People,
+    /// How the target of a film moves.
+    Motion,
+    /// How the light of a film changes.
+    Light,
     /// A user's own.
     Other(u32),
 }
@@ -104,6 +108,8 @@ impl Source {
             Self::Pixels => 28,
             Self::MixedPixels => 29,
             Self::People => 30,
+            Self::Motion => 40,
+            Self::Light => 41,
             Self::Other(n) => (1 << 32) | n as u64,
         }
     }

@@ -22,7 +22,7 @@ pub mod topics;
 mod vehicle;
 mod writer;
 
-pub use drawing::{Drawing, Shape};
+pub use drawing::{Drawing, ImageOutline, Shape};
 pub(crate) use folder::{file_of, files_in};
 pub(crate) use reader::McapRecords;
 pub use writer::McapWriter;

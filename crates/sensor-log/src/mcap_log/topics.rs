@@ -23,6 +23,8 @@
 //!
 //! With every scan, [`SCAN_POINTS`] has the beams that came back as a `foxglove.PointCloud`, for viewers that draw no scans.
 //!
+//! [`TARGET`] has outlines that a tracker saw in the image of the same stamp, as `foxglove.ImageAnnotations`; it is not read back.
+//!
 //! A metadata record `wayfix` with the key `origin` names the format that the records come from, when it was another one.
 //!
 //! `docs/adr/0002-mcap-topics.md` gives the reasons.
@@ -60,6 +62,8 @@ pub const CAMERA_INFO: &str = "/camera/info";
 pub const CAMERA_MOUNT: &str = "/camera/mount";
 /// The camera's axes turned as viewers want them; not read back.
 pub const CAMERA_OPTICAL: &str = "/camera/optical";
+/// Outlines of a target in the images; not read back.
+pub const TARGET: &str = "/estimate/target";
 /// What the camera saw.
 pub const IMAGE: &str = "/camera/image";
 /// What each pixel shows.

@@ -14,6 +14,7 @@ mod regress;
 mod run_color;
 mod run_lines;
 mod run_slam;
+mod run_track;
 mod run_views;
 mod run_walls;
 
@@ -30,6 +31,8 @@ use clap::{Parser, Subcommand};
 ///   wayfix run lines --log intel.log.gz           walls in laser scans
 ///   wayfix run color --log color_dark.mcap --map four-legged-field.toml
 ///   wayfix run views --scene china.jpg             where in a picture a camera looks, learned in other light
+///   wayfix run track --frames David/img --init 129,80,64,78
+///                                                 a target in every picture, from where it is in the first
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
@@ -61,6 +64,7 @@ enum Run {
     Lines(run_lines::Arguments),
     Color(run_color::Arguments),
     Views(run_views::Arguments),
+    Track(run_track::Arguments),
 }
 
 /// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
@@ -70,6 +74,7 @@ pub fn main() -> ExitCode {
         Command::Run(Run::Lines(arguments)) => run_lines::main(arguments),
         Command::Run(Run::Color(arguments)) => run_color::main(arguments),
         Command::Run(Run::Views(arguments)) => run_views::main(arguments),
+        Command::Run(Run::Track(arguments)) => run_track::main(arguments),
         Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),

@@ -4,6 +4,7 @@ mod color;
 mod consistency;
 mod lines;
 mod slam;
+mod track;
 mod views;
 
 use anyhow::{Context, Result};
@@ -14,11 +15,12 @@ use crate::report::Run;
 /// Does one run.
 pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
 
-const SUITES: [(&str, Runner); 5] = [
+const SUITES: [(&str, Runner); 6] = [
     ("color", color::run),
     ("consistency", consistency::run),
     ("lines", lines::run),
     ("slam", slam::run),
+    ("track", track::run),
     ("views", views::run),
 ];
 
