@@ -194,8 +194,8 @@ impl<S: ScaleSource> HeadTracker<S> {
         let center = self.state.center.map(|c| c as f64 + 0.5);
         let [a, b] = self.base.map(|axis| axis * self.state.scale);
         let point = |i: usize| {
-            let (sin, cos) = (TAU * i as f64 / N_OUTLINE as f64).sin_cos();
-            [center[0] + a * cos, center[1] + b * sin]
+            let angle = TAU * i as f64 / N_OUTLINE as f64;
+            [center[0] + a * libm::cos(angle), center[1] + b * libm::sin(angle)]
         };
         Ok(Target {
             bounding_box: BoundingBox::from_center(center, 2.0 * a, 2.0 * b)?,
