@@ -1,7 +1,8 @@
 //! Follows the target of a sequence from its first box and compares every box with the truth: mean overlap, success, precision.
 //!
 //! `cargo run --release -p wayfix-condensation --example track_boxes -- FOLDER… [parameter=value…]`, where each folder holds the frames in
-//! `img` and a line `x,y,w,h` for each in `groundtruth_rect.txt`. With `out=FILE`, the boxes are written there.
+//! `img` and a line `x,y,w,h` for each in `groundtruth_rect.txt`. With `out=FOLDER`, the boxes are written there;
+//! `tracker=` is `correlation`, `head`, `head-one-mode` or `mean-shift`.
 
 use std::error::Error;
 use std::fs;
@@ -11,14 +12,55 @@ use std::time::Instant;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    BoundingBox, CorrelationTracker, CorrelationTrackerParams, Picture, TrackStatus, Tracker,
+    BoundingBox, CondensationError, CorrelationTracker, CorrelationTrackerParams, HeadTracker,
+    HeadTrackerParams, MeanShift, MeanShiftParams, Picture, Target, TrackStatus, Tracker,
 };
+
+/// One of the trackers that start from a box.
+enum Any {
+    Correlation(Box<CorrelationTracker>),
+    Head(Box<HeadTracker>),
+    MeanShift(Box<MeanShift>),
+}
+
+impl Any {
+    fn start(
+        name: &str,
+        picture: &Picture,
+        first: BoundingBox,
+        params: &CorrelationTrackerParams,
+    ) -> Result<Self, Box<dyn Error>> {
+        Ok(match name {
+            "correlation" => {
+                Self::Correlation(Box::new(CorrelationTracker::new(picture, first, params.clone())?))
+            }
+            "head" => Self::Head(Box::new(HeadTracker::new(picture, first, HeadTrackerParams::default())?)),
+            "head-one-mode" => {
+                let params = HeadTrackerParams { bimodal: false, ..Default::default() };
+                Self::Head(Box::new(HeadTracker::new(picture, first, params)?))
+            }
+            "mean-shift" => {
+                Self::MeanShift(Box::new(MeanShift::start(picture, &first, MeanShiftParams::default())?))
+            }
+            _ => return Err(format!("no tracker {name}").into()),
+        })
+    }
+
+    fn track(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+        match self {
+            Self::Correlation(tracker) => tracker.track(picture, rng),
+            Self::Head(tracker) => tracker.track(picture, rng),
+            Self::MeanShift(tracker) => tracker.track(picture, rng),
+        }
+    }
+}
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (options, folders): (Vec<String>, Vec<String>) =
         std::env::args().skip(1).partition(|argument| argument.contains('='));
     let mut params = CorrelationTrackerParams::default();
     let mut out = None;
+    let mut name_of_tracker = String::from("correlation");
     for option in &options {
         let (name, value) = option.split_once('=').ok_or("name=value")?;
         let number = || value.parse::<f64>();
@@ -36,6 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "forget_after" => params.forget_after = value.parse()?,
             "learn_above" => params.learn_above = number()?,
             "patience" => params.patience = value.parse()?,
+            "tracker" => value.clone_into(&mut name_of_tracker),
             "out" => out = Some(PathBuf::from(value)),
             _ => return Err(format!("no parameter {name}").into()),
         }
@@ -46,7 +89,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let mut total = [0.0; 3];
     for folder in &folders {
-        let row = follow(Path::new(folder), &params, out.as_deref())?;
+        let row = follow(Path::new(folder), &name_of_tracker, &params, out.as_deref())?;
         for i in 0..3 {
             total[i] += row[i] / folders.len() as f64;
         }
@@ -57,6 +100,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn follow(
     folder: &Path,
+    name_of_tracker: &str,
     params: &CorrelationTrackerParams,
     out: Option<&Path>,
 ) -> Result<[f64; 3], Box<dyn Error>> {
@@ -69,7 +113,7 @@ fn follow(
         .collect::<Result<_, std::io::Error>>()?;
     frames.sort();
     let mut rng = ChaCha8Rng::seed_from_u64(0);
-    let mut tracker: Option<CorrelationTracker> = None;
+    let mut tracker: Option<Any> = None;
     let (mut overlaps, mut near, mut lost, mut alone, mut seconds) = (Vec::new(), 0, 0, 0, 0.0);
     let mut lines = String::new();
     for (path, &truth) in frames.iter().zip(&truth) {
@@ -81,7 +125,7 @@ fn follow(
         let (found, status) = match &mut tracker {
             None => {
                 let first = truth.ok_or("no box in the first frame")?;
-                tracker = Some(CorrelationTracker::new(&picture, first, params.clone())?);
+                tracker = Some(Any::start(name_of_tracker, &picture, first, params)?);
                 (first, TrackStatus::Tracked)
             }
             Some(tracker) => {
@@ -90,24 +134,19 @@ fn follow(
             }
         };
         seconds += start.elapsed().as_secs_f64();
+        let corner = found.corner();
+        let is_lost = status == TrackStatus::Lost;
+        let row = [corner[0], corner[1], found.width(), found.height()].map(|value| format!("{value:.2}"));
+        lines += &format!("{},{is_lost}\n", row.join(","));
         let Some(truth) = truth else {
-            alone += usize::from(status == TrackStatus::Tracked);
+            alone += usize::from(!is_lost);
             continue;
         };
-        let iou = if status == TrackStatus::Tracked { found.iou(&truth) } else { 0.0 };
-        lost += usize::from(status == TrackStatus::Lost);
+        let iou = if is_lost { 0.0 } else { found.iou(&truth) };
+        lost += usize::from(is_lost);
         let [a, b] = [found.center(), truth.center()];
-        near += usize::from(status == TrackStatus::Tracked && (a[0] - b[0]).hypot(a[1] - b[1]) <= 20.0);
+        near += usize::from(!is_lost && (a[0] - b[0]).hypot(a[1] - b[1]) <= 20.0);
         overlaps.push(iou);
-        let corner = found.corner();
-        lines += &format!(
-            "{:.2},{:.2},{:.2},{:.2},{}\n",
-            corner[0],
-            corner[1],
-            found.width(),
-            found.height(),
-            status == TrackStatus::Lost
-        );
     }
     if let Some(out) = out {
         fs::create_dir_all(out)?;
@@ -121,7 +160,7 @@ fn follow(
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     println!(
         "{name:28} {iou:6.3} {auc:6.3} {near:6.3} {n:5} {lost:5} {alone:5} {:7.2}",
-        1000.0 * seconds / n
+        1000.0 * seconds / lines.lines().count() as f64
     );
     Ok([iou, auc, near])
 }

@@ -111,6 +111,8 @@ impl CorrelationTrackerParams {
         ] {
             checked(what, value, value >= 0.0, "not negative")?;
         }
+        let n_searches = self.n_searches as f64;
+        checked("number of searches", n_searches, self.n_searches <= 100, "at most 100")?;
         Ok(())
     }
 }
