@@ -5,6 +5,11 @@
 
 mod error;
 mod search;
+mod views;
 
 pub use error::AppearanceError;
 pub use search::{Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
+pub use views::{
+    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, RingOrder, Tone,
+    TurnSense,
+};
