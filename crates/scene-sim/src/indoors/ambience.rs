@@ -1,9 +1,12 @@
 use rand::Rng;
 
 use super::light::LightKind;
-use crate::random::deviate::{below, chance, uniform};
+use crate::random::deviate::{below, chance, normal, uniform};
 use crate::random::{GaussMarkov, Source, Streams};
 use crate::{SimError, check};
+
+/// Light from everywhere, so that nothing is quite black.
+const STRAY: [f32; 3] = [0.12; 3];
 
 /// How light changes while a robot drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,17 +63,23 @@ impl Ambience {
         streams: &mut Streams,
     ) -> Self {
         let rng = streams.of(Source::Lamps);
-        let lamps = (0..n_lamps).map(|_| libm::exp(params.lamp_sigma * crate::random::deviate::normal(rng)));
-        let mut ambience = Self {
-            params,
-            stray: [0.12; 3],
-            lamps: lamps.collect(),
-            curtains: vec![1.0; n_curtains],
-            daylight: 1.0,
-            clouds: GaussMarkov::new(params.daylight_correlation_s),
-        };
+        let lamps = (0..n_lamps).map(|_| libm::exp(params.lamp_sigma * normal(rng)));
+        let clouds = GaussMarkov::new(params.daylight_correlation_s);
+        let mut ambience = Self { params, lamps: lamps.collect(), clouds, ..Self::usual(0, n_curtains) };
         ambience.advance(1.0, streams);
         ambience
+    }
+
+    /// As the day usually is, every lamp lit and every curtain open.
+    pub(super) fn usual(n_lamps: usize, n_curtains: usize) -> Self {
+        Self {
+            params: AmbienceParams::default(),
+            stray: STRAY,
+            lamps: vec![1.0; n_lamps],
+            curtains: vec![1.0; n_curtains],
+            daylight: 1.0,
+            clouds: GaussMarkov::new(1.0),
+        }
     }
 
     /// Lets time pass.

@@ -1,12 +1,19 @@
 use nalgebra::Vector2;
+use rand::Rng;
+use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Target, TrueLandmark};
 
 use super::aisles::Aisles;
+use super::ambience::Ambience;
+use super::camera::OmniCameraParams;
 use super::color::Rgb8;
 use super::light::LightField;
 use super::panel::{Panel, Skin};
 use super::texture::Texture;
+use super::view::Observer;
+use crate::scenery::RgbPicture;
 use crate::world::{Wall, World};
+use crate::{SimError, check};
 
 /// Rooms with everything that stands in them, ready to be looked at: what [`Store`](super::Store) and [`Lab`](super::Lab) build.
 ///
@@ -34,6 +41,32 @@ impl Building {
     /// Where one can drive.
     pub fn aisles(&self) -> &Aisles {
         &self.aisles
+    }
+
+    /// The view from `pose` by the light of a usual day, when nobody is about.
+    ///
+    /// # Errors
+    /// When the numbers do not make a camera, or the pose is not finite.
+    ///
+    /// ```
+    /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    /// use wayfix_estimation_traits::Pose2;
+    /// use wayfix_scene_sim::indoors::{Lab, OmniCameraParams};
+    /// let mut rng = ChaCha8Rng::seed_from_u64(1);
+    /// let lab = Lab::draw(&mut rng).building();
+    /// let view = lab.look(&Pose2::new(0.0, -3.7, 0.0), OmniCameraParams::default(), &mut rng)?;
+    /// assert_eq!((view.width, view.height), (120, 20));
+    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// ```
+    pub fn look<R: Rng + ?Sized>(
+        &self,
+        pose: &Pose2<f64>,
+        camera: OmniCameraParams,
+        rng: &mut R,
+    ) -> Result<RgbPicture, SimError> {
+        check::finite("pose of the camera", pose.x() + pose.y() + pose.heading())?;
+        let ambience = Ambience::usual(self.n_lamps, self.n_curtains);
+        Ok(Observer::new(camera)?.look(self, &ambience, &[], pose, rng))
     }
 
     /// Puts up a panel with a texture of its own between two heights.

@@ -4,10 +4,11 @@ use crate::{SimError, check};
 
 /// A camera that sees all around, and how its picture is unrolled.
 ///
-/// Column k of a view is centred on the azimuth $`(k + ½)\,2π/n`$ from the robot's front, counter-clockwise; the first row looks highest.
+/// A view is what one sees who turns round, from left to right: column k is centred on the azimuth $`π - (k + ½)\,2π/n`$, the front is in the middle,
+/// and the first row looks highest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmniCameraParams {
-    /// Sectors. Default 120.
+    /// Sectors, an even number. Default 120.
     pub columns: usize,
     /// Rings. Default 20.
     pub rings: usize,
@@ -48,6 +49,7 @@ impl OmniCameraParams {
     pub fn validate(&self) -> Result<(), SimError> {
         check::above("columns of the camera", self.columns as f64, 3.5, "at least 4")?;
         check::count("columns of the camera", self.columns, 4096)?;
+        check::at_most("columns of the camera modulo 2", (self.columns % 2) as f64, 0.0, "0")?;
         check::above("rings of the camera", self.rings as f64, 0.5, "at least 1")?;
         check::count("rings of the camera", self.rings, 1024)?;
         check::above("lowest elevation (rad)", self.lowest_rad, -FRAC_PI_2, "above −π/2")?;

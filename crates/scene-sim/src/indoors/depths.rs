@@ -85,7 +85,7 @@ impl Depths {
             let across = ray.perp(&side);
             let distance = left.perp(&side) / across;
             // At grazing angles the ray may pass the panel by a hair.
-            if !(distance > 0.0) {
+            if distance.is_nan() || distance <= 0.0 {
                 continue;
             }
             let along = (left.perp(&ray) / across * length).clamp(0.0, length);

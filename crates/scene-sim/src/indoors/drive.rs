@@ -25,7 +25,7 @@ pub struct IndoorStep {
     pub odometry: Option<Pose2<f64>>,
     /// Where the robot truly is.
     pub pose: Pose2<f64>,
-    /// What it sees: column k is centred on the azimuth $`(k + ½)\,2π/n`$ from its front, counter-clockwise; the first row looks highest.
+    /// What it sees, as [`OmniCameraParams`](super::OmniCameraParams) says.
     pub view: RgbPicture,
 }
 

@@ -41,12 +41,7 @@ impl IndoorParams {
     pub fn validate(&self) -> Result<(), SimError> {
         self.drive.validate()?;
         check::above("time between views (ms)", f64::from(self.view_period_ms), 9.0, "at least 10")?;
-        check::at_most(
-            "time between views (ms)",
-            f64::from(self.view_period_ms % 10),
-            0.0,
-            "a multiple of 10",
-        )?;
+        check::at_most("time between views (ms) modulo 10", f64::from(self.view_period_ms % 10), 0.0, "0")?;
         self.camera.validate()?;
         self.ambience.validate()?;
         check::count("people", self.n_people, 1000)
