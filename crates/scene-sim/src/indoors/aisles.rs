@@ -39,7 +39,7 @@ impl Aisles {
     }
 
     /// A random tour from the crossing in the corner of low x and y, where the robot is charged: first along x, at every crossing on into the
-    /// aisle that was driven least, never straight back; left or right of the middle by chance.
+    /// aisle that was driven least, never straight back; left or right of the middle by chance. It ends at the first crossing after `length_m`.
     ///
     /// # Errors
     /// When the length is no length.
