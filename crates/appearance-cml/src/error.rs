@@ -1,3 +1,5 @@
+use wayfix_gaussian_core::GaussianError;
+
 /// Why an operation was refused. Whatever it was called on is as it was before.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -8,6 +10,34 @@ pub enum AppearanceError {
         /// Its number.
         id: u32,
     },
+    /// A reference is named that the search does not hold.
+    #[error("there is no view of reference {id}")]
+    NoSuchReference {
+        /// Its number.
+        id: u32,
+    },
+    /// A distribution over poses has no meaning.
+    #[error(transparent)]
+    Gaussian(#[from] GaussianError),
+    /// Something is NaN or infinite.
+    #[error("{what} is not finite")]
+    NotFinite {
+        /// What it is.
+        what: &'static str,
+    },
+    /// A parameter is outside its range.
+    #[error("{what} is {value}, must be {range}")]
+    Parameter {
+        /// Which one.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// The values it may take.
+        range: &'static str,
+    },
+    /// All numbers of references have been given out.
+    #[error("no number is left for another reference")]
+    Full,
     /// A picture without pixels, or with more or fewer than its size says.
     #[error("{n_bytes} bytes for a picture of {} × {} pixels", size.0, size.1)]
     PixelCount {
@@ -62,7 +92,7 @@ pub enum AppearanceError {
     },
     /// A parameter outside its range.
     #[error("{name} is {value}, it must be from {low} to {high}")]
-    Parameter {
+    OutOfRange {
         /// Which one.
         name: &'static str,
         /// Its value.
@@ -84,5 +114,5 @@ pub(crate) fn check_range(
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    Err(AppearanceError::Parameter { name, value, low, high })
+    Err(AppearanceError::OutOfRange { name, value, low, high })
 }

@@ -44,7 +44,7 @@ impl Default for PanoramaParams {
 
 impl PanoramaParams {
     /// # Errors
-    /// [`AppearanceError::Parameter`] for the first value outside its range.
+    /// [`AppearanceError::OutOfRange`] for the first value outside its range.
     pub(super) fn check(&self) -> Result<(), AppearanceError> {
         let whole = [
             ("n_rings", self.n_rings, 1, 64),
