@@ -8,7 +8,10 @@ mod search;
 mod views;
 
 pub use error::AppearanceError;
-pub use search::{Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
+pub use search::{
+    AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,
+    SearchCost,
+};
 pub use views::{
     Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, RingOrder, Tone,
     TurnSense,
