@@ -38,6 +38,12 @@ pub enum AppearanceError {
     /// All numbers of references have been given out.
     #[error("no number is left for another reference")]
     Full,
+    /// A reference of another shape than those of the map: of another camera, or described with other parameters.
+    #[error("reference {id} cannot be compared with those of the map")]
+    Incomparable {
+        /// Its number.
+        id: u32,
+    },
     /// A picture without pixels, or with more or fewer than its size says.
     #[error("{n_bytes} bytes for a picture of {} × {} pixels", size.0, size.1)]
     PixelCount {

@@ -21,7 +21,10 @@ pub use model::{
     AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,
     Reference, Sighting, ViewScale, interpolate, similarity, superpose,
 };
-pub use search::{Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
+pub use search::{
+    AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,
+    SearchCost,
+};
 pub use views::{
     Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, RingOrder, Tone,
     TurnSense,

@@ -15,7 +15,13 @@ pub struct PanoramaDescriptor {
     n_rings: u8,
     /// Harmonic by harmonic: the real parts of all rings, then (not for the constant one) their imaginary parts.
     coefficients: Box<[i8]>,
+    /// Sums of squares of the whole numbers: of all, and of the harmonics from each checkpoint on.
+    energy: u32,
+    remaining: [u32; CHECKPOINTS.len()],
 }
+
+/// Harmonics before which a comparison may be given up.
+const CHECKPOINTS: [usize; 3] = [2, 4, 8];
 
 impl PanoramaDescriptor {
     /// From what [`scale`](Self::scale), [`n_rings`](Self::n_rings) and [`coefficients`](Self::coefficients) give.
@@ -32,7 +38,7 @@ impl PanoramaDescriptor {
         if !is_spectrum || !is_sound {
             return Err(refused);
         }
-        Ok(Self { scale, n_rings, coefficients: coefficients.into() })
+        Ok(Self::whole(scale, n_rings, coefficients))
     }
 
     /// The coefficients of all harmonics, rounded to what a byte holds.
@@ -40,7 +46,16 @@ impl PanoramaDescriptor {
         let largest = spectrum.iter().fold(f64::MIN_POSITIVE, |largest, value| largest.max(value.abs()));
         let scale = ((largest / 127.0) as f32).max(f32::MIN_POSITIVE);
         let byte = |value: &f64| (value / f64::from(scale)).round().clamp(-127.0, 127.0) as i8;
-        Self { scale, n_rings: n_rings as u8, coefficients: spectrum.iter().map(byte).collect() }
+        Self::whole(scale, n_rings as u8, spectrum.iter().map(byte).collect())
+    }
+
+    fn whole(scale: f32, n_rings: u8, coefficients: Vec<i8>) -> Self {
+        let energy_from = |k: usize| {
+            let from = (2 * k).saturating_sub(1) * usize::from(n_rings);
+            coefficients.get(from..).map_or(0, |rest| dot(rest, rest) as u32)
+        };
+        let (energy, remaining) = (energy_from(0), CHECKPOINTS.map(energy_from));
+        Self { scale, n_rings, coefficients: coefficients.into(), energy, remaining }
     }
 
     /// What a coefficient is to be multiplied with.
@@ -71,11 +86,17 @@ impl PanoramaDescriptor {
     /// The sum of the squares of all coefficients.
     pub fn energy(&self) -> f64 {
         let scale = f64::from(self.scale);
-        scale * scale * f64::from(dot(&self.coefficients, &self.coefficients))
+        scale * scale * f64::from(self.energy)
     }
 
     pub(super) fn constant(&self) -> &[i8] {
         &self.coefficients[..usize::from(self.n_rings)]
+    }
+
+    /// The most that the harmonics from `k` on can add to the correlation with another view (Cauchy-Schwarz), where `k` is a checkpoint.
+    pub(super) fn remaining_overlap(&self, other: &Self, k: usize) -> Option<f64> {
+        let index = CHECKPOINTS.iter().position(|checkpoint| *checkpoint == k)?;
+        Some((f64::from(self.remaining[index]) * f64::from(other.remaining[index])).sqrt())
     }
 
     /// Real and imaginary parts of the harmonics from the first on.

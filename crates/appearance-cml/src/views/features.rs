@@ -13,8 +13,8 @@ use crate::{AppearanceError, error::check_range};
 /// let panorama = Panorama::from_rgb(120, 25, bytes)?;
 /// let (before, after) = (features.describe(&panorama)?, features.describe(&panorama.turned(10))?);
 /// let seen = after.compare(&before);
-/// // 10 columns of 3° to the right is a turn by −30°.
-/// assert!(seen.distance < 0.03 && (seen.rotation.to_degrees() + 30.0).abs() < 0.2);
+/// // What was ten columns of 3° to the left is ahead now.
+/// assert!(seen.distance < 0.03 && (seen.rotation.to_degrees() - 30.0).abs() < 0.2);
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
 #[derive(Clone, Debug)]

@@ -5,9 +5,11 @@
 //! between rings, do not depend on it, and the best rotation is the maximum of the cross-correlation.
 
 mod correlation;
+mod cosines;
 mod descriptor;
 mod donut;
 mod features;
+mod invariants;
 mod normalization;
 mod panorama;
 mod params;

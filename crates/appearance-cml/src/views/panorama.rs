@@ -4,9 +4,9 @@ use crate::AppearanceError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum TurnSense {
-    /// To the right, as in a picture taken by a camera that pans: what most unwrapped panoramas have.
+    /// To the right, as a camera that pans or a person who looks round sees them.
     Clockwise,
-    /// To the left, as angles are counted.
+    /// To the left, as angles are counted (REP 103).
     Counterclockwise,
 }
 
@@ -67,7 +67,7 @@ impl Panorama {
         &self.pixels
     }
 
-    /// What the camera sees when it has turned clockwise by `n` columns (where columns go clockwise): column `n` comes first.
+    /// What the camera sees when it has turned by `n` columns the way they go: column `n` comes first.
     ///
     /// ```
     /// use wayfix_appearance_cml::Panorama;
