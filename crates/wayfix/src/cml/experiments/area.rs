@@ -36,6 +36,9 @@ pub fn laps(size: &Size, seed: u64) -> Result<Run> {
             mean(of_lap(&lapped.course, lap))
         }));
     }
+    let over_all =
+        |lap| mean(&seeds.iter().map(|lapped| mean(of_lap(&lapped.course, lap))).collect::<Vec<_>>());
+    metrics.push(Metric::new("last_lap_over_first", over_all(N_LAPS - 1) / over_all(0), ""));
     metrics.extend(mean_of("references", "", &seeds, |lapped| {
         lapped.course.n_references.last().map_or(0.0, |n| *n as f64)
     }));
