@@ -138,7 +138,7 @@ fn parameters_outside_their_range_are_named() {
         (PanoramaParams { max_saturated: -0.1, ..good }, "max_saturated"),
     ] {
         let refused = PanoramaFeatures::new(params, COLUMNS, ROWS).unwrap_err();
-        assert!(matches!(refused, AppearanceError::Parameter { name, .. } if name == named), "{refused}");
+        assert!(matches!(refused, AppearanceError::Parameter { what, .. } if what == named), "{refused}");
     }
     for (columns, rows) in [(0, 0), (COLUMNS, 0), (0, ROWS), (30, ROWS)] {
         assert!(PanoramaFeatures::new(good, columns, rows).is_err(), "{columns} × {rows}");

@@ -96,12 +96,12 @@ impl<D: Bounded> AppearanceIndex<D> {
         (found, cost)
     }
 
-    /// As [`nearest`](ReferenceSearch::nearest), and what it took.
+    /// As [`nearest_within`](ReferenceSearch::nearest_within), and what it took.
     ///
     /// What may be nearest is looked at before anything that cannot be as near.
-    pub fn nearest_counted(&self, view: &D, n: usize) -> (Vec<Match>, SearchCost) {
+    pub fn nearest_counted(&self, view: &D, n: usize, max_distance: f64) -> (Vec<Match>, SearchCost) {
         let mut cost = SearchCost::default();
-        let mut nearest = Nearest::new(n);
+        let mut nearest = Nearest::new(n, max_distance);
         let Some(sketch) = self.sketch_of_comparable(view).filter(|_| n > 0) else {
             return (Vec::new(), cost);
         };
@@ -207,7 +207,11 @@ impl<D: Bounded> ReferenceSearch<D> for AppearanceIndex<D> {
     }
 
     fn nearest(&self, view: &D, n: usize) -> Vec<Match> {
-        self.nearest_counted(view, n).0
+        self.nearest_counted(view, n, f64::INFINITY).0
+    }
+
+    fn nearest_within(&self, view: &D, n: usize, max_distance: f64) -> Vec<Match> {
+        self.nearest_counted(view, n, max_distance).0
     }
 }
 

@@ -1,5 +1,5 @@
 use super::{Panorama, PanoramaDescriptor, PanoramaParams, TurnSense, sectors::cell_means};
-use crate::{AppearanceError, error::check_range};
+use crate::{AppearanceError, check};
 
 /// Turns the panoramas of one camera into descriptors.
 ///
@@ -33,10 +33,10 @@ impl PanoramaFeatures {
     /// # Errors
     /// [`AppearanceError::Parameter`] for parameters outside their range, or more harmonics than half the columns.
     pub fn new(params: PanoramaParams, n_columns: usize, n_rows: usize) -> Result<Self, AppearanceError> {
-        params.check()?;
+        params.validate()?;
+        check::count("rows of the panorama", n_rows)?;
         let (n_rings, n_sectors) = (params.n_rings.min(n_rows), params.n_sectors.min(n_columns));
-        check_range("rows of the panorama", n_rings as f64, 1.0, f64::MAX)?;
-        check_range("n_harmonics", params.n_harmonics as f64, 2.0, (n_sectors / 2) as f64)?;
+        params.check_harmonics(n_sectors)?;
         let angle = |sector: usize| std::f64::consts::TAU * sector as f64 / n_sectors as f64;
         let circle = (0..n_sectors).map(|sector| (angle(sector).cos(), angle(sector).sin())).collect();
         Ok(Self { params, size: (n_columns, n_rows), n_rings, n_sectors, circle })
