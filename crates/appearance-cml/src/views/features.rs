@@ -13,8 +13,8 @@ use crate::{AppearanceError, check};
 /// let panorama = Panorama::from_rgb(120, 25, bytes)?;
 /// let (before, after) = (features.describe(&panorama)?, features.describe(&panorama.turned(10))?);
 /// let seen = after.compare(&before);
-/// // What was ten columns of 3° to the left is ahead now.
-/// assert!(seen.distance < 0.03 && (seen.rotation.to_degrees() - 30.0).abs() < 0.2);
+/// // Ten columns of 3° to the right is a turn by −30°.
+/// assert!(seen.distance < 0.03 && (seen.rotation.to_degrees() + 30.0).abs() < 0.2);
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ impl PanoramaFeatures {
     /// For panoramas of `n_columns` × `n_rows` pixels.
     ///
     /// # Errors
-    /// [`AppearanceError::Parameter`] for parameters outside their range, or more harmonics than half the columns.
+    /// [`AppearanceError::OutOfRange`] for parameters outside their range, or more harmonics than half the columns.
     pub fn new(params: PanoramaParams, n_columns: usize, n_rows: usize) -> Result<Self, AppearanceError> {
         params.validate()?;
         check::count("rows of the panorama", n_rows)?;

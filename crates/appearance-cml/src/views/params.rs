@@ -23,7 +23,7 @@ pub struct PanoramaParams {
     pub min_contrast: f64,
     /// Largest share of pixels that are all black or all white. Default 0.8.
     pub max_saturated: f64,
-    /// Which way the columns go round. Default: counterclockwise.
+    /// Which way the columns go round. Default: clockwise, left to right.
     pub sense: TurnSense,
 }
 
@@ -37,7 +37,7 @@ impl Default for PanoramaParams {
             normalization: Normalization::MeanVariance,
             min_contrast: 0.01,
             max_saturated: 0.8,
-            sense: TurnSense::Counterclockwise,
+            sense: TurnSense::Clockwise,
         }
     }
 }
