@@ -148,7 +148,7 @@ fn parameters_outside_their_range_are_named() {
 #[test]
 fn parts_that_are_no_spectrum_are_refused_and_other_shapes_are_infinitely_far() {
     let good = PanoramaDescriptor::from_parts(0.01, 2, vec![1; 6]).unwrap();
-    let parts = (good.scale(), good.n_rings(), good.coefficients().to_vec());
+    let parts = (good.scale(), good.n_rings(), good.coefficients());
     assert_eq!(PanoramaDescriptor::from_parts(parts.0, parts.1, parts.2).unwrap(), good);
     for (scale, n_rings, coefficients) in [
         (f32::NAN, 2, vec![1; 6]),

@@ -1,6 +1,6 @@
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-use super::{Match, box_tree::Entry};
+use super::Match;
 
 /// The order of all answers: the nearest first, by number where they are equally near.
 pub(super) fn by_distance(a: &Match, b: &Match) -> Ordering {
@@ -64,30 +64,3 @@ impl PartialEq for Found {
 }
 
 impl Eq for Found {}
-
-/// Something that is yet to be looked at; what may be nearest is the greatest, so that it comes first.
-pub(super) struct Candidate {
-    /// The least distance it may have.
-    pub(super) least: f32,
-    pub(super) entry: Entry,
-}
-
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.least.total_cmp(&self.least).then(other.entry.cmp(&self.entry))
-    }
-}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Candidate {}
