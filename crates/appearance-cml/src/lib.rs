@@ -10,6 +10,7 @@ mod localizer;
 mod model;
 mod search;
 mod state;
+mod views;
 
 pub use error::AppearanceError;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
@@ -20,8 +21,15 @@ pub use model::{
     AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,
     Reference, Sighting, ViewScale, interpolate, similarity, superpose,
 };
-pub use search::{Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
+pub use search::{
+    AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,
+    SearchCost,
+};
 pub use state::{
     OdometryNoise, PoseHypothesis, SimplifyParams, UnimodalParams, propagate, separation_squared, simplify,
     unimodal,
+};
+pub use views::{
+    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, RingOrder, Tone,
+    TurnSense,
 };

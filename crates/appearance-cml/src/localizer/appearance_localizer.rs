@@ -241,7 +241,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             _ => {}
         }
         let followed = self.state.as_ref().and_then(|state| state.components().first());
-        if let (Some(now), Some(followed)) = (fused.and_then(|mixture| mixture.components().first()), followed) {
+        if let (Some(now), Some(followed)) =
+            (fused.and_then(|mixture| mixture.components().first()), followed)
+        {
             if separation_squared(now, followed)? > self.params.fusion.gate {
                 events.push(Event::Relocated);
             }
@@ -299,7 +301,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     fn measure(&mut self, way: f64, view: &D, at: Option<&Pose2<f64>>) {
         self.scale_learner.observe(way, view, self.map.scale_mut());
         self.views = self.views.wrapping_add(1);
-        let Some(distance) = at.and_then(|pose| self.map.distance_to_far(view, pose, self.views)) else { return };
+        let Some(distance) = at.and_then(|pose| self.map.distance_to_far(view, pose, self.views)) else {
+            return;
+        };
         self.map.scale_mut().add_far(distance);
     }
 }

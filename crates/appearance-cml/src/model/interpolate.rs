@@ -50,7 +50,8 @@ fn groups(sightings: &[Sighting], radius: f64) -> Vec<Group<'_>> {
             let mean = s.gaussian.mean();
             let turn = wrap_angle(mean.heading() - at.heading()).abs();
             // The leader belongs even where its pose is not a number.
-            std::ptr::eq(*s, leader) || ((mean.translation - at.translation).norm() <= radius && turn <= GROUP_TURN)
+            std::ptr::eq(*s, leader)
+                || ((mean.translation - at.translation).norm() <= radius && turn <= GROUP_TURN)
         };
         let (group, others): (Vec<_>, Vec<_>) = left.into_iter().partition(belongs);
         groups.push(group);
@@ -94,7 +95,8 @@ fn pose_of(
     symmetrize(&mut covariance);
     let plane = |matrix: &Matrix3<f64>| matrix[(0, 0)] + matrix[(1, 1)];
     Ok(PoseHypothesis {
-        weight: group[0].similarity * group.iter().zip(&shares).map(|(s, share)| s.weight * share).sum::<f64>(),
+        weight: group[0].similarity
+            * group.iter().zip(&shares).map(|(s, share)| s.weight * share).sum::<f64>(),
         gaussian: Gaussian::new(mean, covariance)?,
         independent: plane(&compared) / plane(&covariance),
     })

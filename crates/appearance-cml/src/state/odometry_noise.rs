@@ -14,7 +14,11 @@ use crate::{AppearanceError, check};
 /// assert!((metre - quarter * 4.0).norm() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct OdometryNoise {
     /// σ along the way after one metre, m. Default 0.04.
     pub forward: f64,
