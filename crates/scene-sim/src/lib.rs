@@ -3,7 +3,7 @@
 //! A [`Simulation`] drives a robot along a [`route`] through a [`world`] and gives the log of its [`sensor`]s as
 //! [`Record`](wayfix_sensor_log::Record)s, truth included. Named, seeded set-ups are [`Scenario`]s; [`monobot`] is the
 //! one-dimensional robot on which filters are taken apart; [`league`] is a field full of colours under changing light, with a camera;
-//! [`scenery`] are flat scenes, seen through a window.
+//! [`scenery`] are flat scenes, seen through a window; [`indoors`] are stores and rooms, seen by a camera that looks all around.
 //!
 //! * **The truth is nobody's model.** Two wheels with motors that lag, slip that hangs together in time and radii that are not as
 //!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
@@ -29,6 +29,7 @@
 mod check;
 pub mod drive;
 mod error;
+pub mod indoors;
 pub mod league;
 pub mod monobot;
 pub mod plane;
