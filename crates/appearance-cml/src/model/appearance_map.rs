@@ -122,6 +122,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         params.match_limit.unwrap_or_else(|| self.scale.match_limit(params.match_share))
     }
 
+    /// How far apart two views may be taken and still match, m.
+    pub fn reach_of_match(&self, params: &MapParams) -> f64 {
+        self.scale.metres(self.match_limit(params))
+    }
+
     /// Makes the view a reference of this place, whatever is there already: for a map that is taught with known poses.
     ///
     /// # Errors

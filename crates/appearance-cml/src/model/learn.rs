@@ -124,7 +124,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             .collect();
         let mut nearest = None;
         let mut least = params.place_gate;
-        for hypothesis in interpolate(&sightings, self.scale())? {
+        for hypothesis in interpolate(&sightings, std::slice::from_ref(pose), self.scale())? {
             let squared = separation_squared(pose, &hypothesis.gaussian)?;
             if squared < least {
                 least = squared;

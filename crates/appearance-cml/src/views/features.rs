@@ -31,7 +31,7 @@ impl PanoramaFeatures {
     /// For panoramas of `n_columns` × `n_rows` pixels.
     ///
     /// # Errors
-    /// [`AppearanceError::OutOfRange`] for parameters outside their range, or more harmonics than half the columns.
+    /// [`AppearanceError::Parameter`] for parameters outside their range, or more harmonics than half the columns.
     pub fn new(params: PanoramaParams, n_columns: usize, n_rows: usize) -> Result<Self, AppearanceError> {
         params.validate()?;
         check::count("rows of the panorama", n_rows)?;
