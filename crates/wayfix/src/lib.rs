@@ -1,9 +1,10 @@
 //! Probabilistic robot localization on logs: the application behind the command `wayfix`.
 //!
-//! Records of a log go through a [`system`] ([`slam`], [`color`], [`lines`]), pictures through [`views`]; [`evaluate`] compares its estimates with truth, [`plot`] draws them,
+//! Records of a log go through a [`system`] ([`slam`], [`color`], [`cml`], [`lines`]), pictures through [`views`]; [`evaluate`] compares its estimates with truth, [`plot`] draws them,
 //! [`report`] writes figures and pictures; [`monobot`] are the experiments of a robot on a line and [`consistency`] those of one that drives laps; [`fixtures`] are the stored logs; [`cli`] is the command line.
 
 pub mod cli;
+pub mod cml;
 pub mod color;
 pub mod consistency;
 pub mod evaluate;
