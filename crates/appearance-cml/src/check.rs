@@ -19,6 +19,11 @@ pub(crate) fn count(what: &'static str, value: usize) -> Result<(), AppearanceEr
     within(what, value as f64, value > 0, "at least 1")
 }
 
-fn within(what: &'static str, value: f64, holds: bool, range: &'static str) -> Result<(), AppearanceError> {
+pub(crate) fn within(
+    what: &'static str,
+    value: f64,
+    holds: bool,
+    range: &'static str,
+) -> Result<(), AppearanceError> {
     if holds { Ok(()) } else { Err(AppearanceError::Parameter { what, value, range }) }
 }

@@ -10,34 +10,6 @@ pub enum AppearanceError {
         /// Its number.
         id: u32,
     },
-    /// A reference is named that the search does not hold.
-    #[error("there is no view of reference {id}")]
-    NoSuchReference {
-        /// Its number.
-        id: u32,
-    },
-    /// A distribution over poses has no meaning.
-    #[error(transparent)]
-    Gaussian(#[from] GaussianError),
-    /// Something is NaN or infinite.
-    #[error("{what} is not finite")]
-    NotFinite {
-        /// What it is.
-        what: &'static str,
-    },
-    /// A parameter is outside its range.
-    #[error("{what} is {value}, must be {range}")]
-    Parameter {
-        /// Which one.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-        /// The values it may take.
-        range: &'static str,
-    },
-    /// All numbers of references have been given out.
-    #[error("no number is left for another reference")]
-    Full,
     /// A reference of another shape than those of the map: of another camera, or described with other parameters.
     #[error("reference {id} cannot be compared with those of the map")]
     Incomparable {
@@ -96,29 +68,32 @@ pub enum AppearanceError {
         /// Coefficients.
         n_coefficients: usize,
     },
-    /// A parameter outside its range.
-    #[error("{name} is {value}, it must be from {low} to {high}")]
-    OutOfRange {
+    /// A reference is named that the search does not hold.
+    #[error("there is no view of reference {id}")]
+    NoSuchReference {
+        /// Its number.
+        id: u32,
+    },
+    /// A distribution over poses has no meaning.
+    #[error(transparent)]
+    Gaussian(#[from] GaussianError),
+    /// Something is NaN or infinite.
+    #[error("{what} is not finite")]
+    NotFinite {
+        /// What it is.
+        what: &'static str,
+    },
+    /// A parameter is outside its range.
+    #[error("{what} is {value}, must be {range}")]
+    Parameter {
         /// Which one.
-        name: &'static str,
+        what: &'static str,
         /// Its value.
         value: f64,
-        /// The least.
-        low: f64,
-        /// The most.
-        high: f64,
+        /// The values it may take.
+        range: &'static str,
     },
-}
-
-/// Refuses what is not a number from `low` to `high`.
-pub(crate) fn check_range(
-    name: &'static str,
-    value: f64,
-    low: f64,
-    high: f64,
-) -> Result<(), AppearanceError> {
-    if (low..=high).contains(&value) {
-        return Ok(());
-    }
-    Err(AppearanceError::OutOfRange { name, value, low, high })
+    /// All numbers of references have been given out.
+    #[error("no number is left for another reference")]
+    Full,
 }

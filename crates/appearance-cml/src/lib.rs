@@ -25,11 +25,11 @@ pub use search::{
     AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,
     SearchCost,
 };
-pub use views::{
-    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, RingOrder, Tone,
-    TurnSense,
-};
 pub use state::{
     OdometryNoise, PoseHypothesis, SimplifyParams, UnimodalParams, propagate, separation_squared, simplify,
     unimodal,
+};
+pub use views::{
+    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, RingOrder, Tone,
+    TurnSense,
 };

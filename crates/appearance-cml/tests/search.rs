@@ -64,12 +64,17 @@ fn check(n_references: u32, n_queries: usize, seed: u64) -> usize {
     let mut n_found = 0;
     for query in 0..n_queries {
         let view = if query % 2 == 0 { walk.next() } else { seen[rng.random_range(0..seen.len())].clone() };
-        let radius = rng.random_range(0.0..0.8);
+        let radius = rng.random_range(0.0..1.1);
         let n = rng.random_range(1..8);
         let within = index.within(&view, radius);
         n_found += within.len();
         assert_eq!(within, linear.within(&view, radius), "query {query}");
         assert_eq!(index.nearest(&view, n), linear.nearest(&view, n), "query {query}");
+        assert_eq!(
+            index.nearest_within(&view, n, radius),
+            linear.nearest_within(&view, n, radius),
+            "query {query}"
+        );
     }
     n_found
 }
@@ -117,6 +122,7 @@ fn numbers_and_shapes_that_do_not_fit_are_refused() {
     assert!(index.nearest(&other, 1).is_empty() && index.nearest(&view, 0).is_empty());
     for radius in [f64::NAN, -1.0, 0.0, f64::NEG_INFINITY] {
         assert!(index.within(&view, radius).is_empty(), "{radius}");
+        assert!(index.nearest_within(&view, 3, radius).is_empty(), "{radius}");
     }
     assert_eq!(index.within(&view, f64::INFINITY).len(), 1);
     assert_eq!(index.remove(ReferenceId(8)), None);

@@ -2,8 +2,8 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::{Gaussian, check_covariance, cholesky, symmetrize};
 
-use super::split::{Split, intersect};
 use super::Combination;
+use super::split::{Split, intersect};
 use crate::{AppearanceError, PoseHypothesis};
 
 /// Makes one Gaussian of two that mean the same place.
@@ -114,7 +114,8 @@ mod tests {
         let left = hypothesis(1.0, [0.0, 0.0, std::f64::consts::FRAC_PI_2], [0.1, 1.0, 2.0]);
         for combination in [Combination::WeightedIntersection, Combination::SplitIntersection] {
             let fused = combine(&ahead, &left, combination).unwrap();
-            let world = fused.mean().rotation_matrix() * fused.covariance().fixed_view::<2, 2>(0, 0)
+            let world = fused.mean().rotation_matrix()
+                * fused.covariance().fixed_view::<2, 2>(0, 0)
                 * fused.mean().rotation_matrix().transpose();
             assert!(world[(1, 1)] < 0.2 * world[(0, 0)], "{combination:?}: {world}");
         }
@@ -122,7 +123,10 @@ mod tests {
 
     #[test]
     fn the_order_of_two_does_not_matter() {
-        let (a, b) = (hypothesis(0.3, [1.0, 2.0, 3.0], [0.2, 0.1, 0.1]), hypothesis(0.6, [1.1, 2.1, -3.1], [0.1, 0.3, 0.2]));
+        let (a, b) = (
+            hypothesis(0.3, [1.0, 2.0, 3.0], [0.2, 0.1, 0.1]),
+            hypothesis(0.6, [1.1, 2.1, -3.1], [0.1, 0.3, 0.2]),
+        );
         for combination in [Combination::WeightedIntersection, Combination::SplitIntersection] {
             let (one, other) = (combine(&a, &b, combination).unwrap(), combine(&b, &a, combination).unwrap());
             // The charts differ by a turn of 0.18 rad, which the retraction bends to second order.
@@ -134,7 +138,8 @@ mod tests {
     fn singular_covariances_are_refused() {
         let good = hypothesis(1.0, [0.0; 3], [0.2; 3]);
         for bad in [Matrix3::zeros(), Matrix3::from_element(f64::NAN), -Matrix3::identity()] {
-            let flat = PoseHypothesis::new(1.0, Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), bad));
+            let flat =
+                PoseHypothesis::new(1.0, Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), bad));
             for combination in [Combination::WeightedIntersection, Combination::SplitIntersection] {
                 assert!(combine(&good, &flat, combination).is_err());
                 assert!(combine(&flat, &good, combination).is_err());

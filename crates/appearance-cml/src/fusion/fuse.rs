@@ -46,7 +46,9 @@ pub fn fuse(
     let alone = |all: &[PoseHypothesis], factor: f64, index_of: fn(&Pair) -> usize| {
         let copied: Vec<PoseHypothesis> = (all.iter().enumerate())
             .filter(|(index, _)| !agreeing.iter().any(|pair| index_of(pair) == *index))
-            .map(|(_, hypothesis)| PoseHypothesis::new(hypothesis.weight * factor, hypothesis.gaussian.clone()))
+            .map(|(_, hypothesis)| {
+                PoseHypothesis::new(hypothesis.weight * factor, hypothesis.gaussian.clone())
+            })
             .collect();
         copied
     };
@@ -87,6 +89,7 @@ fn support(pair: &Pair, predicted: &[PoseHypothesis], observed: &[PoseHypothesis
     let (counterparts_of_a, counterparts_of_b): (f64, f64) = (of_a.sum(), of_b.sum());
     let (a, b) = (predicted[pair.predicted].weight, observed[pair.observed].weight);
     // A component whose counterparts weigh nothing is supported by nothing.
-    let part = |whole: f64, counterpart: f64, all: f64| if all > 0.0 { whole * counterpart / all } else { 0.0 };
+    let part =
+        |whole: f64, counterpart: f64, all: f64| if all > 0.0 { whole * counterpart / all } else { 0.0 };
     part(a, b, counterparts_of_a) + part(b, a, counterparts_of_b)
 }

@@ -35,7 +35,11 @@ impl Default for Weighting {
 
 /// How two mixtures over poses are fused.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct FusionParams {
     /// Squared Mahalanobis distance $`γ`$ below which two components mean one place.
     /// Default 16.3: 99.9 % of a chi-squared of three degrees of freedom.

@@ -15,7 +15,10 @@ pub trait PoseSource {
     ///
     /// # Errors
     /// When what was measured has no meaning; the localizer then leaves its state as it is.
-    fn hypotheses(&self, predicted: Option<&Mixture<Pose2<f64>>>) -> Result<Vec<PoseHypothesis>, AppearanceError>;
+    fn hypotheses(
+        &self,
+        predicted: Option<&Mixture<Pose2<f64>>>,
+    ) -> Result<Vec<PoseHypothesis>, AppearanceError>;
 }
 
 /// A measured position without a heading, such as a GPS fix.
@@ -43,7 +46,10 @@ const UNKNOWN_HEADING: f64 = 1.814;
 
 impl PoseSource for PositionFix {
     /// One hypothesis for each predicted heading, so that a turn of the body frame does not mix up the axes; one facing east without any.
-    fn hypotheses(&self, predicted: Option<&Mixture<Pose2<f64>>>) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    fn hypotheses(
+        &self,
+        predicted: Option<&Mixture<Pose2<f64>>>,
+    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
         check_covariance("position fix's", &self.covariance)?;
         crate::check::share("weight of a position fix", self.weight)?;
         let facing = |heading: f64| -> Result<PoseHypothesis, AppearanceError> {
@@ -51,7 +57,11 @@ impl PoseSource for PositionFix {
             let to_body = mean.rotation_matrix().transpose();
             let mut covariance = (to_body * self.covariance * to_body.transpose()).to_homogeneous();
             covariance[(2, 2)] = UNKNOWN_HEADING * UNKNOWN_HEADING;
-            Ok(PoseHypothesis { weight: self.weight, gaussian: Gaussian::new(mean, covariance)?, independent: 1.0 })
+            Ok(PoseHypothesis {
+                weight: self.weight,
+                gaussian: Gaussian::new(mean, covariance)?,
+                independent: 1.0,
+            })
         };
         match predicted {
             None => Ok(vec![facing(0.0)?]),

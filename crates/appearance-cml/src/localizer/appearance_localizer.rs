@@ -3,6 +3,7 @@ use wayfix_gaussian_core::{Gaussian, Mixture};
 
 use super::queue::{LearningQueue, Waiting};
 use super::scale_learner::ScaleLearner;
+use super::trail::Trail;
 use super::{Event, Learning, LocalizerParams, Motion, Observation, UpdateOutcome};
 use crate::{
     AppearanceError, AppearanceMap, Descriptor, LinearSearch, PoseHypothesis, PoseSource, ReferenceId,
@@ -61,6 +62,7 @@ pub struct AppearanceLocalizer<D, S = LinearSearch<D>> {
     learned_last: Option<D>,
     taught_last: Option<Pose2<f64>>,
     was_unimodal: bool,
+    trail: Trail,
     /// Counts views, to pick another far reference with each.
     views: u32,
 }
@@ -98,6 +100,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             learned_last: None,
             taught_last: None,
             was_unimodal,
+            trail: Trail::default(),
             views: 0,
         })
     }
@@ -133,6 +136,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         self.was_unimodal = self.state.is_some();
         self.motion = Motion::none();
         self.queue = LearningQueue::default();
+        self.trail = Trail::default();
         self.scale_learner.interrupt();
         self.learned_last = None;
         Ok(())
@@ -214,9 +218,11 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
                 Ok((superpose(&sightings), sightings.len()))
             }
             Observation::Interpolation => {
-                let sightings =
+                let mut sightings =
                     self.map.sightings(view, self.state.as_ref(), params.most_matches, &params.map);
-                Ok((interpolate(&sightings, self.map.scale())?, sightings.len()))
+                sightings.retain(|s| !self.trail.holds(s.matched.id));
+                let belief = self.state.as_ref().map_or(&[][..], Mixture::components);
+                Ok((interpolate(&sightings, belief, self.map.scale())?, sightings.len()))
             }
         }
     }
@@ -235,7 +241,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             _ => {}
         }
         let followed = self.state.as_ref().and_then(|state| state.components().first());
-        if let (Some(now), Some(followed)) = (fused.and_then(|mixture| mixture.components().first()), followed) {
+        if let (Some(now), Some(followed)) =
+            (fused.and_then(|mixture| mixture.components().first()), followed)
+        {
             if separation_squared(now, followed)? > self.params.fusion.gate {
                 events.push(Event::Relocated);
             }
@@ -247,6 +255,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     fn learn(&mut self, view: D, events: &mut Vec<Event>) -> Result<(), AppearanceError> {
         let estimate = self.one_place().cloned();
         let way = self.motion.increment.translation.norm();
+        self.trail.moved(way, self.map.reach_of_match(&self.params.map));
         self.measure(way, &view, estimate.as_ref().map(Gaussian::mean));
         self.queue.push(Waiting { view, motion: self.motion, estimate });
         if events.contains(&Event::Relocated) {
@@ -263,6 +272,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             };
             if self.is_corroborated(&oldest) {
                 let learned = self.map.learn(oldest.view.clone(), &pose, &self.params.map)?;
+                self.trail.extend(learned.inserted);
                 events.extend(learned.inserted.map(Event::NewReference));
                 events.extend(learned.forgotten.into_iter().map(Event::Forgotten));
             }
@@ -291,7 +301,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     fn measure(&mut self, way: f64, view: &D, at: Option<&Pose2<f64>>) {
         self.scale_learner.observe(way, view, self.map.scale_mut());
         self.views = self.views.wrapping_add(1);
-        let Some(distance) = at.and_then(|pose| self.map.distance_to_far(view, pose, self.views)) else { return };
+        let Some(distance) = at.and_then(|pose| self.map.distance_to_far(view, pose, self.views)) else {
+            return;
+        };
         self.map.scale_mut().add_far(distance);
     }
 }

@@ -6,6 +6,7 @@ mod params;
 mod queue;
 mod scale_learner;
 mod smooth;
+mod trail;
 
 pub use appearance_localizer::{AppearanceLocalizer, Start};
 pub use outcome::{Event, UpdateOutcome};

@@ -24,7 +24,11 @@ pub enum Observation {
 
 /// Everything that can be set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct LocalizerParams {
     /// How odometry errs.
     pub odometry: OdometryNoise,

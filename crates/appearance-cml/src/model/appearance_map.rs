@@ -122,6 +122,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         params.match_limit.unwrap_or_else(|| self.scale.match_limit(params.match_share))
     }
 
+    /// How far apart two views may be taken and still match, m.
+    pub fn reach_of_match(&self, params: &MapParams) -> f64 {
+        self.scale.metres(self.match_limit(params))
+    }
+
     /// Makes the view a reference of this place, whatever is there already: for a map that is taught with known poses.
     ///
     /// # Errors
@@ -140,8 +145,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         params: &MapParams,
     ) -> Vec<Sighting> {
         let limit = self.match_limit(params);
-        let mut matches = self.search.nearest(view, most);
-        matches.retain(|m| m.comparison.distance < limit);
+        let mut matches = self.search.nearest_within(view, most, limit);
         for component in belief.map_or(&[][..], Mixture::components) {
             matches.extend(self.compare_near(view, component, limit));
         }
@@ -162,9 +166,8 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         let start = (u64::from(turn.wrapping_mul(0x9E37_79B9)) * u64::from(self.next)) >> 32;
         let (id, reference) = self.references.range(ReferenceId(start as u32)..).next()?;
         let far = FAR_STEPS * self.scale.step();
-        let is_far = |place: &PlaceComponent| {
-            (place.gaussian.mean().translation - pose.translation).norm() > far
-        };
+        let is_far =
+            |place: &PlaceComponent| (place.gaussian.mean().translation - pose.translation).norm() > far;
         let reference = reference.places.iter().all(is_far).then(|| self.search.get(*id)).flatten()?;
         Some(view.compare(reference).distance)
     }

@@ -39,7 +39,8 @@ impl Grid {
         let (low, high) = (cell(&(at - reach)), cell(&(at + reach)));
         let mut found: Vec<ReferenceId> = Vec::new();
         if high.0.saturating_sub(low.0) > MOST_STEPS || high.1.saturating_sub(low.1) > MOST_STEPS {
-            let inside = |key: &(i64, i64)| (low.0..=high.0).contains(&key.0) && (low.1..=high.1).contains(&key.1);
+            let inside =
+                |key: &(i64, i64)| (low.0..=high.0).contains(&key.0) && (low.1..=high.1).contains(&key.1);
             found.extend(self.cells.iter().filter(|(key, _)| inside(key)).flat_map(|(_, ids)| ids));
         } else {
             for x in low.0..=high.0 {

@@ -6,8 +6,12 @@ use wayfix_gaussian_core::{Gaussian, GaussianError, moment_matched};
 
 use super::sighting::turned;
 use super::weigh::{weight_when_missed, weight_when_seen};
-use super::{AppearanceMap, Forgetting, MapParams, PlaceComponent, PlaceUpdate, Reference, Sighting, interpolate};
-use crate::{AppearanceError, Descriptor, Match, ReferenceId, ReferenceSearch, separation_squared, similarity};
+use super::{
+    AppearanceMap, Forgetting, MapParams, PlaceComponent, PlaceUpdate, Reference, Sighting, interpolate,
+};
+use crate::{
+    AppearanceError, Descriptor, Match, ReferenceId, ReferenceSearch, separation_squared, similarity,
+};
 
 /// What one view changed in the map.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
@@ -120,7 +124,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             .collect();
         let mut nearest = None;
         let mut least = params.place_gate;
-        for hypothesis in interpolate(&sightings, self.scale())? {
+        for hypothesis in interpolate(&sightings, std::slice::from_ref(pose), self.scale())? {
             let squared = separation_squared(pose, &hypothesis.gaussian)?;
             if squared < least {
                 least = squared;
@@ -222,11 +226,8 @@ impl Residual {
     ) -> Result<(), AppearanceError> {
         let old = place.gaussian.mean();
         let seen_from = turned(pose, -matched.comparison.rotation);
-        let corrected = Pose2::new(
-            old.x() + self.translation.x,
-            old.y() + self.translation.y,
-            old.heading() + self.turn,
-        );
+        let corrected =
+            Pose2::new(old.x() + self.translation.x, old.y() + self.translation.y, old.heading() + self.turn);
         let covariance = seen_from.in_chart_at(&corrected)?.covariance().to_owned();
         let observed = PlaceComponent {
             weight: 0.0,

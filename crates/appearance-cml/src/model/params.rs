@@ -26,7 +26,11 @@ pub enum PlaceUpdate {
 
 /// How active forgetting fades references. [Gross et al. 2005, Eq. 19]
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct ForgettingParams {
     /// $`β_{for}`$: the share of weight that a reference at the very place loses. Default 0.3.
     pub rate: f64,
@@ -46,7 +50,11 @@ impl Default for ForgettingParams {
 
 /// How the appearance map learns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct MapParams {
     /// $`E^{max}`$, in units of the descriptor; `None` finds it from the data. Default `None`.
     pub match_limit: Option<f64>,

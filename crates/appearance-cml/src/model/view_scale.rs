@@ -153,7 +153,8 @@ impl ViewScale {
         } else {
             4.0 * near * near
         };
-        self.fitted = Fitted { step, near, nugget: if nugget.is_finite() { nugget } else { 0.0 }, slope, sill };
+        self.fitted =
+            Fitted { step, near, nugget: if nugget.is_finite() { nugget } else { 0.0 }, slope, sill };
     }
 }
 

@@ -1,4 +1,7 @@
-use super::projection::{N_DIMS, Sketch};
+use super::{
+    projection::{N_DIMS, Sketch},
+    slot_set::SlotSet,
+};
 
 /// Sketches in leaves of a few dozen, each with the box around them: a k-d tree that grows by splitting leaves.
 #[derive(Clone, Debug)]
@@ -22,15 +25,6 @@ enum Content {
     Fork { dim: usize, at: f32, below: usize, above: usize },
 }
 
-/// What a look into the tree finds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Entry {
-    /// A branch, to be looked into.
-    Branch(usize),
-    /// What was inserted with a sketch.
-    Slot(u32),
-}
-
 impl Default for BoxTree {
     fn default() -> Self {
         Self { nodes: vec![Node::leaf()] }
@@ -38,8 +32,6 @@ impl Default for BoxTree {
 }
 
 impl BoxTree {
-    pub(super) const ROOT: usize = 0;
-
     /// Takes a sketch in.
     pub(super) fn insert(&mut self, sketch: Sketch, slot: u32) {
         let mut index = 0;
@@ -81,27 +73,28 @@ impl BoxTree {
         }
     }
 
-    /// Everything in a branch that may be within `radius`, with the least distance it may have.
-    pub(super) fn look(&self, branch: usize, sketch: &Sketch, radius: f32, mut each: impl FnMut(f32, Entry)) {
+    /// All slots below `n_slots` whose sketches are within `radius`.
+    pub(super) fn within(&self, sketch: &Sketch, radius: f32, n_slots: usize) -> SlotSet {
         let within = radius * radius;
-        match &self.nodes[branch].content {
-            Content::Fork { below, above, .. } => {
-                for index in [*below, *above] {
-                    let squared = self.nodes[index].squared_distance(sketch);
-                    if squared <= within {
-                        each(squared.sqrt(), Entry::Branch(index));
-                    }
-                }
+        let mut found = SlotSet::new(n_slots);
+        let mut branches = vec![0];
+        while let Some(index) = branches.pop() {
+            let node = &self.nodes[index];
+            if node.squared_distance(sketch) > within {
+                continue;
             }
-            Content::Leaf { sketches, slots } => {
-                for (other, slot) in sketches.iter().zip(slots) {
-                    let squared = squared_distance(sketch, other);
-                    if squared <= within {
-                        each(squared.sqrt(), Entry::Slot(*slot));
+            match &node.content {
+                Content::Fork { below, above, .. } => branches.extend([*below, *above]),
+                Content::Leaf { sketches, slots } => {
+                    for (other, slot) in sketches.iter().zip(slots) {
+                        if squared_distance(sketch, other) <= within {
+                            found.insert(*slot);
+                        }
                     }
                 }
             }
         }
+        found
     }
 
     /// Parts a leaf at the middle of its widest extent, if there is one.

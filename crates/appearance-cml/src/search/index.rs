@@ -1,9 +1,9 @@
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
 use super::{
     Bounded, Match, ReferenceId, ReferenceSearch,
-    box_tree::{BoxTree, Entry},
-    nearest::{Candidate, Nearest, by_distance},
+    box_tree::BoxTree,
+    nearest::{Nearest, by_distance},
     projection::{Projection, Sketch},
 };
 use crate::AppearanceError;
@@ -77,61 +77,53 @@ impl<D: Bounded> AppearanceIndex<D> {
     /// As [`within`](ReferenceSearch::within), and what it took.
     pub fn within_counted(&self, view: &D, max_distance: f64) -> (Vec<Match>, SearchCost) {
         let mut cost = SearchCost::default();
-        let mut found = Vec::new();
-        let Some(sketch) = self.sketch_of_comparable(view) else { return (found, cost) };
-        let mut branches = vec![BoxTree::ROOT];
-        let mut slots = Vec::new();
-        while let Some(branch) = branches.pop() {
-            self.tree.look(branch, &sketch, widened(max_distance), |_, entry| match entry {
-                Entry::Branch(branch) => branches.push(branch),
-                Entry::Slot(slot) => slots.push(slot),
-            });
-        }
-        for slot in slots {
-            let candidate = self.compare(view, slot, max_distance, &mut cost);
-            found.extend(candidate.filter(|found| found.comparison.distance < max_distance));
-        }
+        let compare = |(_, slot)| self.compare(view, slot);
+        let mut found: Vec<Match> =
+            self.bounded(view, max_distance, &mut cost).into_iter().filter_map(compare).collect();
+        cost.compared = found.len();
+        found.retain(|found| found.comparison.distance < max_distance);
         found.sort_by(by_distance);
         cost.found = found.len();
         (found, cost)
     }
 
-    /// As [`nearest`](ReferenceSearch::nearest), and what it took.
+    /// As [`nearest_within`](ReferenceSearch::nearest_within), and what it took.
     ///
-    /// What may be nearest is looked at before anything that cannot be as near.
-    pub fn nearest_counted(&self, view: &D, n: usize) -> (Vec<Match>, SearchCost) {
+    /// Those of the least bound are compared first: none is compared that is not nearer, by its bound, than the last answer.
+    pub fn nearest_counted(&self, view: &D, n: usize, max_distance: f64) -> (Vec<Match>, SearchCost) {
         let mut cost = SearchCost::default();
-        let mut nearest = Nearest::new(n);
-        let Some(sketch) = self.sketch_of_comparable(view).filter(|_| n > 0) else {
-            return (Vec::new(), cost);
-        };
-        let mut queue = BinaryHeap::from([Candidate { least: 0.0, entry: Entry::Branch(BoxTree::ROOT) }]);
-        while let Some(Candidate { least, entry }) = queue.pop() {
-            let radius = nearest.radius();
-            if least > widened(radius) {
+        let mut nearest = Nearest::new(n, max_distance);
+        let mut bounded = if n > 0 { self.bounded(view, max_distance, &mut cost) } else { Vec::new() };
+        bounded.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for (bound, slot) in bounded {
+            if bound > nearest.radius() + BOUND_SLACK {
                 break;
             }
-            match entry {
-                Entry::Branch(branch) => {
-                    let add = |least, entry| queue.push(Candidate { least, entry });
-                    self.tree.look(branch, &sketch, widened(radius), add);
-                }
-                Entry::Slot(slot) => nearest.extend(self.compare(view, slot, radius, &mut cost)),
-            }
+            cost.compared += 1;
+            nearest.extend(self.compare(view, slot));
         }
         let found = nearest.into_sorted();
         cost.found = found.len();
         (found, cost)
     }
 
-    /// The second and the third stage; `None` when the reference is farther than `radius`.
-    fn compare(&self, view: &D, slot: u32, radius: f64, cost: &mut SearchCost) -> Option<Match> {
-        let (id, reference) = self.slots.get(slot as usize)?.as_ref()?;
-        cost.bounded += 1;
-        if view.bound(reference, radius + BOUND_SLACK) > radius + BOUND_SLACK {
-            return None;
-        }
-        cost.compared += 1;
+    /// The first two stages: the bounds of all references that may be within `radius`.
+    fn bounded(&self, view: &D, radius: f64, cost: &mut SearchCost) -> Vec<(f64, u32)> {
+        let Some(sketch) = self.sketch_of_comparable(view) else { return Vec::new() };
+        let candidates = self.tree.within(&sketch, (radius + SKETCH_SLACK) as f32, self.slots.len());
+        let bound = |slot: u32| {
+            let (_, reference) = self.slots[slot as usize].as_ref()?;
+            cost.bounded += 1;
+            Some((view.bound(reference, radius + BOUND_SLACK), slot))
+        };
+        let mut bounded: Vec<(f64, u32)> = candidates.iter().filter_map(bound).collect();
+        bounded.retain(|(bound, _)| *bound <= radius + BOUND_SLACK);
+        bounded
+    }
+
+    /// The third.
+    fn compare(&self, view: &D, slot: u32) -> Option<Match> {
+        let (id, reference) = self.slots[slot as usize].as_ref()?;
         Some(Match { id: *id, comparison: view.compare(reference) })
     }
 
@@ -207,11 +199,10 @@ impl<D: Bounded> ReferenceSearch<D> for AppearanceIndex<D> {
     }
 
     fn nearest(&self, view: &D, n: usize) -> Vec<Match> {
-        self.nearest_counted(view, n).0
+        self.nearest_counted(view, n, f64::INFINITY).0
     }
-}
 
-/// The radius that sketches are asked for.
-fn widened(radius: f64) -> f32 {
-    (radius + SKETCH_SLACK) as f32
+    fn nearest_within(&self, view: &D, n: usize, max_distance: f64) -> Vec<Match> {
+        self.nearest_counted(view, n, max_distance).0
+    }
 }

@@ -8,6 +8,7 @@ mod linear;
 mod nearest;
 mod projection;
 mod reference_search;
+mod slot_set;
 
 pub use bounded::Bounded;
 pub use descriptor::{Comparison, Descriptor};

@@ -1,6 +1,6 @@
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-use super::{Match, box_tree::Entry};
+use super::Match;
 
 /// The order of all answers: the nearest first, by number where they are equally near.
 pub(super) fn by_distance(a: &Match, b: &Match) -> Ordering {
@@ -10,24 +10,26 @@ pub(super) fn by_distance(a: &Match, b: &Match) -> Ordering {
 /// The nearest so far of those that were compared.
 pub(super) struct Nearest {
     n: usize,
+    /// No answer is as far as this.
+    max_distance: f64,
     found: BinaryHeap<Found>,
 }
 
 impl Nearest {
-    /// Keeps `n` of them, at least 1.
-    pub(super) fn new(n: usize) -> Self {
-        Self { n, found: BinaryHeap::new() }
+    /// Keeps `n` of those below a distance, at least 1.
+    pub(super) fn new(n: usize, max_distance: f64) -> Self {
+        Self { n, max_distance, found: BinaryHeap::new() }
     }
 
     /// What is farther does not count any more.
     pub(super) fn radius(&self) -> f64 {
         let farthest = self.found.peek().filter(|_| self.found.len() >= self.n);
-        farthest.map_or(f64::INFINITY, |found| found.0.comparison.distance)
+        farthest.map_or(self.max_distance, |found| found.0.comparison.distance)
     }
 
     /// Takes those in that are near enough.
     pub(super) fn extend(&mut self, matches: impl IntoIterator<Item = Match>) {
-        for found in matches.into_iter().filter(|found| found.comparison.distance < f64::INFINITY) {
+        for found in matches.into_iter().filter(|found| found.comparison.distance < self.max_distance) {
             self.found.push(Found(found));
             if self.found.len() > self.n {
                 self.found.pop();
@@ -62,30 +64,3 @@ impl PartialEq for Found {
 }
 
 impl Eq for Found {}
-
-/// Something that is yet to be looked at; what may be nearest is the greatest, so that it comes first.
-pub(super) struct Candidate {
-    /// The least distance it may have.
-    pub(super) least: f32,
-    pub(super) entry: Entry,
-}
-
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.least.total_cmp(&self.least).then(other.entry.cmp(&self.entry))
-    }
-}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Candidate {}

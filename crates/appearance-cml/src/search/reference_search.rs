@@ -44,4 +44,11 @@ pub trait ReferenceSearch<D: Descriptor> {
 
     /// The `n` nearest references (all of them where there are fewer), the nearest first, by number where they are equally near.
     fn nearest(&self, view: &D, n: usize) -> Vec<Match>;
+
+    /// The `n` nearest of the references nearer than `max_distance`: [`nearest`](Self::nearest), cut off.
+    fn nearest_within(&self, view: &D, n: usize, max_distance: f64) -> Vec<Match> {
+        let mut found = self.nearest(view, n);
+        found.retain(|found| found.comparison.distance < max_distance);
+        found
+    }
 }

@@ -14,21 +14,25 @@ use crate::{AppearanceError, check};
 /// assert!((metre - quarter * 4.0).norm() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct OdometryNoise {
-    /// σ along the way after one metre, m. Default 0.05.
+    /// σ along the way after one metre, m. Default 0.04.
     pub forward: f64,
     /// σ across the way after one metre, m. Default 0.03.
     pub sideways: f64,
-    /// σ of the heading after one metre, rad. Default 0.02.
+    /// σ of the heading after one metre, rad. Default 0.015.
     pub heading_per_metre: f64,
-    /// σ of the heading after turning by one radian, rad. Default 0.05.
+    /// σ of the heading after turning by one radian, rad. Default 0.04.
     pub heading_per_radian: f64,
 }
 
 impl Default for OdometryNoise {
     fn default() -> Self {
-        Self { forward: 0.05, sideways: 0.03, heading_per_metre: 0.02, heading_per_radian: 0.05 }
+        Self { forward: 0.04, sideways: 0.03, heading_per_metre: 0.015, heading_per_radian: 0.04 }
     }
 }
 

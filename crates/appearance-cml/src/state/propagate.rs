@@ -30,7 +30,8 @@ pub fn propagate(
 ) -> Result<Gaussian<Pose2<f64>>, AppearanceError> {
     let mean = belief.mean().compose(increment);
     let transition = transition(increment);
-    let mut covariance = transition * belief.covariance() * transition.transpose() + noise.covariance(increment);
+    let mut covariance =
+        transition * belief.covariance() * transition.transpose() + noise.covariance(increment);
     symmetrize(&mut covariance);
     if !(mean.is_finite() && covariance.iter().all(|entry| entry.is_finite())) {
         return Err(AppearanceError::NotFinite { what: "odometry increment" });
@@ -65,7 +66,11 @@ mod tests {
     #[test]
     fn odometry_that_is_not_finite_is_refused() {
         let start = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), Matrix3::identity());
-        for bad in [Pose2::new(f64::NAN, 0.0, 0.0), Pose2::new(0.0, f64::INFINITY, 0.0), Pose2::new(0.0, 0.0, f64::NAN)] {
+        for bad in [
+            Pose2::new(f64::NAN, 0.0, 0.0),
+            Pose2::new(0.0, f64::INFINITY, 0.0),
+            Pose2::new(0.0, 0.0, f64::NAN),
+        ] {
             assert!(propagate(&start, &bad, &OdometryNoise::default()).is_err());
         }
     }

@@ -20,7 +20,10 @@ use crate::AppearanceError;
 ///
 /// # Errors
 /// When something is not finite or the sum of the covariances is singular.
-pub fn separation_squared(a: &Gaussian<Pose2<f64>>, b: &Gaussian<Pose2<f64>>) -> Result<f64, AppearanceError> {
+pub fn separation_squared(
+    a: &Gaussian<Pose2<f64>>,
+    b: &Gaussian<Pose2<f64>>,
+) -> Result<f64, AppearanceError> {
     let seen = b.in_chart_at(a.mean())?;
     let factor = cholesky("sum of the beliefs'", &(a.covariance() + seen.covariance()))?;
     let deviation = a.mean().local(b.mean());

@@ -5,7 +5,11 @@ use crate::{AppearanceError, check};
 
 /// How a mixture over poses is kept small.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct SimplifyParams {
     /// Squared Mahalanobis distance below which two components are one. Default 2: they overlap by more than half.
     pub merge_distance: f64,
@@ -102,5 +106,9 @@ fn nearest_within(
 fn merge(a: &PoseHypothesis, b: &PoseHypothesis) -> Result<PoseHypothesis, AppearanceError> {
     let gaussian = moment_matched(&[a.weight, b.weight], &[a.gaussian.clone(), b.gaussian.clone()])
         .map_err(GaussianError::from)?;
-    Ok(PoseHypothesis { weight: a.weight + b.weight, gaussian, independent: a.independent.min(b.independent) })
+    Ok(PoseHypothesis {
+        weight: a.weight + b.weight,
+        gaussian,
+        independent: a.independent.min(b.independent),
+    })
 }

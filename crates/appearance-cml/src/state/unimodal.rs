@@ -5,7 +5,11 @@ use crate::{AppearanceError, check};
 
 /// When a mixture counts as one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct UnimodalParams {
     /// Least share of the weight in the heaviest component. Default 0.8.
     pub least_weight: f64,

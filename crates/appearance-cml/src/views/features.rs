@@ -1,5 +1,5 @@
 use super::{Panorama, PanoramaDescriptor, PanoramaParams, TurnSense, sectors::cell_means};
-use crate::{AppearanceError, error::check_range};
+use crate::{AppearanceError, check};
 
 /// Turns the panoramas of one camera into descriptors.
 ///
@@ -13,8 +13,8 @@ use crate::{AppearanceError, error::check_range};
 /// let panorama = Panorama::from_rgb(120, 25, bytes)?;
 /// let (before, after) = (features.describe(&panorama)?, features.describe(&panorama.turned(10))?);
 /// let seen = after.compare(&before);
-/// // What was ten columns of 3° to the left is ahead now.
-/// assert!(seen.distance < 0.03 && (seen.rotation.to_degrees() - 30.0).abs() < 0.2);
+/// // Ten columns of 3° to the right is a turn by −30°.
+/// assert!(seen.distance < 0.03 && (seen.rotation.to_degrees() + 30.0).abs() < 0.2);
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -31,12 +31,12 @@ impl PanoramaFeatures {
     /// For panoramas of `n_columns` × `n_rows` pixels.
     ///
     /// # Errors
-    /// [`AppearanceError::OutOfRange`] for parameters outside their range, or more harmonics than half the columns.
+    /// [`AppearanceError::Parameter`] for parameters outside their range, or more harmonics than half the columns.
     pub fn new(params: PanoramaParams, n_columns: usize, n_rows: usize) -> Result<Self, AppearanceError> {
-        params.check()?;
+        params.validate()?;
+        check::count("rows of the panorama", n_rows)?;
         let (n_rings, n_sectors) = (params.n_rings.min(n_rows), params.n_sectors.min(n_columns));
-        check_range("rows of the panorama", n_rings as f64, 1.0, f64::MAX)?;
-        check_range("n_harmonics", params.n_harmonics as f64, 2.0, (n_sectors / 2) as f64)?;
+        params.check_harmonics(n_sectors)?;
         let angle = |sector: usize| std::f64::consts::TAU * sector as f64 / n_sectors as f64;
         let circle = (0..n_sectors).map(|sector| (angle(sector).cos(), angle(sector).sin())).collect();
         Ok(Self { params, size: (n_columns, n_rows), n_rings, n_sectors, circle })

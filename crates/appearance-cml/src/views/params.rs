@@ -1,5 +1,5 @@
 use super::{Normalization, Tone, TurnSense};
-use crate::{AppearanceError, error::check_range};
+use crate::{AppearanceError, check};
 
 /// How a panorama is described.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct PanoramaParams {
     pub min_contrast: f64,
     /// Largest share of pixels that are all black or all white. Default 0.8.
     pub max_saturated: f64,
-    /// Which way the columns go round. Default: counterclockwise.
+    /// Which way the columns go round. Default: clockwise, left to right.
     pub sense: TurnSense,
 }
 
@@ -37,25 +37,27 @@ impl Default for PanoramaParams {
             normalization: Normalization::MeanVariance,
             min_contrast: 0.01,
             max_saturated: 0.8,
-            sense: TurnSense::Counterclockwise,
+            sense: TurnSense::Clockwise,
         }
     }
 }
 
 impl PanoramaParams {
     /// # Errors
-    /// [`AppearanceError::OutOfRange`] for the first value outside its range.
-    pub(super) fn check(&self) -> Result<(), AppearanceError> {
-        let whole = [
-            ("n_rings", self.n_rings, 1, 64),
-            ("n_sectors", self.n_sectors, 4, 1024),
-            ("n_harmonics", self.n_harmonics, 2, 64),
-        ];
-        for (name, value, low, high) in whole {
-            check_range(name, value as f64, low as f64, high as f64)?;
-        }
-        check_range("n_harmonics", self.n_harmonics as f64, 2.0, (self.n_sectors / 2) as f64)?;
-        check_range("min_contrast", self.min_contrast, 0.0, 1.0)?;
-        check_range("max_saturated", self.max_saturated, 0.0, 1.0)
+    /// [`AppearanceError::Parameter`] for the first value outside its range.
+    pub(super) fn validate(&self) -> Result<(), AppearanceError> {
+        let whole = |what, value: usize, holds, range| check::within(what, value as f64, holds, range);
+        whole("n_rings", self.n_rings, (1..=64).contains(&self.n_rings), "from 1 to 64")?;
+        whole("n_sectors", self.n_sectors, (4..=1024).contains(&self.n_sectors), "from 4 to 1024")?;
+        self.check_harmonics(self.n_sectors)?;
+        check::share("min_contrast", self.min_contrast)?;
+        check::share("max_saturated", self.max_saturated)
+    }
+
+    /// No more harmonics than can be told apart.
+    pub(super) fn check_harmonics(&self, n_sectors: usize) -> Result<(), AppearanceError> {
+        let holds = (2..=64.min(n_sectors / 2)).contains(&self.n_harmonics);
+        let range = "from 2 to 64 and at most half the sectors and columns";
+        check::within("n_harmonics", self.n_harmonics as f64, holds, range)
     }
 }
