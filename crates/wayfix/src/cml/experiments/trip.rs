@@ -1,7 +1,7 @@
 use anyhow::Result;
 use wayfix_appearance_cml::{Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, TurnSense};
-use wayfix_estimation_traits::Pose2;
-use wayfix_scene_sim::indoors::{Building, IndoorDrive, IndoorParams};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_scene_sim::indoors::{Building, IndoorDrive, IndoorParams, IndoorStep};
 use wayfix_scene_sim::random::Streams;
 use wayfix_scene_sim::route::Route;
 
@@ -33,7 +33,7 @@ impl Trip {
         // As the simulated camera unrolls its views; everything else is the default.
         let params_of_view = PanoramaParams { sense: TurnSense::Clockwise, ..PanoramaParams::default() };
         let features = PanoramaFeatures::new(params_of_view, camera.columns, camera.rings)?;
-        let step = |step: wayfix_scene_sim::indoors::IndoorStep| {
+        let step = |step: IndoorStep| {
             let panorama = Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb)?;
             let view = features.describe(&panorama).ok();
             Ok(TripStep { odometry: step.odometry, pose: step.pose, view })
@@ -45,7 +45,6 @@ impl Trip {
 
     /// Where the robot would be by its odometry alone.
     pub fn dead_reckoning(&self) -> Vec<Pose2<f64>> {
-        use wayfix_estimation_traits::LieGroup;
         let Some(first) = self.steps.first() else { return Vec::new() };
         let mut pose = first.pose;
         let mut moved = |step: &TripStep| {
