@@ -41,7 +41,7 @@ pub struct AppearanceIndex<D> {
 /// How many references each stage of a search looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SearchCost {
-    /// Bounded by their descriptors: what the tree of sketches let through.
+    /// Bounded by their descriptors: what the tree of sketches let through, each time the radius grew.
     pub bounded: usize,
     /// Compared: what the bound let through.
     pub compared: usize,
@@ -54,6 +54,11 @@ const FIRST_LEARNING: usize = 32;
 const GROWTH: usize = 8;
 const LAST_LEARNING: usize = 16_384;
 const N_SAMPLES: usize = 256;
+
+/// The first radius as a share of a typical distance, and by how much it grows.
+const FIRST_RADIUS: f64 = 0.45;
+const RADIUS_GROWTH: f64 = 1.35;
+const N_TYPICAL: usize = 16;
 
 /// More than the rounding of a sketch of single precision, whose numbers are of the size of 1.
 const SKETCH_SLACK: f64 = 1e-5;
@@ -89,11 +94,27 @@ impl<D: Bounded> AppearanceIndex<D> {
 
     /// As [`nearest_within`](ReferenceSearch::nearest_within), and what it took.
     ///
-    /// Those of the least bound are compared first: none is compared that is not nearer, by its bound, than the last answer.
+    /// Small radii are cheap, so the radius grows until there are enough.
     pub fn nearest_counted(&self, view: &D, n: usize, max_distance: f64) -> (Vec<Match>, SearchCost) {
         let mut cost = SearchCost::default();
-        let mut nearest = Nearest::new(n, max_distance);
-        let mut bounded = if n > 0 { self.bounded(view, max_distance, &mut cost) } else { Vec::new() };
+        if n == 0 || max_distance.is_nan() {
+            return (Vec::new(), cost);
+        }
+        let mut radius = (FIRST_RADIUS * self.typical_distance(view)).min(max_distance);
+        loop {
+            let found = self.nearest_below(view, n, radius, &mut cost);
+            if found.len() >= n.min(self.len()) || radius >= max_distance {
+                cost.found = found.len();
+                return (found, cost);
+            }
+            radius = (RADIUS_GROWTH * radius).min(max_distance);
+        }
+    }
+
+    /// Those of the least bound are compared first: none is compared that cannot be nearer than the last answer.
+    fn nearest_below(&self, view: &D, n: usize, radius: f64, cost: &mut SearchCost) -> Vec<Match> {
+        let mut nearest = Nearest::new(n, radius);
+        let mut bounded = self.bounded(view, radius, cost);
         bounded.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         for (bound, slot) in bounded {
             if bound > nearest.radius() + BOUND_SLACK {
@@ -102,9 +123,17 @@ impl<D: Bounded> AppearanceIndex<D> {
             cost.compared += 1;
             nearest.extend(self.compare(view, slot));
         }
-        let found = nearest.into_sorted();
-        cost.found = found.len();
-        (found, cost)
+        nearest.into_sorted()
+    }
+
+    /// The median distance to a few references; infinite where there is none that can be compared, or all are the same.
+    fn typical_distance(&self, view: &D) -> f64 {
+        let every = (self.len() / N_TYPICAL).max(1);
+        let distance = |(_, reference): &(ReferenceId, D)| view.compare(reference).distance;
+        let mut distances: Vec<f64> =
+            self.references().step_by(every).take(N_TYPICAL).map(distance).collect();
+        distances.sort_by(f64::total_cmp);
+        distances.get(distances.len() / 2).copied().filter(|median| *median > 0.0).unwrap_or(f64::INFINITY)
     }
 
     /// The first two stages: the bounds of all references that may be within `radius`.

@@ -4,7 +4,7 @@ mod anywhere;
 mod area;
 mod follow;
 mod four_weeks;
-mod histogram;
+pub(super) mod histogram;
 mod lab;
 mod size;
 mod step_time;
