@@ -45,5 +45,6 @@ pub mod world;
 pub use error::SimError;
 pub use scenario::{
     LaserDriveParams, OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams,
+    StoreLapsParams,
 };
 pub use simulation::Simulation;

@@ -4,8 +4,8 @@ use crate::{SimError, check};
 
 /// A camera that sees all around, and how its picture is unrolled.
 ///
-/// A view is as a mirror shows it, left and right exchanged: column k is centred on the azimuth $`(k + ½)\,2π/n - π`$, counter-clockwise, with the
-/// front in the middle; the first row looks highest.
+/// A view is what somebody sees who turns round, from left to right: column k is centred on the azimuth $`π - (k + ½)\,2π/n`$, the front is in
+/// the middle, and the first row looks highest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmniCameraParams {
     /// Sectors, an even number. Default 120.

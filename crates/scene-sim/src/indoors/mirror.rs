@@ -5,8 +5,8 @@ use crate::{SimError, check};
 
 /// A camera below a curved mirror: the elevation falls evenly from the outer to the inner radius of a ring in the middle of the picture.
 ///
-/// What is left of the front appears clockwise of it; the front is on the left of the centre. Unrolled clockwise from the right, with the
-/// outer radius as the top row, the ring is the view again.
+/// The columns of the view follow each other clockwise from the right, so that the front is on the left of the centre. Unrolled the same way,
+/// with the outer radius as the top row, the ring is the view again.
 ///
 /// ```
 /// use wayfix_scene_sim::{indoors::Mirror, scenery::RgbPicture};

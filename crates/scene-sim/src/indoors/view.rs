@@ -112,7 +112,8 @@ impl Shading<'_> {
                 self.upright(met, *slope, depths.steps[1], last.1)
             };
             let ring = params.rings - 1 - elevation / down;
-            let column = (azimuth / across + params.columns / 2) % params.columns;
+            // From left to right, the front in the middle.
+            let column = (3 * params.columns / 2 - 1 - azimuth / across) % params.columns;
             let pixel = &mut radiance[ring * params.columns + column];
             for k in 0..3 {
                 pixel[k] += share * arriving[k];

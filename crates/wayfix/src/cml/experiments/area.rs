@@ -17,6 +17,8 @@ struct Lapped {
     building: Building,
     trip: Trip,
     course: Course,
+    /// The same with the method as printed.
+    printed: Course,
 }
 
 /// Fig. 4: seven laps around shelves from an empty map, odometry as it is. The size gives the seeds only.
@@ -28,6 +30,7 @@ pub fn laps(size: &Size, seed: u64) -> Result<Run> {
     let mut metrics: Vec<Metric> = Vec::new();
     metrics.extend(mean_of("error_mean_m", "m", &seeds, |lapped| mean(&lapped.course.errors)));
     metrics.extend(mean_of("error_max_m", "m", &seeds, |lapped| largest(&lapped.course.errors)));
+    metrics.extend(mean_of("error_mean_m_printed", "m", &seeds, |lapped| mean(&lapped.printed.errors)));
     metrics.extend(mean_of("dead_reckoning_error_mean_m", "m", &seeds, |lapped| {
         mean(&dead_reckoning_errors(&lapped.trip))
     }));
@@ -36,6 +39,9 @@ pub fn laps(size: &Size, seed: u64) -> Result<Run> {
             mean(of_lap(&lapped.course, lap))
         }));
     }
+    let over_all =
+        |lap| mean(&seeds.iter().map(|lapped| mean(of_lap(&lapped.course, lap))).collect::<Vec<_>>());
+    metrics.push(Metric::new("last_lap_over_first", over_all(N_LAPS - 1) / over_all(0), ""));
     metrics.extend(mean_of("references", "", &seeds, |lapped| {
         lapped.course.n_references.last().map_or(0.0, |n| *n as f64)
     }));
@@ -52,9 +58,9 @@ fn one(seed: u64) -> Result<Lapped> {
     let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
     let params = IndoorParams { drive: robot(seed), ..IndoorParams::default() };
     let trip = Trip::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
-    let mut localizer = Localizer::new(LocalizerParams::default(), known_start(&trip)?)?;
-    let course = follow(&mut localizer, &trip)?;
-    Ok(Lapped { building, trip, course })
+    let with = |params| follow(&mut Localizer::new(params, known_start(&trip)?)?, &trip);
+    let (course, printed) = (with(LocalizerParams::default())?, with(LocalizerParams::printed())?);
+    Ok(Lapped { building, trip, course, printed })
 }
 
 fn of_lap(course: &Course, lap: usize) -> &[f64] {

@@ -2,6 +2,7 @@
 
 mod anywhere;
 mod area;
+mod crowded;
 mod follow;
 mod four_weeks;
 pub(super) mod histogram;
@@ -15,6 +16,7 @@ mod worlds;
 
 pub use anywhere::{carried_away, global_start};
 pub use area::laps;
+pub use crowded::crowded;
 pub use follow::{Course, Localizer, follow};
 pub use four_weeks::four_weeks;
 pub use lab::changing_lab;

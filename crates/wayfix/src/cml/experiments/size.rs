@@ -6,7 +6,8 @@ use serde::Deserialize;
 pub struct Size {
     /// Number of seeds, each with a world of its own.
     pub n_seeds: u64,
-    /// Length of a drive, metres.
+    /// Length of a drive, metres, where the experiment leaves it open.
+    #[serde(default)]
     pub length_m: f64,
 }
 

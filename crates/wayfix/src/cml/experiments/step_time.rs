@@ -9,7 +9,7 @@ use crate::plot::{LinesPlot, Scale, Series};
 use crate::report::{Metric, Run};
 
 /// Numbers of references.
-const N_REFERENCES: [usize; 4] = [1000, 3000, 10_000, 30_000];
+const N_REFERENCES: [usize; 5] = [1000, 3000, 10_000, 30_000, 100_000];
 /// Steps that are timed in each map.
 const N_STEPS: usize = 200;
 
@@ -19,7 +19,7 @@ const N_STEPS: usize = 200;
 /// When a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn step_time(size: &Size, seed: u64) -> Result<Run> {
     let seed = size.seeds(seed).start;
-    let shape = StoreParams { length_m: 160.0, width_m: 100.0, n_blocks: 6, ..StoreParams::home_store() };
+    let shape = StoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..StoreParams::home_store() };
     let building = Store::draw(shape, &mut Draw::World.rng(seed))?.building();
     let params = IndoorParams { drive: robot(seed), n_people: 20, ..IndoorParams::default() };
     let learned = tour(&building, size.length_m, params, (seed, 0))?;

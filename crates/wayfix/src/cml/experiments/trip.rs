@@ -1,5 +1,5 @@
 use anyhow::Result;
-use wayfix_appearance_cml::{Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams};
+use wayfix_appearance_cml::{Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, TurnSense};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::indoors::{Building, IndoorDrive, IndoorParams};
 use wayfix_scene_sim::random::Streams;
@@ -30,7 +30,9 @@ impl Trip {
     /// When the parameters of the simulation have no meaning.
     pub fn drive(building: &Building, route: Route, params: IndoorParams, streams: Streams) -> Result<Self> {
         let camera = params.camera;
-        let features = PanoramaFeatures::new(PanoramaParams::default(), camera.columns, camera.rings)?;
+        // As the simulated camera unrolls its views; everything else is the default.
+        let params_of_view = PanoramaParams { sense: TurnSense::Clockwise, ..PanoramaParams::default() };
+        let features = PanoramaFeatures::new(params_of_view, camera.columns, camera.rings)?;
         let step = |step: wayfix_scene_sim::indoors::IndoorStep| {
             let panorama = Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb)?;
             let view = features.describe(&panorama).ok();

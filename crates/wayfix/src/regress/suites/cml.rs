@@ -33,6 +33,8 @@ enum Experiment {
     GlobalStart,
     /// Carried elsewhere.
     CarriedAway,
+    /// People before the camera.
+    Crowded,
     /// Time of a step against the number of references.
     StepTime,
 }
@@ -48,6 +50,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
         Experiment::ThreeDays => experiments::three_days,
         Experiment::GlobalStart => experiments::global_start,
         Experiment::CarriedAway => experiments::carried_away,
+        Experiment::Crowded => experiments::crowded,
         Experiment::StepTime => experiments::step_time,
     };
     experiment(&size, job.options.seed)
