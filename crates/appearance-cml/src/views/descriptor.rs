@@ -1,4 +1,4 @@
-use super::probe::{HARMONICS, PanoramaProbe};
+use super::probe::HARMONICS;
 use crate::{AppearanceError, Bounded, Comparison, Descriptor};
 
 /// Harmonics beside the constant one, in groups.
@@ -116,7 +116,7 @@ impl PanoramaDescriptor {
         (part(0), part(1))
     }
 
-    /// Group by group, what [`PanoramaProbe`] multiplies.
+    /// Group by group, what a probe multiplies.
     pub(super) fn groups(&self) -> impl Iterator<Item = &[i8]> {
         let n = usize::from(self.n_rings);
         self.lanes[n..].chunks_exact(n * 2 * HARMONICS)

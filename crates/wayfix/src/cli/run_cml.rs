@@ -50,10 +50,10 @@ use crate::{
 /// Figures: error_mean_m, error_median_m, error_max_m over the localized views, against nearest_view_error_mean_m of the most alike reference alone and
 /// odometry_error_mean_m; n_references; step_mean_us. Views that cannot be used are left out, counted in the events and named on standard error.
 #[derive(clap::Args)]
-#[command(after_long_help = EXAMPLES, group(clap::ArgGroup::new("input").required(true).multiple(false).args(["log", "frames", "print_params"])))]
+#[command(after_long_help = EXAMPLES, group(clap::ArgGroup::new("input").required(true).multiple(true).args(["log", "frames", "print_params"])))]
 pub(super) struct Arguments {
     /// A log with images, odometry (increments or velocities) and, where it is to be judged, true poses.
-    #[arg(long, value_name = "PATH")]
+    #[arg(long, value_name = "PATH", conflicts_with = "frames")]
     log: Option<PathBuf>,
     /// A folder of PNG or JPEG frames.
     #[arg(long, value_name = "DIR", requires = "poses")]

@@ -56,8 +56,7 @@ fn errors(run: &CmlRun) -> Vec<Metric> {
         "odometry_error_mean_m",
     ));
     if run.task != Task::ConcurrentMapBuilding {
-        metrics
-            .extend(mean(samples.iter().filter_map(|pair| nearest_error(pair)), "nearest_view_error_mean_m"));
+        metrics.extend(mean(samples.iter().filter_map(nearest_error), "nearest_view_error_mean_m"));
     }
     metrics
 }

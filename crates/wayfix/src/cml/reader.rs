@@ -59,7 +59,7 @@ impl ViewReader {
                     .map_err(|error| anyhow!("panoramas of {} × {} pixels: {error}", size.0, size.1))?;
                 // A camera is known by its first view that shows something.
                 features.describe(&panorama)?;
-                self.features.insert(features)
+                &*self.features.insert(features)
             }
         };
         Ok(features.describe(&panorama)?)

@@ -1,8 +1,4 @@
-use std::{
-    collections::BTreeMap,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{cmp::Ordering, collections::BTreeMap, fs, path::Path};
 
 use wayfix_sensor_log::{EncodedImage, ImageFormat, image_files};
 
@@ -102,7 +98,9 @@ fn place(
         let find = |name: &String| keys(name).into_iter().find_map(|key| by_file.get(&key).copied());
         names.iter().enumerate().map(|(index, name)| Some(at(index, find(name)?))).collect()
     } else if stamps.is_some() && rows.iter().all(|row| row.time.is_some()) {
-        names.iter().map(|name| interpolated(rows, stamp(name)?)).collect()
+        let mut rows = rows.to_vec();
+        rows.sort_by(|a, b| a.time.partial_cmp(&b.time).unwrap_or(Ordering::Equal));
+        names.iter().map(|name| interpolated(&rows, stamp(name)?)).collect()
     } else if rows.len() == names.len() {
         rows.iter().enumerate().map(|(index, row)| Some(at(index, row))).collect()
     } else if rows.iter().all(|row| row.time.is_some()) {
@@ -162,7 +160,7 @@ fn read_image(path: &Path) -> Result<EncodedImage, RecordingError> {
     Ok(image)
 }
 
-fn name_of(path: &PathBuf) -> String {
+fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 

@@ -1,5 +1,7 @@
 use std::path::Path;
 
+use wayfix_estimation_traits::wrap_angle;
+
 use super::{RecordingError, table::Table};
 
 /// A row of a table of poses, in SI units.
@@ -23,7 +25,8 @@ struct Columns {
     time: Option<(usize, f64)>,
     x: Option<(usize, f64)>,
     y: Option<(usize, f64)>,
-    heading: Option<(usize, f64)>,
+    /// Without a unit where none is named.
+    heading: Option<(usize, Option<f64>)>,
 }
 
 /// The poses of a table.
@@ -58,7 +61,7 @@ impl Units {
 
 fn poses(table: &Table, units: Units) -> Result<Vec<PoseRow>, String> {
     let columns = match &table.names {
-        Some(names) => by_name(names, units)?,
+        Some(names) => by_name(table, names, units)?,
         None => by_number(table, units)?,
     };
     let column = |column: Option<(usize, f64)>| -> Result<Option<Vec<f64>>, String> {
@@ -68,7 +71,15 @@ fn poses(table: &Table, units: Units) -> Result<Vec<PoseRow>, String> {
     let (Some(x), Some(y)) = (column(columns.x)?, column(columns.y)?) else {
         return Err("no columns x and y".to_owned());
     };
-    let (times, headings) = (column(columns.time)?, column(columns.heading)?);
+    let times = column(columns.time)?;
+    let headings = match columns.heading {
+        Some((index, unit)) => {
+            let numbers = table.numbers(index)?;
+            let unit = unit.unwrap_or(angle_unit(&numbers));
+            Some(numbers.into_iter().map(|value| wrap_angle(value * unit)).collect::<Vec<f64>>())
+        }
+        None => None,
+    };
     let row = |index: usize| PoseRow {
         file: columns.file.map(|column| table.rows[index].1[column].clone()),
         time: times.as_ref().map(|times| times[index]),
@@ -79,7 +90,7 @@ fn poses(table: &Table, units: Units) -> Result<Vec<PoseRow>, String> {
     Ok((0..table.rows.len()).map(row).collect())
 }
 
-fn by_name(names: &[String], units: Units) -> Result<Columns, String> {
+fn by_name(table: &Table, names: &[String], units: Units) -> Result<Columns, String> {
     let mut columns = Columns::default();
     for (index, name) in names.iter().enumerate() {
         let mut words = name.split(' ');
@@ -97,16 +108,23 @@ fn by_name(names: &[String], units: Units) -> Result<Columns, String> {
                     "ms" => 0.001,
                     "us" => 1e-6,
                     "ns" => 1e-9,
-                    "s" => 1.0,
-                    _ => units.time.unwrap_or(1.0),
+                    "s" | "sec" | "seconds" => 1.0,
+                    _ => match units.time {
+                        Some(unit) => unit,
+                        None => time_unit(&table.numbers(index)?),
+                    },
                 };
                 columns.time = Some((index, seconds));
             }
             "x" => columns.x = Some((index, length)),
             "y" => columns.y = Some((index, length)),
             "heading" | "theta" | "yaw" | "phi" | "angle" | "orientation" => {
-                let is_degrees = matches!(unit, "deg" | "degree" | "degrees");
-                columns.heading = Some((index, if is_degrees { 1_f64.to_radians() } else { 1.0 }));
+                let unit = match unit {
+                    "deg" | "degree" | "degrees" => Some(1_f64.to_radians()),
+                    "rad" | "radian" | "radians" => Some(1.0),
+                    _ => None,
+                };
+                columns.heading = Some((index, unit));
             }
             _ => {}
         }
@@ -125,7 +143,7 @@ fn by_number(table: &Table, units: Units) -> Result<Columns, String> {
     let time = |column: usize| -> Result<Option<(usize, f64)>, String> {
         Ok(Some((column, units.time.unwrap_or(time_unit(&table.numbers(column)?)))))
     };
-    let angle = |column: usize| Some((column, 1.0));
+    let angle = |column: usize| Some((column, None));
     let columns = match (file, &numbers[..]) {
         (file, [x, y]) => Columns { file, x: length(*x), y: length(*y), ..Columns::default() },
         (None, [t, x, y]) if is_clock(&table.numbers(*t)?) => {
@@ -158,11 +176,18 @@ fn is_clock(values: &[f64]) -> bool {
     steady * 10 >= steps.len() * 9
 }
 
-/// Steps of more than 5 are milliseconds: nothing records a pose only every 5 s.
-fn time_unit(values: &[f64]) -> f64 {
+/// Turns of more than one are degrees.
+fn angle_unit(values: &[f64]) -> f64 {
+    if values.iter().any(|value| value.abs() > 7.0) { 1_f64.to_radians() } else { 1.0 }
+}
+
+/// Steps of more than 5 are milliseconds, of more than 5000 microseconds, and so on: nothing records a pose only every 5 s.
+pub(super) fn time_unit(values: &[f64]) -> f64 {
     let mut steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
-    if steps.get(steps.len() / 2).is_some_and(|step| *step > 5.0) { 0.001 } else { 1.0 }
+    let median = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
+    let units = [(5e6, 1e-9), (5e3, 1e-6), (5.0, 1e-3)];
+    units.into_iter().find(|(least, _)| median > *least).map_or(1.0, |(_, unit)| unit)
 }
 
 #[cfg(test)]
@@ -184,6 +209,7 @@ mod tests {
         for (text, expected) in [
             ("1,2\n3,4", row(None, None, None)),
             ("1 2 0.5\n3 4 0.1", row(None, None, Some(0.5))),
+            ("1 2 90\n3 4 0.1", row(None, None, Some(std::f64::consts::FRAC_PI_2))),
             ("a.png,1,2\nb.png,3,4", row(Some("a.png"), None, None)),
             ("a.png\t1\t2\t0.5\nb.png\t3\t4\t0", row(Some("a.png"), None, Some(0.5))),
             ("0.1,1,2\n0.2,3,4\n0.3,1,2", row(None, Some(0.1), None)),

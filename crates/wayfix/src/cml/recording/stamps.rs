@@ -4,12 +4,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{RecordingError, table::Table};
+use super::{RecordingError, poses::time_unit, table::Table};
 
 /// When each frame was taken, s, by the name of its file.
 pub(super) type Stamps = BTreeMap<String, f64>;
 
-/// A table of `t, file`, in either order; the first column of numbers is the time in seconds, unless its name ends in `ms`.
+/// A table of `t, file`, in either order; the first column of numbers is the time.
 pub(super) fn read(path: &Path) -> Result<Stamps, RecordingError> {
     let table = Table::read(path)?;
     parse(&table).map_err(|reason| RecordingError::Table { path: path.to_owned(), reason })
@@ -34,9 +34,14 @@ fn parse(table: &Table) -> Result<Stamps, String> {
     let file = (0..n).find(|column| !table.is_numeric(*column)).ok_or("no column of file names")?;
     let time = (0..n).find(|column| table.is_numeric(*column)).ok_or("no column of times")?;
     let name = table.names.as_ref().map_or("", |names| &names[time]);
-    let unit = if name.ends_with(" ms") { 0.001 } else { 1.0 };
+    let numbers = table.numbers(time)?;
+    let unit = match name.rsplit(' ').next() {
+        Some("ms") => 0.001,
+        Some("s") => 1.0,
+        _ => time_unit(&numbers),
+    };
     let names = table.rows.iter().map(|(_, row)| file_name(&row[file]));
-    Ok(names.zip(table.numbers(time)?.into_iter().map(|value| value * unit)).collect())
+    Ok(names.zip(numbers.into_iter().map(|value| value * unit)).collect())
 }
 
 /// Without the folders that a table may name.
