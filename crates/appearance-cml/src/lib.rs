@@ -3,6 +3,7 @@
 //! Gross, Koenig & Müller, *Omniview-based Concurrent Map Building and Localization using Adaptive Appearance Maps*. The crate opens no
 //! files: views are buffers of pixels, maps are bytes.
 
+mod archive;
 mod check;
 mod error;
 mod fusion;
@@ -12,6 +13,7 @@ mod search;
 mod state;
 mod views;
 
+pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapArchive};
 pub use error::AppearanceError;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
 pub use localizer::{
@@ -30,6 +32,6 @@ pub use state::{
     unimodal,
 };
 pub use views::{
-    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, RingOrder, Tone,
+    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe, RingOrder, Tone,
     TurnSense,
 };

@@ -102,11 +102,13 @@ fn bounds_keep_their_order() {
     let invariants: Vec<Vec<f64>> = views.iter().map(Bounded::invariants).collect();
     for (a, b) in (0..120 * 120).map(|pair| (pair / 120, pair % 120)) {
         let difference = invariants[a].iter().zip(&invariants[b]).map(|(x, y)| (x - y).powi(2));
-        let (loose, bound) = (difference.sum::<f64>().sqrt(), views[a].bound(&views[b], f64::INFINITY));
+        let (loose, bound) =
+            (difference.sum::<f64>().sqrt(), views[b].bound(&views[a].probe(), f64::INFINITY));
         let distance = views[a].compare(&views[b]).distance;
-        assert!(loose <= bound + 1e-7 && bound <= distance + 1e-7, "{loose} {bound} {distance}");
-        let early = views[a].bound(&views[b], 0.3);
-        assert!(early <= bound + 1e-7 && (early > 0.3) == (bound > 0.3), "{early} {bound}");
+        // Single precision of sums near 1, and the root of their difference: 1e-6, near 0 its root.
+        assert!(loose <= bound + 2e-3 && bound <= distance + 1e-7, "{loose} {bound} {distance}");
+        let early = views[b].bound(&views[a].probe(), 0.3);
+        assert!(early <= bound + 1e-5 && (early > 0.3) == (bound > 0.3), "{early} {bound}");
     }
 }
 

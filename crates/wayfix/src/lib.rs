@@ -14,6 +14,7 @@ pub mod monobot;
 pub mod plot;
 pub mod regress;
 pub mod report;
+mod saved;
 mod settings;
 pub mod slam;
 pub mod system;

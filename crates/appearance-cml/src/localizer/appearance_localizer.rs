@@ -15,6 +15,8 @@ use crate::{
 pub enum Start {
     /// There, in the frame of the map.
     Known(Gaussian<Pose2<f64>>),
+    /// In one of several places, as a state that was saved says.
+    Among(Mixture<Pose2<f64>>),
     /// Anywhere in the map.
     Anywhere,
 }
@@ -311,6 +313,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
 fn state_at(start: Start) -> Result<Option<Mixture<Pose2<f64>>>, AppearanceError> {
     match start {
         Start::Anywhere => Ok(None),
+        Start::Among(places) => Ok(Some(places)),
         Start::Known(pose) => {
             let (mean, covariance) = pose.into_parts();
             let checked = Gaussian::new(mean, covariance)?;

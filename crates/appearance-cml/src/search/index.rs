@@ -1,10 +1,11 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use super::{
     Bounded, Match, ReferenceId, ReferenceSearch,
     box_tree::BoxTree,
-    nearest::{Nearest, by_distance},
+    nearest::{Candidate, Nearest, by_distance},
     projection::{Projection, Sketch},
+    slot_set::SlotSet,
 };
 use crate::AppearanceError;
 
@@ -12,7 +13,7 @@ use crate::AppearanceError;
 ///
 /// Three stages, each a lower bound of the distance that is sharper and dearer than the one before:
 /// 1. sixteen numbers a view, the directions in which the invariants of the map spread most, in a tree of boxes: whole branches are passed over;
-/// 2. the descriptors' own [`bound`](Bounded::bound), which gives up early;
+/// 2. the descriptors' own [`bound`](Bounded::bound), first roughly, then as sharp as need be;
 /// 3. the distance itself, with its rotation.
 ///
 /// The directions are learned anew when the map has grown eightfold, up to 16 384 references; in between, insertion and removal cost
@@ -55,7 +56,7 @@ const GROWTH: usize = 8;
 const LAST_LEARNING: usize = 16_384;
 const N_SAMPLES: usize = 256;
 
-/// More than the rounding of a sketch of single precision, whose numbers are of the size of 1.
+/// More than the rounding of a sketch of single precision, relative to its numbers.
 const SKETCH_SLACK: f64 = 1e-5;
 /// More than the rounding of distances of double precision: near 0 the root of a difference of two sums makes 1e-8 of 1e-16.
 const BOUND_SLACK: f64 = 1e-7;
@@ -77,10 +78,17 @@ impl<D: Bounded> AppearanceIndex<D> {
     /// As [`within`](ReferenceSearch::within), and what it took.
     pub fn within_counted(&self, view: &D, max_distance: f64) -> (Vec<Match>, SearchCost) {
         let mut cost = SearchCost::default();
-        let compare = |(_, slot)| self.compare(view, slot);
-        let mut found: Vec<Match> =
-            self.bounded(view, max_distance, &mut cost).into_iter().filter_map(compare).collect();
-        cost.compared = found.len();
+        let probe = view.probe();
+        let radius = max_distance + BOUND_SLACK;
+        let mut found = Vec::new();
+        for slot in self.reached(view, max_distance) {
+            let Some((id, reference)) = &self.slots[slot as usize] else { continue };
+            cost.bounded += 1;
+            if reference.bound(&probe, radius) <= radius {
+                cost.compared += 1;
+                found.push(Match { id: *id, comparison: reference.compare_with(&probe) });
+            }
+        }
         found.retain(|found| found.comparison.distance < max_distance);
         found.sort_by(by_distance);
         cost.found = found.len();
@@ -89,42 +97,48 @@ impl<D: Bounded> AppearanceIndex<D> {
 
     /// As [`nearest_within`](ReferenceSearch::nearest_within), and what it took.
     ///
-    /// Those of the least bound are compared first: none is compared that is not nearer, by its bound, than the last answer.
+    /// Rough bounds of all come first; then the references are taken in their order, sharper bounds before distances, until none can be nearer than the last
+    /// answer.
     pub fn nearest_counted(&self, view: &D, n: usize, max_distance: f64) -> (Vec<Match>, SearchCost) {
         let mut cost = SearchCost::default();
+        if n == 0 {
+            return (Vec::new(), cost);
+        }
+        let probe = view.probe();
+        let rough = |slot: u32| {
+            let (_, reference) = self.slots[slot as usize].as_ref()?;
+            Some(Candidate { bound: reference.bound(&probe, 0.0), slot })
+        };
+        let mut candidates: Vec<Candidate> = self.reached(view, max_distance).filter_map(rough).collect();
+        cost.bounded = candidates.len();
+        candidates.retain(|candidate| candidate.bound <= max_distance + BOUND_SLACK);
+
         let mut nearest = Nearest::new(n, max_distance);
-        let mut bounded = if n > 0 { self.bounded(view, max_distance, &mut cost) } else { Vec::new() };
-        bounded.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        for (bound, slot) in bounded {
-            if bound > nearest.radius() + BOUND_SLACK {
+        let mut candidates = BinaryHeap::from(candidates);
+        while let Some(Candidate { bound, slot }) = candidates.pop() {
+            let radius = nearest.radius() + BOUND_SLACK;
+            if bound > radius {
                 break;
             }
-            cost.compared += 1;
-            nearest.extend(self.compare(view, slot));
+            let Some((id, reference)) = &self.slots[slot as usize] else { continue };
+            if reference.bound(&probe, radius) <= radius {
+                cost.compared += 1;
+                nearest.extend([Match { id: *id, comparison: reference.compare_with(&probe) }]);
+            }
         }
         let found = nearest.into_sorted();
         cost.found = found.len();
         (found, cost)
     }
 
-    /// The first two stages: the bounds of all references that may be within `radius`.
-    fn bounded(&self, view: &D, radius: f64, cost: &mut SearchCost) -> Vec<(f64, u32)> {
-        let Some(sketch) = self.sketch_of_comparable(view) else { return Vec::new() };
-        let candidates = self.tree.within(&sketch, (radius + SKETCH_SLACK) as f32, self.slots.len());
-        let bound = |slot: u32| {
-            let (_, reference) = self.slots[slot as usize].as_ref()?;
-            cost.bounded += 1;
-            Some((view.bound(reference, radius + BOUND_SLACK), slot))
-        };
-        let mut bounded: Vec<(f64, u32)> = candidates.iter().filter_map(bound).collect();
-        bounded.retain(|(bound, _)| *bound <= radius + BOUND_SLACK);
-        bounded
-    }
-
-    /// The third.
-    fn compare(&self, view: &D, slot: u32) -> Option<Match> {
-        let (id, reference) = self.slots[slot as usize].as_ref()?;
-        Some(Match { id: *id, comparison: view.compare(reference) })
+    /// The slots whose sketches are within a radius, in their order in memory.
+    fn reached(&self, view: &D, radius: f64) -> impl Iterator<Item = u32> {
+        let reached = self.sketch_of_comparable(view).map(|sketch| {
+            let largest = sketch.iter().fold(radius.abs(), |largest, value| largest.max(f64::from(value.abs())));
+            let widened = if radius.is_finite() { radius + SKETCH_SLACK * (1.0 + largest) } else { radius };
+            self.tree.within(&sketch, widened as f32, self.slots.len())
+        });
+        reached.into_iter().flat_map(SlotSet::into_slots)
     }
 
     fn sketch_of_comparable(&self, view: &D) -> Option<Sketch> {

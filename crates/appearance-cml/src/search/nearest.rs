@@ -64,3 +64,30 @@ impl PartialEq for Found {
 }
 
 impl Eq for Found {}
+
+/// A reference that may be near; the one of the least bound is the greatest, so that it comes first.
+pub(super) struct Candidate {
+    /// It is not nearer.
+    pub(super) bound: f64,
+    pub(super) slot: u32,
+}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.bound.total_cmp(&self.bound).then(other.slot.cmp(&self.slot))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Candidate {}

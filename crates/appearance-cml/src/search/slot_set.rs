@@ -14,9 +14,9 @@ impl SlotSet {
         }
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = u32> {
-        self.words.iter().zip((0..).step_by(64)).flat_map(|(word, first)| {
-            let mut left = *word;
+    pub(super) fn into_slots(self) -> impl Iterator<Item = u32> {
+        self.words.into_iter().zip((0..).step_by(64)).flat_map(|(word, first)| {
+            let mut left = word;
             std::iter::from_fn(move || {
                 let bit = (left != 0).then(|| left.trailing_zeros())?;
                 left &= left - 1;
@@ -36,6 +36,6 @@ mod tests {
         for slot in [129, 64, 0, 63, 64, 500] {
             set.insert(slot);
         }
-        assert_eq!(set.iter().collect::<Vec<u32>>(), [0, 63, 64, 129]);
+        assert_eq!(set.into_slots().collect::<Vec<u32>>(), [0, 63, 64, 129]);
     }
 }

@@ -9,7 +9,7 @@ pub(super) struct Correlation<'a> {
 }
 
 /// More than the half grid of the most harmonics, and a descriptor has no more.
-pub(super) const MOST_HARMONICS: usize = 64;
+const MOST_HARMONICS: usize = 64;
 const LARGEST_GRID: usize = 8 * MOST_HARMONICS;
 
 /// Newton steps from a point of the grid: each squares an error that is a small share of a period to begin with.

@@ -1,7 +1,12 @@
-use super::correlation::{Correlation, MOST_HARMONICS};
-use crate::{AppearanceError, Comparison, Descriptor};
+use super::probe::HARMONICS;
+use crate::{AppearanceError, Bounded, Comparison, Descriptor};
 
-/// The spectrum of a panorama over the azimuth, in a byte a number: about a kilobyte for 25 rings and 16 harmonics.
+/// Harmonics beside the constant one, in groups.
+pub(super) const MOST_GROUPS: usize = 8;
+/// Harmonics of a descriptor, the constant one included.
+const MOST_HARMONICS: usize = MOST_GROUPS * HARMONICS;
+
+/// The spectrum of a panorama over the azimuth, in a byte a number: less than a kilobyte for 25 rings and 16 harmonics.
 ///
 /// The numbers are $`c = s q`$ with whole $`q`$ from −127 to 127 and one scale $`s`$ a view. What rounding does to a distance is below
 /// $`s\sqrt{n/12}`$ in the mean, about 0.015 for views whose distances are from 0.1 to 1. Sums of products of whole numbers are exact, so that
@@ -13,19 +18,13 @@ use crate::{AppearanceError, Comparison, Descriptor};
 pub struct PanoramaDescriptor {
     scale: f32,
     n_rings: u8,
-    /// Harmonic by harmonic: the real parts of all rings, then (not for the constant one) their imaginary parts, each filled up with zeros
-    /// to whole lanes.
+    n_harmonics: u8,
+    /// The constant harmonic of all rings; then, group by group of eight harmonics and ring by ring, eight real and eight imaginary parts.
     lanes: Box<[i8]>,
-    /// Sums of squares of the whole numbers: of all, and of the harmonics from each checkpoint on.
+    /// Sums of squares of the whole numbers: of all, and of the harmonics after each group.
     energy: u32,
-    remaining: [u32; CHECKPOINTS.len()],
+    remaining: [u32; MOST_GROUPS],
 }
-
-/// Harmonics before which a comparison may be given up.
-const CHECKPOINTS: [usize; 5] = [2, 4, 6, 8, 11];
-
-/// Numbers that are multiplied at once.
-const LANES: usize = 8;
 
 impl PanoramaDescriptor {
     /// From what [`scale`](Self::scale), [`n_rings`](Self::n_rings) and [`coefficients`](Self::coefficients) give.
@@ -55,16 +54,18 @@ impl PanoramaDescriptor {
 
     fn whole(scale: f32, n_rings: u8, coefficients: &[i8]) -> Self {
         let n = usize::from(n_rings);
-        let padded = n.next_multiple_of(LANES);
-        let filled =
-            |part: &[i8]| part.iter().copied().chain(std::iter::repeat_n(0, padded - n)).collect::<Vec<_>>();
-        let lanes: Box<[i8]> = coefficients.chunks_exact(n).flat_map(filled).collect();
-        let energy_from = |k: usize| {
-            let from = (2 * k).saturating_sub(1) * padded;
-            lanes.get(from..).map_or(0, |rest| dot(rest, rest) as u32)
-        };
-        let (energy, remaining) = (energy_from(0), CHECKPOINTS.map(energy_from));
-        Self { scale, n_rings, lanes, energy, remaining }
+        let (constant, rest) = coefficients.split_at(n);
+        let n_harmonics = rest.len() / n / 2;
+        let mut lanes = constant.to_vec();
+        lanes.resize(n + n_harmonics.div_ceil(HARMONICS) * n * 2 * HARMONICS, 0);
+        for (index, value) in rest.iter().enumerate() {
+            let (harmonic, part, ring) = (index / (2 * n), index / n % 2, index % n);
+            lanes[n + place(n, harmonic, part, ring)] = *value;
+        }
+        let energy = |lanes: &[i8]| lanes.iter().map(|q| u32::from(q.unsigned_abs()).pow(2)).sum();
+        let after = |group: usize| lanes.get(n + (group + 1) * n * 2 * HARMONICS..).map_or(0, energy);
+        let (energy, remaining) = (energy(&lanes), std::array::from_fn(after));
+        Self { scale, n_rings, n_harmonics: n_harmonics as u8, lanes: lanes.into(), energy, remaining }
     }
 
     /// What a coefficient is to be multiplied with.
@@ -79,22 +80,23 @@ impl PanoramaDescriptor {
 
     /// Harmonics, the constant one included.
     pub fn n_harmonics(&self) -> usize {
-        self.lanes.len() / self.padded() / 2 + 1
+        usize::from(self.n_harmonics) + 1
     }
 
     /// Harmonic by harmonic: the real parts of all rings, then, but for the constant one, their imaginary parts.
     pub fn coefficients(&self) -> Vec<i8> {
-        let rings = |part: &[i8]| part[..usize::from(self.n_rings)].to_vec();
-        self.lanes.chunks_exact(self.padded()).flat_map(rings).collect()
-    }
-
-    fn padded(&self) -> usize {
-        usize::from(self.n_rings).next_multiple_of(LANES)
+        let mut coefficients = self.constant().to_vec();
+        for harmonic in 1..self.n_harmonics() {
+            let (re, im) = self.harmonic(harmonic);
+            coefficients.extend(re);
+            coefficients.extend(im);
+        }
+        coefficients
     }
 
     /// Whether two descriptors can be compared.
     pub fn has_shape_of(&self, other: &Self) -> bool {
-        self.n_rings == other.n_rings && self.lanes.len() == other.lanes.len()
+        self.n_rings == other.n_rings && self.n_harmonics == other.n_harmonics
     }
 
     /// The sum of the squares of all coefficients.
@@ -104,53 +106,53 @@ impl PanoramaDescriptor {
     }
 
     pub(super) fn constant(&self) -> &[i8] {
-        &self.lanes[..self.padded()]
+        &self.lanes[..usize::from(self.n_rings)]
     }
 
-    /// The most that the harmonics from `k` on can add to the correlation with another view (Cauchy-Schwarz), where `k` is a checkpoint.
-    pub(super) fn remaining_overlap(&self, other: &Self, k: usize) -> Option<f64> {
-        let index = CHECKPOINTS.iter().position(|checkpoint| *checkpoint == k)?;
-        Some((f64::from(self.remaining[index]) * f64::from(other.remaining[index])).sqrt())
+    /// Real and imaginary parts of a harmonic from the first on, ring by ring.
+    pub(super) fn harmonic(&self, harmonic: usize) -> (Vec<i8>, Vec<i8>) {
+        let n = usize::from(self.n_rings);
+        let part = |part| (0..n).map(|ring| self.lanes[n + place(n, harmonic - 1, part, ring)]).collect();
+        (part(0), part(1))
     }
 
-    /// Real and imaginary parts of the harmonics from the first on.
-    pub(super) fn harmonics(&self) -> impl Iterator<Item = (&[i8], &[i8])> {
-        let n = self.padded();
-        self.lanes[n..].chunks_exact(2 * n).map(move |parts| parts.split_at(n))
+    /// Group by group, what a probe multiplies.
+    pub(super) fn groups(&self) -> impl Iterator<Item = &[i8]> {
+        let n = usize::from(self.n_rings);
+        self.lanes[n..].chunks_exact(n * 2 * HARMONICS)
+    }
+
+    /// Sum of squares of the harmonics after a group.
+    pub(super) fn remaining(&self, group: usize) -> f64 {
+        f64::from(self.remaining[group])
     }
 }
 
 impl Descriptor for PanoramaDescriptor {
     fn compare(&self, reference: &Self) -> Comparison {
-        if !self.has_shape_of(reference) {
-            return Comparison { distance: f64::INFINITY, rotation: 0.0 };
-        }
-        let mut products = [(0.0, 0.0); MOST_HARMONICS];
-        let mut n = 0;
-        for ((re, im), (reference_re, reference_im)) in self.harmonics().zip(reference.harmonics()) {
-            products[n] = cross_product((re, im), (reference_re, reference_im));
-            n += 1;
-        }
-        let constant = f64::from(dot(self.constant(), reference.constant()));
-        let (rotation, maximum) = Correlation { constant, harmonics: &products[..n] }.maximum();
-        let overlap = f64::from(self.scale) * f64::from(reference.scale) * maximum;
-        let distance = (self.energy() + reference.energy() - 2.0 * overlap).max(0.0).sqrt();
-        Comparison { distance, rotation }
+        reference.compare_with(&self.probe())
     }
 }
 
-/// $`\sum_r a_r \bar b_r`$, real and imaginary part.
-pub(super) fn cross_product(a: (&[i8], &[i8]), b: (&[i8], &[i8])) -> (f64, f64) {
-    (f64::from(dot(a.0, b.0) + dot(a.1, b.1)), f64::from(dot(a.1, b.0) - dot(a.0, b.1)))
+/// Where a part (real or imaginary) of a harmonic, counted from the first that is not constant, is among the groups.
+fn place(n_rings: usize, harmonic: usize, part: usize, ring: usize) -> usize {
+    let (group, lane) = (harmonic / HARMONICS, harmonic % HARMONICS);
+    ((group * n_rings + ring) * 2 + part) * HARMONICS + lane
 }
 
-/// Of whole lanes. At most 64 · 127 numbers, of squares of 127: far from an overflow.
-pub(super) fn dot(a: &[i8], b: &[i8]) -> i32 {
-    let mut sums = [0; LANES];
-    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-        for lane in 0..LANES {
-            sums[lane] += i32::from(a[lane]) * i32::from(b[lane]);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_come_back_for_any_number_of_rings_and_harmonics() {
+        for n_rings in [1, 2, 7, 25, 64] {
+            for n_harmonics in [1, 2, 8, 9, 10, 16, 17, 64] {
+                let n = n_rings * (2 * n_harmonics - 1);
+                let coefficients: Vec<i8> = (0..n).map(|i| (i % 251) as i16 - 125).map(|q| q as i8).collect();
+                let view = PanoramaDescriptor::from_parts(0.01, n_rings as u8, coefficients.clone()).unwrap();
+                assert_eq!((view.coefficients(), view.n_harmonics()), (coefficients, n_harmonics));
+            }
         }
     }
-    sums.iter().sum()
 }

@@ -1,9 +1,8 @@
 use super::{
-    PanoramaDescriptor,
+    PanoramaDescriptor, PanoramaProbe,
     cosines::{Cosines, MOST_COSINES},
-    descriptor::{cross_product, dot},
 };
-use crate::Bounded;
+use crate::{Bounded, Comparison};
 
 /// Harmonics whose phases between rings count; of the others only how strong they are.
 const PHASED_HARMONICS: usize = 8;
@@ -19,40 +18,34 @@ const N_COSINES: usize = 5;
 /// with $`c = |⟨a', b'⟩| / |a'||b'|`$, half the squared Frobenius distance of $`a'a'^*/|a'|`$ and $`b'b'^*/|b'|`$ and half of $`(|a'| - |b'|)²`$ sum to
 /// $`(|a'| - |b'|)² + |a'||b'|(1 - c²) ≤ (|a'| - |b'|)² + 2|a'||b'|(1 - c) = d'^2`$. All of these are coordinates of a Euclidean space.
 impl Bounded for PanoramaDescriptor {
+    type Probe = PanoramaProbe;
+
     fn invariants(&self) -> Vec<f64> {
         let scale = f64::from(self.scale());
         let cosines = Cosines::over(self.n_rings());
         let (mut invariants, rest) = cosines.transform(self.constant(), MOST_COSINES, scale);
         invariants.push(rest.sqrt());
-        for (k, (re, im)) in (1..).zip(self.harmonics()) {
+        for k in 1..self.n_harmonics() {
             let n_cosines = if k < PHASED_HARMONICS { N_COSINES } else { 0 };
-            let (re, re_rest) = cosines.transform(re, n_cosines, scale);
-            let (im, im_rest) = cosines.transform(im, n_cosines, scale);
+            let (re, im) = self.harmonic(k);
+            let (re, re_rest) = cosines.transform(&re, n_cosines, scale);
+            let (im, im_rest) = cosines.transform(&im, n_cosines, scale);
             push_outer_product(&re, &im, &mut invariants);
             invariants.push((re_rest + im_rest).sqrt());
         }
         invariants
     }
 
-    fn bound(&self, reference: &Self, enough: f64) -> f64 {
-        if !self.has_shape_of(reference) {
-            return f64::INFINITY;
-        }
-        let product = f64::from(self.scale()) * f64::from(reference.scale());
-        let energies = self.energy() + reference.energy();
-        let least = |overlap: f64| (energies - 2.0 * product * overlap).max(0.0).sqrt();
-        let mut overlap = f64::from(dot(self.constant(), reference.constant()));
-        for (k, (own, other)) in (1..).zip(self.harmonics().zip(reference.harmonics())) {
-            if let Some(remaining) = self.remaining_overlap(reference, k) {
-                let bound = least(overlap + remaining);
-                if bound > enough {
-                    return bound;
-                }
-            }
-            let (re, im) = cross_product(own, other);
-            overlap += (re * re + im * im).sqrt();
-        }
-        least(overlap)
+    fn probe(&self) -> PanoramaProbe {
+        PanoramaProbe::new(self)
+    }
+
+    fn bound(&self, probe: &PanoramaProbe, enough: f64) -> f64 {
+        probe.bound(self, enough)
+    }
+
+    fn compare_with(&self, probe: &PanoramaProbe) -> Comparison {
+        probe.compare(self)
     }
 
     fn is_comparable(&self, other: &Self) -> bool {

@@ -13,6 +13,7 @@ mod invariants;
 mod normalization;
 mod panorama;
 mod params;
+mod probe;
 mod sectors;
 
 pub use descriptor::PanoramaDescriptor;
@@ -21,3 +22,4 @@ pub use features::PanoramaFeatures;
 pub use normalization::{Normalization, Tone};
 pub use panorama::{Panorama, TurnSense};
 pub use params::PanoramaParams;
+pub use probe::PanoramaProbe;

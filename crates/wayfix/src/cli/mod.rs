@@ -8,6 +8,7 @@ mod input;
 mod output;
 mod progress;
 mod regress;
+mod run_cml;
 mod run_color;
 mod run_lines;
 mod run_slam;
@@ -27,6 +28,7 @@ use clap::{Parser, Subcommand};
 ///   wayfix run lines --log intel.log.gz           walls in laser scans
 ///   wayfix run color --log color_dark.mcap --map four-legged-field.toml
 ///   wayfix run views --scene china.jpg             where in a picture a camera looks, learned in other light
+///   wayfix run cml --frames route --poses poses.csv  where a robot is, by what places look like all round
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
@@ -55,6 +57,7 @@ enum Run {
     Lines(run_lines::Arguments),
     Color(run_color::Arguments),
     Views(run_views::Arguments),
+    Cml(run_cml::Arguments),
 }
 
 /// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
@@ -64,6 +67,7 @@ pub fn main() -> ExitCode {
         Command::Run(Run::Lines(arguments)) => run_lines::main(arguments),
         Command::Run(Run::Color(arguments)) => run_color::main(arguments),
         Command::Run(Run::Views(arguments)) => run_views::main(arguments),
+        Command::Run(Run::Cml(arguments)) => run_cml::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
         Command::Regress(arguments) => regress::main(arguments),

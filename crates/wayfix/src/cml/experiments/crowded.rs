@@ -22,7 +22,9 @@ pub fn crowded(size: &Size, seed: u64) -> Result<Run> {
     for (name, at) in [("crowded", 0), ("crowded_all_learned", 1), ("empty", 2)] {
         let references = |courses: &[Course; 3]| courses[at].n_references.last().map_or(0.0, |n| *n as f64);
         metrics.extend(mean_of(&format!("references_{name}"), "", &seeds, references));
-        metrics.extend(mean_of(&format!("error_mean_m_{name}"), "m", &seeds, |courses| mean(&courses[at].errors)));
+        metrics.extend(mean_of(&format!("error_mean_m_{name}"), "m", &seeds, |courses| {
+            mean(&courses[at].errors)
+        }));
     }
     let note = format!(
         "{} seeds; an area of 25 m × 10 m with {N_PEOPLE} people, {} m, empty map, odometry as it is.",

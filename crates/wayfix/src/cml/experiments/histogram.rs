@@ -1,7 +1,7 @@
 use crate::plot::{LinesPlot, Series};
 
 /// Shares of the steps whose errors fall into classes of equal width, as outlines; what lies beyond is in the last class.
-pub(super) fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> LinesPlot {
+pub(in crate::cml) fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> LinesPlot {
     const N: usize = 40;
     let width = most_m / N as f64;
     let outline = |errors: &[f64]| {

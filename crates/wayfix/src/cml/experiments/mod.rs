@@ -5,7 +5,7 @@ mod area;
 mod crowded;
 mod follow;
 mod four_weeks;
-mod histogram;
+pub(super) mod histogram;
 mod lab;
 mod size;
 mod step_time;
