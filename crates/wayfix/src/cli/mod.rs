@@ -11,6 +11,7 @@ mod output;
 mod params;
 mod progress;
 mod regress;
+mod run_cml;
 mod run_color;
 mod run_lines;
 mod run_slam;
@@ -33,6 +34,7 @@ use clap::{Parser, Subcommand};
 ///   wayfix run views --scene china.jpg             where in a picture a camera looks, learned in other light
 ///   wayfix run track --frames David/img --init 129,80,64,78
 ///                                                 a target in every picture, from where it is in the first
+///   wayfix run cml --frames route --poses poses.csv  where a robot is, by what places look like all round
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
@@ -65,6 +67,7 @@ enum Run {
     Color(run_color::Arguments),
     Views(run_views::Arguments),
     Track(run_track::Arguments),
+    Cml(run_cml::Arguments),
 }
 
 /// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
@@ -75,6 +78,7 @@ pub fn main() -> ExitCode {
         Command::Run(Run::Color(arguments)) => run_color::main(arguments),
         Command::Run(Run::Views(arguments)) => run_views::main(arguments),
         Command::Run(Run::Track(arguments)) => run_track::main(arguments),
+        Command::Run(Run::Cml(arguments)) => run_cml::main(arguments),
         Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),

@@ -8,7 +8,7 @@ use std::{
 ///
 /// The bytes go to a temporary file in the same folder and to the disk, then its name takes the place of the old one, then the
 /// folder goes to the disk. Losing power in between leaves a file `.NAME.….saving` behind, which may be deleted.
-pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
+pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "no file name"))?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let prefix = format!(".{}.", name.to_string_lossy());
