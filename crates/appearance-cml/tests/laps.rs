@@ -21,7 +21,8 @@ fn run(params: LocalizerParams, laps: usize, seed: u64) -> (Vec<f64>, usize) {
     let mut localizer: AppearanceLocalizer<common::FieldView> =
         AppearanceLocalizer::new(params, Start::Known(exactly_at(way[0]))).expect("defaults are valid");
     let mut means = Vec::new();
-    let mut dead = way[0]; let mut dead_mean = 0.0;
+    let mut dead = way[0];
+    let mut dead_mean = 0.0;
     for k in 0..laps * way.len() {
         let (pose, next) = (way[k % way.len()], way[(k + 1) % way.len()]);
         localizer.update(field.view(&pose, 0.1, &mut rng)).expect("a good view");
@@ -32,13 +33,22 @@ fn run(params: LocalizerParams, laps: usize, seed: u64) -> (Vec<f64>, usize) {
         *means.last_mut().expect("a lap has begun") += error / way.len() as f64;
         let step = pose.inverse().compose(&next);
         let odometry = drifting(&step, &mut rng);
-        if k < way.len() { dead_mean += (dead.translation - pose.translation).norm() / way.len() as f64; }
+        if k < way.len() {
+            dead_mean += (dead.translation - pose.translation).norm() / way.len() as f64;
+        }
         dead = dead.compose(&odometry);
         localizer.predict(&odometry).expect("finite odometry");
     }
     eprintln!("dead reckoning first lap {dead_mean}");
     let s = localizer.map().scale();
-    eprintln!("step {} E {} limit {} metres {} sigmas {:?}", s.step(), s.step_distance(), s.match_limit(0.8), s.metres(s.match_limit(0.8)), localizer.estimate().unwrap().sigmas());
+    eprintln!(
+        "step {} E {} limit {} metres {} sigmas {:?}",
+        s.step(),
+        s.step_distance(),
+        s.match_limit(0.8),
+        s.metres(s.match_limit(0.8)),
+        localizer.estimate().unwrap().sigmas()
+    );
     (means, localizer.map().len())
 }
 

@@ -123,8 +123,10 @@ const WIDTH: usize = 100;
 mod tests {
     use super::*;
     use crate::{
+        cml::CmlParams,
         color::ColorSystemParams,
         slam::{Profile, SlamSystemParams},
+        track::TrackParams,
         views::ViewsParams,
         walls::WallSlamParams,
     };
@@ -145,6 +147,8 @@ mod tests {
         same_with_comments(&WallSlamParams::default());
         same_with_comments(&ColorSystemParams::default());
         same_with_comments(&ViewsParams::default());
+        same_with_comments(&TrackParams::default());
+        same_with_comments(&CmlParams::default());
         same_with_comments(&wayfix_line_extract::Params::default());
     }
 

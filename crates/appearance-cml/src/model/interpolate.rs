@@ -114,7 +114,8 @@ fn beyond_border(
     let offset = |component: &Gaussian<Pose2<f64>>| component.mean().translation - leader;
     let towards = belief.iter().map(offset).min_by(|a, b| a.norm().total_cmp(&b.norm()))?;
     let direction = towards.try_normalize(0.5 * scale.step())?;
-    let inside = |s: &&Sighting| (s.gaussian.mean().translation - leader).dot(&direction) > 0.5 * scale.step();
+    let inside =
+        |s: &&Sighting| (s.gaussian.mean().translation - leader).dot(&direction) > 0.5 * scale.step();
     if whole.iter().any(inside) {
         return None;
     }

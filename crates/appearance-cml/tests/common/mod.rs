@@ -39,7 +39,12 @@ impl Field {
             let number = std::f64::consts::TAU / length;
             // Long waves are high: amplitudes fall as in natural images.
             let amplitude = (length / longest).sqrt();
-            [number * direction.cos(), number * direction.sin(), std::f64::consts::TAU * rng.random::<f64>(), amplitude]
+            [
+                number * direction.cos(),
+                number * direction.sin(),
+                std::f64::consts::TAU * rng.random::<f64>(),
+                amplitude,
+            ]
         };
         let waves = (0..FEATURES).map(|_| (0..WAVES).map(|_| wave(rng)).collect()).collect();
         Self { waves }
@@ -48,7 +53,10 @@ impl Field {
     /// What is seen from a pose, with noise of this σ on each feature and 0.02 rad on the phase.
     pub fn view<R: Rng + ?Sized>(&self, pose: &Pose2<f64>, noise: f64, rng: &mut R) -> FieldView {
         let feature = |waves: &Vec<[f64; 4]>| -> f64 {
-            waves.iter().map(|[kx, ky, phase, amplitude]| amplitude * (kx * pose.x() + ky * pose.y() + phase).sin()).sum()
+            waves
+                .iter()
+                .map(|[kx, ky, phase, amplitude]| amplitude * (kx * pose.x() + ky * pose.y() + phase).sin())
+                .sum()
         };
         let features = self.waves.iter().map(|waves| feature(waves) + noise * normal(rng)).collect();
         FieldView { features, heading: wrap_angle(pose.heading() + 0.02 * normal(rng)) }

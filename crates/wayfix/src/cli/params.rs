@@ -7,9 +7,11 @@ use serde::Serialize;
 
 use super::output::print;
 use crate::{
+    cml::CmlParams,
     color::ColorSystemParams,
     commented::{commented, schema_of},
     slam::{Profile, SlamSystemParams},
+    track::TrackParams,
     views::ViewsParams,
     walls::WallSlamParams,
 };
@@ -48,6 +50,10 @@ enum SystemName {
     Color,
     /// Views of a scene: `run views`.
     Views,
+    /// A target in pictures: `run track`.
+    Track,
+    /// Appearance maps: `run cml`.
+    Cml,
 }
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
@@ -57,6 +63,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         SystemName::Lines => text(&wayfix_line_extract::Params::default(), arguments.schema),
         SystemName::Color => text(&ColorSystemParams::default(), arguments.schema),
         SystemName::Views => text(&ViewsParams::default(), arguments.schema),
+        SystemName::Track => text(&TrackParams::default(), arguments.schema),
+        SystemName::Cml => text(&CmlParams::default(), arguments.schema),
     };
     print(text?)?;
     Ok(ExitCode::SUCCESS)

@@ -7,6 +7,7 @@ use crate::error::{checked, probability};
 /// hidden. There the mean overlap is flat: halving or doubling one parameter changes it by 0.01 or less in most sequences; what it decides
 /// is now and then whether a target is found again after it was hidden.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

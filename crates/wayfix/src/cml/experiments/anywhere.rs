@@ -29,7 +29,10 @@ const N_PEOPLE: usize = 20;
 pub fn global_start(size: &Size, seed: u64) -> Result<Run> {
     let courses = in_stores(size, seed, |map, later, at| {
         let trip = away(later, at)?;
-        follow(&mut PanoramaLocalizer::with_map(LocalizerParams::default(), map.clone(), Start::Anywhere)?, &trip)
+        follow(
+            &mut PanoramaLocalizer::with_map(LocalizerParams::default(), map.clone(), Start::Anywhere)?,
+            &trip,
+        )
     })?;
     report("From anywhere", size, &courses)
 }

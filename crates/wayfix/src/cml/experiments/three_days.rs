@@ -84,9 +84,11 @@ fn one(length_m: f64, seed: u64) -> Result<Vec<Day>> {
         let building = store.building();
         let trip = tour(&building, length_m, params, (seed, day))?;
         let mut today = match localizer.take() {
-            Some(yesterday) => {
-                PanoramaLocalizer::with_map(LocalizerParams::default(), yesterday.into_map(), known_start(&trip)?)?
-            }
+            Some(yesterday) => PanoramaLocalizer::with_map(
+                LocalizerParams::default(),
+                yesterday.into_map(),
+                known_start(&trip)?,
+            )?,
             None => PanoramaLocalizer::new(LocalizerParams::default(), known_start(&trip)?)?,
         };
         let course = follow(&mut today, &trip)?;
