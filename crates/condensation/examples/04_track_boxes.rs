@@ -1,6 +1,6 @@
 //! Follows the target of a sequence from its first box and compares every box with the truth: mean overlap, success, precision.
 //!
-//! `cargo run --release -p wayfix-condensation --example track_boxes -- FOLDER… [parameter=value…]`, where each folder holds the frames in
+//! `cargo run --release -p wayfix-condensation --example 04_track_boxes -- FOLDER… [parameter=value…]`, where each folder holds the frames in
 //! `img` and a line `x,y,w,h` for each in `groundtruth_rect.txt`. With `out=FOLDER`, the boxes are written there;
 //! `tracker=` is `correlation`, `head`, `head-one-mode` or `mean-shift`.
 

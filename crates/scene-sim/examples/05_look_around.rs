@@ -1,4 +1,4 @@
-//! Renders a strip of views for a look at them: `cargo run --example look_around -- store 12 > views.ppm`.
+//! Renders a strip of views for a look at them: `cargo run --example 05_look_around -- store 12 > views.ppm`.
 
 use std::error::Error;
 use std::io::{Write, stdout};

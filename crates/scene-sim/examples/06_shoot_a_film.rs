@@ -1,4 +1,4 @@
-//! `cargo run --example shoot_a_film -- beetle FOLDER [SEED]`: the frames of a film as PNG files and the true boxes as `truth.txt`, ready for
+//! `cargo run --example 06_shoot_a_film -- beetle FOLDER [SEED]`: the frames of a film as PNG files and the true boxes as `truth.txt`, ready for
 //! `wayfix run track --frames FOLDER --truth FOLDER/truth.txt`.
 
 use std::error::Error;
