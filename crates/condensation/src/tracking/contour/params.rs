@@ -75,7 +75,8 @@ pub struct ContourTrackerParams {
     pub lost_below: f64,
     /// From this quality on it is found again. Default 0.8.
     pub found_above: f64,
-    /// Hypotheses about the colours when the whole picture is searched. Default 25.
+    /// Hypotheses about the colours when the whole picture is searched, besides those about the strength of the
+    /// light. Default 12.
     pub n_search_samples: usize,
 }
 
@@ -104,7 +105,7 @@ impl Default for ContourTrackerParams {
             edge_contrast: 20.0,
             lost_below: 0.6,
             found_above: 0.8,
-            n_search_samples: 25,
+            n_search_samples: 12,
         }
     }
 }
