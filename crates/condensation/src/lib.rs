@@ -38,5 +38,11 @@ pub use navigation::{
 };
 pub use normalization::{Light, affine_match, histogram_match, light_match};
 pub use tracking::{
-    AffineMap, AffineSnake, Agreement, BackProjection, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox, COLOR_DIM, ColorCloud, ColorDynamics, ColorEdges, ColorHistogram, ColorQuantizer, ColorSpace, ColorState, ColorVector, ColorWarp, Connectivity, ContourTracker, ContourTrackerParams, CorrelationTracker, CorrelationTrackerParams, EdgeSearch, Element, HeadTracker, HeadTrackerParams, LearnedDynamics, LocalScale, MaskEdges, MeanShift, MeanShiftParams, Moments, Outline, PixelRect, PrincipalColors, RowSpans, ScaleSource, SlidingHistogram, SnakeFit, SnakeParams, Target, TrackStatus, Tracker, TrackingCues,
+    AffineMap, AffineSnake, Agreement, BackProjection, BinImage, BinSet, BitMask, Blob, Blobs, BoundingBox,
+    COLOR_DIM, ColorCloud, ColorDynamics, ColorEdges, ColorHistogram, ColorQuantizer, ColorSpace, ColorState,
+    ColorVector, ColorWarp, Connectivity, ContourTracker, ContourTrackerParams, CorrelationTracker,
+    CorrelationTrackerParams, EdgeSearch, Element, HeadTracker, HeadTrackerParams, LearnedDynamics,
+    LocalScale, MaskEdges, MeanShift, MeanShiftParams, Moments, Outline, PixelRect, PrincipalColors,
+    RowSpans, ScaleSource, SlidingHistogram, SnakeFit, SnakeParams, Target, TrackStatus, Tracker,
+    TrackingCues,
 };

@@ -29,7 +29,8 @@ fn a_box_is_judged_by_its_box_and_an_outline_by_its_pixels() {
     let boxed = true_box(&frame, TrackStatus::Tracked);
     let [x, y] = boxed.bounding_box.corner();
     let (right, bottom) = (x + boxed.bounding_box.width(), y + boxed.bounding_box.height());
-    let outlined = Target { outline: vec![[x, y], [right, y], [right, bottom], [x, bottom]], ..boxed.clone() };
+    let outlined =
+        Target { outline: vec![[x, y], [right, y], [right, bottom], [x, bottom]], ..boxed.clone() };
     let mut score = FilmScore::default();
     score.add(&boxed, &frame).unwrap();
     score.add(&outlined, &frame).unwrap();

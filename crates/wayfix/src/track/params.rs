@@ -1,5 +1,5 @@
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::{ContourTrackerParams, CorrelationTrackerParams};
+use wayfix_condensation::{ContourTrackerParams, CorrelationTrackerParams, HeadTrackerParams};
 
 use crate::settings::over_defaults;
 
@@ -17,6 +17,8 @@ use crate::settings::over_defaults;
 pub struct TrackParams {
     /// The box tracker.
     pub correlation: CorrelationTrackerParams,
+    /// The head tracker.
+    pub head: HeadTrackerParams,
     /// The contour tracker.
     pub contour: ContourTrackerParams,
 }
