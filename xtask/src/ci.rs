@@ -67,6 +67,7 @@ fn steps() -> Result<Vec<Step>> {
         task("regress", &["regress", "--quick"]),
         task("clients", &["clients"]),
         task("campaign", &["campaign"]),
+        task("robot", &["robot"]),
     ])
 }
 

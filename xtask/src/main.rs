@@ -7,6 +7,7 @@ mod clients;
 mod docs;
 mod fixtures;
 mod regress;
+mod robot;
 mod shell;
 mod tidy;
 
@@ -24,6 +25,7 @@ Usage: cargo xtask TASK [OPTIONS]
   docs [PACKAGE…]    build the API reference with formulas; --open shows it
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
   campaign           run the recipe for GNU parallel of docs/campaigns
+  robot              build and run the robots of the folder robots, which are outside the workspace
   clients [DIR]      read the report and the logs in DIR (default target/regress) with other people's programs
 ";
 
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         "bench" => bench::run(&args),
         "clients" => clients::run(&args),
         "campaign" => campaign::run(&args),
+        "robot" => robot::run(&args),
         "" | "help" | "--help" | "-h" => {
             print!("{HELP}");
             Ok(ExitCode::SUCCESS)

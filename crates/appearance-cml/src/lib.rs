@@ -3,8 +3,35 @@
 //! Gross, Koenig & Müller, *Omniview-based Concurrent Map Building and Localization using Adaptive Appearance Maps*. The crate opens no
 //! files: views are buffers of pixels, maps are bytes.
 
+mod archive;
+mod check;
 mod error;
+mod fusion;
+mod localizer;
+mod model;
 mod search;
+mod state;
+mod views;
 
+pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapArchive};
 pub use error::AppearanceError;
-pub use search::{Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
+pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
+pub use localizer::{
+    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Start, UpdateOutcome, smooth,
+};
+pub use model::{
+    AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,
+    Reference, Sighting, ViewScale, interpolate, similarity, superpose,
+};
+pub use search::{
+    AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,
+    SearchCost,
+};
+pub use state::{
+    OdometryNoise, PoseHypothesis, SimplifyParams, UnimodalParams, propagate, separation_squared, simplify,
+    unimodal,
+};
+pub use views::{
+    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,
+    RingOrder, Tone, TurnSense,
+};

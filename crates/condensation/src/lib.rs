@@ -7,7 +7,9 @@
 //! | learning | [`Appearance`]: features of every state and how they answer to shift and light; [`Traverse`]; [`MoveLog`]; p-values |
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceParams::online`] |
 //! | navigation | [`Localizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
+//! | boxes and heads | [`CorrelationTracker`]: anything, from its first box, lost and found; [`HeadTracker`]: an ellipse, skin and hair |
 //! | colours and masks | bins of a [`ColorSpace`], [`ColorHistogram`], [`BitMask`] with 64 pixels a word, [`MeanShift`] |
+//! | contours | [`Outline`], [`AffineSnake`]; [`ColorCloud`], [`ColorDynamics`]; [`ContourTracker`] |
 //!
 //! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. The crate opens no files: pictures are
 //! buffers of red, green and blue.

@@ -62,6 +62,18 @@ fn colours_are_followed_and_without_adaptation_they_are_not() {
     assert!((opponent.x - 393.0 / 510.0).abs() < 0.02, "{opponent}");
 }
 
+#[test]
+fn the_published_form_follows_what_changes_slowly() {
+    let mut tracker = on_disk(ContourTrackerParams::as_published());
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    for step in 1..15 {
+        let target = tracker.track(&turning_blue(step), &mut rng).unwrap();
+        assert_eq!(target.status, TrackStatus::Tracked, "step {step}");
+        let overlap = target.bounding_box.iou(&disk_box([40.0 + 0.5 * step as f64, 45.0]));
+        assert!(overlap > 0.86, "step {step}: {overlap}");
+    }
+}
+
 /// The bounds are those of the issue for the mean over all seeds, here for a part of one film each; a person gives the first contour.
 #[test]
 fn simulated_targets_are_followed() {

@@ -20,12 +20,13 @@ fn picture(center: [f64; 2], hair: f64, scale: f64, light: f64) -> Picture {
     let pixel = |i: usize| {
         let off = |at: usize, axis: usize| (at as f64 + 0.5 - center[axis]) / (SEMI_AXES[axis] * scale);
         let (x, y) = (off(i % WIDTH, 0), off(i / WIDTH, 1));
-        let color = match x.hypot(y) {
-            r if r > 1.0 => ground.pixels()[i],
-            _ if y < 2.0 * hair - 1.0 => [50, 35, 28],
-            _ => [224, 168, 140],
+        // lit from the right, as colours of a head are never one
+        let (color, shade) = match x.hypot(y) {
+            r if r > 1.0 => (ground.pixels()[i], 1.0),
+            _ if y < 2.0 * hair - 1.0 => ([50, 35, 28], 1.0 + 0.25 * x),
+            _ => ([200, 150, 125], 1.0 + 0.25 * x),
         };
-        color.map(|value| (f64::from(value) * light).min(255.0) as u8)
+        color.map(|value| (f64::from(value) * shade * light).min(255.0) as u8)
     };
     Picture::from_rgb(WIDTH, HEIGHT, (0..WIDTH * HEIGHT).flat_map(pixel).collect()).expect("that many pixels")
 }

@@ -91,3 +91,14 @@ fn each_is_what_its_name_says() {
     let long = run("long_loop", 5);
     assert!(seen_landmarks(&long) >= 45);
 }
+
+#[test]
+fn the_store_is_lapped_twice_with_a_view_every_quarter_of_a_metre() {
+    let scenario = Scenario::named("store_area").expect("there is one");
+    let records = run(scenario.name, scenario.seed);
+    let views = count(&records, |data| matches!(data, Data::Image(_)));
+    let increments = count(&records, |data| matches!(data, Data::OdometryIncrement(_)));
+    assert_eq!((views, count(&records, |data| matches!(data, Data::TruePose(_)))), (increments + 1, views));
+    // Two laps of 22 m × 7.3 m with rounded corners.
+    assert!((400..480).contains(&views), "{views}");
+}

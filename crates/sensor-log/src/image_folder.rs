@@ -25,11 +25,10 @@ impl ImageFolder {
         if !RATES_HZ.contains(&rate_hz) {
             return Err(LogError::BadFrameRate { rate_hz });
         }
-        let mut files = images_in(folder)?;
+        let files = image_files(folder)?;
         if files.is_empty() {
             return Err(LogError::Empty { path: folder.into() });
         }
-        files.sort_by_cached_key(|path| (natural_key(&file_name(path)), path.clone()));
         Ok(Self { files: files.into_iter().enumerate(), rate_hz })
     }
 
@@ -55,6 +54,16 @@ impl ImageFolder {
         }
         None
     }
+}
+
+/// Everything in a folder that is called a PNG or JPEG image, by name: `frame10` comes after `frame9`.
+///
+/// # Errors
+/// When the folder cannot be read.
+pub fn image_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
+    let mut files = images_in(folder)?;
+    files.sort_by_cached_key(|path| (natural_key(&file_name(path)), path.clone()));
+    Ok(files)
 }
 
 /// Everything in the folder that is called an image.

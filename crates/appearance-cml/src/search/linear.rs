@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use super::{Descriptor, Match, ReferenceId, ReferenceSearch};
+use super::{Descriptor, Match, ReferenceId, ReferenceSearch, nearest::by_distance};
 use crate::AppearanceError;
 
 /// Compares with every reference: the plain search that faster ones must agree with.
@@ -21,7 +21,7 @@ impl<D: Descriptor> LinearSearch<D> {
             |(id, reference): (&ReferenceId, &D)| Match { id: *id, comparison: view.compare(reference) };
         let mut found: Vec<Match> = self.references.iter().map(compare).collect();
         found.retain(|found| found.comparison.distance < max_distance);
-        found.sort_by(|a, b| a.comparison.distance.total_cmp(&b.comparison.distance).then(a.id.cmp(&b.id)));
+        found.sort_by(by_distance);
         found
     }
 }

@@ -1,9 +1,17 @@
 //! Which reference views look like the view of this moment.
 
+mod bounded;
+mod box_tree;
 mod descriptor;
+mod index;
 mod linear;
+mod nearest;
+mod projection;
 mod reference_search;
+mod slot_set;
 
+pub use bounded::Bounded;
 pub use descriptor::{Comparison, Descriptor};
+pub use index::{AppearanceIndex, SearchCost};
 pub use linear::LinearSearch;
 pub use reference_search::{Match, ReferenceId, ReferenceSearch};

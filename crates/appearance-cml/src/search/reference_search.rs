@@ -21,7 +21,8 @@ pub trait ReferenceSearch<D: Descriptor> {
     /// Takes a reference in.
     ///
     /// # Errors
-    /// [`AppearanceError::TwiceTheSame`] when there is one of that number.
+    /// [`AppearanceError::TwiceTheSame`] when there is one of that number; an index may refuse a descriptor that cannot be compared
+    /// with the others, [`AppearanceError::Incomparable`].
     fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError>;
 
     /// Takes a reference out, if there is one of that number.
@@ -43,4 +44,11 @@ pub trait ReferenceSearch<D: Descriptor> {
 
     /// The `n` nearest references (all of them where there are fewer), the nearest first, by number where they are equally near.
     fn nearest(&self, view: &D, n: usize) -> Vec<Match>;
+
+    /// The `n` nearest of the references nearer than `max_distance`: [`nearest`](Self::nearest), cut off.
+    fn nearest_within(&self, view: &D, n: usize, max_distance: f64) -> Vec<Match> {
+        let mut found = self.nearest(view, n);
+        found.retain(|found| found.comparison.distance < max_distance);
+        found
+    }
 }

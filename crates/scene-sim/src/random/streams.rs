@@ -66,6 +66,14 @@ pub enum Source {
     MixedPixels,
     /// People in front of a laser.
     People,
+    /// Lamps that have aged.
+    Lamps,
+    /// Clouds.
+    Daylight,
+    /// People who switch lamps and draw curtains.
+    Switching,
+    /// People who walk about in a building.
+    Crowd,
     /// How the target of a film moves.
     Motion,
     /// How the light of a film changes.
@@ -108,6 +116,10 @@ impl Source {
             Self::Pixels => 28,
             Self::MixedPixels => 29,
             Self::People => 30,
+            Self::Lamps => 31,
+            Self::Daylight => 32,
+            Self::Switching => 33,
+            Self::Crowd => 34,
             Self::Motion => 40,
             Self::Light => 41,
             Self::Other(n) => (1 << 32) | n as u64,

@@ -5,7 +5,9 @@ mod laser;
 mod league;
 mod named;
 mod planar;
+mod store;
 
 pub use laser::LaserDriveParams;
 pub use named::{Scenario, ScenarioParams};
 pub use planar::{OdometryParams, OtherRobotParams, PlanarParams};
+pub use store::StoreLapsParams;

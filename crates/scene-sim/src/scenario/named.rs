@@ -1,7 +1,7 @@
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{Record, Stamp};
 
-use super::{LaserDriveParams, PlanarParams, catalogue, league};
+use super::{LaserDriveParams, PlanarParams, StoreLapsParams, catalogue, league, store};
 use crate::SimError;
 use crate::league::LeagueParams;
 use crate::monobot::MonobotParams;
@@ -39,6 +39,8 @@ pub enum ScenarioParams {
     Monobot(MonobotParams),
     /// A robot with a camera on the field of the four-legged league.
     League(Box<LeagueParams>),
+    /// A robot in a store, with a camera that looks all around.
+    StoreLaps(Box<StoreLapsParams>),
 }
 
 impl Scenario {
@@ -53,16 +55,23 @@ impl Scenario {
         league::all()
     }
 
+    /// Those with views of a store: `store_area`, two laps in an area of 25 m × 10 m.
+    pub fn in_store() -> Vec<Self> {
+        store::all()
+    }
+
     /// The one called `name`.
     ///
     /// # Errors
     /// When there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
-        let found = Self::all().into_iter().chain(Self::in_color()).find(|scenario| scenario.name == name);
+        let mut all = Self::all().into_iter().chain(Self::in_color()).chain(Self::in_store());
+        let found = all.find(|scenario| scenario.name == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
     }
 
-    /// The same with other draws of everything, and on the four-legged league's field in a hall of its own: light that nobody has seen.
+    /// The same with other draws of everything, in a store of its own, and on the four-legged league's field in a hall of its own:
+    /// light that nobody has seen.
     ///
     /// ```
     /// use wayfix_scene_sim::{Scenario, ScenarioParams};
@@ -75,6 +84,9 @@ impl Scenario {
         self.seed = seed;
         if let ScenarioParams::League(params) = &mut self.params {
             params.venue_seed = None;
+        }
+        if let ScenarioParams::StoreLaps(params) = &mut self.params {
+            params.store_seed = seed;
         }
         self
     }
@@ -89,6 +101,7 @@ impl Scenario {
             ScenarioParams::Planar(params) => params.simulate(&mut streams),
             ScenarioParams::Laser(params) => params.simulate(&mut streams),
             ScenarioParams::League(params) => params.simulate(streams),
+            ScenarioParams::StoreLaps(params) => params.simulate(streams),
             ScenarioParams::Monobot(params) => {
                 let run = params.simulate(&mut streams)?;
                 Ok(run.records(Stamp::from_nanoseconds(1_600_000_000_000_000_000), 100))

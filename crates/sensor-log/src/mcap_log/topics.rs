@@ -8,6 +8,7 @@
 //! | [`SIGHTINGS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Sightings`](crate::Data::Sightings) |
 //! | [`SIGHTED_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`Data::SightedWidths`](crate::Data::SightedWidths) |
 //! | [`SCAN`] | `foxglove.LaserScan`; `angle_increment` and `range_max` in the metadata of the channel | [`BODY_FRAME`] | [`Data::Scan`](crate::Data::Scan) |
+//! | [`LASER_MOUNT`] | `foxglove.FrameTransform` | [`LASER_FRAME`] in [`BODY_FRAME`] | [`Data::LaserMount`](crate::Data::LaserMount) |
 //! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`Data::TruePosition`](crate::Data::TruePosition) |
 //! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |
 //! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
@@ -15,7 +16,7 @@
 //! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
 //! | [`CAMERA_INFO`] | `foxglove.CameraCalibration` | [`CAMERA_OPTICAL_FRAME`] | [`Data::CameraInfo`](crate::Data::CameraInfo) |
 //! | [`CAMERA_MOUNT`] | `foxglove.FrameTransform` | [`CAMERA_FRAME`] in [`BODY_FRAME`] | [`Data::CameraMount`](crate::Data::CameraMount) |
-//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::Image`](crate::Data::Image) |
+//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG, or `foxglove.RawImage` | [`CAMERA_OPTICAL_FRAME`] | [`Data::Image`](crate::Data::Image) |
 //! | [`TRUE_LABELS`] | `foxglove.CompressedImage`, grey PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::TrueLabels`](crate::Data::TrueLabels) |
 //!
 //! With every camera mount, [`CAMERA_OPTICAL`] places the optical frame (z forward, x right, y down) that viewers draw images in.
@@ -40,6 +41,8 @@ pub const SIGHTINGS: &str = "/sightings";
 pub const SIGHTED_WIDTHS: &str = "/sightings/widths";
 /// What a laser saw.
 pub const SCAN: &str = "/scan";
+/// Where the laser is on the robot.
+pub const LASER_MOUNT: &str = "/scan/mount";
 /// The same as points; not read back.
 pub const SCAN_POINTS: &str = "/scan/points";
 /// Where a point of the robot truly was.
@@ -72,6 +75,8 @@ pub const WORLD_FRAME: &str = "world";
 pub const ODOMETRY_FRAME: &str = "odom";
 /// The robot: x forward, y left.
 pub const BODY_FRAME: &str = "base_link";
+/// The laser, where a mount places it on the robot.
+pub const LASER_FRAME: &str = "laser";
 /// The camera: x along the optical axis, y left, z up.
 pub const CAMERA_FRAME: &str = "camera";
 /// The camera as images have it: z along the optical axis, x right, y down.

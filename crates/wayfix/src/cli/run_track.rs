@@ -16,6 +16,7 @@ use super::{
     progress,
 };
 use crate::{
+    commented::commented,
     report::Run,
     system::{Stopwatch, System},
     track::{self, Method, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
@@ -95,7 +96,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         None => TrackParams::default(),
     };
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let truth = match &arguments.truth {

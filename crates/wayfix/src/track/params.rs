@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_condensation::{ContourTrackerParams, CorrelationTrackerParams, HeadTrackerParams};
 
@@ -12,7 +13,7 @@ use crate::settings::over_defaults;
 /// assert!(TrackParams::from_toml("[contour]\nn_smaples = 50").is_err());
 /// # Ok::<(), toml::de::Error>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackParams {
     /// The box tracker.

@@ -38,7 +38,8 @@ enum Tables {
     Rgb(Box<[[u16; 256]; 3]>),
     /// Of $`B - G`$, $`G - R`$ and $`R + G + B`$.
     Opponent(Box<([u16; 512], [u16; 512], [u16; 1024])>),
-    /// Of the hue by $`G - B`$ and $`2R - G - B`$, and of $`R + G + B`$; a megabyte, of which a picture touches little.
+    /// Of the hue by $`G - B`$ and $`2R - G - B`$, and of $`R + G + B`$; a megabyte, filled in some 10 ms, of which a picture
+    /// touches little.
     Hsi(Box<[u16]>),
     None,
 }

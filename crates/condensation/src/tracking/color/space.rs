@@ -12,6 +12,7 @@ use std::f64::consts::TAU;
 /// assert!((lit[0] - shaded[0]).abs() < 1e-12 && (lit[1] - shaded[1]).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum ColorSpace {

@@ -1,7 +1,5 @@
 use super::{Agreement, scene::Scene};
-use crate::{
-    AffineMap, BitMask, ColorEdges, ColorState, CondensationError, Connectivity, MaskEdges, TrackingCues,
-};
+use crate::{AffineMap, BitMask, ColorEdges, ColorState, Connectivity, MaskEdges, TrackingCues};
 
 /// Where the target would be if a hypothesis about its colours were true.
 #[derive(Clone, Copy, Debug)]
@@ -56,48 +54,7 @@ impl Candidate {
         };
         Self { map: fit.map, area, agreement }
     }
-
-    /// The candidate on the edges of the picture near the boundary of its mask: the snake fitted to $`∇I · \mathrm{dil}(∇S)`$. Where there is
-    /// too little of an edge, or the area would agree less, it stays as it is.
-    pub(super) fn refined(mut self, scene: &Scene<'_>, mask: &BitMask) -> Self {
-        let params = scene.params;
-        if params.band_radius == 0 || params.cues != TrackingCues::ColorAndShape {
-            return self;
-        }
-        let band = scene.band_of(mask);
-        let edges =
-            ColorEdges::new(scene.picture, params.edge_contrast).within(&band, scene.region.rect.corner());
-        // The snake is where it belongs but for the width of the band.
-        let near = crate::SnakeParams { reach: 0.0, ..params.snake };
-        let snake = &scene.reference.snake;
-        let fit = snake.fit(&self.map, &edges, &near);
-        let area = snake.area_at(&fit.map);
-        let area_agrees = Agreement::of_areas(scene.expected_area, area) >= self.agreement.area - AREA_SLACK;
-        if fit.support >= 0.5 * self.agreement.affine && area_agrees {
-            (self.map, self.area) = (fit.map, area);
-        }
-        self
-    }
 }
-
-impl Scene<'_> {
-    /// How sure one can be that the target is where a candidate says, from 0 to 1: the score of its agreement, less where the contour and the
-    /// segmentation do not cover each other.
-    pub(super) fn confidence(&self, candidate: &Candidate, mask: &BitMask) -> Result<f64, CondensationError> {
-        let score = candidate.agreement.score(self.params);
-        if self.params.cues != TrackingCues::ColorAndShape {
-            return Ok(score);
-        }
-        let inside = self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?;
-        Ok(score * (inside.iou(mask)? / COVERED).min(1.0))
-    }
-}
-
-/// Overlap of contour and segmentation from which on nothing speaks against either.
-const COVERED: f64 = 0.7;
-
-/// How much worse the area may agree after refinement.
-const AREA_SLACK: f64 = 0.05;
 
 /// What is out of the picture supports nothing: from half of the contour in sight on it costs nothing, below that everything, gradually.
 fn in_sight(visible: f64) -> f64 {

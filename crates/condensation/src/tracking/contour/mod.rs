@@ -3,8 +3,10 @@
 mod agreement;
 mod candidate;
 mod each;
+mod follow;
 mod history;
 mod params;
+mod recolor;
 mod reference;
 mod refine;
 mod region;

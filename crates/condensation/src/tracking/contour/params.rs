@@ -3,6 +3,7 @@ use crate::{ColorSpace, ColorVector, CondensationError, SnakeParams};
 
 /// What a [`ContourTracker`](crate::ContourTracker) goes by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum TrackingCues {
@@ -18,6 +19,7 @@ pub enum TrackingCues {
 /// Parameters of a [`ContourTracker`](crate::ContourTracker). The defaults are for pictures of some 320 × 240 pixels at 10 to 60 a second and
 /// were not chosen on any one recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -1,57 +1,46 @@
-use super::{candidate::Candidate, scene::Scene};
+use super::{Agreement, TrackingCues, candidate::Candidate, scene::Scene};
 use crate::tracking::Element;
-use crate::{BinSet, BitMask, ColorCloud, CondensationError};
+use crate::{BitMask, ColorEdges, CondensationError, SnakeParams};
 
-/// Share of the expected area that the pixels of a new colour set must have.
-const LEAST_SHARE: f64 = 0.25;
+/// Overlap of contour and segmentation from which on nothing speaks against either.
+const COVERED: f64 = 0.7;
 
-/// Support of a contour from which on nothing covers the target.
-const SEEN_ALL_ROUND: f64 = 0.8;
+/// How much worse the area may agree after refinement.
+const AREA_SLACK: f64 = 0.05;
+
+impl Candidate {
+    /// The candidate on the edges of the picture near the boundary of its mask: the snake fitted to $`∇I · \mathrm{dil}(∇S)`$. Where there is
+    /// too little of an edge, or the area would agree less, it stays as it is.
+    pub(super) fn refined(mut self, scene: &Scene<'_>, mask: &BitMask) -> Self {
+        let params = scene.params;
+        if params.band_radius == 0 || params.cues != TrackingCues::ColorAndShape {
+            return self;
+        }
+        let band = mask.boundary().dilated(Element::Square { radius: params.band_radius });
+        let edges =
+            ColorEdges::new(scene.picture, params.edge_contrast).within(&band, scene.region.rect.corner());
+        // The snake is where it belongs but for the width of the band.
+        let near = SnakeParams { reach: 0.0, ..params.snake };
+        let snake = &scene.reference.snake;
+        let fit = snake.fit(&self.map, &edges, &near);
+        let area = snake.area_at(&fit.map);
+        let area_agrees = Agreement::of_areas(scene.expected_area, area) >= self.agreement.area - AREA_SLACK;
+        if fit.support >= 0.5 * self.agreement.affine && area_agrees {
+            (self.map, self.area) = (fit.map, area);
+        }
+        self
+    }
+}
 
 impl Scene<'_> {
-    /// The colours inside the contour of the best candidate; none when there are too few pixels to tell.
-    ///
-    /// Pixels at the rim are mixed with the background and left out. With a background model so are bins that are more frequent outside,
-    /// and, unless the contour is seen nearly all round, bins that do not touch one of the best hypothesis: they may be of what covers the
-    /// target.
-    pub(super) fn colors_of(
-        &self,
-        candidate: &Candidate,
-        set: &BinSet,
-        mask: &BitMask,
-    ) -> Result<Option<ColorCloud>, CondensationError> {
-        let inside = self.interior(candidate, mask)?;
-        let n_expected = LEAST_SHARE * self.expected_area;
-        let plain = self.params.background_odds == 0.0;
-        let shares = self.region.shares(&inside);
-        let is_open = candidate.agreement.affine >= SEEN_ALL_ROUND;
-        let near = set.dilated(self.quantizer);
-        let is_target = |bin: u16| {
-            let i = usize::from(bin);
-            plain || (shares[i] > self.background[i] && (is_open || near.contains(bin)))
-        };
-        let (left, top) = self.region.rect.corner();
-        let pixel = |u: usize, v: usize| self.picture.pixels()[(top + v) * self.picture.width() + left + u];
-        let colors = self.region.bins.rows().enumerate().flat_map(|(v, row)| {
-            let (inside, is_target) = (&inside, &is_target);
-            let of_target =
-                row.iter().enumerate().filter(move |(u, bin)| inside.get(*u, v) && is_target(**bin));
-            of_target.map(move |(u, _)| self.params.color_space.convert(pixel(u, v)))
-        });
-        match ColorCloud::from_colors(colors, self.params.max_colors) {
-            Ok(cloud) if cloud.n_pixels() >= n_expected => Ok(Some(cloud)),
-            Ok(_) | Err(CondensationError::Empty { .. }) => Ok(None),
-            Err(error) => Err(error),
+    /// How sure one can be that the target is where a candidate says, from 0 to 1: the score of its agreement, less where the contour and the
+    /// segmentation do not cover each other.
+    pub(super) fn confidence(&self, candidate: &Candidate, mask: &BitMask) -> Result<f64, CondensationError> {
+        let score = candidate.agreement.score(self.params);
+        if self.params.cues != TrackingCues::ColorAndShape {
+            return Ok(score);
         }
-    }
-
-    /// The pixels inside a candidate but for its rim.
-    fn interior(&self, candidate: &Candidate, mask: &BitMask) -> Result<BitMask, CondensationError> {
-        let inside = match self.params.cues {
-            crate::TrackingCues::Color => mask.clone(),
-            _ => self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?,
-        };
-        let core = inside.eroded(Element::Square { radius: 1 });
-        Ok(if 2 * core.area() >= inside.area() { core } else { inside })
+        let inside = self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?;
+        Ok(score * (inside.iou(mask)? / COVERED).min(1.0))
     }
 }

@@ -9,7 +9,11 @@ use crate::{ColorDynamics, ColorState, CondensationError, PrincipalColors};
 pub(super) struct Samples {
     particles: ParticleSet<ColorState>,
     measured: ColorState,
+    n_drifts: usize,
 }
+
+/// Pictures without a measurement after which the samples spread no more: by then they are everywhere.
+const MAX_DRIFTS: usize = 50;
 
 /// How much of the newest change of colours counts in their measured velocity.
 const VELOCITY_GAIN: f64 = 0.5;
@@ -18,7 +22,7 @@ impl Samples {
     /// All at rest.
     pub(super) fn at_start(colors: &PrincipalColors, n_samples: usize) -> Result<Self, CondensationError> {
         let measured = ColorState::at_rest(colors);
-        Ok(Self { particles: ParticleSet::new(vec![measured; n_samples])?, measured })
+        Ok(Self { particles: ParticleSet::new(vec![measured; n_samples])?, measured, n_drifts: 0 })
     }
 
     /// Sampling by weight and propagation: the hypotheses about the next picture, of equal weight.
@@ -47,7 +51,10 @@ impl Samples {
 
     /// The samples one picture later, when there was nothing to weigh them by: they spread.
     pub(super) fn drift<R: Rng + ?Sized>(&mut self, dynamics: &ColorDynamics, rng: &mut R) {
-        self.particles.propagate(|state, rng| *state = dynamics.propagate(state, rng), rng);
+        if self.n_drifts < MAX_DRIFTS {
+            self.n_drifts += 1;
+            self.particles.propagate(|state, rng| *state = dynamics.propagate(state, rng), rng);
+        }
     }
 
     /// The samples after weighing.
@@ -56,7 +63,8 @@ impl Samples {
         states: Vec<ColorState>,
         log_weights: Vec<f64>,
     ) -> Result<Self, CondensationError> {
-        Ok(Self { particles: ParticleSet::from_log_weights(states, log_weights)?, measured: self.measured })
+        let particles = ParticleSet::from_log_weights(states, log_weights)?;
+        Ok(Self { particles, measured: self.measured, n_drifts: 0 })
     }
 
     /// The colours of the last picture become what all angles are counted from.

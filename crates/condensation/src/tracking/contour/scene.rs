@@ -23,6 +23,9 @@ pub(super) struct Scene<'a> {
 /// Least distance in pixels from the expected target to the edge of the region and to what counts as background.
 const LEAST_MARGIN: f64 = 8.0;
 
+/// Pixels of the smallest target.
+pub(super) const LEAST_PIXELS: usize = 4;
+
 impl<'a> Scene<'a> {
     /// Round the place where the target is expected; none when that is outside the picture.
     pub(super) fn around_target(
@@ -82,10 +85,11 @@ impl<'a> Scene<'a> {
         let blobs = self.segment(set).blobs(Connectivity::Eight);
         let main = blobs.most_overlapping(&self.expected).expect("invariant: one region for all")?;
         let mut index = 0..;
-        Some(blobs.filtered(|blob| {
+        let mask = blobs.filtered(|blob| {
             let middle = (blob.rect.left + blob.rect.width / 2, blob.rect.top + blob.rect.height / 2);
             index.next() == Some(main) || self.expected.get(middle.0, middle.1)
-        }))
+        });
+        (mask.area() >= LEAST_PIXELS).then_some(mask)
     }
 
     /// The pixels of a set of bins, after closing and opening.
@@ -95,10 +99,5 @@ impl<'a> Scene<'a> {
             0 => mask,
             radius => mask.closed(Element::Square { radius }).opened(Element::Square { radius }),
         }
-    }
-
-    /// $`\mathrm{dil}(∇S)`$.
-    pub(super) fn band_of(&self, mask: &BitMask) -> BitMask {
-        mask.boundary().dilated(Element::Square { radius: self.params.band_radius })
     }
 }

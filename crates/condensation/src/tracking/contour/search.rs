@@ -1,4 +1,5 @@
-use super::{ContourTrackerParams, candidate::Candidate, reference::Reference, region::Region, scene::Scene};
+use super::scene::{LEAST_PIXELS, Scene};
+use super::{ContourTrackerParams, candidate::Candidate, reference::Reference, region::Region};
 use crate::{AffineMap, BitMask, ColorQuantizer, ColorState, CondensationError, Connectivity, Picture};
 
 /// How much smaller or larger than before a target may be when it is found again.
@@ -39,7 +40,7 @@ impl<'a> Scene<'a> {
         let mut near: Vec<(usize, f64)> = blobs
             .iter()
             .enumerate()
-            .filter(|(_, blob)| AREA_RANGE.contains(&ratio(blob.area)))
+            .filter(|(_, blob)| blob.area >= LEAST_PIXELS && AREA_RANGE.contains(&ratio(blob.area)))
             .map(|(i, blob)| (i, ratio(blob.area).ln().abs()))
             .collect();
         near.sort_by(|a, b| a.1.total_cmp(&b.1));

@@ -1,7 +1,13 @@
+use super::history::History;
+use super::reference::Reference;
 use super::region::Region;
+use super::samples::Samples;
+use super::{ContourTracker, ContourTrackerParams};
+use crate::error::check_size;
 use crate::tracking::Element;
 use crate::{
-    BinSet, BitMask, BoundingBox, ColorQuantizer, CondensationError, Connectivity, Outline, Picture,
+    AffineSnake, BinSet, BitMask, BoundingBox, ColorCloud, ColorDynamics, ColorQuantizer, CondensationError,
+    Connectivity, Outline, Picture, TrackStatus,
 };
 
 /// Corners of the ellipse that stands for a target of unknown shape.
@@ -18,9 +24,64 @@ const LIMB: f64 = 0.08;
 const LEAST_SOLIDITY: f64 = 0.75;
 const SOLID: f64 = 0.95;
 
+impl ContourTracker {
+    /// Starts from an outline in the first picture.
+    ///
+    /// # Errors
+    /// [`CondensationError::Parameter`] for parameters out of range, [`CondensationError::Empty`] when no pixel of the picture is inside.
+    pub fn from_outline(
+        picture: &Picture,
+        outline: &Outline,
+        params: ContourTrackerParams,
+    ) -> Result<Self, CondensationError> {
+        params.validate()?;
+        let quantizer = ColorQuantizer::new(params.color_space, params.bins)?;
+        let dynamics = ColorDynamics::constant_velocity(params.damping, &params.noise())?;
+        let snake = AffineSnake::new(outline, &params.snake)?;
+        let size = (picture.width(), picture.height());
+        let inside = BitMask::from_polygon(size.0, size.1, outline.points())?;
+        let of_target =
+            picture.pixels().iter().enumerate().filter(|(i, _)| inside.get(i % size.0, i / size.0));
+        let colors = of_target.map(|(_, pixel)| params.color_space.convert(*pixel));
+        let cloud = ColorCloud::from_colors(colors, params.max_colors)?;
+        let reference = Reference::at_start(cloud, snake)?;
+        let samples = Samples::at_start(&reference.colors, params.n_samples)?;
+        let (history, status) = (History::at_start(&reference), TrackStatus::Tracked);
+        Ok(Self { params, quantizer, dynamics, size, reference, history, samples, status })
+    }
+
+    /// Starts from a mask of the first picture, the largest blob in it.
+    ///
+    /// # Errors
+    /// As [`from_outline`](Self::from_outline), and [`CondensationError::Dimension`] when the mask is not as large as the picture.
+    pub fn from_mask(
+        picture: &Picture,
+        mask: &BitMask,
+        params: ContourTrackerParams,
+    ) -> Result<Self, CondensationError> {
+        check_size("width of the mask", picture.width(), mask.width())?;
+        check_size("height of the mask", picture.height(), mask.height())?;
+        Self::from_outline(picture, &outline_of_mask(mask)?, params)
+    }
+
+    /// Starts from a box in the first picture. The outline is that of the blob in it whose colours are more frequent in the box than round
+    /// it; where that does not fill the box, the ellipse that does.
+    ///
+    /// # Errors
+    /// As [`from_outline`](Self::from_outline).
+    pub fn from_box(
+        picture: &Picture,
+        bounds: &BoundingBox,
+        params: ContourTrackerParams,
+    ) -> Result<Self, CondensationError> {
+        let quantizer = ColorQuantizer::new(params.color_space, params.bins)?;
+        Self::from_outline(picture, &outline_in_box(picture, &quantizer, bounds)?, params)
+    }
+}
+
 /// The outline of what a box is drawn round: the blob of the colours that are more frequent in the ellipse in the box than round the box,
 /// without notches, if it fills the box, else that ellipse.
-pub(super) fn outline_in_box(
+fn outline_in_box(
     picture: &Picture,
     quantizer: &ColorQuantizer,
     bounds: &BoundingBox,
@@ -49,7 +110,7 @@ pub(super) fn outline_in_box(
 }
 
 /// The outline of the largest blob of a mask as large as a picture.
-pub(super) fn outline_of_mask(mask: &BitMask) -> Result<Outline, CondensationError> {
+fn outline_of_mask(mask: &BitMask) -> Result<Outline, CondensationError> {
     let blobs = mask.blobs(Connectivity::Eight);
     let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
     blob.and_then(|blob| Outline::of_mask(&blob, (0, 0)))

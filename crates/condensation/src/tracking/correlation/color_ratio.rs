@@ -66,3 +66,23 @@ impl ColorRatio {
 fn bin(pixel: &[f32; 3]) -> usize {
     pixel.iter().fold(0, |bin, &value| bin * BINS + (value as usize * BINS / 256).min(BINS - 1))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_of_the_target_stand_out_from_those_around() {
+        let color = |i: usize| {
+            let off = |at: usize| (at as f64 + 0.5 - 20.0).abs();
+            if off(i % 40) < 8.0 && off(i / 40) < 8.0 { [200.0, 40.0, 40.0] } else { [40.0, 90.0, 200.0] }
+        };
+        let patch = Patch { width: 40, height: 40, pixels: (0..1600).map(color).collect() };
+        let mut colors = ColorRatio::new();
+        colors.learn(&patch, [16.0, 16.0], 0.04);
+        let ratio = colors.of(&patch);
+        assert!(ratio[20 * 40 + 20] > 0.99 && ratio[0] < 0.01);
+        let unseen = Patch { width: 1, height: 1, pixels: vec![[40.0, 200.0, 40.0]] };
+        assert_eq!(colors.of(&unseen), [0.5]);
+    }
+}

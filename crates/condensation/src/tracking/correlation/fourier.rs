@@ -58,7 +58,9 @@ impl Stage {
                 let at = j * done * radix + k;
                 match radix {
                     4 => {
-                        let [a, b, c] = [1, 2, 3].map(|s| self.part(from, j + n_left * s, k, s));
+                        let a = self.part(from, j + n_left, k, 1);
+                        let b = self.part(from, j + 2 * n_left, k, 2);
+                        let c = self.part(from, j + 3 * n_left, k, 3);
                         let (even, odd) = (first + b, first - b);
                         let (sum, difference) = (a + c, (a - c).over_i());
                         to[at] = even + sum;
@@ -67,7 +69,8 @@ impl Stage {
                         to[at + 3 * done] = odd - difference;
                     }
                     3 => {
-                        let [a, b] = [1, 2].map(|s| self.part(from, j + n_left * s, k, s));
+                        let a = self.part(from, j + n_left, k, 1);
+                        let b = self.part(from, j + 2 * n_left, k, 2);
                         let sum = a + b;
                         let middle = ComplexLane {
                             re: lane(|c| first.re[c] - 0.5 * sum.re[c]),

@@ -7,6 +7,7 @@ use crate::error::{checked, probability};
 /// hidden. There the mean overlap is flat: halving or doubling one parameter changes it by 0.01 or less in most sequences; what it decides
 /// is now and then whether a target is found again after it was hidden.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -111,6 +112,8 @@ impl CorrelationTrackerParams {
         ] {
             checked(what, value, value >= 0.0, "not negative")?;
         }
+        let n_searches = self.n_searches as f64;
+        checked("number of searches", n_searches, self.n_searches <= 100, "at most 100")?;
         Ok(())
     }
 }

@@ -89,3 +89,31 @@ impl Taps {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp() -> Picture {
+        let value = |i: usize| [(4 * (i % 20)) as u8, (5 * (i / 20)) as u8, 7];
+        Picture::from_rgb(20, 16, (0..320).flat_map(value).collect()).unwrap()
+    }
+
+    #[test]
+    fn at_its_own_size_a_piece_is_the_piece() {
+        let patch = Patch::sampled(&ramp(), [8.0, 7.0], [4.0, 6.0], (4, 6));
+        assert_eq!(patch.pixels[0], [24.0, 20.0, 7.0]);
+        assert_eq!(patch.pixels[23], [36.0, 45.0, 7.0]);
+    }
+
+    #[test]
+    fn a_ramp_stays_a_ramp_when_resampled_and_ends_at_the_edge() {
+        let patch = Patch::sampled(&ramp(), [10.0, 8.0], [10.0, 8.0], (5, 16));
+        for (x, pixel) in patch.pixels[..5].iter().enumerate() {
+            // pixel x covers columns 5 + 2x and 6 + 2x
+            assert!((pixel[0] - 4.0 * (5.5 + 2.0 * x as f32)).abs() < 1e-4, "{x}");
+        }
+        let beyond = Patch::sampled(&ramp(), [-50.0, 100.0], [4.0, 4.0], (2, 2));
+        assert!(beyond.pixels.iter().all(|pixel| *pixel == [0.0, 75.0, 7.0]));
+    }
+}

@@ -53,3 +53,27 @@ fn standing_out(response: &[f32], side: usize, (x, y): (usize, usize), value: f6
     let deviation = (squares / f64::max(n, 1.0) - mean * mean).max(0.0).sqrt();
     if deviation > 1e-9 { (value - mean) / deviation } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_top_of_a_gaussian_is_found_between_its_values() {
+        for top in [-0.4, -0.1, 0.0, 0.3, 0.45] {
+            let value = |x: f64| (-0.5 * (x - top).powi(2) / 0.64).exp();
+            assert!((vertex(value(-1.0), value(0.0), value(1.0)) - top).abs() < 1e-12);
+        }
+        assert_eq!(vertex(0.0, 0.0, 0.0), 0.0);
+        assert!((vertex(-2.0, 2.0, 0.0) - 1.0 / 6.0).abs() < 1e-12); // the parabola 2 + x − 3 x²
+    }
+
+    #[test]
+    fn shifts_beyond_half_the_side_are_negative() {
+        let mut response = vec![0.0; 144];
+        response[11 * 12 + 2] = 1.0;
+        let peak = Peak::of(&response, 12);
+        assert_eq!((peak.shift, peak.value), ([2.0, -1.0], 1.0));
+        assert_eq!(Peak::of(&[0.0; 144], 12).standing_out, 0.0);
+    }
+}

@@ -141,3 +141,31 @@ impl ScaleFilter {
             .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Blobs seen from so much nearer, the same point in the middle.
+    fn zoomed(factor: f64) -> Picture {
+        let value = |i: usize| {
+            let off = |at: usize| (at as f64 + 0.5 - 60.0) / factor;
+            let (x, y) = (off(i % 120), off(i / 120));
+            let waves = (0.35 * x).sin() * (0.28 * y + 0.5).cos() + (0.21 * x + 0.33 * y).sin();
+            [(128.0 + 55.0 * waves) as u8; 3]
+        };
+        Picture::from_rgb(120, 120, (0..120 * 120).flat_map(value).collect()).unwrap()
+    }
+
+    #[test]
+    fn finds_by_how_much_the_target_has_grown() {
+        let (center, size) = ([60.0, 60.0], [40.0, 48.0]);
+        let mut filter = ScaleFilter::new(17, 1.03, size);
+        filter.learn(&zoomed(1.0), center, size, 1.0);
+        for factor in [0.9, 0.97, 1.0, 1.05, 1.12] {
+            let found = filter.factor(&zoomed(factor), center, size);
+            // half a step between scales
+            assert!((found / factor - 1.0).abs() < 0.015, "{factor}: {found}");
+        }
+    }
+}

@@ -14,6 +14,8 @@ use crate::{CondensationError, Picture};
 
 /// Sides below which a target has no shape, in pixels.
 const MIN_SIDE: f64 = 3.0;
+/// How much larger than the picture a target may grow, as something that comes close does.
+const MAX_SHARE: f64 = 1.5;
 /// Rate at which the response that is usual follows.
 const USUAL_RATE: f64 = 0.05;
 
@@ -172,8 +174,8 @@ impl CorrelationTracker {
         pose.center = [pose.center[0].clamp(0.0, width), pose.center[1].clamp(0.0, height)];
         let factor = self.scales.factor(picture, pose.center, window.size(pose.scale));
         let [base_width, base_height] = window.size(1.0);
-        let smallest = MIN_SIDE / base_width.min(base_height);
-        let largest = (width / base_width).max(height / base_height).max(smallest);
+        let smallest = (MIN_SIDE / base_width.min(base_height)).min(1.0);
+        let largest = (MAX_SHARE * (width / base_width).min(height / base_height)).max(1.0);
         pose.scale = (pose.scale * factor).clamp(smallest, largest);
         pose
     }

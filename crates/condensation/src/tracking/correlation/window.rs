@@ -114,7 +114,7 @@ impl Window {
         means
     }
 
-    /// Centres of windows that cover a picture, half a window apart.
+    /// Centres of windows that cover a picture, less than half a window apart.
     pub(super) fn tiles(&self, picture_size: (usize, usize), scale: f64) -> Vec<[f64; 2]> {
         let step = 0.4 * self.side * scale;
         let along = |len: usize| {
@@ -129,4 +129,35 @@ impl Window {
 /// A shift in cells, from its place in a response.
 fn signed(i: usize) -> f64 {
     if i > SIDE / 2 { i as f64 - SIDE as f64 } else { i as f64 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_over_the_box_are_those_of_its_pixels() {
+        let window = Window::around([24.0, 36.0], 4.0);
+        let values: Vec<f32> = (0..PIXELS * PIXELS).map(|i| ((i * 7919) % 101) as f32).collect();
+        let means = window.box_means(&values);
+        let [width, height] = window.target_pixels();
+        let (shift_x, shift_y) = (3_usize, SIDE - 2);
+        let range = |middle: f64, len: f64| {
+            (middle - len / 2.0).round() as usize..(middle + len / 2.0).round() as usize
+        };
+        let (columns, rows) = (range(96.0 + 12.0, width), range(96.0 - 8.0, height));
+        let sum: f32 = rows.map(|y| values[y * PIXELS..][columns.clone()].iter().sum::<f32>()).sum();
+        let expected = sum / (width * height) as f32;
+        assert!((means[shift_y * SIDE + shift_x] - expected).abs() < 1e-2);
+    }
+
+    #[test]
+    fn every_pixel_of_a_picture_is_near_the_middle_of_a_tile() {
+        let window = Window::around([20.0, 20.0], 4.0);
+        let tiles = window.tiles((320, 240), 1.0);
+        for (u, v) in (0..240).flat_map(|v| (0..320).map(move |u| (u as f64, v as f64))) {
+            let near = |tile: &[f64; 2]| (tile[0] - u).abs() <= 16.0 && (tile[1] - v).abs() <= 16.0;
+            assert!(tiles.iter().any(near), "a quarter of a window of 80 pixels at most: {u} {v}");
+        }
+    }
 }

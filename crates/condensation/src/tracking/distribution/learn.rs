@@ -120,15 +120,16 @@ mod tests {
         (0..n).map(|_| next()).collect()
     }
 
-    /// The standard error of a least-squares coefficient falls with the root of the number of steps: here it is at most
-    /// sqrt(q / (n v)), with v the smallest variance of a regressor given the others; v is above the noise of one step, q = v, so 1/sqrt(n).
+    /// The standard error of a least-squares coefficient is sqrt(q / (n v)), with v the variance of its regressor given all others. Given
+    /// the state before, a state varies by the noise of one step, so v is about q and the error 1/sqrt(n); that the regressors are state and
+    /// difference instead of two states, and that the noise is correlated, costs a factor of two at most here.
     #[test]
     fn known_dynamics_are_recovered_within_the_sampling_error() {
         let n = 20_000;
         let learned = ColorDynamics::learn(&series(n, 3), 0.0).unwrap();
         let standard_error = 1.0 / (n as f64).sqrt();
         let difference = learned.dynamics.transition() - truth().transition();
-        // 256 numbers, of which the largest lies within five standard errors all but surely; correlated regressors cost a factor of two.
+        // Of 256 numbers the largest lies within five standard errors all but surely.
         assert!(difference.amax() < 10.0 * standard_error, "{}", difference.amax());
         let noise = truth().noise();
         let covariance = noise * noise.transpose();

@@ -55,9 +55,10 @@ impl Rim {
     /// Of the ellipse with the semi-axes `[a, b]`.
     pub(super) fn ellipse([a, b]: [f64; 2]) -> Self {
         let point = |i: usize| {
-            let (sin, cos) = (TAU * i as f64 / N_POINTS as f64).sin_cos();
+            let angle = TAU * i as f64 / N_POINTS as f64;
+            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
             let (across, up) = (cos / a, sin / b);
-            let length = across.hypot(up);
+            let length = (across * across + up * up).sqrt();
             let normal = [(across / length) as f32, (up / length) as f32];
             ([(a * cos).round() as i64, (b * sin).round() as i64], normal)
         };

@@ -3,6 +3,7 @@ use crate::error::{checked, probability};
 
 /// How a [`HeadTracker`](super::HeadTracker) searches, adapts and doubts.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -130,9 +130,9 @@ impl<S: ScaleSource> HeadTracker<S> {
     /// The scales to compare in the next picture.
     fn scales(&mut self, picture: &Picture) -> Result<Vec<f64>, CondensationError> {
         let center = self.state.center.map(|c| c as f64 + 0.5);
-        let smallest = MIN_SEMI_AXIS / self.base[0].min(self.base[1]);
-        let largest =
-            (self.picture_size.0 as f64 / self.base[0]).max(self.picture_size.1 as f64 / self.base[1]);
+        let smallest = (MIN_SEMI_AXIS / self.base[0].min(self.base[1])).min(1.0);
+        let (width, height) = (self.picture_size.0 as f64, self.picture_size.1 as f64);
+        let largest = (width / self.base[0]).min(height / self.base[1]);
         let scales = match self.scale_source.scale(picture, center) {
             Some(scale) => {
                 vec![checked("scale of the head", scale, scale > 0.0 && scale.is_finite(), "positive")?]
@@ -194,8 +194,8 @@ impl<S: ScaleSource> HeadTracker<S> {
         let center = self.state.center.map(|c| c as f64 + 0.5);
         let [a, b] = self.base.map(|axis| axis * self.state.scale);
         let point = |i: usize| {
-            let (sin, cos) = (TAU * i as f64 / N_OUTLINE as f64).sin_cos();
-            [center[0] + a * cos, center[1] + b * sin]
+            let angle = TAU * i as f64 / N_OUTLINE as f64;
+            [center[0] + a * libm::cos(angle), center[1] + b * libm::sin(angle)]
         };
         Ok(Target {
             bounding_box: BoundingBox::from_center(center, 2.0 * a, 2.0 * b)?,

@@ -3,6 +3,7 @@ use crate::{ColorQuantizer, ColorSpace, CondensationError};
 
 /// How [`MeanShift`](crate::MeanShift) follows its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

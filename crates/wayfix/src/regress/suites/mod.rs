@@ -1,5 +1,6 @@
 //! The suites: how a planned run of each goes through its system.
 
+mod cml;
 mod color;
 mod consistency;
 mod lines;
@@ -15,7 +16,8 @@ use crate::report::Run;
 /// Does one run.
 pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
 
-const SUITES: [(&str, Runner); 6] = [
+const SUITES: [(&str, Runner); 7] = [
+    ("cml", cml::run),
     ("color", color::run),
     ("consistency", consistency::run),
     ("lines", lines::run),

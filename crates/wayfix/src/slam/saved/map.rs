@@ -4,7 +4,8 @@ use nalgebra::DimName;
 use serde::{Deserialize, Serialize};
 use wayfix_slam_ekf::{LandmarkDim, RobotDim, ScaledRangeBearingSensor};
 
-use super::{SavedMapError, SystemState, atomic::write_atomically, envelope};
+use super::{SavedMapError, SystemState, envelope};
+use crate::saved::write_atomically;
 
 /// What [`SlamSystem::save`](crate::slam::SlamSystem::save) gives, in a file.
 ///

@@ -8,7 +8,6 @@
 //! payload              postcard: the kind of map, then everything else
 //! ```
 
-mod atomic;
 mod envelope;
 mod error;
 mod map;

@@ -1,0 +1,21 @@
+//! A learned map, and where the robot is in it, as bytes.
+//!
+//! ```text
+//! header     magic "WAYFIXAM", version, length of the parameters, parameters, CRC-32 of all before
+//! entries    each: length, CRC-32 of its bytes, bytes
+//! ```
+//! All numbers are little endian. Entries say what there is or has become: a reference, its places, its end, the scale of views, the state. A map is
+//! a header and entries; later ones may be appended as a journal, so that a robot does not write the whole map again for every view that it
+//! learns. An entry that was being appended when the power went is cut short: what is before it is whole.
+
+mod bytes;
+mod entry;
+mod error;
+mod journal;
+mod map_archive;
+mod params;
+
+pub use error::ArchiveError;
+pub use journal::Journal;
+pub use map_archive::{ArchiveEnd, MapArchive};
+pub use params::ArchiveParams;

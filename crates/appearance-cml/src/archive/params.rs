@@ -1,0 +1,85 @@
+use super::{
+    ArchiveError,
+    bytes::{Reader, Writer},
+};
+use crate::{Normalization, PanoramaParams, Tone, TurnSense};
+
+/// What views must have in common to be compared: how they are described, and the size of the pictures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArchiveParams {
+    /// How panoramas are described.
+    pub views: PanoramaParams,
+    /// Columns and rows of a panorama.
+    pub size: (usize, usize),
+}
+
+impl ArchiveParams {
+    pub(super) fn write(&self, writer: &mut Writer) {
+        let views = &self.views;
+        for whole in [views.n_rings, views.n_sectors, views.n_harmonics, self.size.0, self.size.1] {
+            writer.u32(u32::try_from(whole).unwrap_or(u32::MAX));
+        }
+        writer.u8(views.tone as u8);
+        writer.u8(views.normalization as u8);
+        writer.u8(views.sense as u8);
+        writer.f64s([views.min_contrast, views.max_saturated]);
+    }
+
+    pub(super) fn read(bytes: &[u8]) -> Option<Self> {
+        let mut reader = Reader(bytes);
+        let mut whole = [0; 5];
+        for value in &mut whole {
+            *value = reader.u32()? as usize;
+        }
+        let [n_rings, n_sectors, n_harmonics, columns, rows] = whole;
+        let tone = match reader.u8()? {
+            0 => Tone::Linear,
+            1 => Tone::Logarithmic,
+            _ => return None,
+        };
+        let normalization = match reader.u8()? {
+            0 => Normalization::None,
+            1 => Normalization::Mean,
+            2 => Normalization::MeanVariance,
+            _ => return None,
+        };
+        let sense = match reader.u8()? {
+            0 => TurnSense::Clockwise,
+            1 => TurnSense::Counterclockwise,
+            _ => return None,
+        };
+        let [min_contrast, max_saturated] = reader.f64s()?;
+        let views = PanoramaParams {
+            n_rings,
+            n_sectors,
+            n_harmonics,
+            tone,
+            normalization,
+            min_contrast,
+            max_saturated,
+            sense,
+        };
+        reader.0.is_empty().then_some(Self { views, size: (columns, rows) })
+    }
+
+    /// What is refused of a view may differ; what becomes of one must not.
+    pub(super) fn check(&self, found: &Self) -> Result<(), ArchiveError> {
+        let properties = |params: &Self| {
+            let views = &params.views;
+            [
+                ("n_rings", views.n_rings.to_string()),
+                ("n_sectors", views.n_sectors.to_string()),
+                ("n_harmonics", views.n_harmonics.to_string()),
+                ("tone", format!("{:?}", views.tone)),
+                ("normalization", format!("{:?}", views.normalization)),
+                ("sense", format!("{:?}", views.sense)),
+                ("size of the panorama", format!("{} × {}", params.size.0, params.size.1)),
+            ]
+        };
+        let mut pairs = properties(self).into_iter().zip(properties(found));
+        let differs = pairs.find(|((_, expected), (_, found))| expected != found);
+        differs.map_or(Ok(()), |((what, expected), (_, found))| {
+            Err(ArchiveError::Parameters { what, expected, found })
+        })
+    }
+}

@@ -1,0 +1,95 @@
+use super::{FusionParams, Weighting, combine};
+use crate::{AppearanceError, PoseHypothesis, separation_squared};
+
+/// Fuses two mixtures over poses; weights stay as they come out, for the next source to be fused.
+///
+/// Components nearer than the gate are combined in pairs; those without a counterpart are copied. Normalize after the last source
+/// ([`PoseHypothesis::into_mixture`]): that is what makes unsupported components fade. [Gross et al. 2005, Eqs. 2-8]
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use wayfix_appearance_cml::{FusionParams, PoseHypothesis, fuse};
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_gaussian_core::Gaussian;
+/// let at = |x: f64, weight: f64| -> Result<_, wayfix_appearance_cml::AppearanceError> {
+///     let gaussian = Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(0.2, 0.2, 0.1))?;
+///     Ok(PoseHypothesis::new(weight, gaussian))
+/// };
+/// let moved = [at(0.0, 0.5)?, at(10.0, 0.5)?];
+/// let seen = [at(0.1, 0.4)?];
+/// let fused = PoseHypothesis::into_mixture(fuse(&moved, &seen, &FusionParams::printed())?)?;
+/// assert!(fused.weight(0) > 0.6 && fused.weight(1) < 0.4); // 0.9 against 0.5
+/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// ```
+///
+/// # Errors
+/// When a covariance is singular or something is not finite.
+pub fn fuse(
+    predicted: &[PoseHypothesis],
+    observed: &[PoseHypothesis],
+    params: &FusionParams,
+) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    let agreeing = agreeing(predicted, observed, params.gate)?;
+    let mut fused = Vec::with_capacity(predicted.len() + observed.len());
+    for pair in &agreeing {
+        let (a, b) = (&predicted[pair.predicted], &observed[pair.observed]);
+        let weight = match params.weighting {
+            Weighting::Support => support(pair, predicted, observed, &agreeing),
+            Weighting::Evidence { .. } => a.weight * b.weight * (-0.5 * pair.squared).exp(),
+        };
+        fused.push(PoseHypothesis::new(weight, combine(a, b, params.combination)?));
+    }
+    let (kept, new) = match params.weighting {
+        Weighting::Support => (1.0, 1.0),
+        Weighting::Evidence { missed, appeared } => (missed, appeared),
+    };
+    let alone = |all: &[PoseHypothesis], factor: f64, index_of: fn(&Pair) -> usize| {
+        let copied: Vec<PoseHypothesis> = (all.iter().enumerate())
+            .filter(|(index, _)| !agreeing.iter().any(|pair| index_of(pair) == *index))
+            .map(|(_, hypothesis)| {
+                PoseHypothesis::new(hypothesis.weight * factor, hypothesis.gaussian.clone())
+            })
+            .collect();
+        copied
+    };
+    fused.extend(alone(predicted, kept, |pair| pair.predicted));
+    fused.extend(alone(observed, new, |pair| pair.observed));
+    Ok(fused)
+}
+
+/// Two components that mean one place. [Gross et al. 2005, Eq. 2]
+struct Pair {
+    predicted: usize,
+    observed: usize,
+    squared: f64,
+}
+
+fn agreeing(
+    predicted: &[PoseHypothesis],
+    observed: &[PoseHypothesis],
+    gate: f64,
+) -> Result<Vec<Pair>, AppearanceError> {
+    let mut pairs = Vec::new();
+    for (i, a) in predicted.iter().enumerate() {
+        for (j, b) in observed.iter().enumerate() {
+            let squared = separation_squared(&a.gaussian, &b.gaussian)?;
+            if squared < gate {
+                pairs.push(Pair { predicted: i, observed: j, squared });
+            }
+        }
+    }
+    Ok(pairs)
+}
+
+/// $`w = w_a w_b / \hat w_a + w_b w_a / \hat w_b`$ with the whole weights $`\hat w`$ of the counterparts of each.
+/// [Gross et al. 2005, Eqs. 6-8]
+fn support(pair: &Pair, predicted: &[PoseHypothesis], observed: &[PoseHypothesis], agreeing: &[Pair]) -> f64 {
+    let of_a = agreeing.iter().filter(|p| p.predicted == pair.predicted).map(|p| observed[p.observed].weight);
+    let of_b = agreeing.iter().filter(|p| p.observed == pair.observed).map(|p| predicted[p.predicted].weight);
+    let (counterparts_of_a, counterparts_of_b): (f64, f64) = (of_a.sum(), of_b.sum());
+    let (a, b) = (predicted[pair.predicted].weight, observed[pair.observed].weight);
+    // A component whose counterparts weigh nothing is supported by nothing.
+    let part =
+        |whole: f64, counterpart: f64, all: f64| if all > 0.0 { whole * counterpart / all } else { 0.0 };
+    part(a, b, counterparts_of_a) + part(b, a, counterparts_of_b)
+}

@@ -1,0 +1,12 @@
+//! How what odometry, views and others say of the pose becomes one belief.
+
+mod combine;
+mod fuse;
+mod params;
+mod source;
+mod split;
+
+pub use combine::combine;
+pub use fuse::fuse;
+pub use params::{Combination, FusionParams, Weighting};
+pub use source::{PoseSource, PositionFix};

@@ -1,0 +1,80 @@
+use crate::{AppearanceError, check};
+
+/// How two Gaussians that mean one place become one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Combination {
+    /// Covariance intersection with the share of Eq. 5 from weights and determinants. [Gross et al. 2005, Eqs. 3-5]
+    WeightedIntersection,
+    /// Split covariance intersection: what is independent in a covariance is fused as such, the rest is intersected, with the
+    /// share that makes the result smallest. [Julier & Uhlmann 2001]
+    #[default]
+    SplitIntersection,
+}
+
+/// How the weights of two mixtures become one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Weighting {
+    /// Weights of what agrees add up; what is alone keeps its weight and loses it by the normalization. [Gross et al. 2005, Eqs. 6-8]
+    Support,
+    /// Weights are probabilities: what agrees is multiplied by the weight of its support and by how well the two fit.
+    Evidence {
+        /// Factor of a hypothesis that nothing speaks for: the chance that the view of a known place is not recognized.
+        missed: f64,
+        /// Factor of something new that no hypothesis foresaw: the chance that the robot was carried there.
+        appeared: f64,
+    },
+}
+
+impl Default for Weighting {
+    fn default() -> Self {
+        Self::Evidence { missed: 0.2, appeared: 1e-3 }
+    }
+}
+
+/// How two mixtures over poses are fused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct FusionParams {
+    /// Squared Mahalanobis distance $`γ`$ below which two components mean one place.
+    /// Default 16.3: 99.9 % of a chi-squared of three degrees of freedom.
+    pub gate: f64,
+    /// Default [`Combination::SplitIntersection`].
+    pub combination: Combination,
+    /// Default [`Weighting::Evidence`].
+    pub weighting: Weighting,
+}
+
+impl Default for FusionParams {
+    fn default() -> Self {
+        Self { gate: 16.3, combination: Combination::default(), weighting: Weighting::default() }
+    }
+}
+
+impl FusionParams {
+    /// As printed: Eqs. 2-8 with the gate at 95 %.
+    pub fn printed() -> Self {
+        Self { gate: 7.8, combination: Combination::WeightedIntersection, weighting: Weighting::Support }
+    }
+
+    /// Whether the numbers have a meaning.
+    ///
+    /// # Errors
+    /// Names the first that has none.
+    pub fn validate(&self) -> Result<(), AppearanceError> {
+        check::positive("gate of the fusion", self.gate)?;
+        if let Weighting::Evidence { missed, appeared } = self.weighting {
+            check::share("weight of a hypothesis that is missed", missed)?;
+            check::share("weight of a hypothesis that appears", appeared)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,71 @@
+use nalgebra::{Matrix2, Vector2};
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::{Gaussian, Mixture, check_covariance};
+
+use crate::{AppearanceError, PoseHypothesis};
+
+/// Anything that says where the robot may be: GPS, Wi-Fi, a laser, a person who points at the map.
+///
+/// **Law**: weights are finite, not negative and at most 1, where 1 says "here, if anywhere".
+pub trait PoseSource {
+    /// What the source says of this moment; nothing at all is a fine answer.
+    ///
+    /// `predicted` is the belief that odometry has moved here, `None` before the first; a source that knows only a part of the pose takes
+    /// the rest from it.
+    ///
+    /// # Errors
+    /// When what was measured has no meaning; the localizer then leaves its state as it is.
+    fn hypotheses(
+        &self,
+        predicted: Option<&Mixture<Pose2<f64>>>,
+    ) -> Result<Vec<PoseHypothesis>, AppearanceError>;
+}
+
+/// A measured position without a heading, such as a GPS fix.
+///
+/// ```
+/// use nalgebra::{Matrix2, Vector2};
+/// use wayfix_appearance_cml::{PoseSource, PositionFix};
+/// let fix = PositionFix { position: Vector2::new(3.0, 4.0), covariance: Matrix2::identity(), weight: 0.9 };
+/// let said = fix.hypotheses(None)?;
+/// assert_eq!((said[0].gaussian.mean().x(), said[0].independent), (3.0, 1.0));
+/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct PositionFix {
+    /// In the frame of the map, m.
+    pub position: Vector2<f64>,
+    /// In the frame of the map, m².
+    pub covariance: Matrix2<f64>,
+    /// How much the fix is trusted, in [0, 1].
+    pub weight: f64,
+}
+
+/// σ of a heading of which nothing is known: that of a uniform one, $`π/\sqrt 3`$.
+const UNKNOWN_HEADING: f64 = 1.814;
+
+impl PoseSource for PositionFix {
+    /// One hypothesis for each predicted heading, so that a turn of the body frame does not mix up the axes; one facing east without any.
+    fn hypotheses(
+        &self,
+        predicted: Option<&Mixture<Pose2<f64>>>,
+    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+        check_covariance("position fix's", &self.covariance)?;
+        crate::check::share("weight of a position fix", self.weight)?;
+        let facing = |heading: f64| -> Result<PoseHypothesis, AppearanceError> {
+            let mean = Pose2::new(self.position.x, self.position.y, heading);
+            let to_body = mean.rotation_matrix().transpose();
+            let mut covariance = (to_body * self.covariance * to_body.transpose()).to_homogeneous();
+            covariance[(2, 2)] = UNKNOWN_HEADING * UNKNOWN_HEADING;
+            Ok(PoseHypothesis {
+                weight: self.weight,
+                gaussian: Gaussian::new(mean, covariance)?,
+                independent: 1.0,
+            })
+        };
+        match predicted {
+            None => Ok(vec![facing(0.0)?]),
+            Some(mixture) => mixture.components().iter().map(|c| facing(c.mean().heading())).collect(),
+        }
+    }
+}

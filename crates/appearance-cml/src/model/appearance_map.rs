@@ -1,0 +1,244 @@
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
+
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::{Gaussian, Mixture};
+
+use super::grid::Grid;
+use super::{MapParams, PlaceComponent, Reference, Sighting, ViewScale};
+use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
+
+/// What places look like: reference views and where each was seen. [Gross et al. 2005, Eqs. 9-10]
+///
+/// Plain data: [`search`](Self::search), [`references`](Self::references) and [`scale`](Self::scale) are all there is, and
+/// [`from_parts`](Self::from_parts) takes them back.
+///
+/// ```
+/// # use wayfix_appearance_cml::{Comparison, Descriptor};
+/// # #[derive(Clone, Debug)]
+/// # struct Brightness(f64);
+/// # impl Descriptor for Brightness {
+/// #     fn compare(&self, other: &Self) -> Comparison {
+/// #         Comparison { distance: (self.0 - other.0).abs(), rotation: 0.0 }
+/// #     }
+/// # }
+/// use nalgebra::Vector3;
+/// use wayfix_appearance_cml::{AppearanceMap, MapParams};
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_gaussian_core::Gaussian;
+/// let mut map: AppearanceMap<Brightness> = AppearanceMap::default();
+/// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.05))?;
+/// let id = map.teach(Brightness(0.7), &pose)?;
+/// assert_eq!(map.reference(id).map(|r| r.places[0].gaussian.mean().x()), Some(1.0));
+/// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct AppearanceMap<D, S = LinearSearch<D>> {
+    pub(super) search: S,
+    references: BTreeMap<ReferenceId, Reference>,
+    grid: Grid,
+    pub(super) scale: ViewScale,
+    next: u32,
+    descriptor: PhantomData<fn() -> D>,
+}
+
+impl<D: Descriptor, S: ReferenceSearch<D> + Default> Default for AppearanceMap<D, S> {
+    fn default() -> Self {
+        Self {
+            search: S::default(),
+            references: BTreeMap::new(),
+            grid: Grid::default(),
+            scale: ViewScale::default(),
+            next: 0,
+            descriptor: PhantomData,
+        }
+    }
+}
+
+impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
+    /// A map from its parts; `next` is the number of the next reference.
+    ///
+    /// # Errors
+    /// When a reference has no view, no place, or one that has no meaning, or the numbers do not fit.
+    pub fn from_parts(
+        search: S,
+        references: BTreeMap<ReferenceId, Reference>,
+        scale: ViewScale,
+        next: u32,
+    ) -> Result<Self, AppearanceError> {
+        let mut grid = Grid::default();
+        for (id, reference) in &references {
+            reference.validate()?;
+            if search.get(*id).is_none() || id.0 >= next || reference.places.is_empty() {
+                return Err(AppearanceError::NoSuchReference { id: id.0 });
+            }
+            enter(&mut grid, *id, reference);
+        }
+        if search.len() != references.len() {
+            return Err(AppearanceError::Parameter {
+                what: "number of views",
+                value: search.len() as f64,
+                range: "that of the references",
+            });
+        }
+        Ok(Self { search, references, grid, scale, next, descriptor: PhantomData })
+    }
+
+    /// The views.
+    pub fn search(&self) -> &S {
+        &self.search
+    }
+    /// Where each was seen.
+    pub fn references(&self) -> &BTreeMap<ReferenceId, Reference> {
+        &self.references
+    }
+    /// Where one was seen.
+    pub fn reference(&self, id: ReferenceId) -> Option<&Reference> {
+        self.references.get(&id)
+    }
+    /// How views change with the way.
+    pub fn scale(&self) -> &ViewScale {
+        &self.scale
+    }
+    /// The same, to add samples to.
+    pub fn scale_mut(&mut self) -> &mut ViewScale {
+        &mut self.scale
+    }
+    /// The number of the next reference.
+    pub fn next_id(&self) -> u32 {
+        self.next
+    }
+    /// How many references.
+    pub fn len(&self) -> usize {
+        self.references.len()
+    }
+    /// Whether nothing is learned yet.
+    pub fn is_empty(&self) -> bool {
+        self.references.is_empty()
+    }
+
+    /// $`E^{max}`$: given, or found from the data.
+    pub fn match_limit(&self, params: &MapParams) -> f64 {
+        params.match_limit.unwrap_or_else(|| self.scale.match_limit(params.match_share))
+    }
+
+    /// How far apart two views may be taken and still match, m.
+    pub fn reach_of_match(&self, params: &MapParams) -> f64 {
+        self.scale.metres(self.match_limit(params))
+    }
+
+    /// Makes the view a reference of this place, whatever is there already: for a map that is taught with known poses.
+    ///
+    /// # Errors
+    /// When the pose has no meaning or all numbers are given out.
+    pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceError> {
+        let gaussian = Gaussian::new(*pose.mean(), *pose.covariance())?;
+        self.insert(view, Reference { places: vec![PlaceComponent { weight: 1.0, count: 1.0, gaussian }] })
+    }
+
+    /// Places whose references look like the view: the `most` alike of the whole map, and all near the components of `belief`.
+    pub fn sightings(
+        &self,
+        view: &D,
+        belief: Option<&Mixture<Pose2<f64>>>,
+        most: usize,
+        params: &MapParams,
+    ) -> Vec<Sighting> {
+        let limit = self.match_limit(params);
+        let mut matches = self.search.nearest_within(view, most, limit);
+        for component in belief.map_or(&[][..], Mixture::components) {
+            matches.extend(self.compare_near(view, component, limit));
+        }
+        matches.sort_by_key(|m| m.id);
+        matches.dedup_by_key(|m| m.id);
+        self.places_of(&matches, limit)
+    }
+
+    /// All places of all references that look like the view, as printed.
+    pub fn all_sightings(&self, view: &D, params: &MapParams) -> Vec<Sighting> {
+        let limit = self.match_limit(params);
+        self.places_of(&self.search.within(view, limit), limit)
+    }
+
+    /// Distance of the view to some reference of a far place, another one with each `turn`; `None` when that one is near.
+    pub(crate) fn distance_to_far(&self, view: &D, pose: &Pose2<f64>, turn: u32) -> Option<f64> {
+        // Multiples of the golden section spread evenly over the numbers.
+        let start = (u64::from(turn.wrapping_mul(0x9E37_79B9)) * u64::from(self.next)) >> 32;
+        let (id, reference) = self.references.range(ReferenceId(start as u32)..).next()?;
+        let far = FAR_STEPS * self.scale.step();
+        let is_far =
+            |place: &PlaceComponent| (place.gaussian.mean().translation - pose.translation).norm() > far;
+        let reference = reference.places.iter().all(is_far).then(|| self.search.get(*id)).flatten()?;
+        Some(view.compare(reference).distance)
+    }
+
+    fn places_of(&self, matches: &[Match], limit: f64) -> Vec<Sighting> {
+        let places = |m: &Match| {
+            let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);
+            places.iter().enumerate().map(|place| Sighting::new(*m, place, limit)).collect::<Vec<_>>()
+        };
+        matches.iter().flat_map(places).collect()
+    }
+
+    /// How the view compares with the references near a belief, those below the limit.
+    fn compare_near(&self, view: &D, near: &Gaussian<Pose2<f64>>, limit: f64) -> Vec<Match> {
+        let mut matches = self.compare_within(view, near, self.reach(near, limit));
+        matches.retain(|m| m.comparison.distance < limit);
+        matches
+    }
+
+    /// How the view compares with all references within `radius` of a belief.
+    pub(super) fn compare_within(&self, view: &D, near: &Gaussian<Pose2<f64>>, radius: f64) -> Vec<Match> {
+        let compare = |id: ReferenceId| {
+            self.search.get(id).map(|reference| Match { id, comparison: view.compare(reference) })
+        };
+        self.grid.near(&near.mean().translation, radius).into_iter().filter_map(compare).collect()
+    }
+
+    /// How far from a belief views may match: as far as the limit reaches, and the belief errs.
+    pub(super) fn reach(&self, near: &Gaussian<Pose2<f64>>, limit: f64) -> f64 {
+        let sigmas = near.sigmas();
+        self.scale.metres(limit) + GATE_SIGMAS * sigmas.x.max(sigmas.y).min(MOST_SIGMA)
+    }
+
+    pub(super) fn insert(&mut self, view: D, reference: Reference) -> Result<ReferenceId, AppearanceError> {
+        let id = ReferenceId(self.next);
+        let next = self.next.checked_add(1).ok_or(AppearanceError::Full)?;
+        self.search.insert(id, view)?;
+        self.next = next;
+        enter(&mut self.grid, id, &reference);
+        self.references.insert(id, reference);
+        Ok(id)
+    }
+
+    /// Puts new places in the stead of old ones.
+    pub(super) fn replace(&mut self, id: ReferenceId, reference: Reference) {
+        if let Some(old) = self.references.get_mut(&id) {
+            for place in &old.places {
+                self.grid.remove(id, &place.gaussian.mean().translation);
+            }
+            enter(&mut self.grid, id, &reference);
+            *old = reference;
+        }
+    }
+
+    pub(super) fn remove(&mut self, id: ReferenceId) {
+        self.replace(id, Reference::default());
+        self.references.remove(&id);
+        self.search.remove(id);
+    }
+}
+
+/// σ of a belief within which references are compared one by one.
+const GATE_SIGMAS: f64 = 3.0;
+/// σ beyond which a belief says nothing that the search of the whole map does not say better, m.
+const MOST_SIGMA: f64 = 1.0;
+
+/// From how many steps on a place is far.
+const FAR_STEPS: f64 = 20.0;
+
+fn enter(grid: &mut Grid, id: ReferenceId, reference: &Reference) {
+    for place in &reference.places {
+        grid.insert(id, &place.gaussian.mean().translation);
+    }
+}

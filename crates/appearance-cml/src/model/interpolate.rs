@@ -1,0 +1,143 @@
+use nalgebra::{Matrix2, Matrix3, Vector2};
+use wayfix_estimation_traits::{Angle, Pose2, wrap_angle};
+use wayfix_gaussian_core::{CircularMoments, Gaussian, symmetrize};
+
+use super::{Sighting, ViewScale};
+use crate::{AppearanceError, PoseHypothesis};
+
+/// The observation as one hypothesis for each group of neighbouring places, between which the pose is interpolated.
+///
+/// Each group is led by its most similar place. Its places weigh $`w\,e^{-(E^2 - E_0^2)/2h^2}`$ with the distance $`E_0`$ of the leader and a width
+/// $`h`$ from the distance of successive views: a sharp kernel, so that the estimate lies between the nearest places and not where references
+/// are dense. The covariance has two parts: what the places themselves are uncertain by, and what the comparison is, which is
+/// independent of all beliefs ([`PoseHypothesis::independent`]).
+///
+/// At the border of what is known places lie on one side only, and any mean of them drags the robot back. There the leader merely says that the
+/// robot is as far from it as the views differ ([`ViewScale::metres`]): a component of `belief` that is beyond it, and not further than that, is
+/// left in peace.
+///
+/// # Errors
+/// When a place is not finite.
+pub fn interpolate(
+    sightings: &[Sighting],
+    belief: &[Gaussian<Pose2<f64>>],
+    scale: &ViewScale,
+) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    groups(sightings, GROUP_STEPS * scale.step()).iter().map(|group| pose_of(group, belief, scale)).collect()
+}
+
+/// Radius of a group, in steps between views.
+const GROUP_STEPS: f64 = 6.0;
+/// Headings that differ by more are not of one group, rad.
+const GROUP_TURN: f64 = 0.6;
+/// Places of a group that are interpolated: those on all sides of the robot, no more.
+const GROUP_SIZE: usize = 6;
+/// Width $`h`$ of the kernel, in distances of successive views. On the Sussex route 0.3 to 0.5 are equally good, 1 is worse.
+const KERNEL_WIDTH: f64 = 0.4;
+/// σ of the heading that a comparison gives at best, rad.
+const HEADING_SIGMA: f64 = 0.03;
+
+type Group<'a> = Vec<&'a Sighting>;
+
+/// Greedy: the most similar place that is left leads a group and takes its neighbours.
+fn groups(sightings: &[Sighting], radius: f64) -> Vec<Group<'_>> {
+    let mut left: Vec<&Sighting> = sightings.iter().collect();
+    left.sort_by(|a, b| a.matched.comparison.distance.total_cmp(&b.matched.comparison.distance));
+    let mut groups = Vec::new();
+    while let Some(leader) = left.first().copied() {
+        let at = leader.gaussian.mean();
+        let belongs = |s: &&Sighting| {
+            let mean = s.gaussian.mean();
+            let turn = wrap_angle(mean.heading() - at.heading()).abs();
+            // The leader belongs even where its pose is not a number.
+            std::ptr::eq(*s, leader)
+                || ((mean.translation - at.translation).norm() <= radius && turn <= GROUP_TURN)
+        };
+        let (group, others): (Vec<_>, Vec<_>) = left.into_iter().partition(belongs);
+        groups.push(group);
+        left = others;
+    }
+    groups
+}
+
+fn pose_of(
+    whole: &Group<'_>,
+    belief: &[Gaussian<Pose2<f64>>],
+    scale: &ViewScale,
+) -> Result<PoseHypothesis, AppearanceError> {
+    let group = &whole[..whole.len().min(GROUP_SIZE)];
+    let nearest = group[0].matched.comparison.distance;
+    let shares = shares(group, KERNEL_WIDTH * scale.step_distance());
+    let places = || group.iter().zip(&shares).map(|(s, share)| (s.gaussian.mean(), *share));
+    let interpolated: Vector2<f64> = places().map(|(mean, share)| mean.translation * share).sum();
+    let headings: Vec<Angle<f64>> = places().map(|(mean, _)| mean.rotation).collect();
+    let moments = CircularMoments::from_weighted(&headings, &shares)?;
+    // Headings of a group lie within a fraction of a turn, so that they never cancel.
+    let heading = moments.mean_direction().unwrap_or(headings[0]).radians();
+    let beyond = beyond_border(whole, &interpolated, belief, scale);
+    let position = interpolated + beyond.unwrap_or_default();
+    let mean = Pose2::new(position.x, position.y, heading);
+
+    let spread: Matrix2<f64> =
+        places().map(|(place, share)| outer(&(place.translation - interpolated)) * share).sum();
+    let to_body = mean.rotation_matrix().transpose();
+    // Interpolation halves what the nearest place alone would err by, about; beyond the border there is none.
+    let gap = if beyond.is_some() { 1.0 } else { 0.5 } * scale.metres(nearest);
+    let comparison = to_body * spread * to_body.transpose() * 0.5 + Matrix2::identity() * (gap * gap);
+    let mut compared = comparison.to_homogeneous();
+    compared[(2, 2)] = HEADING_SIGMA * HEADING_SIGMA + moments.standard_deviation().powi(2);
+
+    let mut learned = Matrix3::zeros();
+    for (sighting, share) in group.iter().zip(&shares) {
+        learned += sighting.gaussian.in_chart_at(&mean)?.covariance() * *share;
+    }
+    let mut covariance = compared + learned;
+    symmetrize(&mut covariance);
+    let plane = |matrix: &Matrix3<f64>| matrix[(0, 0)] + matrix[(1, 1)];
+    Ok(PoseHypothesis {
+        weight: group[0].similarity
+            * group.iter().zip(&shares).map(|(s, share)| s.weight * share).sum::<f64>(),
+        gaussian: Gaussian::new(mean, covariance)?,
+        independent: plane(&compared) / plane(&covariance),
+    })
+}
+
+/// From the interpolated position towards the nearest component of the belief, when that lies beyond all places that look like the view:
+/// no further than the nearest of them can be away. `None` inside the map.
+fn beyond_border(
+    whole: &Group<'_>,
+    interpolated: &Vector2<f64>,
+    belief: &[Gaussian<Pose2<f64>>],
+    scale: &ViewScale,
+) -> Option<Vector2<f64>> {
+    let leader = whole[0].gaussian.mean().translation;
+    let offset = |component: &Gaussian<Pose2<f64>>| component.mean().translation - leader;
+    let towards = belief.iter().map(offset).min_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    let direction = towards.try_normalize(0.5 * scale.step())?;
+    let inside =
+        |s: &&Sighting| (s.gaussian.mean().translation - leader).dot(&direction) > 0.5 * scale.step();
+    if whole.iter().any(inside) {
+        return None;
+    }
+    let way = leader + towards - interpolated;
+    let most = scale.metres(whole[0].matched.comparison.distance);
+    Some(way * (most / way.norm()).min(1.0))
+}
+
+/// Kernel weights, adding up to one.
+fn shares(group: &[&Sighting], width: f64) -> Vec<f64> {
+    let nearest = group[0].matched.comparison.distance;
+    let kernel = |s: &&Sighting| {
+        let beyond = (s.matched.comparison.distance.powi(2) - nearest.powi(2)) / (2.0 * width * width);
+        // Without a width only places as near as the leader count.
+        let falling = if beyond.is_nan() { 1.0 } else { (-beyond).exp() };
+        s.weight.max(f64::MIN_POSITIVE) * falling
+    };
+    let kernels: Vec<f64> = group.iter().map(kernel).collect();
+    let sum: f64 = kernels.iter().sum();
+    kernels.iter().map(|k| k / sum).collect()
+}
+
+fn outer(vector: &Vector2<f64>) -> Matrix2<f64> {
+    vector * vector.transpose()
+}

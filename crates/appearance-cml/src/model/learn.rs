@@ -1,0 +1,273 @@
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::{Gaussian, GaussianError, moment_matched};
+
+use super::sighting::turned;
+use super::weigh::{weight_when_missed, weight_when_seen};
+use super::{
+    AppearanceMap, Forgetting, MapParams, PlaceComponent, PlaceUpdate, Reference, Sighting, interpolate,
+};
+use crate::{
+    AppearanceError, Descriptor, Match, ReferenceId, ReferenceSearch, separation_squared, similarity,
+};
+
+/// What one view changed in the map.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Learned {
+    /// The view is a reference now.
+    pub inserted: Option<ReferenceId>,
+    /// References that were forgotten.
+    pub forgotten: Vec<ReferenceId>,
+    /// How many references the view was like.
+    pub matched: usize,
+}
+
+impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
+    /// Learns that the view was seen from this pose. [Gross et al. 2005, Sec. 2.3]
+    ///
+    /// The three steps of the paper: insertion of a new reference where none looks like the view; update of the places of those that do;
+    /// adaptation of the weights, by which references are kept or forgotten.
+    ///
+    /// # Errors
+    /// When the pose has no meaning or all numbers are given out; the map is as before.
+    pub fn learn(
+        &mut self,
+        view: D,
+        pose: &Gaussian<Pose2<f64>>,
+        params: &MapParams,
+    ) -> Result<Learned, AppearanceError> {
+        let pose = &Gaussian::new(*pose.mean(), *pose.covariance())?;
+        let limit = self.match_limit(params);
+        let compared = self.compare_within(&view, pose, self.reach(pose, limit));
+        let (here, missed): (Vec<Match>, Vec<Match>) =
+            compared.into_iter().partition(|m| m.comparison.distance < limit);
+        let seen = match params.place_update {
+            PlaceUpdate::Pose => self.search().within(&view, limit),
+            PlaceUpdate::Residual => here,
+        };
+        let novel = self.is_novel(&seen, limit, params);
+        let mut changed = self.with_places_updated(&seen, pose, novel, (limit, params))?;
+        self.weigh_seen(&mut changed, &seen, pose, (limit, params))?;
+        if params.forgetting == Forgetting::Active {
+            let elsewhere = missed.iter().filter(|m| !changed.contains_key(&m.id)).map(|m| m.id).collect();
+            self.weigh_missed(&mut changed, elsewhere, pose, (limit, params));
+        }
+        let matched = seen.len();
+        let inserted = if novel { Some(self.insert(view, first_seen(pose, params))?) } else { None };
+        let mut forgotten = self.commit(changed, params.least_weight);
+        forgotten.extend(self.shrink(params.most_references, inserted));
+        Ok(Learned { inserted, forgotten, matched })
+    }
+
+    /// Step 1: nothing that is known looks like the view.
+    fn is_novel(&self, seen: &[Match], limit: f64, params: &MapParams) -> bool {
+        let insertion = match params.place_update {
+            PlaceUpdate::Pose => limit,
+            PlaceUpdate::Residual => limit.min(params.insertion * self.scale().step_distance()),
+        };
+        !seen.iter().any(|m| m.comparison.distance < insertion)
+    }
+
+    /// Step 2: a Gaussian is added to each reference that looks like the view. [Gross et al. 2005, Eqs. 11-14]
+    fn with_places_updated(
+        &self,
+        seen: &[Match],
+        pose: &Gaussian<Pose2<f64>>,
+        novel: bool,
+        (limit, params): (f64, &MapParams),
+    ) -> Result<BTreeMap<ReferenceId, Reference>, AppearanceError> {
+        // A new reference is as similar to its view as can be, and takes its share of the counts.
+        let own = if novel { 1.0 } else { 0.0 };
+        let total: f64 = own + seen.iter().map(|m| similarity(m.comparison.distance, limit)).sum::<f64>();
+        let residual = match params.place_update {
+            PlaceUpdate::Pose => None,
+            PlaceUpdate::Residual => self.residual(seen, pose, (limit, params))?,
+        };
+        let mut changed = BTreeMap::new();
+        for matched in seen {
+            let Some(reference) = self.reference(matched.id) else { continue };
+            let mut reference = reference.clone();
+            let count = similarity(matched.comparison.distance, limit) / total;
+            match (params.place_update, &residual) {
+                (PlaceUpdate::Pose, _) => {
+                    let seen_from = turned(pose, -matched.comparison.rotation);
+                    reference.places.push(PlaceComponent { weight: 0.0, count, gaussian: seen_from });
+                    merge_places(&mut reference.places, params)?;
+                }
+                (PlaceUpdate::Residual, Some(residual)) => {
+                    for place in &mut reference.places {
+                        residual.correct(place, matched, count, (pose, params))?;
+                    }
+                }
+                (PlaceUpdate::Residual, None) => {}
+            }
+            changed.insert(matched.id, reference);
+        }
+        Ok(changed)
+    }
+
+    /// By how much the places seen put the robot elsewhere than it is; nothing when they mean another place.
+    fn residual(
+        &self,
+        seen: &[Match],
+        pose: &Gaussian<Pose2<f64>>,
+        (limit, params): (f64, &MapParams),
+    ) -> Result<Option<Residual>, AppearanceError> {
+        let sightings: Vec<Sighting> = seen
+            .iter()
+            .flat_map(|m| {
+                let places = self.reference(m.id).map_or(&[][..], |reference| &reference.places);
+                places.iter().enumerate().map(|place| Sighting::new(*m, place, limit)).collect::<Vec<_>>()
+            })
+            .collect();
+        let mut nearest = None;
+        let mut least = params.place_gate;
+        for hypothesis in interpolate(&sightings, std::slice::from_ref(pose), self.scale())? {
+            let squared = separation_squared(pose, &hypothesis.gaussian)?;
+            if squared < least {
+                least = squared;
+                let mean = hypothesis.gaussian.mean();
+                nearest = Some(Residual {
+                    translation: pose.mean().translation - mean.translation,
+                    turn: pose.mean().heading() - mean.heading(),
+                });
+            }
+        }
+        Ok(nearest)
+    }
+
+    /// Step 3, references that look like the view.
+    fn weigh_seen(
+        &self,
+        changed: &mut BTreeMap<ReferenceId, Reference>,
+        seen: &[Match],
+        pose: &Gaussian<Pose2<f64>>,
+        (limit, params): (f64, &MapParams),
+    ) -> Result<(), AppearanceError> {
+        for matched in seen {
+            let Some(reference) = changed.get_mut(&matched.id) else { continue };
+            for place in &mut reference.places {
+                place.weight = weight_when_seen(place, matched, pose, (limit, self.scale(), params))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Step 3, references of this place that do not.
+    fn weigh_missed(
+        &self,
+        changed: &mut BTreeMap<ReferenceId, Reference>,
+        missed: Vec<ReferenceId>,
+        pose: &Gaussian<Pose2<f64>>,
+        (limit, params): (f64, &MapParams),
+    ) {
+        let radius = params.active.radius.unwrap_or_else(|| 0.5 * self.scale().metres(limit));
+        for id in missed {
+            let Some(reference) = self.reference(id) else { continue };
+            let mut reference = reference.clone();
+            for place in &mut reference.places {
+                place.weight = weight_when_missed(place, pose, radius, (self.scale(), &params.active));
+            }
+            changed.insert(id, reference);
+        }
+    }
+
+    /// Writes what has changed; places that have become too light go, and references without a place.
+    fn commit(&mut self, changed: BTreeMap<ReferenceId, Reference>, least: f64) -> Vec<ReferenceId> {
+        let mut forgotten = Vec::new();
+        for (id, mut reference) in changed {
+            reference.places.retain(|place| place.weight >= least);
+            if reference.places.is_empty() {
+                self.remove(id);
+                forgotten.push(id);
+            } else {
+                self.replace(id, reference);
+            }
+        }
+        forgotten
+    }
+
+    /// Bounds the size: the least important go, the oldest among equals, but not the one that came last.
+    fn shrink(&mut self, most: usize, newest: Option<ReferenceId>) -> Vec<ReferenceId> {
+        let mut removed = Vec::new();
+        while self.len() > most {
+            let candidates = self.references().iter().filter(|(id, _)| Some(**id) != newest);
+            let least = candidates.min_by(|(_, a), (_, b)| a.importance().total_cmp(&b.importance()));
+            let Some(id) = least.map(|(id, _)| *id) else { break };
+            self.remove(id);
+            removed.push(id);
+        }
+        removed
+    }
+}
+
+/// A new place has weight 0 and is then seen at distance 0: Eq. 16 leaves the learning rate.
+fn first_seen(pose: &Gaussian<Pose2<f64>>, params: &MapParams) -> Reference {
+    let weight = params.learning_rate.max(params.least_weight);
+    Reference { places: vec![PlaceComponent { weight, count: 1.0, gaussian: pose.clone() }] }
+}
+
+/// Where the robot is less where the references put it, in the frame of the map.
+struct Residual {
+    translation: Vector2<f64>,
+    turn: f64,
+}
+
+impl Residual {
+    /// The place as it would have to be for the references to be right, merged into what it is.
+    fn correct(
+        &self,
+        place: &mut PlaceComponent,
+        matched: &Match,
+        count: f64,
+        (pose, params): (&Gaussian<Pose2<f64>>, &MapParams),
+    ) -> Result<(), AppearanceError> {
+        let old = place.gaussian.mean();
+        let seen_from = turned(pose, -matched.comparison.rotation);
+        let corrected =
+            Pose2::new(old.x() + self.translation.x, old.y() + self.translation.y, old.heading() + self.turn);
+        let covariance = seen_from.in_chart_at(&corrected)?.covariance().to_owned();
+        let observed = PlaceComponent {
+            weight: 0.0,
+            count,
+            gaussian: Gaussian::from_parts_unchecked(corrected, covariance),
+        };
+        *place = merged(place, &observed, params)?;
+        Ok(())
+    }
+}
+
+/// Merges the newest place into the nearest other within the merge distance. [Gross et al. 2005, Eq. 12]
+fn merge_places(places: &mut Vec<PlaceComponent>, params: &MapParams) -> Result<(), AppearanceError> {
+    let Some(newest) = places.pop() else { return Ok(()) };
+    let mut nearest = None;
+    let mut least = params.merge_distance;
+    for (index, place) in places.iter().enumerate() {
+        let squared = separation_squared(&place.gaussian, &newest.gaussian)?;
+        if squared < least {
+            (nearest, least) = (Some(index), squared);
+        }
+    }
+    match nearest {
+        Some(index) => places[index] = merged(&places[index], &newest, params)?,
+        None => places.push(newest),
+    }
+    Ok(())
+}
+
+/// One place of two: moments by normalized counts, counts and weights add. [Gross et al. 2005, Eqs. 13-14]
+fn merged(
+    a: &PlaceComponent,
+    b: &PlaceComponent,
+    params: &MapParams,
+) -> Result<PlaceComponent, AppearanceError> {
+    let gaussian = moment_matched(&[a.count, b.count], &[a.gaussian.clone(), b.gaussian.clone()])
+        .map_err(GaussianError::from)?;
+    Ok(PlaceComponent {
+        weight: (a.weight + b.weight).min(1.0),
+        count: (a.count + b.count).min(params.greatest_count),
+        gaussian,
+    })
+}

@@ -1,0 +1,23 @@
+//! What places look like: reference views, where each was seen, and how both are learned and forgotten.
+
+mod appearance_map;
+mod grid;
+mod interpolate;
+mod learn;
+mod params;
+mod reference;
+mod sighting;
+mod similarity;
+mod superpose;
+mod view_scale;
+mod weigh;
+
+pub use appearance_map::AppearanceMap;
+pub use interpolate::interpolate;
+pub use learn::Learned;
+pub use params::{Forgetting, ForgettingParams, MapParams, PlaceUpdate};
+pub use reference::{PlaceComponent, Reference};
+pub use sighting::Sighting;
+pub use similarity::similarity;
+pub use superpose::superpose;
+pub use view_scale::{LagSample, ViewScale};

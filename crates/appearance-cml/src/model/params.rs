@@ -1,0 +1,133 @@
+use crate::{AppearanceError, check};
+
+/// Whether and how the map forgets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Forgetting {
+    /// References that are seen somewhere else lose weight. [Gross et al. 2005, Eq. 17]
+    Passive,
+    /// As well, references of this place that are not seen lose weight. [Gross et al. 2005, Eqs. 18-19]
+    #[default]
+    Active,
+}
+
+/// What a view writes into the references that look like it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum PlaceUpdate {
+    /// The pose of the robot, into every reference of the map that looks like the view; a reference is inserted when none does.
+    /// [Gross et al. 2005, Sec. 2.3 as printed]
+    Pose,
+    /// The pose of the robot less what the references of this place say it is: their errors are corrected and their distances from one
+    /// another stay. Only references of this place are touched, and a view that looks like one elsewhere is a reference of its own.
+    #[default]
+    Residual,
+}
+
+/// How active forgetting fades references. [Gross et al. 2005, Eq. 19]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct ForgettingParams {
+    /// $`β_{for}`$: the share of weight that a reference at the very place loses. Default 0.3.
+    pub rate: f64,
+    /// $`d^{for}`$: how far from the robot references are forgotten, m; `None` takes half the distance at which views still match, from the
+    /// [`ViewScale`](super::ViewScale). Default `None`.
+    pub radius: Option<f64>,
+    /// $`d^{gain}`$: the sum of the σ of x and y at which forgetting goes at full rate, m; a less certain pose forgets more slowly.
+    /// `None` takes a step between views. Default `None`.
+    pub gain: Option<f64>,
+}
+
+impl Default for ForgettingParams {
+    fn default() -> Self {
+        Self { rate: 0.3, radius: None, gain: None }
+    }
+}
+
+/// How the appearance map learns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct MapParams {
+    /// $`E^{max}`$, in units of the descriptor; `None` finds it from the data. Default `None`.
+    pub match_limit: Option<f64>,
+    /// Where between noise (0) and far places (1) the limit found from the data lies. Default 0.8.
+    pub match_share: f64,
+    /// Distance to the nearest reference of the place from which on a view becomes a reference, as a multiple of the distance of
+    /// successive views; never above $`E^{max}`$. Default 1. (As printed: $`E^{max}`$ itself, with [`PlaceUpdate::Pose`].)
+    pub insertion: f64,
+    /// $`β`$: learning rate of the weights. Default 0.3.
+    pub learning_rate: f64,
+    /// $`δ`$: squared Mahalanobis distance below which two places of a reference are one. Default 7.8.
+    pub merge_distance: f64,
+    /// $`d^{max}`$: squared Mahalanobis distance up to which a place agrees with the pose. Default 16.3.
+    pub place_gate: f64,
+    /// Default [`PlaceUpdate::Residual`].
+    pub place_update: PlaceUpdate,
+    /// Default [`Forgetting::Active`].
+    pub forgetting: Forgetting,
+    /// How active forgetting works.
+    pub active: ForgettingParams,
+    /// Weight below which a place is removed. Default 0.02.
+    pub least_weight: f64,
+    /// Observations after which a place no longer gets more rigid. Default 20.
+    pub greatest_count: f64,
+    /// Most references; beyond, the least important one near the robot goes. Default 1 000 000.
+    pub most_references: usize,
+}
+
+impl Default for MapParams {
+    fn default() -> Self {
+        Self {
+            match_limit: None,
+            match_share: 0.8,
+            insertion: 1.0,
+            learning_rate: 0.3,
+            merge_distance: 7.8,
+            place_gate: 16.3,
+            place_update: PlaceUpdate::default(),
+            forgetting: Forgetting::default(),
+            active: ForgettingParams::default(),
+            least_weight: 0.02,
+            greatest_count: 20.0,
+            most_references: 1_000_000,
+        }
+    }
+}
+
+impl MapParams {
+    /// The learning rules as printed.
+    pub fn printed() -> Self {
+        Self { place_update: PlaceUpdate::Pose, greatest_count: f64::MAX, ..Self::default() }
+    }
+
+    /// Whether the numbers have a meaning.
+    ///
+    /// # Errors
+    /// Names the first that has none.
+    pub fn validate(&self) -> Result<(), AppearanceError> {
+        check::positive("match limit", self.match_limit.unwrap_or(1.0))?;
+        check::share("share of the match limit", self.match_share)?;
+        check::positive("insertion distance", self.insertion)?;
+        check::share("learning rate", self.learning_rate)?;
+        check::not_negative("merge distance of places", self.merge_distance)?;
+        check::positive("gate of places", self.place_gate)?;
+        check::share("rate of forgetting", self.active.rate)?;
+        check::positive("radius of forgetting (m)", self.active.radius.unwrap_or(1.0))?;
+        check::positive("gain of forgetting (m)", self.active.gain.unwrap_or(1.0))?;
+        check::share("least weight of a place", self.least_weight)?;
+        check::positive("greatest count of a place", self.greatest_count)?;
+        check::count("references to keep", self.most_references)
+    }
+}

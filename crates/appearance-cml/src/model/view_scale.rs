@@ -1,0 +1,178 @@
+use std::collections::VecDeque;
+
+use crate::AppearanceError;
+
+/// How much two views differ whose places are so far apart along the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LagSample {
+    /// Length of the way between them, m.
+    pub way: f64,
+    /// Distance of the views.
+    pub distance: f64,
+}
+
+/// How views change with the way: the scale of all distances between views, found from the data.
+///
+/// A variogram, as in geostatistics: $`E^2(d) ≈ n + s\,d`$ near by, with the nugget $`n`$ of noise and the slope $`s`$, and a sill far away.
+/// It comes from views one step and a few steps apart along the way, and from comparisons with references of far places. Medians are
+/// taken, so that people who pass by do not stretch the scale.
+///
+/// ```
+/// use wayfix_appearance_cml::{LagSample, ViewScale};
+/// let mut scale = ViewScale::default();
+/// for _ in 0..20 {
+///     scale.add_near(LagSample { way: 0.1, distance: 1.0 });
+///     scale.add_ahead(LagSample { way: 0.5, distance: 1.5 });
+///     scale.add_far(3.0);
+/// }
+/// assert!((scale.step() - 0.1).abs() < 1e-12);
+/// // 1.5² - 1² a 0.4 m: a view that differs by 1.5 is 0.4 m further than one that differs by 1.
+/// assert!((scale.metres(1.5) - scale.metres(1.0) - 0.4).abs() < 1e-9);
+/// assert!(scale.match_limit(0.8) > 1.5 && scale.match_limit(0.8) < 3.0);
+/// ```
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct ViewScale {
+    near: VecDeque<LagSample>,
+    ahead: VecDeque<LagSample>,
+    far: VecDeque<f64>,
+    fitted: Fitted,
+}
+
+/// What the samples come to, kept so that no step has to sort them again.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+struct Fitted {
+    step: f64,
+    near: f64,
+    nugget: f64,
+    slope: f64,
+    sill: f64,
+}
+
+/// Samples kept of each kind: enough for a median, few enough to follow another season.
+const KEPT: usize = 255;
+/// Samples of far places before they are believed.
+const ENOUGH_FAR: usize = 10;
+/// Share of the far views that the sill lies under: places that look alike by chance.
+const SILL_QUANTILE: f64 = 0.1;
+
+impl ViewScale {
+    /// A scale from its samples, as [`near`](Self::near), [`ahead`](Self::ahead) and [`far`](Self::far) give them.
+    ///
+    /// # Errors
+    /// When one is not finite or negative.
+    pub fn from_parts(near: &[LagSample], ahead: &[LagSample], far: &[f64]) -> Result<Self, AppearanceError> {
+        let mut scale = Self::default();
+        for (samples, kept) in [(near, &mut scale.near), (ahead, &mut scale.ahead)] {
+            for sample in samples {
+                crate::check::not_negative("way between views (m)", sample.way)?;
+                crate::check::not_negative("distance of views", sample.distance)?;
+                keep(kept, *sample);
+            }
+        }
+        for distance in far {
+            crate::check::not_negative("distance of far views", *distance)?;
+            keep(&mut scale.far, *distance);
+        }
+        scale.fit();
+        Ok(scale)
+    }
+
+    /// Takes in two views one step apart; one that is not finite is passed over.
+    pub fn add_near(&mut self, sample: LagSample) {
+        if sample.way.is_finite() && sample.distance.is_finite() {
+            keep(&mut self.near, sample);
+            self.fit();
+        }
+    }
+
+    /// Takes in two views a few steps apart; one that is not finite is passed over.
+    pub fn add_ahead(&mut self, sample: LagSample) {
+        if sample.way.is_finite() && sample.distance.is_finite() {
+            keep(&mut self.ahead, sample);
+            self.fit();
+        }
+    }
+
+    /// Takes in the distance to a reference of a far place; one that is not finite is passed over.
+    pub fn add_far(&mut self, distance: f64) {
+        if distance.is_finite() {
+            keep(&mut self.far, distance);
+            self.fit();
+        }
+    }
+
+    /// Samples one step apart, the oldest first.
+    pub fn near(&self) -> impl Iterator<Item = LagSample> {
+        self.near.iter().copied()
+    }
+    /// Samples a few steps apart, the oldest first.
+    pub fn ahead(&self) -> impl Iterator<Item = LagSample> {
+        self.ahead.iter().copied()
+    }
+    /// Distances to references of far places, the oldest first.
+    pub fn far(&self) -> impl Iterator<Item = f64> {
+        self.far.iter().copied()
+    }
+
+    /// Median way between successive views, m; 0 before the first two.
+    pub fn step(&self) -> f64 {
+        self.fitted.step
+    }
+
+    /// Median distance of successive views; 0 before the first two.
+    pub fn step_distance(&self) -> f64 {
+        self.fitted.near
+    }
+
+    /// $`E^{max}`$: the distance that lies `share` of the way (in squares) up from the nugget to the sill.
+    ///
+    /// Before far places are known twice the distance of successive views stands for the sill; before two views nothing matches.
+    pub fn match_limit(&self, share: f64) -> f64 {
+        let nugget = self.fitted.nugget;
+        (nugget + share * (self.fitted.sill - nugget)).max(0.0).sqrt().max(self.fitted.near)
+    }
+
+    /// How far away a view of this distance was taken, m: $`(E^2 - n)/s`$, between half a step and forty steps.
+    pub fn metres(&self, distance: f64) -> f64 {
+        let Fitted { step, nugget, slope, .. } = self.fitted;
+        let metres = (distance * distance - nugget) / slope;
+        if metres.is_nan() { step } else { metres.clamp(0.5 * step, 40.0 * step) }
+    }
+
+    fn fit(&mut self) {
+        let step = median(self.near.iter().map(|s| s.way));
+        let near = median(self.near.iter().map(|s| s.distance));
+        let (ahead_way, ahead) =
+            (median(self.ahead.iter().map(|s| s.way)), median(self.ahead.iter().map(|s| s.distance)));
+        let rise = (ahead * ahead - near * near) / (ahead_way - step);
+        // Without lags to tell, all of the distance of successive views comes from the way.
+        let slope = if rise.is_finite() && rise > 0.0 { rise } else { near * near / step };
+        let nugget = (near * near - slope * step).max(0.0);
+        let sill = if self.far.len() >= ENOUGH_FAR {
+            quantile(self.far.iter().copied(), SILL_QUANTILE).powi(2)
+        } else {
+            4.0 * near * near
+        };
+        self.fitted =
+            Fitted { step, near, nugget: if nugget.is_finite() { nugget } else { 0.0 }, slope, sill };
+    }
+}
+
+fn keep<T>(samples: &mut VecDeque<T>, sample: T) {
+    if samples.len() == KEPT {
+        samples.pop_front();
+    }
+    samples.push_back(sample);
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// The value that `share` of all lie under; 0 for none.
+fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let Some(last) = values.len().checked_sub(1) else { return 0.0 };
+    let index = (last as f64 * share).round() as usize;
+    *values.select_nth_unstable_by(index.min(last), f64::total_cmp).1
+}

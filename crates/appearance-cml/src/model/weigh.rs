@@ -1,0 +1,51 @@
+use nalgebra::Matrix3;
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::Gaussian;
+
+use super::sighting::turned;
+use super::{ForgettingParams, MapParams, PlaceComponent, PlaceUpdate, ViewScale};
+use crate::{AppearanceError, Match, separation_squared, similarity};
+
+/// The weight of a place whose reference looks like the view: it grows when the robot is there and fades when the robot is elsewhere.
+///
+/// $`w ← β S + (1 - β S) w`$ or $`w ← (1 - β S) w`$. [Gross et al. 2005, Eqs. 15-17]
+pub(super) fn weight_when_seen(
+    place: &PlaceComponent,
+    matched: &Match,
+    pose: &Gaussian<Pose2<f64>>,
+    (limit, scale, params): (f64, &ViewScale, &MapParams),
+) -> Result<f64, AppearanceError> {
+    let gain = params.learning_rate * similarity(matched.comparison.distance, limit);
+    let seen_from = turned(&place.gaussian, matched.comparison.rotation);
+    let expected = match params.place_update {
+        PlaceUpdate::Pose => seen_from,
+        // A view that is like its reference is not from the same spot: how far off it may be is known.
+        PlaceUpdate::Residual => widened(&seen_from, scale.metres(matched.comparison.distance)),
+    };
+    let agrees = separation_squared(pose, &expected)? <= params.place_gate;
+    Ok((1.0 - gain) * place.weight + if agrees { gain } else { 0.0 })
+}
+
+/// The weight of a place where the robot is and whose reference it does not see. [Gross et al. 2005, Eqs. 18-19]
+///
+/// $`w ← (1 - b) w`$, $`b = β_{for} \max(1 - d/d^{for}, 0)\, d^{gain}/(σ_x + σ_y)`$ with the distance $`d`$ in the plane, clamped to [0, 1].
+pub(super) fn weight_when_missed(
+    place: &PlaceComponent,
+    pose: &Gaussian<Pose2<f64>>,
+    radius: f64,
+    (scale, params): (&ViewScale, &ForgettingParams),
+) -> f64 {
+    let distance = (pose.mean().translation - place.gaussian.mean().translation).norm();
+    let nearness = (1.0 - distance / radius).max(0.0);
+    let sigmas = pose.sigmas();
+    let sharpness = params.gain.unwrap_or_else(|| scale.step()) / (sigmas.x + sigmas.y);
+    let loss = params.rate * nearness * sharpness.min(1.0);
+    // A radius of nothing forgets nothing.
+    if loss.is_finite() { (1.0 - loss.clamp(0.0, 1.0)) * place.weight } else { place.weight }
+}
+
+fn widened(belief: &Gaussian<Pose2<f64>>, metres: f64) -> Gaussian<Pose2<f64>> {
+    let variance = metres * metres;
+    let more = Matrix3::from_diagonal(&nalgebra::Vector3::new(variance, variance, 0.0));
+    Gaussian::from_parts_unchecked(*belief.mean(), belief.covariance() + more)
+}

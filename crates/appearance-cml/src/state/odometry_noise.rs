@@ -1,0 +1,67 @@
+use nalgebra::{Matrix3, Vector3};
+use wayfix_estimation_traits::Pose2;
+
+use crate::{AppearanceError, check};
+
+/// How odometry errs: variances that grow with the way and with the turn, so that cutting a motion in pieces changes nothing.
+///
+/// ```
+/// use wayfix_appearance_cml::OdometryNoise;
+/// use wayfix_estimation_traits::Pose2;
+/// let noise = OdometryNoise::default();
+/// let metre = noise.covariance(&Pose2::new(1.0, 0.0, 0.0));
+/// let quarter = noise.covariance(&Pose2::new(0.25, 0.0, 0.0));
+/// assert!((metre - quarter * 4.0).norm() < 1e-12);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct OdometryNoise {
+    /// σ along the way after one metre, m. Default 0.04.
+    pub forward: f64,
+    /// σ across the way after one metre, m. Default 0.03.
+    pub sideways: f64,
+    /// σ of the heading after one metre, rad. Default 0.015.
+    pub heading_per_metre: f64,
+    /// σ of the heading after turning by one radian, rad. Default 0.04.
+    pub heading_per_radian: f64,
+}
+
+impl Default for OdometryNoise {
+    fn default() -> Self {
+        Self { forward: 0.04, sideways: 0.03, heading_per_metre: 0.015, heading_per_radian: 0.04 }
+    }
+}
+
+/// σ below which no motion is believed, m and rad: a robot that stands still keeps a covariance that can be factored.
+const FLOOR: f64 = 1e-6;
+
+impl OdometryNoise {
+    /// Whether the numbers have a meaning.
+    ///
+    /// # Errors
+    /// Names the first that has none.
+    pub fn validate(&self) -> Result<(), AppearanceError> {
+        check::not_negative("forward noise of the odometry (m)", self.forward)?;
+        check::not_negative("sideways noise of the odometry (m)", self.sideways)?;
+        check::not_negative("heading noise of the odometry a metre (rad)", self.heading_per_metre)?;
+        check::not_negative("heading noise of the odometry a radian (rad)", self.heading_per_radian)
+    }
+
+    /// Covariance of the error of one increment, in the body frame at its end.
+    pub fn covariance(&self, increment: &Pose2<f64>) -> Matrix3<f64> {
+        let way = increment.translation.norm();
+        let turn = increment.heading().abs();
+        let heading = self.heading_per_metre.powi(2) * way + self.heading_per_radian.powi(2) * turn;
+        let floor = FLOOR * FLOOR;
+        Matrix3::from_diagonal(&Vector3::new(
+            self.forward.powi(2) * way + floor,
+            self.sideways.powi(2) * way + floor,
+            heading + floor,
+        ))
+    }
+}

@@ -1,0 +1,25 @@
+//! What a view looks like, whichever way the robot faces: panoramas become averages per ring and sector, these a Fourier spectrum over the
+//! azimuth. [Gross et al., Section 2.2]
+//!
+//! A turn of the robot shifts a panorama and multiplies harmonic $`k`$ of every ring by the same $`e^{-\mathrm i k φ}`$: magnitudes, and phases
+//! between rings, do not depend on it, and the best rotation is the maximum of the cross-correlation.
+
+mod correlation;
+mod cosines;
+mod descriptor;
+mod donut;
+mod features;
+mod invariants;
+mod normalization;
+mod panorama;
+mod params;
+mod probe;
+mod sectors;
+
+pub use descriptor::PanoramaDescriptor;
+pub use donut::{Donut, RingOrder};
+pub use features::PanoramaFeatures;
+pub use normalization::{Normalization, Tone};
+pub use panorama::{Panorama, TurnSense};
+pub use params::PanoramaParams;
+pub use probe::PanoramaProbe;

@@ -1,0 +1,68 @@
+use crate::AppearanceError;
+
+/// How grey values of 0 … 255 are weighed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Tone {
+    /// As they are.
+    Linear,
+    /// $`\ln(8 + \text{grey})`$: light multiplies what surfaces reflect, so its changes become an offset, which normalization takes away. The 8
+    /// keeps the noise of dark pixels small.
+    Logarithmic,
+}
+
+/// What the brightness of a view is made independent of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Normalization {
+    /// Of nothing: values are divided by their full range only.
+    None,
+    /// Of the mean over the view.
+    Mean,
+    /// Of mean and standard deviation over the view: distances are in standard deviations.
+    MeanVariance,
+}
+
+impl Tone {
+    pub(super) fn of(self, grey: f64) -> f64 {
+        match self {
+            Self::Linear => grey,
+            Self::Logarithmic => (8.0 + grey).ln(),
+        }
+    }
+
+    fn range(self) -> f64 {
+        self.of(255.0) - self.of(0.0)
+    }
+}
+
+impl Normalization {
+    /// Normalizes the cells of a view in place.
+    ///
+    /// # Errors
+    /// [`AppearanceError::BlankView`] when their standard deviation is less than `min_contrast` of the range of the tone.
+    pub(super) fn apply(
+        self,
+        tone: Tone,
+        min_contrast: f64,
+        cells: &mut [f64],
+    ) -> Result<(), AppearanceError> {
+        let n = cells.len() as f64;
+        let mean = cells.iter().sum::<f64>() / n;
+        let sigma = (cells.iter().map(|cell| (cell - mean).powi(2)).sum::<f64>() / n).sqrt();
+        let contrast = sigma / tone.range();
+        // A constant view has no contrast but what rounding leaves.
+        if contrast <= min_contrast.max(1e-9) {
+            return Err(AppearanceError::BlankView { contrast, min_contrast });
+        }
+        let (offset, scale) = match self {
+            Self::None => (0.0, tone.range()),
+            Self::Mean => (mean, tone.range()),
+            Self::MeanVariance => (mean, sigma),
+        };
+        cells.iter_mut().for_each(|cell| *cell = (*cell - offset) / scale);
+        Ok(())
+    }
+}

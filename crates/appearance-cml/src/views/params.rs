@@ -1,0 +1,64 @@
+use super::{Normalization, Tone, TurnSense};
+use crate::{AppearanceError, check};
+
+/// How a panorama is described.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct PanoramaParams {
+    /// Rings that the rows are averaged into; where there are fewer rows, every row is a ring. Default 25, from 1 to 64.
+    pub n_rings: usize,
+    /// Sectors that the columns are averaged into; where there are fewer columns, every column is a sector. Default 120, from 4 to 1024.
+    pub n_sectors: usize,
+    /// Harmonics of the azimuth, the constant one included. Default 16: details down to 24°; at least 2, at most half the sectors, at most 64.
+    pub n_harmonics: usize,
+    /// How grey values are weighed. Default: logarithmic.
+    pub tone: Tone,
+    /// What brightness is made independent of. Default: mean and variance.
+    pub normalization: Normalization,
+    /// Least standard deviation of the cells of a view, as a share of the range of the tone. Default 0.01.
+    pub min_contrast: f64,
+    /// Largest share of pixels that are all black or all white. Default 0.8.
+    pub max_saturated: f64,
+    /// Which way the columns go round. Default: clockwise, left to right.
+    pub sense: TurnSense,
+}
+
+impl Default for PanoramaParams {
+    fn default() -> Self {
+        Self {
+            n_rings: 25,
+            n_sectors: 120,
+            n_harmonics: 16,
+            tone: Tone::Logarithmic,
+            normalization: Normalization::MeanVariance,
+            min_contrast: 0.01,
+            max_saturated: 0.8,
+            sense: TurnSense::Clockwise,
+        }
+    }
+}
+
+impl PanoramaParams {
+    /// # Errors
+    /// [`AppearanceError::Parameter`] for the first value outside its range.
+    pub(super) fn validate(&self) -> Result<(), AppearanceError> {
+        let whole = |what, value: usize, holds, range| check::within(what, value as f64, holds, range);
+        whole("n_rings", self.n_rings, (1..=64).contains(&self.n_rings), "from 1 to 64")?;
+        whole("n_sectors", self.n_sectors, (4..=1024).contains(&self.n_sectors), "from 4 to 1024")?;
+        self.check_harmonics(self.n_sectors)?;
+        check::share("min_contrast", self.min_contrast)?;
+        check::share("max_saturated", self.max_saturated)
+    }
+
+    /// No more harmonics than can be told apart.
+    pub(super) fn check_harmonics(&self, n_sectors: usize) -> Result<(), AppearanceError> {
+        let holds = (2..=64.min(n_sectors / 2)).contains(&self.n_harmonics);
+        let range = "from 2 to 64 and at most half the sectors and columns";
+        check::within("n_harmonics", self.n_harmonics as f64, holds, range)
+    }
+}

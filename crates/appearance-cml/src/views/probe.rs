@@ -1,0 +1,114 @@
+use super::{
+    correlation::Correlation,
+    descriptor::{MOST_GROUPS, PanoramaDescriptor},
+};
+use crate::Comparison;
+
+/// Harmonics that are multiplied side by side.
+pub(super) const HARMONICS: usize = 8;
+
+/// A view that is about to be compared with many references.
+///
+/// Single precision is exact here: whole numbers of up to 127, and sums of at most 2 · 255 of their products, stay below $`2^{24}`$.
+#[derive(Clone, Debug)]
+pub struct PanoramaProbe {
+    scale: f64,
+    n_rings: u8,
+    n_harmonics: usize,
+    energy: f64,
+    remaining: [f64; MOST_GROUPS],
+    constant: Vec<f32>,
+    /// As the lanes of the descriptor.
+    groups: Vec<Vec<[f32; 2 * HARMONICS]>>,
+}
+
+/// Real and imaginary parts of the products of a group.
+type Products = ([f32; HARMONICS], [f32; HARMONICS]);
+
+impl PanoramaProbe {
+    pub(super) fn new(view: &PanoramaDescriptor) -> Self {
+        let ring = |lanes: &[i8]| std::array::from_fn(|lane| f32::from(lanes[lane]));
+        let group = |lanes: &[i8]| lanes.chunks_exact(2 * HARMONICS).map(ring).collect();
+        Self {
+            scale: f64::from(view.scale()),
+            n_rings: view.n_rings(),
+            n_harmonics: view.n_harmonics(),
+            energy: view.energy(),
+            remaining: std::array::from_fn(|group| view.remaining(group)),
+            constant: view.constant().iter().map(|q| f32::from(*q)).collect(),
+            groups: view.groups().map(group).collect(),
+        }
+    }
+
+    fn fits(&self, reference: &PanoramaDescriptor) -> bool {
+        self.n_rings == reference.n_rings() && self.n_harmonics == reference.n_harmonics()
+    }
+
+    /// A lower bound of the distance that gives up after any group whose rest cannot bring it below `enough`.
+    pub(super) fn bound(&self, reference: &PanoramaDescriptor, enough: f64) -> f64 {
+        if !self.fits(reference) {
+            return f64::INFINITY;
+        }
+        let mut overlap = self.constant_product(reference);
+        let mut bound = 0.0;
+        for (index, (own, other)) in self.groups.iter().zip(reference.groups()).enumerate() {
+            let (re, im) = products(own, other);
+            let mut magnitudes = [0.0; HARMONICS];
+            for lane in 0..HARMONICS {
+                magnitudes[lane] = (re[lane] * re[lane] + im[lane] * im[lane]).sqrt();
+            }
+            overlap += f64::from(magnitudes.iter().sum::<f32>()) * (1.0 + ROUNDING);
+            // Parallel vectors of the remaining harmonics would add this (Cauchy-Schwarz).
+            let most = overlap + (self.remaining[index] * reference.remaining(index)).sqrt();
+            bound = self.distance(reference, most);
+            if bound > enough {
+                break;
+            }
+        }
+        bound
+    }
+
+    pub(super) fn compare(&self, reference: &PanoramaDescriptor) -> Comparison {
+        if !self.fits(reference) {
+            return Comparison { distance: f64::INFINITY, rotation: 0.0 };
+        }
+        let mut harmonics = [(0.0, 0.0); MOST_GROUPS * HARMONICS];
+        for (index, (own, other)) in self.groups.iter().zip(reference.groups()).enumerate() {
+            let (re, im) = products(own, other);
+            for lane in 0..HARMONICS {
+                harmonics[index * HARMONICS + lane] = (f64::from(re[lane]), f64::from(im[lane]));
+            }
+        }
+        let harmonics = &harmonics[..self.n_harmonics - 1];
+        let constant = self.constant_product(reference);
+        let (rotation, maximum) = Correlation { constant, harmonics }.maximum();
+        Comparison { distance: self.distance(reference, maximum), rotation }
+    }
+
+    fn constant_product(&self, reference: &PanoramaDescriptor) -> f64 {
+        f64::from(self.constant.iter().zip(reference.constant()).map(|(a, b)| a * f32::from(*b)).sum::<f32>())
+    }
+
+    /// The distance of views whose whole numbers overlap so much.
+    fn distance(&self, reference: &PanoramaDescriptor, overlap: f64) -> f64 {
+        let product = self.scale * f64::from(reference.scale());
+        (self.energy + reference.energy() - 2.0 * product * overlap).max(0.0).sqrt()
+    }
+}
+
+/// More than what square roots and sums of single precision lose: eight sums, a root and a product of 6e-8 each.
+const ROUNDING: f64 = 1e-6;
+
+/// $`\sum_r a_r \bar b_r`$ of eight harmonics: a view's rings with those of a reference.
+fn products(own: &[[f32; 2 * HARMONICS]], other: &[i8]) -> Products {
+    let (mut re, mut im) = ([0.0; HARMONICS], [0.0; HARMONICS]);
+    for (own, other) in own.iter().zip(other.chunks_exact(2 * HARMONICS)) {
+        for lane in 0..HARMONICS {
+            let (a_re, a_im) = (own[lane], own[HARMONICS + lane]);
+            let (b_re, b_im) = (f32::from(other[lane]), f32::from(other[HARMONICS + lane]));
+            re[lane] += a_re * b_re + a_im * b_im;
+            im[lane] += a_im * b_re - a_re * b_im;
+        }
+    }
+    (re, im)
+}

@@ -1,0 +1,98 @@
+use nalgebra::Vector2;
+use rand::Rng;
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Target, TrueLandmark};
+
+use super::aisles::Aisles;
+use super::ambience::Ambience;
+use super::camera::OmniCameraParams;
+use super::color::Rgb8;
+use super::light::LightField;
+use super::panel::{Panel, Skin};
+use super::texture::Texture;
+use super::view::Observer;
+use crate::scenery::RgbPicture;
+use crate::world::{Wall, World};
+use crate::{SimError, check};
+
+/// Rooms with everything that stands in them, ready to be looked at: what [`Store`](super::Store) and [`Lab`](super::Lab) build.
+///
+/// The origin is in the middle of the floor, x along its length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Building {
+    pub(super) size: Vector2<f64>,
+    pub(super) ceiling_m: f64,
+    pub(super) floor: Rgb8,
+    pub(super) ceiling: Rgb8,
+    pub(super) panels: Vec<Panel>,
+    pub(super) textures: Vec<Texture>,
+    pub(super) light: LightField,
+    pub(super) n_lamps: usize,
+    pub(super) n_curtains: usize,
+    pub(super) aisles: Aisles,
+}
+
+impl Building {
+    /// Extent along x and y, metres.
+    pub fn size_m(&self) -> Vector2<f64> {
+        self.size
+    }
+
+    /// Where one can drive.
+    pub fn aisles(&self) -> &Aisles {
+        &self.aisles
+    }
+
+    /// The view from `pose` by the light of a usual day, when nobody is about.
+    ///
+    /// # Errors
+    /// When the numbers do not make a camera, or the pose is not finite.
+    ///
+    /// ```
+    /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    /// use wayfix_estimation_traits::Pose2;
+    /// use wayfix_scene_sim::indoors::{Lab, OmniCameraParams};
+    /// let mut rng = ChaCha8Rng::seed_from_u64(1);
+    /// let lab = Lab::draw(&mut rng).building();
+    /// let view = lab.look(&Pose2::new(0.0, -3.7, 0.0), OmniCameraParams::default(), &mut rng)?;
+    /// assert_eq!((view.width, view.height), (120, 20));
+    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// ```
+    pub fn look<R: Rng + ?Sized>(
+        &self,
+        pose: &Pose2<f64>,
+        camera: OmniCameraParams,
+        rng: &mut R,
+    ) -> Result<RgbPicture, SimError> {
+        check::finite("pose of the camera", pose.x() + pose.y() + pose.heading())?;
+        let ambience = Ambience::usual(self.n_lamps, self.n_curtains);
+        Ok(Observer::new(camera)?.look(self, &ambience, &[], pose, rng))
+    }
+
+    /// Puts up a panel with a texture of its own between two heights.
+    pub(super) fn put(
+        &mut self,
+        left: Vector2<f64>,
+        right: Vector2<f64>,
+        [bottom_m, top_m]: [f64; 2],
+        texture: Texture,
+    ) {
+        self.panels.push(Panel { left, right, bottom_m, top_m, skin: Skin::Lit(self.textures.len()) });
+        self.textures.push(texture);
+    }
+}
+
+/// Its walls and fronts as a plan, for a laser or a map; there are no landmarks.
+impl World for Building {
+    fn landmarks(&self) -> Vec<TrueLandmark> {
+        Vec::new()
+    }
+
+    fn walls(&self) -> Vec<Wall> {
+        self.panels.iter().map(|panel| Wall { from: panel.left, to: panel.right }).collect()
+    }
+
+    fn targets(&self, _seconds: f64) -> Vec<(Target, Vector2<f64>)> {
+        Vec::new()
+    }
+}

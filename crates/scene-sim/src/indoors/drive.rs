@@ -1,0 +1,134 @@
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::Data;
+
+use super::ambience::Ambience;
+use super::building::Building;
+use super::crowd::Crowd;
+use super::params::IndoorParams;
+use super::view::Observer;
+use crate::drive::{DifferentialDrive, Pursuit};
+use crate::random::{Source, Streams};
+use crate::route::Route;
+use crate::scenery::RgbPicture;
+use crate::sensor::{Moment, Sensor, WheelOdometry};
+use crate::{SimError, check};
+
+/// Time between two steps of the integration, milliseconds.
+const STEP_MS: u64 = 10;
+
+/// What happens at one view, truth included.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IndoorStep {
+    /// Since the start.
+    pub milliseconds: u64,
+    /// What the wheels say to have moved since the last view, in the robot's frame before; none at the first.
+    pub odometry: Option<Pose2<f64>>,
+    /// Where the robot truly is.
+    pub pose: Pose2<f64>,
+    /// What it sees, as [`OmniCameraParams`](super::OmniCameraParams) says.
+    pub view: RgbPicture,
+}
+
+/// A drive through a building, view by view, until shortly before the end of the route.
+///
+/// ```
+/// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+/// use wayfix_scene_sim::{indoors::{IndoorDrive, IndoorParams, Store, StoreParams}, random::Streams};
+/// let mut rng = ChaCha8Rng::seed_from_u64(1);
+/// let building = Store::draw(StoreParams::area(), &mut rng)?.building();
+/// let route = building.aisles().tour(30.0, &mut rng)?;
+/// let drive = IndoorDrive::new(&building, route, IndoorParams::default(), Streams::new(rng))?;
+/// let steps: Vec<_> = drive.collect();
+/// let odometry: f64 = steps.iter().filter_map(|step| step.odometry).map(|moved| moved.translation.norm()).sum();
+/// assert!(odometry > 25.0 && steps[0].view.rgb.len() == 3 * 120 * 20);
+/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// ```
+pub struct IndoorDrive<'a> {
+    building: &'a Building,
+    route: Route,
+    params: IndoorParams,
+    streams: Streams,
+    robot: DifferentialDrive,
+    driver: Pursuit,
+    wheels: WheelOdometry,
+    crowd: Crowd,
+    ambience: Ambience,
+    observer: Observer,
+    milliseconds: u64,
+    n_left: usize,
+}
+
+impl<'a> IndoorDrive<'a> {
+    /// The robot at the start of its route.
+    ///
+    /// # Errors
+    /// When a parameter has no meaning.
+    pub fn new(
+        building: &'a Building,
+        route: Route,
+        params: IndoorParams,
+        mut streams: Streams,
+    ) -> Result<Self, SimError> {
+        params.validate()?;
+        let step_m = params.drive.speed_mps * f64::from(params.view_period_ms) * 1e-3;
+        check::positive("way between two views (m)", step_m)?;
+        let crowd = Crowd::draw(params.n_people, &building.aisles, streams.of(Source::Crowd));
+        let ambience = Ambience::new(params.ambience, building.n_lamps, building.n_curtains, &mut streams);
+        Ok(Self {
+            building,
+            robot: DifferentialDrive::new(params.drive, route.at(0.0))?,
+            driver: Pursuit::default(),
+            wheels: WheelOdometry::new(params.odometry())?,
+            observer: Observer::new(params.camera)?,
+            n_left: (route.length_m() / step_m) as usize,
+            milliseconds: 0,
+            route,
+            params,
+            streams,
+            crowd,
+            ambience,
+        })
+    }
+
+    fn advance(&mut self, seconds: f64) {
+        let pose = self.robot.pose();
+        let (linear, angular) = self.driver.command(seconds, &self.route, &pose, &self.params.drive);
+        self.robot.step(seconds, linear, angular, &mut self.streams);
+        self.milliseconds += STEP_MS;
+    }
+
+    fn step(&mut self) -> IndoorStep {
+        let pose = self.robot.pose();
+        let moment = Moment {
+            milliseconds: self.milliseconds,
+            pose,
+            wheel_angles: self.robot.wheel_angles(),
+            world: self.building,
+        };
+        let odometry = match self.wheels.sense(&moment, &mut self.streams).map(|reading| reading.data) {
+            Some(Data::OdometryIncrement(moved)) => Some(moved),
+            _ => None,
+        };
+        let people: Vec<_> = self.crowd.standing(&self.building.aisles, pose.translation).collect();
+        let rng = self.streams.of(Source::Picture);
+        let view = self.observer.look(self.building, &self.ambience, &people, &pose, rng);
+        IndoorStep { milliseconds: self.milliseconds, odometry, pose, view }
+    }
+}
+
+impl Iterator for IndoorDrive<'_> {
+    type Item = IndoorStep;
+
+    fn next(&mut self) -> Option<IndoorStep> {
+        self.n_left = self.n_left.checked_sub(1)?;
+        let step = self.step();
+        let period_ms = u64::from(self.params.view_period_ms);
+        let seconds = period_ms as f64 * 1e-3;
+        for _ in 0..period_ms / STEP_MS {
+            self.advance(STEP_MS as f64 * 1e-3);
+        }
+        self.crowd.advance(seconds, &self.building.aisles, self.streams.of(Source::Crowd));
+        self.ambience.advance(seconds, &mut self.streams);
+        Some(step)
+    }
+}

@@ -1,0 +1,41 @@
+//! Stores and rooms, and what a camera sees that looks all around: textured walls, shelves, windows, people, changing light.
+//!
+//! A [`Store`] or a [`Lab`] is drawn from a seed, and rearranged by a share some weeks later; its [`Building`] says where one can drive
+//! ([`Aisles`]); an [`IndoorDrive`] gives views, drifting odometry and true poses one step after another.
+//!
+//! A view is drawn panel by panel into a buffer of depths, one ray for each quarter of a pixel; each ray looks its colour up in a texture
+//! that is as coarse as the ray is wide, so that nothing flickers when the robot moves, and 120 × 20 pixels cost less than half a millisecond.
+
+mod aisles;
+mod ambience;
+mod building;
+mod camera;
+mod canvas;
+mod color;
+mod crowd;
+mod decor;
+mod depths;
+mod develop;
+mod drive;
+mod lab;
+mod light;
+mod mirror;
+mod panel;
+mod params;
+mod rounded;
+mod shelf;
+mod store;
+mod store_params;
+mod texture;
+mod view;
+
+pub use aisles::{Aisles, Crossing};
+pub use ambience::AmbienceParams;
+pub use building::Building;
+pub use camera::OmniCameraParams;
+pub use drive::{IndoorDrive, IndoorStep};
+pub use lab::Lab;
+pub use mirror::Mirror;
+pub use params::{IndoorParams, calibrated_robot};
+pub use store::Store;
+pub use store_params::StoreParams;

@@ -1,0 +1,81 @@
+use rand::Rng;
+
+use super::{AmbienceParams, OmniCameraParams};
+use crate::drive::{DriveParams, SlipParams};
+use crate::random::deviate::normal;
+use crate::sensor::{OdometryKind, WheelOdometryParams};
+use crate::{SimError, check};
+
+/// A robot that drives about in a building, and who is there beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IndoorParams {
+    /// The robot; [`calibrated_robot`] draws one. Default: 0.5 m/s, wheels exactly as built, slip of 0.1 %.
+    pub drive: DriveParams,
+    /// Time between two views, a multiple of 10 ms. Default 500: a step of 0.25 m.
+    pub view_period_ms: u32,
+    /// The camera.
+    pub camera: OmniCameraParams,
+    /// The light.
+    pub ambience: AmbienceParams,
+    /// People who walk about. Default 0.
+    pub n_people: usize,
+}
+
+impl Default for IndoorParams {
+    fn default() -> Self {
+        Self {
+            drive: robot([0.0; 2]),
+            view_period_ms: 500,
+            camera: OmniCameraParams::default(),
+            ambience: AmbienceParams::default(),
+            n_people: 0,
+        }
+    }
+}
+
+impl IndoorParams {
+    /// Whether the numbers have a meaning.
+    ///
+    /// # Errors
+    /// Names the first that has none.
+    pub fn validate(&self) -> Result<(), SimError> {
+        self.drive.validate()?;
+        check::above("time between views (ms)", f64::from(self.view_period_ms), 9.0, "at least 10")?;
+        check::at_most("time between views (ms) modulo 10", f64::from(self.view_period_ms % 10), 0.0, "0")?;
+        self.camera.validate()?;
+        self.ambience.validate()?;
+        check::count("people", self.n_people, 1000)
+    }
+
+    /// Encoders that believe the data sheet.
+    pub(super) fn odometry(&self) -> WheelOdometryParams {
+        WheelOdometryParams {
+            kind: OdometryKind::Increment,
+            period_ms: self.view_period_ms,
+            wheel_radius_m: self.drive.wheel_radius_m,
+            track_m: self.drive.track_m,
+            ..WheelOdometryParams::default()
+        }
+    }
+}
+
+/// A robot whose wheels were calibrated as well as one does it by hand: travel wrong by 0.3 % and heading by 10⁻⁴ rad for each metre (σ), beside
+/// the slip, which turns it by 0.1° on the first metre and by 1° over 100 m.
+pub fn calibrated_robot<R: Rng + ?Sized>(rng: &mut R) -> DriveParams {
+    robot([3e-3 * normal(rng), 1e-4 * normal(rng)])
+}
+
+/// A robot with an error of its travel (share) and of its heading (rad/m).
+fn robot([travel, heading_per_m]: [f64; 2]) -> DriveParams {
+    const TRACK_M: f64 = 0.5;
+    let difference = 0.5 * heading_per_m * TRACK_M;
+    DriveParams {
+        speed_mps: 0.5,
+        track_m: TRACK_M,
+        wheel_radius_m: 0.1,
+        left_radius_error: travel - difference,
+        right_radius_error: travel + difference,
+        slip: SlipParams { sigma: 1e-3, correlation_time_s: 1.0, shared: 0.5 },
+        ..DriveParams::default()
+    }
+}

@@ -1,0 +1,164 @@
+use nalgebra::Vector2;
+use rand::Rng;
+use wayfix_estimation_traits::Pose2;
+
+use super::ambience::Ambience;
+use super::building::Building;
+use super::camera::OmniCameraParams;
+use super::color::Rgb8;
+use super::crowd::{HALF_WIDTH_M, HEIGHTS_M};
+use super::depths::{Depths, Met};
+use super::develop::Developer;
+use super::light::MixedLight;
+use super::panel::{Panel, Skin};
+use crate::scenery::RgbPicture;
+use crate::{SimError, plane};
+
+/// Looks around in a building.
+#[derive(Clone, Debug)]
+pub(super) struct Observer {
+    params: OmniCameraParams,
+    depths: Depths,
+    light: MixedLight,
+    developer: Developer,
+    /// Light on each ring of each column, the highest ring first.
+    radiance: Vec<[f32; 3]>,
+}
+
+/// Where a person stands and in what.
+pub(super) type Standing = (Vector2<f64>, [Rgb8; 3]);
+
+impl Observer {
+    pub(super) fn new(params: OmniCameraParams) -> Result<Self, SimError> {
+        params.validate()?;
+        Ok(Self {
+            depths: Depths::new(&params),
+            light: MixedLight::default(),
+            developer: Developer::new(&params),
+            radiance: vec![[0.0; 3]; params.columns * params.rings],
+            params,
+        })
+    }
+
+    /// The view from `pose`.
+    pub(super) fn look<R: Rng + ?Sized>(
+        &mut self,
+        building: &Building,
+        ambience: &Ambience,
+        people: &[Standing],
+        pose: &Pose2<f64>,
+        rng: &mut R,
+    ) -> RgbPicture {
+        building.light.mix(ambience, &mut self.light);
+        self.depths.clear();
+        for (panel, number) in building.panels.iter().zip(0..) {
+            self.depths.put(number, panel, pose);
+        }
+        let n_panels = building.panels.len();
+        for (k, (place, _)) in people.iter().enumerate() {
+            let panel = upright(*place, &pose.translation, k);
+            self.depths.put((n_panels + k) as u32, &panel, pose);
+        }
+        let shading = Shading { building, ambience, people, pose: *pose, eye_m: self.params.height_m };
+        self.radiance.fill([0.0; 3]);
+        for azimuth in 0..self.depths.n_azimuths() {
+            shading.expose(azimuth, &self.depths, &self.light, &self.params, &mut self.radiance);
+        }
+        let rgb = self.developer.develop(&self.radiance, rng);
+        RgbPicture { width: self.params.columns, height: self.params.rings, rgb }
+    }
+}
+
+/// A person, turned to who looks.
+fn upright(place: Vector2<f64>, eye: &Vector2<f64>, number: usize) -> Panel {
+    let sight = (place - eye).normalize();
+    let aside = Vector2::new(-sight.y, sight.x) * HALF_WIDTH_M;
+    let top_m = HEIGHTS_M[2];
+    Panel { left: place + aside, right: place - aside, bottom_m: 0.0, top_m, skin: Skin::Person(number) }
+}
+
+/// What is needed to tell the light from a place.
+struct Shading<'a> {
+    building: &'a Building,
+    ambience: &'a Ambience,
+    people: &'a [Standing],
+    pose: Pose2<f64>,
+    eye_m: f64,
+}
+
+impl Shading<'_> {
+    /// Adds the light of all rays of one azimuth to their pixels.
+    fn expose(
+        &self,
+        azimuth: usize,
+        depths: &Depths,
+        light: &MixedLight,
+        params: &OmniCameraParams,
+        radiance: &mut [[f32; 3]],
+    ) {
+        let [across, down] = params.rays;
+        let ahead = plane::direction(self.pose.heading());
+        let ray = depths.ray(azimuth);
+        let ray = ahead * ray.x + Vector2::new(-ahead.y, ahead.x) * ray.y;
+        let share = 1.0 / (across * down) as f32;
+        let mut last = (Met::NOTHING, [0.0; 3]);
+        for (elevation, (met, slope)) in depths.column(azimuth).iter().zip(&depths.slopes).enumerate() {
+            let arriving = if met.panel == Met::NOTHING {
+                self.flat(&ray, *slope, light)
+            } else {
+                if last.0 != met.panel {
+                    last = (met.panel, light.at(self.pose.translation + ray * met.distance));
+                }
+                self.upright(met, *slope, depths.steps[1], last.1)
+            };
+            let ring = params.rings - 1 - elevation / down;
+            // From left to right, the front in the middle.
+            let column = (3 * params.columns / 2 - 1 - azimuth / across) % params.columns;
+            let pixel = &mut radiance[ring * params.columns + column];
+            for k in 0..3 {
+                pixel[k] += share * arriving[k];
+            }
+        }
+    }
+
+    /// From the floor or the ceiling.
+    fn flat(&self, ray: &Vector2<f64>, slope: f64, light: &MixedLight) -> [f32; 3] {
+        let (rise, color) = if slope < 0.0 {
+            (-self.eye_m, self.building.floor)
+        } else {
+            (self.building.ceiling_m - self.eye_m, self.building.ceiling)
+        };
+        let arriving = light.at(self.pose.translation + ray * (rise / slope));
+        lit(color.map(f32::from), arriving)
+    }
+
+    fn upright(&self, met: &Met, slope: f64, down: f64, arriving: [f32; 3]) -> [f32; 3] {
+        let height = self.eye_m + met.distance * slope;
+        let panels = &self.building.panels;
+        let Some(panel) = panels.get(met.panel as usize) else {
+            let (_, clothes) = &self.people[met.panel as usize - panels.len()];
+            let part = HEIGHTS_M.iter().take(2).filter(|top| height >= **top).count();
+            return lit(clothes[part].map(f32::from), arriving);
+        };
+        let up = height - panel.bottom_m;
+        let size = [met.spread, met.distance * down];
+        let look = |texture: usize| self.building.textures[texture].sample(met.along, up, size);
+        match panel.skin {
+            Skin::Lit(texture) => lit(look(texture), arriving),
+            Skin::Window { outside, curtain, number } => {
+                let length = (panel.right - panel.left).norm();
+                if met.along < length * (1.0 - self.ambience.curtains[number]) {
+                    lit(look(curtain), arriving)
+                } else {
+                    lit(look(outside), [2.0 * self.ambience.daylight as f32; 3])
+                }
+            }
+            Skin::Person(_) => [0.0; 3],
+        }
+    }
+}
+
+/// Of a surface in [0, 255] under light.
+fn lit(color: [f32; 3], light: [f32; 3]) -> [f32; 3] {
+    std::array::from_fn(|k| color[k] * light[k] * (1.0 / 255.0))
+}

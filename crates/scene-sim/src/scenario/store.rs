@@ -1,0 +1,65 @@
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
+
+use super::{Scenario, ScenarioParams};
+use crate::SimError;
+use crate::indoors::{IndoorDrive, IndoorParams, IndoorStep, Store, StoreParams, calibrated_robot};
+use crate::random::Streams;
+
+/// Stamp of the start, nanoseconds, as in [`Simulation`](crate::Simulation).
+const START_NS: u64 = 1_600_000_000_000_000_000;
+
+/// Laps around the shelves of a store with a camera that looks all around.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoreLapsParams {
+    /// The store.
+    pub store: StoreParams,
+    /// Decides what the store is like and how its robot errs.
+    pub store_seed: u64,
+    /// Laps around everything.
+    pub n_laps: usize,
+    /// The robot is drawn; the rest is as said here.
+    pub drive: IndoorParams,
+    /// Quality of the pictures in the log, 1 to 100.
+    pub jpeg_quality: u8,
+}
+
+/// Those with views of a store.
+pub(super) fn all() -> Vec<Scenario> {
+    let params = StoreLapsParams {
+        store: StoreParams::area(),
+        store_seed: 31,
+        n_laps: 2,
+        drive: IndoorParams { n_people: 1, ..IndoorParams::default() },
+        jpeg_quality: 92,
+    };
+    vec![Scenario { name: "store_area", seed: 31, params: ScenarioParams::StoreLaps(Box::new(params)) }]
+}
+
+impl StoreLapsParams {
+    /// The log in time order: before each view but the first an odometry increment, then true pose and view at its stamp.
+    ///
+    /// # Errors
+    /// When a parameter has no meaning.
+    pub fn simulate(&self, streams: Streams) -> Result<Vec<Record>, SimError> {
+        let mut rng = ChaCha8Rng::seed_from_u64(self.store_seed);
+        let building = Store::draw(self.store, &mut rng)?.building();
+        let params = IndoorParams { drive: calibrated_robot(&mut rng), ..self.drive };
+        let route = building.aisles().laps(self.n_laps, &mut rng)?;
+        let mut records = Vec::new();
+        for step in IndoorDrive::new(&building, route, params, streams)? {
+            records.extend(self.records(&step)?);
+        }
+        Ok(records)
+    }
+
+    fn records(&self, step: &IndoorStep) -> Result<Vec<Record>, SimError> {
+        let (width, height) = (step.view.width as u32, step.view.height as u32);
+        let image = EncodedImage::jpeg(width, height, &step.view.rgb, self.jpeg_quality)?;
+        let odometry = step.odometry.map(Data::OdometryIncrement);
+        let stamp = Stamp::from_nanoseconds(START_NS + step.milliseconds * 1_000_000);
+        let at_once = [Data::TruePose(step.pose), Data::Image(image)];
+        Ok(odometry.into_iter().chain(at_once).map(|data| Record { stamp, data }).collect())
+    }
+}

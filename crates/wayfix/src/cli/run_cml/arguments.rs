@@ -1,0 +1,201 @@
+use std::{path::PathBuf, str::FromStr};
+
+use wayfix_appearance_cml::{Donut, RingOrder, TurnSense};
+use wayfix_estimation_traits::Pose2;
+
+use crate::cml::Task;
+
+/// Appearance maps: learn what places look like all round, and localize in what was learned.
+///
+/// Views are panoramas (a column for each direction, a row for each height), or raw images of an omnidirectional camera with `--center` and
+/// `--radii`. What happens with them, the first line of the output says again:
+///
+/// * **Concurrent map building and localization**: a log without more options. The map grows from nothing while the robot localizes in it; the
+///   start is known.
+///
+/// * **Learn, then localize**: a folder of frames with poses, or `--withhold N`: every N-th view is localized and never taught, the others are
+///   taught with their poses before. With `--learn-from`, another traverse is taught and all views of this one are localized.
+///
+/// * **Localize in a saved map**: `--map`.
+///
+/// Poses come as a table, with comma, tab or blanks between the columns. A first row may name them: file or frame, t or time, x, y, heading or theta
+/// or yaw, with units as in t_ms, x_cm, yaw_deg (else s, m, rad). Without names: `x,y` or `x,y,heading`, a row a frame, with the file's name or a
+/// time before them where there is one. Where poses are by time, the table of `time, file` beside the frames says when each was taken (or `--stamps`),
+/// and poses are interpolated. The routes of the University of Sussex (`…_path_scaled.csv`: ms and cm) are read as they are.
+///
+/// Frames have no wheels: odometry is made of the smoothed path, with noise drawn by `--seed`; its standard deviations are parameters.
+///
+/// Figures: error_mean_m, error_median_m, error_max_m over the localized views, against nearest_view_error_mean_m of the most alike reference alone and
+/// odometry_error_mean_m; n_references; step_mean_us. Views that cannot be used are left out, counted in the events and named on standard error.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES, group(clap::ArgGroup::new("input").required(true).multiple(true).args(["log", "frames", "print_params"])))]
+pub(crate) struct Arguments {
+    /// A log with images, odometry (increments or velocities) and, where it is to be judged, true poses.
+    #[arg(long, value_name = "PATH", conflicts_with = "frames")]
+    pub(super) log: Option<PathBuf>,
+    /// A folder of PNG or JPEG frames.
+    #[arg(long, value_name = "DIR", requires = "poses")]
+    pub(super) frames: Option<PathBuf>,
+    /// The table of the poses of the frames.
+    #[arg(long, value_name = "CSV", requires = "frames")]
+    pub(super) poses: Option<PathBuf>,
+    /// The table of `time, file` of the frames [default: the one beside them].
+    #[arg(long, value_name = "FILE", requires = "frames")]
+    pub(super) stamps: Option<PathBuf>,
+    /// A folder of frames of another traverse, which is taught in place of this one.
+    #[arg(
+        long,
+        value_name = "DIR",
+        requires = "frames",
+        requires = "learn_poses",
+        conflicts_with = "withhold"
+    )]
+    pub(super) learn_from: Option<PathBuf>,
+    /// The table of its poses.
+    #[arg(long, value_name = "CSV", requires = "learn_from")]
+    pub(super) learn_poses: Option<PathBuf>,
+    /// The table of its times.
+    #[arg(long, value_name = "FILE", requires = "learn_from")]
+    pub(super) learn_stamps: Option<PathBuf>,
+    /// Teach the views with their true poses, but for every N-th, which is localized; 0 teaches none and builds the map as the robot goes
+    /// [default: 5 for frames, 0 for a log].
+    #[arg(long, value_name = "N")]
+    pub(super) withhold: Option<usize>,
+    /// Start with a map that was saved.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["withhold", "learn_from"])]
+    pub(super) map: Option<PathBuf>,
+    /// Save the map, and where the robot is in it, at the end: whole or not at all.
+    #[arg(long, value_name = "FILE")]
+    pub(super) save_map: Option<PathBuf>,
+    /// Save it every so many seconds of the log as well.
+    #[arg(long, value_name = "SECONDS", requires = "save_map", value_parser = seconds)]
+    pub(super) save_every: Option<f64>,
+    /// Where the robot is at the first view: `anywhere`, `saved` (as the map has it), or x,y,heading in metres and degrees [default: near the first
+    /// true pose, else anywhere; for a new map the first true pose, else 0,0,0].
+    #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
+    pub(super) start: Option<StartArgument>,
+    /// What is forgotten: `active` also what is not seen where it should be, `passive` what is not seen any more, `none` keeps a learned map as it is
+    /// [default: as the parameters say].
+    #[arg(long, value_enum)]
+    pub(super) forgetting: Option<ForgettingArgument>,
+    /// Raw images: centre of their ring, pixels right and down.
+    #[arg(long, value_name = "X,Y", requires = "radii", value_parser = pair)]
+    pub(super) center: Option<[f64; 2]>,
+    /// Raw images: inner and outer radius of their ring, pixels.
+    #[arg(long, value_name = "INNER,OUTER", requires = "center", value_parser = pair)]
+    pub(super) radii: Option<[f64; 2]>,
+    /// Raw images: the innermost ring shows what is highest, as with a lens that looks up; not the outermost.
+    #[arg(long, requires = "center")]
+    pub(super) inner_up: bool,
+    /// Which way the columns of a panorama go round [default: found from the turns of the robot].
+    #[arg(long, value_enum)]
+    pub(super) columns: Option<ColumnsArgument>,
+    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
+    #[arg(long, value_name = "FILE")]
+    pub(super) params: Option<PathBuf>,
+    /// Print the parameters that would be used, as TOML, and end: a file to start from.
+    #[arg(long)]
+    pub(super) print_params: bool,
+    /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP.
+    ///
+    /// It is created where need be. Nothing is written without it.
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Print the figures as one JSON object instead of a table.
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Seed of the noise of made odometry, and of the error of the start.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run cml --log store.mcap                                            build a map and localize in it
+  wayfix run cml --log monday.mcap --save-map store.map                      and keep it
+  wayfix run cml --log tuesday.mcap --map store.map --start anywhere
+  wayfix run cml --frames route --poses route/training_path_scaled.csv       every fifth frame withheld
+  wayfix run cml --frames tuesday --poses tuesday.csv --learn-from monday --learn-poses monday.csv --forgetting none
+  wayfix run cml --frames raw --poses raw.csv --center 320,240 --radii 60,230";
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(super) enum ForgettingArgument {
+    Active,
+    Passive,
+    None,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum ColumnsArgument {
+    Clockwise,
+    Counterclockwise,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum StartArgument {
+    Anywhere,
+    Saved,
+    At(Pose2<f64>),
+}
+
+impl FromStr for StartArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+        match (text, &numbers[..]) {
+            ("anywhere", _) => Ok(Self::Anywhere),
+            ("saved", _) => Ok(Self::Saved),
+            (_, [x, y, heading]) if numbers.iter().all(|number| number.is_finite()) => {
+                Ok(Self::At(Pose2::new(*x, *y, heading.to_radians())))
+            }
+            _ => Err(
+                "give `anywhere`, `saved`, or x,y,heading in metres and degrees, for instance -1.5,0.3,90"
+                    .to_owned(),
+            ),
+        }
+    }
+}
+
+/// Frames of a folder of which every so many is withheld.
+const WITHHOLD: usize = 5;
+
+impl Arguments {
+    pub(super) fn name(&self) -> String {
+        let input = self.log.as_deref().or(self.frames.as_deref());
+        input.map_or_else(String::new, |path| path.display().to_string())
+    }
+
+    pub(super) fn withhold(&self) -> usize {
+        let default = if self.frames.is_some() && self.map.is_none() { WITHHOLD } else { 0 };
+        self.withhold.unwrap_or(default)
+    }
+
+    pub(super) fn task(&self) -> Task {
+        match (&self.map, &self.learn_from, self.withhold()) {
+            (Some(_), ..) => Task::LocalizeInSavedMap,
+            (None, None, 0) => Task::ConcurrentMapBuilding,
+            _ => Task::LearnThenLocalize,
+        }
+    }
+
+    pub(super) fn donut(&self) -> Option<Donut> {
+        let up = if self.inner_up { RingOrder::InnermostUp } else { RingOrder::OutermostUp };
+        Some(Donut { center: self.center?, radii: self.radii?, sense: TurnSense::Clockwise, up })
+    }
+}
+
+fn pair(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+    match numbers[..] {
+        [a, b] if a.is_finite() && b.is_finite() => Ok([a, b]),
+        _ => Err("give two numbers of pixels, for instance 320,240".to_owned()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds.is_finite() && seconds >= 0.0 => Ok(seconds),
+        _ => Err("give seconds, 0 or more".to_owned()),
+    }
+}

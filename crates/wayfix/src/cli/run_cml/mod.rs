@@ -1,0 +1,190 @@
+//! `wayfix run cml`.
+
+mod arguments;
+
+use std::{fs, path::Path, process::ExitCode};
+
+use anyhow::{Context, Result, bail, ensure};
+use wayfix_appearance_cml::{ArchiveParams, Forgetting, Learning, MapArchive, Start, TurnSense};
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Format, OpenOptions, ReadReport};
+
+pub(super) use arguments::Arguments;
+use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
+
+use super::{
+    finish::{self, ESTIMATES},
+    input::read_toml,
+    output::{print, tell},
+    progress,
+};
+use crate::{
+    cml::{
+        self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
+        Task, ViewReader, recording::Recording,
+    },
+    commented::commented,
+    report::Run,
+    system::{Stopwatch, System},
+};
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let mut params = match &arguments.params {
+        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        None => CmlParams::default(),
+    };
+    arguments.set_forgetting(&mut params);
+    if arguments.print_params {
+        print(commented(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let saved = arguments.map.as_deref().map(cml::read_map).transpose()?;
+    let stopwatch = Stopwatch::start();
+    let Input { mut plan, read, origin } = arguments.input(&mut params, saved.as_ref())?;
+    let task = arguments.task();
+    let reader = ViewReader::new(params.views, arguments.donut());
+    let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
+
+    let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut saver = arguments.save_map.clone().map(|path| MapSaver::new(path, arguments.save_every));
+    let bar = progress::bar(plan.records.len(), "appearance map");
+    let mut remaining = plan.records.iter();
+    let run = cml::run(system, &plan, task, start, &params, arguments.seed, |system| {
+        if let Some(record) = remaining.next() {
+            estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
+            saver.iter_mut().for_each(|saver| saver.observe(record, system));
+        }
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    let mut run = run?;
+    finish::account(run.system.events(), &read);
+    if let Some(saver) = saver {
+        saver.finish(&run.system).context("cannot save the map")?;
+    }
+
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let mut summary = Run { name: arguments.name(), seconds, ..cml::summarize(&mut run) };
+    tell(summary.notes.join("\n"));
+    if let Some(estimates) = estimates {
+        estimates.finish()?;
+        summary.log = Some(ESTIMATES.to_owned());
+        summary.figures = cml::pictures(&run)?;
+    }
+    finish::show("cml", summary, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is to be done, and how reading it went.
+struct Input {
+    plan: Plan,
+    read: ReadReport,
+    origin: Format,
+}
+
+impl Arguments {
+    fn set_forgetting(&self, params: &mut CmlParams) {
+        match self.forgetting {
+            None => {}
+            Some(ForgettingArgument::None) => params.localizer.learning = Learning::Static,
+            Some(ForgettingArgument::Active) => params.localizer.map.forgetting = Forgetting::Active,
+            Some(ForgettingArgument::Passive) => params.localizer.map.forgetting = Forgetting::Passive,
+        }
+    }
+
+    fn input(&self, params: &mut CmlParams, saved: Option<&MapArchive>) -> Result<Input> {
+        ensure!(
+            self.withhold() != 1,
+            "--withhold 1 localizes every view and teaches none: give 0 to build the map on the way, or 2 and more"
+        );
+        let is_static = params.localizer.learning == Learning::Static;
+        if is_static && self.task() == Task::ConcurrentMapBuilding {
+            bail!(
+                "--forgetting none keeps the map as it is, and there is none: teach one (--withhold, --learn-from) or give one (--map)"
+            );
+        }
+        // A saved map knows which way its columns go.
+        let saved_sense = saved.map(|archive| archive.params().views.sense);
+        let told = self.columns.map(|columns| match columns {
+            ColumnsArgument::Clockwise => TurnSense::Clockwise,
+            ColumnsArgument::Counterclockwise => TurnSense::Counterclockwise,
+        });
+        let camera = CameraChoice { donut: self.donut(), sense: told.or(saved_sense) };
+        if let Some(log) = &self.log {
+            let log = wayfix_sensor_log::open(log, &OpenOptions::default())?;
+            let origin = log.meta().first_format();
+            let (records, read) = log.read_all();
+            if !read.is_clean() {
+                tell(&read);
+            }
+            return Ok(Input {
+                plan: Plan::of_log(records, self.withhold(), params, &camera)?,
+                read,
+                origin,
+            });
+        }
+        let (Some(frames), Some(poses)) = (&self.frames, &self.poses) else {
+            bail!("neither a log nor frames")
+        };
+        let recording = read_recording(frames, poses, self.stamps.as_deref())?;
+        let taught = match (&self.learn_from, &self.learn_poses) {
+            (Some(frames), Some(poses)) => Some(read_recording(frames, poses, self.learn_stamps.as_deref())?),
+            _ => None,
+        };
+        let plan =
+            Plan::of_recording(&recording, taught.as_ref(), self.withhold(), params, &camera, self.seed)?;
+        let read = ReadReport::default();
+        Ok(Input { plan, read, origin: Format::Images })
+    }
+
+    fn begin(
+        &self,
+        task: Task,
+        params: &CmlParams,
+        mut reader: ViewReader,
+        saved: Option<MapArchive>,
+        plan: &mut Plan,
+    ) -> Result<(CmlSystem, StartPlace)> {
+        let first = cml::first_true_pose(&plan.records);
+        let mut state = None;
+        let mut map = PanoramaMap::default();
+        if let Some(archive) = saved {
+            plan.notes.extend(cml::end_note(&archive));
+            let size = plan.first_size(&mut reader).unwrap_or(archive.params().size);
+            let params = ArchiveParams { views: *reader.params(), size };
+            (map, state) = archive.into_map(&params).context("the saved map cannot be used here")?;
+        }
+        let start = match (self.start, task, first) {
+            (Some(StartArgument::Anywhere), ..) => StartPlace::Anywhere,
+            (Some(StartArgument::Saved), ..) => {
+                let state = state.context("no saved map says where the robot is (--map)")?;
+                StartPlace::Saved(Start::Among(state))
+            }
+            (Some(StartArgument::At(pose)), Task::ConcurrentMapBuilding, _) => StartPlace::Exactly(pose),
+            (Some(StartArgument::At(pose)), ..) => StartPlace::Near(pose),
+            (None, Task::ConcurrentMapBuilding, first) => {
+                StartPlace::Exactly(first.unwrap_or(Pose2::new(0.0, 0.0, 0.0)))
+            }
+            (None, _, Some(first)) => StartPlace::Near(first),
+            (None, _, None) => StartPlace::Anywhere,
+        };
+        Ok((CmlSystem::new(params, reader, map)?, start))
+    }
+}
+
+fn read_recording(frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<Recording> {
+    let recording = Recording::read(frames, poses, stamps)?;
+    if recording.n_without_pose > 0 {
+        tell(format!(
+            "note: {} frames of {} have no pose and are left out",
+            recording.n_without_pose,
+            frames.display()
+        ));
+    }
+    Ok(recording)
+}
+
+fn open_estimates(out: &Path, origin: Format) -> Result<CmlEstimateLog> {
+    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    Ok(CmlEstimateLog::create(&out.join(ESTIMATES), origin)?)
+}

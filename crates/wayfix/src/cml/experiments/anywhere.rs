@@ -1,0 +1,130 @@
+use anyhow::Result;
+use rand::RngExt;
+use rayon::prelude::*;
+use wayfix_appearance_cml::{LocalizerParams, Start};
+use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
+
+use super::follow::{known_start, taught};
+use super::summary::over_seeds;
+use super::worlds::{Draw, robot, tour};
+use super::{Course, Size, Trip, follow};
+use crate::cml::{PanoramaLocalizer, PanoramaMap};
+use crate::evaluate::proportion_interval;
+use crate::plot::{LinesPlot, Series};
+use crate::report::{Metric, Run};
+
+/// A run has succeeded that ends this near, metres.
+const NEAR_M: f64 = 1.0;
+/// How far the robot drives to find out where it is, metres.
+const TRAVEL_M: f64 = 20.0;
+/// Runs in each store: a map takes far longer to learn than a run.
+const RUNS_PER_STORE: u64 = 10;
+const REARRANGED: f64 = 0.1;
+const N_PEOPLE: usize = 20;
+
+/// How many runs in known stores that begin anywhere end near the truth after 20 m.
+///
+/// # Errors
+/// When a drive cannot be simulated or followed, or the picture not be drawn.
+pub fn global_start(size: &Size, seed: u64) -> Result<Run> {
+    let courses = in_stores(size, seed, |map, later, at| {
+        let trip = away(later, at)?;
+        follow(
+            &mut PanoramaLocalizer::with_map(LocalizerParams::default(), map.clone(), Start::Anywhere)?,
+            &trip,
+        )
+    })?;
+    report("From anywhere", size, &courses)
+}
+
+/// How many runs in which a robot is carried elsewhere, after 20 m that it knew where it was, end near the truth after 20 m more.
+///
+/// # Errors
+/// As [`global_start`].
+pub fn carried_away(size: &Size, seed: u64) -> Result<Run> {
+    let courses = in_stores(size, seed, |map, later, at| {
+        let (before, after) = (away(later, (at.0, at.1 + 1000))?, away(later, at)?);
+        let mut localizer =
+            PanoramaLocalizer::with_map(LocalizerParams::default(), map.clone(), known_start(&before)?)?;
+        follow(&mut localizer, &before)?;
+        follow(&mut localizer, &after)
+    })?;
+    report("Carried away", size, &courses)
+}
+
+/// Several runs in each store, some days after its map was taught.
+fn in_stores(
+    size: &Size,
+    seed: u64,
+    run: impl Fn(&PanoramaMap, &Building, (u64, u64)) -> Result<Course> + Sync,
+) -> Result<Vec<Course>> {
+    let stores = Size { n_seeds: size.n_seeds.div_ceil(RUNS_PER_STORE), ..*size };
+    let courses = over_seeds(&stores, seed, |seed| {
+        let store = Store::draw(StoreParams::home_store(), &mut Draw::World.rng(seed))?;
+        let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
+        let map = taught(&tour(&store.building(), size.length_m, params, (seed, 0))?)?;
+        let later = store.rearranged(REARRANGED, &mut Draw::Rearranged(1).rng(seed))?.building();
+        let n_runs = RUNS_PER_STORE.min(size.n_seeds);
+        (1..=n_runs).into_par_iter().map(|visit| run(&map, &later, (seed, visit))).collect::<Result<Vec<_>>>()
+    })?;
+    Ok(courses.into_iter().flatten().collect())
+}
+
+/// A drive from some crossing.
+fn away(building: &Building, (seed, visit): (u64, u64)) -> Result<Trip> {
+    let mut rng = Draw::Visit(visit).rng(seed);
+    let crossings = building.aisles().crossings();
+    let start = crossings[rng.random_range(0..crossings.len())];
+    let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
+    let route = building.aisles().tour_from(start, TRAVEL_M, &mut rng)?;
+    let mut trip = Trip::drive(building, route, params, Draw::Visit(visit).streams(seed))?;
+    let mut travelled_m = 0.0;
+    trip.steps.retain(|step| {
+        travelled_m += step.odometry.map_or(0.0, |moved| moved.translation.norm());
+        travelled_m <= TRAVEL_M
+    });
+    Ok(trip)
+}
+
+fn report(title: &str, size: &Size, courses: &[Course]) -> Result<Run> {
+    let n = courses.len();
+    let near = |course: &&Course| course.errors.last().is_some_and(|error| *error <= NEAR_M);
+    let n_near = courses.iter().filter(near).count();
+    let (low, high) = proportion_interval(n_near as u64, n as u64);
+    let metrics = vec![
+        Metric::new("trials", n as f64, ""),
+        Metric::new("success_share", n_near as f64 / n.max(1) as f64, ""),
+        Metric::new("success_share_low95", low, ""),
+        Metric::new("success_share_high95", high, ""),
+    ];
+    let note = format!(
+        "{n} runs of {TRAVEL_M} m, {RUNS_PER_STORE} a store of 80 m × 50 m whose map was taught along {} m, {:.0} % of the shelf sections rearranged since; success: within {NEAR_M} m at the end.",
+        size.length_m,
+        100.0 * REARRANGED
+    );
+    Ok(Run { metrics, figures: vec![quantiles(title, courses).draw()?], notes: vec![note], ..Run::default() })
+}
+
+fn quantiles(title: &str, courses: &[Course]) -> LinesPlot {
+    let n_steps = courses.iter().map(|course| course.errors.len()).min().unwrap_or(0);
+    let quantile = |share: f64| {
+        let at = |step: usize| {
+            let mut errors: Vec<f64> = courses.iter().map(|course| course.errors[step]).collect();
+            errors.sort_by(f64::total_cmp);
+            let index = (share * errors.len().saturating_sub(1) as f64).round() as usize;
+            (0.25 * step as f64, errors[index].min(99.0))
+        };
+        (0..n_steps).map(at).collect()
+    };
+    LinesPlot {
+        title: title.to_owned(),
+        x_label: "travelled, m".to_owned(),
+        y_label: "position error, m".to_owned(),
+        series: vec![
+            Series::new("median", quantile(0.5)),
+            Series::new("90 % of the runs are below", quantile(0.9)),
+            Series::new("95 %", quantile(0.95)),
+        ],
+        ..LinesPlot::default()
+    }
+}

@@ -1,0 +1,21 @@
+use serde::Deserialize;
+
+/// How large an experiment is.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Size {
+    /// Number of seeds, each with a world of its own.
+    pub n_seeds: u64,
+    /// Length of a drive, metres, where the experiment leaves it open.
+    #[serde(default)]
+    pub length_m: f64,
+}
+
+impl Size {
+    /// The seeds of `regress --seed SEED`, beside those of the stored logs.
+    pub(super) fn seeds(&self, seed: u64) -> std::ops::Range<u64> {
+        const FIRST: u64 = 20_000;
+        let first = FIRST + 1000 * seed;
+        first..first + self.n_seeds
+    }
+}

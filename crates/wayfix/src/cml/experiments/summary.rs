@@ -1,0 +1,32 @@
+use anyhow::Result;
+use rayon::prelude::*;
+
+use super::Size;
+use crate::evaluate::MeanInterval;
+use crate::report::Metric;
+
+/// Does an experiment with every seed, side by side; the results in the order of the seeds.
+pub(super) fn over_seeds<T: Send>(
+    size: &Size,
+    seed: u64,
+    one: impl Fn(u64) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    size.seeds(seed).collect::<Vec<u64>>().into_par_iter().map(|seed| one(seed)).collect()
+}
+
+/// The mean over seeds, and, from two on, half the width of its 95 % interval.
+pub(super) fn mean_of<T>(name: &str, unit: &str, seeds: &[T], value: impl Fn(&T) -> f64) -> Vec<Metric> {
+    let values: Vec<f64> = seeds.iter().map(value).collect();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let interval = MeanInterval::of(&values)
+        .map(|interval| Metric::new(format!("{name}_ci95"), interval.half_width, unit));
+    [Metric::new(name, mean, unit)].into_iter().chain(interval).collect()
+}
+
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+pub(super) fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::NAN, f64::max)
+}

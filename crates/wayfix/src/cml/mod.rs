@@ -1,0 +1,29 @@
+//! Appearance maps: places that are learned, recognized and forgotten by their looks, with
+//! [`AppearanceLocalizer`](wayfix_appearance_cml::AppearanceLocalizer).
+//!
+//! A [`Plan`] of a log or of a [`Recording`](recording::Recording) says what is taught and what is localized, [`run`] does it with a [`CmlSystem`];
+//! [`summarize`] gives the figures, [`pictures`] the pictures; [`experiments`] are those of the paper, for `wayfix regress cml`.
+
+mod estimates;
+pub mod experiments;
+mod figures;
+mod odometry;
+mod params;
+mod pictures;
+mod plan;
+mod reader;
+pub mod recording;
+mod run;
+mod saved;
+mod system;
+
+pub use estimates::CmlEstimateLog;
+pub use figures::{summarize, task};
+pub use odometry::made_odometry;
+pub use params::{CmlParams, MadeOdometry, PoseSigmas};
+pub use pictures::pictures;
+pub use plan::{CameraChoice, Plan};
+pub use reader::ViewReader;
+pub use run::{CmlRun, StartPlace, Task, first_true_pose, run};
+pub use saved::{MapSaver, SavedViewsError, end_note, read_map};
+pub use system::{CmlSystem, FrameResult, PanoramaLocalizer, PanoramaMap};

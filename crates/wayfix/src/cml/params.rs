@@ -1,0 +1,51 @@
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaParams};
+
+/// Everything that `wayfix run cml` is tuned by. What a file of parameters does not name keeps its default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct CmlParams {
+    /// What is known of the poses that a map is taught with.
+    pub taught: PoseSigmas,
+    /// What is known of the start.
+    pub start: PoseSigmas,
+    /// How a folder of frames, which has no odometry, comes by one.
+    pub made_odometry: MadeOdometry,
+    /// How panoramas are described.
+    pub views: PanoramaParams,
+    /// The localizer.
+    pub localizer: LocalizerParams,
+}
+
+/// Standard deviations of a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct PoseSigmas {
+    /// Of x and y, metres.
+    pub position: f64,
+    /// Of the heading, radians.
+    pub heading: f64,
+}
+
+impl Default for PoseSigmas {
+    fn default() -> Self {
+        Self { position: 0.02, heading: 0.05 }
+    }
+}
+
+/// Odometry made of a path: its increments, smoothed, with noise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct MadeOdometry {
+    /// Standard deviation of the Gaussian that smooths the path, in frames: what measures a path trembles, wheels do not.
+    pub smoothing_frames: f64,
+    /// The noise; as much as the localizer reckons with, unless said otherwise.
+    pub noise: OdometryNoise,
+}
+
+impl Default for MadeOdometry {
+    fn default() -> Self {
+        Self { smoothing_frames: 2.0, noise: OdometryNoise::default() }
+    }
+}

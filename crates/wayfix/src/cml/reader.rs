@@ -1,0 +1,67 @@
+use anyhow::{Result, anyhow};
+use wayfix_appearance_cml::{Donut, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams};
+use wayfix_sensor_log::EncodedImage;
+
+/// Makes descriptors of a camera's images: panoramas, or raw images whose ring is unwrapped first.
+#[derive(Clone, Debug)]
+pub struct ViewReader {
+    params: PanoramaParams,
+    donut: Option<Donut>,
+    /// Made for the size of the first image.
+    features: Option<PanoramaFeatures>,
+}
+
+/// Columns of a panorama to each sector, and most rows to each ring, when a ring is unwrapped.
+const OVERSAMPLING: usize = 3;
+
+impl ViewReader {
+    /// A reader of panoramas, or of raw images with a ring.
+    pub fn new(params: PanoramaParams, donut: Option<Donut>) -> Self {
+        Self { params, donut, features: None }
+    }
+
+    /// How views are described.
+    pub fn params(&self) -> &PanoramaParams {
+        &self.params
+    }
+
+    /// Columns and rows of a panorama; `None` before the first.
+    pub fn size(&self) -> Option<(usize, usize)> {
+        self.features.as_ref().map(PanoramaFeatures::size)
+    }
+
+    /// The panorama of an image.
+    ///
+    /// # Errors
+    /// When the image cannot be decoded, or has no such ring.
+    pub fn panorama(&self, image: &EncodedImage) -> Result<Panorama> {
+        let decoded = image.decode_rgb()?;
+        let (width, height) = (decoded.width as usize, decoded.height as usize);
+        let picture = Panorama::from_rgb(width, height, decoded.pixels)?;
+        let Some(donut) = &self.donut else { return Ok(picture) };
+        let depth = (donut.radii[1] - donut.radii[0]).max(1.0) as usize;
+        let n_rows = depth.min(OVERSAMPLING * self.params.n_rings);
+        let n_columns = OVERSAMPLING * self.params.n_sectors;
+        Ok(donut.unwrap_image(width, height, picture.pixels(), n_columns, n_rows)?)
+    }
+
+    /// What an image looks like.
+    ///
+    /// # Errors
+    /// As [`panorama`](Self::panorama), and when it is of another size than the first, blank or saturated.
+    pub fn describe(&mut self, image: &EncodedImage) -> Result<PanoramaDescriptor> {
+        let panorama = self.panorama(image)?;
+        let size = (panorama.n_columns(), panorama.n_rows());
+        let features = match &self.features {
+            Some(features) => features,
+            None => {
+                let features = PanoramaFeatures::new(self.params, size.0, size.1)
+                    .map_err(|error| anyhow!("panoramas of {} × {} pixels: {error}", size.0, size.1))?;
+                // A camera is known by its first view that shows something.
+                features.describe(&panorama)?;
+                &*self.features.insert(features)
+            }
+        };
+        Ok(features.describe(&panorama)?)
+    }
+}

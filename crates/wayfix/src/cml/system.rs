@@ -1,0 +1,187 @@
+use std::time::Duration;
+
+use nalgebra::Vector3;
+use wayfix_appearance_cml::{
+    AppearanceIndex, AppearanceLocalizer, AppearanceMap, Event, PanoramaDescriptor, ReferenceSearch, Start,
+};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_gaussian_core::Gaussian;
+use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
+
+use super::{CmlParams, PoseSigmas, ViewReader, odometry::HeldVelocity};
+use crate::system::{Events, Stopwatch, System};
+
+/// The localizer of panoramas with the index that does not compare with every reference.
+pub type PanoramaLocalizer = AppearanceLocalizer<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
+/// Its map.
+pub type PanoramaMap = AppearanceMap<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
+
+/// The localizer, fed with the records of a log.
+pub struct CmlSystem {
+    reader: ViewReader,
+    localizer: PanoramaLocalizer,
+    velocity: HeldVelocity,
+    odometry: Option<Pose2<f64>>,
+    frames: Vec<FrameResult>,
+    events: Events,
+}
+
+/// What one view gave.
+#[derive(Clone, Debug)]
+pub struct FrameResult {
+    /// When it was taken.
+    pub stamp: Stamp,
+    /// The most probable place, with covariance in its own frame; `None` while nothing is known.
+    pub pose: Option<Gaussian<Pose2<f64>>>,
+    /// Whether it is the only one.
+    pub is_certain: bool,
+    /// Where odometry alone would have it; `None` without a known start.
+    pub odometry: Option<Pose2<f64>>,
+    /// The reference that looks most like the view before anything was learned from it: its distance, and where it was seen.
+    pub nearest: Option<(f64, [f64; 2])>,
+    /// Places that looked like the view.
+    pub n_sightings: usize,
+    /// References of the map afterwards.
+    pub n_references: usize,
+    /// Computing time from the decoded image on.
+    pub step: Duration,
+}
+
+impl CmlSystem {
+    /// A system with a map, which may be empty.
+    ///
+    /// # Errors
+    /// When a parameter has no meaning.
+    pub fn new(params: &CmlParams, reader: ViewReader, map: PanoramaMap) -> anyhow::Result<Self> {
+        Ok(Self {
+            reader,
+            localizer: PanoramaLocalizer::with_map(params.localizer, map, Start::Anywhere)?,
+            velocity: HeldVelocity::default(),
+            odometry: None,
+            frames: Vec::new(),
+            events: Events::default(),
+        })
+    }
+
+    /// What every view so far gave.
+    pub fn frames(&self) -> &[FrameResult] {
+        &self.frames
+    }
+
+    /// The localizer.
+    pub fn localizer(&self) -> &PanoramaLocalizer {
+        &self.localizer
+    }
+
+    /// How views are described, and the size of the panoramas.
+    pub fn reader(&self) -> &ViewReader {
+        &self.reader
+    }
+
+    /// Teaches what a place looks like; a view that shows nothing is counted and left out.
+    ///
+    /// # Errors
+    /// When the pose has no meaning or the map is full.
+    pub fn teach(
+        &mut self,
+        image: &EncodedImage,
+        pose: &Pose2<f64>,
+        sigmas: &PoseSigmas,
+    ) -> anyhow::Result<()> {
+        match self.reader.describe(image) {
+            Ok(view) => {
+                self.localizer.teach(view, &gaussian(pose, sigmas)?)?;
+                self.events.count("taught");
+            }
+            Err(error) => self.events.refuse("view_refused", format!("{error:#}")),
+        }
+        Ok(())
+    }
+
+    /// Says where the robot is.
+    ///
+    /// # Errors
+    /// When the start has no meaning.
+    pub fn start(&mut self, start: Start) -> anyhow::Result<()> {
+        self.odometry = match &start {
+            Start::Known(pose) => Some(*pose.mean()),
+            _ => None,
+        };
+        Ok(self.localizer.restart(start)?)
+    }
+
+    fn move_by(&mut self, increment: &Pose2<f64>) -> Result<(), String> {
+        self.localizer.predict(increment).map_err(|error| error.to_string())?;
+        self.odometry = self.odometry.map(|pose| pose.compose(increment));
+        Ok(())
+    }
+
+    fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
+        let panorama_took = Stopwatch::start();
+        let view = self.reader.describe(image).map_err(|error| format!("{error:#}"))?;
+        let describing = panorama_took.elapsed();
+        let nearest = self.nearest(&view);
+        let stopwatch = Stopwatch::start();
+        let outcome = self.localizer.update(view).map_err(|error| error.to_string())?;
+        let step = describing + stopwatch.elapsed();
+        for event in &outcome.events {
+            self.events.count(match event {
+                Event::NewReference(_) => "new_reference",
+                Event::Forgotten(_) => "reference_forgotten",
+                Event::Lost => "lost",
+                Event::Found => "found",
+                Event::Relocated => "relocated",
+                _ => "other",
+            });
+        }
+        self.frames.push(FrameResult {
+            stamp,
+            pose: self.localizer.estimate().cloned(),
+            is_certain: outcome.estimate.is_some(),
+            odometry: self.odometry,
+            nearest,
+            n_sightings: outcome.n_sightings,
+            n_references: self.localizer.map().len(),
+            step,
+        });
+        Ok(())
+    }
+
+    fn nearest(&self, view: &PanoramaDescriptor) -> Option<(f64, [f64; 2])> {
+        let map = self.localizer.map();
+        let nearest = *map.search().nearest(view, 1).first()?;
+        let places = &map.reference(nearest.id)?.places;
+        let heaviest = places.iter().max_by(|a, b| a.weight.total_cmp(&b.weight))?;
+        let mean = heaviest.gaussian.mean();
+        Some((nearest.comparison.distance, [mean.x(), mean.y()]))
+    }
+}
+
+/// A pose that is known so well.
+pub(super) fn gaussian(pose: &Pose2<f64>, sigmas: &PoseSigmas) -> anyhow::Result<Gaussian<Pose2<f64>>> {
+    Ok(Gaussian::from_sigmas(*pose, &Vector3::new(sigmas.position, sigmas.position, sigmas.heading))?)
+}
+
+impl System for CmlSystem {
+    fn take(&mut self, record: &Record) -> Result<(), String> {
+        if let Some(increment) = self.velocity.until(record.stamp) {
+            self.move_by(&increment)?;
+        }
+        match &record.data {
+            Data::OdometryIncrement(increment) => self.move_by(increment),
+            Data::Velocity(velocity) => {
+                if !(velocity.linear.is_finite() && velocity.angular.is_finite()) {
+                    return Err("a velocity that is not finite".to_owned());
+                }
+                self.velocity.hold(record.stamp, *velocity);
+                Ok(())
+            }
+            Data::Image(image) => self.see(record.stamp, image),
+            _ => Ok(()),
+        }
+    }
+
+    fn events(&mut self) -> &mut Events {
+        &mut self.events
+    }
+}
