@@ -24,14 +24,15 @@ use crate::{
 
 /// Tracking: where a target is in every picture, from where it is in the first one.
 ///
-/// A box is four numbers, left, top, width and height in pixels, or eight, the corners of a quadrangle, whose upright bounding box counts; commas, tabs or
-/// blanks between them. In a file of true boxes line k is frame k; where the target is out of the picture the line says 0,0,0,0 or NaN; if there are fewer lines
-/// than frames, nothing is known of the rest.
+/// A box is four numbers, left, top, width and height in pixels, or eight, the corners of a quadrangle, whose upright bounding box counts;
+/// commas, tabs or blanks between them. In a file of true boxes line k is frame k; where the target is out of the picture the line says
+/// 0,0,0,0 or NaN; if there are fewer lines than frames, nothing is known of the rest.
 ///
-/// `iou_mean` is the mean overlap (intersection over union) with the true boxes over all frames from the first one on, `success_auc` the share
-/// of frames with more overlap than each of 0, 0.05, …, 1, averaged, `precision_20px` the share of those whose centre is at most 20 pixels off. A frame
-/// counts with overlap 0 when the tracker says that the target is lost (`n_lost`), and when it cannot be read or is refused (`n_without_estimate`). Frames without a true
-/// box are not judged. Without --truth these figures are absent. `frame_mean_ms` is the time of the tracker, without decoding.
+/// `iou_mean` is the mean overlap (intersection over union) with the true boxes over all frames from the first one on, `success_auc` the
+/// share of frames with more overlap than each of 0, 0.05, …, 1, averaged, `precision_20px` the share of those whose centre is at most 20
+/// pixels off. A frame counts with overlap 0 when the tracker says that the target is lost (`n_lost`), and when it cannot be read or is
+/// refused (`n_without_estimate`). Frames without a true box are not judged. Without --truth these figures are absent. `frame_mean_ms` is
+/// the time of the tracker, without decoding.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    ColorSpace, CondensationError, ContourTracker, CorrelationTracker, Picture, Target, Tracker,
+    ColorSpace, CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture, Target, Tracker,
 };
 
 /// Any tracker, behind one type.
@@ -30,6 +30,12 @@ pub struct TargetColors {
 }
 
 impl Follower for CorrelationTracker {
+    fn follow(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+        self.track(picture, rng)
+    }
+}
+
+impl Follower for HeadTracker {
     fn follow(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
         self.track(picture, rng)
     }

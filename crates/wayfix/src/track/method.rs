@@ -1,7 +1,8 @@
 use clap::ValueEnum;
 use serde::Deserialize;
 use wayfix_condensation::{
-    BitMask, BoundingBox, CondensationError, ContourTracker, CorrelationTracker, Picture, TrackingCues,
+    BitMask, BoundingBox, CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture,
+    TrackingCues,
 };
 
 use super::{Follower, TrackParams, follower::ContourFollower};
@@ -13,6 +14,8 @@ pub enum Method {
     /// A correlation filter over gradients and colours: a box around anything.
     #[default]
     Box,
+    /// An ellipse by its colours and its rim, as of a head in front of a room.
+    Head,
     /// CONDENSATION in colour space, validated by an affine contour: the outline of a target of a shape of its own.
     Contour,
     /// The same with colours that stay as they were at the start.
@@ -37,6 +40,7 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Self::Box => "box",
+            Self::Head => "head",
             Self::Contour => "contour",
             Self::ContourFixedColors => "contour-fixed-colors",
             Self::ContourColorOnly => "contour-color-only",
@@ -60,6 +64,10 @@ impl Method {
                 let bounds = start.bounding_box()?;
                 let tracker = CorrelationTracker::new(picture, bounds, params.correlation.clone())?;
                 return Ok(Box::new(tracker));
+            }
+            Self::Head => {
+                let bounds = start.bounding_box()?;
+                return Ok(Box::new(HeadTracker::new(picture, bounds, params.head.clone())?));
             }
             Self::Contour => {}
             Self::ContourFixedColors => contour.adapts = false,

@@ -1,6 +1,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::{ContourTrackerParams, CorrelationTrackerParams};
+use wayfix_condensation::{ContourTrackerParams, CorrelationTrackerParams, HeadTrackerParams};
 
 use crate::settings::over_defaults;
 
@@ -18,6 +18,8 @@ use crate::settings::over_defaults;
 pub struct TrackParams {
     /// The box tracker.
     pub correlation: CorrelationTrackerParams,
+    /// The head tracker.
+    pub head: HeadTrackerParams,
     /// The contour tracker.
     pub contour: ContourTrackerParams,
 }

@@ -9,8 +9,9 @@ use crate::system::{Events, Stopwatch, System};
 
 /// A tracker, fed with the images of a log.
 ///
-/// It begins in the first frame that can be read, with the box it is given, or else with the first true box. A frame that cannot be read or is refused has no
-/// estimate: where the truth is known it counts with overlap 0, like a frame in which the tracker says that it has lost the target.
+/// It begins in the first frame that can be read, with the box it is given, or else with the first true box. A frame that cannot be read or
+/// is refused has no estimate: where the truth is known it counts with overlap 0, like a frame in which the tracker says that it has lost
+/// the target.
 pub struct TrackSystem {
     setup: TrackSetup,
     rng: ChaCha8Rng,
