@@ -74,7 +74,8 @@ fn one(length_m: f64, seed: u64) -> Result<[Course; 2]> {
     let building = Lab::draw(&mut Draw::World.rng(seed)).building();
     let ambience = AmbienceParams { switching_s: Some(SWITCHING_S), ..AmbienceParams::default() };
     let params = IndoorParams { drive: robot(seed), ambience, n_people: 1, ..IndoorParams::default() };
-    let trip = tour(&building, length_m, params, (seed, 0))?;
+    let mut trip = tour(&building, length_m, params, (seed, 0))?;
+    trip.steps.truncate(STEPS[STEPS.len() - 1]);
     let with = |forgetting| {
         let params = LocalizerParams {
             map: MapParams { forgetting, ..MapParams::default() },
