@@ -10,8 +10,6 @@ use super::{Course, Size, follow};
 use crate::cml::PanoramaLocalizer;
 use crate::report::{Metric, Run};
 
-/// Share of the shelf sections that are rearranged in four weeks.
-const REARRANGED: f64 = 0.4;
 /// Customers and employees in the store.
 const N_PEOPLE: usize = 20;
 
@@ -20,7 +18,7 @@ const N_PEOPLE: usize = 20;
 /// # Errors
 /// When a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn four_weeks(size: &Size, seed: u64) -> Result<Run> {
-    let seeds = over_seeds(size, seed, |seed| one(size.length_m, seed))?;
+    let seeds = over_seeds(size, seed, |seed| one(size, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (name, at) in [("static", 0), ("adapting", 1)] {
         let of = |courses: &[Course; 2], value: fn(&[f64]) -> f64| value(&courses[at].errors);
@@ -45,17 +43,17 @@ pub fn four_weeks(size: &Size, seed: u64) -> Result<Run> {
         "{} seeds; a store of 80 m × 50 m, {} m to learn, as much four weeks later, {:.0} % of the shelf sections rearranged, {N_PEOPLE} people.",
         size.n_seeds,
         size.length_m,
-        100.0 * REARRANGED
+        100.0 * size.rearranged
     );
     Ok(Run { metrics, figures: vec![plot.draw()?], notes: vec![note], ..Run::default() })
 }
 
-fn one(length_m: f64, seed: u64) -> Result<[Course; 2]> {
+fn one(size: &Size, seed: u64) -> Result<[Course; 2]> {
     let store = Store::draw(StoreParams::home_store(), &mut Draw::World.rng(seed))?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
-    let map = taught(&tour(&store.building(), length_m, params, (seed, 0))?)?;
-    let later = store.rearranged(REARRANGED, &mut Draw::Rearranged(1).rng(seed))?;
-    let trip = tour(&later.building(), length_m, params, (seed, 1))?;
+    let map = taught(&tour(&store.building(), size.length_m, params, (seed, 0))?)?;
+    let later = store.rearranged(size.rearranged, &mut Draw::Rearranged(1).rng(seed))?;
+    let trip = tour(&later.building(), size.length_m, params, (seed, 1))?;
     let with = |learning| {
         let params = LocalizerParams { learning, ..LocalizerParams::default() };
         follow(&mut PanoramaLocalizer::with_map(params, map.clone(), known_start(&trip)?)?, &trip)

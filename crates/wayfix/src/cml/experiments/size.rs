@@ -9,9 +9,16 @@ pub struct Size {
     /// Length of a drive, metres, where the experiment leaves it open.
     #[serde(default)]
     pub length_m: f64,
+    /// Share of the shelf sections that are rearranged between visits, where the experiment leaves it open. Default 0.4.
+    #[serde(default = "Size::usually_rearranged")]
+    pub rearranged: f64,
 }
 
 impl Size {
+    fn usually_rearranged() -> f64 {
+        0.4
+    }
+
     /// The seeds of `regress --seed SEED`, beside those of the stored logs.
     pub(super) fn seeds(&self, seed: u64) -> std::ops::Range<u64> {
         const FIRST: u64 = 20_000;
