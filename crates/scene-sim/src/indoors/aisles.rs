@@ -1,3 +1,5 @@
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_estimation_traits::Pose2;
@@ -63,20 +65,16 @@ impl Aisles {
         check::count("crossing along y", start[1], self.ys.len() - 1)?;
         let first = if start[0] + 1 < self.xs.len() { start[0] + 1 } else { start[0] - 1 };
         let mut walk = vec![start, [first, start[1]]];
-        let mut driven = vec![(edge(walk[0], walk[1]), 1)];
+        let mut driven = BTreeMap::from([(edge(walk[0], walk[1]), 1)]);
         let mut sum_m = self.distance(walk[0], walk[1]);
         while sum_m < length_m {
             let (last, here) = (walk[walk.len() - 2], walk[walk.len() - 1]);
-            let times =
-                |to: &Crossing| driven.iter().find(|(e, _)| *e == edge(here, *to)).map_or(0, |(_, n)| *n);
+            let times = |to: &Crossing| driven.get(&edge(here, *to)).copied().unwrap_or(0);
             let ahead: Vec<Crossing> = self.neighbours(here).into_iter().filter(|to| *to != last).collect();
             let least = ahead.iter().map(times).min().unwrap_or(0);
             let fresh: Vec<Crossing> = ahead.into_iter().filter(|to| times(to) == least).collect();
             let next = fresh[below(fresh.len(), rng)];
-            match driven.iter_mut().find(|(e, _)| *e == edge(here, next)) {
-                Some((_, n)) => *n += 1,
-                None => driven.push((edge(here, next), 1)),
-            }
+            *driven.entry(edge(here, next)).or_insert(0) += 1;
             sum_m += self.distance(here, next);
             walk.push(next);
         }

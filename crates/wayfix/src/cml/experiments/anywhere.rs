@@ -4,10 +4,11 @@ use rayon::prelude::*;
 use wayfix_appearance_cml::{LocalizerParams, Start};
 use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
 
-use super::follow::{Map, known_start, taught};
+use super::follow::{known_start, taught};
 use super::summary::over_seeds;
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Localizer, Size, Trip, follow};
+use super::{Course, Size, Trip, follow};
+use crate::cml::{PanoramaLocalizer, PanoramaMap};
 use crate::evaluate::proportion_interval;
 use crate::plot::{LinesPlot, Series};
 use crate::report::{Metric, Run};
@@ -28,7 +29,7 @@ const N_PEOPLE: usize = 20;
 pub fn global_start(size: &Size, seed: u64) -> Result<Run> {
     let courses = in_stores(size, seed, |map, later, at| {
         let trip = away(later, at)?;
-        follow(&mut Localizer::with_map(LocalizerParams::default(), map.clone(), Start::Anywhere)?, &trip)
+        follow(&mut PanoramaLocalizer::with_map(LocalizerParams::default(), map.clone(), Start::Anywhere)?, &trip)
     })?;
     report("From anywhere", size, &courses)
 }
@@ -41,7 +42,7 @@ pub fn carried_away(size: &Size, seed: u64) -> Result<Run> {
     let courses = in_stores(size, seed, |map, later, at| {
         let (before, after) = (away(later, (at.0, at.1 + 1000))?, away(later, at)?);
         let mut localizer =
-            Localizer::with_map(LocalizerParams::default(), map.clone(), known_start(&before)?)?;
+            PanoramaLocalizer::with_map(LocalizerParams::default(), map.clone(), known_start(&before)?)?;
         follow(&mut localizer, &before)?;
         follow(&mut localizer, &after)
     })?;
@@ -52,7 +53,7 @@ pub fn carried_away(size: &Size, seed: u64) -> Result<Run> {
 fn in_stores(
     size: &Size,
     seed: u64,
-    run: impl Fn(&Map, &Building, (u64, u64)) -> Result<Course> + Sync,
+    run: impl Fn(&PanoramaMap, &Building, (u64, u64)) -> Result<Course> + Sync,
 ) -> Result<Vec<Course>> {
     let stores = Size { n_seeds: size.n_seeds.div_ceil(RUNS_PER_STORE), ..*size };
     let courses = over_seeds(&stores, seed, |seed| {

@@ -6,7 +6,8 @@ use wayfix_scene_sim::world::World;
 use super::follow::known_start;
 use super::summary::{largest, mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot};
-use super::{Course, Localizer, Size, Trip, follow};
+use super::{Course, Size, Trip, follow};
+use crate::cml::PanoramaLocalizer;
 use crate::plot::MapPlot;
 use crate::report::{Metric, Run};
 
@@ -58,7 +59,7 @@ fn one(seed: u64) -> Result<Lapped> {
     let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
     let params = IndoorParams { drive: robot(seed), ..IndoorParams::default() };
     let trip = Trip::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
-    let with = |params| follow(&mut Localizer::new(params, known_start(&trip)?)?, &trip);
+    let with = |params| follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
     let (course, printed) = (with(LocalizerParams::default())?, with(LocalizerParams::printed())?);
     Ok(Lapped { building, trip, course, printed })
 }

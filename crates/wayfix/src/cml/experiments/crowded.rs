@@ -5,7 +5,8 @@ use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
 use super::follow::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Localizer, Size, follow};
+use super::{Course, Size, follow};
+use crate::cml::PanoramaLocalizer;
 use crate::report::{Metric, Run};
 
 /// People in 25 m × 10 m: hardly a view without somebody in it.
@@ -38,7 +39,7 @@ fn one(length_m: f64, seed: u64) -> Result<[Course; 3]> {
     let through = |n_people, params: LocalizerParams| {
         let drive = IndoorParams { drive: robot(seed), n_people, ..IndoorParams::default() };
         let trip = tour(&building, length_m, drive, (seed, 0))?;
-        follow(&mut Localizer::new(params, known_start(&trip)?)?, &trip)
+        follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
     let ours = LocalizerParams::default();
     Ok([

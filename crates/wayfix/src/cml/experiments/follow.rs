@@ -1,18 +1,12 @@
 use anyhow::Result;
 use nalgebra::Vector3;
-use wayfix_appearance_cml::{
-    AppearanceIndex, AppearanceLocalizer, AppearanceMap, Event, LocalizerParams, PanoramaDescriptor, Start,
-};
+use wayfix_appearance_cml::{Event, LocalizerParams, Start};
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::Trip;
+use crate::cml::{PanoramaLocalizer, PanoramaMap};
 use crate::system::Stopwatch;
-
-/// The localizer as all experiments use it.
-pub type Localizer = AppearanceLocalizer<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
-/// Its map.
-pub(super) type Map = AppearanceMap<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
 
 /// How well a pose is known that somebody has measured by hand, m, m and rad.
 const SURVEYED: [f64; 3] = [0.02, 0.02, 0.01];
@@ -38,7 +32,7 @@ pub struct Course {
 ///
 /// # Errors
 /// When it refuses a step.
-pub fn follow(localizer: &mut Localizer, trip: &Trip) -> Result<Course> {
+pub fn follow(localizer: &mut PanoramaLocalizer, trip: &Trip) -> Result<Course> {
     let mut course = Course::default();
     for step in &trip.steps {
         let stopwatch = Stopwatch::start();
@@ -61,8 +55,8 @@ pub fn follow(localizer: &mut Localizer, trip: &Trip) -> Result<Course> {
 }
 
 /// A map taught with the true poses of a trip: "manually corrected odometric data".
-pub(super) fn taught(trip: &Trip) -> Result<Map> {
-    let mut teacher = Localizer::new(LocalizerParams::default(), Start::Anywhere)?;
+pub(super) fn taught(trip: &Trip) -> Result<PanoramaMap> {
+    let mut teacher = PanoramaLocalizer::new(LocalizerParams::default(), Start::Anywhere)?;
     for step in &trip.steps {
         if let Some(view) = &step.view {
             teacher.teach(view.clone(), &surveyed(step.pose)?)?;

@@ -6,7 +6,8 @@ use super::follow::{known_start, taught};
 use super::histogram::histogram;
 use super::summary::{largest, mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Localizer, Size, follow};
+use super::{Course, Size, follow};
+use crate::cml::PanoramaLocalizer;
 use crate::report::{Metric, Run};
 
 /// Share of the shelf sections that are rearranged in four weeks.
@@ -57,7 +58,7 @@ fn one(length_m: f64, seed: u64) -> Result<[Course; 2]> {
     let trip = tour(&later.building(), length_m, params, (seed, 1))?;
     let with = |learning| {
         let params = LocalizerParams { learning, ..LocalizerParams::default() };
-        follow(&mut Localizer::with_map(params, map.clone(), known_start(&trip)?)?, &trip)
+        follow(&mut PanoramaLocalizer::with_map(params, map.clone(), known_start(&trip)?)?, &trip)
     };
     Ok([with(Learning::Static)?, with(Learning::Adapting)?])
 }

@@ -5,7 +5,8 @@ use wayfix_scene_sim::indoors::{AmbienceParams, IndoorParams, Lab};
 use super::follow::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Localizer, Size, follow};
+use super::{Course, Size, follow};
+use crate::cml::PanoramaLocalizer;
 use crate::plot::{LinesPlot, Series};
 use crate::report::{Metric, Run};
 
@@ -79,7 +80,7 @@ fn one(length_m: f64, seed: u64) -> Result<[Course; 2]> {
             map: MapParams { forgetting, ..MapParams::default() },
             ..LocalizerParams::default()
         };
-        follow(&mut Localizer::new(params, known_start(&trip)?)?, &trip)
+        follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
     Ok([with(Forgetting::Passive)?, with(Forgetting::Active)?])
 }

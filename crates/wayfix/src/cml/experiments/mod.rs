@@ -17,7 +17,7 @@ mod worlds;
 pub use anywhere::{carried_away, global_start};
 pub use area::laps;
 pub use crowded::crowded;
-pub use follow::{Course, Localizer, follow};
+pub use follow::{Course, follow};
 pub use four_weeks::four_weeks;
 pub use lab::changing_lab;
 pub use size::Size;

@@ -4,7 +4,8 @@ use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
 
 use super::follow::{known_start, taught};
 use super::worlds::{Draw, robot, tour};
-use super::{Localizer, Size, Trip, follow};
+use super::{Size, Trip, follow};
+use crate::cml::PanoramaLocalizer;
 use crate::plot::{LinesPlot, Scale, Series};
 use crate::report::{Metric, Run};
 
@@ -29,7 +30,7 @@ pub fn step_time(size: &Size, seed: u64) -> Result<Run> {
     for n in N_REFERENCES.into_iter().filter(|n| *n <= learned.steps.len()) {
         let part = Trip { steps: learned.steps[..n].to_vec() };
         let mut localizer =
-            Localizer::with_map(LocalizerParams::default(), taught(&part)?, known_start(&again)?)?;
+            PanoramaLocalizer::with_map(LocalizerParams::default(), taught(&part)?, known_start(&again)?)?;
         let mut steps = follow(&mut localizer, &again)?.step_s;
         steps.sort_by(f64::total_cmp);
         points.push((n as f64, 1e3 * steps[steps.len() / 2]));

@@ -7,7 +7,8 @@ use super::follow::known_start;
 use super::histogram::histogram;
 use super::summary::{largest, mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Localizer, Size, Trip, follow};
+use super::{Course, Size, Trip, follow};
+use crate::cml::PanoramaLocalizer;
 use crate::plot::MapPlot;
 use crate::report::{Metric, Run};
 
@@ -74,7 +75,7 @@ fn one(length_m: f64, seed: u64) -> Result<Vec<Day>> {
     };
     let mut store = Store::draw(shape, &mut Draw::World.rng(seed))?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
-    let mut localizer: Option<Localizer> = None;
+    let mut localizer: Option<PanoramaLocalizer> = None;
     let mut days = Vec::new();
     for day in 0..N_DAYS as u64 {
         if day > 0 {
@@ -84,9 +85,9 @@ fn one(length_m: f64, seed: u64) -> Result<Vec<Day>> {
         let trip = tour(&building, length_m, params, (seed, day))?;
         let mut today = match localizer.take() {
             Some(yesterday) => {
-                Localizer::with_map(LocalizerParams::default(), yesterday.into_map(), known_start(&trip)?)?
+                PanoramaLocalizer::with_map(LocalizerParams::default(), yesterday.into_map(), known_start(&trip)?)?
             }
-            None => Localizer::new(LocalizerParams::default(), known_start(&trip)?)?,
+            None => PanoramaLocalizer::new(LocalizerParams::default(), known_start(&trip)?)?,
         };
         let course = follow(&mut today, &trip)?;
         localizer = Some(today);

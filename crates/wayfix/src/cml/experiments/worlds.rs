@@ -1,4 +1,5 @@
 use anyhow::Result;
+use rand::Rng;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_scene_sim::drive::DriveParams;
 use wayfix_scene_sim::indoors::{Building, IndoorParams, calibrated_robot};
@@ -34,7 +35,6 @@ impl Draw {
 
     /// The streams of a visit, beside the generator of its route.
     pub(super) fn streams(self, seed: u64) -> Streams {
-        use rand::Rng;
         Streams::new(ChaCha8Rng::seed_from_u64(self.rng(seed).next_u64()))
     }
 }
