@@ -11,6 +11,8 @@ pub enum Heading {
     AlongPath,
     /// The camera never turns: panoramas that are aligned with a compass.
     Fixed,
+    /// The camera turns on its own, and nobody knows how.
+    Unknown,
 }
 
 impl Heading {
@@ -34,7 +36,7 @@ pub(in crate::cml) fn poses(
     let headings = match heading {
         Heading::Given => frames.iter().map(|frame| frame.heading.unwrap_or(0.0)).collect(),
         Heading::Fixed => vec![0.0; frames.len()],
-        Heading::AlongPath => tangents(&x, &y),
+        Heading::AlongPath | Heading::Unknown => tangents(&x, &y),
     };
     let measured = frames.iter().zip(&headings);
     let measured =

@@ -20,6 +20,8 @@ const MOST: f64 = 0.5;
 const LEAST_TURN: f64 = 0.25;
 /// Views that differ by more than this share of what views of anywhere differ by are not of the same place.
 const ALIKE: f64 = 0.8;
+/// Turns at random disagree by 0.46 rad in the mean, with what [`MOST`] cuts off; those of a path that trembles by half of that.
+const UNRELATED: f64 = 0.35;
 /// Fewer turns tell nothing.
 const ENOUGH: usize = 10;
 /// Comparisons of a lag; more tell nothing new.
@@ -29,6 +31,11 @@ impl TurnEvidence {
     /// Whether the camera never turns, by far.
     pub fn is_fixed(&self) -> bool {
         self.fixed < 0.5 * self.clockwise.min(self.counterclockwise)
+    }
+
+    /// Whether the views turn in ways that have nothing to do with the path.
+    pub fn is_unrelated(&self) -> bool {
+        self.fixed.min(self.clockwise).min(self.counterclockwise) > UNRELATED
     }
 
     /// Whether columns go counterclockwise.
