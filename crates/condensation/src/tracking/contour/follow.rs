@@ -29,7 +29,8 @@ impl ContourTracker {
         let Some(scene) = scene else { return Ok(None) };
         if self.params.cues == TrackingCues::Shape {
             let (candidate, samples) = (Candidate::of_edges(&scene), self.samples.clone());
-            let quality = candidate.agreement.score(&self.params);
+            // Area and quality say nothing where no edge is found.
+            let quality = candidate.agreement.score(&self.params).min(candidate.agreement.affine);
             return Ok(Some(Found { candidate, quality, outline: None, cloud: None, samples }));
         }
         let states = self.hypotheses(rng)?;
