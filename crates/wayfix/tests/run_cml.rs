@@ -70,7 +70,7 @@ impl Drive {
 
     fn log(&self, scratch: &Scratch) -> PathBuf {
         let path = scratch.path("area.mcap");
-        wayfix_sensor_log::write(&path, self.records(), Format::Mcap).unwrap();
+        wayfix_sensor_log::write(&path, Format::Mcap, self.records()).unwrap();
         path
     }
 }
@@ -227,7 +227,7 @@ fn views_that_show_nothing_are_counted_and_passed_over() {
     records[images[50]].data = blank(120, 255);
     records[images[51]].data = blank(60, 90);
     let path = scratch.path("blank.mcap");
-    wayfix_sensor_log::write(&path, records, Format::Mcap).unwrap();
+    wayfix_sensor_log::write(&path, Format::Mcap, records).unwrap();
     let outcome = log_run(&path, &[]);
     assert_eq!(outcome.event("record_refused"), 3, "{}", outcome.stderr);
     for why in ["blank view", "saturated view", "60 × 20"] {
