@@ -157,8 +157,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         params: &MapParams,
     ) -> Vec<Sighting> {
         let limit = self.match_limit(params);
-        let mut matches = self.search.nearest(view, most);
-        matches.retain(|m| m.comparison.distance < limit);
+        let mut matches = self.search.nearest_within(view, most, limit);
         matches.extend(belief.iter().flat_map(|component| self.compare_near(view, component, limit)));
         self.places_of(once_each(matches), limit)
     }
