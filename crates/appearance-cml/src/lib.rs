@@ -32,6 +32,6 @@ pub use state::{
     unimodal,
 };
 pub use views::{
-    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe, RingOrder, Tone,
-    TurnSense,
+    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,
+    RingOrder, Tone, TurnSense,
 };

@@ -23,6 +23,7 @@ use crate::{
         self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
         Task, ViewReader, recording::Recording,
     },
+    commented::commented,
     report::Run,
     system::{Stopwatch, System},
 };
@@ -34,7 +35,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     };
     arguments.set_forgetting(&mut params);
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let saved = arguments.map.as_deref().map(cml::read_map).transpose()?;
