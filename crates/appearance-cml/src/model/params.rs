@@ -62,7 +62,7 @@ impl Default for ForgettingParams {
 pub struct MapParams {
     /// $`E^{max}`$, in units of the descriptor; `None` finds it from the data. Default `None`.
     pub match_limit: Option<f64>,
-    /// Where between noise (0) and far places (1) the limit found from the data lies. Default 0.5.
+    /// Where between noise (0) and far places (1) the limit found from the data lies. Default 0.4.
     pub match_share: f64,
     /// Distance to the nearest reference of the place from which on a view becomes a reference, as a multiple of the distance of
     /// successive views; never above $`E^{max}`$. Default 1. (As printed: $`E^{max}`$ itself, with [`PlaceUpdate::Pose`].)
@@ -91,7 +91,7 @@ impl Default for MapParams {
     fn default() -> Self {
         Self {
             match_limit: None,
-            match_share: 0.5,
+            match_share: 0.4,
             insertion: 1.0,
             learning_rate: 0.3,
             merge_distance: 7.8,
