@@ -85,7 +85,7 @@ fn drives() -> (Vec<Panorama>, Vec<Panorama>) {
         let size = |view: &Panorama| assert_eq!((view.n_columns(), view.n_rows()), (120, 20));
         steps
             .map(|step| {
-                Panorama::from_rgb(step.view.width as usize, step.view.height as usize, step.view.rgb)
+                Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb)
             })
             .map(|view| view.expect("pixels"))
             .inspect(size)
