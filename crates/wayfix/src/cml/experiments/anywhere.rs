@@ -41,8 +41,7 @@ pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
 pub fn carried_away(setup: &Setup, seed: u64) -> Result<Run> {
     let courses = in_stores(setup, seed, |map, later, at| {
         let (before, after) = (away(later, (at.0, at.1 + 1000))?, away(later, at)?);
-        let mut localizer =
-            PanoramaLocalizer::with_map(setup.localizer, map.clone(), known_start(&before)?)?;
+        let mut localizer = PanoramaLocalizer::with_map(setup.localizer, map.clone(), known_start(&before)?)?;
         follow(&mut localizer, &before)?;
         follow(&mut localizer, &after)
     })?;

@@ -77,10 +77,8 @@ fn one(setup: &Setup, seed: u64) -> Result<[Course; 2]> {
     let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
     trip.steps.truncate(STEPS[STEPS.len() - 1]);
     let with = |forgetting| {
-        let params = LocalizerParams {
-            map: MapParams { forgetting, ..setup.localizer.map },
-            ..setup.localizer
-        };
+        let params =
+            LocalizerParams { map: MapParams { forgetting, ..setup.localizer.map }, ..setup.localizer };
         follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
     Ok([with(Forgetting::Passive)?, with(Forgetting::Active)?])
