@@ -66,6 +66,8 @@ fn steps() -> Result<Vec<Step>> {
         task("fixtures", &["fixtures", "--check"]),
         task("regress", &["regress", "--quick"]),
         task("clients", &["clients"]),
+        task("campaign", &["campaign"]),
+        task("robot", &["robot"]),
     ])
 }
 

@@ -1,6 +1,6 @@
-//! `cargo xtask clients`: other people's programs read what the regression run wrote.
+//! `cargo xtask clients`: other people's programs read what the regression run wrote, and we read what others write.
 //!
-//! A format is right when somebody else's reader says so: Python's `mcap`, the Rerun command line, a browser.
+//! A format is right when somebody else's reader or writer says so: Python's `mcap` and `rosbags`, the Rerun command line, a browser.
 //! Where a program is missing its check is skipped, except under `CI=true`, where it is required.
 
 use std::path::{Path, PathBuf};
@@ -31,6 +31,13 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     )? {
         read_with_python(&logs)?;
     }
+    if available(
+        "Python's rosbags",
+        shell::python_has(&["rosbags", "mcap", "mcap_protobuf", "numpy"]),
+        ".ci/run, or pip install rosbags mcap mcap-protobuf-support numpy",
+    )? {
+        convert_ros_bags()?;
+    }
     let rerun = shell::python_tool("rerun");
     if available("Rerun", shell::have(&rerun), ".ci/run, or pip install rerun-sdk")? {
         logs.iter().try_for_each(|log| convert_with_rerun(&rerun, log))?;
@@ -43,7 +50,8 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
+/// Whether a program is there; what is missing is an error where CI requires it.
+pub(crate) fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
     let required = std::env::var("CI").is_ok_and(|value| value == "true");
     if !found && required {
         bail!("{what} is missing, and CI=true requires it ({remedy})");
@@ -52,6 +60,27 @@ fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
         println!("clients: {what} is missing, check skipped ({remedy})");
     }
     Ok(found)
+}
+
+/// Bags of known numbers, in both byte orders: `info` names their topics, and `convert` keeps every number.
+fn convert_ros_bags() -> Result<()> {
+    let folder = shell::target_dir().join("ros-bags");
+    let python =
+        |task: &str| shell::command(shell::python_tool("python3"), &["xtask/clients/ros_bags.py", task]);
+    shell::check(python("write").arg(&folder))?;
+    for order in ["little", "big"] {
+        let bag = folder.join(order).join(order).with_extension("mcap");
+        let converted = folder.join(format!("{order}-converted.mcap"));
+        let info = shell::output(shell::wayfix(&["info"]).arg(&bag))?;
+        for told in
+            ["laser scan", "odometry", "true pose", "image", "choose it as laser scan", "not understood"]
+        {
+            ensure!(info.contains(&format!(" {told}")), "{}: {told:?} is missing in\n{info}", bag.display());
+        }
+        shell::output(shell::wayfix(&["convert"]).arg(&bag).arg(&converted))?;
+        shell::check(python("check").arg(&bag).arg(&converted))?;
+    }
+    Ok(())
 }
 
 fn read_with_python(logs: &[PathBuf]) -> Result<()> {

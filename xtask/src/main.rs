@@ -1,11 +1,13 @@
 //! The workspace's tasks, one file each; every task shells out to the tools that do the work.
 
 mod bench;
+mod campaign;
 mod ci;
 mod clients;
 mod docs;
 mod fixtures;
 mod regress;
+mod robot;
 mod shell;
 mod tidy;
 
@@ -22,6 +24,8 @@ Usage: cargo xtask TASK [OPTIONS]
   tidy               check the invariants of docs/architecture.md that a machine can check
   docs [PACKAGE…]    build the API reference with formulas; --open shows it
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
+  campaign           run the recipe for GNU parallel of docs/campaigns
+  robot              build and run the robots of the folder robots, which are outside the workspace
   clients [DIR]      read the report and the logs in DIR (default target/regress) with other people's programs
 ";
 
@@ -41,6 +45,8 @@ fn main() -> ExitCode {
         "docs" => docs::run(&args),
         "bench" => bench::run(&args),
         "clients" => clients::run(&args),
+        "campaign" => campaign::run(&args),
+        "robot" => robot::run(&args),
         "" | "help" | "--help" | "-h" => {
             print!("{HELP}");
             Ok(ExitCode::SUCCESS)

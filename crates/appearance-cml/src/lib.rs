@@ -13,7 +13,7 @@ mod search;
 mod state;
 mod views;
 
-pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapArchive};
+pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState, MapArchive};
 pub use error::AppearanceError;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
 pub use localizer::{
@@ -32,6 +32,6 @@ pub use state::{
     unimodal,
 };
 pub use views::{
-    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe, RingOrder, Tone,
-    TurnSense,
+    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,
+    RingOrder, Tone, TurnSense,
 };

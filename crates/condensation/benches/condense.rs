@@ -3,8 +3,10 @@
 //! Prints `bench<TAB>job<TAB>program<TAB>nanoseconds`. What is to be reached: an update of 1e6 states in 5e7 on two cores, 600 views of 256 × 256
 //! learned in 2e8.
 
-use std::hint::black_box;
+#[path = "support/harness.rs"]
+mod harness;
 
+use harness::measure;
 use wayfix_condensation::{
     DiffusionKernel, DiscreteFilter, Fft6, Grid, Hist6, MeanVar, Move, Picture, Slip, ViewFeature, ViewGrid,
 };
@@ -17,13 +19,12 @@ fn main() {
     let log_likelihoods: Vec<f64> =
         (0..1_000_000).map(|i| -0.5 * ((i % 1009) as f64 / 100.0).powi(2)).collect();
     let mut filter = DiscreteFilter::uniform(1_000_000).expect("states");
-    let seconds = best_of(10, || {
+    measure("update of 1e6 states", 10, || {
         filter.predict(&move_on).expect("the same space");
         filter.predict(&kernel).expect("the same space");
         let outcome = filter.update(&log_likelihoods).expect("finite likelihoods");
         (outcome.evidence(), filter.best())
     });
-    println!("bench\tupdate of 1e6 states\twayfix\t{:.0}", seconds * 1e9);
 
     // 30 × 20 views in steps of 16 pixels.
     let (width, height) = (256 + 29 * 16, 256 + 19 * 16);
@@ -34,19 +35,8 @@ fn main() {
     let features: [(&str, &dyn ViewFeature); 3] =
         [("MeanVar", &MeanVar), ("FFT6", &Fft6), ("Hist6", &Hist6::default())];
     for (name, feature) in features {
-        let seconds = best_of(10, || feature.extract_all(&scene, &views).expect("the scene of the views"));
-        println!("bench\t600 views learned {name}\twayfix\t{:.0}", seconds * 1e9);
+        measure(&format!("600 views learned {name}"), 10, || {
+            feature.extract_all(&scene, &views).expect("the scene of the views")
+        });
     }
-}
-
-/// Seconds of one call: the best of `calls`.
-fn best_of<O>(calls: usize, mut job: impl FnMut() -> O) -> f64 {
-    let mut best = f64::INFINITY;
-    for _ in 0..calls {
-        #[allow(clippy::disallowed_methods, reason = "a benchmark measures time")]
-        let start = std::time::Instant::now();
-        black_box(job());
-        best = best.min(start.elapsed().as_secs_f64());
-    }
-    best
 }

@@ -1,4 +1,5 @@
 use wayfix_gaussian_core::GaussianError;
+use wayfix_particle::ParticleError;
 
 /// Why an operation was refused. Whatever it was called on is as it was before.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -75,9 +76,28 @@ pub enum CondensationError {
         /// Width and height of a view.
         view: (usize, usize),
     },
+    /// A box has no pixel of the picture in it.
+    #[error("the box {bounding_box:?} lies outside a picture of {picture:?}")]
+    OutsidePicture {
+        /// Left, top, width and height.
+        bounding_box: [f64; 4],
+        /// Width and height of the picture.
+        picture: (usize, usize),
+    },
+    /// There is no such pixel.
+    #[error("pixel {pixel:?} is outside {size:?}")]
+    Outside {
+        /// Its column and row.
+        pixel: (usize, usize),
+        /// Width and height.
+        size: (usize, usize),
+    },
     /// A covariance cannot be used.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),
+    /// Samples cannot be drawn or weighed.
+    #[error(transparent)]
+    Particle(#[from] ParticleError),
 }
 
 /// `value`, if it lies in `range`.

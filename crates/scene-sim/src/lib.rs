@@ -3,7 +3,8 @@
 //! A [`Simulation`] drives a robot along a [`route`] through a [`world`] and gives the log of its [`sensor`]s as
 //! [`Record`](wayfix_sensor_log::Record)s, truth included. Named, seeded set-ups are [`Scenario`]s; [`monobot`] is the
 //! one-dimensional robot on which filters are taken apart; [`league`] is a field full of colours under changing light, with a camera;
-//! [`scenery`] are flat scenes, seen through a window; [`indoors`] are stores and rooms, seen by a camera that looks all around.
+//! [`scenery`] are flat scenes, seen through a window; [`film`]s show one target each under light that changes, with its silhouette.
+//! [`indoors`] are stores and rooms, seen by a camera that looks all around.
 //!
 //! * **The truth is nobody's model.** Two wheels with motors that lag, slip that hangs together in time and radii that are not as
 //!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
@@ -13,7 +14,7 @@
 //!   and invents echoes, meets people, and rounds.
 //! * **One stream of randomness per sin** ([`random::Streams`]): switching one on leaves the draws of the others as they were.
 //! * **The same bits on every machine**: transcendental functions come from `libm` ([`plane`], [`space`], [`random`]).
-//! * **Yours plug in**: [`world::World`] and [`sensor::Sensor`] are the two places to extend (`examples/custom_sensor.rs`).
+//! * **Yours plug in**: [`world::World`] and [`sensor::Sensor`] are the two places to extend (`examples/02_custom_sensor.rs`).
 //!
 //! ```
 //! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -29,6 +30,7 @@
 mod check;
 pub mod drive;
 mod error;
+pub mod film;
 pub mod indoors;
 pub mod league;
 pub mod monobot;

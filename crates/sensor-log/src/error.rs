@@ -36,10 +36,18 @@ pub enum LogError {
         path: PathBuf,
     },
     /// A folder that is no log.
-    #[error("{}: is a folder without RobotN_*.dat files, without odometry.csv and trees.csv and without PNG or JPEG images; give a log file, the folder of a UTIAS set or of images, or that of the Victoria Park set", path.display())]
+    #[error("{}: is a folder without RobotN_*.dat files, without odometry.csv and trees.csv and without MCAP, PNG or JPEG files; give a log file, the folder of a UTIAS set or of images, of a ROS 2 bag, or that of the Victoria Park set", path.display())]
     IsADirectory {
         /// The folder.
         path: PathBuf,
+    },
+    /// A folder of several MCAP files, as a recorder leaves it that splits its bags.
+    #[error("{}: holds {} MCAP files; give one of them", path.display(), files.len())]
+    SeveralFiles {
+        /// The folder.
+        path: PathBuf,
+        /// The files, by name.
+        files: Vec<PathBuf>,
     },
     /// The content looks like no known format.
     #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), Format::NAMES)]
@@ -91,6 +99,36 @@ pub enum LogError {
         /// Topics and schemas that are there.
         ignored: Vec<String>,
     },
+    /// A topic was asked for that is not there, or that has nothing which is read.
+    #[error("{}: nothing that is read on the topic {topic:?}; the topics of the file are {}", path.display(), listed(present))]
+    NoSuchTopic {
+        /// The file.
+        path: PathBuf,
+        /// The topic that was asked for.
+        topic: String,
+        /// Topics and schemas that are there.
+        present: Vec<String>,
+    },
+    /// Two topics were asked for that are of one kind: their records could not be told apart.
+    #[error("{}: {first} and {second} are both {what}; choose one of them", path.display())]
+    TwoTopics {
+        /// The file.
+        path: PathBuf,
+        /// The kind.
+        what: &'static str,
+        /// The topic that was asked for first.
+        first: String,
+        /// The other one.
+        second: String,
+    },
+    /// Topics were asked for in a format that has none.
+    #[error("{}: {format} logs have no topics to choose from", path.display())]
+    NoTopics {
+        /// The file or folder.
+        path: PathBuf,
+        /// Its format.
+        format: Format,
+    },
     /// The file goes bad, or breaks off, before the first record.
     #[error("{}: {end} before the first record", path.display())]
     Damaged {
@@ -127,8 +165,8 @@ pub enum LogError {
         /// Stamp of the record.
         stamp: Stamp,
     },
-    /// Bytes that are no image of the format that they should have.
-    #[error("{what} at {stamp}: {n_bytes} bytes that do not begin as {} does", format.name())]
+    /// Bytes that are no image of the format that they should have, or true labels that are not compressed.
+    #[error("{what} at {stamp}: {n_bytes} bytes cannot be written as a {} image", format.name())]
     NotAnImage {
         /// Kind of the record.
         what: &'static str,
@@ -170,6 +208,10 @@ impl LogError {
             _ => Self::Io { path: path.into(), source },
         }
     }
+}
+
+fn listed(topics: &[String]) -> String {
+    if topics.is_empty() { "none".to_owned() } else { topics.join(", ") }
 }
 
 impl From<mcap::McapError> for LogError {

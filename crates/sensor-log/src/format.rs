@@ -9,6 +9,7 @@ use mcap::MAGIC;
 use crate::LogError;
 use crate::compressed::{TextReader, open_text};
 use crate::image_folder::images_in;
+use crate::mcap_log::files_in;
 use crate::text::{Lines, carmen, range_bearing, tum, utias, victoria_park};
 
 /// How a log is stored.
@@ -66,6 +67,7 @@ impl Format {
                 return Ok(Self::VictoriaPark);
             }
             return match (utias::robots_present(path)?.as_slice(), images_in(path)?.as_slice()) {
+                ([], []) if !files_in(path)?.is_empty() => Ok(Self::Mcap),
                 ([], []) => Err(LogError::IsADirectory { path: path.into() }),
                 ([], _) => Ok(Self::Images),
                 _ => Ok(Self::Utias),

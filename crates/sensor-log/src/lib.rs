@@ -11,6 +11,7 @@
 //! | [`Format::Carmen`] | messages of the Carnegie Mellon toolkit, one a line | scans, increments, poses |
 //! | [`Format::ScanJson`] | scans with their poses as a JSON object | scans, increments, poses |
 //! | [`Format::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
+//! | | MCAP with ROS 2 messages ([`ros`]), as `ros2 bag` writes it | scans, odometry, images, cameras, poses |
 //! | [`Format::Images`] | a folder of PNG and JPEG files | images |
 //!
 //! [`write()`] writes records as text or MCAP, [`convert()`] a whole log, [`McapWriter`] also what viewers draw;
@@ -31,9 +32,12 @@
 //! ```
 
 mod ackermann;
+mod bag;
+mod cdr;
 mod compressed;
 mod convert;
 mod error;
+mod fault;
 mod format;
 mod image;
 mod image_folder;
@@ -43,6 +47,7 @@ mod open;
 mod planar;
 mod record;
 mod report;
+pub mod ros;
 mod scan;
 mod stamp;
 mod summary;
@@ -50,13 +55,14 @@ mod text;
 mod write;
 
 pub use ackermann::AckermannDrive;
+pub use bag::{Topic, TopicUse};
 pub use convert::convert;
 pub use error::LogError;
 pub use format::Format;
 pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummary, PixelLayout};
 pub use image_folder::image_files;
 pub use log::{Log, LogMeta};
-pub use mcap_log::{Drawing, McapWriter, Shape, topics};
+pub use mcap_log::{Drawing, ImageOutline, McapWriter, Shape, topics};
 pub use open::{OpenOptions, PoseKind, open};
 pub use record::{
     CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, TrueWall, Velocity,

@@ -5,7 +5,7 @@ use std::vec;
 use crate::image_folder::ImageFolder;
 use crate::mcap_log::McapRecords;
 use crate::text::carmen::CarmenLog;
-use crate::{Format, ReadReport, Record};
+use crate::{Format, ReadReport, Record, Topic};
 
 /// An open log: an iterator over its records in time order, and what is known about it.
 ///
@@ -30,6 +30,8 @@ pub struct LogMeta {
     pub source: PathBuf,
     /// The robot whose records these are, in sets of several robots.
     pub robot: Option<u32>,
+    /// The topics of ROS 2 messages, in the order of the file, and what becomes of each.
+    pub topics: Vec<Topic>,
 }
 
 impl LogMeta {

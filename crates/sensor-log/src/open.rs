@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose2;
 
 use crate::image_folder::ImageFolder;
 use crate::log::Records;
-use crate::mcap_log::McapRecords;
+use crate::mcap_log::{McapRecords, file_of};
 use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
 use crate::{Data, Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record};
 
@@ -17,13 +17,21 @@ pub struct OpenOptions {
     pub robot: Option<u32>,
     /// What the poses of a format that does not say (TUM, CARMEN, JSON) are.
     pub poses: PoseKind,
+    /// Topics of a ROS 2 bag that are to be read. Of a kind of which none is named here, the topic with the most messages is.
+    pub topics: Vec<String>,
     /// Frames a second of a folder of images, which has no clock: frame k is k / rate seconds after the start. 30 Hz by default.
     pub frame_rate_hz: f64,
 }
 
 impl Default for OpenOptions {
     fn default() -> Self {
-        Self { format: None, robot: None, poses: PoseKind::default(), frame_rate_hz: 30.0 }
+        Self {
+            format: None,
+            robot: None,
+            poses: PoseKind::default(),
+            topics: Vec::new(),
+            frame_rate_hz: 30.0,
+        }
     }
 }
 
@@ -51,7 +59,8 @@ impl PoseKind {
 /// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings (MCAP: the order of the file).
 /// Text logs are read whole and sorted where rows go backwards, which is reported. CARMEN logs are read line by line, in whose order they
 /// stay: where time stands still, stamps are made up, which is reported. Text may be compressed with gzip, whatever the file is called. MCAP files are read chunk by chunk;
-/// what comes more than 256 records too late is left out, which is reported.
+/// what comes more than 256 records too late is left out, which is reported. A folder with one MCAP file in it is that file.
+/// In ROS 2 bags a kind of record comes from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] tells what became of the others.
 /// Folders of images are read file by file, in the order of their names, where numbers count by value (`frame9` before `frame10`);
 /// other files are passed over. A file that cannot be read keeps its frame number, so that later stamps stay right.
 ///
@@ -63,7 +72,12 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Some(format) => format,
         None => Format::detect(path)?,
     };
-    let mut meta = LogMeta { format, origin: None, source: path.into(), robot: None };
+    let file = if format == Format::Mcap { file_of(path)? } else { path.into() };
+    let path = file.as_path();
+    if format != Format::Mcap && !options.topics.is_empty() {
+        return Err(LogError::NoTopics { path: path.into(), format });
+    }
+    let mut meta = LogMeta { format, origin: None, source: path.into(), robot: None, topics: Vec::new() };
     let mut report = ReadReport::default();
     let in_memory = |records: Vec<Record>| Records::Memory(records.into_iter());
     let mut records = match format {
@@ -77,12 +91,13 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
         Format::Carmen => Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses)?)),
         Format::ScanJson => in_memory(scan_json::read(path, options.poses, &mut report)?),
-        Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path)?)),
+        Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path, &options.topics)?)),
         Format::Images => Records::Images(ImageFolder::open(path, options.frame_rate_hz)?),
     };
     let first = records.next(&mut report).ok_or_else(|| nothing_in(path, format, &report))?;
     if let Records::Mcap(records) = &records {
         meta.origin = records.origin();
+        meta.topics = records.topics().to_vec();
     }
     Ok(Log::new(meta, first, records, report))
 }

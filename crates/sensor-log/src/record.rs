@@ -30,6 +30,8 @@ pub enum Data {
     SightedWidths(Vec<f64>),
     /// What one sweep of a laser saw.
     Scan(LaserScan),
+    /// Where the laser is in the robot's frame: 0 of its bearings is along its x axis. It holds until the next one; the centre without any.
+    LaserMount(Pose2<f64>),
     /// Where the robot truly was, from motion capture or a simulator.
     TruePose(Pose2<f64>),
     /// Where one point of the robot truly was, from a satellite receiver for instance; nothing is known of the heading.
@@ -60,6 +62,7 @@ impl Data {
             Self::Sightings(_) => "sightings",
             Self::SightedWidths(_) => "sighted widths",
             Self::Scan(_) => "laser scan",
+            Self::LaserMount(_) => "laser mount",
             Self::TruePose(_) => "true pose",
             Self::TruePosition(_) => "true position",
             Self::TrueLandmark(_) => "true landmark",
@@ -76,9 +79,10 @@ impl Data {
     pub(crate) fn check_finite(&self) -> Result<(), &'static str> {
         let is_finite = match self {
             Self::Velocity(velocity) => velocity.linear.is_finite() && velocity.angular.is_finite(),
-            Self::OdometryIncrement(pose) | Self::TruePose(pose) | Self::EstimatedPose(pose) => {
-                pose.is_finite()
-            }
+            Self::OdometryIncrement(pose)
+            | Self::LaserMount(pose)
+            | Self::TruePose(pose)
+            | Self::EstimatedPose(pose) => pose.is_finite(),
             Self::Ackermann(drive) => drive.wheel_speed.is_finite() && drive.steering.is_finite(),
             Self::Sightings(look) => look.iter().all(|s| s.range.is_finite() && s.bearing.is_finite()),
             Self::SightedWidths(widths) => widths.iter().all(|width| width.is_finite()),

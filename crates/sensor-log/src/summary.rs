@@ -131,6 +131,9 @@ impl fmt::Display for LogSummary {
             write!(f, ", robot {robot}")?;
         }
         writeln!(f, ", {:.1} s", self.duration_seconds())?;
+        for topic in &self.meta.topics {
+            writeln!(f, "  {topic}")?;
+        }
         for (kind, summary) in &self.kinds {
             write!(f, "  {kind:20} {:7} records", summary.count)?;
             match summary.rate_hz() {

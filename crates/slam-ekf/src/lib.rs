@@ -16,8 +16,8 @@
 //! With [`MapForm::Compressed`] the `n` in predict and correct is the number of landmarks around the robot, with the same estimates.
 //!
 //! A robot meets new kinds of landmarks through [`LandmarkModel`]: what to expect, how noisy, how to start. Everything else
-//! is the same for points, walls or radio beacons (`examples/range_only.rs`); [`laws`] checks a model of your own.
-//! `examples/slam_in_a_loop.rs` is a whole filter in six steps.
+//! is the same for points, walls or radio beacons (`examples/02_custom_landmark_range_only.rs`); [`laws`] checks a model of your own.
+//! `examples/01_slam_in_a_loop.rs` is a whole filter in six steps.
 //!
 //! [Andrade-Cetto 2003, section 2; Dissanayake et al. 2001]
 //!

@@ -1,3 +1,5 @@
+use wayfix_gaussian_core::Gaussian;
+
 use super::{FusionParams, Weighting, combine};
 use crate::{AppearanceError, PoseHypothesis, separation_squared};
 
@@ -29,6 +31,10 @@ pub fn fuse(
     observed: &[PoseHypothesis],
     params: &FusionParams,
 ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    for hypothesis in predicted.iter().chain(observed) {
+        // One that meets no other would pass unseen otherwise.
+        Gaussian::new(*hypothesis.gaussian.mean(), *hypothesis.gaussian.covariance())?;
+    }
     let agreeing = agreeing(predicted, observed, params.gate)?;
     let mut fused = Vec::with_capacity(predicted.len() + observed.len());
     for pair in &agreeing {

@@ -2,6 +2,7 @@ use crate::{AppearanceError, check};
 
 /// How two Gaussians that mean one place become one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Combination {
     /// Covariance intersection with the share of Eq. 5 from weights and determinants. [Gross et al. 2005, Eqs. 3-5]
@@ -14,6 +15,7 @@ pub enum Combination {
 
 /// How the weights of two mixtures become one.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Weighting {
     /// Weights of what agrees add up; what is alone keeps its weight and loses it by the normalization. [Gross et al. 2005, Eqs. 6-8]
@@ -36,6 +38,7 @@ impl Default for Weighting {
 
 /// How two mixtures over poses are fused.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

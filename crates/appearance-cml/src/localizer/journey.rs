@@ -19,6 +19,9 @@ struct Stop<D> {
     made: Option<(ReferenceId, Pose2<f64>)>,
 }
 
+/// A view, and the motion that led to it.
+type Seen<'a, D> = (&'a D, Motion);
+
 /// A reference whose pose is known better now.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Revision {
@@ -71,7 +74,7 @@ impl<D> Journey<D> {
     }
 
     /// The oldest view that waits, the motion that led to it, and the view after it with the motion that leads there.
-    pub(super) fn oldest_waiting(&self) -> Option<((&D, Motion), Option<(&D, Motion)>)> {
+    pub(super) fn oldest_waiting(&self) -> Option<(Seen<'_, D>, Option<Seen<'_, D>>)> {
         let index = self.oldest_index()?;
         let view = |index: usize| {
             let stop = self.stops.get(index)?;

@@ -2,6 +2,7 @@ use crate::{AppearanceError, FusionParams, MapParams, OdometryNoise, SimplifyPar
 
 /// What happens to the map while the robot drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Learning {
     /// Nothing: the map stays as it is.
@@ -13,6 +14,7 @@ pub enum Learning {
 
 /// How the places that look like the view become hypotheses of the pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Observation {
     /// All of them, weighted, as printed.
@@ -24,6 +26,7 @@ pub enum Observation {
 
 /// Everything that can be set.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

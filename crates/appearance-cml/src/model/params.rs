@@ -2,6 +2,7 @@ use crate::{AppearanceError, check};
 
 /// Whether and how the map forgets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Forgetting {
     /// References that are seen somewhere else lose weight. [Gross et al. 2005, Eq. 17]
@@ -13,6 +14,7 @@ pub enum Forgetting {
 
 /// What a view writes into the references that look like it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum PlaceUpdate {
     /// The pose of the robot, into every reference of the map that looks like the view; a reference is inserted when none does.
@@ -26,6 +28,7 @@ pub enum PlaceUpdate {
 
 /// How active forgetting fades references. [Gross et al. 2005, Eq. 19]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -50,6 +53,7 @@ impl Default for ForgettingParams {
 
 /// How the appearance map learns.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -58,7 +62,7 @@ impl Default for ForgettingParams {
 pub struct MapParams {
     /// $`E^{max}`$, in units of the descriptor; `None` finds it from the data. Default `None`.
     pub match_limit: Option<f64>,
-    /// Where between noise (0) and far places (1) the limit found from the data lies. Default 0.5.
+    /// Where between noise (0) and far places (1) the limit found from the data lies. Default 0.4.
     pub match_share: f64,
     /// Distance to the nearest reference of the place from which on a view becomes a reference, as a multiple of the distance of
     /// successive views; never above $`E^{max}`$. Default 1. (As printed: $`E^{max}`$ itself, with [`PlaceUpdate::Pose`].)
@@ -87,7 +91,7 @@ impl Default for MapParams {
     fn default() -> Self {
         Self {
             match_limit: None,
-            match_share: 0.5,
+            match_share: 0.4,
             insertion: 1.0,
             learning_rate: 0.3,
             merge_distance: 7.8,

@@ -134,7 +134,8 @@ impl<D: Bounded> AppearanceIndex<D> {
     /// The slots whose sketches are within a radius, in their order in memory.
     fn reached(&self, view: &D, radius: f64) -> impl Iterator<Item = u32> {
         let reached = self.sketch_of_comparable(view).map(|sketch| {
-            let largest = sketch.iter().fold(radius.abs(), |largest, value| largest.max(f64::from(value.abs())));
+            let largest =
+                sketch.iter().fold(radius.abs(), |largest, value| largest.max(f64::from(value.abs())));
             let widened = if radius.is_finite() { radius + SKETCH_SLACK * (1.0 + largest) } else { radius };
             self.tree.within(&sketch, widened as f32, self.slots.len())
         });

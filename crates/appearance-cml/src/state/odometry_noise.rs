@@ -14,6 +14,7 @@ use crate::{AppearanceError, check};
 /// assert!((metre - quarter * 4.0).norm() < 1e-9);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

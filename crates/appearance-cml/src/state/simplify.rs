@@ -5,6 +5,7 @@ use crate::{AppearanceError, check};
 
 /// How a mixture over poses is kept small.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

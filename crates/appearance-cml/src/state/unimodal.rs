@@ -5,6 +5,7 @@ use crate::{AppearanceError, check};
 
 /// When a mixture counts as one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

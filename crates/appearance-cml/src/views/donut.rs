@@ -3,6 +3,7 @@ use crate::AppearanceError;
 
 /// Which ring of a raw omnidirectional image shows what is highest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum RingOrder {
     /// The outermost: a camera that looks up into a mirror.
@@ -26,6 +27,7 @@ pub enum RingOrder {
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Donut {
     /// Centre of the ring, pixels from the middle of the top left pixel, right and down.

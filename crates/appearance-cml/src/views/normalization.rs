@@ -2,6 +2,7 @@ use crate::AppearanceError;
 
 /// How grey values of 0 … 255 are weighed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Tone {
     /// As they are.
@@ -13,6 +14,7 @@ pub enum Tone {
 
 /// What the brightness of a view is made independent of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Normalization {
     /// Of nothing: values are divided by their full range only.

@@ -2,6 +2,7 @@ use crate::AppearanceError;
 
 /// Which way the azimuth grows from column to column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum TurnSense {
     /// To the right, as a camera that pans or a person who looks round sees them.

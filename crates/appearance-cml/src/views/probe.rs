@@ -78,7 +78,17 @@ impl PanoramaProbe {
     }
 
     fn constant_product(&self, reference: &PanoramaDescriptor) -> f64 {
-        f64::from(self.constant.iter().zip(reference.constant()).map(|(a, b)| a * f32::from(*b)).sum::<f32>())
+        let (own, other) =
+            (self.constant.chunks_exact(HARMONICS), reference.constant().chunks_exact(HARMONICS));
+        let rest = own.remainder().iter().zip(other.remainder()).map(|(a, b)| a * f32::from(*b)).sum::<f32>();
+        // Side by side: a single sum would wait for itself at each step.
+        let mut sums = [0.0; HARMONICS];
+        for (own, other) in own.zip(other) {
+            for lane in 0..HARMONICS {
+                sums[lane] += own[lane] * f32::from(other[lane]);
+            }
+        }
+        f64::from(sums.iter().sum::<f32>() + rest)
     }
 
     fn distance(&self, reference: &PanoramaDescriptor, overlap: f64) -> f64 {

@@ -23,11 +23,12 @@ pub struct LightingParams {
 
 /// How the light changes by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Drift {
     /// $`Σ ← Σ + R\,Δt`$ with a diagonal $`R`$ (Y, U, V), the same for all colours, per second. [Schulz & Fox 2004, Eq. 6] Unseen colours
     /// become ever more uncertain, beyond what any venue looks like; correlations fade.
-    RandomWalk(Vector3<f64>),
+    RandomWalk(#[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))] Vector3<f64>),
     /// An Ornstein-Uhlenbeck process back to the prior with this time constant, seconds: $`θ ← μ_0 + a (θ - μ_0)`$,
     /// $`Σ ← a^2 Σ + (1 - a^2) Σ_0`$, $`a = e^{-Δt/τ}`$. Colours drift together as they vary together from venue to venue, and
     /// whatever is not seen for long is known as well as before the first look: neither better nor worse.
@@ -36,6 +37,7 @@ pub enum Drift {
 
 /// What becomes of colours that an image does not show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Unseen {
     /// Only the rows that were seen are observed: exact. The others follow by their correlations.

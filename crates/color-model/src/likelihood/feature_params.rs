@@ -2,6 +2,7 @@ use crate::ColorModelError;
 
 /// How blobs of a classified image are compared with those that the map should show.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -4,6 +4,7 @@ use crate::{ColorModelError, PixelSums};
 
 /// Whether pixels share the light that is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum PixelLight {
     /// All pixels of an image have one light: what is not known of it counts once.
@@ -15,6 +16,7 @@ pub enum PixelLight {
 
 /// How the pixels of an image are weighed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

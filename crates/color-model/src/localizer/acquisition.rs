@@ -9,6 +9,7 @@ use crate::ColorModelError;
 /// whole trajectories are weighed by all of them at once under one light. The likelihood is narrow, hence the trajectories are drawn near to its
 /// peaks by an annealed particle filter [Deutscher et al. 2000]: weighed softly, resampled, moved by ever smaller steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

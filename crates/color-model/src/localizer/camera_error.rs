@@ -28,6 +28,7 @@ impl CameraError {
 
 /// Standard deviations of [`CameraError`], and how long an error lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

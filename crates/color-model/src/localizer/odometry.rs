@@ -16,6 +16,7 @@ pub struct OdometryStep {
 ///
 /// The defaults are for legged robots, whose paws slip: a fifth of the way, a fifth of the turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

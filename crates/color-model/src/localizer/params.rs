@@ -3,6 +3,7 @@ use crate::{ColorModelError, PixelParams};
 
 /// What [`ColorLocalizer`](crate::ColorLocalizer) is tuned by.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

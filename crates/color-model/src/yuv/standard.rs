@@ -11,6 +11,7 @@
 /// assert_eq!(YuvStandard::Bt709Limited.from_rgb([0, 255, 0]), [173, 42, 26]);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum YuvStandard {
     /// That of JPEG files.

@@ -3,6 +3,7 @@ use crate::{CondensationError, SparseTransition, StateSpace};
 
 /// How moves go wrong: with these probabilities the robot stays where it is, or does one of the other actions instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Slip {
     /// That nothing happens.

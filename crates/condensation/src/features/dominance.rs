@@ -2,6 +2,7 @@ use std::f64::consts::TAU;
 
 /// What makes a grey value dominate a histogram.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Dominance {
     /// The three most frequent values, most frequent first, with their shares of the pixels: the paper's. They are often neighbours, and

@@ -14,6 +14,11 @@ impl<'a> View<'a> {
         Self { picture, corner, size }
     }
 
+    /// Column and row of the top left pixel in the picture.
+    pub fn corner(&self) -> (usize, usize) {
+        self.corner
+    }
+
     /// Width in pixels.
     pub fn width(&self) -> usize {
         self.size.0

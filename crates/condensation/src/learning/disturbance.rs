@@ -7,6 +7,7 @@ pub const N_DISTURBANCES: usize = 5;
 ///
 /// Used for values and for standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Disturbance {
     /// Shift to the right, in pixels.

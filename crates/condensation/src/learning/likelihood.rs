@@ -7,6 +7,7 @@ const N: usize = N_DISTURBANCES;
 
 /// How fast likelihood falls with the distance between measured and expected features.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Tail {
     /// $`e^{-d^2 / 2}`$, as in the paper: a single feature that jumps decides against the true place for good.

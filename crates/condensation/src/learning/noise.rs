@@ -5,6 +5,7 @@ use crate::{CondensationError, FeatureTable};
 
 /// How the covariance of noise is learned from few samples a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct NoiseParams {
     /// Share of the covariance that is pooled over all states, the rest being the state's own: shrinkage.

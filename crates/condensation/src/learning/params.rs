@@ -3,6 +3,7 @@ use crate::{CondensationError, Disturbance, Light, NoiseParams, Tail};
 
 /// How appearance is learned. None of it depends on the scene.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct AppearanceParams {
     /// Standard deviations of the disturbance around each condition.

@@ -5,6 +5,7 @@ use crate::{BestState, Localizer, Routes, StateSpace};
 
 /// How the next action is chosen while the robot is not certain where it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum ActionChoice {
     /// As if the best state were the true one: nearer to the goal. [Kasprzak & Szynkiewicz, Sec. 2.2 (c)]

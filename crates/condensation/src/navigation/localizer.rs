@@ -13,6 +13,7 @@ use crate::{
 
 /// What a localizer assumes of the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct LocalizerParams {
     /// Share of the belief that goes everywhere in a step: the robot carried off, a place where the model is wrong.

@@ -18,6 +18,7 @@ pub trait World<A> {
 
 /// When a run is over, and how actions are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct NavigatorParams {
     /// Confidence at which the robot stops at the goal.

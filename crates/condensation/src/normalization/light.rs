@@ -3,6 +3,7 @@ use crate::{CondensationError, Picture};
 
 /// How a camera renders the light of a scene beside how it did when learning: $`J = g \cdot 255\, (I / 255)^γ + o`$.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Light {
     /// Contrast $`g`$.

@@ -80,4 +80,20 @@ impl BoundingBox {
             * overlap(self.y, self.height, other.y, other.height);
         shared / (self.area() + other.area() - shared)
     }
+
+    /// The part inside a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// [`CondensationError::OutsidePicture`] when there is none.
+    pub fn clipped(&self, size: (usize, usize)) -> Result<Self, CondensationError> {
+        let (width, height) = (size.0 as f64, size.1 as f64);
+        let (left, top) = (self.x.max(0.0), self.y.max(0.0));
+        let (right, bottom) = ((self.x + self.width).min(width), (self.y + self.height).min(height));
+        Self::from_corner(left, top, right - left, bottom - top).map_err(|_| {
+            CondensationError::OutsidePicture {
+                bounding_box: [self.x, self.y, self.width, self.height],
+                picture: size,
+            }
+        })
+    }
 }

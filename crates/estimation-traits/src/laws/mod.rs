@@ -1,7 +1,7 @@
 //! Law suites: run them on your own types.
 //!
 //! Each suite returns the first [`Violation`] with numbers instead of panicking, so that it serves in tests
-//! (`laws::manifold(&points).unwrap()`) and in tools. `examples/custom_state.rs` runs them on a state of its own.
+//! (`laws::manifold(&points).unwrap()`) and in tools. `examples/02_custom_state.rs` runs them on a state of its own.
 
 mod check;
 mod filter;

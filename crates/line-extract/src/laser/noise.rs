@@ -2,6 +2,7 @@ use nalgebra::{Matrix2, Vector2};
 
 /// Independent white noise on ranges and bearings.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -13,6 +13,7 @@ use crate::LineError;
 /// assert!(Params { split_distance_m: -0.1, ..params }.check().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -43,6 +44,7 @@ pub struct Params {
 
 /// How a surface is split into straight pieces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum SplitMethod {
     /// By the distance to the line through the end points, as [Andrade-Cetto, Table 1].

@@ -3,7 +3,7 @@ use nalgebra::Vector3;
 /// Linear red, green and blue: radiance, irradiance, reflectance or gain, as the place says.
 pub type Rgb = Vector3<f64>;
 
-/// How much light falls on what. Implement it to light the field your own way (`examples/custom_light.rs`).
+/// How much light falls on what. Implement it to light the field your own way (`examples/03_custom_light.rs`).
 ///
 /// **Laws**: finite and nowhere negative, and nothing depends on anything but the arguments.
 pub trait LightField {

@@ -74,6 +74,10 @@ pub enum Source {
     Switching,
     /// People who walk about in a building.
     Crowd,
+    /// How the target of a film moves.
+    Motion,
+    /// How the light of a film changes.
+    Light,
     /// A user's own.
     Other(u32),
 }
@@ -116,6 +120,8 @@ impl Source {
             Self::Daylight => 32,
             Self::Switching => 33,
             Self::Crowd => 34,
+            Self::Motion => 40,
+            Self::Light => 41,
             Self::Other(n) => (1 << 32) | n as u64,
         }
     }

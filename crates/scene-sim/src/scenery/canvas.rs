@@ -1,42 +1,80 @@
+use std::ops::Range;
+
 use super::RgbPicture;
 
 /// Red, green and blue in [0, 1], as displayed.
-pub(super) type Color = [f64; 3];
+pub(crate) type Color = [f64; 3];
+
+/// The part of a picture in which something is to be painted.
+#[derive(Clone, Debug)]
+pub(crate) struct Window {
+    pub(crate) columns: Range<usize>,
+    pub(crate) rows: Range<usize>,
+}
+
+impl Window {
+    /// All of it.
+    pub(crate) fn of_size((width, height): (usize, usize)) -> Self {
+        Self { columns: 0..width, rows: 0..height }
+    }
+
+    /// The square around a centre, as far as it lies in the picture.
+    pub(crate) fn around(centre: (f64, f64), radius: f64, size: (usize, usize)) -> Self {
+        let clipped = |middle: f64, n: usize| {
+            let end = |at: f64| at.clamp(0.0, n as f64) as usize;
+            end((middle - radius).floor())..end((middle + radius).ceil())
+        };
+        Self { columns: clipped(centre.0, size.0), rows: clipped(centre.1, size.1) }
+    }
+}
 
 /// A picture that is being painted, with edges one pixel soft.
-pub(super) struct Canvas {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pixels: Vec<Color>,
+pub(crate) struct Canvas {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) pixels: Vec<Color>,
 }
 
 impl Canvas {
     /// `shade` gives the colour at the centre of every pixel.
-    pub(super) fn new(width: usize, height: usize, shade: impl Fn(f64, f64) -> Color) -> Self {
+    pub(crate) fn new(width: usize, height: usize, shade: impl Fn(f64, f64) -> Color) -> Self {
         let centre = |i: usize| ((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
         let pixels = (0..width * height).map(centre).map(|(x, y)| shade(x, y)).collect();
         Self { width, height, pixels }
     }
 
     /// Paints where `inside`, in pixels from the edge, is positive.
-    pub(super) fn paint(&mut self, inside: impl Fn(f64, f64) -> f64, shade: impl Fn(f64, f64) -> Color) {
-        for (i, pixel) in self.pixels.iter_mut().enumerate() {
-            let (x, y) = ((i % self.width) as f64 + 0.5, (i / self.width) as f64 + 0.5);
-            let cover = (inside(x, y) + 0.5).clamp(0.0, 1.0);
-            if cover > 0.0 {
-                *pixel = mix(*pixel, shade(x, y), cover);
+    pub(crate) fn paint(&mut self, inside: impl Fn(f64, f64) -> f64, shade: impl Fn(f64, f64) -> Color) {
+        self.paint_in(&Window::of_size((self.width, self.height)), inside, shade);
+    }
+
+    /// As [`paint`](Self::paint), where nothing outside a window is touched.
+    pub(crate) fn paint_in(
+        &mut self,
+        window: &Window,
+        inside: impl Fn(f64, f64) -> f64,
+        shade: impl Fn(f64, f64) -> Color,
+    ) {
+        for row in window.rows.clone() {
+            for column in window.columns.clone() {
+                let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
+                let cover = (inside(x, y) + 0.5).clamp(0.0, 1.0);
+                if cover > 0.0 {
+                    let pixel = &mut self.pixels[row * self.width + column];
+                    *pixel = mix(*pixel, shade(x, y), cover);
+                }
             }
         }
     }
 
     /// An upright rectangle from one corner to the other.
-    pub(super) fn rectangle(&mut self, from: (f64, f64), to: (f64, f64), shade: impl Fn(f64, f64) -> Color) {
+    pub(crate) fn rectangle(&mut self, from: (f64, f64), to: (f64, f64), shade: impl Fn(f64, f64) -> Color) {
         let inside = |x: f64, y: f64| (x - from.0).min(to.0 - x).min(y - from.1).min(to.1 - y);
         self.paint(inside, shade);
     }
 
     /// An upright ellipse.
-    pub(super) fn ellipse(
+    pub(crate) fn ellipse(
         &mut self,
         centre: (f64, f64),
         radii: (f64, f64),
@@ -50,7 +88,7 @@ impl Canvas {
     }
 
     /// A line through points.
-    pub(super) fn line(&mut self, points: &[(f64, f64)], width: f64, shade: impl Fn(f64, f64) -> Color) {
+    pub(crate) fn line(&mut self, points: &[(f64, f64)], width: f64, shade: impl Fn(f64, f64) -> Color) {
         let inside = |x: f64, y: f64| {
             let nearest = points.windows(2).map(|ends| distance((x, y), ends[0], ends[1]));
             0.5 * width - nearest.fold(f64::INFINITY, f64::min)
@@ -59,7 +97,7 @@ impl Canvas {
     }
 
     /// Rounded to bytes.
-    pub(super) fn finish(self) -> RgbPicture {
+    pub(crate) fn finish(self) -> RgbPicture {
         let byte = |value: f64| (255.0 * value).round().clamp(0.0, 255.0) as u8;
         let rgb = self.pixels.into_iter().flatten().map(byte).collect();
         RgbPicture { width: self.width, height: self.height, rgb }
@@ -67,17 +105,22 @@ impl Canvas {
 }
 
 /// From one colour to another.
-pub(super) fn mix(from: Color, to: Color, share: f64) -> Color {
+pub(crate) fn mix(from: Color, to: Color, share: f64) -> Color {
     [0, 1, 2].map(|c| from[c] + (to[c] - from[c]) * share)
 }
 
 /// A colour brightened or dimmed.
-pub(super) fn scaled(color: Color, factor: f64) -> Color {
+pub(crate) fn scaled(color: Color, factor: f64) -> Color {
     color.map(|value| value * factor)
 }
 
+/// A surface of one colour under light of another.
+pub(crate) fn times(albedo: Color, light: Color) -> Color {
+    [0, 1, 2].map(|c| albedo[c] * light[c])
+}
+
 /// From a point to the piece of line between two others.
-fn distance(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
+pub(crate) fn distance(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
     let (along, off) = ((to.0 - from.0, to.1 - from.1), (point.0 - from.0, point.1 - from.1));
     let length = along.0 * along.0 + along.1 * along.1;
     let share = if length > 0.0 { (off.0 * along.0 + off.1 * along.1) / length } else { 0.0 };

@@ -14,8 +14,8 @@
 //! # Ok::<(), wayfix_scene_sim::SimError>(())
 //! ```
 
-mod canvas;
-mod noise;
+pub(crate) mod canvas;
+pub(crate) mod noise;
 mod rgb_picture;
 mod scenes;
 mod visit;

@@ -6,17 +6,17 @@ use crate::random::deviate::unit;
 const SIDE: usize = 64;
 
 /// A smooth random texture: numbers on a lattice, with a curve of no slope at the points in between (value noise).
-pub(super) struct Noise {
+pub(crate) struct Noise {
     lattice: Vec<f64>,
 }
 
 impl Noise {
-    pub(super) fn new<R: Rng + ?Sized>(rng: &mut R) -> Self {
+    pub(crate) fn new<R: Rng + ?Sized>(rng: &mut R) -> Self {
         Self { lattice: (0..SIDE * SIDE).map(|_| unit(rng)).collect() }
     }
 
     /// A number in [0, 1] with features one unit wide.
-    pub(super) fn at(&self, x: f64, y: f64) -> f64 {
+    pub(crate) fn at(&self, x: f64, y: f64) -> f64 {
         let (left, top) = (x.floor(), y.floor());
         let (u, v) = (ease(x - left), ease(y - top));
         let index = |i: f64| (i as i64).rem_euclid(SIDE as i64) as usize;
@@ -27,7 +27,7 @@ impl Noise {
     }
 
     /// Octaves, each half as wide and half as strong; in [0, 1].
-    pub(super) fn fractal(&self, x: f64, y: f64, octaves: u32) -> f64 {
+    pub(crate) fn fractal(&self, x: f64, y: f64, octaves: u32) -> f64 {
         let (mut sum, mut weight, mut scale) = (0.0, 0.0, 1.0);
         for octave in 0..octaves {
             let apart = 17.3 * f64::from(octave); // else the octaves share their points at the origin

@@ -71,6 +71,7 @@ impl EncodedImage {
         let format = match self.format {
             ImageFormat::Jpeg => image::ImageFormat::Jpeg,
             ImageFormat::Png => image::ImageFormat::Png,
+            ImageFormat::Pnm => image::ImageFormat::Pnm,
         };
         let mut limits = Limits::default();
         limits.max_alloc = Some(MAX_BYTES);

@@ -1,7 +1,7 @@
 use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::{EncodedImage, ImageError, ImageFormat};
+use super::{Anymap, EncodedImage, ImageError, ImageFormat};
 
 impl EncodedImage {
     /// RGB pixels as JPEG of the given quality, 1 to 100; the same bytes on every machine.
@@ -25,6 +25,24 @@ impl EncodedImage {
         png(width, height, rgb, ExtendedColorType::Rgb8)
     }
 
+    /// The same picture in a form that web pages show: uncompressed images become PNG, others stay as they are.
+    ///
+    /// # Errors
+    /// When an uncompressed image cannot be decoded.
+    pub fn for_the_web(&self) -> Result<Self, ImageError> {
+        match (self.format, Anymap::of(&self.bytes)) {
+            (ImageFormat::Pnm, Some(Anymap { channels: 1, .. })) => {
+                let gray = self.decode_gray()?;
+                Self::png_gray(gray.width, gray.height, &gray.pixels)
+            }
+            (ImageFormat::Pnm, _) => {
+                let rgb = self.decode_rgb()?;
+                Self::png_rgb(rgb.width, rgb.height, &rgb.pixels)
+            }
+            _ => Ok(self.clone()),
+        }
+    }
+
     /// Grey pixels, a byte each, as PNG.
     ///
     /// # Errors
@@ -41,7 +59,7 @@ fn png(width: u32, height: u32, pixels: &[u8], color: ExtendedColorType) -> Resu
     Ok(EncodedImage::new(ImageFormat::Png, bytes))
 }
 
-fn check(width: u32, height: u32, channels: u32, pixels: &[u8]) -> Result<(), ImageError> {
+pub(super) fn check(width: u32, height: u32, channels: u32, pixels: &[u8]) -> Result<(), ImageError> {
     if width == 0 || height == 0 {
         return Err(ImageError::Empty { width, height });
     }

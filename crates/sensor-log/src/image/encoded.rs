@@ -1,7 +1,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-/// A compressed image. Clones share the bytes.
+/// An image file. Clones share the bytes.
 ///
 /// ```
 /// use wayfix_sensor_log::EncodedImage;
@@ -14,13 +14,13 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, PartialEq, Eq)]
 pub struct EncodedImage {
-    /// How it is compressed.
+    /// How it is stored.
     pub format: ImageFormat,
     /// The file.
     pub bytes: Arc<[u8]>,
 }
 
-/// How an image is compressed.
+/// How an image is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum ImageFormat {
@@ -28,6 +28,8 @@ pub enum ImageFormat {
     Jpeg,
     /// PNG, without.
     Png,
+    /// Not compressed: a portable anymap, grey (`P5`) or in colour (`P6`), of eight bits a channel.
+    Pnm,
 }
 
 /// An image as pixels.
@@ -58,11 +60,12 @@ impl PixelLayout {
 }
 
 impl ImageFormat {
-    /// Its name in `foxglove.CompressedImage` and `sensor_msgs/CompressedImage`.
+    /// Its name; of those that are compressed, as `foxglove.CompressedImage` and `sensor_msgs/CompressedImage` have it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Jpeg => "jpeg",
             Self::Png => "png",
+            Self::Pnm => "pnm",
         }
     }
 
@@ -71,6 +74,7 @@ impl ImageFormat {
         match bytes {
             [0xFF, 0xD8, 0xFF, ..] => Some(Self::Jpeg),
             [0x89, b'P', b'N', b'G', ..] => Some(Self::Png),
+            [b'P', b'5' | b'6', space, ..] if space.is_ascii_whitespace() => Some(Self::Pnm),
             _ => None,
         }
     }
@@ -87,6 +91,7 @@ impl EncodedImage {
         match self.format {
             ImageFormat::Jpeg => "image/jpeg",
             ImageFormat::Png => "image/png",
+            ImageFormat::Pnm => "image/x-portable-anymap",
         }
     }
 }

@@ -1,12 +1,16 @@
-//! Camera images as logs hold them: compressed, decoded when somebody wants to see them.
+//! Camera images as logs hold them: files, compressed or not, decoded when somebody wants to see them.
 
 mod decode;
 mod encode;
 mod encoded;
 mod error;
+mod pixels;
+mod pnm;
 mod summary;
 mod whole;
 
 pub use encoded::{DecodedImage, EncodedImage, ImageFormat, PixelLayout};
 pub use error::ImageError;
+pub(crate) use pixels::Pixels;
+pub(crate) use pnm::Anymap;
 pub use summary::ImageSummary;

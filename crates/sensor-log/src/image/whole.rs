@@ -1,4 +1,4 @@
-use super::ImageFormat;
+use super::{Anymap, ImageFormat};
 
 impl ImageFormat {
     /// Whether a file goes on to its end mark. Decoders paint what is missing in grey and call it an image.
@@ -6,6 +6,7 @@ impl ImageFormat {
         match self {
             Self::Jpeg => is_whole_jpeg(bytes).is_some(),
             Self::Png => is_whole_png(bytes).is_some(),
+            Self::Pnm => Anymap::of(bytes).is_some_and(|image| image.is_whole()),
         }
     }
 }

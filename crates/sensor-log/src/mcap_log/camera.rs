@@ -1,18 +1,15 @@
 //! Cameras and their images as Foxglove messages, and back.
 
 use foxglove::bytes::Bytes;
-use foxglove::messages::{self, CameraCalibration, CompressedImage, FrameTransform, Timestamp};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
+use foxglove::messages::{self, CameraCalibration, CompressedImage, FrameTransform, RawImage, Timestamp};
 use wayfix_estimation_traits::Pose3;
 
-use super::decode::{Fault, decode, finite, inconsistent, stamp};
+use super::decode::{decode, stamp};
 use super::topics;
+use crate::fault::{Fault, finite, inconsistent, spatial};
 use crate::format::shortened;
-use crate::planar::NORM_TOLERANCE;
+use crate::image::{Anymap, Pixels};
 use crate::{CameraInfo, Data, EncodedImage, ImageFormat, LogError, Record, Stamp};
-
-/// How far the norm of a unit quaternion in doubles strays from one after a few products.
-const ROUNDING: f64 = 1e-12;
 
 /// What would not come back is not written.
 pub(super) fn check(record: &Record) -> Result<(), LogError> {
@@ -22,14 +19,25 @@ pub(super) fn check(record: &Record) -> Result<(), LogError> {
             let CameraInfo { width, height, fx, fy, .. } = *info;
             Err(LogError::BadCamera { width, height, fx, fy, stamp })
         }
-        Data::Image(image) | Data::TrueLabels(image)
-            if ImageFormat::of_bytes(&image.bytes) != Some(image.format) =>
-        {
-            let (what, n_bytes) = (record.data.kind(), image.bytes.len());
-            Err(LogError::NotAnImage { what, format: image.format, n_bytes, stamp })
+        Data::Image(image) if !is_image(image) => Err(no_image(record, image)),
+        // An uncompressed image is another message than the one that labels are.
+        Data::TrueLabels(image) if !is_image(image) || image.format == ImageFormat::Pnm => {
+            Err(no_image(record, image))
         }
         _ => Ok(()),
     }
+}
+
+fn is_image(image: &EncodedImage) -> bool {
+    let has_pixels = |anymap: Anymap<'_>| anymap.width > 0 && anymap.height > 0 && anymap.is_whole();
+    let is_whole = || Anymap::of(&image.bytes).is_some_and(has_pixels);
+    ImageFormat::of_bytes(&image.bytes) == Some(image.format)
+        && (image.format != ImageFormat::Pnm || is_whole())
+}
+
+fn no_image(record: &Record, image: &EncodedImage) -> LogError {
+    let (what, n_bytes) = (record.data.kind(), image.bytes.len());
+    LogError::NotAnImage { what, format: image.format, n_bytes, stamp: record.stamp }
 }
 
 pub(super) fn encode_info(timestamp: Timestamp, info: &CameraInfo) -> CameraCalibration {
@@ -77,6 +85,23 @@ pub(super) fn encode_image(timestamp: Timestamp, image: &EncodedImage) -> Compre
     }
 }
 
+/// An image whose pixels lie open; nothing in it when it is none, which [`check`] finds before.
+pub(super) fn encode_raw_image(timestamp: Timestamp, image: &EncodedImage) -> RawImage {
+    let mut message = RawImage {
+        timestamp: Some(timestamp),
+        frame_id: topics::CAMERA_OPTICAL_FRAME.to_owned(),
+        ..RawImage::default()
+    };
+    if let Some(Anymap { width, height, channels, pixels }) = Anymap::of(&image.bytes) {
+        message.width = width;
+        message.height = height;
+        message.encoding = if channels == 1 { "mono8" } else { "rgb8" }.to_owned();
+        message.step = width.saturating_mul(channels);
+        message.data = Bytes::copy_from_slice(pixels);
+    }
+    message
+}
+
 pub(super) fn info(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
     let message: CameraCalibration = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;
@@ -103,21 +128,16 @@ pub(super) fn mount(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault>
     let message: FrameTransform = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;
     let (t, q) = (message.translation.unwrap_or_default(), message.rotation.unwrap_or_default());
-    let quaternion = Quaternion::new(q.w, q.x, q.y, q.z);
-    finite([t.x, t.y, t.z])?;
-    finite(quaternion.coords.iter().copied())?;
-    let norm = quaternion.norm();
-    let rotation = if quaternion.coords == Vector4::zeros() {
-        UnitQuaternion::identity() // one that is not there means no rotation to most writers
-    } else if (norm - 1.0).abs() > NORM_TOLERANCE {
-        return Err(inconsistent(&format!("quaternion of norm {norm}")));
-    } else if (norm - 1.0).abs() > ROUNDING {
-        UnitQuaternion::new_normalize(quaternion)
-    } else {
-        UnitQuaternion::new_unchecked(quaternion) // it stays what it was, to the bit
-    };
-    let pose = Pose3 { translation: Vector3::new(t.x, t.y, t.z), rotation };
+    let pose = spatial([t.x, t.y, t.z], [q.x, q.y, q.z, q.w])?;
     Ok(vec![Record { stamp, data: Data::CameraMount(pose) }])
+}
+
+pub(super) fn raw_image(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
+    let message: RawImage = decode(bytes)?;
+    let stamp = stamp(message.timestamp, log_time)?;
+    let RawImage { width, height, step, encoding, data, .. } = &message;
+    let pixels = Pixels { width: *width, height: *height, encoding, step: *step, data };
+    Ok(vec![Record { stamp, data: Data::Image(pixels.uncompressed()?) }])
 }
 
 pub(super) fn image(

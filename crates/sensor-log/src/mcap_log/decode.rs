@@ -8,11 +8,9 @@ use wayfix_estimation_traits::Pose2;
 use super::cloud::{self, Slot};
 use super::routes::Route;
 use super::{camera, scan, vehicle};
+use crate::fault::{Fault, finite, inconsistent};
 use crate::planar::heading_of;
 use crate::{Data, ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, TrueWall, Velocity};
-
-/// What is wrong with a message.
-pub(super) type Fault = (ProblemKind, String);
 
 /// The records in one message; a message without a stamp of its own takes the time at which it was logged.
 pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
@@ -31,6 +29,8 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
         Route::CameraMount => camera::mount(bytes, log_time),
         Route::CameraOptical | Route::ScanPoints => Ok(Vec::new()),
         Route::Scan(channel) => scan::scan(channel, bytes, log_time),
+        Route::LaserMount => scan::mount(bytes, log_time),
+        Route::RawImage => camera::raw_image(bytes, log_time),
         Route::Image => camera::image(bytes, log_time, Data::Image),
         Route::TrueLabels => camera::image(bytes, log_time, Data::TrueLabels),
         Route::Sightings => {
@@ -85,7 +85,7 @@ fn pose_record(
     Ok(vec![Record { stamp, data: to_data(planar(&pose)?) }])
 }
 
-fn planar(pose: &messages::Pose) -> Result<Pose2<f64>, Fault> {
+pub(super) fn planar(pose: &messages::Pose) -> Result<Pose2<f64>, Fault> {
     let position = pose.position.unwrap_or_default();
     // A quaternion that is not there, or all zeros, means no rotation to most writers.
     let q = pose.orientation.unwrap_or_default();
@@ -147,15 +147,4 @@ pub(super) fn read_points<T>(cloud: &PointCloud, read: impl Fn(&[u8]) -> Option<
     cloud::points(cloud)
         .and_then(|points| points.map(read).collect())
         .ok_or_else(|| inconsistent("point cloud whose bytes do not fit its fields"))
-}
-
-pub(super) fn finite(numbers: impl IntoIterator<Item = f64>) -> Result<(), Fault> {
-    match numbers.into_iter().find(|number| !number.is_finite()) {
-        None => Ok(()),
-        Some(number) => Err((ProblemKind::NotFinite, format!("{number} is not finite"))),
-    }
-}
-
-pub(super) fn inconsistent(reason: &str) -> Fault {
-    (ProblemKind::Inconsistent, reason.to_owned())
 }

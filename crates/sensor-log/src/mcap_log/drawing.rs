@@ -1,6 +1,6 @@
 use foxglove::messages::{
-    Color, LinePrimitive, Point3, Pose, SceneEntity, SceneUpdate, SpherePrimitive, TextPrimitive, Timestamp,
-    Vector3, line_primitive,
+    Color, ImageAnnotations, LinePrimitive, Point2, Point3, PointsAnnotation, Pose, SceneEntity, SceneUpdate,
+    SpherePrimitive, TextPrimitive, Timestamp, Vector3, line_primitive, points_annotation,
 };
 use wayfix_estimation_traits::Pose2;
 
@@ -47,6 +47,31 @@ pub enum Shape {
         /// The text; may be empty.
         text: String,
     },
+}
+
+/// A closed line in an image, in pixels from the upper left corner of the upper left pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageOutline {
+    /// Red, green, blue and alpha in [0, 1].
+    pub color: [f64; 4],
+    /// Its corners, column and row.
+    pub points: Vec<[f64; 2]>,
+}
+
+pub(super) fn image_annotations(timestamp: Timestamp, outlines: &[ImageOutline]) -> ImageAnnotations {
+    let annotation = |outline: &ImageOutline| {
+        let [r, g, b, a] = outline.color;
+        PointsAnnotation {
+            timestamp: Some(timestamp),
+            r#type: points_annotation::Type::LineLoop.into(),
+            points: outline.points.iter().map(|[x, y]| Point2 { x: *x, y: *y }).collect(),
+            outline_color: Some(Color { r, g, b, a }),
+            thickness: LINE_PIXELS,
+            ..Default::default()
+        }
+    };
+    let points = outlines.iter().map(annotation).collect();
+    ImageAnnotations { timestamp: Some(timestamp), points, ..Default::default() }
 }
 
 pub(super) fn scene_update(timestamp: Timestamp, frame: &str, drawings: &[Drawing]) -> SceneUpdate {
@@ -129,5 +154,21 @@ mod tests {
         }
         assert!((outline[0][0] - (center[0] + a * angle.cos())).abs() < 1e-12);
         assert!((outline[0][1] - (center[1] + a * angle.sin())).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_outline_in_an_image_is_closed_and_keeps_its_pixels() {
+        let points = vec![[0.0, 0.0], [320.0, 0.0], [160.5, 240.0]];
+        let outline = ImageOutline { color: [1.0, 0.5, 0.0, 1.0], points: points.clone() };
+        let message = image_annotations(Timestamp::new(1, 5), &[outline]);
+        let [annotation] = &message.points[..] else { panic!("one outline") };
+        assert_eq!(annotation.r#type, points_annotation::Type::LineLoop as i32);
+        let corners: Vec<[f64; 2]> = annotation.points.iter().map(|point| [point.x, point.y]).collect();
+        assert_eq!(corners, points);
+        assert_eq!(message.timestamp, annotation.timestamp);
+        assert!(
+            image_annotations(Timestamp::new(1, 5), &[]).points.is_empty(),
+            "nothing to draw is a message too"
+        );
     }
 }

@@ -4,6 +4,9 @@
 pub(super) struct Fields<'a>(pub(super) &'a [u8]);
 
 impl<'a> Fields<'a> {
+    pub(super) fn u8(&mut self) -> Option<u8> {
+        self.array().map(u8::from_le_bytes)
+    }
     pub(super) fn u16(&mut self) -> Option<u16> {
         self.array().map(u16::from_le_bytes)
     }
@@ -15,18 +18,27 @@ impl<'a> Fields<'a> {
     }
     /// A string: its length in 32 bits, then UTF-8.
     pub(super) fn str(&mut self) -> Option<&'a str> {
-        let n_bytes = self.u32()? as usize;
-        let (bytes, rest) = self.0.split_at_checked(n_bytes)?;
-        self.0 = rest;
-        std::str::from_utf8(bytes).ok()
+        std::str::from_utf8(self.sized()?).ok()
+    }
+    /// Bytes after their length in 32 bits.
+    pub(super) fn sized(&mut self) -> Option<&'a [u8]> {
+        let n_bytes = self.u32()?;
+        self.take(n_bytes.into())
+    }
+    /// Bytes after their length in 64 bits.
+    pub(super) fn bytes(&mut self) -> Option<&'a [u8]> {
+        let n_bytes = self.u64()?;
+        self.take(n_bytes)
     }
     /// A map of strings: its length in 32 bits, then keys and values in turn.
     pub(super) fn pairs(&mut self) -> Option<impl Iterator<Item = (&'a str, &'a str)> + use<'a>> {
-        let n_bytes = self.u32()? as usize;
-        let (bytes, rest) = self.0.split_at_checked(n_bytes)?;
-        self.0 = rest;
-        let mut pairs = Fields(bytes);
+        let mut pairs = Fields(self.sized()?);
         Some(std::iter::from_fn(move || Some((pairs.str()?, pairs.str()?))))
+    }
+    fn take(&mut self, n_bytes: u64) -> Option<&'a [u8]> {
+        let (bytes, rest) = self.0.split_at_checked(usize::try_from(n_bytes).ok()?)?;
+        self.0 = rest;
+        Some(bytes)
     }
     fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (array, rest) = self.0.split_first_chunk()?;

@@ -1,4 +1,4 @@
-//! MCAP files with Foxglove protobuf messages.
+//! MCAP files: with Foxglove protobuf messages, read and written, and with those of ROS 2, read.
 
 mod camera;
 mod chunk;
@@ -7,6 +7,7 @@ mod decode;
 mod drawing;
 mod encode;
 mod fields;
+mod folder;
 mod frames;
 mod held;
 mod origin;
@@ -15,10 +16,13 @@ mod record;
 mod reorder;
 mod routes;
 mod scan;
+mod stream;
+mod survey;
 pub mod topics;
 mod vehicle;
 mod writer;
 
-pub use drawing::{Drawing, Shape};
+pub use drawing::{Drawing, ImageOutline, Shape};
+pub(crate) use folder::{file_of, files_in};
 pub(crate) use reader::McapRecords;
 pub use writer::McapWriter;

@@ -1,43 +1,43 @@
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufReader, Read};
 use std::path::Path;
 
-use mcap::MAGIC;
 use mcap::records::op;
 
-use super::chunk::ChunkRecords;
-use super::decode;
 use super::fields::Fields;
-use super::frames::{Frame, Frames};
-use super::origin;
 use super::reorder::Reorder;
 use super::routes::Route;
+use super::stream::{RecordStream, Step};
+use super::{decode, origin, survey};
+use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::format::shortened;
-use crate::{Format, LogEnd, LogError, Problem, ProblemKind, ReadReport, Record, Stamp};
+use crate::{Format, LogEnd, LogError, Problem, ProblemKind, ReadReport, Record, Stamp, Topic};
 
 /// The records of an MCAP file, chunk by chunk: memory does not grow with the file.
 pub(crate) struct McapRecords {
-    frames: Frames<BufReader<File>>,
-    chunk: Option<ChunkRecords>,
+    stream: RecordStream,
     messages: Messages,
+    topics: Vec<Topic>,
 }
 
 impl McapRecords {
-    pub(crate) fn open(path: &Path) -> Result<Self, LogError> {
-        let io = |source| LogError::io(path, source);
-        let mut reader = BufReader::new(File::open(path).map_err(io)?);
-        let mut magic = Vec::new();
-        (&mut reader).take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(io)?;
-        if magic.is_empty() {
-            return Err(LogError::Empty { path: path.into() });
-        }
-        if magic != MAGIC {
-            let reason = "it does not begin with the magic bytes of MCAP".to_owned();
-            return Err(LogError::NotThisFormat { path: path.into(), format: Format::Mcap, reason });
-        }
+    /// Opens the file; of ROS 2 messages those on the topics `wanted` are read, and of kinds of which none is wanted those on one topic each.
+    pub(crate) fn open(path: &Path, wanted: &[String]) -> Result<Self, LogError> {
+        let stream = RecordStream::open(path)?;
+        let topics = survey::topics(path)?;
+        // What is wrong with the file will be told where it is read.
+        let tried = |questions| survey::passed(path, &topics, questions).unwrap_or_default();
+        let choice = Choice::among(&topics, wanted, tried).map_err(|error| error.of(path, &topics))?;
         let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Self { frames: Frames::new(reader), chunk: None, messages: Messages::new(file) })
+        Ok(Self {
+            stream,
+            topics: choice.uses(&topics),
+            messages: Messages::new(file, BagRecords::new(choice)),
+        })
+    }
+
+    /// The topics of ROS 2 messages and what becomes of them.
+    pub(crate) fn topics(&self) -> &[Topic] {
+        &self.topics
     }
 
     /// The format that the records come from, when it was announced so far.
@@ -59,34 +59,23 @@ impl McapRecords {
 
     /// Reads one record of the file; false at its end.
     fn step(&mut self, report: &mut ReadReport) -> bool {
-        if let Some(chunk) = &mut self.chunk {
-            match chunk.with_next(|opcode, body| self.messages.take(opcode, body, report)) {
-                Some(Ok(())) => {}
-                None => self.chunk = None,
-                Some(Err(error)) => {
-                    if !chunk.is_cut() {
-                        let reason = format!("chunk left out: {error}");
-                        self.messages.trouble(ProblemKind::DamagedChunk, reason, report);
-                    }
-                    self.chunk = None;
+        match self.stream.step(|opcode, body| self.messages.take(opcode, body, report)) {
+            Step::On => true,
+            Step::DamagedChunk(error) => {
+                self.messages.trouble(ProblemKind::DamagedChunk, format!("chunk left out: {error}"), report);
+                true
+            }
+            Step::Cut(end) => {
+                report.end = end;
+                true
+            }
+            Step::End(end) => {
+                if end != LogEnd::Complete {
+                    report.end = end;
                 }
-            }
-            return true;
-        }
-        match self.frames.next() {
-            Frame::Record { opcode: op::CHUNK, body } => self.chunk = Some(ChunkRecords::whole(&body)),
-            Frame::Record { opcode, body } => self.messages.take(opcode, &body, report),
-            Frame::CutChunk { body, end } => {
-                self.chunk = Some(ChunkRecords::cut(&body));
-                report.end = end;
-            }
-            Frame::End(LogEnd::Complete) => return false,
-            Frame::End(end) => {
-                report.end = end;
-                return false;
+                false
             }
         }
-        true
     }
 }
 
@@ -96,6 +85,7 @@ struct Messages {
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
     origin: Option<Format>,
+    bag: BagRecords,
     n_messages: u64,
     reorder: Reorder,
 }
@@ -103,16 +93,24 @@ struct Messages {
 struct Channel {
     /// Topic and schema, for messages to people.
     name: String,
-    route: Option<Route>,
+    route: Option<AnyRoute>,
+}
+
+/// What the messages of a channel become.
+#[derive(Clone, Copy)]
+enum AnyRoute {
+    Foxglove(Route),
+    Ros(BagRoute),
 }
 
 impl Messages {
-    fn new(file: String) -> Self {
+    fn new(file: String, bag: BagRecords) -> Self {
         Self {
             file,
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
             origin: None,
+            bag,
             n_messages: 0,
             reorder: Reorder::default(),
         }
@@ -137,7 +135,7 @@ impl Messages {
 
     fn schema(&mut self, mut fields: Fields<'_>) -> Option<()> {
         let (id, name) = (fields.u16()?, fields.str()?);
-        self.schemas.insert(id, shortened(name));
+        self.schemas.insert(id, name.to_owned());
         Some(())
     }
 
@@ -146,8 +144,12 @@ impl Messages {
         let (topic, encoding) = (fields.str()?, fields.str()?);
         let schema = self.schemas.get(&schema_id).map_or("no schema", String::as_str);
         let metadata = fields.pairs().into_iter().flatten();
-        let route = Route::of(topic, schema, encoding, metadata);
-        self.channels.insert(id, Channel { name: format!("{} ({schema})", shortened(topic)), route });
+        let route = match encoding {
+            "cdr" => self.bag.route(topic, schema).map(AnyRoute::Ros),
+            _ => Route::of(topic, schema, encoding, metadata).map(AnyRoute::Foxglove),
+        };
+        let name = format!("{} ({})", shortened(topic), shortened(schema));
+        self.channels.insert(id, Channel { name, route });
         Some(())
     }
 
@@ -164,7 +166,11 @@ impl Messages {
             report.ignore(&channel.name);
             return Some(());
         };
-        match decode::records(route, fields.0, log_time) {
+        let records = match route {
+            AnyRoute::Foxglove(route) => decode::records(route, fields.0, log_time),
+            AnyRoute::Ros(route) => self.bag.take(route, fields.0, log_time),
+        };
+        match records {
             Ok(records) => {
                 report.rows_read += 1;
                 self.release(records, report);

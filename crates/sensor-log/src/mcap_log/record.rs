@@ -1,13 +1,13 @@
 use std::io::{Seek, Write};
 
 use super::{McapWriter, camera, encode, scan, topics, vehicle};
-use crate::{Data, LogError, Record};
+use crate::{Data, ImageFormat, LogError, Record};
 
 impl<W: Write + Seek> McapWriter<W> {
     /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).
     ///
     /// # Errors
-    /// When a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says, the stamp
+    /// When a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says or true labels are not compressed, the stamp
     /// is beyond the year 2106, or the output fails.
     pub fn record(&mut self, record: &Record) -> Result<(), LogError> {
         let stamp = record.stamp;
@@ -32,9 +32,14 @@ impl<W: Write + Seek> McapWriter<W> {
                 self.message(topics::SIGHTED_WIDTHS, stamp, &vehicle::encode_widths(timestamp, widths))
             }
             Data::Scan(scan) => {
-                let message = scan::encode_scan(timestamp, scan);
+                let frame = self.scan_frame;
+                let message = scan::encode_scan(timestamp, frame, scan);
                 self.message_with(topics::SCAN, &scan::metadata(scan), stamp, &message)?;
-                self.message(topics::SCAN_POINTS, stamp, &scan::encode_points(timestamp, scan))
+                self.message(topics::SCAN_POINTS, stamp, &scan::encode_points(timestamp, frame, scan))
+            }
+            Data::LaserMount(pose) => {
+                self.scan_frame = topics::LASER_FRAME;
+                self.message(topics::LASER_MOUNT, stamp, &scan::encode_mount(timestamp, pose))
             }
             Data::TruePosition(position) => {
                 self.message(topics::TRUE_POSITION, stamp, &vehicle::encode_position(timestamp, position))
@@ -53,6 +58,9 @@ impl<W: Write + Seek> McapWriter<W> {
             Data::CameraMount(pose) => {
                 self.message(topics::CAMERA_MOUNT, stamp, &camera::encode_mount(timestamp, pose))?;
                 self.message(topics::CAMERA_OPTICAL, stamp, &camera::encode_optical(timestamp))
+            }
+            Data::Image(image) if image.format == ImageFormat::Pnm => {
+                self.message(topics::IMAGE, stamp, &camera::encode_raw_image(timestamp, image))
             }
             Data::Image(image) => self.message(topics::IMAGE, stamp, &camera::encode_image(timestamp, image)),
             Data::TrueLabels(image) => {

@@ -1,6 +1,8 @@
 use super::scan::ScanChannel;
 use super::topics;
 
+const RAW_IMAGE: &str = "foxglove.RawImage";
+
 /// Which kind of record a channel carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Route {
@@ -10,6 +12,7 @@ pub(super) enum Route {
     Sightings,
     SightedWidths,
     Scan(ScanChannel),
+    LaserMount,
     /// Known, and nothing to read: the same scan as points.
     ScanPoints,
     TruePose,
@@ -22,6 +25,7 @@ pub(super) enum Route {
     /// Known, and nothing to read: the turn is always the same.
     CameraOptical,
     Image,
+    RawImage,
     TrueLabels,
 }
 
@@ -40,6 +44,7 @@ impl Route {
             topics::SIGHTINGS => (Self::Sightings, "foxglove.PointCloud"),
             topics::SIGHTED_WIDTHS => (Self::SightedWidths, "foxglove.PointCloud"),
             topics::SCAN => (Self::Scan(ScanChannel::of(metadata)), "foxglove.LaserScan"),
+            topics::LASER_MOUNT => (Self::LaserMount, "foxglove.FrameTransform"),
             topics::SCAN_POINTS => (Self::ScanPoints, "foxglove.PointCloud"),
             topics::TRUE_POSITION => (Self::TruePosition, "foxglove.PointCloud"),
             topics::TRUE_POSE => (Self::TruePose, "foxglove.PoseInFrame"),
@@ -49,6 +54,7 @@ impl Route {
             topics::CAMERA_INFO => (Self::CameraInfo, "foxglove.CameraCalibration"),
             topics::CAMERA_MOUNT => (Self::CameraMount, "foxglove.FrameTransform"),
             topics::CAMERA_OPTICAL => (Self::CameraOptical, "foxglove.FrameTransform"),
+            topics::IMAGE if schema == RAW_IMAGE => (Self::RawImage, RAW_IMAGE),
             topics::IMAGE => (Self::Image, "foxglove.CompressedImage"),
             topics::TRUE_LABELS => (Self::TrueLabels, "foxglove.CompressedImage"),
             _ => return None,

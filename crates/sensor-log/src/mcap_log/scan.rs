@@ -4,10 +4,12 @@
 
 use std::collections::BTreeMap;
 
-use foxglove::messages::{self, PointCloud, Timestamp};
+use foxglove::messages::{self, FrameTransform, PointCloud, Timestamp};
+use wayfix_estimation_traits::Pose2;
 
-use super::decode::{Fault, decode, finite, inconsistent, stamp};
+use super::decode::{decode, planar, stamp};
 use super::{encode, topics};
+use crate::fault::{Fault, finite, inconsistent};
 use crate::{Data, LaserScan, Record, Stamp};
 
 const INCREMENT: &str = "angle_increment";
@@ -39,10 +41,10 @@ pub(super) fn metadata(scan: &LaserScan) -> BTreeMap<String, String> {
     pairs.into_iter().map(|(key, value)| (key.to_owned(), value.to_string())).collect()
 }
 
-pub(super) fn encode_scan(timestamp: Timestamp, scan: &LaserScan) -> messages::LaserScan {
+pub(super) fn encode_scan(timestamp: Timestamp, frame: &str, scan: &LaserScan) -> messages::LaserScan {
     messages::LaserScan {
         timestamp: Some(timestamp),
-        frame_id: topics::BODY_FRAME.to_owned(),
+        frame_id: frame.to_owned(),
         pose: Some(encode::identity()),
         start_angle: scan.angle_min,
         end_angle: scan.bearing(scan.ranges.len().saturating_sub(1)),
@@ -52,13 +54,30 @@ pub(super) fn encode_scan(timestamp: Timestamp, scan: &LaserScan) -> messages::L
 }
 
 /// What came back, for viewers that do not draw scans.
-pub(super) fn encode_points(timestamp: Timestamp, scan: &LaserScan) -> PointCloud {
+pub(super) fn encode_points(timestamp: Timestamp, frame: &str, scan: &LaserScan) -> PointCloud {
     let point = |(bearing, range): (f64, f64)| {
         let (sin, cos) = libm::sincos(bearing);
         [range * cos, range * sin]
     };
     let points: Vec<[f64; 2]> = scan.echoes().map(point).collect();
-    encode::points(timestamp, topics::BODY_FRAME, &points)
+    encode::points(timestamp, frame, &points)
+}
+
+pub(super) fn encode_mount(timestamp: Timestamp, pose: &Pose2<f64>) -> FrameTransform {
+    FrameTransform {
+        timestamp: Some(timestamp),
+        parent_frame_id: topics::BODY_FRAME.to_owned(),
+        child_frame_id: topics::LASER_FRAME.to_owned(),
+        translation: Some(encode::position(pose)),
+        rotation: Some(encode::orientation(pose)),
+    }
+}
+
+pub(super) fn mount(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
+    let message: FrameTransform = decode(bytes)?;
+    let stamp = stamp(message.timestamp, log_time)?;
+    let pose = planar(&messages::Pose { position: message.translation, orientation: message.rotation })?;
+    Ok(vec![Record { stamp, data: Data::LaserMount(pose) }])
 }
 
 pub(super) fn scan(channel: ScanChannel, bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {

@@ -8,6 +8,7 @@
 //! | [`SIGHTINGS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Sightings`](crate::Data::Sightings) |
 //! | [`SIGHTED_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`Data::SightedWidths`](crate::Data::SightedWidths) |
 //! | [`SCAN`] | `foxglove.LaserScan`; `angle_increment` and `range_max` in the metadata of the channel | [`BODY_FRAME`] | [`Data::Scan`](crate::Data::Scan) |
+//! | [`LASER_MOUNT`] | `foxglove.FrameTransform` | [`LASER_FRAME`] in [`BODY_FRAME`] | [`Data::LaserMount`](crate::Data::LaserMount) |
 //! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`Data::TruePosition`](crate::Data::TruePosition) |
 //! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |
 //! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
@@ -15,12 +16,14 @@
 //! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
 //! | [`CAMERA_INFO`] | `foxglove.CameraCalibration` | [`CAMERA_OPTICAL_FRAME`] | [`Data::CameraInfo`](crate::Data::CameraInfo) |
 //! | [`CAMERA_MOUNT`] | `foxglove.FrameTransform` | [`CAMERA_FRAME`] in [`BODY_FRAME`] | [`Data::CameraMount`](crate::Data::CameraMount) |
-//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::Image`](crate::Data::Image) |
+//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG, or `foxglove.RawImage` | [`CAMERA_OPTICAL_FRAME`] | [`Data::Image`](crate::Data::Image) |
 //! | [`TRUE_LABELS`] | `foxglove.CompressedImage`, grey PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::TrueLabels`](crate::Data::TrueLabels) |
 //!
 //! With every camera mount, [`CAMERA_OPTICAL`] places the optical frame (z forward, x right, y down) that viewers draw images in.
 //!
 //! With every scan, [`SCAN_POINTS`] has the beams that came back as a `foxglove.PointCloud`, for viewers that draw no scans.
+//!
+//! [`TARGET`] has outlines that a tracker saw in the image of the same stamp, as `foxglove.ImageAnnotations`; it is not read back.
 //!
 //! A metadata record `wayfix` with the key `origin` names the format that the records come from, when it was another one.
 //!
@@ -38,6 +41,8 @@ pub const SIGHTINGS: &str = "/sightings";
 pub const SIGHTED_WIDTHS: &str = "/sightings/widths";
 /// What a laser saw.
 pub const SCAN: &str = "/scan";
+/// Where the laser is on the robot.
+pub const LASER_MOUNT: &str = "/scan/mount";
 /// The same as points; not read back.
 pub const SCAN_POINTS: &str = "/scan/points";
 /// Where a point of the robot truly was.
@@ -57,6 +62,8 @@ pub const CAMERA_INFO: &str = "/camera/info";
 pub const CAMERA_MOUNT: &str = "/camera/mount";
 /// The camera's axes turned as viewers want them; not read back.
 pub const CAMERA_OPTICAL: &str = "/camera/optical";
+/// Outlines of a target in the images; not read back.
+pub const TARGET: &str = "/estimate/target";
 /// What the camera saw.
 pub const IMAGE: &str = "/camera/image";
 /// What each pixel shows.
@@ -68,6 +75,8 @@ pub const WORLD_FRAME: &str = "world";
 pub const ODOMETRY_FRAME: &str = "odom";
 /// The robot: x forward, y left.
 pub const BODY_FRAME: &str = "base_link";
+/// The laser, where a mount places it on the robot.
+pub const LASER_FRAME: &str = "laser";
 /// The camera: x along the optical axis, y left, z up.
 pub const CAMERA_FRAME: &str = "camera";
 /// The camera as images have it: z along the optical axis, x right, y down.

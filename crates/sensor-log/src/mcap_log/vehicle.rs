@@ -4,8 +4,9 @@ use foxglove::messages::packed_element_field::NumericType::{Float32, Float64};
 use foxglove::messages::{JointState, JointStates, PointCloud, Timestamp};
 
 use super::cloud::{self, Column};
-use super::decode::{Fault, decode, finite, inconsistent, read_points, slots, stamp};
+use super::decode::{decode, read_points, slots, stamp};
 use super::{encode, topics};
+use crate::fault::{Fault, finite, inconsistent};
 use crate::{AckermannDrive, Data, Record, Stamp, TruePosition};
 
 const WHEEL: &str = "wheel";

@@ -10,9 +10,9 @@ use mcap::WriteOptions;
 use mcap::records::MessageHeader;
 use wayfix_estimation_traits::Pose2;
 
-use super::drawing::scene_update;
+use super::drawing::{image_annotations, scene_update};
 use super::held::Held;
-use super::{Drawing, encode, origin};
+use super::{Drawing, ImageOutline, encode, origin, topics};
 use crate::{Format, LogError, Record, Stamp};
 
 /// Messages are flushed in chunks of about this size: a crash loses no more.
@@ -39,6 +39,8 @@ pub struct McapWriter<W: Write + Seek> {
     /// By topic, schema and metadata.
     channels: BTreeMap<(String, String, BTreeMap<String, String>), Channel>,
     held: Held,
+    /// The laser's own once it is known where that is.
+    pub(super) scan_frame: &'static str,
 }
 
 struct Channel {
@@ -69,7 +71,7 @@ impl<W: Write + Seek> McapWriter<W> {
             .library("wayfix")
             .chunk_size(Some(CHUNK_BYTES))
             .create(out)?;
-        Ok(Self { writer, channels: BTreeMap::new(), held: Held::default() })
+        Ok(Self { writer, channels: BTreeMap::new(), held: Held::default(), scan_frame: topics::BODY_FRAME })
     }
 
     /// Says which format the records come from; reading gives it back as [`LogMeta::origin`](crate::LogMeta::origin).
@@ -169,6 +171,20 @@ impl<W: Write + Seek> McapWriter<W> {
         drawings: &[Drawing],
     ) -> Result<(), LogError> {
         let message = scene_update(encode::timestamp(stamp)?, frame, drawings);
+        self.message(topic, stamp, &message)
+    }
+
+    /// Outlines in the image of the same stamp, as `foxglove.ImageAnnotations`; none takes those before away.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    pub fn image_outlines(
+        &mut self,
+        topic: &str,
+        stamp: Stamp,
+        outlines: &[ImageOutline],
+    ) -> Result<(), LogError> {
+        let message = image_annotations(encode::timestamp(stamp)?, outlines);
         self.message(topic, stamp, &message)
     }
 

@@ -1,4 +1,9 @@
-//! Records made up for tests.
+//! Records and messages made up for tests.
+
+#![allow(dead_code, reason = "each test file uses its share")]
+
+pub(crate) mod bag;
+pub(crate) mod cdr;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Record, Sighting, Stamp, Target, TrueLandmark, Velocity};

@@ -14,6 +14,7 @@ use crate::{
 
 /// Thresholds of [`JointCompatibility`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -7,11 +7,14 @@ use nalgebra::{
 
 use super::ROUNDING;
 
-/// A covariance that grows, in a storage that doubles, so that a new landmark seldom moves the matrix. The robot comes first.
+/// A covariance that grows, in a storage that grows by half, so that a new landmark seldom moves the matrix. The robot comes first.
 #[derive(Clone, Debug)]
 pub(crate) struct JointCovariance {
     storage: DMatrix<f64>,
     dimension: usize,
+    /// The beginning of the storage to come, zeroed a little with every landmark: fresh pages of memory cost more than all else in a step,
+    /// and the step that moves the matrix would pay for all of them.
+    next: Vec<f64>,
 }
 
 impl JointCovariance {
@@ -22,14 +25,14 @@ impl JointCovariance {
         let dimension = R::DIM;
         let mut storage = DMatrix::zeros(stride(2 * dimension), 2 * dimension);
         storage.view_mut((0, 0), (dimension, dimension)).copy_from(robot);
-        Self { storage, dimension }
+        Self { storage, dimension, next: Vec::new() }
     }
 
     pub(super) fn from_matrix(matrix: DMatrix<f64>) -> Self {
         let dimension = matrix.nrows();
         let mut storage = DMatrix::zeros(stride(dimension), dimension);
         storage.view_mut((0, 0), (dimension, dimension)).copy_from(&matrix);
-        Self { storage, dimension }
+        Self { storage, dimension, next: Vec::new() }
     }
 
     pub(crate) fn matrix(&self) -> DMatrixView<'_, f64> {
@@ -173,14 +176,24 @@ impl JointCovariance {
         )
     }
 
+    /// Makes room for `dimension` states, and readies some of the room that comes after it.
     fn reserve(&mut self, dimension: usize) {
-        if dimension > self.storage.ncols() {
-            let capacity = dimension.max(2 * self.storage.ncols());
-            let rows = stride(capacity);
-            // Zeroed by the system page by page as they are used, and not all in the step that grows.
-            let mut grown = DMatrix::from_vec(rows, capacity, vec![0.0; rows * capacity]);
+        let capacity = self.storage.ncols();
+        let larger = capacity + capacity.div_ceil(2);
+        if dimension > capacity {
+            let columns = dimension.max(larger);
+            let rows = stride(columns);
+            self.next.resize(rows * columns, 0.0);
+            let mut grown = DMatrix::from_vec(rows, columns, std::mem::take(&mut self.next));
             grown.view_mut((0, 0), (self.dimension, self.dimension)).copy_from(&self.matrix());
             self.storage = grown;
+        } else {
+            let n_entries = stride(larger) * larger;
+            let n_ready = n_entries * dimension / capacity;
+            if n_ready > self.next.len() {
+                self.next.reserve_exact(n_entries.saturating_sub(self.next.len()));
+                self.next.resize(n_ready, 0.0);
+            }
         }
     }
 }

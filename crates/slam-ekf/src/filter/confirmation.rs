@@ -9,6 +9,7 @@ use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, 
 /// again when it is not seen in time, and it starts anew when a sighting says it is somewhere else. A false detection or a first
 /// sighting that was an outlier cannot stay.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -6,6 +6,7 @@
 ///
 /// The last two need a model that says what its symmetry is ([`LandmarkModel::symmetries`](crate::LandmarkModel::symmetries)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Linearization {
     /// The standard filter: every derivative at the newest estimate.

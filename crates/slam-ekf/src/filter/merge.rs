@@ -12,6 +12,7 @@ use crate::{
 /// $`‖d‖ + k \sqrt{\operatorname{tr} P_d} ≤ s`$ with $`d = m_b ⊟ m_a`$ and $`P_d`$ its covariance. A test of $`d = 0`$ alone would take every two
 /// neighbours for one that are still uncertain, and keep duplicates that errors which hang together in time hold apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

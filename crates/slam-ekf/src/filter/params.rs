@@ -3,6 +3,7 @@ use crate::SlamError;
 
 /// Parameters of the filter, the same for every kind of landmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -36,6 +37,7 @@ pub struct SlamParams {
 
 /// What happens to observations that fit badly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum OutlierRule {
     /// They count less the worse they fit, and none is lost: the filter finds back when it was once too sure of itself.
@@ -47,6 +49,7 @@ pub enum OutlierRule {
 
 /// Whether observations of one look correct together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum UpdateOrder {
     /// All at once, linearized at the predicted state: the result does not depend on their order, and large maps are fast.
@@ -75,6 +78,7 @@ pub enum UpdateOrder {
 /// # Ok::<(), SlamError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum MapForm {
     /// One matrix, up to date: a correction costs the square of the number of landmarks in the map.

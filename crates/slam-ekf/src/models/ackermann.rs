@@ -16,6 +16,7 @@ use super::{VelocityControl, VelocityMotion};
 /// assert!(left.linear > 3.0 && left.angular > 0.0); // the left wheel is on the inside of the turn
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -58,6 +59,7 @@ pub struct AckermannControl {
 
 /// The motion of an [`AckermannVehicle`]: its velocity, with the noise of a [`VelocityMotion`].
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

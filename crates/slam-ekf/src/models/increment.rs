@@ -8,6 +8,7 @@ use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 ///
 /// The defaults are what `σ = 0.02 m, 0.005 rad` over a step of a quarter of a metre means.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -16,6 +16,7 @@ use super::RangeBearing;
 /// assert!((sensor.common_noise(&seen, &seen).m22.sqrt() - 0.008).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -56,6 +56,7 @@ impl Manifold for RangeBearing {
 /// assert!((seen.range - 2.0).abs() < 1e-12 && seen.bearing.radians().abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -19,6 +19,7 @@ pub struct VelocityControl {
 /// The noise is a random walk, $`\mathrm{var}(Δs) = (σ_v^2 + σ_d^2 |v|) Δt`$ and $`\mathrm{var}(Δθ) = (σ_ω^2 + σ_t^2 |ω| + σ_s^2 |v|) Δt`$, so
 /// that the result does not depend on how finely a log cuts time. Turning errs in heading at the middle of the arc, hence a little sideways.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

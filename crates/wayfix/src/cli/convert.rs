@@ -3,9 +3,14 @@ use std::{path::PathBuf, process::ExitCode};
 use anyhow::{Result, bail};
 use wayfix_sensor_log::{Format, OpenOptions};
 
-use super::output::{print, tell};
+use super::{
+    input::Topics,
+    output::{print, tell},
+};
 
 /// Write a log in another format.
+///
+/// A ROS 2 bag becomes MCAP in Foxglove's schemas; of each kind of record one topic is taken (`--topic`).
 ///
 /// MCAP keeps everything, and where the records come from; Foxglove and Rerun open it. What the other formats have no place for is
 /// left out and counted: range-bearing text has no stamps, velocities and scans, TUM has poses only.
@@ -25,13 +30,16 @@ pub(super) struct Arguments {
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
     robot: Option<u32>,
+    #[command(flatten)]
+    topics: Topics,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   wayfix convert slam_100.txt slam_100.mcap
   wayfix convert MRCLAM_Dataset7 robot3.mcap --robot 3
-  wayfix convert results/estimates.mcap path.tum";
+  wayfix convert results/estimates.mcap path.tum
+  wayfix convert rosbag2_0.mcap drive.mcap --topic /scan_rear";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let extension = arguments.output.extension().and_then(|extension| extension.to_str());
@@ -45,7 +53,12 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
             arguments.output.display()
         ),
     };
-    let options = OpenOptions { format: arguments.from, robot: arguments.robot, ..OpenOptions::default() };
+    let options = OpenOptions {
+        format: arguments.from,
+        robot: arguments.robot,
+        topics: arguments.topics.topics,
+        ..OpenOptions::default()
+    };
     let log = wayfix_sensor_log::open(&arguments.input, &options)?;
     let (read, written) = wayfix_sensor_log::convert(log, &arguments.output, format)?;
     if !read.is_clean() {

@@ -3,7 +3,7 @@ use std::{path::PathBuf, process::ExitCode};
 use anyhow::Result;
 use wayfix_sensor_log::{Format, LogSummary, OpenOptions};
 
-use super::output::print;
+use super::{input::Topics, output::print};
 
 /// Tell what a log holds: kinds of records and their rates, landmarks, robots, what could not be read.
 #[derive(clap::Args)]
@@ -17,6 +17,8 @@ pub(super) struct Arguments {
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
     robot: Option<u32>,
+    #[command(flatten)]
+    topics: Topics,
 }
 
 const FORMATS: &str = "\
@@ -37,12 +39,21 @@ Formats:
                  or /odom/ackermann (JointStates wheel, steering), /sightings (PointCloud with range, bearing, kind, id),
                  /scan (LaserScan), /truth/pose (PoseInFrame), /truth/position (PointCloud with x, y),
                  /truth/landmarks (PointCloud with x, y, id), /camera/info (CameraCalibration), /camera/mount
-                 (FrameTransform), /camera/image and /truth/labels (CompressedImage)
+                 (FrameTransform), /camera/image and /truth/labels (CompressedImage);
+                 or ROS 2 messages as `ros2 bag record -s mcap` writes them, on any topic: LaserScan, Odometry, Image,
+                 CompressedImage, CameraInfo, PoseStamped, PoseWithCovarianceStamped, TwistStamped, Twist, TFMessage.
+                 Of each kind the topic with the most messages is read; --topic chooses another. Poses are true on
+                 topics with truth, gt, mocap, vicon, optitrack or qualisys in the name.
   images         a folder of PNG and JPEG files, frames by name, 30 Hz
 Text may be compressed with gzip.";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };
+    let options = OpenOptions {
+        format: arguments.format,
+        robot: arguments.robot,
+        topics: arguments.topics.topics,
+        ..OpenOptions::default()
+    };
     let summary = LogSummary::of(wayfix_sensor_log::open(&arguments.path, &options)?);
     let lines = if summary.kinds.contains_key("laser scan") { "usable for `wayfix run lines`\n" } else { "" };
     print(format!("{summary}{lines}{}\n", usable_for(&summary)))?;
@@ -53,17 +64,22 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 fn usable_for(summary: &LogSummary) -> &'static str {
     let has = |kinds: &[&str]| kinds.iter().any(|kind| summary.kinds.contains_key(kind));
     let sees_landmarks = !summary.landmarks_seen.is_empty() || summary.n_unlabelled > 0;
-    match (
-        has(&["velocity", "odometry increment", "ackermann drive"]),
-        sees_landmarks,
-        has(&["true pose", "true position"]),
-    ) {
+    let sees_walls = !sees_landmarks && has(&["laser scan"]);
+    let moves = has(&["velocity", "odometry increment", "ackermann drive"]);
+    match (moves, sees_landmarks || sees_walls, has(&["true pose", "true position"])) {
+        (true, true, _) if sees_walls && !has(&["odometry increment", "velocity"]) => {
+            "not usable for `wayfix run slam`: maps of walls need odometry increments or velocities"
+        }
         (true, true, true) => "usable for `wayfix run slam`, with figures of accuracy",
         (true, true, false) => {
             "usable for `wayfix run slam`; without true poses there are no figures of accuracy"
         }
         (false, true, _) => "not usable for `wayfix run slam`: no odometry (velocities or increments)",
-        (true, false, _) => "not usable for `wayfix run slam`: no sightings of landmarks",
-        (false, false, _) => "not usable for `wayfix run slam`: neither odometry nor sightings of landmarks",
+        (true, false, _) => {
+            "not usable for `wayfix run slam`: neither sightings of landmarks nor laser scans"
+        }
+        (false, false, _) => {
+            "not usable for `wayfix run slam`: neither odometry nor sightings of landmarks nor laser scans"
+        }
     }
 }

@@ -2,9 +2,50 @@ use std::{fs, path::Path};
 
 use anyhow::{Context, Result};
 
+// No documentation: it would become that of every command that takes these arguments.
+#[derive(clap::Args)]
+pub(super) struct Topics {
+    /// A topic of a ROS 2 bag to read, where several hold the same kind of record; may be given once for each kind [default: of each kind
+    /// the topic with the most messages, see `wayfix info`].
+    #[arg(long = "topic", value_name = "NAME")]
+    pub(super) topics: Vec<String>,
+}
+
 /// Parameters from a TOML file; the error names the file and the key, or the line where the text is no TOML.
 pub(super) fn read_toml<P>(path: &Path, parse: impl Fn(&str) -> Result<P, toml::de::Error>) -> Result<P> {
     let text = fs::read_to_string(path)
         .with_context(|| format!("cannot read parameters from {}", path.display()))?;
-    parse(&text).with_context(|| format!("parameters in {} are not usable", path.display()))
+    let read = parse(&text).map_err(|error| {
+        let hint =
+            nearest(error.message()).map(|name| format!("\ndid you mean `{name}`?")).unwrap_or_default();
+        anyhow::anyhow!("{}{hint}", error.to_string().trim_end())
+    });
+    read.with_context(|| format!("parameters in {} are not usable", path.display()))
+}
+
+/// The name most like the one that is unknown, if any is like it: of "unknown field `a`, expected one of `b`, `c`".
+fn nearest(message: &str) -> Option<&str> {
+    let names = message.strip_prefix("unknown ").map(|rest| rest.split('`').skip(1).step_by(2))?;
+    let mut names = names.map(|name| name.trim());
+    let unknown = names.next()?;
+    let likeness = |name: &str| strsim::jaro_winkler(unknown, name);
+    names.filter(|name| likeness(name) > ALIKE).max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+}
+
+/// What a slip of the finger leaves: one or two letters of a word wrong, swapped or missing.
+const ALIKE: f64 = 0.8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_is_recognized_and_nonsense_is_not() {
+        let message =
+            "unknown field `gate_probabilty`, expected one of `outliers`, `gate_probability`, `order`";
+        assert_eq!(nearest(message), Some("gate_probability"));
+        assert_eq!(nearest("unknown field `zzz`, expected one of `outliers`, `order`"), None);
+        assert_eq!(nearest("unknown variant `jcb`, expected one of `known`, `nn`, `jcbb`"), Some("jcbb"));
+        assert_eq!(nearest("invalid type: string \"x\", expected f64"), None);
+    }
 }

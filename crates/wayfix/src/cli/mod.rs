@@ -1,17 +1,21 @@
 //! The command line: one command a file.
 
+mod completions;
 mod convert;
 mod finish;
 mod fixtures;
 mod info;
 mod input;
+mod merge_reports;
 mod output;
+mod params;
 mod progress;
 mod regress;
 mod run_cml;
 mod run_color;
 mod run_lines;
 mod run_slam;
+mod run_track;
 mod run_views;
 mod run_walls;
 
@@ -28,6 +32,8 @@ use clap::{Parser, Subcommand};
 ///   wayfix run lines --log intel.log.gz           walls in laser scans
 ///   wayfix run color --log color_dark.mcap --map four-legged-field.toml
 ///   wayfix run views --scene china.jpg             where in a picture a camera looks, learned in other light
+///   wayfix run track --frames David/img --init 129,80,64,78
+///                                                 a target in every picture, from where it is in the first
 ///   wayfix run cml --frames route --poses poses.csv  where a robot is, by what places look like all round
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 #[derive(Parser)]
@@ -43,9 +49,12 @@ enum Command {
     /// Run a system on a log.
     #[command(subcommand)]
     Run(Run),
+    Params(params::Arguments),
     Info(info::Arguments),
     Convert(convert::Arguments),
     Regress(regress::Arguments),
+    MergeReports(merge_reports::Arguments),
+    Completions(completions::Arguments),
     /// Build or check the stored logs.
     #[command(subcommand)]
     Fixtures(fixtures::Command),
@@ -57,6 +66,7 @@ enum Run {
     Lines(run_lines::Arguments),
     Color(run_color::Arguments),
     Views(run_views::Arguments),
+    Track(run_track::Arguments),
     Cml(run_cml::Arguments),
 }
 
@@ -67,10 +77,14 @@ pub fn main() -> ExitCode {
         Command::Run(Run::Lines(arguments)) => run_lines::main(arguments),
         Command::Run(Run::Color(arguments)) => run_color::main(arguments),
         Command::Run(Run::Views(arguments)) => run_views::main(arguments),
+        Command::Run(Run::Track(arguments)) => run_track::main(arguments),
         Command::Run(Run::Cml(arguments)) => run_cml::main(arguments),
+        Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
         Command::Regress(arguments) => regress::main(arguments),
+        Command::MergeReports(arguments) => merge_reports::main(arguments),
+        Command::Completions(arguments) => completions::main(arguments),
         Command::Fixtures(command) => fixtures::main(command),
     };
     match result {

@@ -1,11 +1,14 @@
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use anyhow::{Context, Result};
 
 use super::{output::print, progress};
 use crate::{
-    regress::{Options, n_runs, regress, suites},
-    report::{table, table::TableStyle},
+    regress::{Options, Part, Shard, assemble, cells, run_shard, suites},
+    report::{Report, table, table::TableStyle},
 };
 
 /// Run every system on the stored logs, and on public recordings where they are at hand, and judge the figures.
@@ -30,6 +33,12 @@ pub(super) struct Arguments {
     /// Seed of every generator.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Repeat every run with so many seeds, from --seed on, and report means with 95 % intervals.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "bless")]
+    seeds: u64,
+    /// Do the K-th of N shares of the work and write OUT/part.json; `wayfix merge-reports` makes one report of all shares.
+    #[arg(long, value_name = "K/N", default_value_t = Shard::WHOLE, hide_default_value = true, conflicts_with = "bless")]
+    shard: Shard,
     /// Stored logs and short experiments only.
     #[arg(long)]
     quick: bool,
@@ -49,23 +58,38 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         data: arguments.data,
         out: arguments.out,
         seed: arguments.seed,
+        n_seeds: arguments.seeds,
         quick: arguments.quick,
         bless: arguments.bless,
     };
-    let bar = progress::bar(n_runs(&options)?, "regress");
+    let shard = arguments.shard;
+    let n_mine = (0..cells(&options)?.len()).filter(|index| shard.takes(*index)).count();
+    let bar = progress::bar(n_mine, "regress");
     let done = |name: &str| {
         bar.set_message(name.to_owned());
         bar.inc(1);
     };
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.unwrap_or(0)).build();
-    let report = threads.context("cannot start the threads")?.install(|| regress(&options, &done))?;
+    let done = threads.context("cannot start the threads")?.install(|| run_shard(&options, shard, &done))?;
     bar.finish_and_clear();
 
-    report.write(&options.out)?;
-    print(table::report(&report, TableStyle::of_stdout()))?;
+    if shard.is_part() {
+        let path = Part::new(&options, shard, done)?.write(&options.out)?;
+        print(format!("shard {shard}: {n_mine} runs done, {}\n", path.display()))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let report = assemble(&options, &done)?;
+    let code = show(&report, &options.out)?;
     if options.data.is_none() && !options.quick {
         print("Public recordings were left out: no --data and no WAYFIX_DATA.\n")?;
     }
-    print(format!("{0}/index.html  {0}/report.json\n", options.out.display()))?;
+    Ok(code)
+}
+
+/// Writes the report, prints it, and judges it.
+pub(super) fn show(report: &Report, out: &Path) -> Result<ExitCode> {
+    report.write(out)?;
+    print(table::report(report, TableStyle::of_stdout()))?;
+    print(format!("{0}/index.html  {0}/report.json\n", out.display()))?;
     Ok(if report.tally().all_pass() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -12,12 +12,13 @@ use wayfix_sensor_log::{Format, OpenOptions, Record};
 
 use super::{
     finish::{self, ESTIMATES},
-    input::read_toml,
+    input::{Topics, read_toml},
     output::{print, tell},
     progress,
 };
 use crate::{
     color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, StartPose, priors},
+    commented::commented,
     plot::Picture,
     report::Run,
     system::{Stopwatch, System},
@@ -36,9 +37,11 @@ use crate::{
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log, an MCAP file.
+    /// The log, an MCAP file; it may be a ROS 2 bag with rectified images and the transforms from the robot to its camera.
     #[arg(long, value_name = "PATH")]
     log: PathBuf,
+    #[command(flatten)]
+    topics: Topics,
     /// The map: coloured polygons and posts, TOML or JSON.
     #[arg(long, value_name = "FILE")]
     map: PathBuf,
@@ -112,7 +115,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         None => ColorSystemParams::default(),
     };
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let map = Arc::new(color::read_map(&arguments.map)?);
@@ -124,7 +127,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         priors.colors()
     );
     let bank = priors::bank(&priors, &params)?;
-    let log = wayfix_sensor_log::open(&arguments.log, &OpenOptions::default())?;
+    let options = OpenOptions { topics: arguments.topics.topics, ..OpenOptions::default() };
+    let log = wayfix_sensor_log::open(&arguments.log, &options)?;
     let origin = log.meta().first_format();
     let (records, read) = log.read_all();
     if !read.is_clean() {

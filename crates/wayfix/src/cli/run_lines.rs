@@ -10,11 +10,12 @@ use wayfix_sensor_log::{Format, OpenOptions};
 
 use super::{
     finish::{self, ESTIMATES},
-    input::read_toml,
+    input::{Topics, read_toml},
     output::{print, tell},
     progress,
 };
 use crate::{
+    commented::commented,
     lines::{self, LineLog, LineSystem},
     report::Run,
     system::{Stopwatch, System, drive},
@@ -28,12 +29,14 @@ use crate::{
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log: CARMEN, scans as JSON, or MCAP; text may be compressed with gzip.
+    /// The log: CARMEN, scans as JSON, or MCAP, which may be a ROS 2 bag; text may be compressed with gzip.
     #[arg(long, value_name = "PATH")]
     log: PathBuf,
     /// How the log is stored: carmen, scan-json or mcap [default: found out by looking].
     #[arg(long)]
     format: Option<Format>,
+    #[command(flatten)]
+    topics: Topics,
     /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
@@ -56,7 +59,8 @@ pub(super) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   wayfix run lines --log intel-corrected.log.gz
-  wayfix run lines --log my.mcap --out results";
+  wayfix run lines --log my.mcap --out results
+  wayfix run lines --log rosbag2_0.mcap --topic /scan_rear";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let params = match &arguments.params {
@@ -64,11 +68,12 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         None => Params::default(),
     };
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut system = LineSystem::new(params)?;
-    let options = OpenOptions { format: arguments.format, ..OpenOptions::default() };
+    let options =
+        OpenOptions { format: arguments.format, topics: arguments.topics.topics, ..OpenOptions::default() };
     let log = wayfix_sensor_log::open(&arguments.log, &options)?;
     let origin = log.meta().first_format();
     let (records, read) = log.read_all();

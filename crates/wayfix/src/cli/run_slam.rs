@@ -9,11 +9,12 @@ use wayfix_sensor_log::{Format, LogMeta, OpenOptions, Record};
 
 use super::{
     finish::{self, ESTIMATES},
-    input::read_toml,
+    input::{Topics, read_toml},
     output::{print, tell},
     progress, run_walls,
 };
 use crate::{
+    commented::commented,
     report::Run,
     slam::{
         self, AssociationRule, EstimateLog, Profile, SavedMap, Saver, SlamRun, SlamSystem, SlamSystemParams,
@@ -31,14 +32,15 @@ use crate::{
 /// time a look of the sensor.
 ///
 /// In logs of laser scans the landmarks are walls; the parameters are others then (`--print-params` shows them). What another program
-/// estimated stands in for the truth there, when the log has no true poses. `--relations` adds the errors of known relations.
+/// estimated stands in for the truth there, when the log has no true poses. Where a ROS 2 bag has the transform from the robot to its laser, the laser is
+/// there, unless the parameters place it. `--relations` adds the errors of known relations.
 ///
 /// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
 /// It ends with 1 when nothing could be done, with 2 when the command line is wrong.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
-    /// The log: an MCAP file, the folder of a UTIAS or Victoria Park set, a text file of range-bearing lines, or laser scans of CARMEN or JSON.
+    /// The log: an MCAP file, which may be a ROS 2 bag, the folder of a UTIAS or Victoria Park set, a text file of range-bearing lines, or laser scans of CARMEN or JSON.
     #[arg(long, value_name = "PATH")]
     pub(super) log: PathBuf,
     /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: found out by looking].
@@ -47,6 +49,8 @@ pub(super) struct Arguments {
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
     pub(super) robot: Option<u32>,
+    #[command(flatten)]
+    pub(super) topics: Topics,
     /// How sightings find their landmarks [default: known where the log has identities, else jcbb].
     #[arg(long, value_name = "RULE")]
     pub(super) association: Option<AssociationRule>,
@@ -108,6 +112,7 @@ Examples:
   wayfix run slam --log my.mcap --print-params > my.toml                a file to edit, for
   wayfix run slam --log my.mcap --params my.toml
   wayfix run slam --log monday.mcap --save floor.map --save-every 10
+  wayfix run slam --log rosbag2_0.mcap --topic /scan_front              walls, from the laser and /odom
   wayfix run slam --log tuesday.mcap --resume floor.map --save floor.map
 
 A file of parameters names what differs from the defaults, for instance
@@ -116,7 +121,12 @@ A file of parameters names what differs from the defaults, for instance
   bearing_sigma = 0.03    # rad";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let options = OpenOptions { format: arguments.format, robot: arguments.robot, ..OpenOptions::default() };
+    let options = OpenOptions {
+        format: arguments.format,
+        robot: arguments.robot,
+        topics: arguments.topics.topics.clone(),
+        ..OpenOptions::default()
+    };
     let log = wayfix_sensor_log::open(&arguments.log, &options)?;
     let meta = log.meta().clone();
     let (records, read) = log.read_all();
@@ -128,7 +138,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     let params = params(&arguments, &meta)?;
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let origin = meta.first_format();

@@ -16,6 +16,7 @@ use super::{
     progress,
 };
 use crate::{
+    commented::commented,
     report::Run,
     system::Stopwatch,
     views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams},
@@ -128,7 +129,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         params.navigator.choice = ActionChoice::Informed { hypotheses };
     }
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let scene = read(&arguments.scene)?;

@@ -10,6 +10,7 @@ use super::{
     progress, run_slam,
 };
 use crate::{
+    commented::commented,
     report::Run,
     slam::AssociationRule,
     system::Stopwatch,
@@ -38,7 +39,7 @@ pub(super) fn main(
     }
     let params = params(arguments)?;
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let stopwatch = Stopwatch::start();

@@ -1,8 +1,9 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaParams};
 
 /// Everything that `wayfix run cml` is tuned by. What a file of parameters does not name keeps its default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CmlParams {
     /// What is known of the poses that a map is taught with.
@@ -18,7 +19,7 @@ pub struct CmlParams {
 }
 
 /// Standard deviations of a pose.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PoseSigmas {
     /// Of x and y, metres.
@@ -34,7 +35,7 @@ impl Default for PoseSigmas {
 }
 
 /// Odometry made of a path: its increments, smoothed, with noise.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MadeOdometry {
     /// Standard deviation of the Gaussian that smooths the path, in frames: what measures a path trembles, wheels do not. As much as the path

@@ -1,8 +1,9 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_color_model::{Background, Drift, LocalizerParams, Unseen, YuvStandard};
 
 /// Everything that `wayfix run color` is tuned by. What a file of parameters does not name keeps its default.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ColorSystemParams {
     /// What YUV is.
@@ -27,7 +28,7 @@ pub struct ColorSystemParams {
 }
 
 /// What is known of the start.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct StartParams {
     /// Standard deviation of the position, metres.

@@ -10,6 +10,8 @@ pub struct LineLog {
     n_written: usize,
     /// Walls of the scan before: those that the next has not are drawn over with nothing.
     n_walls: usize,
+    /// What the walls are given in: the laser's frame once the log has placed it, else the robot's.
+    frame: &'static str,
     failure: Option<LogError>,
 }
 
@@ -23,7 +25,7 @@ impl LineLog {
     pub fn create(path: &Path, origin: Format) -> Result<Self, LogError> {
         let mut writer = McapWriter::create(path)?;
         writer.origin(origin)?;
-        Ok(Self { writer, n_written: 0, n_walls: 0, failure: None })
+        Ok(Self { writer, n_written: 0, n_walls: 0, frame: topics::BODY_FRAME, failure: None })
     }
 
     /// Writes a record of the log and what the system made of it. A failure is kept until [`finish`](Self::finish).
@@ -53,11 +55,14 @@ impl LineLog {
             let (world, body) = (topics::WORLD_FRAME, topics::BODY_FRAME);
             self.writer.frame_transform("/tf", record.stamp, world, body, pose)?;
         }
+        if let Data::LaserMount(_) = record.data {
+            self.frame = topics::LASER_FRAME;
+        }
         let Some(scan) = system.scans().get(self.n_written) else { return Ok(()) };
         self.n_written += 1;
         let drawings = drawings(scan, self.n_walls);
         self.n_walls = scan.segments.len();
-        self.writer.scene_update("/walls", scan.stamp, topics::BODY_FRAME, &drawings)
+        self.writer.scene_update("/walls", scan.stamp, self.frame, &drawings)
     }
 }
 

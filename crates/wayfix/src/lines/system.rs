@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{Extractor, LineError, Params, Scan, Segment};
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp, TrueWall};
 
@@ -10,6 +10,7 @@ use crate::system::{Events, Stopwatch, System};
 pub struct LineSystem {
     extractor: Extractor,
     pose: Option<(Stamp, Pose2<f64>)>,
+    mount: Pose2<f64>,
     scans: Vec<ScanWalls>,
     true_walls: Vec<TrueWall>,
     n_scans: u64,
@@ -21,7 +22,7 @@ pub struct LineSystem {
 pub struct ScanWalls {
     /// When it was taken.
     pub stamp: Stamp,
-    /// Where, if the log says so for this very stamp; truth before estimates.
+    /// Where the laser was, if the log says so for this very stamp; truth before estimates.
     pub pose: Option<Pose2<f64>>,
     /// What came back: bearing, radians, and range, metres.
     pub echoes: Vec<(f64, f64)>,
@@ -41,6 +42,7 @@ impl LineSystem {
         Ok(Self {
             extractor,
             pose: None,
+            mount: Pose2::identity(),
             scans: Vec::new(),
             true_walls: Vec::new(),
             n_scans: 0,
@@ -76,7 +78,7 @@ impl LineSystem {
         let stopwatch = Stopwatch::start();
         let found = self.extractor.extract(&scan).map_err(|error| error.to_string())?;
         let step = stopwatch.elapsed();
-        let pose = self.pose.filter(|(at, _)| *at == stamp).map(|(_, pose)| pose);
+        let pose = self.pose.filter(|(at, _)| *at == stamp).map(|(_, pose)| pose.compose(&self.mount));
         self.events.add("beam_without_echo", found.counts.skipped() as u64);
         self.scans.push(ScanWalls { stamp, pose, echoes, segments: found.segments, step });
         Ok(())
@@ -90,6 +92,7 @@ impl System for LineSystem {
             Data::EstimatedPose(pose) if self.pose.is_none_or(|(at, _)| at != record.stamp) => {
                 self.pose = Some((record.stamp, *pose));
             }
+            Data::LaserMount(mount) => self.mount = *mount,
             Data::TrueWall(wall) => self.true_walls.push(*wall),
             Data::Scan(scan) => return self.take_scan(record.stamp, scan),
             _ => {}

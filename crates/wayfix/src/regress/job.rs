@@ -29,7 +29,11 @@ impl Job<'_> {
 
     /// Name and place of the estimates that the run writes beside the report.
     pub fn estimates(&self) -> (String, PathBuf) {
-        let name = format!("{}.mcap", self.planned.name);
+        let seed = self.options.seed;
+        let name = match &self.planned.name {
+            name if self.options.n_seeds > 1 => format!("{name}-seed-{seed}.mcap"),
+            name => format!("{name}.mcap"),
+        };
         let path = self.options.out.join(&name);
         (name, path)
     }

@@ -3,11 +3,8 @@ use std::{fs, path::PathBuf};
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::{Blessed, Job, Plan, PlannedRun, plan::judge, suites};
-use crate::{
-    report::{Machine, Report, Run, Suite, commit},
-    system::Stopwatch,
-};
+use super::{Cell, Job, Plan, Shard, campaign::job, cells, suites};
+use crate::{report::Run, system::Stopwatch};
 
 /// What to run and where to put it.
 #[derive(Clone, Debug)]
@@ -22,83 +19,61 @@ pub struct Options {
     pub out: PathBuf,
     /// Seed of every generator.
     pub seed: u64,
+    /// How many seeds from that one on each run is repeated with.
+    pub n_seeds: u64,
     /// Stored logs and short experiments only.
     pub quick: bool,
     /// Take the figures of the stored logs as right from now on.
     pub bless: bool,
 }
 
-/// Runs the suites, in parallel over their runs, and calls `done` with the name of each run that is finished.
+impl Options {
+    /// The seeds of the campaign.
+    pub(super) fn seeds(&self) -> impl Iterator<Item = u64> + use<> {
+        (0..self.n_seeds.max(1)).zip(self.seed..).map(|(_, seed)| seed)
+    }
+}
+
+/// A piece of work that is done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Done {
+    /// Which one.
+    pub cell: Cell,
+    /// What came out, not judged yet.
+    pub run: Run,
+}
+
+/// Does the shard's part of the work, several pieces at a time, and calls `done` with the name of each run that is finished.
 ///
-/// The figures do not depend on the number of threads.
+/// The figures depend neither on the number of threads nor on how the work is divided.
 ///
 /// # Errors
-/// When a plan cannot be read or the output folder cannot be written. A log that fails is a failed run of the report.
-pub fn regress(options: &Options, done: &(impl Fn(&str) + Sync)) -> Result<Report> {
+/// When a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error.
+pub fn run_shard(options: &Options, shard: Shard, done: &(impl Fn(&str) + Sync)) -> Result<Vec<Done>> {
     fs::create_dir_all(&options.out).with_context(|| format!("cannot create {}", options.out.display()))?;
-    let suites = options.suites.iter().map(|suite| run_suite(options, suite, done)).collect::<Result<_>>()?;
-    Ok(Report { suites, seed: options.seed, commit: commit(&options.fixtures), machine: Machine::detect() })
-}
-
-/// How many runs there will be.
-///
-/// # Errors
-/// When a plan cannot be read.
-pub fn n_runs(options: &Options) -> Result<usize> {
-    let count = |suite: &String| {
-        let plan = Plan::read(&options.fixtures, suite)?;
-        Ok(plan.run.iter().filter(|planned| job(options, planned).is_some()).count())
+    let mine = cells(options)?.into_iter().enumerate().filter(|(index, _)| shard.takes(*index));
+    let mine: Vec<Cell> = mine.map(|(_, cell)| cell).collect();
+    let plans: Vec<(&str, Plan, suites::Runner)> = options
+        .suites
+        .iter()
+        .map(|suite| Ok((suite.as_str(), Plan::read(&options.fixtures, suite)?, suites::named(suite)?)))
+        .collect::<Result<_>>()?;
+    let work = |cell: Cell| {
+        let (_, plan, runner) = plans.iter().find(|(name, ..)| *name == cell.suite)?;
+        let planned = plan.run.iter().find(|planned| planned.name == cell.run)?;
+        let options = Options { seed: cell.seed, ..options.clone() };
+        let run = run_one(&job(&options, planned)?, *runner);
+        done(&run.name);
+        Some(Done { cell, run })
     };
-    options.suites.iter().map(count).sum()
-}
-
-fn run_suite(options: &Options, suite: &str, done: &(impl Fn(&str) + Sync)) -> Result<Suite> {
-    let plan = Plan::read(&options.fixtures, suite)?;
-    let jobs: Vec<Job<'_>> = plan.run.iter().filter_map(|planned| job(options, planned)).collect();
-    let run = suites::named(suite)?;
-    let mut runs: Vec<Run> = jobs
-        .par_iter()
-        .map(|job| {
-            let run = run_one(job, run);
-            done(&run.name);
-            run
-        })
-        .collect();
-
-    let blessed_path = options.fixtures.join(format!("{suite}-figures.json"));
-    let stored: Vec<&str> =
-        plan.run.iter().filter(|run| run.data.is_none()).map(|run| run.name.as_str()).collect();
-    if options.bless {
-        Blessed::write(&blessed_path, runs.iter().filter(|run| stored.contains(&run.name.as_str())))?;
-    }
-    let blessed = Blessed::read(&blessed_path)?;
-    for run in &mut runs {
-        let changed = blessed.compare(run);
-        run.metrics.extend(changed);
-    }
-    let means: Vec<Run> = plan.mean.iter().filter_map(|mean| mean.over(&runs)).collect();
-    runs.extend(means);
-    Ok(Suite { name: suite.to_owned(), runs })
-}
-
-/// A run with what it needs; `None` for recordings that are not at hand and for what is not asked for.
-fn job<'a>(options: &'a Options, planned: &'a PlannedRun) -> Option<Job<'a>> {
-    let path = match (&planned.log, &planned.data) {
-        _ if options.quick && (planned.slow || planned.data.is_some()) => return None,
-        (Some(log), _) => Some(options.fixtures.join(log)),
-        (None, Some(data)) => Some(options.data.as_ref()?.join(data)).filter(|path| path.exists()),
-        (None, None) => None,
-    };
-    (planned.data.is_none() || path.is_some()).then_some(Job { options, planned, path })
+    Ok(mine.into_par_iter().filter_map(work).collect())
 }
 
 fn run_one(job: &Job<'_>, run: suites::Runner) -> Run {
     let stopwatch = Stopwatch::start();
-    let mut run = match run(job) {
+    let run = match run(job) {
         Ok(run) => run,
         Err(error) => Run { error: Some(format!("{error:#}")), ..Run::default() },
     };
-    judge(&job.planned.bound, &mut run.metrics);
-    run.notes.extend(job.planned.note.clone());
     Run { name: job.planned.name.clone(), seconds: stopwatch.elapsed().as_secs_f64(), ..run }
 }

@@ -19,6 +19,8 @@ pub struct Metric {
     pub value: f64,
     /// Unit for display, empty for plain numbers.
     pub unit: String,
+    /// How sure the value is, when it is a mean over seeds.
+    pub spread: Option<Spread>,
     /// Smallest value that passes.
     pub low: Option<f64>,
     /// Largest value that passes.
@@ -29,6 +31,15 @@ pub struct Metric {
     pub peer: Option<Peer>,
     /// The argument, paper or peer that the bounds come from.
     pub bound_source: Option<String>,
+}
+
+/// The 95 % interval of a mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// The interval reaches this far to both sides.
+    pub half_width: f64,
+    /// Over how many seeds.
+    pub n: usize,
 }
 
 /// What another program reaches on the same data.
@@ -90,6 +101,8 @@ struct StoredMetric {
     #[serde(default)]
     pass: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    spread: Option<Spread>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     peer: Option<Peer>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     bound_source: Option<String>,
@@ -98,7 +111,8 @@ struct StoredMetric {
 impl From<Metric> for StoredMetric {
     fn from(metric: Metric) -> Self {
         let pass = metric.passes();
-        let Metric { name, value, unit, low, high, paper, peer, bound_source } = metric;
+        let Metric { name, value, unit, spread, low, high, paper, peer, bound_source } = metric;
+        let spread = spread.filter(|spread| spread.half_width.is_finite());
         let peer = peer.filter(|peer| peer.value.is_finite());
         Self {
             name,
@@ -108,6 +122,7 @@ impl From<Metric> for StoredMetric {
             high,
             paper,
             pass,
+            spread,
             peer,
             bound_source,
         }
@@ -116,8 +131,9 @@ impl From<Metric> for StoredMetric {
 
 impl From<StoredMetric> for Metric {
     fn from(stored: StoredMetric) -> Self {
-        let StoredMetric { name, value, unit, low, high, paper, pass: _, peer, bound_source } = stored;
-        Self { name, value: value.unwrap_or(f64::NAN), unit, low, high, paper, peer, bound_source }
+        let StoredMetric { name, value, unit, low, high, paper, pass: _, spread, peer, bound_source } =
+            stored;
+        Self { name, value: value.unwrap_or(f64::NAN), unit, spread, low, high, paper, peer, bound_source }
     }
 }
 

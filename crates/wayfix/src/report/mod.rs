@@ -16,7 +16,7 @@ pub mod table;
 mod tally;
 mod write;
 
-pub use metric::{Metric, Peer};
+pub use metric::{Metric, Peer, Spread};
 pub use model::{Report, Run, Suite};
 pub use provenance::{Machine, commit};
 pub use run_summary::RunSummary;

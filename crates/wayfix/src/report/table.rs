@@ -84,7 +84,7 @@ fn row(metric: &Metric) -> Row {
     [
         mark.to_owned(),
         metric.name.clone(),
-        significant(metric.value),
+        value(metric),
         metric.unit.clone(),
         significant_or_empty(metric.low),
         significant_or_empty(metric.high),
@@ -92,6 +92,15 @@ fn row(metric: &Metric) -> Row {
         peer,
         metric.bound_source.clone().unwrap_or_default(),
     ]
+}
+
+/// The figure, and how sure it is.
+fn value(metric: &Metric) -> String {
+    let value = significant(metric.value);
+    match metric.spread {
+        Some(spread) => format!("{value} ± {}", significant(spread.half_width)),
+        None => value,
+    }
 }
 
 const PASS: &str = "✓";

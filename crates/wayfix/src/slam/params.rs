@@ -1,4 +1,5 @@
 use clap::ValueEnum;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{Format, LogMeta};
 use wayfix_slam_ekf::{
@@ -17,7 +18,7 @@ use crate::settings::over_defaults;
 /// assert_eq!(params.velocity, SlamSystemParams::of(Profile::Utias).velocity); // not named in the file
 /// # Ok::<(), toml::de::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SlamSystemParams {
     /// The robot whose defaults these are.
@@ -54,7 +55,7 @@ pub struct SlamSystemParams {
 }
 
 /// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry tells.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MountingParams {
     /// The range-bearing sensor, m.
@@ -70,7 +71,7 @@ pub struct MountingParams {
 }
 
 /// Timing and calibration of a robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotParams {
     /// Time from the exposure of the sensor to the stamp of what it saw, s.
@@ -86,7 +87,7 @@ pub struct RobotParams {
 }
 
 /// A kind of robot and its defaults.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Profile {
     /// Nothing is known of the robot: a good sensor (5 cm, 0.01 rad), odometry as it comes.
@@ -113,7 +114,7 @@ impl Profile {
 }
 
 /// How sightings find their landmarks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum AssociationRule {
     /// By the identity that the sensor reads.

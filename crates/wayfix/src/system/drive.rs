@@ -1,11 +1,23 @@
+use std::borrow::Borrow;
+
 use wayfix_sensor_log::{Record, Stamp};
 
 use super::System;
 
 /// Passes all records through a system and shows it to `observe` after each; records that go back in time are refused and counted.
 pub fn drive<S: System>(system: &mut S, records: &[Record], mut observe: impl FnMut(&S)) {
+    stream(system, records, |system, _| observe(system));
+}
+
+/// As [`drive`], for records that are read one by one and not kept; `observe` sees each of them too.
+pub fn stream<S: System, R: Borrow<Record>>(
+    system: &mut S,
+    records: impl IntoIterator<Item = R>,
+    mut observe: impl FnMut(&S, &Record),
+) {
     let mut latest = Stamp::default();
-    for (index, record) in records.iter().enumerate() {
+    for (index, record) in records.into_iter().enumerate() {
+        let record = record.borrow();
         system.events().at_record(index, record.stamp);
         let taken = if record.stamp < latest {
             Err(format!("time goes back by {:.9} s", latest.seconds_since(record.stamp)))
@@ -16,7 +28,7 @@ pub fn drive<S: System>(system: &mut S, records: &[Record], mut observe: impl Fn
         if let Err(reason) = taken {
             system.events().refuse("record_refused", reason);
         }
-        observe(system);
+        observe(system, record);
     }
 }
 

@@ -4,7 +4,7 @@ mod drive;
 mod events;
 mod stopwatch;
 
-pub use drive::drive;
+pub use drive::{drive, stream};
 pub use events::{Events, Refusal};
 pub use stopwatch::Stopwatch;
 

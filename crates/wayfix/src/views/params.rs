@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_condensation::{AppearanceParams, Dominance, LocalizerParams, NavigatorParams};
 
@@ -12,7 +13,7 @@ use crate::settings::over_defaults;
 /// assert!(ViewsParams::from_toml("[navigator]\nmax_stesp = 40").is_err());
 /// # Ok::<(), toml::de::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ViewsParams {
     /// What the numbers of `hist6` are.

@@ -1,4 +1,5 @@
 use anyhow::ensure;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_line_extract::Params as LineParams;
 use wayfix_slam_ekf::{
@@ -17,7 +18,7 @@ use crate::{settings::over_defaults, slam::AssociationRule};
 /// assert_eq!(params.lines, WallSlamParams::default().lines); // not named in the text
 /// # Ok::<(), toml::de::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WallSlamParams {
     /// How pieces of walls find their walls: `nn` or `jcbb`; walls have no identities.
@@ -25,8 +26,9 @@ pub struct WallSlamParams {
     /// Start pose, m and rad; when not given, that of the log where odometry starts, or the origin.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub start: Option<[f64; 3]>,
-    /// Where the laser sits on the robot: x forward, y left, heading; m and rad.
-    pub laser: [f64; 3],
+    /// Where the laser sits on the robot: x forward, y left, heading; m and rad. When not given, where the log says, or the middle.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub laser: Option<[f64; 3]>,
     /// How many true walls of the log, nearest to the start first, the robot is given as known: anchors that tie the map to the world. For
     /// experiments with logs that have true walls.
     pub n_anchors: usize,
@@ -53,7 +55,7 @@ impl Default for WallSlamParams {
         Self {
             association: AssociationRule::Jcbb,
             start: None,
-            laser: [0.0; 3],
+            laser: None,
             n_anchors: 0,
             lines: LineParams::default(),
             min_wall_length: 0.7,
@@ -133,7 +135,7 @@ impl WallSlamParams {
                 return Err(SlamError::Parameter { name, value, range }.into());
             }
         }
-        if let Some(value) = self.laser.iter().chain(self.start.iter().flatten()).find(|v| !v.is_finite()) {
+        if let Some(value) = self.laser.iter().chain(&self.start).flatten().find(|v| !v.is_finite()) {
             return Err(
                 SlamError::Parameter { name: "laser or start", value: *value, range: "finite" }.into()
             );

@@ -31,9 +31,11 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
     let Some(scan) = first(|data| matches!(data, Data::Scan(_))) else {
         bail!("the log has no laser scans (`wayfix info` shows what a log holds)");
     };
-    if first(|data| matches!(data, Data::OdometryIncrement(_))).is_none() {
+    // A log may tell of the same motion twice.
+    let moves_by_velocity = first(|data| matches!(data, Data::OdometryIncrement(_))).is_none();
+    if moves_by_velocity && first(|data| matches!(data, Data::Velocity(_))).is_none() {
         bail!(
-            "the log has no odometry increments, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
+            "the log has neither odometry increments nor velocities, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
         );
     }
     let track = TrueTrack::from_records_or_estimates(records);
@@ -41,7 +43,8 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
         Some([x, y, heading]) => Pose2::new(x, y, heading),
         None => track.at(scan.stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0)),
     };
-    let mut system = WallSystem::new(params.clone(), start)?;
+    let laser = params.laser.or_else(|| laser_mount(records));
+    let mut system = WallSystem::new(WallSlamParams { laser, ..params.clone() }, start, moves_by_velocity)?;
     let true_walls = truth::true_walls(records);
     for (wall, id) in truth::nearest_to(&start, &true_walls, params.n_anchors).into_iter().zip(FIRST_ANCHOR..)
     {
@@ -60,6 +63,14 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
         run.truth = TrueTrack::default(); // the log's poses are its odometry
     }
     Ok(run)
+}
+
+/// Where the log says that the laser is; a laser that moves on its robot is where it was first.
+fn laser_mount(records: &[Record]) -> Option<[f64; 3]> {
+    records.iter().find_map(|record| match record.data {
+        Data::LaserMount(mount) => Some([mount.x(), mount.y(), mount.heading()]),
+        _ => None,
+    })
 }
 
 /// Identities of anchors, out of the way of those that association gives.

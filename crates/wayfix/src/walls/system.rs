@@ -1,9 +1,9 @@
 use std::time::Duration;
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix4, Vector3, Vector4};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{Extractor, Scan};
-use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
+use wayfix_sensor_log::{Data, LaserScan, Record, Stamp, Velocity};
 use wayfix_slam_ekf::{
     DriftingMotion, DriftingPose, EkfSlam, JointCompatibility, LandmarkId, Mounted, NearestNeighbour,
     Observation, OnDrifting, SeenWall, SlamError, StepReport, Wall, WallSensor,
@@ -21,10 +21,13 @@ pub type WallModel = OnDrifting<Mounted<WallSensor>>;
 /// EKF-SLAM that takes scans and keeps a map of walls.
 pub struct WallSystem {
     params: WallSlamParams,
+    moves_by_velocity: bool,
     extractor: Extractor,
     filter: EkfSlam<WallModel>,
     association: Rule,
     time: Stamp,
+    /// The velocity that holds, and since when: only where a log has no increments.
+    velocity: Option<(Stamp, Velocity)>,
     dead_reckoning: Pose2<f64>,
     keyframes: Vec<Keyframe>,
     events: Events,
@@ -37,11 +40,15 @@ enum Rule {
 }
 
 impl WallSystem {
-    /// A robot at `start` among walls that it does not know.
+    /// A robot at `start` among walls that it does not know; its motion is told by velocities, else by increments.
     ///
     /// # Errors
     /// When a parameter is out of range.
-    pub(super) fn new(params: WallSlamParams, start: Pose2<f64>) -> anyhow::Result<Self> {
+    pub(super) fn new(
+        params: WallSlamParams,
+        start: Pose2<f64>,
+        moves_by_velocity: bool,
+    ) -> anyhow::Result<Self> {
         let params = params.validated()?;
         let association = match params.association {
             AssociationRule::Jcbb => {
@@ -49,7 +56,7 @@ impl WallSystem {
             }
             _ => Rule::NearestNeighbour(NearestNeighbour::new(params.nearest_neighbour)?),
         };
-        let [x, y, heading] = params.laser;
+        let [x, y, heading] = params.laser.unwrap_or_default();
         let sensor = OnDrifting(Mounted { sensor: params.sensor, mount: Pose2::new(x, y, heading) });
         let state = DriftingPose { pose: start, heading_drift: 0.0 };
         let drift_variance = params.heading_drift_sigma.powi(2);
@@ -60,7 +67,9 @@ impl WallSystem {
             extractor,
             association,
             params,
+            moves_by_velocity,
             time: Stamp::default(),
+            velocity: None,
             dead_reckoning: start,
             keyframes: Vec::new(),
             events: Events::default(),
@@ -90,6 +99,15 @@ impl WallSystem {
         self.dead_reckoning = self.dead_reckoning.compose(increment);
         self.time = stamp;
         Ok(())
+    }
+
+    /// Moves the robot on with the velocity that held.
+    fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
+        let Some((since, velocity)) = self.velocity else { return Ok(()) };
+        let seconds = stamp.seconds_since(since);
+        self.velocity = Some((stamp, velocity));
+        let twist = Vector3::new(velocity.linear * seconds, 0.0, velocity.angular * seconds);
+        self.take_increment(stamp, &Pose2::exp(&twist))
     }
 
     fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
@@ -139,7 +157,15 @@ impl System for WallSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
             Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
-            Data::Scan(scan) => self.take_scan(record.stamp, scan),
+            Data::Velocity(velocity) if self.moves_by_velocity => {
+                self.advance_to(record.stamp)?;
+                self.velocity = Some((record.stamp, *velocity));
+                Ok(())
+            }
+            Data::Scan(scan) => {
+                self.advance_to(record.stamp)?;
+                self.take_scan(record.stamp, scan)
+            }
             _ => Ok(()),
         }
     }

@@ -22,6 +22,7 @@ use crate::{
 /// assert!(seen.line.local(&WallLine::new(3.0, PI)).norm() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),

@@ -23,6 +23,7 @@ use crate::{
         self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
         Task, ViewReader, recording::Recording,
     },
+    commented::commented,
     report::Run,
     system::{Stopwatch, System},
 };
@@ -34,7 +35,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     };
     arguments.set_forgetting(&mut params);
     if arguments.print_params {
-        print(toml::to_string(&params)?)?;
+        print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let saved = arguments.map.as_deref().map(cml::read_map).transpose()?;
@@ -110,7 +111,8 @@ impl Arguments {
         });
         let camera = CameraChoice { donut: self.donut(), sense: told.or(saved_sense) };
         if let Some(log) = &self.log {
-            let log = wayfix_sensor_log::open(log, &OpenOptions::default())?;
+            let options = OpenOptions { topics: self.topics.topics.clone(), ..OpenOptions::default() };
+            let log = wayfix_sensor_log::open(log, &options)?;
             let origin = log.meta().first_format();
             let (records, read) = log.read_all();
             if !read.is_clean() {

@@ -5,6 +5,7 @@ mod color;
 mod consistency;
 mod lines;
 mod slam;
+mod track;
 mod views;
 
 use anyhow::{Context, Result};
@@ -15,12 +16,13 @@ use crate::report::Run;
 /// Does one run.
 pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
 
-const SUITES: [(&str, Runner); 6] = [
+const SUITES: [(&str, Runner); 7] = [
     ("cml", cml::run),
     ("color", color::run),
     ("consistency", consistency::run),
     ("lines", lines::run),
     ("slam", slam::run),
+    ("track", track::run),
     ("views", views::run),
 ];
 

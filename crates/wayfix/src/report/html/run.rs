@@ -1,7 +1,7 @@
 use std::fmt::Write as _;
 
 use super::super::number::{duration, significant};
-use super::super::{Metric, Run};
+use super::super::{Metric, Run, Spread};
 use super::{number_cell, table};
 use crate::plot::{Picture, escape};
 
@@ -60,11 +60,23 @@ fn metric_row(metric: &Metric) -> String {
     format!(
         "<tr{class}><th scope=\"row\"><code>{}</code></th>{}<td>{}</td>{numbers}{}<td>{}</td>{pass}</tr>\n",
         escape(&metric.name),
-        number_cell(Some(metric.value)),
+        value_cell(metric),
         escape(&metric.unit),
         peer_cell(metric),
         escape(metric.bound_source.as_deref().unwrap_or_default()),
     )
+}
+
+/// The figure, and how sure it is.
+fn value_cell(metric: &Metric) -> String {
+    let cell = number_cell(Some(metric.value));
+    match metric.spread {
+        Some(Spread { half_width, n }) => {
+            let spread = format!(" <small>± {} of {n}</small></td>", significant(half_width));
+            cell.replacen("</td>", &spread, 1)
+        }
+        None => cell,
+    }
 }
 
 fn peer_cell(metric: &Metric) -> String {

@@ -1,0 +1,101 @@
+use rand::Rng;
+
+use super::candidate::Candidate;
+use super::each::map_each;
+use super::samples::Samples;
+use super::scene::Scene;
+use super::search::in_other_light;
+use super::{ContourTracker, TrackingCues};
+use crate::{BinSet, BitMask, ColorCloud, ColorState, CondensationError, Outline, Picture};
+
+/// Where the target was found, and what is to be learned from it.
+pub(super) struct Found {
+    pub(super) candidate: Candidate,
+    pub(super) quality: f64,
+    /// Where it is not the snake that says.
+    pub(super) outline: Option<Outline>,
+    pub(super) cloud: Option<ColorCloud>,
+    pub(super) samples: Samples,
+}
+
+impl ContourTracker {
+    /// Round the place where the target is expected.
+    pub(super) fn follow<R: Rng + ?Sized>(
+        &self,
+        picture: &Picture,
+        rng: &mut R,
+    ) -> Result<Option<Found>, CondensationError> {
+        let scene = Scene::around_target(&self.params, &self.quantizer, picture, &self.reference)?;
+        let Some(scene) = scene else { return Ok(None) };
+        if self.params.cues == TrackingCues::Shape {
+            let (candidate, samples) = (Candidate::of_edges(&scene), self.samples.clone());
+            // Area and quality say nothing where no edge is found.
+            let quality = candidate.agreement.score(&self.params).min(candidate.agreement.affine);
+            return Ok(Some(Found { candidate, quality, outline: None, cloud: None, samples }));
+        }
+        let states = self.hypotheses(rng)?;
+        let candidates = map_each(&states, |state| Candidate::of_colors(&scene, state));
+        let log_weights: Vec<f64> =
+            candidates.iter().map(|candidate| candidate.agreement.log_weight(&self.params)).collect();
+        let best = first_max(&log_weights);
+        let set = scene.bin_set(&states[best]);
+        let samples = self.samples.weighed(states, log_weights)?;
+        let Some(mask) = scene.target_mask(&set) else { return Ok(None) };
+        self.finish(&scene, candidates[best], &set, &mask, samples).map(Some)
+    }
+
+    /// In the whole picture.
+    pub(super) fn search<R: Rng + ?Sized>(
+        &self,
+        picture: &Picture,
+        rng: &mut R,
+    ) -> Result<Option<Found>, CondensationError> {
+        if self.params.cues == TrackingCues::Shape {
+            return Ok(None);
+        }
+        let scene = Scene::whole(&self.params, &self.quantizer, picture, &self.reference)?;
+        let states = self.hypotheses(rng)?;
+        let stride = states.len().div_ceil(self.params.n_search_samples);
+        let mut states: Vec<ColorState> = states.into_iter().step_by(stride).collect();
+        if self.params.adapts {
+            states.extend(in_other_light(self.params.color_space, &self.reference.colors));
+        }
+        let found = map_each(&states, |state| scene.find(state));
+        let better = |best: usize, i: usize| {
+            let score = |i: usize| found[i].as_ref().map_or(0.0, |(candidate, _)| scene.score(candidate));
+            if score(i) > score(best) { i } else { best }
+        };
+        let best = (0..found.len()).fold(0, better);
+        let Some(Some((candidate, mask))) = found.get(best) else { return Ok(None) };
+        let set = scene.bin_set(&states[best]);
+        self.finish(&scene, *candidate, &set, mask, self.samples.clone()).map(Some)
+    }
+
+    /// What the next picture shall be compared with.
+    fn finish(
+        &self,
+        scene: &Scene<'_>,
+        candidate: Candidate,
+        set: &BinSet,
+        mask: &BitMask,
+        samples: Samples,
+    ) -> Result<Found, CondensationError> {
+        let quality = scene.confidence(&candidate, mask)?;
+        let candidate = candidate.refined(scene, mask);
+        let cloud = if self.params.adapts { scene.colors_of(&candidate, set, mask)? } else { None };
+        let blob_outline = || Outline::of_mask(mask, scene.region.rect.corner());
+        let outline = if self.params.cues == TrackingCues::Color { blob_outline() } else { None };
+        Ok(Found { candidate, quality, outline, cloud, samples })
+    }
+
+    fn hypotheses<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<ColorState>, CondensationError> {
+        if self.params.adapts {
+            return self.samples.predicted(&self.dynamics, &self.params, rng);
+        }
+        Ok(vec![ColorState::at_rest(&self.reference.colors)])
+    }
+}
+
+fn first_max(values: &[f64]) -> usize {
+    (1..values.len()).fold(0, |best, i| if values[i] > values[best] { i } else { best })
+}

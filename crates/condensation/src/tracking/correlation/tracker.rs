@@ -1,0 +1,282 @@
+use rand::Rng;
+
+use super::color_ratio::ColorRatio;
+use super::filter::Learning;
+use super::params::CorrelationTrackerParams;
+use super::planes::Spectrum;
+use super::recognizer::{Evidence, Recognizer, Sight};
+use super::response::Peak;
+use super::scale_filter::ScaleFilter;
+use super::window::{Pose, SIDE};
+use crate::error::check_size;
+use crate::tracking::{BoundingBox, Target, TrackStatus, Tracker};
+use crate::{CondensationError, Picture};
+
+/// Sides below which a target has no shape, in pixels.
+const MIN_SIDE: f64 = 3.0;
+/// How much larger than the picture a target may grow, as something that comes close does.
+const MAX_SHARE: f64 = 1.5;
+/// Rate at which the response that is usual follows.
+const USUAL_RATE: f64 = 0.05;
+
+/// Follows what a box encloses by its shape, its colours and its size: anything, in colour or grey, from the first box alone.
+///
+/// Each picture is looked at in a square window around the last place. Position: the peak of
+///
+/// ```math
+/// (1 − w) \sum_d f_d ⋆ x_d + w \, \overline{p(c)}
+/// ```
+///
+/// where $`x_d`$ are gradient-orientation, grey and colour channels, $`f`$ is a correlation filter that vanishes outside the target and
+/// stays near the one before [Galoogahi et al. 2017; Li et al. 2018], and $`p(c)`$ the ratio of the colour histograms of target and
+/// surroundings [Bertinetto et al. 2016]. Size: a correlation filter over scales [Danelljan et al. 2017]. Whatever is found is learned,
+/// if it stands out of the rest of the response. The filter that recognized the target last beyond doubt is kept: when something passes
+/// in front and is learned, the kept one finds the target where it comes out again. Without evidence for some pictures the target is
+/// [`Lost`](TrackStatus::Lost), and looked for in the whole picture.
+///
+/// The memory does not grow, and nothing is random: the generator of [`Tracker::track`] is not used.
+///
+/// ```
+/// use rand::SeedableRng;
+/// use rand_chacha::ChaCha8Rng;
+/// use wayfix_condensation::{
+///     BoundingBox, CorrelationTracker, CorrelationTrackerParams, Picture, TrackStatus, Tracker,
+/// };
+/// // a checkered square on a plain ground, 3 pixels further to the right in the second picture
+/// let picture = |left: usize| {
+///     let value = |u: usize, v: usize| match (u.wrapping_sub(left) < 16, v.wrapping_sub(20) < 16) {
+///         (true, true) => if (u - left) / 4 % 2 == v / 4 % 2 { 220 } else { 40 },
+///         _ => 120,
+///     };
+///     Picture::from_rgb(80, 60, (0..80 * 60).flat_map(|i| [value(i % 80, i / 80); 3]).collect())
+/// };
+/// let first = BoundingBox::from_corner(30.0, 20.0, 16.0, 16.0)?;
+/// let mut tracker = CorrelationTracker::new(&picture(30)?, first, CorrelationTrackerParams::default())?;
+/// let target = tracker.track(&picture(33)?, &mut ChaCha8Rng::seed_from_u64(0))?;
+/// assert_eq!(target.status, TrackStatus::Tracked);
+/// assert!(target.bounding_box.iou(&BoundingBox::from_corner(33.0, 20.0, 16.0, 16.0)?) > 0.8);
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CorrelationTracker {
+    params: CorrelationTrackerParams,
+    picture_size: (usize, usize),
+    recognizer: Recognizer,
+    colors: ColorRatio,
+    scales: ScaleFilter,
+    pose: Pose,
+    /// The filter as it was learned last.
+    current: Spectrum,
+    /// The filter when the target was last recognized beyond doubt.
+    trusted: Spectrum,
+    /// Pictures since then.
+    n_untrusted: usize,
+    /// The response that is usual for the target.
+    usual: f64,
+    /// Pictures in a row without evidence.
+    n_doubts: usize,
+    /// Pictures since the target was lost; 0 while it is not.
+    n_lost: usize,
+}
+
+impl CorrelationTracker {
+    /// Starts from the box around the target in the first picture; what of it lies outside the picture is cut off.
+    ///
+    /// # Errors
+    /// [`CondensationError::Parameter`] for a parameter out of its range and a target smaller than 3 pixels,
+    /// [`CondensationError::OutsidePicture`] for a box beyond the picture, [`CondensationError::Empty`] when all is of one colour.
+    pub fn new(
+        picture: &Picture,
+        target: BoundingBox,
+        params: CorrelationTrackerParams,
+    ) -> Result<Self, CondensationError> {
+        params.validate()?;
+        let picture_size = (picture.width(), picture.height());
+        let target = target.clipped(picture_size)?;
+        let size = [target.width(), target.height()];
+        for (what, side) in [("width of the target", size[0]), ("height of the target", size[1])] {
+            if side < MIN_SIDE {
+                return Err(CondensationError::Parameter { what, value: side, range: "at least 3 pixels" });
+            }
+        }
+        let recognizer = Recognizer::new(picture, size, &params);
+        let pose = Pose { center: target.center(), scale: 1.0 };
+        let sight = recognizer.look(picture, pose);
+        let learning = Learning { inertia: 0.0, penalty: params.penalty as f32 };
+        let current = recognizer.filter.learned(None, &sight.spectrum, learning);
+        let usual = recognizer.evidence(&current, &sight).value;
+        if usual <= 0.0 {
+            return Err(CondensationError::Empty { what: "structure in the first picture" });
+        }
+        let mut colors = ColorRatio::new();
+        colors.learn(&sight.patch, recognizer.window.target_pixels(), 1.0);
+        let mut scales = ScaleFilter::new(params.n_scales, params.scale_step, size);
+        scales.learn(picture, pose.center, size, 1.0);
+        Ok(Self {
+            params,
+            picture_size,
+            recognizer,
+            colors,
+            scales,
+            pose,
+            trusted: current.clone(),
+            current,
+            n_untrusted: 0,
+            usual,
+            n_doubts: 0,
+            n_lost: 0,
+        })
+    }
+
+    /// One picture of a target in sight; the quality.
+    fn follow(&mut self, picture: &Picture) -> f64 {
+        let around = self.recognizer.look(picture, self.pose);
+        let mut pose = self.moved(picture, self.pose, &around);
+        let mut sight = self.recognizer.look(picture, pose);
+        let mut trust = self.recognizer.evidence(&self.trusted, &sight);
+        if !self.recognized(trust)
+            && let Some((there, seen, evidence)) = self.recognized_elsewhere(picture, &around)
+        {
+            (pose, sight, trust) = (there, seen, evidence);
+            self.current = self.trusted.clone();
+        }
+        let evidence = self.recognizer.evidence(&self.current, &sight);
+        if evidence.standing_out < self.params.doubt_below {
+            self.n_doubts += 1;
+            self.n_lost = usize::from(self.n_doubts > self.params.patience);
+        } else {
+            self.n_doubts = 0;
+            self.pose = pose;
+            self.learn(picture, &sight, evidence, trust);
+        }
+        evidence.value / self.usual
+    }
+
+    /// The pose to which the target has moved from `pose`, by shape and colour together.
+    fn moved(&self, picture: &Picture, pose: Pose, around: &Sight) -> Pose {
+        let window = &self.recognizer.window;
+        let mut response = self.recognizer.response(&self.current, around);
+        let score = window.box_means(&self.colors.of(&around.patch));
+        let prior = window.shift_prior(self.params.motion_width);
+        let weight = self.params.color_weight as f32;
+        for ((value, score), prior) in response.iter_mut().zip(&score).zip(&prior) {
+            *value = ((1.0 - weight) * *value + weight * score) * prior;
+        }
+        self.shifted(picture, pose, &response)
+    }
+
+    /// The pose at the peak of a response, at the scale that fits there.
+    fn shifted(&self, picture: &Picture, pose: Pose, response: &[f32]) -> Pose {
+        let window = &self.recognizer.window;
+        let mut pose = window.moved(pose, Peak::of(response, SIDE).shift);
+        let (width, height) = (self.picture_size.0 as f64, self.picture_size.1 as f64);
+        pose.center = [pose.center[0].clamp(0.0, width), pose.center[1].clamp(0.0, height)];
+        let factor = self.scales.factor(picture, pose.center, window.size(pose.scale));
+        let [base_width, base_height] = window.size(1.0);
+        let smallest = (MIN_SIDE / base_width.min(base_height)).min(1.0);
+        let largest = (MAX_SHARE * (width / base_width).min(height / base_height)).max(1.0);
+        pose.scale = (pose.scale * factor).clamp(smallest, largest);
+        pose
+    }
+
+    /// Where the trusted filter recognizes the target, if it does: in sight or, when it has not for a while, in another place in turn.
+    fn recognized_elsewhere(&self, picture: &Picture, around: &Sight) -> Option<(Pose, Sight, Evidence)> {
+        self.recognized_by(&self.trusted, picture, self.pose, around).or_else(|| {
+            let turn = self.n_untrusted.checked_sub(self.params.patience)?;
+            let center = self.place(turn);
+            let from = Pose { center, ..self.pose };
+            self.recognized_by(&self.trusted, picture, from, &self.recognizer.look(picture, from))
+        })
+    }
+
+    /// Where in what is seen `around` a pose a filter recognizes the target, if it does.
+    fn recognized_by(
+        &self,
+        filter: &Spectrum,
+        picture: &Picture,
+        pose: Pose,
+        around: &Sight,
+    ) -> Option<(Pose, Sight, Evidence)> {
+        let response = self.recognizer.response(filter, around);
+        if Peak::of(&response, SIDE).standing_out < self.params.doubt_below {
+            return None;
+        }
+        let pose = self.shifted(picture, pose, &response);
+        let sight = self.recognizer.look(picture, pose);
+        let evidence = self.recognizer.evidence(filter, &sight);
+        self.recognized(evidence).then_some((pose, sight, evidence))
+    }
+
+    /// One place after the other, so that the whole picture is looked at again and again.
+    fn place(&self, turn: usize) -> [f64; 2] {
+        let tiles = self.recognizer.window.tiles(self.picture_size, self.pose.scale);
+        tiles[turn % tiles.len()]
+    }
+
+    fn recognized(&self, evidence: Evidence) -> bool {
+        // a lost target has changed more since it was learned, and nothing is given up for it
+        let share = self.params.recognize_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
+        evidence.standing_out > self.params.recognize_above && evidence.value > share * self.usual
+    }
+
+    fn learn(&mut self, picture: &Picture, sight: &Sight, evidence: Evidence, trust: Evidence) {
+        let recognized = self.recognized(trust);
+        self.n_untrusted = if recognized { 0 } else { self.n_untrusted + 1 };
+        if evidence.standing_out < self.params.learn_above {
+            return;
+        }
+        let window = &self.recognizer.window;
+        let learning = Learning { inertia: self.params.inertia as f32, penalty: self.params.penalty as f32 };
+        self.current = self.recognizer.filter.learned(Some(&self.current), &sight.spectrum, learning);
+        self.colors.learn(&sight.patch, window.target_pixels(), self.params.color_rate as f32);
+        let size = window.size(self.pose.scale);
+        self.scales.learn(picture, self.pose.center, size, self.params.scale_rate as f32);
+        if recognized || self.n_untrusted > self.params.forget_after {
+            self.trusted.clone_from(&self.current);
+            self.n_untrusted = 0;
+            let value = if recognized { trust.value } else { evidence.value };
+            self.usual += USUAL_RATE * (value - self.usual);
+        }
+    }
+
+    /// Looks for a lost target around where it was, and in a few other places of the picture in turn; the quality.
+    fn search(&mut self, picture: &Picture) -> f64 {
+        let Pose { center, scale } = self.pose;
+        let first = self.n_lost * self.params.n_searches;
+        let others = (first..first + self.params.n_searches).map(|turn| self.place(turn));
+        let centers: Vec<[f64; 2]> = std::iter::once(center).chain(others).collect();
+        self.n_lost += 1;
+        for center in centers {
+            let from = Pose { center, scale };
+            let around = self.recognizer.look(picture, from);
+            let found = [&self.trusted, &self.current].into_iter().find_map(|filter| {
+                let (pose, _, evidence) = self.recognized_by(filter, picture, from, &around)?;
+                Some((filter.clone(), pose, evidence.value / self.usual))
+            });
+            if let Some((filter, pose, quality)) = found {
+                (self.current, self.pose, self.n_lost, self.n_doubts) = (filter, pose, 0, 0);
+                return quality;
+            }
+        }
+        0.0
+    }
+}
+
+impl Tracker for CorrelationTracker {
+    fn track<R: Rng + ?Sized>(
+        &mut self,
+        picture: &Picture,
+        _rng: &mut R,
+    ) -> Result<Target, CondensationError> {
+        check_size("width of a picture", self.picture_size.0, picture.width())?;
+        check_size("height of a picture", self.picture_size.1, picture.height())?;
+        let quality = if self.n_lost > 0 { self.search(picture) } else { self.follow(picture) };
+        let [width, height] = self.recognizer.window.size(self.pose.scale);
+        Ok(Target {
+            bounding_box: BoundingBox::from_center(self.pose.center, width, height)?,
+            outline: Vec::new(),
+            status: if self.n_lost > 0 { TrackStatus::Lost } else { TrackStatus::Tracked },
+            quality: quality.clamp(0.0, 1.0),
+        })
+    }
+}

@@ -1,0 +1,38 @@
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// Magnitudes below this are those of a flat set, and are not stretched: a step of an 8-bit channel.
+const FLAT: f64 = 1.0 / 255.0;
+
+/// How far one step may stretch or shrink an axis.
+const MAX_SCALE: f64 = 3.0;
+
+/// An affine map of the colour space. [`ColorState::warp_from`](super::ColorState::warp_from) makes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorWarp {
+    linear: Matrix3<f64>,
+    offset: Vector3<f64>,
+}
+
+impl ColorWarp {
+    pub(super) fn new(
+        from: &Vector3<f64>,
+        to: &Vector3<f64>,
+        axes: &Rotation3<f64>,
+        turn: &Rotation3<f64>,
+        scales: &Vector3<f64>,
+    ) -> Self {
+        let linear =
+            axes.matrix() * turn.matrix() * Matrix3::from_diagonal(scales) * axes.matrix().transpose();
+        Self { linear, offset: to - linear * from }
+    }
+
+    /// By how much to stretch an axis of magnitude `from` for it to have magnitude `to`; bounded, and 1 where there is nothing to stretch.
+    pub(super) fn scale(from: f64, to: f64) -> f64 {
+        (to.max(FLAT) / from.max(FLAT)).clamp(1.0 / MAX_SCALE, MAX_SCALE)
+    }
+
+    /// Where a colour goes.
+    pub fn apply(&self, color: &Vector3<f64>) -> Vector3<f64> {
+        self.linear * color + self.offset
+    }
+}

@@ -1,0 +1,52 @@
+use super::{Frames, Incident};
+use crate::{SimError, check};
+
+/// A film that can be shown: its story, its length, and the seed of everything that is left to chance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Film {
+    /// Its name.
+    pub name: &'static str,
+    /// How many pictures it has.
+    pub n_frames: usize,
+    /// What happens to the target on the way.
+    pub incident: Incident,
+    /// Seed of textures, paths, light and noise.
+    pub seed: u64,
+}
+
+impl Film {
+    /// Width and height of every picture, in pixels.
+    pub const SIZE_PX: (usize, usize) = (320, 240);
+
+    /// Pictures a second.
+    pub const RATE_HZ: f64 = 25.0;
+
+    /// All of them, undisturbed.
+    pub const ALL: [Self; 5] =
+        [of("circles", 601), of("rectangle", 602), of("beetle", 603), of("snail", 604), of("head", 605)];
+
+    const MAX_FRAMES: usize = 1_000_000;
+
+    /// The film of that name.
+    ///
+    /// # Errors
+    /// [`SimError::UnknownScenario`] when there is none.
+    pub fn named(name: &str) -> Result<Self, SimError> {
+        let found = Self::ALL.into_iter().find(|film| film.name == name);
+        found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
+    }
+
+    /// Shows it from the beginning.
+    ///
+    /// # Errors
+    /// [`SimError::UnknownScenario`] when it has the name of none, and [`SimError::TooMany`] frames.
+    pub fn frames(&self) -> Result<Frames, SimError> {
+        Self::named(self.name)?;
+        check::count("frames", self.n_frames, Self::MAX_FRAMES)?;
+        Ok(Frames::new(*self))
+    }
+}
+
+const fn of(name: &'static str, seed: u64) -> Film {
+    Film { name, n_frames: 175, incident: Incident::None, seed }
+}

@@ -1,0 +1,80 @@
+use crate::ros::RosSchema;
+
+/// What a topic of a bag can be read as; one topic of each kind is, but for transforms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    Scan,
+    Motion,
+    Image,
+    CameraInfo,
+    TruePose,
+    EstimatedPose,
+    Transforms,
+}
+
+/// What the messages of a topic are, and what they are read as.
+pub(crate) type BagRoute = (RosSchema, Kind);
+
+/// Parts of a topic's name that tell of motion capture or a simulator.
+const TRUTH: [&str; 6] = ["truth", "mocap", "motion_capture", "vicon", "optitrack", "qualisys"];
+/// Poses where the robot is to go, or was said to be by hand: not where a program thinks it is.
+const NO_ESTIMATE: [&str; 5] = ["goal", "target", "setpoint", "waypoint", "initialpose"];
+
+impl Kind {
+    /// What messages of this schema on this topic are; `None` for poses that are none of the robot's.
+    pub(super) fn of(schema: RosSchema, topic: &str) -> Option<Self> {
+        match schema {
+            RosSchema::LaserScan => Some(Self::Scan),
+            RosSchema::Odometry if tells_truth(topic) => Some(Self::TruePose),
+            RosSchema::Odometry | RosSchema::TwistStamped | RosSchema::Twist => Some(Self::Motion),
+            RosSchema::Image | RosSchema::CompressedImage => Some(Self::Image),
+            RosSchema::CameraInfo => Some(Self::CameraInfo),
+            RosSchema::PoseStamped | RosSchema::PoseWithCovarianceStamped if tells_truth(topic) => {
+                Some(Self::TruePose)
+            }
+            RosSchema::PoseStamped | RosSchema::PoseWithCovarianceStamped => {
+                let topic = topic.to_ascii_lowercase();
+                (!NO_ESTIMATE.iter().any(|word| topic.contains(word))).then_some(Self::EstimatedPose)
+            }
+            RosSchema::Transforms => Some(Self::Transforms),
+        }
+    }
+
+    /// In words.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Scan => "laser scan",
+            Self::Motion => "odometry",
+            Self::Image => "image",
+            Self::CameraInfo => "camera info",
+            Self::TruePose => "true pose",
+            Self::EstimatedPose => "estimated pose",
+            Self::Transforms => "transforms",
+        }
+    }
+}
+
+fn tells_truth(topic: &str) -> bool {
+    let topic = topic.to_ascii_lowercase();
+    TRUTH.iter().any(|word| topic.contains(word))
+        || topic.split(|c: char| !c.is_ascii_alphanumeric()).any(|part| part == "gt")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_are_true_where_the_name_of_the_topic_says_so() {
+        let kind = |topic| Kind::of(RosSchema::PoseStamped, topic);
+        for topic in ["/ground_truth/pose", "/robot_gt/pose", "/gt", "/vicon/base", "/Optitrack/robot"] {
+            assert_eq!(kind(topic), Some(Kind::TruePose), "{topic}");
+        }
+        for topic in ["/amcl_pose", "/length/pose", "/slam/gtsam_pose"] {
+            assert_eq!(kind(topic), Some(Kind::EstimatedPose), "{topic}");
+        }
+        assert_eq!(kind("/goal_pose"), None);
+        assert_eq!(Kind::of(RosSchema::Odometry, "/ground_truth/odom"), Some(Kind::TruePose));
+        assert_eq!(Kind::of(RosSchema::Odometry, "/odom"), Some(Kind::Motion));
+    }
+}

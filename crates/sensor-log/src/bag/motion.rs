@@ -1,0 +1,93 @@
+use wayfix_estimation_traits::{LieGroup, Pose2};
+
+use crate::fault::{Fault, finite, inconsistent};
+use crate::planar::heading_of;
+use crate::ros::Pose;
+use crate::{ProblemKind, Stamp};
+
+/// No robot on the ground is faster, m/s: what is, is odometry that was set back.
+const FASTEST: f64 = 100.0;
+/// Stamps of drivers are no more exact than this, seconds.
+const JITTER: f64 = 0.01;
+/// A clock that goes back further than this was set, seconds; below, a message overtook another.
+const CLOCK_WAS_SET: f64 = 1.0;
+
+/// Makes increments of poses that follow each other.
+#[derive(Debug, Default)]
+pub(super) struct Odometer {
+    last: Option<(Stamp, Pose2<f64>)>,
+}
+
+impl Odometer {
+    /// Motion since the pose before, in the robot's frame there; `None` at the first.
+    pub(super) fn increment(&mut self, stamp: Stamp, pose: Pose2<f64>) -> Result<Option<Pose2<f64>>, Fault> {
+        let Some((before, from)) = self.last else {
+            self.last = Some((stamp, pose));
+            return Ok(None);
+        };
+        let seconds = stamp.seconds_since(before);
+        if seconds < 0.0 {
+            if seconds < -CLOCK_WAS_SET {
+                self.last = Some((stamp, pose));
+            }
+            return Err((ProblemKind::TooLate, format!("odometry of {stamp} comes after that of {before}")));
+        }
+        self.last = Some((stamp, pose));
+        let increment = from.inverse().compose(&pose);
+        let distance = increment.x().hypot(increment.y());
+        if distance > FASTEST * (seconds + JITTER) {
+            let reason = format!("odometry jumps by {distance:.1} m in {seconds} s; the jump is left out");
+            return Err(inconsistent(&reason));
+        }
+        Ok(Some(increment))
+    }
+}
+
+/// The pose on the ground: x, y and the heading of the body's x axis.
+pub(super) fn planar(pose: &Pose) -> Result<Pose2<f64>, Fault> {
+    let ([x, y, _], heading) = (pose.position, heading_of(pose.orientation));
+    finite([x, y, heading])?;
+    Ok(Pose2::new(x, y, heading))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(nanoseconds: u64) -> Stamp {
+        Stamp::from_nanoseconds(nanoseconds)
+    }
+
+    #[test]
+    fn increments_add_up_to_the_path() {
+        let mut odometer = Odometer::default();
+        let poses = [Pose2::new(1.0, 2.0, 0.5), Pose2::new(1.5, 2.5, 3.0), Pose2::new(1.0, 2.0, -3.0)];
+        assert_eq!(odometer.increment(at(0), poses[0]), Ok(None));
+        let mut path = poses[0];
+        for (k, pose) in poses.iter().enumerate().skip(1) {
+            path = path.compose(&odometer.increment(at(k as u64 * 100_000_000), *pose).unwrap().unwrap());
+        }
+        assert!((path.x() - 1.0).abs() < 1e-15 && (path.heading() + 3.0).abs() < 1e-15, "{path:?}");
+    }
+
+    #[test]
+    fn a_message_that_was_overtaken_is_left_out_and_a_clock_that_was_set_starts_anew() {
+        let mut odometer = Odometer::default();
+        let pose = |x| Pose2::new(x, 0.0, 0.0);
+        odometer.increment(at(5_000_000_000), pose(1.0)).unwrap();
+        assert_eq!(odometer.increment(at(4_990_000_000), pose(0.5)).unwrap_err().0, ProblemKind::TooLate);
+        assert_eq!(odometer.increment(at(5_010_000_000), pose(1.5)), Ok(Some(pose(0.5))));
+        assert_eq!(odometer.increment(at(1_000_000_000), pose(1.5)).unwrap_err().0, ProblemKind::TooLate);
+        assert_eq!(odometer.increment(at(1_010_000_000), pose(1.75)), Ok(Some(pose(0.25))));
+    }
+
+    #[test]
+    fn odometry_that_is_set_back_is_no_motion() {
+        let mut odometer = Odometer::default();
+        odometer.increment(at(0), Pose2::new(50.0, 0.0, 0.0)).unwrap();
+        let fault = odometer.increment(at(20_000_000), Pose2::new(0.0, 0.0, 0.0)).unwrap_err();
+        assert_eq!(fault.0, ProblemKind::Inconsistent);
+        let step = odometer.increment(at(40_000_000), Pose2::new(0.5, 0.0, 0.0));
+        assert_eq!(step, Ok(Some(Pose2::new(0.5, 0.0, 0.0))));
+    }
+}

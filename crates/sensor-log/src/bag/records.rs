@@ -1,0 +1,189 @@
+use wayfix_estimation_traits::{Pose2, Pose3};
+
+use super::kind::{BagRoute, Kind};
+use super::motion::{Odometer, planar};
+use super::scan::Mount;
+use super::transforms::{Transforms, is_body, last_part};
+use super::trial::ODOMETRY_FRAME;
+use super::{Choice, camera, scan};
+use crate::fault::{Fault, finite, inconsistent, spatial};
+use crate::format::shortened;
+use crate::planar::heading_of;
+use crate::ros::{self, Header, RosMessage, Twist};
+use crate::{Data, EncodedImage, ImageFormat, ProblemKind, Record, Stamp, Velocity};
+
+/// The fixed frame that localization places the robot in. [REP 105]
+const MAP_FRAME: &str = "map";
+
+/// Makes records of the messages of a bag, one after the other: some only mean something together.
+#[derive(Debug, Default)]
+pub(crate) struct BagRecords {
+    choice: Choice,
+    transforms: Transforms,
+    odometer: Odometer,
+    /// The robot's frame, as odometry calls it.
+    body: Option<String>,
+    camera_mount: Option<Pose3<f64>>,
+    laser_mount: Option<Mount>,
+}
+
+impl BagRecords {
+    pub(crate) fn new(choice: Choice) -> Self {
+        Self { choice, ..Self::default() }
+    }
+
+    /// What a message on this topic is read as.
+    pub(crate) fn route(&self, topic: &str, schema: &str) -> Option<BagRoute> {
+        self.choice.route(topic, schema)
+    }
+
+    /// The records in a message; one without a stamp of its own takes the time at which it was logged.
+    pub(crate) fn take(
+        &mut self,
+        (schema, kind): BagRoute,
+        bytes: &[u8],
+        log_time: Stamp,
+    ) -> Result<Vec<Record>, Fault> {
+        let message = schema.decode(bytes).map_err(|error| (ProblemKind::Undecodable, error.to_string()))?;
+        let at = |header: &Header<'_>| stamp(header, log_time);
+        match message {
+            RosMessage::LaserScan(message) => self.scan(at(&message.header)?, &message),
+            RosMessage::Image(image) => {
+                let stamp = at(&image.header)?;
+                Ok(self.image(stamp, image.header.frame_id, image.pixels().uncompressed()?))
+            }
+            RosMessage::CompressedImage(image) => {
+                let stamp = at(&image.header)?;
+                Ok(self.image(stamp, image.header.frame_id, file(&image)?))
+            }
+            RosMessage::CameraInfo(message) => {
+                let info = camera::pinhole(&message, self.choice.is_rectified)?;
+                Ok(one(at(&message.header)?, Data::CameraInfo(info)))
+            }
+            RosMessage::Odometry(message) => self.odometry(at(&message.header)?, kind, &message),
+            RosMessage::Pose(message) => {
+                let (stamp, pose) = (at(&message.header)?, planar(&message.pose)?);
+                Ok(one(
+                    stamp,
+                    if kind == Kind::TruePose { Data::TruePose } else { Data::EstimatedPose }(pose),
+                ))
+            }
+            RosMessage::Twist(message) => {
+                let stamp = message.header.as_ref().map_or(Ok(log_time), at)?;
+                Ok(one(stamp, velocity(&message.twist)?))
+            }
+            RosMessage::Transforms(transforms) => {
+                let mut records = Vec::new();
+                for transform in &transforms {
+                    records.extend(self.transform(at(&transform.header)?, transform)?);
+                }
+                Ok(records)
+            }
+        }
+    }
+
+    fn scan(&mut self, stamp: Stamp, message: &ros::LaserScan<'_>) -> Result<Vec<Record>, Fault> {
+        let laser = self.transforms.in_body(message.header.frame_id, self.body.as_deref());
+        let mount = laser.as_ref().map(Mount::of).transpose()?;
+        let scan = scan::scan(message, mount.as_ref())?;
+        let mut records = Vec::new();
+        if let Some(mount) = mount
+            && self.laser_mount.replace(mount) != Some(mount)
+        {
+            records.extend(one(stamp, Data::LaserMount(mount.pose)));
+        }
+        records.extend(one(stamp, Data::Scan(scan)));
+        Ok(records)
+    }
+
+    fn image(&mut self, stamp: Stamp, frame: &str, image: EncodedImage) -> Vec<Record> {
+        let mut records = Vec::new();
+        if let Some(frame_in_body) = self.transforms.in_body(frame, self.body.as_deref()) {
+            let mount = camera::mount(frame, &frame_in_body);
+            if self.camera_mount.replace(mount) != Some(mount) {
+                records.extend(one(stamp, Data::CameraMount(mount)));
+            }
+        }
+        records.extend(one(stamp, Data::Image(image)));
+        records
+    }
+
+    fn odometry(
+        &mut self,
+        stamp: Stamp,
+        kind: Kind,
+        message: &ros::Odometry<'_>,
+    ) -> Result<Vec<Record>, Fault> {
+        if kind == Kind::TruePose {
+            return Ok(one(stamp, Data::TruePose(planar(&message.pose)?)));
+        }
+        if self.body.as_deref() != Some(message.child_frame_id) {
+            self.body = Some(message.child_frame_id.to_owned());
+        }
+        if self.choice.moves_by_twist {
+            return Ok(one(stamp, velocity(&message.twist)?));
+        }
+        let increment = self.odometer.increment(stamp, planar(&message.pose)?)?;
+        Ok(increment.map_or_else(Vec::new, |increment| one(stamp, Data::OdometryIncrement(increment))))
+    }
+
+    fn transform(&mut self, stamp: Stamp, message: &ros::TransformStamped<'_>) -> Result<Vec<Record>, Fault> {
+        let (parent, child) = (message.header.frame_id, message.child_frame_id);
+        let pose = spatial(message.transform.position, message.transform.orientation)?;
+        self.transforms.insert(parent, child, pose);
+        let mut records = Vec::new();
+        if !is_body(child) {
+            return Ok(records);
+        }
+        let is_odometry = last_part(parent) == ODOMETRY_FRAME;
+        if is_odometry && self.choice.moves_by_transforms {
+            let increment = self.odometer.increment(stamp, on_the_ground(&pose))?;
+            records.extend(increment.map(|step| Record { stamp, data: Data::OdometryIncrement(step) }));
+        }
+        if (is_odometry || last_part(parent) == MAP_FRAME)
+            && self.choice.estimates_by_transforms
+            && let Some(on_map) = self.transforms.in_ancestor(child, MAP_FRAME)
+        {
+            records.extend(one(stamp, Data::EstimatedPose(on_the_ground(&on_map))));
+        }
+        Ok(records)
+    }
+}
+
+fn one(stamp: Stamp, data: Data) -> Vec<Record> {
+    vec![Record { stamp, data }]
+}
+
+/// A header without a time was not filled in.
+fn stamp(header: &Header<'_>, log_time: Stamp) -> Result<Stamp, Fault> {
+    const NANOSECONDS: u64 = 1_000_000_000;
+    let (sec, nanosec) = (header.sec, header.nanosec);
+    match u64::try_from(sec) {
+        Ok(0) if nanosec == 0 => Ok(log_time),
+        Ok(seconds) if u64::from(nanosec) < NANOSECONDS => {
+            Ok(Stamp::from_nanoseconds(seconds * NANOSECONDS + u64::from(nanosec)))
+        }
+        _ => Err((ProblemKind::BadStamp, format!("time stamp of {sec} s and {nanosec} ns"))),
+    }
+}
+
+fn velocity(twist: &Twist) -> Result<Data, Fault> {
+    let (linear, angular) = (twist.linear[0], twist.angular[2]);
+    finite([linear, angular])?;
+    Ok(Data::Velocity(Velocity { linear, angular }))
+}
+
+fn on_the_ground(pose: &Pose3<f64>) -> Pose2<f64> {
+    let (t, q) = (pose.translation, pose.rotation);
+    Pose2::new(t.x, t.y, heading_of([q.i, q.j, q.k, q.w]))
+}
+
+/// What the file is counts more than what it is called.
+fn file(image: &ros::CompressedImage<'_>) -> Result<EncodedImage, Fault> {
+    let Some(format) = ImageFormat::of_bytes(image.data) else {
+        let (format, n_bytes) = (shortened(image.format), image.data.len());
+        let reason = format!("image called {format:?} is neither JPEG nor PNG ({n_bytes} bytes)");
+        return Err(inconsistent(&reason));
+    };
+    Ok(EncodedImage::new(format, image.data))
+}

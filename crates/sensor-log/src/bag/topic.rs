@@ -1,0 +1,63 @@
+use std::fmt;
+
+/// A topic of a ROS 2 bag and what becomes of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Topic {
+    /// Its name.
+    pub name: String,
+    /// Type of its messages.
+    pub schema: String,
+    /// How many there are.
+    pub n_messages: u64,
+    /// Whether they are read.
+    pub r#use: TopicUse,
+}
+
+/// What becomes of a topic.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TopicUse {
+    /// It is read, as this.
+    Read(&'static str),
+    /// It could be read as this, and another topic is.
+    NotChosen(&'static str),
+    /// Messages of this type, or of this name, are not read.
+    NotUnderstood,
+    /// There is no message on it.
+    Empty,
+}
+
+/// A topic as a file announces it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct SurveyedTopic {
+    pub(crate) name: String,
+    pub(crate) schema: String,
+    pub(crate) encoding: String,
+    pub(crate) n_messages: u64,
+}
+
+impl SurveyedTopic {
+    /// Whether two channels are one topic: publishers of one may have a channel each.
+    pub(crate) fn is_same_as(&self, other: &Self) -> bool {
+        self.name == other.name && self.schema == other.schema
+    }
+
+    /// Whether its messages are encoded as those of ROS 2.
+    pub(super) fn is_cdr(&self) -> bool {
+        self.encoding == "cdr"
+    }
+}
+
+impl fmt::Display for Topic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, schema, n_messages, r#use } = self;
+        write!(f, "{name:32} {schema:44} {n_messages:7} messages  ")?;
+        match r#use {
+            TopicUse::Read(what) => f.write_str(what),
+            TopicUse::NotChosen(what) => write!(f, "not read; choose it as {what} with --topic {name}"),
+            TopicUse::NotUnderstood => f.write_str("not understood"),
+            TopicUse::Empty => f.write_str("nothing to read"),
+        }
+    }
+}

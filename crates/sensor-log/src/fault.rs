@@ -1,0 +1,43 @@
+//! What can be wrong with one message, and the checks that all of them share.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use wayfix_estimation_traits::Pose3;
+
+use crate::ProblemKind;
+use crate::planar::NORM_TOLERANCE;
+
+/// What is wrong with a message.
+pub(crate) type Fault = (ProblemKind, String);
+
+/// How far the norm of a unit quaternion in doubles strays from one after a few products.
+const ROUNDING: f64 = 1e-12;
+
+pub(crate) fn inconsistent(reason: &str) -> Fault {
+    (ProblemKind::Inconsistent, reason.to_owned())
+}
+
+pub(crate) fn finite(numbers: impl IntoIterator<Item = f64>) -> Result<(), Fault> {
+    match numbers.into_iter().find(|number| !number.is_finite()) {
+        None => Ok(()),
+        Some(number) => Err((ProblemKind::NotFinite, format!("{number} is not finite"))),
+    }
+}
+
+/// A spatial pose from a position, metres, and the quaternion `[x, y, z, w]`.
+pub(crate) fn spatial(position: [f64; 3], orientation: [f64; 4]) -> Result<Pose3<f64>, Fault> {
+    finite(position)?;
+    finite(orientation)?;
+    let [x, y, z, w] = orientation;
+    let quaternion = Quaternion::new(w, x, y, z);
+    let norm = quaternion.norm();
+    let rotation = if orientation == [0.0; 4] {
+        UnitQuaternion::identity() // one that is not there means no rotation to most writers
+    } else if (norm - 1.0).abs() > NORM_TOLERANCE {
+        return Err(inconsistent(&format!("quaternion of norm {norm}")));
+    } else if (norm - 1.0).abs() > ROUNDING {
+        UnitQuaternion::new_normalize(quaternion)
+    } else {
+        UnitQuaternion::new_unchecked(quaternion) // it stays what it was, to the bit
+    };
+    Ok(Pose3 { translation: Vector3::from(position), rotation })
+}

@@ -1,0 +1,123 @@
+use crate::fault::Fault;
+use crate::format::shortened;
+use crate::{EncodedImage, ProblemKind};
+
+/// Pixels as messages have them, of ROS 2 and of Foxglove.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pixels<'a> {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// What the bytes of a pixel mean: `rgb8`, `mono8`, …
+    pub(crate) encoding: &'a str,
+    /// From one row to the next, bytes.
+    pub(crate) step: u32,
+    /// Rows from the top.
+    pub(crate) data: &'a [u8],
+}
+
+impl Pixels<'_> {
+    /// The image as a file that is not compressed.
+    ///
+    /// Padding of rows and transparency are dropped, colours come in the order R, G, B.
+    pub(crate) fn uncompressed(&self) -> Result<EncodedImage, Fault> {
+        let Self { width, height, encoding, step, data } = *self;
+        let channels = channels(encoding)?;
+        let unreadable = |reason: String| (ProblemKind::UnreadableImage, reason);
+        let row_bytes = u64::from(width) * channels.n_bytes as u64;
+        // The last row need not be padded.
+        let rows_before = u64::from(step) * u64::from(height.saturating_sub(1));
+        let needed = rows_before.saturating_add(row_bytes);
+        if u64::from(step) < row_bytes || (data.len() as u64) < needed {
+            let reason = format!(
+                "{width} x {height} pixels {encoding} in rows of {step} bytes do not fit into {} bytes",
+                data.len()
+            );
+            return Err(unreadable(reason));
+        }
+        let rows =
+            data.chunks(step.max(1) as usize).take(height as usize).map(|row| &row[..row_bytes as usize]);
+        let pixels = rows.flat_map(|row| row.chunks_exact(channels.n_bytes));
+        let image = match channels.colors {
+            None => EncodedImage::pnm_gray(width, height, &pixels.flatten().copied().collect::<Vec<u8>>()),
+            Some(order) => {
+                let rgb: Vec<u8> = pixels.flat_map(|pixel| order.map(|channel| pixel[channel])).collect();
+                EncodedImage::pnm_rgb(width, height, &rgb)
+            }
+        };
+        image.map_err(|error| unreadable(error.to_string()))
+    }
+}
+
+/// Where the bytes of a pixel are.
+struct Channels {
+    n_bytes: usize,
+    /// Of red, green and blue; `None` for grey.
+    colors: Option<[usize; 3]>,
+}
+
+/// Names as in `sensor_msgs/image_encodings.hpp`; those of OpenCV without colours count as OpenCV has them, blue first.
+fn channels(encoding: &str) -> Result<Channels, Fault> {
+    let (n_bytes, colors) = match encoding {
+        "mono8" | "8UC1" => (1, None),
+        "rgb8" => (3, Some([0, 1, 2])),
+        "bgr8" | "8UC3" => (3, Some([2, 1, 0])),
+        "rgba8" => (4, Some([0, 1, 2])),
+        "bgra8" | "8UC4" => (4, Some([2, 1, 0])),
+        other => {
+            let reason =
+                format!("pixels {:?} are not read; mono8, rgb8, bgr8, rgba8 and bgra8 are", shortened(other));
+            return Err((ProblemKind::UnreadableImage, reason));
+        }
+    };
+    Ok(Channels { n_bytes, colors })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square<'a>(encoding: &'a str, step: u32, data: &'a [u8]) -> Pixels<'a> {
+        Pixels { width: 2, height: 2, encoding, step, data }
+    }
+
+    #[test]
+    fn every_order_of_colours_becomes_the_same_picture() {
+        let rgb = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12];
+        let bgr = [3, 2, 1, 6, 5, 4, 9, 8, 7, 12, 11, 10];
+        let rgba = [1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0, 10, 11, 12, 0];
+        let bgra = [3, 2, 1, 9, 6, 5, 4, 9, 9, 8, 7, 9, 12, 11, 10, 9];
+        let cases: [(&str, u32, &[u8]); 5] = [
+            ("rgb8", 6, &rgb),
+            ("bgr8", 6, &bgr),
+            ("8UC3", 6, &bgr),
+            ("rgba8", 8, &rgba),
+            ("bgra8", 8, &bgra),
+        ];
+        for (encoding, step, data) in cases {
+            let pixels = square(encoding, step, data).uncompressed().unwrap().decode_rgb().unwrap().pixels;
+            assert_eq!(pixels, rgb, "{encoding}");
+        }
+    }
+
+    #[test]
+    fn padding_is_dropped_and_may_be_missing_behind_the_last_row() {
+        for data in [&[1, 2, 99, 3, 4, 99][..], &[1, 2, 99, 3, 4]] {
+            let pixels = square("mono8", 3, data).uncompressed().unwrap().decode_gray().unwrap().pixels;
+            assert_eq!(pixels, [1, 2, 3, 4]);
+        }
+    }
+
+    #[test]
+    fn sizes_that_do_not_fit_and_unknown_pixels_are_refused() {
+        for (encoding, step, n_bytes) in
+            [("mono8", 1, 9), ("mono8", 3, 4), ("rgb8", 6, 11), ("16UC1", 4, 8), ("mono8", u32::MAX, 9)]
+        {
+            let fault = square(encoding, step, &vec![0; n_bytes]).uncompressed().unwrap_err();
+            assert_eq!(fault.0, ProblemKind::UnreadableImage, "{encoding} {step}");
+        }
+        let huge = Pixels { width: u32::MAX, height: u32::MAX, ..square("rgba8", u32::MAX, &[0; 9]) };
+        assert!(huge.uncompressed().is_err());
+        let nothing = Pixels { width: 0, height: 0, ..square("rgb8", 0, &[]) };
+        assert!(nothing.uncompressed().is_err());
+    }
+}

@@ -1,0 +1,59 @@
+use super::geometry::pass_over_covariance;
+use super::{Header, Pose, Twist};
+use crate::cdr::{CdrError, CdrReader, FromCdr};
+
+/// `geometry_msgs/PoseStamped`; of a `PoseWithCovarianceStamped` the same, without the covariance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseStamped<'a> {
+    /// When, and the frame of the pose.
+    pub header: Header<'a>,
+    /// The pose.
+    pub pose: Pose,
+}
+
+/// `geometry_msgs/TwistStamped`, or a bare `Twist`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwistStamped<'a> {
+    /// When, and the frame of the velocity; a bare twist says neither.
+    pub header: Option<Header<'a>>,
+    /// The velocity.
+    pub twist: Twist,
+}
+
+/// `geometry_msgs/TransformStamped`: where one frame is in another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransformStamped<'a> {
+    /// When, and the parent.
+    pub header: Header<'a>,
+    /// The frame that is placed.
+    pub child_frame_id: &'a str,
+    /// The child in the parent.
+    pub transform: Pose,
+}
+
+impl<'a> FromCdr<'a> for PoseStamped<'a> {
+    fn read(cdr: &mut CdrReader<'a>) -> Result<Self, CdrError> {
+        Ok(Self { header: Header::read(cdr)?, pose: Pose::read(cdr)? })
+    }
+}
+
+impl<'a> PoseStamped<'a> {
+    /// The message that has a covariance behind the pose.
+    pub(super) fn read_with_covariance(cdr: &mut CdrReader<'a>) -> Result<Self, CdrError> {
+        let stamped = Self::read(cdr)?;
+        pass_over_covariance(cdr)?;
+        Ok(stamped)
+    }
+}
+
+impl<'a> FromCdr<'a> for TwistStamped<'a> {
+    fn read(cdr: &mut CdrReader<'a>) -> Result<Self, CdrError> {
+        Ok(Self { header: Some(Header::read(cdr)?), twist: Twist::read(cdr)? })
+    }
+}
+
+impl<'a> FromCdr<'a> for TransformStamped<'a> {
+    fn read(cdr: &mut CdrReader<'a>) -> Result<Self, CdrError> {
+        Ok(Self { header: Header::read(cdr)?, child_frame_id: cdr.string()?, transform: Pose::read(cdr)? })
+    }
+}

@@ -1,0 +1,162 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    str::FromStr,
+};
+
+use anyhow::{Context, Result};
+use wayfix_condensation::BoundingBox;
+use wayfix_sensor_log::{Format, Log, OpenOptions};
+
+use super::{
+    finish::{self, ESTIMATES},
+    input::read_toml,
+    output::{print, tell},
+    progress,
+};
+use crate::{
+    commented::commented,
+    report::Run,
+    system::{Stopwatch, System},
+    track::{self, Method, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
+};
+
+/// Tracking: where a target is in every picture, from where it is in the first one.
+///
+/// A box is four numbers, left, top, width and height in pixels, or eight, the corners of a quadrangle, whose upright bounding box counts;
+/// commas, tabs or blanks between them. In a file of true boxes line k is frame k; where the target is out of the picture the line says
+/// 0,0,0,0 or NaN; if there are fewer lines than frames, nothing is known of the rest.
+///
+/// `iou_mean` is the mean overlap (intersection over union) with the true boxes over all frames from the first one on, `success_auc` the
+/// share of frames with more overlap than each of 0, 0.05, …, 1, averaged, `precision_20px` the share of those whose centre is at most 20
+/// pixels off. A frame counts with overlap 0 when the tracker says that the target is lost (`n_lost`), and when it cannot be read or is
+/// refused (`n_without_estimate`). Frames without a true box are not judged. Without --truth these figures are absent. `frame_mean_ms` is
+/// the time of the tracker, without decoding.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(super) struct Arguments {
+    /// A folder of pictures, JPEG or PNG, in the order of their names.
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["log", "print_params"], conflicts_with = "log")]
+    frames: Option<PathBuf>,
+    /// A log with images, an MCAP file, instead of --frames.
+    #[arg(long, value_name = "PATH")]
+    log: Option<PathBuf>,
+    /// Where the target is in the first frame: x,y,w,h or eight numbers [default: the first true box].
+    #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["truth", "print_params"])]
+    init: Option<BoxArgument>,
+    /// True boxes, one line a frame.
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+    /// Which tracker.
+    #[arg(long, value_enum, value_name = "NAME", default_value = "box")]
+    method: Method,
+    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// Print the parameters that would be used, as TOML, and end: a file to start from.
+    #[arg(long)]
+    print_params: bool,
+    /// Folder for index.html, report.json, the figures as SVG, the boxes as text and the outlines as MCAP.
+    ///
+    /// It is created where need be. Nothing is written without it.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the figures as one JSON object instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Seed of the tracker's samples.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run track --frames David/img --truth David/groundtruth_rect.txt
+  wayfix run track --frames holiday --init 120,80,40,56 --out results
+  wayfix run track --log camera.mcap --init 120,80,40,56 --json";
+
+/// The boxes beside the report, in the form of true ones.
+const BOXES: &str = "boxes.txt";
+
+#[derive(Clone, Copy, Debug)]
+struct BoxArgument(BoundingBox);
+
+impl FromStr for BoxArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = parse_box(text).map_err(|error| error.to_string())?;
+        found.map(Self).ok_or_else(|| "a box at the beginning needs an extent".to_owned())
+    }
+}
+
+pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let params = match &arguments.params {
+        Some(path) => read_toml(path, TrackParams::from_toml)?,
+        None => TrackParams::default(),
+    };
+    if arguments.print_params {
+        print(commented(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let truth = match &arguments.truth {
+        Some(path) => TrueBoxes::read(path)
+            .with_context(|| format!("true boxes in {} are not usable", path.display()))?,
+        None => TrueBoxes::default(),
+    };
+    let (mut log, rate_hz) = arguments.open()?;
+    let origin = log.meta().first_format();
+    let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+
+    let stopwatch = Stopwatch::start();
+    let init = arguments.init.map(|init| init.0);
+    let setup = TrackSetup { method: arguments.method, params, init, truth, rate_hz };
+    let system = TrackSystem::new(setup, arguments.seed);
+    let bar = progress::counter("tracking");
+    let track = track::run(system, &mut log, |system, record| {
+        if let Some(estimates) = &mut estimates {
+            estimates.observe(record, system);
+        }
+        bar.set_position(system.n_frames() as u64);
+    });
+    bar.finish_and_clear();
+    if !log.report().is_clean() {
+        tell(log.report());
+    }
+    let mut track = track?;
+    finish::account(track.system.events(), log.report());
+
+    let name = log.meta().source.display().to_string();
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let mut run = Run { name, seconds, ..track::summarize(&mut track) };
+    run.notes.iter().for_each(|note| tell(format!("note: {note}")));
+    if let Some(estimates) = estimates {
+        estimates.finish(track.system.n_frames())?;
+        run.log = Some(ESTIMATES.to_owned());
+        run.figures = track::pictures(&track.story)?;
+    }
+    finish::show("track", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    /// The log, and the frames a second of a folder.
+    fn open(&self) -> Result<(Log, Option<f64>)> {
+        let mut options = OpenOptions::default();
+        match (&self.frames, &self.log) {
+            (Some(folder), _) => {
+                options.format = Some(Format::Images);
+                let rate_hz = Some(options.frame_rate_hz);
+                Ok((wayfix_sensor_log::open(folder, &options)?, rate_hz))
+            }
+            (None, Some(path)) => Ok((wayfix_sensor_log::open(path, &options)?, None)),
+            (None, None) => anyhow::bail!("give --frames or --log"),
+        }
+    }
+}
+
+fn open_estimates(out: &Path, origin: Format) -> Result<TrackLog> {
+    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    TrackLog::create(&out.join(ESTIMATES), &out.join(BOXES), origin)
+}

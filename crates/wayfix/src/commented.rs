@@ -1,0 +1,168 @@
+//! Parameters as a TOML text that says of every key what it means.
+
+use schemars::{JsonSchema, Schema, schema_for};
+use serde::Serialize;
+use serde_json::Value;
+use toml_edit::{DocumentMut, Item, Table};
+
+/// The JSON schema of parameters: editors complete and check TOML files by it.
+pub(crate) fn schema_of<P: JsonSchema>() -> Schema {
+    schema_for!(P)
+}
+
+/// `params` as TOML, with the documentation of every key above it; keys that are not set follow their table as comments.
+///
+/// # Errors
+/// When the parameters have no TOML form.
+pub(crate) fn commented<P: JsonSchema + Serialize>(params: &P) -> anyhow::Result<String> {
+    let mut document: DocumentMut = toml::to_string(params)?.parse()?;
+    let root = schema_of::<P>().to_value();
+    comment_table(document.as_table_mut(), &root, &root);
+    let text = document.to_string();
+    Ok(text.trim_start().to_owned())
+}
+
+fn comment_table(table: &mut Table, schema: &Value, root: &Value) {
+    let Some(properties) = resolved(schema, root)["properties"].as_object() else { return };
+    let mut unset = String::new();
+    for (key, property) in properties {
+        let says = comment(property, root);
+        if let Some(Item::Table(inner)) = table.get_mut(key) {
+            inner.decor_mut().set_prefix(format!("\n{says}"));
+            comment_table(inner, property, root);
+        } else if let Some(mut key) = table.key_mut(key) {
+            key.leaf_decor_mut().set_prefix(says);
+        } else {
+            unset += &format!("{says}# {key} = not set\n");
+        }
+    }
+    // Behind the last key that has a value, still in front of the first table.
+    let last = table.iter().filter(|(_, item)| item.is_value()).map(|(key, _)| key.to_owned()).last();
+    let value = last.and_then(|last| table.get_mut(&last)).and_then(Item::as_value_mut);
+    match (unset.is_empty(), value) {
+        (true, _) => {}
+        (false, Some(value)) => value.decor_mut().set_suffix(format!("\n{}", unset.trim_end())),
+        (false, None) => {
+            let before =
+                table.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default().to_owned();
+            table.decor_mut().set_prefix(format!("{before}{unset}"));
+        }
+    }
+}
+
+/// What the documentation says, and what may be chosen, as lines of comment.
+fn comment(property: &Value, root: &Value) -> String {
+    let own = property["description"].as_str();
+    let described = own.or_else(|| resolved(property, root)["description"].as_str()).unwrap_or_default();
+    let mut lines: Vec<String> = paragraphs(&plain(described));
+    for choice in choices(property, root) {
+        lines.extend(choice);
+    }
+    lines.iter().map(|line| format!("# {line}\n")).collect()
+}
+
+/// The variants of an enumeration, each with what it means.
+fn choices(property: &Value, root: &Value) -> Vec<Vec<String>> {
+    let target = resolved(property, root);
+    let variants = target["oneOf"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let variant = |variant: &Value| {
+        let name = match (variant["const"].as_str(), variant["properties"].as_object()) {
+            (Some(name), _) => format!("\"{name}\""),
+            (None, Some(fields)) => format!("{{ {} = … }}", fields.keys().next()?),
+            (None, None) => return None,
+        };
+        let means = plain(variant["description"].as_str().unwrap_or_default());
+        Some(paragraphs(&format!("{name}: {means}")).into_iter().map(|line| format!("  {line}")).collect())
+    };
+    variants.iter().filter_map(variant).collect()
+}
+
+/// The schema itself, or the definition that it refers to; of what may be absent, that which may be there.
+fn resolved<'a>(schema: &'a Value, root: &'a Value) -> &'a Value {
+    let alternatives = schema["anyOf"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let schema = alternatives.iter().find(|one| one["type"] != "null").unwrap_or(schema);
+    let definition = schema["$ref"].as_str().and_then(|path| path.strip_prefix('#'));
+    definition.and_then(|pointer| root.pointer(pointer)).unwrap_or(schema)
+}
+
+/// Text without the marks of formulas, code and links.
+fn plain(markdown: &str) -> String {
+    let mut text = String::new();
+    let mut rest = markdown;
+    while let Some((before, after)) = rest.split_once("`](") {
+        text += before;
+        rest = after.split_once(')').map_or("", |(_, rest)| rest);
+    }
+    text += rest;
+    let code = text.replace("$`", "").replace("`$", "").replace("[`", "").replace("`]", "");
+    code.replace('`', "").replace("\\,", " ")
+}
+
+/// Lines of at most some 100 characters; an empty one between paragraphs is left out.
+fn paragraphs(text: &str) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) {
+        let mut line = String::new();
+        for word in paragraph.split_whitespace() {
+            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
+                lines.push(std::mem::take(&mut line));
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line += word;
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+const WIDTH: usize = 100;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        cml::CmlParams,
+        color::ColorSystemParams,
+        slam::{Profile, SlamSystemParams},
+        track::TrackParams,
+        views::ViewsParams,
+        walls::WallSlamParams,
+    };
+
+    fn same_with_comments<P: JsonSchema + Serialize + PartialEq + serde::de::DeserializeOwned>(params: &P) {
+        let text = commented(params).unwrap();
+        assert!(toml::from_str::<P>(&text).unwrap() == *params, "{text}");
+        // The variant that is chosen stands alone in its table, under what all of them mean.
+        let bare = text.lines().zip(text.lines().skip(1)).filter(|(above, line)| {
+            line.contains(" = ") && !line.starts_with('#') && !above.starts_with(['#', '['])
+        });
+        assert_eq!(bare.collect::<Vec<_>>(), [], "keys without a word");
+    }
+
+    #[test]
+    fn comments_change_nothing_and_every_key_has_one() {
+        same_with_comments(&SlamSystemParams::of(Profile::Utias));
+        same_with_comments(&WallSlamParams::default());
+        same_with_comments(&ColorSystemParams::default());
+        same_with_comments(&ViewsParams::default());
+        same_with_comments(&TrackParams::default());
+        same_with_comments(&CmlParams::default());
+        same_with_comments(&wayfix_line_extract::Params::default());
+    }
+
+    #[test]
+    fn units_choices_and_what_is_not_set_are_told() {
+        let text = commented(&SlamSystemParams::of(Profile::Generic)).unwrap();
+        for part in [
+            "# Time from the exposure of the sensor to the stamp of what it saw, s.",
+            "\"downweight\": They count less",
+            "# start = not set",
+        ] {
+            assert!(text.contains(part), "{part} in\n{text}");
+        }
+        assert!(!text.contains("](") && !text.contains('$'), "{text}");
+        assert_eq!(plain("a [`B`](crate::B) of $`x^2`$, [Schulz 2004]"), "a B of x^2, [Schulz 2004]");
+    }
+}

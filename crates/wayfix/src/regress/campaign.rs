@@ -1,0 +1,42 @@
+use anyhow::Result;
+use serde::{Deserialize, Serialize};
+
+use super::{Job, Options, Plan, PlannedRun};
+
+/// One run with one seed: the piece of work that a shard takes or leaves.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Cell {
+    /// Name of the suite.
+    pub suite: String,
+    /// Name of the planned run.
+    pub run: String,
+    /// Seed of every generator.
+    pub seed: u64,
+}
+
+/// Everything that was asked for, in the order of the report: run by run, seed by seed.
+///
+/// # Errors
+/// When a plan cannot be read.
+pub fn cells(options: &Options) -> Result<Vec<Cell>> {
+    let mut cells = Vec::new();
+    for suite in &options.suites {
+        let plan = Plan::read(&options.fixtures, suite)?;
+        for run in plan.run.iter().filter(|run| job(options, run).is_some()) {
+            let cell = |seed| Cell { suite: suite.clone(), run: run.name.clone(), seed };
+            cells.extend(options.seeds().map(cell));
+        }
+    }
+    Ok(cells)
+}
+
+/// A run with what it needs; `None` for recordings that are not at hand and for what is not asked for.
+pub(super) fn job<'a>(options: &'a Options, planned: &'a PlannedRun) -> Option<Job<'a>> {
+    let path = match (&planned.log, &planned.data) {
+        _ if options.quick && (planned.slow || planned.data.is_some()) => return None,
+        (Some(log), _) => Some(options.fixtures.join(log)),
+        (None, Some(data)) => Some(options.data.as_ref()?.join(data)).filter(|path| path.exists()),
+        (None, None) => None,
+    };
+    (planned.data.is_none() || path.is_some()).then_some(Job { options, planned, path })
+}

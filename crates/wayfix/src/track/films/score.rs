@@ -1,0 +1,92 @@
+use anyhow::{Context, Result};
+use wayfix_condensation::{BitMask, BoundingBox, Target, TrackStatus};
+use wayfix_scene_sim::film::{Frame, Silhouette};
+
+/// Fewer pixels of a neck in a frame say nothing of where it is.
+const LEAST_NECK: usize = 100;
+
+/// How well one tracker followed the target of one film, after the frame it began with.
+///
+/// An outline is judged by the pixels in it and the whole target, hidden parts included; a target without an outline by its box and the true
+/// one.
+#[derive(Clone, Debug, Default)]
+pub struct FilmScore {
+    /// Overlap of each frame in which something of the target is visible; 0 when the tracker says that it is lost.
+    pub iou: Vec<f64>,
+    /// Distance of the centres in pixels, of those frames in which it is not lost.
+    pub center_error: Vec<f64>,
+    /// Share of the neck that is inside the outline, of the frames with enough of a neck.
+    pub neck_share: Vec<f64>,
+    /// In how many frames with a visible target the tracker says that it is lost.
+    pub n_lost: usize,
+    /// How many frames show nothing of the target.
+    pub n_hidden: usize,
+    /// In how many of these the tracker says so.
+    pub n_hidden_and_lost: usize,
+}
+
+impl FilmScore {
+    /// Takes the next frame in.
+    ///
+    /// # Errors
+    /// When an outline cannot be compared with the truth.
+    pub fn add(&mut self, target: &Target, frame: &Frame) -> Result<()> {
+        let lost = target.status == TrackStatus::Lost;
+        if frame.visible.area() == 0 {
+            self.n_hidden += 1;
+            self.n_hidden_and_lost += usize::from(lost);
+            return Ok(());
+        }
+        if lost {
+            self.n_lost += 1;
+            self.iou.push(0.0);
+            return Ok(());
+        }
+        let (iou, [du, dv]) = if target.outline.is_empty() {
+            let truth = bounds(&frame.target)?;
+            (target.bounding_box.iou(&truth), apart(target.bounding_box.center(), truth.center()))
+        } else {
+            let estimate = inside(target, &frame.target)?;
+            let truth = mask(&frame.target)?;
+            if frame.decoy.area() >= LEAST_NECK {
+                let share = estimate.overlap(&mask(&frame.decoy)?)? as f64 / frame.decoy.area() as f64;
+                self.neck_share.push(share);
+            }
+            let centers = estimate.centroid().zip(truth.centroid());
+            (estimate.iou(&truth)?, centers.map_or([f64::NAN; 2], |(one, other)| apart(one, other)))
+        };
+        self.iou.push(iou);
+        self.center_error.push(du.hypot(dv));
+        Ok(())
+    }
+
+    /// Mean overlap over the last frames.
+    pub fn iou_at_the_end(&self, n_frames: usize) -> f64 {
+        mean(&self.iou[self.iou.len().saturating_sub(n_frames)..])
+    }
+}
+
+/// The mean; not a number when there is nothing.
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// A silhouette as the library's mask.
+pub(super) fn mask(silhouette: &Silhouette) -> Result<BitMask> {
+    let (width, pixels) = (silhouette.width(), silhouette.pixels());
+    Ok(BitMask::from_fn(width, silhouette.height(), |u, v| pixels[v * width + u])?)
+}
+
+/// The true box.
+pub(super) fn bounds(silhouette: &Silhouette) -> Result<BoundingBox> {
+    let [x, y, width, height] = silhouette.bounding_box().context("the target is out of the picture")?;
+    Ok(BoundingBox::from_corner(x, y, width, height)?)
+}
+
+fn inside(target: &Target, like: &Silhouette) -> Result<BitMask> {
+    Ok(BitMask::from_polygon(like.width(), like.height(), &target.outline)?)
+}
+
+fn apart(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    [one[0] - other[0], one[1] - other[1]]
+}

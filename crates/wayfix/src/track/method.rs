@@ -1,0 +1,100 @@
+use clap::ValueEnum;
+use serde::Deserialize;
+use wayfix_condensation::{
+    BitMask, BoundingBox, CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture,
+    TrackingCues,
+};
+
+use super::{Follower, TrackParams, follower::ContourFollower};
+
+/// Which tracker follows the target.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// A correlation filter over gradients and colours: a box around anything.
+    #[default]
+    Box,
+    /// An ellipse by its colours and its rim, as of a head in front of a room.
+    Head,
+    /// CONDENSATION in colour space, validated by an affine contour: the outline of a target of a shape of its own.
+    Contour,
+    /// The same with colours that stay as they were at the start.
+    ContourFixedColors,
+    /// The same without the contour: the target is the blob of its colours.
+    ContourColorOnly,
+    /// The same without colours: a snake on the edges of the picture.
+    ContourShapeOnly,
+}
+
+/// Where a target is in the first picture.
+#[derive(Clone, Debug)]
+pub enum Start<'a> {
+    /// In this box.
+    Box(BoundingBox),
+    /// These pixels are it.
+    Mask(&'a BitMask),
+}
+
+impl Method {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Box => "box",
+            Self::Head => "head",
+            Self::Contour => "contour",
+            Self::ContourFixedColors => "contour-fixed-colors",
+            Self::ContourColorOnly => "contour-color-only",
+            Self::ContourShapeOnly => "contour-shape-only",
+        }
+    }
+
+    /// A tracker that begins in the first picture.
+    ///
+    /// # Errors
+    /// What the tracker says of its start or its parameters.
+    pub fn begin(
+        self,
+        params: &TrackParams,
+        picture: &Picture,
+        start: &Start<'_>,
+    ) -> Result<Box<dyn Follower>, CondensationError> {
+        let mut contour = params.contour;
+        match self {
+            Self::Box => {
+                let bounds = start.bounding_box()?;
+                let tracker = CorrelationTracker::new(picture, bounds, params.correlation.clone())?;
+                return Ok(Box::new(tracker));
+            }
+            Self::Head => {
+                let bounds = start.bounding_box()?;
+                return Ok(Box::new(HeadTracker::new(picture, bounds, params.head.clone())?));
+            }
+            Self::Contour => {}
+            Self::ContourFixedColors => contour.adapts = false,
+            Self::ContourColorOnly => contour.cues = TrackingCues::Color,
+            Self::ContourShapeOnly => contour.cues = TrackingCues::Shape,
+        }
+        let tracker = match start {
+            Start::Box(bounds) => ContourTracker::from_box(picture, bounds, contour)?,
+            Start::Mask(mask) => ContourTracker::from_mask(picture, mask, contour)?,
+        };
+        Ok(Box::new(ContourFollower { tracker, space: contour.color_space }))
+    }
+}
+
+impl Start<'_> {
+    /// The box around the target.
+    ///
+    /// # Errors
+    /// When a mask is empty.
+    pub fn bounding_box(&self) -> Result<BoundingBox, CondensationError> {
+        match self {
+            Self::Box(bounds) => Ok(*bounds),
+            Self::Mask(mask) => {
+                let rect =
+                    mask.bounding_rect().ok_or(CondensationError::Empty { what: "target in the mask" })?;
+                rect.to_box()
+            }
+        }
+    }
+}

@@ -1,0 +1,237 @@
+use std::time::Duration;
+
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use wayfix_condensation::{BoundingBox, Picture, Target, TrackStatus};
+use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
+
+use super::{Follower, Method, Score, Start, TargetColors, TrackError, TrackParams, TrueBoxes, Truth};
+use crate::system::{Events, Stopwatch, System};
+
+/// A tracker, fed with the images of a log.
+///
+/// It begins in the first frame that can be read, with the box it is given, or else with the first true box. A frame that cannot be read or
+/// is refused has no estimate: where the truth is known it counts with overlap 0, like a frame in which the tracker says that it has lost
+/// the target.
+pub struct TrackSystem {
+    setup: TrackSetup,
+    rng: ChaCha8Rng,
+    tracker: Option<Box<dyn Follower>>,
+    failure: Option<TrackError>,
+    next_index: usize,
+    last: Option<FrameResult>,
+    was_lost: bool,
+    score: Score,
+    totals: Totals,
+    events: Events,
+}
+
+/// Which tracker follows what.
+#[derive(Clone, Debug, Default)]
+pub struct TrackSetup {
+    /// The tracker.
+    pub method: Method,
+    /// Its parameters.
+    pub params: TrackParams,
+    /// Where the target is in the first frame; `None` is in its first true box.
+    pub init: Option<BoundingBox>,
+    /// Where it truly is.
+    pub truth: TrueBoxes,
+    /// Frames a second of a folder, whose stamps tell the number of each frame; without it frames are counted.
+    pub rate_hz: Option<f64>,
+}
+
+/// What one frame gave.
+#[derive(Clone, Debug)]
+pub struct FrameResult {
+    /// Its number in the sequence, from 0, with those that could not be read.
+    pub index: usize,
+    /// When it was taken.
+    pub stamp: Stamp,
+    /// The pixels.
+    pub picture: Picture,
+    /// What the tracker says.
+    pub target: Target,
+    /// What is known.
+    pub truth: Truth,
+    /// Overlap with the truth, 0 when the tracker says that it has lost the target; `None` where there is no true box.
+    pub iou: Option<f64>,
+    /// The colours of the target, where the tracker knows them.
+    pub colors: Option<TargetColors>,
+    /// Computing time of the tracker, without decoding; zero in the frame it begins with.
+    pub step: Duration,
+}
+
+/// Counts and times of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Totals {
+    pub(super) n_lost: u64,
+    pub(super) n_without_estimate: u64,
+    pub(super) n_steps: u64,
+    pub(super) time: Duration,
+    pub(super) longest: Duration,
+}
+
+impl TrackSystem {
+    /// A system that has seen nothing yet.
+    pub fn new(setup: TrackSetup, seed: u64) -> Self {
+        Self {
+            setup,
+            rng: ChaCha8Rng::seed_from_u64(seed),
+            tracker: None,
+            failure: None,
+            next_index: 0,
+            last: None,
+            was_lost: false,
+            score: Score::default(),
+            totals: Totals::default(),
+            events: Events::default(),
+        }
+    }
+
+    /// What the newest frame gave; `None` when it had no estimate.
+    pub fn frame(&self) -> Option<&FrameResult> {
+        self.last.as_ref()
+    }
+
+    /// How well the target was followed so far.
+    pub fn score(&self) -> &Score {
+        &self.score
+    }
+
+    /// What is known of the target.
+    pub fn truth(&self) -> &TrueBoxes {
+        &self.setup.truth
+    }
+
+    /// How many frames there were so far, with those that could not be read.
+    pub fn n_frames(&self) -> usize {
+        self.next_index
+    }
+
+    pub(super) fn totals(&self) -> &Totals {
+        &self.totals
+    }
+
+    pub(super) fn has_begun(&self) -> bool {
+        self.tracker.is_some()
+    }
+
+    /// Why the tracker could not begin, once.
+    pub(super) fn take_failure(&mut self) -> Option<TrackError> {
+        self.failure.take()
+    }
+
+    /// Counts the frames before `index` that never came, because they could not be read.
+    pub(super) fn pass_over(&mut self, index: usize) {
+        while self.next_index < index {
+            self.without_estimate();
+            self.events.count("frame_unreadable");
+        }
+    }
+
+    /// Counts the next frame as one without an estimate.
+    fn without_estimate(&mut self) {
+        self.last = None;
+        if let (true, Truth::At(truth)) = (self.has_begun(), self.setup.truth.at(self.next_index)) {
+            self.score.add(None, &truth);
+        }
+        self.totals.n_without_estimate += 1;
+        self.next_index += 1;
+    }
+
+    fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
+        if let Some(rate_hz) = self.setup.rate_hz {
+            self.pass_over((stamp.nanoseconds() as f64 * 1e-9 * rate_hz).round() as usize);
+        }
+        match self.follow(image) {
+            Ok(Some((picture, target, step))) => {
+                self.account(stamp, picture, target, step);
+                Ok(())
+            }
+            Ok(None) => {
+                self.without_estimate();
+                self.events.count("before_the_start");
+                Ok(())
+            }
+            Err(reason) => {
+                let reason = format!("frame {}: {reason}", self.next_index);
+                self.without_estimate();
+                Err(reason)
+            }
+        }
+    }
+
+    /// What the tracker says of a frame; `None` before the first box.
+    fn follow(&mut self, image: &EncodedImage) -> Result<Option<(Picture, Target, Duration)>, String> {
+        if self.failure.is_some() {
+            return Err("the tracker could not begin".to_owned());
+        }
+        let decoded = image.decode_rgb().map_err(|error| error.to_string())?;
+        let (width, height) = (decoded.width as usize, decoded.height as usize);
+        let picture = Picture::from_rgb(width, height, decoded.pixels).map_err(|error| error.to_string())?;
+        if let Some(tracker) = &mut self.tracker {
+            let stopwatch = Stopwatch::start();
+            let target = tracker.follow(&picture, &mut self.rng).map_err(|error| error.to_string())?;
+            return Ok(Some((picture, target, stopwatch.elapsed())));
+        }
+        let Some(init) = self.setup.init.or(self.setup.truth.at(self.next_index).target()) else {
+            return Ok(None);
+        };
+        match self.setup.method.begin(&self.setup.params, &picture, &Start::Box(init)) {
+            Ok(tracker) => self.tracker = Some(tracker),
+            Err(source) => {
+                let ([x, y], w, h) = (init.corner(), init.width(), init.height());
+                let init = format!("{x},{y},{w},{h}");
+                self.failure = Some(TrackError::Start { init, width, height, source });
+                return Err("the tracker could not begin".to_owned());
+            }
+        }
+        let target =
+            Target { bounding_box: init, outline: Vec::new(), status: TrackStatus::Tracked, quality: 1.0 };
+        Ok(Some((picture, target, Duration::ZERO)))
+    }
+
+    fn account(&mut self, stamp: Stamp, picture: Picture, target: Target, step: Duration) {
+        let index = self.next_index;
+        let truth = self.setup.truth.at(index);
+        let lost = target.status == TrackStatus::Lost;
+        let estimate = (!lost).then_some(&target.bounding_box);
+        if let Truth::At(truth) = &truth {
+            self.score.add(estimate, truth);
+        }
+        match (lost, truth) {
+            (true, Truth::Absent) => self.events.count("absent_and_lost"),
+            (false, Truth::Absent) => self.events.count("absent_and_tracked"),
+            _ => {}
+        }
+        match (self.was_lost, lost) {
+            (false, true) => self.events.count("lost"),
+            (true, false) => self.events.count("found"),
+            _ => {}
+        }
+        self.was_lost = lost;
+        self.totals.n_lost += u64::from(lost);
+        if step > Duration::ZERO {
+            self.totals.n_steps += 1;
+            self.totals.time += step;
+            self.totals.longest = self.totals.longest.max(step);
+        }
+        let iou = truth.target().map(|truth| estimate.map_or(0.0, |estimate| estimate.iou(&truth)));
+        let colors = self.tracker.as_ref().and_then(|tracker| tracker.colors());
+        self.next_index += 1;
+        self.last = Some(FrameResult { index, stamp, picture, target, truth, iou, colors, step });
+    }
+}
+
+impl System for TrackSystem {
+    fn take(&mut self, record: &Record) -> Result<(), String> {
+        match &record.data {
+            Data::Image(image) => self.see(record.stamp, image),
+            _ => Ok(()),
+        }
+    }
+
+    fn events(&mut self) -> &mut Events {
+        &mut self.events
+    }
+}

@@ -1,0 +1,153 @@
+use std::{fs, path::Path};
+
+use wayfix_condensation::BoundingBox;
+
+use super::TrackError;
+
+/// Where the target truly was, frame by frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TrueBoxes(Vec<Option<BoundingBox>>);
+
+/// What is known of one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Truth {
+    /// The target is here.
+    At(BoundingBox),
+    /// It is not in the picture.
+    Absent,
+    /// Nothing.
+    Unknown,
+}
+
+impl Truth {
+    /// Where the target is, if it is known and in the picture.
+    pub fn target(self) -> Option<BoundingBox> {
+        match self {
+            Self::At(target) => Some(target),
+            Self::Absent | Self::Unknown => None,
+        }
+    }
+
+    /// Whether the target is known to be out of the picture.
+    pub fn is_absent(self) -> bool {
+        self == Self::Absent
+    }
+
+    /// Whether nothing is known.
+    pub fn is_unknown(self) -> bool {
+        self == Self::Unknown
+    }
+}
+
+impl TrueBoxes {
+    /// One box a line, line k being frame k, each as [`parse_box`] takes it. Empty lines at the end do not count.
+    ///
+    /// # Errors
+    /// [`TrackError::Read`], and [`TrackError::Line`] for the first line that is no box.
+    pub fn read(path: &Path) -> Result<Self, TrackError> {
+        let read = fs::read(path).map_err(|source| TrackError::Read { path: path.into(), source })?;
+        Self::parse(&String::from_utf8_lossy(&read))
+    }
+
+    /// The same from a text.
+    ///
+    /// # Errors
+    /// [`TrackError::Line`].
+    pub fn parse(text: &str) -> Result<Self, TrackError> {
+        let text = text.trim_start_matches('\u{feff}').trim_end();
+        let line = |(index, line): (usize, &str)| {
+            parse_box(line).map_err(|source| TrackError::Line { line: index + 1, source: Box::new(source) })
+        };
+        text.lines().enumerate().map(line).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// What is known of a frame, counted from 0.
+    pub fn at(&self, frame: usize) -> Truth {
+        match self.0.get(frame) {
+            Some(Some(target)) => Truth::At(*target),
+            Some(None) => Truth::Absent,
+            None => Truth::Unknown,
+        }
+    }
+
+    /// How many frames are spoken of.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether none is.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+/// A box from four numbers `x,y,w,h` or from eight, the corners `x1,y1 … x4,y4` of a quadrangle, whose upright bounding box it is; with
+/// commas, semicolons, tabs or blanks between them. `None` where the target is not in the picture: not a number, or without an extent.
+///
+/// ```
+/// use wayfix::track::parse_box;
+/// assert_eq!(parse_box("10 20 30 40")?, parse_box("40,20,40,60,10,60,10,20")?);
+/// assert_eq!(parse_box("NaN,NaN,NaN,NaN")?, None);
+/// assert!(parse_box("10,20,30").is_err() && parse_box("10,20,30,high").is_err());
+/// # Ok::<(), wayfix::track::TrackError>(())
+/// ```
+///
+/// # Errors
+/// [`TrackError::NotABox`] for other counts, for what is no number, and for a negative extent.
+pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackError> {
+    let wrong = |reason: String| TrackError::NotABox { text: text.chars().take(80).collect(), reason };
+    let words = text.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty());
+    let number = |word: &str| word.parse::<f64>().map_err(|_| wrong(format!("{word:?} is no number")));
+    let numbers: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
+    let [x, y, width, height] = match numbers[..] {
+        [x, y, width, height] => [x, y, width, height],
+        [x1, y1, x2, y2, x3, y3, x4, y4] => around([[x1, y1], [x2, y2], [x3, y3], [x4, y4]]),
+        _ => return Err(wrong(format!("{} numbers, neither 4 nor 8", numbers.len()))),
+    };
+    if numbers.iter().any(|number| !number.is_finite()) || width == 0.0 || height == 0.0 {
+        return Ok(None);
+    }
+    BoundingBox::from_corner(x, y, width, height).map(Some).map_err(|error| wrong(error.to_string()))
+}
+
+/// Left, top, width and height of the upright box around points.
+fn around(corners: [[f64; 2]; 4]) -> [f64; 4] {
+    let least = |k: usize| corners.iter().map(|corner| corner[k]).fold(f64::INFINITY, f64::min);
+    let most = |k: usize| corners.iter().map(|corner| corner[k]).fold(f64::NEG_INFINITY, f64::max);
+    [least(0), least(1), most(0) - least(0), most(1) - least(1)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_separator_is_understood() {
+        let expected = BoundingBox::from_corner(1.5, 2.0, 30.0, 40.0).unwrap();
+        for text in ["1.5,2,30,40", "1.5\t2\t30\t40", " 1.5  2 30 40 \r", "1.5, 2; 30, 40"] {
+            assert_eq!(parse_box(text).unwrap(), Some(expected), "{text:?}");
+        }
+        let tilted = parse_box("5,0 10,5 5,10 0,5").unwrap().unwrap();
+        assert_eq!((tilted.corner(), tilted.width(), tilted.height()), ([0.0, 0.0], 10.0, 10.0));
+    }
+
+    #[test]
+    fn a_target_out_of_the_picture_is_no_error_and_a_box_inside_out_is_one() {
+        for text in ["0,0,0,0", "nan nan nan nan", "NaN,1,2,3", "inf,0,1,1", "3,3,3,3,3,3,3,3"] {
+            assert_eq!(parse_box(text).unwrap(), None, "{text:?}");
+        }
+        for text in ["", "1,2,-3,4", "1,2,3,4,5", "one,2,3,4", "x"] {
+            assert!(matches!(parse_box(text), Err(TrackError::NotABox { .. })), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn an_unusable_line_is_named_and_what_lies_beyond_the_list_is_unknown() {
+        let error = TrueBoxes::parse("1,2,3,4\n1,2,3\n").unwrap_err();
+        assert!(matches!(error, TrackError::Line { line: 2, .. }), "{error}");
+        let truth = TrueBoxes::parse("\u{feff}1,2,3,4\r\n0,0,0,0\r\n\r\n").unwrap();
+        assert_eq!(truth.len(), 2);
+        assert!(truth.at(0).target().is_some() && truth.at(1).is_absent() && truth.at(2).is_unknown());
+        assert!(TrueBoxes::parse("").unwrap().is_empty());
+    }
+}
