@@ -13,7 +13,7 @@ mod search;
 mod state;
 mod views;
 
-pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapArchive};
+pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState, MapArchive};
 pub use error::AppearanceError;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
 pub use localizer::{

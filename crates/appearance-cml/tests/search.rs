@@ -104,7 +104,9 @@ fn bounds_keep_their_order() {
         let difference = invariants[a].iter().zip(&invariants[b]).map(|(x, y)| (x - y).powi(2));
         let (loose, bound) =
             (difference.sum::<f64>().sqrt(), views[b].bound(&views[a].probe(), f64::INFINITY));
-        let distance = views[a].compare(&views[b]).distance;
+        let comparison = views[a].compare(&views[b]);
+        assert_eq!(views[b].compare_with(&views[a].probe()), comparison);
+        let distance = comparison.distance;
         // Single precision of sums near 1, and the root of their difference: 1e-6, near 0 its root.
         assert!(loose <= bound + 2e-3 && bound <= distance + 1e-7, "{loose} {bound} {distance}");
         let early = views[b].bound(&views[a].probe(), 0.3);

@@ -150,7 +150,7 @@ fn follow(
     }
     if let Some(out) = out {
         fs::create_dir_all(out)?;
-        fs::write(out.join(folder.file_name().ok_or("a folder")?).with_extension("csv"), lines)?;
+        fs::write(out.join(folder.file_name().ok_or("a folder")?).with_extension("csv"), &lines)?;
     }
     let n = overlaps.len() as f64;
     let share = |threshold: f64| overlaps.iter().filter(|&&iou| iou > threshold).count() as f64 / n;

@@ -1,11 +1,5 @@
 //! ROS 2 bags from beginning to end: one that the Python package rosbags wrote, and some of our own making.
 
-#![expect(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a panic is the verdict of a test, in its helpers too"
-)]
-
 mod common;
 
 use std::collections::BTreeMap;
@@ -72,7 +66,7 @@ fn a_bag_of_rosbags_has_the_records_that_its_messages_mean() {
                 assert!(mount.rotation.angle() < 1e-12);
             }
             Data::CameraInfo(info) => {
-                assert_eq!((info.cx, info.cy, info.fx, info.fy), (8.0, 6.0, 20.0, 21.0))
+                assert_eq!((info.cx, info.cy, info.fx, info.fy), (8.0, 6.0, 20.0, 21.0));
             }
             Data::Image(image) => assert_eq!(image.decode_rgb().unwrap().pixels[16 * 3 + 3..][..2], [20, 15]),
             Data::Scan(scan) => {

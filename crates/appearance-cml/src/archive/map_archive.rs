@@ -37,6 +37,9 @@ pub struct MapArchive {
     end: ArchiveEnd,
 }
 
+/// A map, and where the robot may be in it; `None` for anywhere.
+pub type MapAndState<S> = (AppearanceMap<PanoramaDescriptor, S>, Option<Mixture<Pose2<f64>>>);
+
 /// How the bytes of a map end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArchiveEnd {
@@ -130,7 +133,7 @@ impl MapArchive {
     pub fn into_map<S: ReferenceSearch<PanoramaDescriptor> + Default>(
         self,
         params: &ArchiveParams,
-    ) -> Result<(AppearanceMap<PanoramaDescriptor, S>, Option<Mixture<Pose2<f64>>>), ArchiveError> {
+    ) -> Result<MapAndState<S>, ArchiveError> {
         params.check(&self.params)?;
         let mut search = S::default();
         let mut references = BTreeMap::new();

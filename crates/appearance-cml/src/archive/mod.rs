@@ -17,5 +17,5 @@ mod params;
 
 pub use error::ArchiveError;
 pub use journal::Journal;
-pub use map_archive::{ArchiveEnd, MapArchive};
+pub use map_archive::{ArchiveEnd, MapAndState, MapArchive};
 pub use params::ArchiveParams;

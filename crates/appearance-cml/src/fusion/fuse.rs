@@ -1,3 +1,5 @@
+use wayfix_gaussian_core::Gaussian;
+
 use super::{FusionParams, Weighting, combine};
 use crate::{AppearanceError, PoseHypothesis, separation_squared};
 
@@ -29,31 +31,36 @@ pub fn fuse(
     observed: &[PoseHypothesis],
     params: &FusionParams,
 ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    for hypothesis in predicted.iter().chain(observed) {
+        // One that meets no other would pass unseen otherwise.
+        Gaussian::new(*hypothesis.gaussian.mean(), *hypothesis.gaussian.covariance())?;
+    }
     let agreeing = agreeing(predicted, observed, params.gate)?;
     let mut fused = Vec::with_capacity(predicted.len() + observed.len());
     for pair in &agreeing {
         let (a, b) = (&predicted[pair.predicted], &observed[pair.observed]);
         let weight = match params.weighting {
             Weighting::Support => support(pair, predicted, observed, &agreeing),
-            Weighting::Evidence { .. } => a.weight * b.weight * (-0.5 * pair.squared).exp(),
+            Weighting::Evidence { missed, .. } => a.weight * evidence(pair, missed, observed, &agreeing),
         };
         fused.push(PoseHypothesis::new(weight, combine(a, b, params.combination)?));
     }
-    let (kept, new) = match params.weighting {
+    let (missed, appeared) = match params.weighting {
         Weighting::Support => (1.0, 1.0),
         Weighting::Evidence { missed, appeared } => (missed, appeared),
     };
-    let alone = |all: &[PoseHypothesis], factor: f64, index_of: fn(&Pair) -> usize| {
-        let copied: Vec<PoseHypothesis> = (all.iter().enumerate())
-            .filter(|(index, _)| !agreeing.iter().any(|pair| index_of(pair) == *index))
-            .map(|(_, hypothesis)| {
-                PoseHypothesis::new(hypothesis.weight * factor, hypothesis.gaussian.clone())
-            })
-            .collect();
-        copied
-    };
-    fused.extend(alone(predicted, kept, |pair| pair.predicted));
-    fused.extend(alone(observed, new, |pair| pair.observed));
+    let is_alone =
+        |index: usize, index_of: fn(&Pair) -> usize| !agreeing.iter().any(|p| index_of(p) == index);
+    for (index, a) in predicted.iter().enumerate() {
+        if is_alone(index, |pair| pair.predicted) {
+            fused.push(PoseHypothesis::new(a.weight * missed, a.gaussian.clone()));
+        }
+    }
+    for (index, b) in observed.iter().enumerate() {
+        if is_alone(index, |pair| pair.observed) {
+            fused.push(PoseHypothesis::new(b.weight * appeared, b.gaussian.clone()));
+        }
+    }
     Ok(fused)
 }
 
@@ -70,8 +77,10 @@ fn agreeing(
     gate: f64,
 ) -> Result<Vec<Pair>, AppearanceError> {
     let mut pairs = Vec::new();
+    // What has no weight supports nothing, and must not take away what it meets.
+    let heavy = |hypothesis: &&PoseHypothesis| hypothesis.weight != 0.0;
     for (i, a) in predicted.iter().enumerate() {
-        for (j, b) in observed.iter().enumerate() {
+        for (j, b) in observed.iter().enumerate().filter(|(_, b)| heavy(b)) {
             let squared = separation_squared(&a.gaussian, &b.gaussian)?;
             if squared < gate {
                 pairs.push(Pair { predicted: i, observed: j, squared });
@@ -92,4 +101,11 @@ fn support(pair: &Pair, predicted: &[PoseHypothesis], observed: &[PoseHypothesis
     let part =
         |whole: f64, counterpart: f64, all: f64| if all > 0.0 { whole * counterpart / all } else { 0.0 };
     part(a, b, counterparts_of_a) + part(b, a, counterparts_of_b)
+}
+
+/// $`w_b e^{-d^2/2} (1 + m / \sum_b w_b e^{-d^2/2})`$: together the counterparts of a component never count for less than none.
+fn evidence(pair: &Pair, missed: f64, observed: &[PoseHypothesis], agreeing: &[Pair]) -> f64 {
+    let fit = |p: &Pair| observed[p.observed].weight * (-0.5 * p.squared).exp();
+    let all: f64 = agreeing.iter().filter(|p| p.predicted == pair.predicted).map(fit).sum();
+    fit(pair) * (1.0 + missed / all)
 }

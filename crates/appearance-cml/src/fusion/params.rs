@@ -20,9 +20,10 @@ pub enum Combination {
 pub enum Weighting {
     /// Weights of what agrees add up; what is alone keeps its weight and loses it by the normalization. [Gross et al. 2005, Eqs. 6-8]
     Support,
-    /// Weights are probabilities: what agrees is multiplied by the weight of its support and by how well the two fit.
+    /// Weights are probabilities: a component is multiplied by the chance that the view is not recognized where it should be, and
+    /// by the weight of its counterparts and how well they fit, $`w_a (m + \sum_b w_b e^{-d^2/2})`$, shared out among them.
     Evidence {
-        /// Factor of a hypothesis that nothing speaks for: the chance that the view of a known place is not recognized.
+        /// $`m`$: not being recognized, beside 1 for a counterpart that looks exactly the same.
         missed: f64,
         /// Factor of something new that no hypothesis foresaw: the chance that the robot was carried there.
         appeared: f64,
@@ -31,7 +32,7 @@ pub enum Weighting {
 
 impl Default for Weighting {
     fn default() -> Self {
-        Self::Evidence { missed: 0.2, appeared: 1e-3 }
+        Self::Evidence { missed: 0.2, appeared: 1e-5 }
     }
 }
 

@@ -1,25 +1,15 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, Mixture};
 
-use super::queue::{LearningQueue, Waiting};
+use super::anywhere::Anywhere;
+use super::journey::Journey;
 use super::scale_learner::ScaleLearner;
 use super::trail::Trail;
-use super::{Event, Learning, LocalizerParams, Motion, Observation, UpdateOutcome};
+use super::{Event, Learning, LocalizerParams, Motion, Start, UpdateOutcome};
 use crate::{
-    AppearanceError, AppearanceMap, Descriptor, LinearSearch, PoseHypothesis, PoseSource, ReferenceId,
-    ReferenceSearch, fuse, interpolate, propagate, separation_squared, simplify, superpose, unimodal,
+    AppearanceError, AppearanceMap, Descriptor, FusionParams, LinearSearch, PoseHypothesis, PoseSource,
+    ReferenceId, ReferenceSearch, fuse, propagate, separation_squared, simplify, unimodal,
 };
-
-/// Where the robot is when it is switched on.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Start {
-    /// There, in the frame of the map.
-    Known(Gaussian<Pose2<f64>>),
-    /// In one of several places, as a state that was saved says.
-    Among(Mixture<Pose2<f64>>),
-    /// Anywhere in the map.
-    Anywhere,
-}
 
 /// Localizes in an appearance map, and learns it. [Gross et al. 2005]
 ///
@@ -53,20 +43,25 @@ pub enum Start {
 /// ```
 #[derive(Clone, Debug)]
 pub struct AppearanceLocalizer<D, S = LinearSearch<D>> {
-    params: LocalizerParams,
-    map: AppearanceMap<D, S>,
-    state: Option<Mixture<Pose2<f64>>>,
+    pub(super) params: LocalizerParams,
+    pub(super) map: AppearanceMap<D, S>,
+    pub(super) state: Option<Mixture<Pose2<f64>>>,
+    pub(super) anywhere: Anywhere,
     /// Since the last view.
-    motion: Motion,
-    queue: LearningQueue<D>,
-    scale_learner: ScaleLearner<D>,
-    /// The last view that left the queue.
-    learned_last: Option<D>,
-    taught_last: Option<Pose2<f64>>,
-    was_unimodal: bool,
-    trail: Trail,
+    pub(super) motion: Motion,
+    pub(super) journey: Journey<D>,
+    pub(super) scale_learner: ScaleLearner<D>,
+    /// The last view that was learned.
+    pub(super) learned_last: Option<D>,
+    pub(super) taught_last: Option<Pose2<f64>>,
+    pub(super) was_unimodal: bool,
+    pub(super) has_seen: bool,
+    pub(super) trail: Trail,
+    /// How far views have moved the estimate since the way behind was revised, m.
+    pub(super) corrected: f64,
+    pub(super) since_revision: usize,
     /// Counts views, to pick another far reference with each.
-    views: u32,
+    pub(super) views: u32,
 }
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D> + Default> AppearanceLocalizer<D, S> {
@@ -90,19 +85,24 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         start: Start,
     ) -> Result<Self, AppearanceError> {
         params.validate()?;
-        let state = state_at(start)?;
+        let state = start.into_state()?;
         let was_unimodal = state.is_some();
+        let anywhere = if was_unimodal { Anywhere::nothing() } else { Anywhere::everything() };
         Ok(Self {
             params,
             map,
             state,
+            anywhere,
             motion: Motion::none(),
-            queue: LearningQueue::default(),
+            journey: Journey::default(),
             scale_learner: ScaleLearner::default(),
             learned_last: None,
             taught_last: None,
             was_unimodal,
+            has_seen: false,
             trail: Trail::default(),
+            corrected: 0.0,
+            since_revision: 0,
             views: 0,
         })
     }
@@ -134,10 +134,12 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// # Errors
     /// When the start has no meaning.
     pub fn restart(&mut self, start: Start) -> Result<(), AppearanceError> {
-        self.state = state_at(start)?;
+        self.state = start.into_state()?;
         self.was_unimodal = self.state.is_some();
+        self.anywhere = if self.was_unimodal { Anywhere::nothing() } else { Anywhere::everything() };
         self.motion = Motion::none();
-        self.queue = LearningQueue::default();
+        self.has_seen = false;
+        self.journey = Journey::default();
         self.trail = Trail::default();
         self.scale_learner.interrupt();
         self.learned_last = None;
@@ -164,7 +166,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// The robot sees `view`.
     ///
     /// # Errors
-    /// When a belief has become singular or something is not finite; state and map are as before.
+    /// When a belief has become singular or something is not finite; state and map are as before. [`AppearanceError::Full`] when a new reference
+    /// finds no number; the map is as before, and the state is updated.
     pub fn update(&mut self, view: D) -> Result<UpdateOutcome, AppearanceError> {
         self.update_with(view, &[])
     }
@@ -178,23 +181,33 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         view: D,
         sources: &[&dyn PoseSource],
     ) -> Result<UpdateOutcome, AppearanceError> {
-        let (observed, n_sightings) = self.observe(&view)?;
+        let is_news = self.is_news();
+        let (observed, n_sightings) = if is_news { self.observe(&view)? } else { (Vec::new(), 0) };
         let mut hypotheses = self.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();
-        hypotheses = fuse(&hypotheses, &observed, &self.params.fusion)?;
+        let fusion = FusionParams {
+            weighting: self.anywhere.weighting(self.params.fusion.weighting),
+            ..self.params.fusion
+        };
+        hypotheses = fuse(&hypotheses, &observed, &fusion)?;
         for source in sources {
-            hypotheses = fuse(&hypotheses, &source.hypotheses(self.state.as_ref())?, &self.params.fusion)?;
+            hypotheses = fuse(&hypotheses, &source.hypotheses(self.state.as_ref())?, &fusion)?;
         }
+        let anywhere =
+            if is_news { self.anywhere.after(fusion.weighting, &hypotheses) } else { self.anywhere };
         let fused = if hypotheses.is_empty() {
             None
         } else {
             Some(PoseHypothesis::into_mixture(simplify(hypotheses, &self.params.simplify)?)?)
         };
-        let mut events = self.change_of(fused.as_ref())?;
-        self.state = fused;
-        if self.params.learning == Learning::Adapting {
-            self.learn(view, &mut events)?;
+        let mut events = self.change_of(fused.as_ref(), anywhere)?;
+        (self.state, self.anywhere) = (fused, anywhere);
+        if is_news {
+            if self.params.learning == Learning::Adapting {
+                self.learn(view, &mut events)?;
+            }
+            self.motion = Motion::none();
+            self.has_seen = true;
         }
-        self.motion = Motion::none();
         let estimate = self.one_place().cloned();
         Ok(UpdateOutcome { events, estimate, n_sightings })
     }
@@ -211,31 +224,15 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         Ok(id)
     }
 
-    /// $`p(x_t | y_t)`$, and how many places it is made of.
-    fn observe(&self, view: &D) -> Result<(Vec<PoseHypothesis>, usize), AppearanceError> {
-        let params = &self.params;
-        match params.observation {
-            Observation::Superposition => {
-                let sightings = self.map.all_sightings(view, &params.map);
-                Ok((superpose(&sightings), sightings.len()))
-            }
-            Observation::Interpolation => {
-                let mut sightings =
-                    self.map.sightings(view, self.state.as_ref(), params.most_matches, &params.map);
-                sightings.retain(|s| !self.trail.holds(s.matched.id));
-                let belief = self.state.as_ref().map_or(&[][..], Mixture::components);
-                Ok((interpolate(&sightings, belief, self.map.scale())?, sightings.len()))
-            }
-        }
-    }
-
-    fn one_place(&self) -> Option<&Gaussian<Pose2<f64>>> {
-        self.state.as_ref().and_then(|state| unimodal(state, &self.params.unimodal))
-    }
-
     /// What becomes of the state with this mixture.
-    fn change_of(&mut self, fused: Option<&Mixture<Pose2<f64>>>) -> Result<Vec<Event>, AppearanceError> {
-        let now = fused.and_then(|mixture| unimodal(mixture, &self.params.unimodal));
+    fn change_of(
+        &mut self,
+        fused: Option<&Mixture<Pose2<f64>>>,
+        anywhere: Anywhere,
+    ) -> Result<Vec<Event>, AppearanceError> {
+        let now = fused
+            .filter(|_| anywhere.is_little())
+            .and_then(|mixture| unimodal(mixture, &self.params.unimodal));
         let mut events = Vec::new();
         match (self.was_unimodal, now) {
             (true, None) => events.push(Event::Lost),
@@ -246,78 +243,12 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         if let (Some(now), Some(followed)) =
             (fused.and_then(|mixture| mixture.components().first()), followed)
         {
+            self.corrected += (now.mean().translation - followed.mean().translation).norm();
             if separation_squared(now, followed)? > self.params.fusion.gate {
                 events.push(Event::Relocated);
             }
         }
         self.was_unimodal = now.is_some();
         Ok(events)
-    }
-
-    fn learn(&mut self, view: D, events: &mut Vec<Event>) -> Result<(), AppearanceError> {
-        let estimate = self.one_place().cloned();
-        let way = self.motion.increment.translation.norm();
-        self.trail.moved(way, self.map.reach_of_match(&self.params.map));
-        self.measure(way, &view, estimate.as_ref().map(Gaussian::mean));
-        self.queue.push(Waiting { view, motion: self.motion, estimate });
-        if events.contains(&Event::Relocated) {
-            self.queue.keep_newest();
-            self.learned_last = None;
-        }
-        while self.queue.len() > self.params.delay {
-            let Some((oldest, pose)) = self.queue.pop_settled() else {
-                if self.queue.len() <= self.params.longest_wait {
-                    break;
-                }
-                self.queue.drop_oldest();
-                continue;
-            };
-            if self.is_corroborated(&oldest) {
-                let learned = self.map.learn(oldest.view.clone(), &pose, &self.params.map)?;
-                self.trail.extend(learned.inserted);
-                events.extend(learned.inserted.map(Event::NewReference));
-                events.extend(learned.forgotten.into_iter().map(Event::Forgotten));
-            }
-            self.learned_last = Some(oldest.view);
-        }
-        Ok(())
-    }
-
-    /// Whether the view before or after looks alike. Somebody who passes by is in one view and gone in the next; a lamp that is switched
-    /// on stays on.
-    fn is_corroborated(&self, oldest: &Waiting<D>) -> bool {
-        let Some(factor) = self.params.corroboration else { return true };
-        let (step, scale) = (self.map.scale().step(), self.map.scale().step_distance());
-        let agrees = |other: &D, way: f64| {
-            // Over a longer way a view may differ by more, and proves nothing.
-            way > 1.5 * step || oldest.view.compare(other).distance <= factor * scale
-        };
-        let before = self.learned_last.as_ref().map(|view| (view, oldest.motion));
-        let after = self.queue.first().map(|waiting| (&waiting.view, waiting.motion));
-        let mut neighbours = before.into_iter().chain(after).peekable();
-        neighbours.peek().is_none()
-            || neighbours.any(|(view, motion)| agrees(view, motion.increment.translation.norm()))
-    }
-
-    /// Measures how views change with the way.
-    fn measure(&mut self, way: f64, view: &D, at: Option<&Pose2<f64>>) {
-        self.scale_learner.observe(way, view, self.map.scale_mut());
-        self.views = self.views.wrapping_add(1);
-        let Some(distance) = at.and_then(|pose| self.map.distance_to_far(view, pose, self.views)) else {
-            return;
-        };
-        self.map.scale_mut().add_far(distance);
-    }
-}
-
-fn state_at(start: Start) -> Result<Option<Mixture<Pose2<f64>>>, AppearanceError> {
-    match start {
-        Start::Anywhere => Ok(None),
-        Start::Among(places) => Ok(Some(places)),
-        Start::Known(pose) => {
-            let (mean, covariance) = pose.into_parts();
-            let checked = Gaussian::new(mean, covariance)?;
-            Ok(Some(Mixture::from_weights(vec![(1.0, checked)])?))
-        }
     }
 }

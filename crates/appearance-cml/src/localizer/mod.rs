@@ -1,14 +1,19 @@
 //! The whole: predict with odometry, update with views, learn what was seen.
 
+mod anywhere;
 mod appearance_localizer;
+mod journey;
+mod learning;
+mod observe;
 mod outcome;
 mod params;
-mod queue;
 mod scale_learner;
 mod smooth;
+mod start;
 mod trail;
 
-pub use appearance_localizer::{AppearanceLocalizer, Start};
+pub use appearance_localizer::AppearanceLocalizer;
 pub use outcome::{Event, UpdateOutcome};
 pub use params::{Learning, LocalizerParams, Observation};
 pub use smooth::{Motion, smooth};
+pub use start::Start;

@@ -53,6 +53,9 @@ pub struct LocalizerParams {
     pub delay: usize,
     /// Views that wait at most for the state to become one place; older ones are not learned. Default 400.
     pub longest_wait: usize,
+    /// Views of the way behind the robot over which a correction is spread, and with it the references made there; 0 leaves them where
+    /// they are, as printed. Default 0.
+    pub memory: usize,
     /// Distance to its neighbours along the way, as a multiple of the distance of successive views, beyond which a view is taken for an
     /// outlier (somebody passes) and not learned; `None` learns every view. Default 1.6.
     pub corroboration: Option<f64>,
@@ -71,6 +74,7 @@ impl Default for LocalizerParams {
             map: MapParams::default(),
             delay: 10,
             longest_wait: 400,
+            memory: 0,
             corroboration: Some(1.6),
         }
     }
@@ -85,6 +89,7 @@ impl LocalizerParams {
             simplify: SimplifyParams { least_weight: 0.005, ..SimplifyParams::default() },
             map: MapParams::printed(),
             corroboration: None,
+            memory: 0,
             ..Self::default()
         }
     }

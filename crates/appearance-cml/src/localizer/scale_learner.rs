@@ -34,10 +34,9 @@ impl<D: Descriptor + Clone> ScaleLearner<D> {
         if let Some(sample) = self.recent.back().map(lag) {
             scale.add_near(sample);
         }
-        if self.recent.len() == LAG {
-            if let Some(sample) = self.recent.pop_front().as_ref().map(lag) {
-                scale.add_ahead(sample);
-            }
+        let ahead = (self.recent.len() == LAG).then(|| self.recent.pop_front()).flatten();
+        if let Some(sample) = ahead.as_ref().map(lag) {
+            scale.add_ahead(sample);
         }
         self.recent.push_back((self.odometer, view.clone()));
     }

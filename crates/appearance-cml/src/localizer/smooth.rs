@@ -34,6 +34,15 @@ impl Motion {
         if finite { Ok(motion) } else { Err(AppearanceError::NotFinite { what: "odometry increment" }) }
     }
 
+    /// A belief about the end of the motion taken back to its beginning.
+    pub fn undone(&self, belief: &Gaussian<Pose2<f64>>) -> Gaussian<Pose2<f64>> {
+        let back = self.increment.inverse();
+        let transition = transition(&back);
+        let mut covariance = transition * (belief.covariance() + self.covariance) * transition.transpose();
+        symmetrize(&mut covariance);
+        Gaussian::from_parts_unchecked(belief.mean().compose(&back), covariance)
+    }
+
     /// A belief moved on. [Gross et al. 2005, Eq. 1]
     pub fn applied(&self, belief: &Gaussian<Pose2<f64>>) -> Gaussian<Pose2<f64>> {
         let transition = transition(&self.increment);

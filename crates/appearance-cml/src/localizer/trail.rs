@@ -24,8 +24,8 @@ impl Trail {
         }
     }
 
-    pub(super) fn extend(&mut self, made: impl IntoIterator<Item = ReferenceId>) {
-        self.made.extend(made.into_iter().map(|id| (self.odometer, id)));
+    pub(super) fn made(&mut self, id: ReferenceId) {
+        self.made.push_back((self.odometer, id));
     }
 
     pub(super) fn holds(&self, id: ReferenceId) -> bool {

@@ -1,8 +1,8 @@
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
-use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_gaussian_core::Gaussian;
 
 use super::grid::Grid;
 use super::{MapParams, PlaceComponent, Reference, Sighting, ViewScale};
@@ -24,7 +24,7 @@ use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, Refer
 /// # }
 /// use nalgebra::Vector3;
 /// use wayfix_appearance_cml::{AppearanceMap, MapParams};
-/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_estimation_traits::{LieGroup, Pose2};
 /// use wayfix_gaussian_core::Gaussian;
 /// let mut map: AppearanceMap<Brightness> = AppearanceMap::default();
 /// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.05))?;
@@ -136,28 +136,36 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.insert(view, Reference { places: vec![PlaceComponent { weight: 1.0, count: 1.0, gaussian }] })
     }
 
-    /// Places whose references look like the view: the `most` alike of the whole map, and all near the components of `belief`.
-    pub fn sightings(
+    /// Places near the components of `belief` whose references look like the view.
+    pub fn sightings_near(
         &self,
         view: &D,
-        belief: Option<&Mixture<Pose2<f64>>>,
+        belief: &[Gaussian<Pose2<f64>>],
+        params: &MapParams,
+    ) -> Vec<Sighting> {
+        let limit = self.match_limit(params);
+        let near = belief.iter().flat_map(|component| self.compare_near(view, component, limit));
+        self.places_of(once_each(near.collect()), limit)
+    }
+
+    /// Places near the components of `belief`, and those of the `most` references of the whole map that look most like the view.
+    pub fn sightings_anywhere(
+        &self,
+        view: &D,
+        belief: &[Gaussian<Pose2<f64>>],
         most: usize,
         params: &MapParams,
     ) -> Vec<Sighting> {
         let limit = self.match_limit(params);
         let mut matches = self.search.nearest_within(view, most, limit);
-        for component in belief.map_or(&[][..], Mixture::components) {
-            matches.extend(self.compare_near(view, component, limit));
-        }
-        matches.sort_by_key(|m| m.id);
-        matches.dedup_by_key(|m| m.id);
-        self.places_of(&matches, limit)
+        matches.extend(belief.iter().flat_map(|component| self.compare_near(view, component, limit)));
+        self.places_of(once_each(matches), limit)
     }
 
     /// All places of all references that look like the view, as printed.
     pub fn all_sightings(&self, view: &D, params: &MapParams) -> Vec<Sighting> {
         let limit = self.match_limit(params);
-        self.places_of(&self.search.within(view, limit), limit)
+        self.places_of(self.search.within(view, limit), limit)
     }
 
     /// Distance of the view to some reference of a far place, another one with each `turn`; `None` when that one is near.
@@ -172,7 +180,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Some(view.compare(reference).distance)
     }
 
-    fn places_of(&self, matches: &[Match], limit: f64) -> Vec<Sighting> {
+    fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<Sighting> {
         let places = |m: &Match| {
             let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);
             places.iter().enumerate().map(|place| Sighting::new(*m, place, limit)).collect::<Vec<_>>()
@@ -222,11 +230,32 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         }
     }
 
+    /// Carries the places of a reference along with the pose that it was made at, from `before` to `after`.
+    pub(crate) fn revise(&mut self, id: ReferenceId, before: &Pose2<f64>, after: &Gaussian<Pose2<f64>>) {
+        let Some(reference) = self.references.get(&id) else { return };
+        let mut reference = reference.clone();
+        for place in &mut reference.places {
+            let mean = after.mean().compose(&before.inverse().compose(place.gaussian.mean()));
+            let learned = after.in_chart_at(&mean).map(|seen| *seen.covariance());
+            let narrower =
+                learned.ok().filter(|c| c.determinant() < place.gaussian.covariance().determinant());
+            let covariance = narrower.unwrap_or(*place.gaussian.covariance());
+            place.gaussian = Gaussian::from_parts_unchecked(mean, covariance);
+        }
+        self.replace(id, reference);
+    }
+
     pub(super) fn remove(&mut self, id: ReferenceId) {
         self.replace(id, Reference::default());
         self.references.remove(&id);
         self.search.remove(id);
     }
+}
+
+fn once_each(mut matches: Vec<Match>) -> Vec<Match> {
+    matches.sort_by_key(|m| m.id);
+    matches.dedup_by_key(|m| m.id);
+    matches
 }
 
 /// σ of a belief within which references are compared one by one.

@@ -36,6 +36,9 @@ const GROUP_SIZE: usize = 6;
 const KERNEL_WIDTH: f64 = 0.4;
 /// σ of the heading that a comparison gives at best, rad.
 const HEADING_SIGMA: f64 = 0.03;
+/// What is added to it for a view that differs from its reference as much as one of a far place, rad. A robot that stands beside its reference sees
+/// near things from another side, and the best rotation makes up for that: errors that last as long as the robot is there.
+const PARALLAX_SIGMA: f64 = 0.25;
 
 type Group<'a> = Vec<&'a Sighting>;
 
@@ -85,7 +88,8 @@ fn pose_of(
     let gap = if beyond.is_some() { 1.0 } else { 0.5 } * scale.metres(nearest);
     let comparison = to_body * spread * to_body.transpose() * 0.5 + Matrix2::identity() * (gap * gap);
     let mut compared = comparison.to_homogeneous();
-    compared[(2, 2)] = HEADING_SIGMA * HEADING_SIGMA + moments.standard_deviation().powi(2);
+    let heading_sigma = HEADING_SIGMA + PARALLAX_SIGMA * scale.share_of_sill(nearest);
+    compared[(2, 2)] = heading_sigma * heading_sigma + moments.standard_deviation().powi(2);
 
     let mut learned = Matrix3::zeros();
     for (sighting, share) in group.iter().zip(&shares) {
@@ -93,10 +97,11 @@ fn pose_of(
     }
     let mut covariance = compared + learned;
     symmetrize(&mut covariance);
+    let weight: f64 = group.iter().zip(&shares).map(|(s, share)| s.weight * share).sum();
     let plane = |matrix: &Matrix3<f64>| matrix[(0, 0)] + matrix[(1, 1)];
     Ok(PoseHypothesis {
-        weight: group[0].similarity
-            * group.iter().zip(&shares).map(|(s, share)| s.weight * share).sum::<f64>(),
+        // A place seen only once counts for half of one that is well known, about, so that a young map can be used.
+        weight: group[0].similarity * weight.sqrt(),
         gaussian: Gaussian::new(mean, covariance)?,
         independent: plane(&compared) / plane(&covariance),
     })

@@ -1,9 +1,10 @@
 use std::collections::BTreeMap;
 
-use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, GaussianError, moment_matched};
+use wayfix_gaussian_core::Gaussian;
 
+use super::merge::merge_places;
+use super::residual::Residual;
 use super::sighting::turned;
 use super::weigh::{weight_when_missed, weight_when_seen};
 use super::{
@@ -40,7 +41,8 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     ) -> Result<Learned, AppearanceError> {
         let pose = &Gaussian::new(*pose.mean(), *pose.covariance())?;
         let limit = self.match_limit(params);
-        let compared = self.compare_within(&view, pose, self.reach(pose, limit));
+        let radius = self.reach(pose, limit).max(params.active.radius.unwrap_or(0.0));
+        let compared = self.compare_within(&view, pose, radius);
         let (here, missed): (Vec<Match>, Vec<Match>) =
             compared.into_iter().partition(|m| m.comparison.distance < limit);
         let seen = match params.place_update {
@@ -207,67 +209,4 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
 fn first_seen(pose: &Gaussian<Pose2<f64>>, params: &MapParams) -> Reference {
     let weight = params.learning_rate.max(params.least_weight);
     Reference { places: vec![PlaceComponent { weight, count: 1.0, gaussian: pose.clone() }] }
-}
-
-/// Where the robot is less where the references put it, in the frame of the map.
-struct Residual {
-    translation: Vector2<f64>,
-    turn: f64,
-}
-
-impl Residual {
-    /// The place as it would have to be for the references to be right, merged into what it is.
-    fn correct(
-        &self,
-        place: &mut PlaceComponent,
-        matched: &Match,
-        count: f64,
-        (pose, params): (&Gaussian<Pose2<f64>>, &MapParams),
-    ) -> Result<(), AppearanceError> {
-        let old = place.gaussian.mean();
-        let seen_from = turned(pose, -matched.comparison.rotation);
-        let corrected =
-            Pose2::new(old.x() + self.translation.x, old.y() + self.translation.y, old.heading() + self.turn);
-        let covariance = seen_from.in_chart_at(&corrected)?.covariance().to_owned();
-        let observed = PlaceComponent {
-            weight: 0.0,
-            count,
-            gaussian: Gaussian::from_parts_unchecked(corrected, covariance),
-        };
-        *place = merged(place, &observed, params)?;
-        Ok(())
-    }
-}
-
-/// Merges the newest place into the nearest other within the merge distance. [Gross et al. 2005, Eq. 12]
-fn merge_places(places: &mut Vec<PlaceComponent>, params: &MapParams) -> Result<(), AppearanceError> {
-    let Some(newest) = places.pop() else { return Ok(()) };
-    let mut nearest = None;
-    let mut least = params.merge_distance;
-    for (index, place) in places.iter().enumerate() {
-        let squared = separation_squared(&place.gaussian, &newest.gaussian)?;
-        if squared < least {
-            (nearest, least) = (Some(index), squared);
-        }
-    }
-    match nearest {
-        Some(index) => places[index] = merged(&places[index], &newest, params)?,
-        None => places.push(newest),
-    }
-    Ok(())
-}
-
-/// One place of two: moments by normalized counts, counts and weights add. [Gross et al. 2005, Eqs. 13-14]
-fn merged(
-    a: &PlaceComponent,
-    b: &PlaceComponent,
-    params: &MapParams,
-) -> Result<PlaceComponent, AppearanceError> {
-    let gaussian = moment_matched(&[a.count, b.count], &[a.gaussian.clone(), b.gaussian.clone()])
-        .map_err(GaussianError::from)?;
-    Ok(PlaceComponent {
-        weight: (a.weight + b.weight).min(1.0),
-        count: (a.count + b.count).min(params.greatest_count),
-        gaussian,
-    })
 }

@@ -35,19 +35,19 @@ pub enum PlaceUpdate {
     serde(default, deny_unknown_fields)
 )]
 pub struct ForgettingParams {
-    /// $`β_{for}`$: the share of weight that a reference at the very place loses. Default 0.3.
+    /// $`β_{for}`$: the share of weight that a reference at the very place loses. Default 0.6.
     pub rate: f64,
     /// $`d^{for}`$: how far from the robot references are forgotten, m; `None` takes half the distance at which views still match, from the
     /// [`ViewScale`](super::ViewScale). Default `None`.
     pub radius: Option<f64>,
     /// $`d^{gain}`$: the sum of the σ of x and y at which forgetting goes at full rate, m; a less certain pose forgets more slowly.
-    /// `None` takes a step between views. Default `None`.
+    /// `None` takes two steps between views. Default `None`.
     pub gain: Option<f64>,
 }
 
 impl Default for ForgettingParams {
     fn default() -> Self {
-        Self { rate: 0.3, radius: None, gain: None }
+        Self { rate: 0.6, radius: None, gain: None }
     }
 }
 
@@ -62,7 +62,7 @@ impl Default for ForgettingParams {
 pub struct MapParams {
     /// $`E^{max}`$, in units of the descriptor; `None` finds it from the data. Default `None`.
     pub match_limit: Option<f64>,
-    /// Where between noise (0) and far places (1) the limit found from the data lies. Default 0.8.
+    /// Where between noise (0) and far places (1) the limit found from the data lies. Default 0.4.
     pub match_share: f64,
     /// Distance to the nearest reference of the place from which on a view becomes a reference, as a multiple of the distance of
     /// successive views; never above $`E^{max}`$. Default 1. (As printed: $`E^{max}`$ itself, with [`PlaceUpdate::Pose`].)
@@ -79,7 +79,7 @@ pub struct MapParams {
     pub forgetting: Forgetting,
     /// How active forgetting works.
     pub active: ForgettingParams,
-    /// Weight below which a place is removed. Default 0.02.
+    /// Weight below which a place is removed. Default 0.05: what was seen once goes after five misses or so.
     pub least_weight: f64,
     /// Observations after which a place no longer gets more rigid. Default 20.
     pub greatest_count: f64,
@@ -91,7 +91,7 @@ impl Default for MapParams {
     fn default() -> Self {
         Self {
             match_limit: None,
-            match_share: 0.8,
+            match_share: 0.4,
             insertion: 1.0,
             learning_rate: 0.3,
             merge_distance: 7.8,
@@ -99,7 +99,7 @@ impl Default for MapParams {
             place_update: PlaceUpdate::default(),
             forgetting: Forgetting::default(),
             active: ForgettingParams::default(),
-            least_weight: 0.02,
+            least_weight: 0.05,
             greatest_count: 20.0,
             most_references: 1_000_000,
         }

@@ -139,6 +139,12 @@ impl ViewScale {
         if metres.is_nan() { step } else { metres.clamp(0.5 * step, 40.0 * step) }
     }
 
+    /// How far a distance has come on the way to that of far places, in squares: $`E^2 / \text{sill}`$, at most 1.
+    pub fn share_of_sill(&self, distance: f64) -> f64 {
+        let share = distance * distance / self.fitted.sill;
+        if share.is_nan() { 1.0 } else { share.min(1.0) }
+    }
+
     fn fit(&mut self) {
         let step = median(self.near.iter().map(|s| s.way));
         let near = median(self.near.iter().map(|s| s.distance));
@@ -175,4 +181,44 @@ fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let Some(last) = values.len().checked_sub(1) else { return 0.0 };
     let index = (last as f64 * share).round() as usize;
     *values.select_nth_unstable_by(index.min(last), f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_matches_before_two_views_are_known() {
+        let scale = ViewScale::default();
+        assert_eq!((scale.match_limit(0.5), scale.step(), scale.metres(1.0)), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn people_and_bad_numbers_do_not_stretch_the_scale() {
+        let mut scale = ViewScale::default();
+        for k in 0..100 {
+            // Somebody stands before the camera in every fourth view.
+            scale.add_near(LagSample { way: 0.1, distance: if k % 4 == 0 { 9.0 } else { 0.3 } });
+            scale.add_near(LagSample { way: f64::NAN, distance: 0.3 });
+            scale.add_far(f64::INFINITY);
+        }
+        assert_eq!((scale.step(), scale.step_distance()), (0.1, 0.3));
+        assert_eq!((scale.near().count(), scale.far().count()), (100, 0));
+    }
+
+    #[test]
+    fn a_scale_is_its_samples() {
+        let mut scale = ViewScale::default();
+        for k in 0..300 {
+            let x = f64::from(k % 7);
+            scale.add_near(LagSample { way: 0.1, distance: 0.3 + 0.01 * x });
+            scale.add_ahead(LagSample { way: 0.4, distance: 0.6 + 0.01 * x });
+            scale.add_far(1.0 + 0.01 * x);
+        }
+        let (near, ahead, far): (Vec<_>, Vec<_>, Vec<_>) =
+            (scale.near().collect(), scale.ahead().collect(), scale.far().collect());
+        assert_eq!(near.len(), KEPT, "the oldest make room");
+        assert_eq!(ViewScale::from_parts(&near, &ahead, &far), Ok(scale.clone()));
+        assert!(ViewScale::from_parts(&near, &ahead, &[f64::NAN]).is_err());
+    }
 }

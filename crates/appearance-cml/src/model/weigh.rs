@@ -38,7 +38,7 @@ pub(super) fn weight_when_missed(
     let distance = (pose.mean().translation - place.gaussian.mean().translation).norm();
     let nearness = (1.0 - distance / radius).max(0.0);
     let sigmas = pose.sigmas();
-    let sharpness = params.gain.unwrap_or_else(|| scale.step()) / (sigmas.x + sigmas.y);
+    let sharpness = params.gain.unwrap_or_else(|| 2.0 * scale.step()) / (sigmas.x + sigmas.y);
     let loss = params.rate * nearness * sharpness.min(1.0);
     // A radius of nothing forgets nothing.
     if loss.is_finite() { (1.0 - loss.clamp(0.0, 1.0)) * place.weight } else { place.weight }

@@ -123,9 +123,8 @@ impl Node {
     }
 
     fn stretch(&mut self, sketch: &Sketch) {
-        for dim in 0..N_DIMS {
-            self.low[dim] = self.low[dim].min(sketch[dim]);
-            self.high[dim] = self.high[dim].max(sketch[dim]);
+        for (value, (low, high)) in sketch.iter().zip(self.low.iter_mut().zip(&mut self.high)) {
+            (*low, *high) = (low.min(*value), high.max(*value));
         }
     }
 

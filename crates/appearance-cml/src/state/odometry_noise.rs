@@ -11,7 +11,7 @@ use crate::{AppearanceError, check};
 /// let noise = OdometryNoise::default();
 /// let metre = noise.covariance(&Pose2::new(1.0, 0.0, 0.0));
 /// let quarter = noise.covariance(&Pose2::new(0.25, 0.0, 0.0));
-/// assert!((metre - quarter * 4.0).norm() < 1e-12);
+/// assert!((metre - quarter * 4.0).norm() < 1e-9);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -21,19 +21,19 @@ use crate::{AppearanceError, check};
     serde(default, deny_unknown_fields)
 )]
 pub struct OdometryNoise {
-    /// σ along the way after one metre, m. Default 0.04.
+    /// σ along the way after one metre, m. Default 0.025.
     pub forward: f64,
-    /// σ across the way after one metre, m. Default 0.03.
+    /// σ across the way after one metre, m. Default 0.02.
     pub sideways: f64,
-    /// σ of the heading after one metre, rad. Default 0.015.
+    /// σ of the heading after one metre, rad. Default 0.008.
     pub heading_per_metre: f64,
-    /// σ of the heading after turning by one radian, rad. Default 0.04.
+    /// σ of the heading after turning by one radian, rad. Default 0.02.
     pub heading_per_radian: f64,
 }
 
 impl Default for OdometryNoise {
     fn default() -> Self {
-        Self { forward: 0.04, sideways: 0.03, heading_per_metre: 0.015, heading_per_radian: 0.04 }
+        Self { forward: 0.025, sideways: 0.02, heading_per_metre: 0.008, heading_per_radian: 0.02 }
     }
 }
 

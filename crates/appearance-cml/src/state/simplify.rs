@@ -14,7 +14,7 @@ use crate::{AppearanceError, check};
 pub struct SimplifyParams {
     /// Squared Mahalanobis distance below which two components are one. Default 2: they overlap by more than half.
     pub merge_distance: f64,
-    /// Share of the whole weight below which a component goes. Default 1e-4: what appears elsewhere starts light.
+    /// Share of the whole weight below which a component goes. Default 1e-7: what appears elsewhere starts light.
     pub least_weight: f64,
     /// Most components that are kept. Default 30.
     pub most: usize,
@@ -22,7 +22,7 @@ pub struct SimplifyParams {
 
 impl Default for SimplifyParams {
     fn default() -> Self {
-        Self { merge_distance: 2.0, least_weight: 1e-4, most: 30 }
+        Self { merge_distance: 2.0, least_weight: 1e-7, most: 30 }
     }
 }
 
@@ -51,7 +51,7 @@ impl SimplifyParams {
 ///     let gaussian = Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
 ///     Ok(PoseHypothesis::new(weight, gaussian))
 /// };
-/// let few = simplify(vec![at(0.0, 1.0)?, at(5.0, 1.5)?, at(0.1, 1.0)?, at(9.0, 1e-5)?], &SimplifyParams::default())?;
+/// let few = simplify(vec![at(0.0, 1.0)?, at(5.0, 1.5)?, at(0.1, 1.0)?, at(9.0, 1e-8)?], &SimplifyParams::default())?;
 /// assert_eq!(few.iter().map(|h| h.weight).collect::<Vec<_>>(), [2.0, 1.5]);
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```

@@ -1,5 +1,5 @@
-use super::probe::HARMONICS;
-use crate::{AppearanceError, Bounded, Comparison, Descriptor};
+use super::probe::{HARMONICS, compare_once};
+use crate::{AppearanceError, Comparison, Descriptor};
 
 /// Harmonics beside the constant one, in groups.
 pub(super) const MOST_GROUPS: usize = 8;
@@ -130,7 +130,7 @@ impl PanoramaDescriptor {
 
 impl Descriptor for PanoramaDescriptor {
     fn compare(&self, reference: &Self) -> Comparison {
-        reference.compare_with(&self.probe())
+        compare_once(self, reference)
     }
 }
 

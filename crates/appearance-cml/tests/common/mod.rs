@@ -1,9 +1,14 @@
 //! A world without images: what is seen at a point is a random field, rough like real views.
 
+// Each test file uses its part of this.
+#![allow(dead_code, unreachable_pub)]
+
+use nalgebra::Vector3;
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
 use wayfix_appearance_cml::{Comparison, Descriptor};
-use wayfix_estimation_traits::{Pose2, wrap_angle};
+use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
+use wayfix_gaussian_core::Gaussian;
 
 /// Features of a view; the heading stands for the phase of a panorama.
 #[derive(Clone, Debug)]
@@ -22,44 +27,41 @@ impl Descriptor for FieldView {
     }
 }
 
-/// Features as sums of plane waves of all lengths between those given.
+/// Features as sums of plane waves, alike over about half a metre and strange to one another from two on.
 pub struct Field {
-    waves: Vec<Vec<[f64; 4]>>,
+    waves: Vec<Vec<[f64; 3]>>,
 }
 
 const FEATURES: usize = 32;
-const WAVES: usize = 12;
+const WAVES: usize = 8;
+/// Wavelengths, m.
+const LENGTHS: [f64; 2] = [2.0, 8.0];
 
 impl Field {
-    /// A world of its own for each state of the generator; wavelengths in metres.
-    pub fn new<R: Rng + ?Sized>(shortest: f64, longest: f64, rng: &mut R) -> Self {
+    /// A world of its own for each state of the generator.
+    pub fn new<R: Rng + ?Sized>(rng: &mut R) -> Self {
         let wave = |rng: &mut R| {
-            let length = shortest * (longest / shortest).powf(rng.random::<f64>());
+            let length = LENGTHS[0] * (LENGTHS[1] / LENGTHS[0]).powf(rng.random::<f64>());
             let direction = std::f64::consts::TAU * rng.random::<f64>();
             let number = std::f64::consts::TAU / length;
-            // Long waves are high: amplitudes fall as in natural images.
-            let amplitude = (length / longest).sqrt();
-            [
-                number * direction.cos(),
-                number * direction.sin(),
-                std::f64::consts::TAU * rng.random::<f64>(),
-                amplitude,
-            ]
+            [number * direction.cos(), number * direction.sin(), std::f64::consts::TAU * rng.random::<f64>()]
         };
         let waves = (0..FEATURES).map(|_| (0..WAVES).map(|_| wave(rng)).collect()).collect();
         Self { waves }
     }
 
-    /// What is seen from a pose, with noise of this σ on each feature and 0.02 rad on the phase.
-    pub fn view<R: Rng + ?Sized>(&self, pose: &Pose2<f64>, noise: f64, rng: &mut R) -> FieldView {
-        let feature = |waves: &Vec<[f64; 4]>| -> f64 {
-            waves
-                .iter()
-                .map(|[kx, ky, phase, amplitude]| amplitude * (kx * pose.x() + ky * pose.y() + phase).sin())
-                .sum()
+    /// What is seen from a pose, with noise on each feature and 0.02 rad on the phase.
+    pub fn view<R: Rng + ?Sized>(&self, pose: &Pose2<f64>, rng: &mut R) -> FieldView {
+        let feature = |waves: &Vec<[f64; 3]>| -> f64 {
+            waves.iter().map(|[kx, ky, phase]| (kx * pose.x() + ky * pose.y() + phase).sin()).sum()
         };
-        let features = self.waves.iter().map(|waves| feature(waves) + noise * normal(rng)).collect();
+        let features = self.waves.iter().map(|waves| feature(waves) + 0.3 * normal(rng)).collect();
         FieldView { features, heading: wrap_angle(pose.heading() + 0.02 * normal(rng)) }
+    }
+
+    /// Somebody stands before the camera.
+    pub fn occluded<R: Rng + ?Sized>(&self, rng: &mut R) -> FieldView {
+        FieldView { features: (0..FEATURES).map(|_| 2.0 * normal(rng)).collect(), heading: 0.0 }
     }
 }
 
@@ -68,22 +70,22 @@ pub fn normal<R: Rng + ?Sized>(rng: &mut R) -> f64 {
     StandardNormal.sample(rng)
 }
 
-/// Odometry that has drifted: a step scaled and turned a little, with noise that grows with the way.
+/// What odometry says of a step: a scale and a turn that are off, and noise that grows with the way.
 pub fn drifting<R: Rng + ?Sized>(step: &Pose2<f64>, rng: &mut R) -> Pose2<f64> {
     let way = step.translation.norm();
     Pose2::new(
-        step.x() * 1.02 + 0.02 * way.sqrt() * normal(rng),
+        step.x() * 1.01 + 0.01 * way.sqrt() * normal(rng),
         step.y() + 0.01 * way.sqrt() * normal(rng),
-        step.heading() * 1.02 + 0.01 * way.sqrt() * normal(rng),
+        step.heading() + 0.002 * way + 0.005 * way.sqrt() * normal(rng),
     )
 }
 
-/// Poses along a closed way: the corners of a rectangle rounded off, `steps` to a lap.
+/// Poses along a closed way, a rectangle with round corners.
 pub fn lap(width: f64, height: f64, steps: usize) -> Vec<Pose2<f64>> {
     let at = |k: usize| {
         let angle = std::f64::consts::TAU * k as f64 / steps as f64;
-        // A superellipse of fourth degree.
-        let round = |v: f64| v.signum() * v.abs().sqrt();
+        // A superellipse of third degree.
+        let round = |v: f64| v.signum() * v.abs().powf(2.0 / 3.0);
         [0.5 * width * round(angle.cos()), 0.5 * height * round(angle.sin())]
     };
     let pose = |k: usize| {
@@ -91,4 +93,14 @@ pub fn lap(width: f64, height: f64, steps: usize) -> Vec<Pose2<f64>> {
         Pose2::new(x, y, (ahead_y - y).atan2(ahead_x - x))
     };
     (0..steps).map(pose).collect()
+}
+
+/// The motion from one pose to another.
+pub fn between(from: &Pose2<f64>, to: &Pose2<f64>) -> Pose2<f64> {
+    from.inverse().compose(to)
+}
+
+/// A pose known to 2 cm and 0.02 rad.
+pub fn known(pose: Pose2<f64>) -> Gaussian<Pose2<f64>> {
+    Gaussian::from_sigmas(pose, &Vector3::new(0.02, 0.02, 0.02)).expect("sigmas are positive")
 }

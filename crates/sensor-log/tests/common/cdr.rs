@@ -57,7 +57,7 @@ impl Encoder {
     }
 
     fn number<const N: usize>(&mut self, mut big_endian: [u8; N]) {
-        while self.body.len() % N != 0 {
+        while !self.body.len().is_multiple_of(N) {
             self.body.push(0xAA); // padding may be anything
         }
         if self.is_little_endian {

@@ -35,17 +35,12 @@ impl Default for PoseSigmas {
 }
 
 /// Odometry made of a path: its increments, smoothed, with noise.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct MadeOdometry {
-    /// Standard deviation of the Gaussian that smooths the path, in frames: what measures a path trembles, wheels do not.
-    pub smoothing_frames: f64,
+    /// Standard deviation of the Gaussian that smooths the path, in frames: what measures a path trembles, wheels do not. As much as the path
+    /// trembles, when not given.
+    pub smoothing_frames: Option<f64>,
     /// The noise; as much as the localizer reckons with, unless said otherwise.
     pub noise: OdometryNoise,
-}
-
-impl Default for MadeOdometry {
-    fn default() -> Self {
-        Self { smoothing_frames: 2.0, noise: OdometryNoise::default() }
-    }
 }

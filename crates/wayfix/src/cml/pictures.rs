@@ -42,7 +42,7 @@ fn map(run: &CmlRun) -> MapPlot {
             .filter_map(|frame| frame.pose.as_ref().map(|pose| (pose.mean().x(), pose.mean().y())))
             .collect(),
         dead_reckoning: frames.iter().filter_map(|f| f.odometry.map(|pose| (pose.x(), pose.y()))).collect(),
-        true_landmarks: places.map(|place| (place.gaussian.mean().x(), place.gaussian.mean().y())).collect(),
+        references: places.map(|place| (place.gaussian.mean().x(), place.gaussian.mean().y())).collect(),
         ..MapPlot::default()
     }
 }

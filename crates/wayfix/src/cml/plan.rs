@@ -1,4 +1,5 @@
 use anyhow::{Result, ensure};
+use wayfix_appearance_cml::{Donut, Learning, PanoramaParams, TurnSense};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
@@ -7,7 +8,6 @@ use super::{
     recording::{Frame, Heading, Recording, TurnEvidence, path, turn_evidence},
 };
 use crate::evaluate::TrueTrack;
-use wayfix_appearance_cml::{Donut, TurnSense};
 
 /// What a run is made of: what the map is taught before it, and the records that it then goes through.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +30,9 @@ pub struct CameraChoice {
     /// Which way columns go; found from the turns when not given.
     pub sense: Option<TurnSense>,
 }
+
+/// σ of a heading that nobody knows, rad.
+const ANY_HEADING: f64 = 3.0;
 
 /// Frames that are compared to find which way columns go: enough to hold some turns.
 const N_EVIDENCE: usize = 400;
@@ -61,8 +64,19 @@ impl Plan {
         let (_, along) = path::poses(&taught.frames, heading, smoothing);
         let images = taught.frames.iter().map(|frame| &frame.image);
         let evidence = evidence(images.zip(along.iter().map(Pose2::heading)), params, camera);
-        if heading == Heading::AlongPath && evidence.is_some_and(|evidence| evidence.is_fixed()) {
-            heading = Heading::Fixed;
+        if let (Heading::AlongPath, Some(evidence)) = (heading, evidence) {
+            heading = match evidence {
+                _ if evidence.is_fixed() => Heading::Fixed,
+                _ if evidence.is_unrelated() => Heading::Unknown,
+                _ => heading,
+            };
+        }
+        if heading == Heading::Unknown {
+            params.taught.heading = ANY_HEADING;
+            // A map that grows on the way has nothing else to learn from.
+            if learn_from.is_some() || withhold > 0 {
+                params.localizer.learning = Learning::Static;
+            }
         }
         notes.push(describe_heading(heading).to_owned());
         notes.push(choose_sense(evidence, heading, params, camera));
@@ -183,7 +197,7 @@ fn evidence<'a>(
     params: &CmlParams,
     camera: &CameraChoice,
 ) -> Option<TurnEvidence> {
-    let views = wayfix_appearance_cml::PanoramaParams { sense: TurnSense::Clockwise, ..params.views };
+    let views = PanoramaParams { sense: TurnSense::Clockwise, ..params.views };
     let mut reader = ViewReader::new(views, camera.donut);
     let (views, headings): (Vec<_>, Vec<f64>) = images
         .take(N_EVIDENCE)
@@ -203,7 +217,7 @@ fn choose_sense(
             params.views.sense = sense;
             "as told"
         }
-        (None, Some(evidence)) if heading != Heading::Fixed => {
+        (None, Some(evidence)) if !matches!(heading, Heading::Fixed | Heading::Unknown) => {
             let counterclockwise = evidence.is_counterclockwise();
             params.views.sense =
                 if counterclockwise { TurnSense::Counterclockwise } else { TurnSense::Clockwise };
@@ -222,6 +236,9 @@ fn describe_heading(heading: Heading) -> &'static str {
     match heading {
         Heading::Given => "headings are those of the table",
         Heading::AlongPath => "the table has no headings: the robot is taken to look along its path",
+        Heading::Unknown => {
+            "the table has no headings, and the views turn otherwise than the path: their headings are not used, and a taught map stays as it is"
+        }
         Heading::Fixed => {
             "the table has no headings, and the views do not turn: the camera is taken to look the same way always"
         }

@@ -15,7 +15,7 @@ use crate::saved::write_atomically;
 #[non_exhaustive]
 pub enum SavedViewsError {
     /// The operating system refuses.
-    #[error("{}: {source}", path.display())]
+    #[error("{}", path.display())]
     Io {
         /// What was read or written.
         path: PathBuf,
@@ -23,7 +23,7 @@ pub enum SavedViewsError {
         source: io::Error,
     },
     /// The bytes are no map that can be used here.
-    #[error("{}: {source}", path.display())]
+    #[error("{}", path.display())]
     Archive {
         /// Which file.
         path: PathBuf,

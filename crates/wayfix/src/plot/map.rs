@@ -40,6 +40,8 @@ pub struct MapPlot {
     pub walls: Vec<Vec<(f64, f64)>>,
     /// What a laser's beams hit.
     pub echoes: Vec<(f64, f64)>,
+    /// Where a map has reference views, metres.
+    pub references: Vec<(f64, f64)>,
 }
 
 /// A landmark of the map.
@@ -76,6 +78,7 @@ impl MapPlot {
     fn fill(&self, panel: &Panel, ellipses: &[Vec<(f64, f64)>]) -> Result<(), PlotError> {
         self.surroundings.iter().try_for_each(|line| panel.path(line, Ink::Grid, 1.6))?;
         self.echoes.iter().try_for_each(|echo| panel.dot(*echo, 1.2, Ink::ESTIMATE, 1.0))?;
+        self.references.iter().try_for_each(|place| panel.dot(*place, 1.8, Ink::LANDMARK, 1.0))?;
         self.walls.iter().try_for_each(|wall| panel.path(wall, Ink::LANDMARK, 1.6))?;
         panel.path(&self.dead_reckoning, Ink::DEAD_RECKONING, 1.1)?;
         panel.path(&self.truth, Ink::TRUTH, 1.4)?;
@@ -97,12 +100,20 @@ impl MapPlot {
             .with_if(!self.landmarks.is_empty(), Mark::Dot(Ink::LANDMARK), "landmark, 2σ")
             .with_if(!self.walls.is_empty(), Mark::Line(Ink::LANDMARK), "wall")
             .with_if(!self.echoes.is_empty(), Mark::Dot(Ink::ESTIMATE), "echo")
+            .with_if(!self.references.is_empty(), Mark::Dot(Ink::LANDMARK), "reference view")
             .with_if(!self.true_landmarks.is_empty(), Mark::Cross(Ink::Text), "true landmark")
     }
 
     fn alt(&self) -> String {
         if self.landmarks.is_empty() && !self.walls.is_empty() {
             return format!("{}: map of {} walls that were found", self.title, self.walls.len());
+        }
+        if !self.references.is_empty() {
+            return format!(
+                "{}: map of the estimated path and {} reference views",
+                self.title,
+                self.references.len()
+            );
         }
         let landmarks = self.landmarks.len();
         let plural = if landmarks == 1 { "" } else { "s" };
@@ -116,13 +127,14 @@ impl MapPlot {
     /// Axes of one scale around everything that belongs to the map, and the height of the panel in pixels.
     fn axes(&self, ellipses: &[Vec<(f64, f64)>]) -> Option<(Axis, Axis, f64)> {
         let means = self.landmarks.iter().map(|landmark| landmark.position);
-        let core: Vec<_> = [&self.truth, &self.estimate, &self.true_landmarks, &self.echoes]
-            .into_iter()
-            .chain(self.surroundings.iter().chain(&self.walls))
-            .flatten()
-            .copied()
-            .chain(means)
-            .collect();
+        let core: Vec<_> =
+            [&self.truth, &self.estimate, &self.true_landmarks, &self.echoes, &self.references]
+                .into_iter()
+                .chain(self.surroundings.iter().chain(&self.walls))
+                .flatten()
+                .copied()
+                .chain(means)
+                .collect();
         let rest: Vec<_> = self.dead_reckoning.iter().chain(ellipses.iter().flatten()).copied().collect();
         let (x, y) = Extent::of(&core).or_else(|| Extent::of(&rest))?;
         let allowance = OVERHANG * x.length().max(y.length());

@@ -4,6 +4,7 @@ use super::candidate::Candidate;
 use super::each::map_each;
 use super::samples::Samples;
 use super::scene::Scene;
+use super::search::in_other_light;
 use super::{ContourTracker, TrackingCues};
 use crate::{BinSet, BitMask, ColorCloud, ColorState, CondensationError, Outline, Picture};
 
@@ -28,7 +29,8 @@ impl ContourTracker {
         let Some(scene) = scene else { return Ok(None) };
         if self.params.cues == TrackingCues::Shape {
             let (candidate, samples) = (Candidate::of_edges(&scene), self.samples.clone());
-            let quality = candidate.agreement.score(&self.params);
+            // Area and quality say nothing where no edge is found.
+            let quality = candidate.agreement.score(&self.params).min(candidate.agreement.affine);
             return Ok(Some(Found { candidate, quality, outline: None, cloud: None, samples }));
         }
         let states = self.hypotheses(rng)?;
@@ -54,7 +56,10 @@ impl ContourTracker {
         let scene = Scene::whole(&self.params, &self.quantizer, picture, &self.reference)?;
         let states = self.hypotheses(rng)?;
         let stride = states.len().div_ceil(self.params.n_search_samples);
-        let states: Vec<ColorState> = states.into_iter().step_by(stride).collect();
+        let mut states: Vec<ColorState> = states.into_iter().step_by(stride).collect();
+        if self.params.adapts {
+            states.extend(in_other_light(self.params.color_space, &self.reference.colors));
+        }
         let found = map_each(&states, |state| scene.find(state));
         let better = |best: usize, i: usize| {
             let score = |i: usize| found[i].as_ref().map_or(0.0, |(candidate, _)| scene.score(candidate));

@@ -71,11 +71,12 @@ pub struct ContourTrackerParams {
     pub band_radius: usize,
     /// The change of colour over two pixels that is an edge, in grey values (root of the sum of squares over the channels). Default 20.
     pub edge_contrast: f64,
-    /// Below this quality the target is lost. Default 0.6.
+    /// Below this quality the target is lost. Default 0.5.
     pub lost_below: f64,
     /// From this quality on it is found again. Default 0.8.
     pub found_above: f64,
-    /// Hypotheses about the colours when the whole picture is searched. Default 25.
+    /// Hypotheses about the colours when the whole picture is searched, besides those about the strength of the
+    /// light. Default 12.
     pub n_search_samples: usize,
 }
 
@@ -102,9 +103,9 @@ impl Default for ContourTrackerParams {
             snake: SnakeParams::default(),
             band_radius: 2,
             edge_contrast: 20.0,
-            lost_below: 0.6,
+            lost_below: 0.5,
             found_above: 0.8,
-            n_search_samples: 25,
+            n_search_samples: 12,
         }
     }
 }

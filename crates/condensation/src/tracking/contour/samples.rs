@@ -12,8 +12,8 @@ pub(super) struct Samples {
     n_drifts: usize,
 }
 
-/// Pictures without a measurement after which the samples spread no more: by then they are everywhere.
-const MAX_DRIFTS: usize = 50;
+/// Pictures without a measurement after which the samples spread no more: with more, anything of the right shape would be the target.
+const MAX_DRIFTS: usize = 5;
 
 /// How much of the newest change of colours counts in their measured velocity.
 const VELOCITY_GAIN: f64 = 0.5;

@@ -5,7 +5,7 @@ const BINS: usize = 16;
 /// Mass without which a bin says nothing, in pixels of either region.
 const UNSEEN: f32 = 1e-3;
 
-/// How much more a colour belongs to the target than to what is around it. [Bertinetto et al. 2016, Eq. 15]
+/// How much more a colour belongs to the target than to what is around it. [Bertinetto et al. 2016]
 ///
 /// ```math
 /// p(c) = \frac{h_f(c)}{h_f(c) + h_b(c)}
@@ -16,15 +16,14 @@ const UNSEEN: f32 = 1e-3;
 pub(super) struct ColorRatio {
     target: Vec<f32>,
     around: Vec<f32>,
-    learned: bool,
 }
 
 impl ColorRatio {
     pub(super) fn new() -> Self {
-        Self { target: vec![0.0; BINS.pow(3)], around: vec![0.0; BINS.pow(3)], learned: false }
+        Self { target: vec![0.0; BINS.pow(3)], around: vec![0.0; BINS.pow(3)] }
     }
 
-    /// Learns a patch with the target of `size` pixels in the middle.
+    /// Learns a patch with the target of `size` pixels in the middle; at rate 1 forgetting what was before.
     pub(super) fn learn(&mut self, patch: &Patch, size: [f64; 2], rate: f32) {
         let mut counts = [vec![0.0_f32; BINS.pow(3)], vec![0.0_f32; BINS.pow(3)]];
         let mut totals = [0.0_f32; 2];
@@ -41,7 +40,6 @@ impl ColorRatio {
             counts[region][bin(pixel)] += 1.0;
             totals[region] += 1.0;
         }
-        let rate = if self.learned { rate } else { 1.0 };
         for (model, (counts, total)) in
             [&mut self.target, &mut self.around].into_iter().zip(counts.iter().zip(totals))
         {
@@ -51,7 +49,6 @@ impl ColorRatio {
                 }
             }
         }
-        self.learned = true;
     }
 
     /// The ratio of every pixel; 1/2 for colours never seen.
@@ -79,7 +76,7 @@ mod tests {
         };
         let patch = Patch { width: 40, height: 40, pixels: (0..1600).map(color).collect() };
         let mut colors = ColorRatio::new();
-        colors.learn(&patch, [16.0, 16.0], 0.04);
+        colors.learn(&patch, [16.0, 16.0], 1.0);
         let ratio = colors.of(&patch);
         assert!(ratio[20 * 40 + 20] > 0.99 && ratio[0] < 0.01);
         let unseen = Patch { width: 1, height: 1, pixels: vec![[40.0, 200.0, 40.0]] };

@@ -8,7 +8,7 @@ use super::planes::{PlaneFourier, Planes, Spectrum};
 /// ```
 ///
 /// with $`y`$ a narrow Gaussian, solved by alternating directions: over frequencies by the Sherman-Morrison formula, over cells by the
-/// support. [Galoogahi et al. 2017, Eqs. 4-10; Li et al. 2018, Eqs. 5-11]
+/// support. [Galoogahi et al. 2017; Li et al. 2018]
 #[derive(Clone, Debug)]
 pub(super) struct CorrelationFilter {
     fourier: PlaneFourier,

@@ -63,7 +63,7 @@ fn orientation_histograms(patch: &Patch, cell: usize, columns: usize, rows: usiz
     for y in 0..height {
         let (up, down) = (y.saturating_sub(1), (y + 1).min(patch.height - 1));
         let (top, bottom) = neighbours(y, cell, rows);
-        for x in 0..width {
+        for (x, &(west, east)) in sides.iter().enumerate() {
             let (left, right) = (x.saturating_sub(1), (x + 1).min(patch.width - 1));
             let at = |x: usize, y: usize| &patch.pixels[y * patch.width + x];
             let (gx, gy) = steepest(at(left, y), at(right, y), at(x, up), at(x, down));
@@ -76,7 +76,6 @@ fn orientation_histograms(patch: &Patch, cell: usize, columns: usize, rows: usiz
             let share = turn - whole as f32;
             let (low, high) = (whole % N_SIGNED, (whole + 1) % N_SIGNED);
             for (row, row_share) in [top, bottom] {
-                let (west, east) = sides[x];
                 for (column, column_share) in [west, east] {
                     let histogram = &mut histograms[row * columns + column];
                     let weight = magnitude * row_share * column_share;

@@ -130,14 +130,14 @@ impl PlaneFourier {
         }
         let scale = 1.0 / (n * n) as f32;
         for y in (0..n).step_by(2) {
-            for k in 0..n {
+            for (k, value) in line.iter_mut().enumerate() {
                 // columns hold the swapped values: (im, re) of a row's frequency
                 let mirror = if k <= n / 2 { k } else { n - k };
                 let (a, b) = (columns[mirror * n + y], columns[mirror * n + y + 1]);
                 let sign = if k <= n / 2 { 1.0 } else { -1.0 };
                 for c in 0..LANES {
-                    line[k].im[c] = a.im[c] - sign * b.re[c];
-                    line[k].re[c] = sign * a.re[c] + b.im[c];
+                    value.im[c] = a.im[c] - sign * b.re[c];
+                    value.re[c] = sign * a.re[c] + b.im[c];
                 }
             }
             self.fourier.forward(line, scratch);

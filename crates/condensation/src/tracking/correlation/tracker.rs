@@ -134,8 +134,7 @@ impl CorrelationTracker {
         let mut pose = self.moved(picture, self.pose, &around);
         let mut sight = self.recognizer.look(picture, pose);
         let mut trust = self.recognizer.evidence(&self.trusted, &sight);
-        if self.n_untrusted > 0
-            && !self.recognized(trust)
+        if !self.recognized(trust)
             && let Some((there, seen, evidence)) = self.recognized_elsewhere(picture, &around)
         {
             (pose, sight, trust) = (there, seen, evidence);
@@ -180,16 +179,38 @@ impl CorrelationTracker {
         pose
     }
 
-    /// Where in sight the trusted filter recognizes the target, if it does.
+    /// Where the trusted filter recognizes the target, if it does: in sight or, when it has not for a while, in another place in turn.
     fn recognized_elsewhere(&self, picture: &Picture, around: &Sight) -> Option<(Pose, Sight, Evidence)> {
-        let response = self.recognizer.response(&self.trusted, around);
-        if Peak::of(&response, SIDE).standing_out < self.params.recognize_above {
+        self.recognized_by(&self.trusted, picture, self.pose, around).or_else(|| {
+            let turn = self.n_untrusted.checked_sub(self.params.patience)?;
+            let center = self.place(turn);
+            let from = Pose { center, ..self.pose };
+            self.recognized_by(&self.trusted, picture, from, &self.recognizer.look(picture, from))
+        })
+    }
+
+    /// Where in what is seen `around` a pose a filter recognizes the target, if it does.
+    fn recognized_by(
+        &self,
+        filter: &Spectrum,
+        picture: &Picture,
+        pose: Pose,
+        around: &Sight,
+    ) -> Option<(Pose, Sight, Evidence)> {
+        let response = self.recognizer.response(filter, around);
+        if Peak::of(&response, SIDE).standing_out < self.params.doubt_below {
             return None;
         }
-        let pose = self.shifted(picture, self.pose, &response);
+        let pose = self.shifted(picture, pose, &response);
         let sight = self.recognizer.look(picture, pose);
-        let evidence = self.recognizer.evidence(&self.trusted, &sight);
+        let evidence = self.recognizer.evidence(filter, &sight);
         self.recognized(evidence).then_some((pose, sight, evidence))
+    }
+
+    /// One place after the other, so that the whole picture is looked at again and again.
+    fn place(&self, turn: usize) -> [f64; 2] {
+        let tiles = self.recognizer.window.tiles(self.picture_size, self.pose.scale);
+        tiles[turn % tiles.len()]
     }
 
     fn recognized(&self, evidence: Evidence) -> bool {
@@ -221,25 +242,21 @@ impl CorrelationTracker {
     /// Looks for a lost target around where it was, and in a few other places of the picture in turn; the quality.
     fn search(&mut self, picture: &Picture) -> f64 {
         let Pose { center, scale } = self.pose;
-        let tiles = self.recognizer.window.tiles(self.picture_size, scale);
         let first = self.n_lost * self.params.n_searches;
-        let others = (first..first + self.params.n_searches.min(tiles.len())).map(|i| tiles[i % tiles.len()]);
+        let others = (first..first + self.params.n_searches).map(|turn| self.place(turn));
+        let centers: Vec<[f64; 2]> = std::iter::once(center).chain(others).collect();
         self.n_lost += 1;
-        for center in std::iter::once(center).chain(others) {
+        for center in centers {
             let from = Pose { center, scale };
             let around = self.recognizer.look(picture, from);
-            let pose = self.moved(picture, from, &around);
-            let sight = self.recognizer.look(picture, pose);
-            let evidences =
-                [&self.trusted, &self.current].map(|filter| self.recognizer.evidence(filter, &sight));
-            let Some(which) = evidences.iter().position(|&evidence| self.recognized(evidence)) else {
-                continue;
-            };
-            if which == 0 {
-                self.current.clone_from(&self.trusted);
+            let found = [&self.trusted, &self.current].into_iter().find_map(|filter| {
+                let (pose, _, evidence) = self.recognized_by(filter, picture, from, &around)?;
+                Some((filter.clone(), pose, evidence.value / self.usual))
+            });
+            if let Some((filter, pose, quality)) = found {
+                (self.current, self.pose, self.n_lost, self.n_doubts) = (filter, pose, 0, 0);
+                return quality;
             }
-            (self.pose, self.n_lost, self.n_doubts) = (pose, 0, 0);
-            return evidences[which].value / self.usual;
         }
         0.0
     }

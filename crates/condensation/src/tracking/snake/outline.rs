@@ -26,7 +26,7 @@ impl Outline {
     /// [`CondensationError::NotFinite`], and [`CondensationError::Parameter`] when the area is less than one square pixel.
     pub fn from_points(mut points: Vec<[f64; 2]>) -> Result<Self, CondensationError> {
         for (index, point) in points.iter().enumerate() {
-            if let Some(&value) = point.iter().find(|value| !(value.abs() < 1e9)) {
+            if let Some(&value) = point.iter().find(|value| value.is_nan() || value.abs() >= 1e9) {
                 return Err(CondensationError::NotFinite { what: "point of an outline", index, value });
             }
         }

@@ -3,7 +3,7 @@ use std::{path::PathBuf, str::FromStr};
 use wayfix_appearance_cml::{Donut, RingOrder, TurnSense};
 use wayfix_estimation_traits::Pose2;
 
-use crate::cml::Task;
+use crate::{cli::input::Topics, cml::Task};
 
 /// Appearance maps: learn what places look like all round, and localize in what was learned.
 ///
@@ -33,6 +33,8 @@ pub(crate) struct Arguments {
     /// A log with images, odometry (increments or velocities) and, where it is to be judged, true poses.
     #[arg(long, value_name = "PATH", conflicts_with = "frames")]
     pub(super) log: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) topics: Topics,
     /// A folder of PNG or JPEG frames.
     #[arg(long, value_name = "DIR", requires = "poses")]
     pub(super) frames: Option<PathBuf>,

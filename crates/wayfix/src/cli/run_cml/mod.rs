@@ -111,7 +111,8 @@ impl Arguments {
         });
         let camera = CameraChoice { donut: self.donut(), sense: told.or(saved_sense) };
         if let Some(log) = &self.log {
-            let log = wayfix_sensor_log::open(log, &OpenOptions::default())?;
+            let options = OpenOptions { topics: self.topics.topics.clone(), ..OpenOptions::default() };
+            let log = wayfix_sensor_log::open(log, &options)?;
             let origin = log.meta().first_format();
             let (records, read) = log.read_all();
             if !read.is_clean() {

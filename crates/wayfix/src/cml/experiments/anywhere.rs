@@ -1,13 +1,13 @@
 use anyhow::Result;
 use rand::RngExt;
 use rayon::prelude::*;
-use wayfix_appearance_cml::{LocalizerParams, Start};
+use wayfix_appearance_cml::Start;
 use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
 
 use super::follow::{known_start, taught};
 use super::summary::over_seeds;
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Size, Trip, follow};
+use super::{Course, Setup, Trip, follow};
 use crate::cml::{PanoramaLocalizer, PanoramaMap};
 use crate::evaluate::proportion_interval;
 use crate::plot::{LinesPlot, Series};
@@ -26,45 +26,41 @@ const N_PEOPLE: usize = 20;
 ///
 /// # Errors
 /// When a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn global_start(size: &Size, seed: u64) -> Result<Run> {
-    let courses = in_stores(size, seed, |map, later, at| {
+pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
+    let courses = in_stores(setup, seed, |map, later, at| {
         let trip = away(later, at)?;
-        follow(
-            &mut PanoramaLocalizer::with_map(LocalizerParams::default(), map.clone(), Start::Anywhere)?,
-            &trip,
-        )
+        follow(&mut PanoramaLocalizer::with_map(setup.localizer, map.clone(), Start::Anywhere)?, &trip)
     })?;
-    report("From anywhere", size, &courses)
+    report("From anywhere", setup, &courses)
 }
 
 /// How many runs in which a robot is carried elsewhere, after 20 m that it knew where it was, end near the truth after 20 m more.
 ///
 /// # Errors
 /// As [`global_start`].
-pub fn carried_away(size: &Size, seed: u64) -> Result<Run> {
-    let courses = in_stores(size, seed, |map, later, at| {
+pub fn carried_away(setup: &Setup, seed: u64) -> Result<Run> {
+    let courses = in_stores(setup, seed, |map, later, at| {
         let (before, after) = (away(later, (at.0, at.1 + 1000))?, away(later, at)?);
-        let mut localizer =
-            PanoramaLocalizer::with_map(LocalizerParams::default(), map.clone(), known_start(&before)?)?;
+        let mut localizer = PanoramaLocalizer::with_map(setup.localizer, map.clone(), known_start(&before)?)?;
         follow(&mut localizer, &before)?;
         follow(&mut localizer, &after)
     })?;
-    report("Carried away", size, &courses)
+    report("Carried away", setup, &courses)
 }
 
 /// Several runs in each store, some days after its map was taught.
 fn in_stores(
-    size: &Size,
+    setup: &Setup,
     seed: u64,
     run: impl Fn(&PanoramaMap, &Building, (u64, u64)) -> Result<Course> + Sync,
 ) -> Result<Vec<Course>> {
-    let stores = Size { n_seeds: size.n_seeds.div_ceil(RUNS_PER_STORE), ..*size };
+    let stores = Setup { n_seeds: setup.n_seeds.div_ceil(RUNS_PER_STORE), ..*setup };
     let courses = over_seeds(&stores, seed, |seed| {
         let store = Store::draw(StoreParams::home_store(), &mut Draw::World.rng(seed))?;
         let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
-        let map = taught(&tour(&store.building(), size.length_m, params, (seed, 0))?)?;
+        let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
         let later = store.rearranged(REARRANGED, &mut Draw::Rearranged(1).rng(seed))?.building();
-        let n_runs = RUNS_PER_STORE.min(size.n_seeds);
+        let n_runs = RUNS_PER_STORE.min(setup.n_seeds);
         (1..=n_runs).into_par_iter().map(|visit| run(&map, &later, (seed, visit))).collect::<Result<Vec<_>>>()
     })?;
     Ok(courses.into_iter().flatten().collect())
@@ -86,7 +82,7 @@ fn away(building: &Building, (seed, visit): (u64, u64)) -> Result<Trip> {
     Ok(trip)
 }
 
-fn report(title: &str, size: &Size, courses: &[Course]) -> Result<Run> {
+fn report(title: &str, setup: &Setup, courses: &[Course]) -> Result<Run> {
     let n = courses.len();
     let near = |course: &&Course| course.errors.last().is_some_and(|error| *error <= NEAR_M);
     let n_near = courses.iter().filter(near).count();
@@ -99,7 +95,7 @@ fn report(title: &str, size: &Size, courses: &[Course]) -> Result<Run> {
     ];
     let note = format!(
         "{n} runs of {TRAVEL_M} m, {RUNS_PER_STORE} a store of 80 m × 50 m whose map was taught along {} m, {:.0} % of the shelf sections rearranged since; success: within {NEAR_M} m at the end.",
-        size.length_m,
+        setup.length_m,
         100.0 * REARRANGED
     );
     Ok(Run { metrics, figures: vec![quantiles(title, courses).draw()?], notes: vec![note], ..Run::default() })

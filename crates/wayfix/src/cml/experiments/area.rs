@@ -6,7 +6,7 @@ use wayfix_scene_sim::world::World;
 use super::follow::known_start;
 use super::summary::{largest, mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot};
-use super::{Course, Size, Trip, follow};
+use super::{Course, Setup, Trip, follow};
 use crate::cml::PanoramaLocalizer;
 use crate::plot::MapPlot;
 use crate::report::{Metric, Run};
@@ -22,12 +22,12 @@ struct Lapped {
     printed: Course,
 }
 
-/// Fig. 4: seven laps around shelves from an empty map, odometry as it is. The size gives the seeds only.
+/// Fig. 4: seven laps around shelves from an empty map, odometry as it is. Length and share of the setup play no part.
 ///
 /// # Errors
 /// When a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn laps(size: &Size, seed: u64) -> Result<Run> {
-    let seeds = over_seeds(size, seed, one)?;
+pub fn laps(setup: &Setup, seed: u64) -> Result<Run> {
+    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     metrics.extend(mean_of("error_mean_m", "m", &seeds, |lapped| mean(&lapped.course.errors)));
     metrics.extend(mean_of("error_max_m", "m", &seeds, |lapped| largest(&lapped.course.errors)));
@@ -49,18 +49,18 @@ pub fn laps(size: &Size, seed: u64) -> Result<Run> {
     let figures = seeds.first().map(|lapped| path(lapped).draw()).transpose()?.into_iter().collect();
     let note = format!(
         "{} seeds; an area of 25 m × 10 m, {N_LAPS} laps, empty map, odometry as it is.",
-        size.n_seeds
+        setup.n_seeds
     );
     Ok(Run { metrics, figures, notes: vec![note], ..Run::default() })
 }
 
-fn one(seed: u64) -> Result<Lapped> {
+fn one(setup: &Setup, seed: u64) -> Result<Lapped> {
     let building = Store::draw(StoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
     let params = IndoorParams { drive: robot(seed), ..IndoorParams::default() };
     let trip = Trip::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
     let with = |params| follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
-    let (course, printed) = (with(LocalizerParams::default())?, with(LocalizerParams::printed())?);
+    let (course, printed) = (with(setup.localizer)?, with(LocalizerParams::printed())?);
     Ok(Lapped { building, trip, course, printed })
 }
 

@@ -5,7 +5,7 @@ use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
 use super::follow::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Size, follow};
+use super::{Course, Setup, follow};
 use crate::cml::PanoramaLocalizer;
 use crate::report::{Metric, Run};
 
@@ -17,8 +17,8 @@ const N_PEOPLE: usize = 12;
 ///
 /// # Errors
 /// When a drive cannot be simulated or followed.
-pub fn crowded(size: &Size, seed: u64) -> Result<Run> {
-    let seeds = over_seeds(size, seed, |seed| one(size.length_m, seed))?;
+pub fn crowded(setup: &Setup, seed: u64) -> Result<Run> {
+    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (name, at) in [("crowded", 0), ("crowded_all_learned", 1), ("empty", 2)] {
         let references = |courses: &[Course; 3]| courses[at].n_references.last().map_or(0.0, |n| *n as f64);
@@ -29,19 +29,19 @@ pub fn crowded(size: &Size, seed: u64) -> Result<Run> {
     }
     let note = format!(
         "{} seeds; an area of 25 m × 10 m with {N_PEOPLE} people, {} m, empty map, odometry as it is.",
-        size.n_seeds, size.length_m
+        setup.n_seeds, setup.length_m
     );
     Ok(Run { metrics, notes: vec![note], ..Run::default() })
 }
 
-fn one(length_m: f64, seed: u64) -> Result<[Course; 3]> {
+fn one(setup: &Setup, seed: u64) -> Result<[Course; 3]> {
     let building = Store::draw(StoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let through = |n_people, params: LocalizerParams| {
         let drive = IndoorParams { drive: robot(seed), n_people, ..IndoorParams::default() };
-        let trip = tour(&building, length_m, drive, (seed, 0))?;
+        let trip = tour(&building, setup.length_m, drive, (seed, 0))?;
         follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
-    let ours = LocalizerParams::default();
+    let ours = setup.localizer;
     Ok([
         through(N_PEOPLE, ours)?,
         through(N_PEOPLE, LocalizerParams { corroboration: None, ..ours })?,

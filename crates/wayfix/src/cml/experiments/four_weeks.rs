@@ -6,12 +6,10 @@ use super::follow::{known_start, taught};
 use super::histogram::histogram;
 use super::summary::{largest, mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Size, follow};
+use super::{Course, Setup, follow};
 use crate::cml::PanoramaLocalizer;
 use crate::report::{Metric, Run};
 
-/// Share of the shelf sections that are rearranged in four weeks.
-const REARRANGED: f64 = 0.4;
 /// Customers and employees in the store.
 const N_PEOPLE: usize = 20;
 
@@ -19,8 +17,8 @@ const N_PEOPLE: usize = 20;
 ///
 /// # Errors
 /// When a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn four_weeks(size: &Size, seed: u64) -> Result<Run> {
-    let seeds = over_seeds(size, seed, |seed| one(size.length_m, seed))?;
+pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
+    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (name, at) in [("static", 0), ("adapting", 1)] {
         let of = |courses: &[Course; 2], value: fn(&[f64]) -> f64| value(&courses[at].errors);
@@ -43,21 +41,21 @@ pub fn four_weeks(size: &Size, seed: u64) -> Result<Run> {
     );
     let note = format!(
         "{} seeds; a store of 80 m × 50 m, {} m to learn, as much four weeks later, {:.0} % of the shelf sections rearranged, {N_PEOPLE} people.",
-        size.n_seeds,
-        size.length_m,
-        100.0 * REARRANGED
+        setup.n_seeds,
+        setup.length_m,
+        100.0 * setup.rearranged
     );
     Ok(Run { metrics, figures: vec![plot.draw()?], notes: vec![note], ..Run::default() })
 }
 
-fn one(length_m: f64, seed: u64) -> Result<[Course; 2]> {
+fn one(setup: &Setup, seed: u64) -> Result<[Course; 2]> {
     let store = Store::draw(StoreParams::home_store(), &mut Draw::World.rng(seed))?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
-    let map = taught(&tour(&store.building(), length_m, params, (seed, 0))?)?;
-    let later = store.rearranged(REARRANGED, &mut Draw::Rearranged(1).rng(seed))?;
-    let trip = tour(&later.building(), length_m, params, (seed, 1))?;
+    let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
+    let later = store.rearranged(setup.rearranged, &mut Draw::Rearranged(1).rng(seed))?;
+    let trip = tour(&later.building(), setup.length_m, params, (seed, 1))?;
     let with = |learning| {
-        let params = LocalizerParams { learning, ..LocalizerParams::default() };
+        let params = LocalizerParams { learning, ..setup.localizer };
         follow(&mut PanoramaLocalizer::with_map(params, map.clone(), known_start(&trip)?)?, &trip)
     };
     Ok([with(Learning::Static)?, with(Learning::Adapting)?])

@@ -5,7 +5,7 @@ use wayfix_scene_sim::indoors::{AmbienceParams, IndoorParams, Lab};
 use super::follow::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Size, follow};
+use super::{Course, Setup, follow};
 use crate::cml::PanoramaLocalizer;
 use crate::plot::{LinesPlot, Series};
 use crate::report::{Metric, Run};
@@ -19,8 +19,8 @@ const STEPS: [usize; 4] = [2000, 4000, 6000, 8000];
 ///
 /// # Errors
 /// When a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn changing_lab(size: &Size, seed: u64) -> Result<Run> {
-    let seeds = over_seeds(size, seed, |seed| one(size.length_m, seed))?;
+pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
+    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (name, at) in [("passive", 0), ("active", 1)] {
         for step in STEPS {
@@ -52,7 +52,7 @@ pub fn changing_lab(size: &Size, seed: u64) -> Result<Run> {
     };
     let note = format!(
         "{} seeds; somebody switches lamps or draws a curtain every {SWITCHING_S} s in the mean; empty map, odometry as it is.",
-        size.n_seeds
+        setup.n_seeds
     );
     Ok(Run { metrics, figures: vec![plot.draw()?], notes: vec![note], ..Run::default() })
 }
@@ -70,16 +70,15 @@ fn growth(name: &str, seeds: &[[Course; 2]], at: usize) -> Vec<Metric> {
 }
 
 /// The same drive with passive, then with active forgetting.
-fn one(length_m: f64, seed: u64) -> Result<[Course; 2]> {
+fn one(setup: &Setup, seed: u64) -> Result<[Course; 2]> {
     let building = Lab::draw(&mut Draw::World.rng(seed)).building();
     let ambience = AmbienceParams { switching_s: Some(SWITCHING_S), ..AmbienceParams::default() };
     let params = IndoorParams { drive: robot(seed), ambience, n_people: 1, ..IndoorParams::default() };
-    let trip = tour(&building, length_m, params, (seed, 0))?;
+    let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
+    trip.steps.truncate(STEPS[STEPS.len() - 1]);
     let with = |forgetting| {
-        let params = LocalizerParams {
-            map: MapParams { forgetting, ..MapParams::default() },
-            ..LocalizerParams::default()
-        };
+        let params =
+            LocalizerParams { map: MapParams { forgetting, ..setup.localizer.map }, ..setup.localizer };
         follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
     Ok([with(Forgetting::Passive)?, with(Forgetting::Active)?])

@@ -1,17 +1,17 @@
 use anyhow::Result;
 use rayon::prelude::*;
 
-use super::Size;
+use super::Setup;
 use crate::evaluate::MeanInterval;
 use crate::report::Metric;
 
 /// Does an experiment with every seed, side by side; the results in the order of the seeds.
 pub(super) fn over_seeds<T: Send>(
-    size: &Size,
+    setup: &Setup,
     seed: u64,
     one: impl Fn(u64) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    size.seeds(seed).collect::<Vec<u64>>().into_par_iter().map(|seed| one(seed)).collect()
+    setup.seeds(seed).collect::<Vec<u64>>().into_par_iter().map(|seed| one(seed)).collect()
 }
 
 /// The mean over seeds, and, from two on, half the width of its 95 % interval.

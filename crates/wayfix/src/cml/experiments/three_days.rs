@@ -1,5 +1,4 @@
 use anyhow::Result;
-use wayfix_appearance_cml::LocalizerParams;
 use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
 
 use super::area::plan;
@@ -7,7 +6,7 @@ use super::follow::known_start;
 use super::histogram::histogram;
 use super::summary::{largest, mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Size, Trip, follow};
+use super::{Course, Setup, Trip, follow};
 use crate::cml::PanoramaLocalizer;
 use crate::plot::MapPlot;
 use crate::report::{Metric, Run};
@@ -29,8 +28,8 @@ struct Day {
 ///
 /// # Errors
 /// When a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn three_days(size: &Size, seed: u64) -> Result<Run> {
-    let seeds = over_seeds(size, seed, |seed| one(size.length_m, seed))?;
+pub fn three_days(setup: &Setup, seed: u64) -> Result<Run> {
+    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for day in 0..N_DAYS {
         let number = day + 1;
@@ -56,16 +55,16 @@ pub fn three_days(size: &Size, seed: u64) -> Result<Run> {
     }
     let note = format!(
         "{} seeds; {} m × {} m of a store, {} m a day, {:.0} % of the shelf sections rearranged over night, {N_PEOPLE} people.",
-        size.n_seeds,
+        setup.n_seeds,
         SIZE_M[0],
         SIZE_M[1],
-        size.length_m,
+        setup.length_m,
         100.0 * REARRANGED
     );
     Ok(Run { metrics, figures, notes: vec![note], ..Run::default() })
 }
 
-fn one(length_m: f64, seed: u64) -> Result<Vec<Day>> {
+fn one(setup: &Setup, seed: u64) -> Result<Vec<Day>> {
     let shape = StoreParams {
         length_m: SIZE_M[0],
         width_m: SIZE_M[1],
@@ -82,14 +81,12 @@ fn one(length_m: f64, seed: u64) -> Result<Vec<Day>> {
             store = store.rearranged(REARRANGED, &mut Draw::Rearranged(day).rng(seed))?;
         }
         let building = store.building();
-        let trip = tour(&building, length_m, params, (seed, day))?;
+        let trip = tour(&building, setup.length_m, params, (seed, day))?;
         let mut today = match localizer.take() {
-            Some(yesterday) => PanoramaLocalizer::with_map(
-                LocalizerParams::default(),
-                yesterday.into_map(),
-                known_start(&trip)?,
-            )?,
-            None => PanoramaLocalizer::new(LocalizerParams::default(), known_start(&trip)?)?,
+            Some(yesterday) => {
+                PanoramaLocalizer::with_map(setup.localizer, yesterday.into_map(), known_start(&trip)?)?
+            }
+            None => PanoramaLocalizer::new(setup.localizer, known_start(&trip)?)?,
         };
         let course = follow(&mut today, &trip)?;
         localizer = Some(today);

@@ -1,21 +1,24 @@
 use std::{io, path::PathBuf};
 
-use wayfix_sensor_log::ImageError;
+use wayfix_sensor_log::{ImageError, LogError};
 
 /// Why a folder of frames and a table of poses make no recording.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
     /// The operating system refuses.
-    #[error("{}: {source}", path.display())]
+    #[error("{}", path.display())]
     Io {
         /// What was read.
         path: PathBuf,
         /// What the system says.
         source: io::Error,
     },
+    /// The folder cannot be read.
+    #[error(transparent)]
+    Folder(#[from] LogError),
     /// A frame is no image.
-    #[error("{}: {source}", path.display())]
+    #[error("{}", path.display())]
     Image {
         /// The frame.
         path: PathBuf,

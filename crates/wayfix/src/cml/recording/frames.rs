@@ -38,8 +38,7 @@ impl Recording {
     /// # Errors
     /// When something cannot be read, or frames and poses cannot be brought together.
     pub fn read(folder: &Path, poses: &Path, stamps: Option<&Path>) -> Result<Self, RecordingError> {
-        let files = image_files(folder)
-            .map_err(|error| RecordingError::Table { path: folder.to_owned(), reason: error.to_string() })?;
+        let files = image_files(folder)?;
         let names: Vec<String> = files.iter().map(|path| name_of(path)).collect();
         let Some(first) = names.first() else {
             return Err(RecordingError::Nothing { path: folder.to_owned(), what: "PNG or JPEG images" });

@@ -13,4 +13,4 @@ pub use error::RecordingError;
 pub use frames::{Frame, Recording};
 pub use path::Heading;
 pub use sense::{TurnEvidence, turn_evidence};
-pub use smooth::smoothed;
+pub use smooth::{smoothed, smoothing_of};

@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::Pose2;
 
-use super::{Frame, smoothed};
+use super::{Frame, smoothed, smoothing_of};
 
 /// Where headings come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +11,8 @@ pub enum Heading {
     AlongPath,
     /// The camera never turns: panoramas that are aligned with a compass.
     Fixed,
+    /// The camera turns on its own, and nobody knows how.
+    Unknown,
 }
 
 impl Heading {
@@ -20,18 +22,21 @@ impl Heading {
     }
 }
 
-/// The poses of frames as they were measured, and smoothed by a Gaussian of `sigma` frames: wheels do not tremble as measurements do.
+/// The poses of frames as they were measured, and smoothed by a Gaussian of `sigma` frames, as much as they tremble where it is not given: wheels do
+/// not tremble as measurements do.
 pub(in crate::cml) fn poses(
     frames: &[Frame],
     heading: Heading,
-    sigma: f64,
+    sigma: Option<f64>,
 ) -> (Vec<Pose2<f64>>, Vec<Pose2<f64>>) {
     let coordinate = |axis: usize| -> Vec<f64> { frames.iter().map(|frame| frame.position[axis]).collect() };
-    let (x, y) = (smoothed(&coordinate(0), sigma), smoothed(&coordinate(1), sigma));
+    let (x, y) = (coordinate(0), coordinate(1));
+    let sigma = sigma.unwrap_or_else(|| smoothing_of(&x, &y));
+    let (x, y) = (smoothed(&x, sigma), smoothed(&y, sigma));
     let headings = match heading {
         Heading::Given => frames.iter().map(|frame| frame.heading.unwrap_or(0.0)).collect(),
         Heading::Fixed => vec![0.0; frames.len()],
-        Heading::AlongPath => tangents(&x, &y),
+        Heading::AlongPath | Heading::Unknown => tangents(&x, &y),
     };
     let measured = frames.iter().zip(&headings);
     let measured =

@@ -10,48 +10,74 @@ pub struct TurnEvidence {
     pub counterclockwise: f64,
     /// When the camera does not turn at all.
     pub fixed: f64,
-    /// Mean turn of the path, rad.
-    pub turning: f64,
 }
 
 /// Frames between the two views that are compared: near ones look alike, far ones have turned.
-const LAGS: [usize; 4] = [1, 2, 4, 8];
-/// A larger disagreement is a comparison that went wrong, and counts as much.
+const LAGS: [usize; 5] = [2, 4, 8, 16, 32];
+/// A larger disagreement is a comparison that went wrong, and counts as much, rad.
 const MOST: f64 = 0.5;
-/// Less turning tells nothing.
-const LEAST_TURNING: f64 = 0.02;
+/// A smaller turn is as likely to be a trembling of the path, rad.
+const LEAST_TURN: f64 = 0.25;
+/// Views that differ by more than this share of what views of anywhere differ by are not of the same place.
+const ALIKE: f64 = 0.8;
+/// Turns at random disagree by 0.46 rad in the mean, with what [`MOST`] cuts off; those of a path that trembles by half of that.
+const UNRELATED: f64 = 0.35;
+/// Fewer turns tell nothing.
+const ENOUGH: usize = 10;
 /// Comparisons of a lag; more tell nothing new.
 const N_COMPARED: usize = 400;
 
 impl TurnEvidence {
     /// Whether the camera never turns, by far.
     pub fn is_fixed(&self) -> bool {
-        self.turning > LEAST_TURNING && self.fixed < 0.5 * self.clockwise.min(self.counterclockwise)
+        self.fixed < 0.5 * self.clockwise.min(self.counterclockwise)
     }
 
-    /// Whether columns go counterclockwise; clockwise where nothing tells.
+    /// Whether the views turn in ways that have nothing to do with the path.
+    pub fn is_unrelated(&self) -> bool {
+        self.fixed.min(self.clockwise).min(self.counterclockwise) > UNRELATED
+    }
+
+    /// Whether columns go counterclockwise.
     pub fn is_counterclockwise(&self) -> bool {
-        self.turning > LEAST_TURNING && self.counterclockwise < self.clockwise
+        self.counterclockwise < self.clockwise
     }
 }
 
-/// Compares views that follow each other with the headings of a path; `None` for fewer than two.
+/// Compares views that follow each other with the headings of a path; `None` where too few views of the same place have turned.
 pub fn turn_evidence(views: &[PanoramaDescriptor], headings: &[f64]) -> Option<TurnEvidence> {
     let n = views.len().min(headings.len());
+    let alike = ALIKE * typical_distance(&views[..n])?;
     let pairs = LAGS.iter().flat_map(|lag| {
         let every = (n.saturating_sub(*lag) / N_COMPARED).max(1);
         (0..n.saturating_sub(*lag)).step_by(every).map(move |from| (from, from + lag))
     });
-    let mut sums = [0.0; 4];
-    let mut n_pairs = 0;
+    let mut sums = [0.0; 3];
+    let mut n_turns = 0;
     for (from, to) in pairs {
-        let seen = views[to].compare(&views[from]).rotation;
         let turned = wrap_angle(headings[to] - headings[from]);
-        let terms =
-            [seen - turned, seen + turned, seen, turned].map(|error| wrap_angle(error).abs().min(MOST));
-        sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
-        n_pairs += 1;
+        if turned.abs() < LEAST_TURN {
+            continue;
+        }
+        let seen = views[to].compare(&views[from]);
+        if seen.distance < alike {
+            let errors = [seen.rotation - turned, seen.rotation + turned, seen.rotation];
+            let terms = errors.map(|error| wrap_angle(error).abs().min(MOST));
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            n_turns += 1;
+        }
     }
-    let [clockwise, counterclockwise, fixed, turning] = sums.map(|sum| sum / f64::from(n_pairs.max(1)));
-    (n_pairs > 0).then_some(TurnEvidence { clockwise, counterclockwise, fixed, turning })
+    let [clockwise, counterclockwise, fixed] = sums.map(|sum| sum / n_turns.max(1) as f64);
+    (n_turns >= ENOUGH).then_some(TurnEvidence { clockwise, counterclockwise, fixed })
+}
+
+/// The median distance of views that have nothing to do with each other.
+fn typical_distance(views: &[PanoramaDescriptor]) -> Option<f64> {
+    let half = views.len() / 2;
+    let mut distances: Vec<f64> = (0..half)
+        .step_by((half / 64).max(1))
+        .map(|index| views[index].compare(&views[index + half]).distance)
+        .collect();
+    distances.sort_by(f64::total_cmp);
+    distances.get(distances.len() / 2).copied()
 }

@@ -3,7 +3,7 @@ use serde::Deserialize;
 
 use super::super::Job;
 use crate::{
-    cml::experiments::{self, Size},
+    cml::experiments::{self, Setup},
     report::Run,
 };
 
@@ -13,9 +13,9 @@ use crate::{
 struct Settings {
     experiment: Experiment,
     /// How large it is.
-    full: Size,
+    full: Setup,
     /// The same with `--quick`, where that is something else.
-    quick: Option<Size>,
+    quick: Option<Setup>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -42,7 +42,7 @@ enum Experiment {
 /// An experiment with the localizer.
 pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     let settings: Settings = job.planned.settings()?;
-    let size = settings.quick.filter(|_| job.options.quick).unwrap_or(settings.full);
+    let setup = settings.quick.filter(|_| job.options.quick).unwrap_or(settings.full);
     let experiment = match settings.experiment {
         Experiment::ChangingLab => experiments::changing_lab,
         Experiment::Laps => experiments::laps,
@@ -53,5 +53,5 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
         Experiment::Crowded => experiments::crowded,
         Experiment::StepTime => experiments::step_time,
     };
-    experiment(&size, job.options.seed)
+    experiment(&setup, job.options.seed)
 }

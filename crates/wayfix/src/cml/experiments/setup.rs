@@ -1,17 +1,28 @@
 use serde::Deserialize;
+use wayfix_appearance_cml::LocalizerParams;
 
-/// How large an experiment is.
+/// How an experiment is set up.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Size {
+pub struct Setup {
     /// Number of seeds, each with a world of its own.
     pub n_seeds: u64,
     /// Length of a drive, metres, where the experiment leaves it open.
     #[serde(default)]
     pub length_m: f64,
+    /// Share of the shelf sections that are rearranged between visits, where the experiment leaves it open. Default 0.4.
+    #[serde(default = "Setup::usually_rearranged")]
+    pub rearranged: f64,
+    /// The localizer. Default as everywhere.
+    #[serde(default)]
+    pub localizer: LocalizerParams,
 }
 
-impl Size {
+impl Setup {
+    fn usually_rearranged() -> f64 {
+        0.4
+    }
+
     /// The seeds of `regress --seed SEED`, beside those of the stored logs.
     pub(super) fn seeds(&self, seed: u64) -> std::ops::Range<u64> {
         const FIRST: u64 = 20_000;

@@ -1,0 +1,93 @@
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::Gaussian;
+
+use super::{AppearanceLocalizer, Event};
+use crate::{AppearanceError, Descriptor, ReferenceSearch};
+
+/// Views between two revisions of the way behind, at least: a correction that comes in pieces is spread once.
+const REVISION_VIEWS: usize = 20;
+/// Correction that is worth a revision, in steps between views.
+const REVISION_SHARE: f64 = 0.5;
+
+impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
+    /// The view joins the way, and those that have waited long enough are learned.
+    pub(super) fn learn(&mut self, view: D, events: &mut Vec<Event>) -> Result<(), AppearanceError> {
+        let estimate = self.one_place().cloned();
+        let way = self.motion.increment.translation.norm();
+        self.trail.moved(way, self.map.reach_of_match(&self.params.map));
+        self.measure(way, &view, estimate.as_ref().map(Gaussian::mean));
+        self.journey.push(self.motion, estimate, view);
+        if events.contains(&Event::Relocated) {
+            self.journey.keep_newest();
+            self.learned_last = None;
+        }
+        while self.journey.n_waiting() > self.params.delay {
+            let settled = self.journey.settled_pose();
+            if settled.is_none() && self.journey.n_waiting() <= self.params.longest_wait {
+                break;
+            }
+            self.learn_oldest(settled, events)?;
+        }
+        self.journey.shorten(self.params.memory.max(1));
+        self.revise_when_due();
+        Ok(())
+    }
+
+    /// Learns the view that has waited longest; gives it up when it is nowhere, or an outlier.
+    fn learn_oldest(
+        &mut self,
+        settled: Option<Gaussian<Pose2<f64>>>,
+        events: &mut Vec<Event>,
+    ) -> Result<(), AppearanceError> {
+        let is_corroborated = self.is_corroborated();
+        let Some(view) = self.journey.take_oldest() else { return Ok(()) };
+        if let Some(pose) = settled.filter(|_| is_corroborated) {
+            let learned = self.map.learn(view.clone(), &pose, &self.params.map)?;
+            if let Some(id) = learned.inserted {
+                self.journey.made(id, *pose.mean());
+                self.trail.made(id);
+                events.push(Event::NewReference(id));
+            }
+            events.extend(learned.forgotten.into_iter().map(Event::Forgotten));
+        }
+        self.learned_last = Some(view);
+        Ok(())
+    }
+
+    /// Whether the view before or after looks like the one that has waited longest. Somebody who passes by is in one view and gone in the
+    /// next; a lamp that is switched on stays on.
+    fn is_corroborated(&self) -> bool {
+        let Some(factor) = self.params.corroboration else { return true };
+        let Some(((view, motion), after)) = self.journey.oldest_waiting() else { return true };
+        let (step, scale) = (self.map.scale().step(), self.map.scale().step_distance());
+        // Over a longer way a view may differ by more, and proves nothing.
+        let agrees = |other: &D, way: f64| way > 1.5 * step || view.compare(other).distance <= factor * scale;
+        let before = self.learned_last.as_ref().map(|last| (last, motion));
+        let mut neighbours = before.into_iter().chain(after).peekable();
+        neighbours.peek().is_none()
+            || neighbours.any(|(other, motion)| agrees(other, motion.increment.translation.norm()))
+    }
+
+    /// Corrections add up until they are worth a walk over the whole way.
+    fn revise_when_due(&mut self) {
+        self.since_revision += 1;
+        let worth = REVISION_SHARE * self.map.scale().step();
+        if self.params.memory == 0 || self.since_revision < REVISION_VIEWS || self.corrected < worth {
+            return;
+        }
+        (self.since_revision, self.corrected) = (0, 0.0);
+        for revision in self.journey.revise() {
+            self.map.revise(revision.id, &revision.before, &revision.after);
+        }
+    }
+
+    /// Measures how views change with the way.
+    pub(super) fn measure(&mut self, way: f64, view: &D, at: Option<&Pose2<f64>>) {
+        self.scale_learner.observe(way, view, self.map.scale_mut());
+        self.views = self.views.wrapping_add(1);
+        let Some(distance) = at.and_then(|pose| self.map.distance_to_far(view, pose, self.views)) else {
+            return;
+        };
+        self.map.scale_mut().add_far(distance);
+    }
+}

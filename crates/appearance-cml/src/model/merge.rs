@@ -1,0 +1,40 @@
+use wayfix_gaussian_core::{GaussianError, moment_matched};
+
+use super::{MapParams, PlaceComponent};
+use crate::{AppearanceError, separation_squared};
+
+/// Merges the newest place into the nearest other within the merge distance. [Gross et al. 2005, Eq. 12]
+pub(super) fn merge_places(
+    places: &mut Vec<PlaceComponent>,
+    params: &MapParams,
+) -> Result<(), AppearanceError> {
+    let Some(newest) = places.pop() else { return Ok(()) };
+    let mut nearest = None;
+    let mut least = params.merge_distance;
+    for (index, place) in places.iter().enumerate() {
+        let squared = separation_squared(&place.gaussian, &newest.gaussian)?;
+        if squared < least {
+            (nearest, least) = (Some(index), squared);
+        }
+    }
+    match nearest {
+        Some(index) => places[index] = merged(&places[index], &newest, params)?,
+        None => places.push(newest),
+    }
+    Ok(())
+}
+
+/// One place of two: moments by normalized counts, counts and weights add. [Gross et al. 2005, Eqs. 13-14]
+pub(super) fn merged(
+    a: &PlaceComponent,
+    b: &PlaceComponent,
+    params: &MapParams,
+) -> Result<PlaceComponent, AppearanceError> {
+    let gaussian = moment_matched(&[a.count, b.count], &[a.gaussian.clone(), b.gaussian.clone()])
+        .map_err(GaussianError::from)?;
+    Ok(PlaceComponent {
+        weight: (a.weight + b.weight).min(1.0),
+        count: (a.count + b.count).min(params.greatest_count),
+        gaussian,
+    })
+}

@@ -1,0 +1,38 @@
+use nalgebra::Vector2;
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::Gaussian;
+
+use super::merge::merged;
+use super::sighting::turned;
+use super::{MapParams, PlaceComponent};
+use crate::{AppearanceError, Match};
+
+/// Where the robot is less where the references put it, in the frame of the map.
+pub(super) struct Residual {
+    pub(super) translation: Vector2<f64>,
+    pub(super) turn: f64,
+}
+
+impl Residual {
+    /// The place as it would have to be for the references to be right, merged into what it is.
+    pub(super) fn correct(
+        &self,
+        place: &mut PlaceComponent,
+        matched: &Match,
+        count: f64,
+        (pose, params): (&Gaussian<Pose2<f64>>, &MapParams),
+    ) -> Result<(), AppearanceError> {
+        let old = place.gaussian.mean();
+        let seen_from = turned(pose, -matched.comparison.rotation);
+        let corrected =
+            Pose2::new(old.x() + self.translation.x, old.y() + self.translation.y, old.heading() + self.turn);
+        let covariance = seen_from.in_chart_at(&corrected)?.covariance().to_owned();
+        let observed = PlaceComponent {
+            weight: 0.0,
+            count,
+            gaussian: Gaussian::from_parts_unchecked(corrected, covariance),
+        };
+        *place = merged(place, &observed, params)?;
+        Ok(())
+    }
+}

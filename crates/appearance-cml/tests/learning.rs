@@ -1,0 +1,159 @@
+//! The learning rules against numbers worked out by hand.
+
+use nalgebra::Vector3;
+use wayfix_appearance_cml::{
+    AppearanceMap, Comparison, Descriptor, Forgetting, ForgettingParams, MapParams, PlaceUpdate, similarity,
+};
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::Gaussian;
+
+/// A view that is one number.
+#[derive(Clone, Debug)]
+struct Tone(f64);
+
+impl Descriptor for Tone {
+    fn compare(&self, reference: &Self) -> Comparison {
+        Comparison { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
+    }
+}
+
+const SIGMA: f64 = 0.1;
+
+fn at(x: f64) -> Gaussian<Pose2<f64>> {
+    Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(SIGMA, SIGMA, SIGMA)).expect("positive")
+}
+
+/// The printed rules with E^max = 1 and round numbers.
+fn printed() -> MapParams {
+    MapParams {
+        match_limit: Some(1.0),
+        learning_rate: 0.5,
+        least_weight: 0.01,
+        active: ForgettingParams { rate: 0.4, radius: Some(2.0), gain: Some(0.1) },
+        ..MapParams::printed()
+    }
+}
+
+fn map_of(views: &[(f64, f64)], params: &MapParams) -> AppearanceMap<Tone> {
+    let mut map = AppearanceMap::default();
+    for (tone, x) in views {
+        map.learn(Tone(*tone), &at(*x), params).expect("a good pose");
+    }
+    map
+}
+
+fn weights(map: &AppearanceMap<Tone>) -> Vec<Vec<f64>> {
+    map.references().values().map(|r| r.places.iter().map(|p| p.weight).collect()).collect()
+}
+
+#[test]
+fn what_is_seen_again_gains_weight_and_counts() {
+    let map = map_of(&[(0.0, 5.0), (0.0, 5.0)], &printed());
+    // Eq. 16 with S = 1 from 0: 0.5, then 0.5 + 0.5 · 0.5.
+    assert_eq!(weights(&map), [[0.75]]);
+    let place = &map.references().values().next().unwrap().places[0];
+    // Eq. 11 gives each observation the whole share, and counts add.
+    assert_eq!(place.count, 2.0);
+    // Eq. 13 with normalized counts: the mean of two equal poses is that pose, not its double.
+    assert!((place.gaussian.mean().x() - 5.0).abs() < 1e-12);
+}
+
+#[test]
+fn counts_weigh_the_poses() {
+    let map = map_of(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.2)], &printed());
+    let place = &map.references().values().next().unwrap().places[0];
+    assert!((place.gaussian.mean().x() - 0.05).abs() < 1e-12);
+    // Eq. 14: σ² + ¾·0.05² + ¼·0.15².
+    let variance = SIGMA * SIGMA + 0.75 * 0.0025 + 0.25 * 0.0225;
+    assert!((place.gaussian.covariance()[(0, 0)] - variance).abs() < 1e-12);
+}
+
+#[test]
+fn a_view_seen_elsewhere_fades_where_it_was() {
+    let map = map_of(&[(0.0, 0.0), (0.0, 5.0)], &printed());
+    // Eq. 17 with S = 1: 0.5 · 0.5. The new place comes by Eq. 16 from 0.
+    assert_eq!(weights(&map), [[0.25, 0.5]]);
+}
+
+#[test]
+fn half_a_likeness_teaches_half() {
+    let map = map_of(&[(0.0, 0.0), (0.6, 0.0)], &printed());
+    let gain = 0.5 * similarity(0.6, 1.0);
+    assert_eq!(map.len(), 1, "a view within the limit is no reference");
+    assert!((weights(&map)[0][0] - (gain + (1.0 - gain) * 0.5)).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_not_seen_any_more_is_forgotten_only_actively() {
+    let active = map_of(&[(0.0, 0.0), (3.0, 1.0)], &printed());
+    // Eqs. 18-19: b = 0.4 · (1 − 1/2) · 0.1/(0.1 + 0.1).
+    assert!((weights(&active)[0][0] - 0.5 * 0.9).abs() < 1e-12);
+    let passive = MapParams { forgetting: Forgetting::Passive, ..printed() };
+    assert_eq!(weights(&map_of(&[(0.0, 0.0), (3.0, 1.0)], &passive))[0], [0.5]);
+    let far = map_of(&[(0.0, 0.0), (3.0, 2.5)], &printed());
+    assert_eq!(weights(&far)[0], [0.5], "beyond the radius nothing is forgotten");
+}
+
+#[test]
+fn forgotten_references_go_and_the_map_stays_bounded() {
+    let params = MapParams {
+        active: ForgettingParams { rate: 1.0, radius: Some(2.0), gain: Some(10.0) },
+        ..printed()
+    };
+    let map = map_of(&[(0.0, 0.0), (3.0, 0.0)], &params);
+    assert_eq!(map.len(), 1, "the old view of this very spot is gone at once");
+    let few = MapParams { most_references: 3, ..printed() };
+    let many: Vec<(f64, f64)> = (0..9).map(|k| (2.0 * f64::from(k), 10.0 * f64::from(k))).collect();
+    assert_eq!(map_of(&many, &few).len(), 3);
+}
+
+#[test]
+fn residuals_correct_places_without_drawing_them_together() {
+    let params = MapParams { place_update: PlaceUpdate::Residual, insertion: 10.0, ..printed() };
+    let mut map: AppearanceMap<Tone> = AppearanceMap::default();
+    for k in 0..5 {
+        let view = Tone(0.1 * f64::from(k));
+        map.teach(view, &at(0.2 * f64::from(k))).expect("a good pose");
+    }
+    let spread = |map: &AppearanceMap<Tone>| {
+        let xs: Vec<f64> = map.references().values().map(|r| r.places[0].gaussian.mean().x()).collect();
+        xs[4] - xs[0]
+    };
+    let before = spread(&map);
+    for _ in 0..20 {
+        map.learn(Tone(0.2), &at(0.4), &params).expect("a good pose");
+    }
+    // The pose as printed would pull all five towards 0.4 m; a residual of nothing moves nothing.
+    assert!((spread(&map) - before).abs() < 0.02, "from {before} to {}", spread(&map));
+}
+
+#[test]
+fn poses_without_meaning_leave_the_map_as_it_is() {
+    let mut map = map_of(&[(0.0, 0.0)], &printed());
+    let before = weights(&map);
+    let flat = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), nalgebra::Matrix3::zeros());
+    let nowhere =
+        Gaussian::from_parts_unchecked(Pose2::new(f64::NAN, 0.0, 0.0), nalgebra::Matrix3::identity());
+    for bad in [flat, nowhere] {
+        assert!(map.learn(Tone(0.0), &bad, &printed()).is_err());
+        assert!(map.teach(Tone(0.0), &bad).is_err());
+    }
+    assert_eq!((map.len(), weights(&map)), (1, before));
+}
+
+#[test]
+fn a_map_is_its_parts() {
+    let map = map_of(&[(0.0, 0.0), (3.0, 1.0), (0.1, 0.1)], &printed());
+    let parts = || (map.search().clone(), map.references().clone(), map.scale().clone());
+    let (search, references, scale) = parts();
+    let again = AppearanceMap::from_parts(search, references, scale, map.next_id()).unwrap();
+    assert_eq!(again.references(), map.references());
+    let (search, mut references, scale) = parts();
+    references.values_mut().next().unwrap().places[0].weight = f64::NAN;
+    assert!(AppearanceMap::<Tone>::from_parts(search, references, scale, map.next_id()).is_err());
+    let (search, references, scale) = parts();
+    assert!(
+        AppearanceMap::<Tone>::from_parts(search, references, scale, 0).is_err(),
+        "numbers not yet given out"
+    );
+}
