@@ -21,6 +21,7 @@ mod run_walls;
 
 use std::process::ExitCode;
 
+use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 /// Probabilistic robot localization on your logs.
@@ -48,7 +49,7 @@ struct Arguments {
 enum Command {
     /// Run a system on a log.
     #[command(subcommand)]
-    Run(Run),
+    Run(Box<Run>),
     Params(params::Arguments),
     Info(info::Arguments),
     Convert(convert::Arguments),
@@ -73,12 +74,7 @@ enum Run {
 /// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
 pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Run(Run::Slam(arguments)) => run_slam::main(arguments),
-        Command::Run(Run::Lines(arguments)) => run_lines::main(arguments),
-        Command::Run(Run::Color(arguments)) => run_color::main(arguments),
-        Command::Run(Run::Views(arguments)) => run_views::main(arguments),
-        Command::Run(Run::Track(arguments)) => run_track::main(arguments),
-        Command::Run(Run::Cml(arguments)) => run_cml::main(arguments),
+        Command::Run(system) => run(*system),
         Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
@@ -93,5 +89,16 @@ pub fn main() -> ExitCode {
             output::tell(format!("error: {error:#}"));
             ExitCode::FAILURE
         }
+    }
+}
+
+fn run(system: Run) -> Result<ExitCode> {
+    match system {
+        Run::Slam(arguments) => run_slam::main(arguments),
+        Run::Lines(arguments) => run_lines::main(arguments),
+        Run::Color(arguments) => run_color::main(arguments),
+        Run::Views(arguments) => run_views::main(arguments),
+        Run::Track(arguments) => run_track::main(arguments),
+        Run::Cml(arguments) => run_cml::main(arguments),
     }
 }

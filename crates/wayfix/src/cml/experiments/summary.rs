@@ -11,7 +11,7 @@ pub(super) fn over_seeds<T: Send>(
     seed: u64,
     one: impl Fn(u64) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    setup.seeds(seed).collect::<Vec<u64>>().into_par_iter().map(|seed| one(seed)).collect()
+    setup.seeds(seed).collect::<Vec<u64>>().into_par_iter().map(&one).collect()
 }
 
 /// The mean over seeds, and, from two on, half the width of its 95 % interval.
