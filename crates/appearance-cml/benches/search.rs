@@ -84,9 +84,7 @@ fn drives() -> (Vec<Panorama>, Vec<Panorama>) {
         let steps = IndoorDrive::new(&building, route, params, Streams::new(rng.clone())).expect("a route");
         let size = |view: &Panorama| assert_eq!((view.n_columns(), view.n_rows()), (120, 20));
         steps
-            .map(|step| {
-                Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb)
-            })
+            .map(|step| Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb))
             .map(|view| view.expect("pixels"))
             .inspect(size)
             .collect()
