@@ -30,6 +30,12 @@ fn comment_table(table: &mut Table, schema: &Value, root: &Value) {
         if let Some(Item::Table(inner)) = table.get_mut(key) {
             inner.decor_mut().set_prefix(format!("\n{says}"));
             comment_table(inner, property, root);
+        } else if let Some(Item::ArrayOfTables(inner)) = table.get_mut(key) {
+            // What is said once holds for all of them.
+            if let Some(first) = inner.get_mut(0) {
+                first.decor_mut().set_prefix(format!("\n{says}"));
+                comment_table(first, &resolved(property, root)["items"], root);
+            }
         } else if let Some(mut key) = table.key_mut(key) {
             key.leaf_decor_mut().set_prefix(says);
         } else {
@@ -134,11 +140,19 @@ mod tests {
     fn same_with_comments<P: JsonSchema + Serialize + PartialEq + serde::de::DeserializeOwned>(params: &P) {
         let text = commented(params).unwrap();
         assert!(toml::from_str::<P>(&text).unwrap() == *params, "{text}");
-        // The variant that is chosen stands alone in its table, under what all of them mean.
-        let bare = text.lines().zip(text.lines().skip(1)).filter(|(above, line)| {
-            line.contains(" = ") && !line.starts_with('#') && !above.starts_with(['#', '['])
-        });
-        assert_eq!(bare.collect::<Vec<_>>(), [], "keys without a word");
+        // A variant that is chosen stands alone in its table, under what all of them mean; of many tables only the first has comments.
+        let (mut table, mut above, mut bare) = ("", "", Vec::new());
+        for line in text.lines() {
+            if line.starts_with('[') {
+                table = line;
+            }
+            let is_key = line.contains(" = ") && !line.starts_with('#');
+            if is_key && !above.starts_with(['#', '[']) && !table.starts_with("[[") {
+                bare.push(line);
+            }
+            above = line;
+        }
+        assert!(bare.is_empty(), "keys without a word: {bare:?}");
     }
 
     #[test]
