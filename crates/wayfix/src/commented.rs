@@ -2,7 +2,7 @@
 
 use schemars::{JsonSchema, Schema, schema_for};
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use toml_edit::{DocumentMut, Item, Table};
 
 /// The JSON schema of parameters: editors complete and check TOML files by it.
@@ -23,7 +23,11 @@ pub(crate) fn commented<P: JsonSchema + Serialize>(params: &P) -> anyhow::Result
 }
 
 fn comment_table(table: &mut Table, schema: &Value, root: &Value) {
-    let Some(properties) = resolved(schema, root)["properties"].as_object() else { return };
+    let target = resolved(schema, root);
+    let chosen = |variant: &&Map<String, Value>| variant.keys().any(|name| table.contains_key(name));
+    let variants = target["oneOf"].as_array().into_iter().flatten();
+    let variant = variants.filter_map(|variant| variant["properties"].as_object()).find(chosen);
+    let Some(properties) = target["properties"].as_object().or(variant) else { return };
     let mut unset = String::new();
     for (key, property) in properties {
         let says = comment(property, root);
