@@ -44,8 +44,10 @@ fn main() -> Result<(), LineError> {
     let scan = Scan { angle_min: 0.0, angle_increment: 1_f64.to_radians(), ranges: &ranges, max_range: 30.0 };
     let walls = extract(&scan, &Params::default())?.segments;
 
+    // Once round: the last wall is the neighbour of the first.
+    let neighbours = walls.iter().zip(walls.iter().cycle().skip(1));
     let corners: Vec<Corner> =
-        walls.windows(2).filter_map(|pair| Corner::between(&pair[0], &pair[1], 0.3)).collect();
+        neighbours.filter_map(|(wall, next)| Corner::between(wall, next, 0.3)).collect();
     for Corner { point, covariance } in &corners {
         let [x, y] = [covariance[(0, 0)].sqrt(), covariance[(1, 1)].sqrt()];
         println!("({:+.3} ± {x:.3}, {:+.3} ± {y:.3}) m", point.x, point.y);
