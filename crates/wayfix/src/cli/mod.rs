@@ -1,5 +1,6 @@
 //! The command line: one command a file.
 
+mod common;
 mod completions;
 mod convert;
 mod finish;

@@ -11,6 +11,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Format, OpenOptions, Record};
 
 use super::{
+    common::Common,
     finish::{self, ESTIMATES},
     input::{Topics, read_toml},
     output::{print, tell},
@@ -56,23 +57,8 @@ pub(super) struct Arguments {
     /// anywhere].
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
     start: Option<StartArgument>,
-    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
-    #[arg(long, value_name = "FILE")]
-    params: Option<PathBuf>,
-    /// Print the parameters that would be used, as TOML, and end: a file to start from.
-    #[arg(long)]
-    print_params: bool,
-    /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP.
-    ///
-    /// It is created where need be. Nothing is written without it.
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Print the figures as one JSON object instead of a table.
-    #[arg(long)]
-    json: bool,
-    /// Seed of the particles.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    common: Common,
 }
 
 const EXAMPLES: &str = "\
@@ -110,11 +96,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let params = match &arguments.params {
+    let params = match &arguments.common.params {
         Some(path) => read_toml(path, |text| toml::from_str(text))?,
         None => ColorSystemParams::default(),
     };
-    if arguments.print_params {
+    if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -136,11 +122,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
 
     let stopwatch = Stopwatch::start();
-    let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut estimates = arguments.common.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
     let bar = progress::bar(records.len(), "colour localization");
     let mut remaining = records.iter();
     let start = arguments.start.map(|start| start.0);
-    let color = color::run(&records, map, bank, &params, start, arguments.seed, |system| {
+    let color = color::run(&records, map, bank, &params, start, arguments.common.seed, |system| {
         if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
             estimates.observe(record, system);
         }
@@ -158,7 +144,13 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         run.log = Some(ESTIMATES.to_owned());
         run.figures = pictures(&mut color, &records)?;
     }
-    finish::show("color", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    finish::show(
+        "color",
+        run,
+        arguments.common.out.as_deref(),
+        arguments.common.json,
+        arguments.common.seed,
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 

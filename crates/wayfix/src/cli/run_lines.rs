@@ -9,6 +9,7 @@ use wayfix_line_extract::Params;
 use wayfix_sensor_log::{Format, OpenOptions};
 
 use super::{
+    common::Common,
     finish::{self, ESTIMATES},
     input::{Topics, read_toml},
     output::{print, tell},
@@ -37,23 +38,8 @@ pub(super) struct Arguments {
     format: Option<Format>,
     #[command(flatten)]
     topics: Topics,
-    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
-    #[arg(long, value_name = "FILE")]
-    params: Option<PathBuf>,
-    /// Print the parameters that would be used, as TOML, and end: a file to start from.
-    #[arg(long)]
-    print_params: bool,
-    /// Folder for index.html, report.json, the figures as SVG and the scans with their walls as MCAP.
-    ///
-    /// It is created where need be. Nothing is written without it.
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Print the figures as one JSON object instead of a table.
-    #[arg(long)]
-    json: bool,
-    /// Goes into the report; nothing here is random.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    common: Common,
 }
 
 const EXAMPLES: &str = "\
@@ -63,11 +49,11 @@ Examples:
   wayfix run lines --log rosbag2_0.mcap --topic /scan_rear";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let params = match &arguments.params {
+    let params = match &arguments.common.params {
         Some(path) => read_toml(path, |text| toml::from_str(text))?,
         None => Params::default(),
     };
-    if arguments.print_params {
+    if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -82,7 +68,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
 
     let stopwatch = Stopwatch::start();
-    let mut walls = arguments.out.as_deref().map(|out| open_walls(out, origin)).transpose()?;
+    let mut walls = arguments.common.out.as_deref().map(|out| open_walls(out, origin)).transpose()?;
     let bar = progress::bar(records.len(), "walls");
     let mut remaining = records.iter();
     drive(&mut system, &records, |system| {
@@ -103,7 +89,13 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         run.log = Some(ESTIMATES.to_owned());
         run.figures = lines::pictures(&system)?;
     }
-    finish::show("lines", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    finish::show(
+        "lines",
+        run,
+        arguments.common.out.as_deref(),
+        arguments.common.json,
+        arguments.common.seed,
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 

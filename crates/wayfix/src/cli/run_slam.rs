@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use wayfix_sensor_log::{Format, LogMeta, OpenOptions, Record};
 
 use super::{
+    common::Common,
     finish::{self, ESTIMATES},
     input::{Topics, read_toml},
     output::{print, tell},
@@ -57,23 +58,10 @@ pub(super) struct Arguments {
     /// The kind of robot whose noise and timing are the defaults [default: by the format of the log, else generic].
     #[arg(long)]
     pub(super) profile: Option<Profile>,
-    /// A TOML file of parameters.
-    ///
-    /// What it does not name keeps the default of the profile. `--print-params` shows all of them.
-    #[arg(long, value_name = "FILE")]
-    pub(super) params: Option<PathBuf>,
     /// A file of relations between poses that are known from elsewhere, for logs of scans: `t1 t2 x y z roll pitch yaw` lines of the Freiburg
     /// SLAM benchmark.
     #[arg(long, value_name = "FILE")]
     pub(super) relations: Option<PathBuf>,
-    /// Print the parameters that would be used, as TOML, and end: a file to start from.
-    #[arg(long)]
-    pub(super) print_params: bool,
-    /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP.
-    ///
-    /// It is created where need be. Nothing is written without it.
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
     /// File to save map and filter to, at the end and every `--save-every` seconds.
     ///
     /// The file is replaced as a whole: losing power leaves the old or the new one.
@@ -92,16 +80,8 @@ pub(super) struct Arguments {
     /// Sightings never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
     #[arg(long)]
     pub(super) observability: bool,
-    /// Print one JSON object instead of a table.
-    ///
-    /// `{"metrics": {name: number}, "events": {name: count}, "seed": n}`; units are in the names.
-    #[arg(long)]
-    pub(super) json: bool,
-    /// Seed of every generator.
-    ///
-    /// EKF-SLAM draws nothing; the seed is passed on to the output.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(super) seed: u64,
+    #[command(flatten)]
+    pub(super) common: Common,
 }
 
 const EXAMPLES: &str = "\
@@ -137,14 +117,14 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         return run_walls::main(&arguments, &records, &read);
     }
     let params = params(&arguments, &meta)?;
-    if arguments.print_params {
+    if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let origin = meta.first_format();
 
     let stopwatch = Stopwatch::start();
-    let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut estimates = arguments.common.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
     let saved = arguments.resume.as_deref().map(saved_map).transpose()?;
     let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
     let mut slam = run(&records, &params, saved, estimates.as_mut(), saver.as_mut())?;
@@ -164,13 +144,13 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         run.log = Some(ESTIMATES.to_owned());
         run.figures = slam::pictures(&slam)?;
     }
-    finish::show("slam", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    finish::show("slam", run, arguments.common.out.as_deref(), arguments.common.json, arguments.common.seed)?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn params(arguments: &Arguments, meta: &LogMeta) -> Result<SlamSystemParams> {
     let profile = arguments.profile.unwrap_or(Profile::of_log(meta));
-    let mut params = match &arguments.params {
+    let mut params = match &arguments.common.params {
         Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?
             .validated()
             .with_context(|| format!("parameters in {} are not usable", path.display()))?,

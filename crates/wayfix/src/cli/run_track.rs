@@ -10,6 +10,7 @@ use wayfix_condensation::BoundingBox;
 use wayfix_sensor_log::{Format, Log, OpenOptions};
 
 use super::{
+    common::Common,
     finish::{self, ESTIMATES},
     input::read_toml,
     output::{print, tell},
@@ -51,23 +52,8 @@ pub(super) struct Arguments {
     /// Which tracker.
     #[arg(long, value_enum, value_name = "NAME", default_value = "box")]
     method: Method,
-    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
-    #[arg(long, value_name = "FILE")]
-    params: Option<PathBuf>,
-    /// Print the parameters that would be used, as TOML, and end: a file to start from.
-    #[arg(long)]
-    print_params: bool,
-    /// Folder for index.html, report.json, the figures as SVG, the boxes as text and the outlines as MCAP.
-    ///
-    /// It is created where need be. Nothing is written without it.
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Print the figures as one JSON object instead of a table.
-    #[arg(long)]
-    json: bool,
-    /// Seed of the tracker's samples.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    common: Common,
 }
 
 const EXAMPLES: &str = "\
@@ -92,11 +78,11 @@ impl FromStr for BoxArgument {
 }
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let params = match &arguments.params {
+    let params = match &arguments.common.params {
         Some(path) => read_toml(path, TrackParams::from_toml)?,
         None => TrackParams::default(),
     };
-    if arguments.print_params {
+    if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -107,12 +93,12 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     };
     let (mut log, rate_hz) = arguments.open()?;
     let origin = log.meta().first_format();
-    let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut estimates = arguments.common.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
 
     let stopwatch = Stopwatch::start();
     let init = arguments.init.map(|init| init.0);
     let setup = TrackSetup { method: arguments.method, params, init, truth, rate_hz };
-    let system = TrackSystem::new(setup, arguments.seed);
+    let system = TrackSystem::new(setup, arguments.common.seed);
     let bar = progress::counter("tracking");
     let track = track::run(system, &mut log, |system, record| {
         if let Some(estimates) = &mut estimates {
@@ -136,7 +122,13 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         run.log = Some(ESTIMATES.to_owned());
         run.figures = track::pictures(&track.story)?;
     }
-    finish::show("track", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    finish::show(
+        "track",
+        run,
+        arguments.common.out.as_deref(),
+        arguments.common.json,
+        arguments.common.seed,
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 

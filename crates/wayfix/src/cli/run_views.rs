@@ -10,6 +10,7 @@ use clap::builder::RangedU64ValueParser;
 use wayfix_condensation::{ActionChoice, Light};
 
 use super::{
+    common::Common,
     finish,
     input::read_toml,
     output::{print, tell},
@@ -75,23 +76,8 @@ pub(super) struct Arguments {
     /// Of moves that lead equally near to the goal take the one that is expected to show most, comparing the N best places.
     #[arg(long, value_name = "N")]
     informed: Option<usize>,
-    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
-    #[arg(long, value_name = "FILE")]
-    params: Option<PathBuf>,
-    /// Print the parameters that would be used, as TOML, and end: a file to start from.
-    #[arg(long)]
-    print_params: bool,
-    /// Folder for index.html, report.json and the figures as SVG.
-    ///
-    /// It is created where need be. Nothing is written without it.
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Print the figures as one JSON object instead of a table.
-    #[arg(long)]
-    json: bool,
-    /// Seed of starts, goals and random moves.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    common: Common,
 }
 
 const EXAMPLES: &str = "\
@@ -121,14 +107,14 @@ impl FromStr for Shift {
 }
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let mut params = match &arguments.params {
+    let mut params = match &arguments.common.params {
         Some(path) => read_toml(path, ViewsParams::from_toml)?,
         None => ViewsParams::default(),
     };
     if let Some(hypotheses) = arguments.informed {
         params.navigator.choice = ActionChoice::Informed { hypotheses };
     }
-    if arguments.print_params {
+    if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -143,7 +129,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         ));
         real = real.shifted(-dx, -dy);
     }
-    if let Some(out) = &arguments.out {
+    if let Some(out) = &arguments.common.out {
         fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
     }
 
@@ -155,17 +141,24 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         normalization: arguments.normalization,
     };
     let bar = progress::bar(arguments.trials as usize, "drives");
-    let run = views::run(learned, &real, &setup, &params, arguments.trials, arguments.seed, &|| bar.inc(1));
+    let run =
+        views::run(learned, &real, &setup, &params, arguments.trials, arguments.common.seed, &|| bar.inc(1));
     bar.finish_and_clear();
     let views = run?;
 
     let name = arguments.scene.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
     let mut run = Run { name, seconds, ..views::summarize(&views) };
-    if arguments.out.is_some() {
-        run.figures = views::pictures(&views, learned, &real, arguments.seed)?;
+    if arguments.common.out.is_some() {
+        run.figures = views::pictures(&views, learned, &real, arguments.common.seed)?;
     }
-    finish::show("views", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    finish::show(
+        "views",
+        run,
+        arguments.common.out.as_deref(),
+        arguments.common.json,
+        arguments.common.seed,
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -38,7 +38,7 @@ pub(super) fn main(
         ensure!(!given, "{option} is for logs of range-bearing sightings; this one has laser scans");
     }
     let params = params(arguments)?;
-    if arguments.print_params {
+    if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -60,16 +60,16 @@ pub(super) fn main(
         }
         run.metrics.extend(walls::relation_metrics(&slam, &relations));
     }
-    if let Some(out) = &arguments.out {
+    if let Some(out) = &arguments.common.out {
         fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
         run.figures = walls::pictures(&slam)?;
     }
-    finish::show("slam", run, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    finish::show("slam", run, arguments.common.out.as_deref(), arguments.common.json, arguments.common.seed)?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn params(arguments: &run_slam::Arguments) -> Result<WallSlamParams> {
-    let mut params = match &arguments.params {
+    let mut params = match &arguments.common.params {
         Some(path) => read_toml(path, WallSlamParams::from_toml)?
             .validated()
             .with_context(|| format!("parameters in {} are not usable", path.display()))?,

@@ -3,7 +3,10 @@ use std::{path::PathBuf, str::FromStr};
 use wayfix_appearance_cml::{Donut, RingOrder, TurnSense};
 use wayfix_estimation_traits::Pose2;
 
-use crate::{cli::input::Topics, cml::Task};
+use crate::{
+    cli::{common::Common, input::Topics},
+    cml::Task,
+};
 
 /// Appearance maps: learn what places look like all round, and localize in what was learned.
 ///
@@ -92,23 +95,8 @@ pub(crate) struct Arguments {
     /// Which way the columns of a panorama go round [default: found from the turns of the robot].
     #[arg(long, value_enum)]
     pub(super) columns: Option<ColumnsArgument>,
-    /// A TOML file of parameters; what it does not name keeps its default. `--print-params` shows all of them.
-    #[arg(long, value_name = "FILE")]
-    pub(super) params: Option<PathBuf>,
-    /// Print the parameters that would be used, as TOML, and end: a file to start from.
-    #[arg(long)]
-    pub(super) print_params: bool,
-    /// Folder for index.html, report.json, the figures as SVG and the estimates as MCAP.
-    ///
-    /// It is created where need be. Nothing is written without it.
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    /// Print the figures as one JSON object instead of a table.
-    #[arg(long)]
-    pub(super) json: bool,
-    /// Seed of the noise of made odometry, and of the error of the start.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(super) seed: u64,
+    #[command(flatten)]
+    pub(super) common: Common,
 }
 
 const EXAMPLES: &str = "\

@@ -29,12 +29,12 @@ use crate::{
 };
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let mut params = match &arguments.params {
+    let mut params = match &arguments.common.params {
         Some(path) => read_toml(path, |text| toml::from_str(text))?,
         None => CmlParams::default(),
     };
     arguments.set_forgetting(&mut params);
-    if arguments.print_params {
+    if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -45,11 +45,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let reader = ViewReader::new(params.views, arguments.donut());
     let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
 
-    let mut estimates = arguments.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut estimates = arguments.common.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
     let mut saver = arguments.save_map.clone().map(|path| MapSaver::new(path, arguments.save_every));
     let bar = progress::bar(plan.records.len(), "appearance map");
     let mut remaining = plan.records.iter();
-    let run = cml::run(system, &plan, task, start, &params, arguments.seed, |system| {
+    let run = cml::run(system, &plan, task, start, &params, arguments.common.seed, |system| {
         if let Some(record) = remaining.next() {
             estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
             saver.iter_mut().for_each(|saver| saver.observe(record, system));
@@ -71,7 +71,13 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         summary.log = Some(ESTIMATES.to_owned());
         summary.figures = cml::pictures(&run)?;
     }
-    finish::show("cml", summary, arguments.out.as_deref(), arguments.json, arguments.seed)?;
+    finish::show(
+        "cml",
+        summary,
+        arguments.common.out.as_deref(),
+        arguments.common.json,
+        arguments.common.seed,
+    )?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -132,8 +138,14 @@ impl Arguments {
             (Some(frames), Some(poses)) => Some(read_recording(frames, poses, self.learn_stamps.as_deref())?),
             _ => None,
         };
-        let plan =
-            Plan::of_recording(&recording, taught.as_ref(), self.withhold(), params, &camera, self.seed)?;
+        let plan = Plan::of_recording(
+            &recording,
+            taught.as_ref(),
+            self.withhold(),
+            params,
+            &camera,
+            self.common.seed,
+        )?;
         let read = ReadReport::default();
         Ok(Input { plan, read, origin: Format::Images })
     }
