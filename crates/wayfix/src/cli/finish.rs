@@ -3,16 +3,26 @@
 use std::{fs, path::Path};
 
 use anyhow::{Context, Result};
-use wayfix_sensor_log::{LogEnd, ReadReport};
+use wayfix_sensor_log::{Format, LogEnd, ReadReport};
 
 use super::output::{print, tell};
 use crate::{
     report::{Machine, Report, Run, RunSummary, Suite, table, table::TableStyle},
-    system::Events,
+    system::{Drawing, EstimateLog, Events},
 };
 
 /// The estimates beside the report.
 pub(super) const ESTIMATES: &str = "estimates.mcap";
+
+/// The file of the estimates in the output folder, which is made where need be; nothing without a folder.
+pub(super) fn open_estimates<D: Drawing>(
+    out: Option<&Path>,
+    origin: Format,
+) -> Result<Option<EstimateLog<D>>> {
+    let Some(out) = out else { return Ok(None) };
+    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+    Ok(Some(EstimateLog::create(&out.join(ESTIMATES), origin)?))
+}
 
 /// Names what was refused, and counts what could not be read.
 pub(super) fn account(events: &mut Events, read: &ReadReport) {

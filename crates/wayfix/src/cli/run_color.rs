@@ -1,14 +1,8 @@
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::ExitCode,
-    str::FromStr,
-    sync::Arc,
-};
+use std::{fs, path::PathBuf, process::ExitCode, str::FromStr, sync::Arc};
 
 use anyhow::{Context, Result, ensure};
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Format, OpenOptions, Record};
+use wayfix_sensor_log::{OpenOptions, Record};
 
 use super::{
     common::Common,
@@ -122,7 +116,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
 
     let stopwatch = Stopwatch::start();
-    let mut estimates = arguments.common.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut estimates: Option<ColorEstimateLog> =
+        finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let bar = progress::bar(records.len(), "colour localization");
     let mut remaining = records.iter();
     let start = arguments.start.map(|start| start.0);
@@ -156,11 +151,6 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 
 /// Frames of the film strip.
 const FILM_FRAMES: usize = 5;
-
-fn open_estimates(out: &Path, origin: Format) -> Result<ColorEstimateLog> {
-    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-    Ok(ColorEstimateLog::create(&out.join(ESTIMATES), origin)?)
-}
 
 fn pictures(color: &mut ColorRun, records: &[Record]) -> Result<Vec<Picture>> {
     let mut pictures = color::pictures(color)?;

@@ -1,10 +1,6 @@
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{path::PathBuf, process::ExitCode};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use wayfix_line_extract::Params;
 use wayfix_sensor_log::{Format, OpenOptions};
 
@@ -68,7 +64,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
 
     let stopwatch = Stopwatch::start();
-    let mut walls = arguments.common.out.as_deref().map(|out| open_walls(out, origin)).transpose()?;
+    let mut walls: Option<LineLog> = finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let bar = progress::bar(records.len(), "walls");
     let mut remaining = records.iter();
     drive(&mut system, &records, |system| {
@@ -97,9 +93,4 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         arguments.common.seed,
     )?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn open_walls(out: &Path, origin: Format) -> Result<LineLog> {
-    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-    Ok(LineLog::create(&out.join(ESTIMATES), origin)?)
 }

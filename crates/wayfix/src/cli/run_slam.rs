@@ -1,5 +1,4 @@
 use std::{
-    fs,
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -18,7 +17,8 @@ use crate::{
     commented::commented,
     report::Run,
     slam::{
-        self, AssociationRule, EstimateLog, Profile, SavedMap, Saver, SlamRun, SlamSystem, SlamSystemParams,
+        self, AssociationRule, Profile, SavedMap, Saver, SlamEstimateLog, SlamRun, SlamSystem,
+        SlamSystemParams,
     },
     system::Stopwatch,
 };
@@ -124,7 +124,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let origin = meta.first_format();
 
     let stopwatch = Stopwatch::start();
-    let mut estimates = arguments.common.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut estimates = finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let saved = arguments.resume.as_deref().map(saved_map).transpose()?;
     let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
     let mut slam = run(&records, &params, saved, estimates.as_mut(), saver.as_mut())?;
@@ -161,18 +161,11 @@ fn params(arguments: &Arguments, meta: &LogMeta) -> Result<SlamSystemParams> {
     Ok(params)
 }
 
-fn open_estimates(out: &Path, origin: Format) -> Result<EstimateLog> {
-    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-    let mut estimates = EstimateLog::create(&out.join(ESTIMATES))?;
-    estimates.origin(origin)?;
-    Ok(estimates)
-}
-
 fn run(
     records: &[Record],
     params: &SlamSystemParams,
     saved: Option<SavedMap>,
-    mut estimates: Option<&mut EstimateLog>,
+    mut estimates: Option<&mut SlamEstimateLog>,
     mut saver: Option<&mut Saver>,
 ) -> Result<SlamRun> {
     let bar = progress::bar(records.len(), "EKF-SLAM");

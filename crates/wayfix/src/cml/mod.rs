@@ -17,7 +17,7 @@ mod run;
 mod saved;
 mod system;
 
-pub use estimates::CmlEstimateLog;
+pub use estimates::{CmlDrawing, CmlEstimateLog};
 pub use figures::{summarize, task};
 pub use odometry::made_odometry;
 pub use params::{CmlParams, MadeOdometry, PoseSigmas};

@@ -15,7 +15,7 @@ mod run;
 mod system;
 pub mod venues;
 
-pub use estimates::ColorEstimateLog;
+pub use estimates::{ColorDrawing, ColorEstimateLog};
 pub use figures::summarize;
 pub use labels::{LabelCounts, rate_of, tally};
 pub use map::{field_lines, read_map};

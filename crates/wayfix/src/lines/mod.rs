@@ -10,7 +10,7 @@ mod simplification;
 mod system;
 mod truth;
 
-pub use estimates::LineLog;
+pub use estimates::{LineDrawing, LineLog};
 pub use figures::summarize;
 pub use pictures::pictures;
 pub use simplification::simplification;

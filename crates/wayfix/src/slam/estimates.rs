@@ -1,18 +1,21 @@
-use std::{fs::File, io::BufWriter, path::Path};
+use std::{fs::File, io::BufWriter};
 
 use nalgebra::Matrix2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{Drawing, Format, LogError, McapWriter, Record, Shape, topics};
+use wayfix_sensor_log::{Drawing, LogError, McapWriter, Record, Shape, topics};
 
 use super::{Keyframe, SlamSystem};
+use crate::system::{self, EstimateLog};
 
-/// Writes the estimates beside the records of the log into an MCAP file, so that Foxglove and Rerun show the map as it is built.
-pub struct EstimateLog {
-    writer: McapWriter<BufWriter<File>>,
+/// The map as it is built beside the records, for viewers.
+pub type SlamEstimateLog = EstimateLog<SlamDrawing>;
+
+/// What [`SlamEstimateLog`] has drawn so far.
+#[derive(Default)]
+pub struct SlamDrawing {
     n_written: usize,
     path: Vec<Pose2<f64>>,
-    failure: Option<LogError>,
 }
 
 /// The map and the whole path are written with every so many keyframes: they change slowly and are long.
@@ -22,82 +25,36 @@ const SIGMAS: f64 = 2.0;
 const ROBOT_COLOR: [f64; 4] = [0.12, 0.47, 0.71, 1.0];
 const LANDMARK_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 
-impl EstimateLog {
-    /// Creates the file.
-    ///
-    /// # Errors
-    /// When it cannot be created.
-    pub fn create(path: &Path) -> Result<Self, LogError> {
-        Ok(Self { writer: McapWriter::create(path)?, n_written: 0, path: Vec::new(), failure: None })
-    }
+impl system::Drawing for SlamDrawing {
+    type System = SlamSystem;
 
-    /// Says which format the records of the log come from; before the first of them.
-    ///
-    /// # Errors
-    /// When it cannot be written.
-    pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
-        self.writer.origin(origin)
-    }
-
-    /// Writes a record of the log and what the system made of it. A failure is kept until [`finish`](Self::finish).
-    pub fn observe(&mut self, record: &Record, system: &SlamSystem) {
-        if self.failure.is_none() {
-            self.failure = self.write(record, system).err();
-        }
-    }
-
-    /// Completes the file.
-    ///
-    /// # Errors
-    /// When anything could not be written.
-    pub fn finish(self) -> Result<(), LogError> {
-        match self.failure {
-            Some(failure) => Err(failure),
-            None => self.writer.finish(),
-        }
-    }
-
-    fn write(&mut self, record: &Record, system: &SlamSystem) -> Result<(), LogError> {
-        match self.writer.record(record) {
-            Err(LogError::NotFinite { .. }) => {} // refused by the system and counted there
-            written => written?,
-        }
+    fn draw(
+        &mut self,
+        _: &Record,
+        system: &SlamSystem,
+        writer: &mut McapWriter<BufWriter<File>>,
+    ) -> Result<(), LogError> {
         for keyframe in &system.keyframes()[self.n_written..] {
             self.path.push(keyframe.pose);
-            self.writer.pose_in_frame(
+            writer.pose_in_frame(
                 topics::ESTIMATED_POSE,
                 keyframe.stamp,
                 topics::WORLD_FRAME,
                 &keyframe.pose,
             )?;
-            self.writer.frame_transform(
+            writer.frame_transform(
                 "/tf",
                 keyframe.stamp,
                 topics::WORLD_FRAME,
                 topics::BODY_FRAME,
                 &keyframe.pose,
             )?;
-            self.writer.scene_update(
-                "/estimate/robot",
-                keyframe.stamp,
-                topics::WORLD_FRAME,
-                &robot(keyframe),
-            )?;
+            writer.scene_update("/estimate/robot", keyframe.stamp, topics::WORLD_FRAME, &robot(keyframe))?;
             if self.path.len() % MAP_PERIOD == 1 {
                 let (points, drawings) = map(system);
-                self.writer.poses_in_frame(
-                    "/estimate/path",
-                    keyframe.stamp,
-                    topics::WORLD_FRAME,
-                    &self.path,
-                )?;
-                self.writer.point_cloud(
-                    "/estimate/landmarks",
-                    keyframe.stamp,
-                    topics::WORLD_FRAME,
-                    &points,
-                )?;
-                self.writer.scene_update("/estimate/map", keyframe.stamp, topics::WORLD_FRAME, &drawings)?;
+                writer.poses_in_frame("/estimate/path", keyframe.stamp, topics::WORLD_FRAME, &self.path)?;
+                writer.point_cloud("/estimate/landmarks", keyframe.stamp, topics::WORLD_FRAME, &points)?;
+                writer.scene_update("/estimate/map", keyframe.stamp, topics::WORLD_FRAME, &drawings)?;
             }
         }
         self.n_written = system.keyframes().len();

@@ -12,7 +12,7 @@ mod run;
 mod saved;
 mod system;
 
-pub use estimates::EstimateLog;
+pub use estimates::{SlamDrawing, SlamEstimateLog};
 pub(crate) use event_name::event_name;
 pub use figures::summarize;
 pub(crate) use figures::timings;

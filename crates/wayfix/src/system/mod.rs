@@ -1,10 +1,12 @@
 //! One way through: records in time order → a [`System`] → estimates, events and figures.
 
 mod drive;
+mod estimate_log;
 mod events;
 mod stopwatch;
 
 pub use drive::{drive, stream};
+pub use estimate_log::{Drawing, EstimateLog};
 pub use events::{Events, Refusal};
 pub use stopwatch::Stopwatch;
 

@@ -2,7 +2,7 @@
 
 mod arguments;
 
-use std::{fs, path::Path, process::ExitCode};
+use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_appearance_cml::{ArchiveParams, Forgetting, Learning, MapArchive, Start, TurnSense};
@@ -45,7 +45,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let reader = ViewReader::new(params.views, arguments.donut());
     let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
 
-    let mut estimates = arguments.common.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut estimates: Option<CmlEstimateLog> =
+        finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let mut saver = arguments.save_map.clone().map(|path| MapSaver::new(path, arguments.save_every));
     let bar = progress::bar(plan.records.len(), "appearance map");
     let mut remaining = plan.records.iter();
@@ -195,9 +196,4 @@ fn read_recording(frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<
         ));
     }
     Ok(recording)
-}
-
-fn open_estimates(out: &Path, origin: Format) -> Result<CmlEstimateLog> {
-    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-    Ok(CmlEstimateLog::create(&out.join(ESTIMATES), origin)?)
 }

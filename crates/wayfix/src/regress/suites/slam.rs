@@ -7,7 +7,7 @@ use wayfix_sensor_log::{OpenOptions, read_relations};
 use super::super::Job;
 use crate::{
     report::Run,
-    slam::{self, AssociationRule, EstimateLog, Profile, SlamSystemParams},
+    slam::{self, AssociationRule, Profile, SlamEstimateLog, SlamSystemParams},
     walls::{self, WallSlamParams},
 };
 
@@ -46,8 +46,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     params.association = settings.association.or(params.association);
 
     let (name, path) = job.estimates();
-    let mut estimates = EstimateLog::create(&path)?;
-    estimates.origin(log.meta().first_format())?;
+    let mut estimates = SlamEstimateLog::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let mut index = 0;
     let mut slam = slam::run(&records, &params, |system| {
