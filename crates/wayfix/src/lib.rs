@@ -20,5 +20,7 @@ mod settings;
 pub mod slam;
 pub mod system;
 pub mod track;
+#[cfg(doctest)]
+mod tutorials;
 pub mod views;
 pub mod walls;
