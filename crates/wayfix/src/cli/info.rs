@@ -85,11 +85,15 @@ fn usable_for(summary: &LogSummary) -> Vec<String> {
         lines.push("not usable for `wayfix run slam`: no odometry (velocities or increments)".to_owned());
     } else if !sees_landmarks && scans && !steps {
         lines.push(
-            "not usable for `wayfix run slam`: maps of walls need odometry increments or velocities".to_owned(),
+            "not usable for `wayfix run slam`: maps of walls need odometry increments or velocities"
+                .to_owned(),
         );
     }
     if lines.is_empty() {
-        lines.push("usable for no `wayfix run`: neither sightings of landmarks nor laser scans nor images".to_owned());
+        lines.push(
+            "usable for no `wayfix run`: neither sightings of landmarks nor laser scans nor images"
+                .to_owned(),
+        );
     }
     lines
 }
