@@ -85,3 +85,18 @@ fn gps_may_be_missing_the_other_files_not() {
     fs::remove_file(folder.path().join("odometry.csv")).unwrap();
     assert!(matches!(open(folder.path(), &options), Err(LogError::NotFound { .. })));
 }
+
+#[test]
+fn a_fifth_column_says_which_tree_it_is_where_somebody_knows() {
+    let folder = tempfile::tempdir().unwrap();
+    set(folder.path());
+    let labelled = "t_s,range_m,bearing_rad,diameter_m,landmark\n1.025,20,1.0,0.3,7\n1.025,10,2.5,0.4,\n1.025,9,2.5,0.4,oak\n";
+    write(folder.path(), "trees.csv", labelled);
+    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    let look = records.iter().find_map(|record| match &record.data {
+        Data::Sightings(look) => Some(look.iter().map(|sighting| sighting.target).collect::<Vec<_>>()),
+        _ => None,
+    });
+    assert_eq!(look.unwrap(), [Target::Landmark(7), Target::Unlabelled]);
+    assert_eq!(report.problems.get(&ProblemKind::NotANumber), Some(&1));
+}

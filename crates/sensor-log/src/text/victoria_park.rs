@@ -3,7 +3,7 @@
 //! | file | columns (the first row names them) |
 //! | --- | --- |
 //! | `odometry.csv` | `t_s,speed_mps,steering_rad`: the encoder of the rear left wheel and the steering |
-//! | `trees.csv` | `t_s,range_m,bearing_rad,diameter_m`: trunks in the laser scans; bearing 0 to the right, π/2 ahead |
+//! | `trees.csv` | `t_s,range_m,bearing_rad,diameter_m`: trunks in the laser scans; bearing 0 to the right, π/2 ahead; a fifth column `landmark`, which may be there, says which tree it is, and is empty where nobody knows |
 //! | `gps.csv` | `t_s,x_m,y_m`: fixes of the antenna; the file may be missing |
 //!
 //! Bearings come out as REP 103 has them, 0 ahead, and are those of the laser, which sits 3.78 m ahead of the rear axle and 0.5 m left.
@@ -15,7 +15,7 @@ use wayfix_estimation_traits::wrap_angle;
 
 use super::Lines;
 use super::gps::drop_jumps;
-use super::row::{RowError, comma_columns, number, stamp};
+use super::row::{RowError, comma_columns, id, number, stamp};
 use super::time_check::TimeCheck;
 use crate::format::shortened;
 use crate::{
@@ -59,19 +59,36 @@ fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, Lo
 /// Rows of the same stamp are one look, in the order of the file.
 fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Sighting>)> = BTreeMap::new();
-    let header = ["t_s", "range_m", "bearing_rad", "diameter_m"];
-    for_each_row(path, header, report, |_, [t, range, bearing, diameter]| {
+    let mut take = |[t, range, bearing, diameter]: [&str; 4], target: Target| {
         let (stamp, range, width) = (stamp(t)?, number(range)?, number(diameter)?);
         let bearing = wrap_angle(number(bearing)? - std::f64::consts::FRAC_PI_2);
         let (widths, look) = looks.entry(stamp).or_default();
         widths.push(width);
-        look.push(Sighting { target: Target::Unlabelled, range, bearing });
+        look.push(Sighting { target, range, bearing });
         Ok(stamp)
-    })?;
+    };
+    if is_labelled(path)? {
+        let header = ["t_s", "range_m", "bearing_rad", "diameter_m", "landmark"];
+        for_each_row(path, header, report, |_, [t, range, bearing, diameter, landmark]| {
+            let target =
+                if landmark.is_empty() { Target::Unlabelled } else { Target::Landmark(id(landmark)?) };
+            take([t, range, bearing, diameter], target)
+        })?;
+    } else {
+        let header = ["t_s", "range_m", "bearing_rad", "diameter_m"];
+        for_each_row(path, header, report, |_, row| take(row, Target::Unlabelled))?;
+    }
     let to_records = |(stamp, (widths, look))| {
         [Data::SightedWidths(widths), Data::Sightings(look)].map(|data| Record { stamp, data })
     };
     Ok(looks.into_iter().flat_map(to_records).collect())
+}
+
+/// Whether the header says that rows name their tree.
+fn is_labelled(path: &Path) -> Result<bool, LogError> {
+    let mut lines = Lines::open(path)?;
+    let header = lines.next_row()?;
+    Ok(header.and_then(|row| row.text.ok()).is_some_and(|text| comma_columns::<5>(text).is_ok()))
 }
 
 fn read_fixes(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
