@@ -192,6 +192,9 @@ pub enum LogError {
     /// Writing an MCAP file failed.
     #[error("MCAP output: {0}")]
     McapOutput(Box<mcap::McapError>),
+    /// A [`MessageSink`](crate::MessageSink) of the caller's own failed.
+    #[error("messages cannot be passed on: {0}")]
+    Sink(Box<dyn std::error::Error + Send + Sync>),
     /// A name that is no format.
     #[error("{name:?} is no log format; the formats are {}", Format::NAMES)]
     NoSuchFormat {

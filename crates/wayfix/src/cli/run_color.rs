@@ -5,10 +5,11 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{OpenOptions, Record};
 
 use super::{
+    account::account,
     common::Common,
-    finish::{self, ESTIMATES},
     input::{Topics, read_toml},
     output::{print, tell},
+    outputs::Outputs,
     progress,
 };
 use crate::{
@@ -115,9 +116,9 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         tell(&read);
     }
 
+    let mut outputs = Outputs::open("color", &arguments.common)?;
+    let mut estimates: Option<ColorEstimateLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut estimates: Option<ColorEstimateLog> =
-        finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let bar = progress::bar(records.len(), "colour localization");
     let mut remaining = records.iter();
     let start = arguments.start.map(|start| start.0);
@@ -129,23 +130,15 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let mut color = color?;
-    finish::account(color.system.events(), &read);
+    account(color.system.events(), &read);
 
     let name = arguments.log.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let mut run = Run { name, seconds, ..color::summarize(&mut color) };
+    let run = Run { name, seconds, ..color::summarize(&mut color) };
     if let Some(estimates) = estimates {
         estimates.finish()?;
-        run.log = Some(ESTIMATES.to_owned());
-        run.figures = pictures(&mut color, &records)?;
     }
-    finish::show(
-        "color",
-        run,
-        arguments.common.out.as_deref(),
-        arguments.common.json,
-        arguments.common.seed,
-    )?;
+    outputs.show(run, || pictures(&mut color, &records))?;
     Ok(ExitCode::SUCCESS)
 }
 

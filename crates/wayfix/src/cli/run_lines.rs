@@ -5,10 +5,11 @@ use wayfix_line_extract::Params;
 use wayfix_sensor_log::{Format, OpenOptions};
 
 use super::{
+    account::account,
     common::Common,
-    finish::{self, ESTIMATES},
     input::{Topics, read_toml},
     output::{print, tell},
+    outputs::Outputs,
     progress,
 };
 use crate::{
@@ -63,8 +64,9 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         tell(&read);
     }
 
+    let mut outputs = Outputs::open("lines", &arguments.common)?;
+    let mut walls: Option<LineLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut walls: Option<LineLog> = finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let bar = progress::bar(records.len(), "walls");
     let mut remaining = records.iter();
     drive(&mut system, &records, |system| {
@@ -75,22 +77,14 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     ensure!(system.n_scans() > 0, "{}: no laser scan in the log", arguments.log.display());
-    finish::account(system.events(), &read);
+    account(system.events(), &read);
 
     let name = arguments.log.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let mut run = Run { name, seconds, ..lines::summarize(&mut system) };
+    let run = Run { name, seconds, ..lines::summarize(&mut system) };
     if let Some(walls) = walls {
         walls.finish()?;
-        run.log = Some(ESTIMATES.to_owned());
-        run.figures = lines::pictures(&system)?;
     }
-    finish::show(
-        "lines",
-        run,
-        arguments.common.out.as_deref(),
-        arguments.common.json,
-        arguments.common.seed,
-    )?;
+    outputs.show(run, || Ok(lines::pictures(&system)?))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -7,10 +7,11 @@ use anyhow::{Context, Result};
 use wayfix_sensor_log::{Format, LogMeta, OpenOptions, Record};
 
 use super::{
+    account::account,
     common::Common,
-    finish::{self, ESTIMATES},
     input::{Topics, read_toml},
     output::{print, tell},
+    outputs::Outputs,
     progress, run_walls,
 };
 use crate::{
@@ -123,17 +124,18 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     let origin = meta.first_format();
 
+    let mut outputs = Outputs::open("slam", &arguments.common)?;
+    let mut estimates = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut estimates = finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let saved = arguments.resume.as_deref().map(saved_map).transpose()?;
     let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
     let mut slam = run(&records, &params, saved, estimates.as_mut(), saver.as_mut())?;
     if let Some(saver) = saver {
         saver.finish(&slam.system).context("cannot save the map")?;
     }
-    finish::account(slam.events(), &read);
+    account(slam.events(), &read);
 
-    let mut run = Run {
+    let run = Run {
         name: arguments.log.display().to_string(),
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..slam::summarize(&mut slam)
@@ -141,10 +143,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     run.notes.iter().for_each(tell);
     if let Some(estimates) = estimates {
         estimates.finish()?;
-        run.log = Some(ESTIMATES.to_owned());
-        run.figures = slam::pictures(&slam)?;
     }
-    finish::show("slam", run, arguments.common.out.as_deref(), arguments.common.json, arguments.common.seed)?;
+    outputs.show(run, || Ok(slam::pictures(&slam)?))?;
     Ok(ExitCode::SUCCESS)
 }
 

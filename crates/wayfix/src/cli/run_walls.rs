@@ -1,12 +1,13 @@
-use std::{fs, process::ExitCode};
+use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_sensor_log::{Data, ReadReport, Record, read_relations};
 
 use super::{
-    finish,
+    account::account,
     input::read_toml,
     output::{print, tell},
+    outputs::Outputs,
     progress, run_slam,
 };
 use crate::{
@@ -42,12 +43,13 @@ pub(super) fn main(
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
+    let outputs = Outputs::open("slam", &arguments.common)?;
     let stopwatch = Stopwatch::start();
     let bar = progress::bar(records.len(), "EKF-SLAM with walls");
     let slam = walls::run(records, &params, |_| bar.inc(1));
     bar.finish_and_clear();
     let mut slam = slam?;
-    finish::account(slam.events(), read);
+    account(slam.events(), read);
     let mut run = Run {
         name: arguments.log.display().to_string(),
         seconds: stopwatch.elapsed().as_secs_f64(),
@@ -60,11 +62,7 @@ pub(super) fn main(
         }
         run.metrics.extend(walls::relation_metrics(&slam, &relations));
     }
-    if let Some(out) = &arguments.common.out {
-        fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-        run.figures = walls::pictures(&slam)?;
-    }
-    finish::show("slam", run, arguments.common.out.as_deref(), arguments.common.json, arguments.common.seed)?;
+    outputs.show(run, || Ok(walls::pictures(&slam)?))?;
     Ok(ExitCode::SUCCESS)
 }
 

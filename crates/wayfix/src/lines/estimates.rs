@@ -1,9 +1,7 @@
-use std::{fs::File, io::BufWriter};
-
-use wayfix_sensor_log::{Data, Drawing, LogError, McapWriter, Record, Shape, topics};
+use wayfix_sensor_log::{Data, Drawing, LogError, Record, Shape, topics};
 
 use super::{LineSystem, ScanWalls};
-use crate::system::{self, EstimateLog};
+use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// The walls of every scan beside the records, for viewers.
 pub type LineLog = EstimateLog<LineDrawing>;
@@ -32,7 +30,7 @@ impl system::Drawing for LineDrawing {
         &mut self,
         record: &Record,
         system: &LineSystem,
-        writer: &mut McapWriter<BufWriter<File>>,
+        writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
         if let Data::TruePose(pose) | Data::EstimatedPose(pose) = &record.data {
             let (world, body) = (topics::WORLD_FRAME, topics::BODY_FRAME);

@@ -1,12 +1,10 @@
-use std::{fs::File, io::BufWriter};
-
 use nalgebra::Matrix2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{Drawing, LogError, McapWriter, Record, Shape, topics};
+use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
 
 use super::{Keyframe, SlamSystem};
-use crate::system::{self, EstimateLog};
+use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// The map as it is built beside the records, for viewers.
 pub type SlamEstimateLog = EstimateLog<SlamDrawing>;
@@ -28,12 +26,7 @@ const LANDMARK_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 impl system::Drawing for SlamDrawing {
     type System = SlamSystem;
 
-    fn draw(
-        &mut self,
-        _: &Record,
-        system: &SlamSystem,
-        writer: &mut McapWriter<BufWriter<File>>,
-    ) -> Result<(), LogError> {
+    fn draw(&mut self, _: &Record, system: &SlamSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {
         for keyframe in &system.keyframes()[self.n_written..] {
             self.path.push(keyframe.pose);
             writer.pose_in_frame(

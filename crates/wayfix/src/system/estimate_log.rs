@@ -1,13 +1,16 @@
-use std::{fs::File, io::BufWriter, path::Path};
+use std::path::Path;
 
-use wayfix_sensor_log::{Format, LogError, McapWriter, Record};
+use wayfix_sensor_log::{Format, LogError, McapFile, MessageWriter, Record, Sinks};
+
+/// What estimates are drawn with, wherever they go.
+pub type EstimateWriter = MessageWriter<Sinks>;
 
 /// What a system's estimates look like in a viewer.
 pub trait Drawing: Default {
     /// The system.
     type System;
 
-    /// Adds what the system made of `record`, which is in the file already.
+    /// Adds what the system made of `record`, which is written already.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -15,13 +18,13 @@ pub trait Drawing: Default {
         &mut self,
         record: &Record,
         system: &Self::System,
-        writer: &mut McapWriter<BufWriter<File>>,
+        writer: &mut EstimateWriter,
     ) -> Result<(), LogError>;
 }
 
-/// Writes the estimates of a system beside the records of its log into an MCAP file, for Foxglove and Rerun.
+/// Writes the estimates of a system beside the records of its log, into an MCAP file or to viewers, Foxglove and Rerun.
 pub struct EstimateLog<D: Drawing> {
-    writer: McapWriter<BufWriter<File>>,
+    writer: EstimateWriter,
     drawing: D,
     failure: Option<LogError>,
 }
@@ -32,7 +35,15 @@ impl<D: Drawing> EstimateLog<D> {
     /// # Errors
     /// When it cannot be created.
     pub fn create(path: &Path, origin: Format) -> Result<Self, LogError> {
-        let mut writer = McapWriter::create(path)?;
+        Self::new(vec![Box::new(McapFile::create(path)?)], origin)
+    }
+
+    /// Writes into all of `sinks`.
+    ///
+    /// # Errors
+    /// When one of them fails.
+    pub fn new(sinks: Sinks, origin: Format) -> Result<Self, LogError> {
+        let mut writer = MessageWriter::into_sink(sinks);
         writer.origin(origin)?;
         Ok(Self { writer, drawing: D::default(), failure: None })
     }
@@ -44,7 +55,7 @@ impl<D: Drawing> EstimateLog<D> {
         }
     }
 
-    /// Completes the file.
+    /// Completes what was written.
     ///
     /// # Errors
     /// When anything could not be written.
