@@ -1,6 +1,6 @@
 //! Stamped robot records: readers for public data sets, MCAP and folders of images, writers for the same.
 //!
-//! [`open`] gives the records of a log in time order, whatever its format, and a [`ReadReport`] of what could not be read:
+//! [`open`] (of a log in several files, [`open_all`]) gives the records of a log in time order, whatever its format, and a [`ReadReport`] of what could not be read:
 //!
 //! | format | is | holds |
 //! | --- | --- | --- |
@@ -66,7 +66,7 @@ pub use mcap_log::{
     ChannelKey, Drawing, ImageOutline, McapFile, McapWriter, Message, MessageSink, MessageWriter, Shape,
     Sinks, topics,
 };
-pub use open::{OpenOptions, PoseKind, open};
+pub use open::{OpenOptions, PoseKind, open, open_all};
 pub use record::{
     CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, TrueWall, Velocity,
 };

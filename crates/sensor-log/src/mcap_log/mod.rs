@@ -12,6 +12,7 @@ mod folder;
 mod frames;
 mod held;
 mod origin;
+mod parts;
 mod reader;
 mod record;
 mod reorder;
@@ -26,7 +27,7 @@ mod writer;
 
 pub use drawing::{Drawing, ImageOutline, Shape};
 pub use file::McapFile;
-pub(crate) use folder::{file_of, files_in};
+pub(crate) use folder::{files_in, files_of};
 pub(crate) use reader::McapRecords;
 pub use sink::{ChannelKey, Message, MessageSink, Sinks};
 pub use writer::{McapWriter, MessageWriter};

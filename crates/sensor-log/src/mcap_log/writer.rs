@@ -11,8 +11,8 @@ use super::drawing::{image_annotations, scene_update};
 use super::file::McapFile;
 use super::held::Held;
 use super::sink::{Message, MessageSink};
-use super::{Drawing, ImageOutline, encode, topics};
-use crate::{Format, LogError, Record, Stamp};
+use super::{Drawing, ImageOutline, camera, encode, topics};
+use crate::{EncodedImage, Format, ImageFormat, LogError, Record, Stamp};
 
 /// Writes records and things to draw as Foxglove messages, into a file ([`McapWriter`]) or wherever else messages can go ([`MessageSink`]).
 pub struct MessageWriter<S: MessageSink> {
@@ -180,6 +180,18 @@ impl<S: MessageSink> MessageWriter<S> {
     ) -> Result<(), LogError> {
         let message = image_annotations(encode::timestamp(stamp)?, outlines);
         self.message(topic, stamp, &message)
+    }
+
+    /// A picture as it is stored, as `foxglove.CompressedImage`; JPEG or PNG.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    pub fn image(&mut self, topic: &str, stamp: Stamp, image: &EncodedImage) -> Result<(), LogError> {
+        if image.format == ImageFormat::Pnm || ImageFormat::of_bytes(&image.bytes) != Some(image.format) {
+            let (what, n_bytes) = ("image", image.bytes.len());
+            return Err(LogError::NotAnImage { what, format: image.format, n_bytes, stamp });
+        }
+        self.message(topic, stamp, &camera::encode_image(encode::timestamp(stamp)?, image))
     }
 
     /// Completes the file with its index, or whatever else the messages went into.

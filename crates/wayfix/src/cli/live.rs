@@ -16,7 +16,13 @@ pub(super) struct LiveArguments {
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1", value_parser = address)]
     live: Option<SocketAddr>,
     /// How fast `--live` goes: 1 as the log was recorded, 4 four times as fast, 0 as fast as it is computed.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, requires = "live")]
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 1.0,
+        requires = "live",
+        allow_negative_numbers = true
+    )]
     pace: f64,
 }
 

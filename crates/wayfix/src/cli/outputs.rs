@@ -13,12 +13,14 @@ use super::{
 };
 use crate::{
     plot::Picture,
-    report::{Machine, Report, Run, RunSummary, Suite, table, table::TableStyle},
+    report::{Machine, Report, Run, RunSummary, Suite, foxglove_layout, table, table::TableStyle},
     system::{Drawing, EstimateLog},
 };
 
 /// The estimates beside the report.
 const ESTIMATES: &str = "estimates.mcap";
+/// How Foxglove should show them.
+const LAYOUT: &str = "foxglove-layout.json";
 
 /// Where the results of a `wayfix run` go: standard output, and where they are wanted a folder and viewers.
 pub(super) struct Outputs<'a> {
@@ -66,6 +68,7 @@ impl<'a> Outputs<'a> {
         if self.common.out.is_some() {
             run.figures = pictures()?;
             run.log = self.log.map(str::to_owned);
+            run.layout = self.write_layout()?;
         }
         let figures = if json {
             serde_json::to_string(&RunSummary::new(&run, seed))? + "\n"
@@ -78,6 +81,16 @@ impl<'a> Outputs<'a> {
         print(figures)?;
         self.live.iter().for_each(Live::stay);
         Ok(())
+    }
+
+    /// The layout beside the estimates, where both are wanted and there is one.
+    fn write_layout(&self) -> Result<Option<String>> {
+        let (Some(path), Some(layout), Some(_)) = (self.file(LAYOUT), foxglove_layout(self.suite), self.log)
+        else {
+            return Ok(None);
+        };
+        fs::write(&path, layout).with_context(|| format!("cannot write {}", path.display()))?;
+        Ok(Some(LAYOUT.to_owned()))
     }
 }
 

@@ -9,7 +9,7 @@ use wayfix_sensor_log::{Format, LogMeta, OpenOptions, Record};
 use super::{
     account::account,
     common::Common,
-    input::{Topics, read_toml},
+    input::{Topics, name_of, read_toml},
     output::{print, tell},
     outputs::Outputs,
     progress, run_walls,
@@ -43,8 +43,10 @@ use crate::{
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// The log: an MCAP file, which may be a ROS 2 bag, the folder of a UTIAS or Victoria Park set, a text file of range-bearing lines, or laser scans of CARMEN or JSON.
-    #[arg(long, value_name = "PATH")]
-    pub(super) log: PathBuf,
+    ///
+    /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
+    #[arg(long, value_name = "PATH", required = true)]
+    pub(super) log: Vec<PathBuf>,
     /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: found out by looking].
     #[arg(long)]
     pub(super) format: Option<Format>,
@@ -108,14 +110,14 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         topics: arguments.topics.topics.clone(),
         ..OpenOptions::default()
     };
-    let log = wayfix_sensor_log::open(&arguments.log, &options)?;
+    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let meta = log.meta().clone();
     let (records, read) = log.read_all();
     if !read.is_clean() {
         tell(&read);
     }
     if run_walls::is_for(&records) {
-        return run_walls::main(&arguments, &records, &read);
+        return run_walls::main(&arguments, &records, meta.first_format(), &read);
     }
     let params = params(&arguments, &meta)?;
     if arguments.common.print_params {
@@ -136,7 +138,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     account(slam.events(), &read);
 
     let run = Run {
-        name: arguments.log.display().to_string(),
+        name: name_of(&arguments.log),
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..slam::summarize(&mut slam)
     };

@@ -42,9 +42,9 @@ pub(super) struct Arguments {
     /// A folder of pictures, JPEG or PNG, in the order of their names.
     #[arg(long, value_name = "DIR", required_unless_present_any = ["log", "print_params"], conflicts_with = "log")]
     frames: Option<PathBuf>,
-    /// A log with images, an MCAP file, instead of --frames.
+    /// A log with images, an MCAP file, instead of --frames; several are the files of one recording.
     #[arg(long, value_name = "PATH")]
-    log: Option<PathBuf>,
+    log: Vec<PathBuf>,
     /// Where the target is in the first frame: x,y,w,h or eight numbers [default: the first true box].
     #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["truth", "print_params"])]
     init: Option<BoxArgument>,
@@ -131,14 +131,14 @@ impl Arguments {
     /// The log, and the frames a second of a folder.
     fn open(&self) -> Result<(Log, Option<f64>)> {
         let mut options = OpenOptions::default();
-        match (&self.frames, &self.log) {
+        match (&self.frames, self.log.as_slice()) {
             (Some(folder), _) => {
                 options.format = Some(Format::Images);
                 let rate_hz = Some(options.frame_rate_hz);
                 Ok((wayfix_sensor_log::open(folder, &options)?, rate_hz))
             }
-            (None, Some(path)) => Ok((wayfix_sensor_log::open(path, &options)?, None)),
-            (None, None) => anyhow::bail!("give --frames or --log"),
+            (None, []) => anyhow::bail!("give --frames or --log"),
+            (None, paths) => Ok((wayfix_sensor_log::open_all(paths, &options)?, None)),
         }
     }
 }

@@ -129,7 +129,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         real = real.shifted(-dx, -dy);
     }
 
-    let outputs = Outputs::open("views", &arguments.common)?;
+    let mut outputs = Outputs::open("views", &arguments.common)?;
     let stopwatch = Stopwatch::start();
     let setup = Setup {
         view: arguments.view as usize,
@@ -146,6 +146,10 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let name = arguments.scene.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
     let run = Run { name, seconds, ..views::summarize(&views) };
+    let sinks = outputs.sinks()?;
+    if !sinks.is_empty() {
+        views::draw_drive(&views, &real, arguments.common.seed, sinks)?;
+    }
     outputs.show(run, || views::pictures(&views, learned, &real, arguments.common.seed))?;
     Ok(ExitCode::SUCCESS)
 }

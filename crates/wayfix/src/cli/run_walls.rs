@@ -1,11 +1,11 @@
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use wayfix_sensor_log::{Data, ReadReport, Record, read_relations};
+use wayfix_sensor_log::{Data, Format, ReadReport, Record, read_relations};
 
 use super::{
     account::account,
-    input::read_toml,
+    input::{name_of, read_toml},
     output::{print, tell},
     outputs::Outputs,
     progress, run_slam,
@@ -15,7 +15,7 @@ use crate::{
     report::Run,
     slam::AssociationRule,
     system::Stopwatch,
-    walls::{self, WallSlamParams},
+    walls::{self, WallEstimateLog, WallSlamParams},
 };
 
 /// Whether a log is one of scans: walls are its landmarks then.
@@ -28,6 +28,7 @@ pub(super) fn is_for(records: &[Record]) -> bool {
 pub(super) fn main(
     arguments: &run_slam::Arguments,
     records: &[Record],
+    origin: Format,
     read: &ReadReport,
 ) -> Result<ExitCode> {
     for (given, option) in [
@@ -43,15 +44,25 @@ pub(super) fn main(
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let outputs = Outputs::open("slam", &arguments.common)?;
+    let mut outputs = Outputs::open("slam", &arguments.common)?;
+    let mut estimates: Option<WallEstimateLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let bar = progress::bar(records.len(), "EKF-SLAM with walls");
-    let slam = walls::run(records, &params, |_| bar.inc(1));
+    let mut remaining = records.iter();
+    let slam = walls::run(records, &params, |system| {
+        if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
+            estimates.observe(record, system);
+        }
+        bar.inc(1);
+    });
     bar.finish_and_clear();
     let mut slam = slam?;
+    if let Some(estimates) = estimates {
+        estimates.finish()?;
+    }
     account(slam.events(), read);
     let mut run = Run {
-        name: arguments.log.display().to_string(),
+        name: name_of(&arguments.log),
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..walls::summarize(&mut slam)
     };

@@ -26,6 +26,8 @@ const WALL_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 impl system::Drawing for LineDrawing {
     type System = LineSystem;
 
+    const DRAWS_POSES: bool = false;
+
     fn draw(
         &mut self,
         record: &Record,

@@ -1,14 +1,20 @@
 use std::path::Path;
 
-use wayfix_sensor_log::{Format, LogError, McapFile, MessageWriter, Record, Sinks};
+use wayfix_sensor_log::{Data, Format, LogError, McapFile, MessageWriter, Record, Sinks, topics};
 
 /// What estimates are drawn with, wherever they go.
 pub type EstimateWriter = MessageWriter<Sinks>;
+
+/// Poses in the log that another program estimated, beside those of ours.
+pub const OTHER_POSES: &str = "/other/pose";
 
 /// What a system's estimates look like in a viewer.
 pub trait Drawing: Default {
     /// The system.
     type System;
+
+    /// Whether it draws where the robot is. Poses that another program estimated are then kept apart, on [`OTHER_POSES`].
+    const DRAWS_POSES: bool = true;
 
     /// Adds what the system made of `record`, which is written already.
     ///
@@ -67,7 +73,13 @@ impl<D: Drawing> EstimateLog<D> {
     }
 
     fn write(&mut self, record: &Record, system: &D::System) -> Result<(), LogError> {
-        match self.writer.record(record) {
+        let written = match &record.data {
+            Data::EstimatedPose(pose) if D::DRAWS_POSES && pose.is_finite() => {
+                self.writer.pose_in_frame(OTHER_POSES, record.stamp, topics::WORLD_FRAME, pose)
+            }
+            _ => self.writer.record(record),
+        };
+        match written {
             Err(LogError::NotFinite { .. }) => {} // refused by the system and counted there
             written => written?,
         }

@@ -110,9 +110,9 @@ impl Arguments {
             ColumnsArgument::Counterclockwise => TurnSense::Counterclockwise,
         });
         let camera = CameraChoice { donut: self.donut(), sense: told.or(saved_sense) };
-        if let Some(log) = &self.log {
+        if !self.log.is_empty() {
             let options = OpenOptions { topics: self.topics.topics.clone(), ..OpenOptions::default() };
-            let log = wayfix_sensor_log::open(log, &options)?;
+            let log = wayfix_sensor_log::open_all(&self.log, &options)?;
             let origin = log.meta().first_format();
             let (records, read) = log.read_all();
             if !read.is_clean() {
