@@ -25,7 +25,7 @@ fn put(bag: &mut Bag, steps: std::ops::Range<i32>, wants: impl Fn(&str) -> bool)
             bag.put("/odom", ODOMETRY, log_time, odometry(step, [f64::from(step), 0.1, 0.0], 0.0));
         }
         if wants("/scan") {
-            bag.put("/scan", SCAN, log_time + SECOND / 2, scan(step, &[1.0, f64::from(step)]));
+            bag.put("/scan", SCAN, log_time + SECOND / 2, scan(step, &[1.0, step as f32]));
         }
     }
 }
