@@ -62,10 +62,7 @@ fn steps() -> Result<Vec<Step>> {
     Ok(vec![
         step("fmt", &["fmt", "--all", "--check"]),
         task("tidy", &["tidy"]),
-        step(
-            "clippy",
-            &["clippy", "--workspace", "--all-targets", LIVE, "--locked", "--", "-D", "warnings"],
-        ),
+        step("clippy", &["clippy", "--workspace", "--all-targets", LIVE, "--locked", "--", "-D", "warnings"]),
         tests,
         step("doctests", &["test", "--workspace", LIVE, "--doc", "--locked"]),
         docs,

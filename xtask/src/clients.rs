@@ -92,11 +92,25 @@ fn convert_ros_bags() -> Result<()> {
 
 /// A run with the live view, as a WebSocket client sees it that is not ours.
 fn watch_live() -> Result<()> {
-    shell::check(&mut shell::command("cargo", &["build", "--quiet", "--package", "wayfix", "--features", "live"]))?;
+    shell::check(&mut shell::command(
+        "cargo",
+        &["build", "--quiet", "--package", "wayfix", "--features", "live"],
+    ))?;
     let wayfix = shell::target_dir().join("debug").join("wayfix");
     let out = shell::target_dir().join("live");
     // Twenty times as fast as it was recorded: some three seconds.
-    let run = ["run", "slam", "--log", "fixtures/loop_known.mcap", "--live", "0", "--pace", "20", "--json", "--out"];
+    let run = [
+        "run",
+        "slam",
+        "--log",
+        "fixtures/loop_known.mcap",
+        "--live",
+        "0",
+        "--pace",
+        "20",
+        "--json",
+        "--out",
+    ];
     let mut python = shell::command(shell::python_tool("python3"), &["xtask/clients/watch_live.py"]);
     shell::check(python.arg(out.join("estimates.mcap")).arg(wayfix).args(run).arg(out))
 }

@@ -5,7 +5,9 @@ use wayfix_sensor_log::{EncodedImage, Stamp};
 use super::{ColorRun, ColorSystem, field_lines};
 use crate::plot::{FilmFrame, FilmStrip, Picture};
 
-/// Frames of the film beside each other; two rows hold all.
+/// Frames of the film, each of which stands for a part of the run.
+const N_FRAMES: usize = 6;
+/// Frames beside each other; two rows hold all.
 const FRAMES_A_ROW: usize = 3;
 /// Width of a frame, pixels.
 const WIDTH: usize = 480;
@@ -18,10 +20,11 @@ const ESTIMATE: [u8; 3] = [240, 160, 0];
 const TRUTH: [u8; 3] = [214, 39, 40];
 
 /// The particles on the field at some moments of a run: watched while it goes, drawn when it is over.
+///
+/// Of each sixth of the run it is the moment with the most particles, which is when the robot knows least.
 pub struct ParticleFilm {
-    /// After how many camera frames they are kept.
-    moments: Vec<usize>,
-    kept: Vec<Moment>,
+    n_camera_frames: usize,
+    kept: [Option<Moment>; N_FRAMES],
 }
 
 struct Moment {
@@ -31,22 +34,19 @@ struct Moment {
 }
 
 impl ParticleFilm {
-    /// For a log of so many camera frames: the first, the third and the tenth, where most happens, and the ends of its thirds.
-    pub fn new(n_frames: usize) -> Self {
-        let mut moments = vec![1, 3, 10, n_frames / 3, 2 * n_frames / 3, n_frames];
-        moments.retain(|moment| (1..=n_frames).contains(moment));
-        moments.sort_unstable();
-        moments.dedup();
-        Self { moments, kept: Vec::new() }
+    /// For a log of so many camera frames.
+    pub fn new(n_camera_frames: usize) -> Self {
+        Self { n_camera_frames, kept: [const { None }; N_FRAMES] }
     }
 
     /// Looks at the system; to be called after every record.
     pub fn observe(&mut self, system: &ColorSystem) {
         let (Some(frame), Some(localizer)) = (system.frames().last(), system.localizer()) else { return };
-        let is_kept = self.kept.last().is_some_and(|kept| kept.stamp == frame.stamp);
-        if !is_kept && self.moments.contains(&system.frames().len()) {
+        let kept = &mut self.kept[part_of(system.frames().len() - 1, self.n_camera_frames)];
+        let n_kept = kept.as_ref().map_or(0, |kept| kept.particles.len());
+        if localizer.poses().count() > n_kept {
             let particles = localizer.poses().map(|(pose, _)| [pose.x(), pose.y()]).collect();
-            self.kept.push(Moment { stamp: frame.stamp, particles, estimate: *frame.pose.mean() });
+            *kept = Some(Moment { stamp: frame.stamp, particles, estimate: *frame.pose.mean() });
         }
     }
 
@@ -69,7 +69,7 @@ impl ParticleFilm {
             let caption = format!("{:.1} s, {} particles", run.seconds(moment.stamp), moment.particles.len());
             Ok(FilmFrame { image, caption })
         };
-        let frames: Vec<FilmFrame> = self.kept.iter().map(frame).collect::<Result<_>>()?;
+        let frames: Vec<FilmFrame> = self.kept.iter().flatten().map(frame).collect::<Result<_>>()?;
         let legends = ["blue: particles about the most probable place", "orange: estimate, red: truth"];
         let rows = frames.chunks(FRAMES_A_ROW).zip(legends);
         let film = FilmStrip {
@@ -79,6 +79,11 @@ impl ParticleFilm {
         };
         Ok(film.draw()?)
     }
+}
+
+/// Which part of the run a camera frame is in; a log may have more frames than it was said to have.
+fn part_of(frame: usize, n_camera_frames: usize) -> usize {
+    (frame * N_FRAMES / n_camera_frames.max(1)).min(N_FRAMES - 1)
 }
 
 /// Pixels over a part of the plane, y up.
@@ -148,11 +153,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_lie_in_the_log_and_come_once() {
-        assert_eq!(ParticleFilm::new(300).moments, [1, 3, 10, 100, 200, 300]);
-        assert_eq!(ParticleFilm::new(9).moments, [1, 3, 6, 9]);
-        assert_eq!(ParticleFilm::new(1).moments, [1]);
-        assert!(ParticleFilm::new(0).moments.is_empty());
+    fn the_parts_of_a_run_are_equal_and_all_of_it() {
+        let parts = |n: usize| (0..n).map(|frame| part_of(frame, n)).collect::<Vec<_>>();
+        assert_eq!(parts(12), [0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]);
+        assert_eq!(parts(3), [0, 2, 4]);
+        assert_eq!((part_of(0, 0), part_of(99, 12)), (0, N_FRAMES - 1));
     }
 
     #[test]
