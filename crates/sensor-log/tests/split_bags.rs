@@ -1,5 +1,7 @@
 //! Logs in several files: a recorder split them, or several recorders ran.
 
+#![expect(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
+
 mod common;
 
 use std::fs;
