@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One Kalman predict and update in OpenCV, filterpy and plain numpy, with whichever of them is installed."""
+"""One Kalman predict and update in OpenCV, filterpy, Stone Soup and plain numpy, with whichever of them is installed."""
 
 import importlib.util
 import os
@@ -48,6 +48,33 @@ def filterpy(f, h, q, r, z):
     return step
 
 
+def stone_soup(f, h, q, r, z):
+    from datetime import datetime, timedelta
+
+    from stonesoup.models.measurement.linear import LinearGaussian
+    from stonesoup.models.transition.linear import LinearGaussianTimeInvariantTransitionModel
+    from stonesoup.predictor.kalman import KalmanPredictor
+    from stonesoup.types.detection import Detection
+    from stonesoup.types.hypothesis import SingleHypothesis
+    from stonesoup.types.state import GaussianState
+    from stonesoup.updater.kalman import KalmanUpdater
+
+    motion = LinearGaussianTimeInvariantTransitionModel(transition_matrix=f, covariance_matrix=q)
+    sensor = LinearGaussian(ndim_state=len(f), mapping=tuple(range(len(h))), noise_covar=r)
+    predictor, updater = KalmanPredictor(motion), KalmanUpdater(sensor)
+    now = datetime(2000, 1, 1)
+    state = GaussianState(np.zeros((len(f), 1)), np.eye(len(f)), timestamp=now)
+
+    def step():
+        nonlocal state, now
+        now += timedelta(seconds=0.1)
+        predicted = predictor.predict(state, timestamp=now)
+        detection = Detection(z, timestamp=now, measurement_model=sensor)
+        state = updater.update(SingleHypothesis(predicted, detection))
+
+    return step
+
+
 def joseph(f, h, q, r, z):
     x, p, identity = np.zeros((len(f), 1)), np.eye(len(f)), np.eye(len(f))
 
@@ -75,7 +102,12 @@ def nanoseconds(step, repeats, rounds=5):
 
 
 def main():
-    programs = [("numpy Joseph", "numpy", joseph), ("OpenCV", "cv2", opencv), ("filterpy", "filterpy", filterpy)]
+    programs = [
+        ("numpy Joseph", "numpy", joseph),
+        ("OpenCV", "cv2", opencv),
+        ("filterpy", "filterpy", filterpy),
+        ("Stone Soup", "stonesoup", stone_soup),
+    ]
     for states, measurements in ((4, 2), (30, 30)):
         z = np.full((measurements, 1), 0.5)
         for name, module, make in programs:

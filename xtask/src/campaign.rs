@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail, ensure};
 
-use crate::{clients::available, shell};
+use crate::shell::{self, available};
 
 pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     ensure!(args.is_empty(), "usage: cargo xtask campaign");

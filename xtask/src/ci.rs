@@ -57,18 +57,18 @@ fn steps() -> Result<Vec<Step>> {
     } else {
         step("tests", &["test", "--workspace", LIVE, "--locked", "--lib", "--bins", "--tests", "--examples"])
     };
-    let mut docs = step("docs", &["doc", "--workspace", LIVE, "--no-deps", "--locked"]);
-    docs.command.env("RUSTDOCFLAGS", "-D warnings");
     Ok(vec![
         step("fmt", &["fmt", "--all", "--check"]),
         task("tidy", &["tidy"]),
+        task("spelling", &["spelling"]),
         step("clippy", &["clippy", "--workspace", "--all-targets", LIVE, "--locked", "--", "-D", "warnings"]),
         tests,
         step("doctests", &["test", "--workspace", LIVE, "--doc", "--locked"]),
-        docs,
+        task("docs", &["docs"]),
         task("fixtures", &["fixtures", "--check"]),
         task("regress", &["regress", "--quick"]),
         task("clients", &["clients"]),
+        task("tutorials", &["tutorials"]),
         task("campaign", &["campaign"]),
         task("robot", &["robot"]),
     ])
@@ -110,6 +110,6 @@ mod tests {
     #[test]
     fn an_unknown_step_is_refused_with_the_list_of_steps() {
         let error = run(&["--from".into(), "lunch".into()]).unwrap_err();
-        assert!(error.to_string().contains("fmt tidy clippy tests"), "{error}");
+        assert!(error.to_string().contains("fmt tidy spelling clippy tests"), "{error}");
     }
 }

@@ -9,7 +9,9 @@ mod fixtures;
 mod regress;
 mod robot;
 mod shell;
+mod spelling;
 mod tidy;
+mod tutorials;
 
 use std::process::ExitCode;
 
@@ -22,7 +24,9 @@ Usage: cargo xtask TASK [OPTIONS]
   fixtures           rebuild every stored log from its seed; --check compares and writes nothing
   ci                 what CI runs, cheap steps first; --from STEP resumes
   tidy               check the invariants of docs/architecture.md that a machine can check
-  docs [PACKAGE…]    build the API reference with formulas; --open shows it
+  spelling           look for misspelled words
+  docs [PACKAGE…]    build one site of the API reference and docs/, with formulas, and follow its links; --open shows it
+  tutorials [NAME…]  type what docs/tutorials tells a reader to type
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
   campaign           run the recipe for GNU parallel of docs/campaigns
   robot              build and run the robots of the folder robots, which are outside the workspace
@@ -47,6 +51,8 @@ fn main() -> ExitCode {
         "clients" => clients::run(&args),
         "campaign" => campaign::run(&args),
         "robot" => robot::run(&args),
+        "spelling" => spelling::run(&args),
+        "tutorials" => tutorials::run(&args),
         "" | "help" | "--help" | "-h" => {
             print!("{HELP}");
             Ok(ExitCode::SUCCESS)

@@ -53,6 +53,18 @@ pub(crate) fn python_has(modules: &[&str]) -> bool {
     probe.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
+/// Whether a program is there; what is missing is an error where CI requires it.
+pub(crate) fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
+    let required = std::env::var("CI").is_ok_and(|value| value == "true");
+    if !found && required {
+        bail!("{what} is missing, and CI=true requires it ({remedy})");
+    }
+    if !found {
+        println!("{what} is missing, check skipped ({remedy})");
+    }
+    Ok(found)
+}
+
 /// Runs to the end and fails when the program does.
 pub(crate) fn check(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| format!("cannot start `{}`", spelled(command)))?;

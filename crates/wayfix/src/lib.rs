@@ -22,5 +22,7 @@ mod settings;
 pub mod slam;
 pub mod system;
 pub mod track;
+#[cfg(doctest)]
+mod tutorials;
 pub mod views;
 pub mod walls;

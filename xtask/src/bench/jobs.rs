@@ -106,8 +106,10 @@ fn python_peers(options: &Options) -> Vec<Job> {
     let pypi = |modules: &[&str], packages: &str| {
         (!shell::python_has(modules)).then(|| format!("PyPI package missing: pip install {packages}"))
     };
-    let mut kalman =
-        job("kalman numpy OpenCV filterpy", shell::command(&python, &["peers/opencv_filterpy_kalman.py"]));
+    let mut kalman = job(
+        "kalman numpy OpenCV filterpy Stone Soup",
+        shell::command(&python, &["peers/opencv_filterpy_kalman.py"]),
+    );
     kalman.missing = pypi(&["numpy", "cv2", "filterpy"], "numpy opencv-python-headless filterpy");
     let mut resampling =
         job("particle particles", shell::command(&python, &["peers/particles_resampling.py"]));
@@ -122,6 +124,11 @@ fn python_peers(options: &Options) -> Vec<Job> {
         job.command = shell::command(&python, &["peers/numpy_ekf_slam.py"]);
         job.command.arg(log);
         job.missing = pypi(&["numpy"], "numpy");
+    }));
+    jobs.extend(slam_jobs(options, "GTSAM", &KNOWN, |log, _, job| {
+        job.command = shell::command(&python, &["peers/gtsam_isam2.py"]);
+        job.command.arg(log);
+        job.missing = pypi(&["numpy", "gtsam"], "numpy gtsam");
     }));
     jobs
 }

@@ -6,7 +6,7 @@ use super::Source;
 use crate::shell;
 
 /// Paths from the root, with slashes; new files that are not ignored count.
-pub(super) fn tracked() -> Result<Vec<String>> {
+pub(crate) fn tracked() -> Result<Vec<String>> {
     let list = ["ls-files", "--cached", "--others", "--exclude-standard"];
     let listing = shell::output(&mut shell::command("git", &list))?;
     let exists = |path: &&str| shell::root().join(path).is_file();

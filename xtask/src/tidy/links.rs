@@ -1,6 +1,7 @@
 //! Relative links in Markdown lead somewhere, and the changelog has a place for what comes next.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use super::{Finding, Source};
 
@@ -33,27 +34,34 @@ pub(super) fn check(sources: &[Source], paths: &[String]) -> Vec<Finding> {
 
 /// Line and file of every relative link outside of code; the part after `#` is dropped.
 fn links(text: &str) -> Vec<(usize, &str)> {
-    let mut links = Vec::new();
-    let mut fenced = false;
-    for (index, line) in text.lines().enumerate() {
-        fenced ^= line.trim_start().starts_with("```");
-        if fenced {
-            continue;
-        }
-        // Code spans are every second piece between back-ticks.
-        let prose_links = |(start, _): &(usize, &str)| line[..*start].matches('`').count() % 2 == 0;
-        for (start, opening) in line.match_indices("](").filter(prose_links) {
-            let target = line[start + opening.len()..].split([')', ' ']).next().unwrap_or_default();
-            let file = target.split('#').next().unwrap_or_default();
-            if !file.is_empty() && !file.contains(':') {
-                links.push((index + 1, file));
-            }
-        }
-    }
-    links
+    let line_of = |at: usize| text[..at].matches('\n').count() + 1;
+    let files = link_targets(text).into_iter().map(|target| {
+        let line = line_of(target.start);
+        (line, text[target].split('#').next().unwrap_or_default())
+    });
+    files.filter(|(_, file)| !file.is_empty() && !file.contains(':')).collect()
 }
 
-fn resolve(from: &str, target: &str) -> String {
+/// Where in a Markdown text the targets of its links stand, without those in code.
+pub(crate) fn link_targets(text: &str) -> Vec<Range<usize>> {
+    let mut targets = Vec::new();
+    let (mut fenced, mut offset) = (false, 0);
+    for line in text.split_inclusive('\n') {
+        fenced ^= line.trim_start().starts_with("```");
+        // Code spans are every second piece between back-ticks.
+        let prose_links = |(start, _): &(usize, &str)| line[..*start].matches('`').count() % 2 == 0;
+        for (start, opening) in line.match_indices("](").filter(prose_links).filter(|_| !fenced) {
+            let start = start + opening.len();
+            let target = line[start..].split([')', ' ', '\n']).next().unwrap_or_default();
+            targets.push(offset + start..offset + start + target.len());
+        }
+        offset += line.len();
+    }
+    targets
+}
+
+/// The path that a relative link means in the file `from`.
+pub(crate) fn resolve(from: &str, target: &str) -> String {
     let mut parts: Vec<&str> = from.split('/').collect();
     parts.pop();
     for part in target.split('/') {

@@ -20,6 +20,9 @@ use anyhow::{Result, bail};
 
 use crate::shell;
 
+pub(crate) use files::tracked;
+pub(crate) use links::{link_targets, resolve};
+
 /// A tracked text file.
 pub(crate) struct Source {
     /// Path from the root, with slashes.

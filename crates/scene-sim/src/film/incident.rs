@@ -1,4 +1,5 @@
 use super::Film;
+use crate::SimError;
 
 /// What happens to the target in the middle of a film. All times are shares of its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,6 +17,28 @@ pub enum Incident {
 }
 
 impl Incident {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::None, Self::PartlyHidden, Self::Hidden, Self::Away];
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::PartlyHidden => "partly-hidden",
+            Self::Hidden => "hidden",
+            Self::Away => "away",
+        }
+    }
+
+    /// The incident of that name.
+    ///
+    /// # Errors
+    /// [`SimError::UnknownScenario`] when there is none.
+    pub fn named(name: &str) -> Result<Self, SimError> {
+        let found = Self::ALL.into_iter().find(|incident| incident.name() == name);
+        found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
+    }
+
     /// How far to the right the target is out of its way, in pixels, at a share of the film's length.
     pub(super) fn aside(self, share: f64) -> f64 {
         let away = Film::SIZE_PX.0 as f64 + 100.0;

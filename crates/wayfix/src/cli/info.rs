@@ -55,31 +55,45 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         ..OpenOptions::default()
     };
     let summary = LogSummary::of(wayfix_sensor_log::open(&arguments.path, &options)?);
-    let lines = if summary.kinds.contains_key("laser scan") { "usable for `wayfix run lines`\n" } else { "" };
-    print(format!("{summary}{lines}{}\n", usable_for(&summary)))?;
+    print(format!("{summary}{}\n", usable_for(&summary).join("\n")))?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// What `wayfix run` can do with a log, or what it lacks.
-fn usable_for(summary: &LogSummary) -> &'static str {
+/// What `wayfix run` can do with a log; what it lacks, where that is nothing.
+fn usable_for(summary: &LogSummary) -> Vec<String> {
     let has = |kinds: &[&str]| kinds.iter().any(|kind| summary.kinds.contains_key(kind));
+    let steps = has(&["velocity", "odometry increment"]);
+    let moves = steps || has(&["ackermann drive"]);
     let sees_landmarks = !summary.landmarks_seen.is_empty() || summary.n_unlabelled > 0;
-    let sees_walls = !sees_landmarks && has(&["laser scan"]);
-    let moves = has(&["velocity", "odometry increment", "ackermann drive"]);
-    match (moves, sees_landmarks || sees_walls, has(&["true pose", "true position"])) {
-        (true, true, _) if sees_walls && !has(&["odometry increment", "velocity"]) => {
+    let scans = has(&["laser scan"]);
+    let figures = match has(&["true pose", "true position"]) {
+        true => "with figures of accuracy",
+        false => "without true poses there are no figures of accuracy",
+    };
+    let systems = [
+        (sees_landmarks && moves, "slam", figures),
+        (!sees_landmarks && scans && steps, "slam", figures),
+        (scans, "lines", "the walls of every scan"),
+        (has(&["image"]) && has(&["camera info"]) && moves, "color", "with a map of coloured things, --map"),
+        (has(&["image"]), "track", "with the target's box in the first image, --init"),
+        (has(&["image"]) && steps, "cml", "if the images are panoramas"),
+    ];
+    let fits = systems.iter().filter(|(fits, ..)| *fits);
+    let mut lines: Vec<String> =
+        fits.map(|(_, system, remark)| format!("usable for `wayfix run {system}`, {remark}")).collect();
+    if sees_landmarks && !moves {
+        lines.push("not usable for `wayfix run slam`: no odometry (velocities or increments)".to_owned());
+    } else if !sees_landmarks && scans && !steps {
+        lines.push(
             "not usable for `wayfix run slam`: maps of walls need odometry increments or velocities"
-        }
-        (true, true, true) => "usable for `wayfix run slam`, with figures of accuracy",
-        (true, true, false) => {
-            "usable for `wayfix run slam`; without true poses there are no figures of accuracy"
-        }
-        (false, true, _) => "not usable for `wayfix run slam`: no odometry (velocities or increments)",
-        (true, false, _) => {
-            "not usable for `wayfix run slam`: neither sightings of landmarks nor laser scans"
-        }
-        (false, false, _) => {
-            "not usable for `wayfix run slam`: neither odometry nor sightings of landmarks nor laser scans"
-        }
+                .to_owned(),
+        );
     }
+    if lines.is_empty() {
+        lines.push(
+            "usable for no `wayfix run`: neither sightings of landmarks nor laser scans nor images"
+                .to_owned(),
+        );
+    }
+    lines
 }

