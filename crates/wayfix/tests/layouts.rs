@@ -1,5 +1,9 @@
 //! The layouts for Foxglove: whole, and with the topics that the systems write.
-#![expect(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a panic is the verdict of a test, in its helpers too"
+)]
 
 mod common;
 
