@@ -1,6 +1,6 @@
 //! `cargo xtask clients`: other people's programs read what the regression run wrote, and we read what others write.
 //!
-//! A format is right when somebody else's reader or writer says so: Python's `mcap` and `rosbags`, the Rerun command line, a browser.
+//! A format is right when somebody else's reader or writer says so: Python's `mcap`, `rosbags` and `websockets`, the Rerun command line, a browser.
 //! Where a program is missing its check is skipped, except under `CI=true`, where it is required.
 
 use std::path::{Path, PathBuf};
@@ -39,6 +39,13 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     )? {
         convert_ros_bags()?;
     }
+    if available(
+        "Python's websockets",
+        shell::python_has(&["websockets", "mcap", "mcap_protobuf"]),
+        ".ci/run, or pip install websockets mcap mcap-protobuf-support",
+    )? {
+        watch_live()?;
+    }
     let rerun = shell::python_tool("rerun");
     if available("Rerun", shell::have(&rerun), ".ci/run, or pip install rerun-sdk")? {
         logs.iter().try_for_each(|log| convert_with_rerun(&rerun, log))?;
@@ -70,6 +77,19 @@ fn convert_ros_bags() -> Result<()> {
         shell::check(python("check").arg(&bag).arg(&converted))?;
     }
     Ok(())
+}
+
+/// A run with the live view, as a WebSocket client sees it that is not ours.
+fn watch_live() -> Result<()> {
+    // As the tests are built, which leaves the program beside them: nothing is compiled for this alone.
+    let build = ["test", "--quiet", "--workspace", "--features=wayfix/live", "--test", "live", "--no-run"];
+    shell::check(&mut shell::command("cargo", &build))?;
+    let wayfix = shell::target_dir().join("debug").join("wayfix");
+    let out = shell::target_dir().join("live");
+    // Twenty times as fast as it was recorded: some three seconds.
+    let run = "run slam --log fixtures/loop_known.mcap --live 0 --pace 20 --json --out";
+    let mut python = shell::command(shell::python_tool("python3"), &["xtask/clients/watch_live.py"]);
+    shell::check(python.arg(out.join("estimates.mcap")).arg(wayfix).args(run.split(' ')).arg(out))
 }
 
 fn read_with_python(logs: &[PathBuf]) -> Result<()> {

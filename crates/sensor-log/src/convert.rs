@@ -1,5 +1,5 @@
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::write::write_from;
 use crate::{Format, Log, LogError, ReadReport, WriteReport};
@@ -30,7 +30,11 @@ pub fn convert(
     let path = path.as_ref();
     // What is not there yet has no canonical path and cannot be the log.
     let canonical = |path: &Path| fs::canonicalize(path).ok();
-    if canonical(path).is_some_and(|target| canonical(&log.meta().source) == Some(target)) {
+    let meta = log.meta();
+    let is_source = |target: PathBuf| {
+        meta.files.iter().chain([&meta.source]).any(|source| canonical(source).as_ref() == Some(&target))
+    };
+    if canonical(path).is_some_and(is_source) {
         return Err(LogError::SameFile { path: path.into() });
     }
     let origin = log.meta().first_format();

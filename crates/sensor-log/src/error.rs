@@ -41,14 +41,25 @@ pub enum LogError {
         /// The folder.
         path: PathBuf,
     },
-    /// A folder of several MCAP files, as a recorder leaves it that splits its bags.
-    #[error("{}: holds {} MCAP files; give one of them", path.display(), files.len())]
+    /// A folder of several MCAP files that do not look like one recording.
+    #[error("{}: holds {} MCAP files that are not called like the parts of one recording; give one of them, or name those that belong together", path.display(), files.len())]
     SeveralFiles {
         /// The folder.
         path: PathBuf,
         /// The files, by name.
         files: Vec<PathBuf>,
     },
+    /// A log of several files, one of which is no MCAP file.
+    #[error("{}: a {format} log is read alone; only MCAP files can be parts of one log", path.display())]
+    NotAPart {
+        /// The file or folder.
+        path: PathBuf,
+        /// Its format.
+        format: Format,
+    },
+    /// No path was given.
+    #[error("no log was given")]
+    NoPath,
     /// The content looks like no known format.
     #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), Format::NAMES)]
     UnknownFormat {
@@ -192,6 +203,9 @@ pub enum LogError {
     /// Writing an MCAP file failed.
     #[error("MCAP output: {0}")]
     McapOutput(Box<mcap::McapError>),
+    /// A [`MessageSink`](crate::MessageSink) of the caller's own failed.
+    #[error("messages cannot be passed on: {0}")]
+    Sink(Box<dyn std::error::Error + Send + Sync>),
     /// A name that is no format.
     #[error("{name:?} is no log format; the formats are {}", Format::NAMES)]
     NoSuchFormat {

@@ -1,6 +1,6 @@
 //! Stamped robot records: readers for public data sets, MCAP and folders of images, writers for the same.
 //!
-//! [`open`] gives the records of a log in time order, whatever its format, and a [`ReadReport`] of what could not be read:
+//! [`open`] (of a log in several files, [`open_all`]) gives the records of a log in time order, whatever its format, and a [`ReadReport`] of what could not be read:
 //!
 //! | format | is | holds |
 //! | --- | --- | --- |
@@ -14,7 +14,7 @@
 //! | | MCAP with ROS 2 messages ([`ros`]), as `ros2 bag` writes it | scans, odometry, images, cameras, poses |
 //! | [`Format::Images`] | a folder of PNG and JPEG files | images |
 //!
-//! [`write()`] writes records as text or MCAP, [`convert()`] a whole log, [`McapWriter`] also what viewers draw;
+//! [`write()`] writes records as text or MCAP, [`convert()`] a whole log, [`McapWriter`] also what viewers draw ([`MessageWriter`] not only into files);
 //! [`LogSummary`] says what a log holds.
 //!
 //! A bad row never stops the reading: it is left out, counted by kind, and the first few are named with file and line.
@@ -62,8 +62,11 @@ pub use format::Format;
 pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummary, PixelLayout};
 pub use image_folder::image_files;
 pub use log::{Log, LogMeta};
-pub use mcap_log::{Drawing, ImageOutline, McapWriter, Shape, topics};
-pub use open::{OpenOptions, PoseKind, open};
+pub use mcap_log::{
+    ChannelKey, Drawing, ImageOutline, McapFile, McapWriter, Message, MessageSink, MessageWriter, Shape,
+    Sinks, topics,
+};
+pub use open::{OpenOptions, PoseKind, open, open_all};
 pub use record::{
     CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, TrueWall, Velocity,
 };

@@ -26,8 +26,10 @@ pub struct LogMeta {
     pub format: Format,
     /// How it was stored before it was [converted](crate::convert), where it says so.
     pub origin: Option<Format>,
-    /// The file or folder.
+    /// The file or folder; of files that were named one by one, the first.
     pub source: PathBuf,
+    /// The files of an MCAP log; several when it was split.
+    pub files: Vec<PathBuf>,
     /// The robot whose records these are, in sets of several robots.
     pub robot: Option<u32>,
     /// The topics of ROS 2 messages, in the order of the file, and what becomes of each.

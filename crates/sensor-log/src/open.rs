@@ -1,10 +1,10 @@
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use wayfix_estimation_traits::Pose2;
 
 use crate::image_folder::ImageFolder;
 use crate::log::Records;
-use crate::mcap_log::{McapRecords, file_of};
+use crate::mcap_log::{McapRecords, files_of};
 use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
 use crate::{Data, Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record};
 
@@ -59,7 +59,8 @@ impl PoseKind {
 /// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings (MCAP: the order of the file).
 /// Text logs are read whole and sorted where rows go backwards, which is reported. CARMEN logs are read line by line, in whose order they
 /// stay: where time stands still, stamps are made up, which is reported. Text may be compressed with gzip, whatever the file is called. MCAP files are read chunk by chunk;
-/// what comes more than 256 records too late is left out, which is reported. A folder with one MCAP file in it is that file.
+/// what comes more than 256 records too late is left out, which is reported. A folder with one MCAP file in it is that file, and one of files that
+/// are called like the parts of a recording, `NAME_0.mcap`, `NAME_1.mcap`, or that its `metadata.yaml` names, is all of them together.
 /// In ROS 2 bags a kind of record comes from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] tells what became of the others.
 /// Folders of images are read file by file, in the order of their names, where numbers count by value (`frame9` before `frame10`);
 /// other files are passed over. A file that cannot be read keeps its frame number, so that later stamps stay right.
@@ -72,12 +73,57 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Some(format) => format,
         None => Format::detect(path)?,
     };
-    let file = if format == Format::Mcap { file_of(path)? } else { path.into() };
-    let path = file.as_path();
+    let files = if format == Format::Mcap { files_of(path)? } else { Vec::new() };
+    open_files(path, format, files, options)
+}
+
+/// Opens a log that was recorded in several MCAP files, in whatever order they are named: all messages come in order of time.
+///
+/// ```
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_sensor_log::{Data, Format, OpenOptions, Record, Stamp, open_all, write};
+/// # let folder = tempfile::tempdir()?;
+/// # let (first, second) = (folder.path().join("drive_0.mcap"), folder.path().join("drive_1.mcap"));
+/// let at = |second: u64| Record { stamp: Stamp::from_nanoseconds(second), data: Data::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
+/// write(&first, Format::Mcap, [at(1), at(2)])?;
+/// write(&second, Format::Mcap, [at(3)])?;
+/// let (records, _) = open_all(&[second, first], &OpenOptions::default())?.read_all();
+/// assert_eq!(records, [at(1), at(2), at(3)]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`LogError::NotAPart`] and [`LogError::NoPath`]; else as [`open`], which a single path is left to.
+pub fn open_all(paths: &[impl AsRef<Path>], options: &OpenOptions) -> Result<Log, LogError> {
+    if let [path] = paths {
+        return open(path, options);
+    }
+    let first = paths.first().ok_or(LogError::NoPath)?.as_ref();
+    let mut files = Vec::new();
+    for path in paths.iter().map(AsRef::as_ref) {
+        let format = options.format.map_or_else(|| Format::detect(path), Ok)?;
+        if format != Format::Mcap {
+            return Err(LogError::NotAPart { path: path.into(), format });
+        }
+        files.extend(files_of(path)?);
+    }
+    open_files(first, Format::Mcap, files, options)
+}
+
+fn open_files(
+    source: &Path,
+    format: Format,
+    files: Vec<PathBuf>,
+    options: &OpenOptions,
+) -> Result<Log, LogError> {
+    // A folder with one file is that file.
+    let path = if let [file] = files.as_slice() { file.clone() } else { source.into() };
+    let path = path.as_path();
     if format != Format::Mcap && !options.topics.is_empty() {
         return Err(LogError::NoTopics { path: path.into(), format });
     }
-    let mut meta = LogMeta { format, origin: None, source: path.into(), robot: None, topics: Vec::new() };
+    let mut meta =
+        LogMeta { format, origin: None, source: path.into(), files, robot: None, topics: Vec::new() };
     let mut report = ReadReport::default();
     let in_memory = |records: Vec<Record>| Records::Memory(records.into_iter());
     let mut records = match format {
@@ -91,7 +137,7 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
         Format::Carmen => Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses)?)),
         Format::ScanJson => in_memory(scan_json::read(path, options.poses, &mut report)?),
-        Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path, &options.topics)?)),
+        Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path, &meta.files, &options.topics)?)),
         Format::Images => Records::Images(ImageFolder::open(path, options.frame_rate_hz)?),
     };
     let first = records.next(&mut report).ok_or_else(|| nothing_in(path, format, &report))?;

@@ -102,7 +102,7 @@ fn a_folder_is_the_bag_in_it_unless_there_are_several() {
     let log = open(folder.path(), &OpenOptions::default()).unwrap();
     assert_eq!(log.meta().source, folder.path().join("bag_0.mcap"));
     assert_eq!(log.count(), 88);
-    fs::copy(DRIVE, folder.path().join("bag_1.mcap")).unwrap();
+    fs::copy(DRIVE, folder.path().join("other.mcap")).unwrap();
     let error = open(folder.path(), &OpenOptions::default()).unwrap_err();
     assert!(matches!(&error, LogError::SeveralFiles { files, .. } if files.len() == 2), "{error}");
 }

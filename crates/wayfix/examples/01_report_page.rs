@@ -133,6 +133,7 @@ fn invented_run(n: u64, seed: u64) -> Result<Run, PlotError> {
         figures,
         notes: vec!["Every number of this page is invented; the example shows the layout.".to_owned()],
         log: Some(format!("slam/invented-hall-{}.mcap", n + 1)),
+        layout: None,
         error: None,
     })
 }

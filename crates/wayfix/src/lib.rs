@@ -11,6 +11,8 @@ pub mod consistency;
 pub mod evaluate;
 pub mod fixtures;
 pub mod lines;
+#[cfg(feature = "live")]
+pub mod live;
 pub mod monobot;
 pub mod plot;
 pub mod regress;

@@ -5,6 +5,7 @@ mod common;
 use std::{fs, path::Path};
 
 use common::{Scratch, run_slam, utias_walk, walk, walk_without_truth, wayfix};
+use wayfix_sensor_log::{Format, OpenOptions, Record, open, write};
 
 const ALWAYS: [&str; 5] = ["n_landmarks", "n_rejected", "step_mean_us", "step_median_us", "step_max_us"];
 const WITH_TRUTH: [&str; 6] = [
@@ -46,6 +47,27 @@ fn a_walk_without_noise_is_followed_without_error() {
         assert!(outcome.metric(name) < 1e-6, "{name}: {}", outcome.metric(name));
     }
     assert_eq!(outcome.metric("n_landmarks"), 8.0);
+}
+
+#[test]
+fn a_log_in_several_files_gives_the_figures_of_the_whole() {
+    let scratch = Scratch::new();
+    let log = open(scratch.file("walk.txt", walk(60)), &OpenOptions::default()).expect("opens");
+    let records: Vec<Record> = log.collect();
+    let (first, second) = records.split_at(200);
+    let part = |name: &str, records: &[Record]| {
+        let path = scratch.path(name);
+        write(&path, Format::Mcap, records.to_vec()).expect("writes");
+        path
+    };
+    let [whole, first, second] = [("whole.mcap", &records[..]), ("a.mcap", first), ("b.mcap", second)]
+        .map(|(name, part_of)| part(name, part_of));
+    let outcome = run_slam(&second, &["--log", first.to_str().expect("a plain path")]);
+    assert_eq!(outcome.figures(), run_slam(&whole, &[]).figures());
+    let alone =
+        run_slam(&second, &["--log", scratch.file("other.txt", walk(3)).to_str().expect("a plain path")]);
+    assert_eq!(alone.code, 1);
+    assert!(alone.stderr.contains("only MCAP files can be parts"), "{}", alone.stderr);
 }
 
 #[test]

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
 fn api(packages: &[&String], header: Option<&Path>) -> Result<()> {
     let mut command = shell::command("cargo", &["doc", "--no-deps", "--locked"]);
     if packages.is_empty() {
-        command.arg("--workspace");
+        command.args(["--workspace", "--features=wayfix/live"]); // what is off by default is documented too
     }
     for package in packages {
         command.args(["--package", package]);

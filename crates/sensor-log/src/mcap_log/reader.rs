@@ -1,37 +1,37 @@
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mcap::records::op;
 
 use super::fields::Fields;
+use super::parts::Parts;
 use super::reorder::Reorder;
 use super::routes::Route;
-use super::stream::{RecordStream, Step};
+use super::stream::Step;
 use super::{decode, origin, survey};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::format::shortened;
 use crate::{Format, LogEnd, LogError, Problem, ProblemKind, ReadReport, Record, Stamp, Topic};
 
-/// The records of an MCAP file, chunk by chunk: memory does not grow with the file.
+/// The records of an MCAP file, or of several of one recording, chunk by chunk: memory does not grow with them.
 pub(crate) struct McapRecords {
-    stream: RecordStream,
+    parts: Parts,
     messages: Messages,
     topics: Vec<Topic>,
 }
 
 impl McapRecords {
-    /// Opens the file; of ROS 2 messages those on the topics `wanted` are read, and of kinds of which none is wanted those on one topic each.
-    pub(crate) fn open(path: &Path, wanted: &[String]) -> Result<Self, LogError> {
-        let stream = RecordStream::open(path)?;
-        let topics = survey::topics(path)?;
-        // What is wrong with the file will be told where it is read.
-        let tried = |questions| survey::passed(path, &topics, questions).unwrap_or_default();
-        let choice = Choice::among(&topics, wanted, tried).map_err(|error| error.of(path, &topics))?;
-        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    /// Opens the files of the log at `source`; of ROS 2 messages those on the topics `wanted` are read, and of kinds of which none is wanted those on one topic each.
+    pub(crate) fn open(source: &Path, files: &[PathBuf], wanted: &[String]) -> Result<Self, LogError> {
+        let parts = Parts::open(files)?;
+        let topics = survey::topics(files)?;
+        // What is wrong with a file will be told where it is read.
+        let tried = |questions| survey::passed(files, &topics, questions).unwrap_or_default();
+        let choice = Choice::among(&topics, wanted, tried).map_err(|error| error.of(source, &topics))?;
         Ok(Self {
-            stream,
+            parts,
             topics: choice.uses(&topics),
-            messages: Messages::new(file, BagRecords::new(choice)),
+            messages: Messages::new(files, BagRecords::new(choice)),
         })
     }
 
@@ -59,10 +59,13 @@ impl McapRecords {
 
     /// Reads one record of the file; false at its end.
     fn step(&mut self, report: &mut ReadReport) -> bool {
-        match self.stream.step(|opcode, body| self.messages.take(opcode, body, report)) {
+        let (file, step) =
+            self.parts.step(|file, opcode, body| self.messages.take(file, opcode, body, report));
+        match step {
             Step::On => true,
             Step::DamagedChunk(error) => {
-                self.messages.trouble(ProblemKind::DamagedChunk, format!("chunk left out: {error}"), report);
+                let reason = format!("chunk left out: {error}");
+                self.messages.trouble(file, ProblemKind::DamagedChunk, reason, report);
                 true
             }
             Step::Cut(end) => {
@@ -79,15 +82,21 @@ impl McapRecords {
     }
 }
 
-/// Schemas, channels, messages and metadata, wherever in the file they are.
+/// Messages and metadata, wherever in the files they are.
 struct Messages {
-    file: String,
-    schemas: BTreeMap<u16, String>,
-    channels: BTreeMap<u16, Channel>,
+    files: Vec<FileState>,
     origin: Option<Format>,
     bag: BagRecords,
-    n_messages: u64,
     reorder: Reorder,
+}
+
+/// What a file has announced so far: numbers of schemas and channels are its own.
+#[derive(Default)]
+struct FileState {
+    name: String,
+    schemas: BTreeMap<u16, String>,
+    channels: BTreeMap<u16, Channel>,
+    n_messages: u64,
 }
 
 struct Channel {
@@ -104,23 +113,18 @@ enum AnyRoute {
 }
 
 impl Messages {
-    fn new(file: String, bag: BagRecords) -> Self {
-        Self {
-            file,
-            schemas: BTreeMap::new(),
-            channels: BTreeMap::new(),
-            origin: None,
-            bag,
-            n_messages: 0,
-            reorder: Reorder::default(),
-        }
+    fn new(files: &[PathBuf], bag: BagRecords) -> Self {
+        let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let state = |path| FileState { name: name(path), ..FileState::default() };
+        let files = files.iter().map(state).collect();
+        Self { files, origin: None, bag, reorder: Reorder::default() }
     }
 
-    fn take(&mut self, opcode: u8, body: &[u8], report: &mut ReadReport) {
+    fn take(&mut self, file: usize, opcode: u8, body: &[u8], report: &mut ReadReport) {
         let understood = match opcode {
-            op::SCHEMA => self.schema(Fields(body)),
-            op::CHANNEL => self.channel(Fields(body)),
-            op::MESSAGE => self.message(Fields(body), report),
+            op::SCHEMA => self.schema(file, Fields(body)),
+            op::CHANNEL => self.channel(file, Fields(body)),
+            op::MESSAGE => self.message(file, Fields(body), report),
             op::METADATA => {
                 self.origin = self.origin.or(origin::decode(body));
                 Some(())
@@ -129,37 +133,37 @@ impl Messages {
         };
         if understood.is_none() {
             let reason = format!("record of kind {opcode} breaks off");
-            self.trouble(ProblemKind::Undecodable, reason, report);
+            self.trouble(file, ProblemKind::Undecodable, reason, report);
         }
     }
 
-    fn schema(&mut self, mut fields: Fields<'_>) -> Option<()> {
+    fn schema(&mut self, file: usize, mut fields: Fields<'_>) -> Option<()> {
         let (id, name) = (fields.u16()?, fields.str()?);
-        self.schemas.insert(id, name.to_owned());
+        self.files[file].schemas.insert(id, name.to_owned());
         Some(())
     }
 
-    fn channel(&mut self, mut fields: Fields<'_>) -> Option<()> {
+    fn channel(&mut self, file: usize, mut fields: Fields<'_>) -> Option<()> {
         let (id, schema_id) = (fields.u16()?, fields.u16()?);
         let (topic, encoding) = (fields.str()?, fields.str()?);
-        let schema = self.schemas.get(&schema_id).map_or("no schema", String::as_str);
+        let schema = self.files[file].schemas.get(&schema_id).map_or("no schema", String::as_str);
         let metadata = fields.pairs().into_iter().flatten();
         let route = match encoding {
             "cdr" => self.bag.route(topic, schema).map(AnyRoute::Ros),
             _ => Route::of(topic, schema, encoding, metadata).map(AnyRoute::Foxglove),
         };
         let name = format!("{} ({})", shortened(topic), shortened(schema));
-        self.channels.insert(id, Channel { name, route });
+        self.files[file].channels.insert(id, Channel { name, route });
         Some(())
     }
 
-    fn message(&mut self, mut fields: Fields<'_>, report: &mut ReadReport) -> Option<()> {
+    fn message(&mut self, file: usize, mut fields: Fields<'_>, report: &mut ReadReport) -> Option<()> {
         let (channel_id, _sequence) = (fields.u16()?, fields.u32()?);
         let (log_time, _publish_time) = (Stamp::from_nanoseconds(fields.u64()?), fields.u64()?);
-        self.n_messages += 1;
-        let Some(channel) = self.channels.get(&channel_id) else {
+        self.files[file].n_messages += 1;
+        let Some(channel) = self.files[file].channels.get(&channel_id) else {
             let reason = format!("message on the unannounced channel {channel_id}");
-            self.trouble(ProblemKind::Unrecognized, reason, report);
+            self.trouble(file, ProblemKind::Unrecognized, reason, report);
             return Some(());
         };
         let Some(route) = channel.route else {
@@ -173,27 +177,28 @@ impl Messages {
         match records {
             Ok(records) => {
                 report.rows_read += 1;
-                self.release(records, report);
+                self.release(file, records, report);
             }
             Err((kind, reason)) => {
                 let reason = format!("{}: {reason}", channel.name);
-                self.trouble(kind, reason, report);
+                self.trouble(file, kind, reason, report);
             }
         }
         Some(())
     }
 
-    fn release(&mut self, records: Vec<Record>, report: &mut ReadReport) {
+    fn release(&mut self, file: usize, records: Vec<Record>, report: &mut ReadReport) {
         for record in records {
             if let Err(late) = self.reorder.push(record) {
                 let reason =
                     format!("{} is too late, {} is already out; left out", late.stamp, late.last_out);
-                self.trouble(ProblemKind::TooLate, reason, report);
+                self.trouble(file, ProblemKind::TooLate, reason, report);
             }
         }
     }
 
-    fn trouble(&self, kind: ProblemKind, reason: String, report: &mut ReadReport) {
-        report.add(Problem { file: self.file.clone(), row: self.n_messages, kind, reason });
+    fn trouble(&self, file: usize, kind: ProblemKind, reason: String, report: &mut ReadReport) {
+        let FileState { name, n_messages, .. } = &self.files[file];
+        report.add(Problem { file: name.clone(), row: *n_messages, kind, reason });
     }
 }

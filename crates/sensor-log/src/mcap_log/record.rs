@@ -1,9 +1,7 @@
-use std::io::{Seek, Write};
-
-use super::{McapWriter, camera, encode, scan, topics, vehicle};
+use super::{MessageSink, MessageWriter, camera, encode, scan, topics, vehicle};
 use crate::{Data, ImageFormat, LogError, Record};
 
-impl<W: Write + Seek> McapWriter<W> {
+impl<S: MessageSink> MessageWriter<S> {
     /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).
     ///
     /// # Errors

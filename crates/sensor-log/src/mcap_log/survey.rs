@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use mcap::MAGIC;
 use mcap::records::op;
@@ -18,10 +18,22 @@ const FOOTER_BYTES: i64 = 9 + 20;
 /// Summaries are small; what claims to be larger is not read.
 const MAX_SUMMARY_BYTES: u64 = 64 << 20;
 
-/// The topics of a file in the order in which they are announced, each with the number of its messages.
-///
+/// The topics of the files of a log in the order in which they are announced, each with the number of its messages.
+pub(super) fn topics(files: &[PathBuf]) -> Result<Vec<SurveyedTopic>, LogError> {
+    let mut all: Vec<SurveyedTopic> = Vec::new();
+    for path in files {
+        for topic in topics_of(path)? {
+            match all.iter_mut().find(|known| known.is_same_as(&topic)) {
+                Some(known) => known.n_messages += topic.n_messages,
+                None => all.push(topic),
+            }
+        }
+    }
+    Ok(all)
+}
+
 /// The index at the end of the file tells; where there is none, as in a file that breaks off, the whole file is gone through.
-pub(super) fn topics(path: &Path) -> Result<Vec<SurveyedTopic>, LogError> {
+fn topics_of(path: &Path) -> Result<Vec<SurveyedTopic>, LogError> {
     match summary(path) {
         Ok(Some(topics)) => Ok(topics),
         // What is wrong with the file will be told where it is read.
@@ -29,13 +41,26 @@ pub(super) fn topics(path: &Path) -> Result<Vec<SurveyedTopic>, LogError> {
     }
 }
 
-/// Puts topics to a trial each and tells which passed; one that gives no answer to the end of the file has failed.
+/// Puts topics to a trial each and tells which passed; one that gives no answer to the end of the last file has failed.
 pub(super) fn passed(
-    path: &Path,
+    files: &[PathBuf],
     topics: &[SurveyedTopic],
     mut questions: Vec<Question>,
 ) -> Result<Vec<usize>, LogError> {
     let mut passed = Vec::new();
+    for path in files {
+        try_on(path, topics, &mut questions, &mut passed)?;
+    }
+    Ok(passed)
+}
+
+/// Answers the questions that the file has an answer to.
+fn try_on(
+    path: &Path,
+    topics: &[SurveyedTopic],
+    questions: &mut Vec<Question>,
+    passed: &mut Vec<usize>,
+) -> Result<(), LogError> {
     let mut stream = RecordStream::open(path)?;
     let mut announced = Announced::default();
     while !questions.is_empty() {
@@ -53,7 +78,7 @@ pub(super) fn passed(
             break;
         }
     }
-    Ok(passed)
+    Ok(())
 }
 
 /// Topics with the messages that are really there.

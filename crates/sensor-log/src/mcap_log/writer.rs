@@ -1,26 +1,30 @@
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
 use std::path::Path;
 
 use foxglove::Encode;
 use foxglove::messages::{FrameTransform, PosesInFrame};
-use mcap::WriteOptions;
-use mcap::records::MessageHeader;
 use wayfix_estimation_traits::Pose2;
 
 use super::drawing::{image_annotations, scene_update};
+use super::file::McapFile;
 use super::held::Held;
-use super::{Drawing, ImageOutline, encode, origin, topics};
-use crate::{Format, LogError, Record, Stamp};
+use super::sink::{Message, MessageSink};
+use super::{Drawing, ImageOutline, camera, encode, topics};
+use crate::{EncodedImage, Format, ImageFormat, LogError, Record, Stamp};
 
-/// Messages are flushed in chunks of about this size: a crash loses no more.
-const CHUNK_BYTES: u64 = 256 << 10;
+/// Writes records and things to draw as Foxglove messages, into a file ([`McapWriter`]) or wherever else messages can go ([`MessageSink`]).
+pub struct MessageWriter<S: MessageSink> {
+    sink: S,
+    held: Held,
+    /// The laser's own once it is known where that is.
+    pub(super) scan_frame: &'static str,
+}
 
 /// Writes records and things to draw into an MCAP file that Foxglove and Rerun open.
 ///
-/// The same calls give the same bytes: no compression, no clock, no library version. [`finish`](Self::finish) completes the file.
+/// The same calls give the same bytes: no compression, no clock, no library version. [`finish`](MessageWriter::finish) completes the file.
 ///
 /// ```
 /// use std::io::Cursor;
@@ -34,19 +38,7 @@ const CHUNK_BYTES: u64 = 256 << 10;
 /// assert!(file.into_inner().starts_with(b"\x89MCAP0\r\n"));
 /// # Ok::<(), wayfix_sensor_log::LogError>(())
 /// ```
-pub struct McapWriter<W: Write + Seek> {
-    writer: mcap::Writer<W>,
-    /// By topic, schema and metadata.
-    channels: BTreeMap<(String, String, BTreeMap<String, String>), Channel>,
-    held: Held,
-    /// The laser's own once it is known where that is.
-    pub(super) scan_frame: &'static str,
-}
-
-struct Channel {
-    id: u16,
-    sequence: u32,
-}
+pub type McapWriter<W> = MessageWriter<McapFile<W>>;
 
 impl McapWriter<BufWriter<File>> {
     /// Creates the file, or replaces the one that is there.
@@ -54,9 +46,7 @@ impl McapWriter<BufWriter<File>> {
     /// # Errors
     /// When it cannot be created.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, LogError> {
-        let path = path.as_ref();
-        let file = File::create(path).map_err(|source| LogError::NotCreated { path: path.into(), source })?;
-        Self::new(BufWriter::new(file))
+        Ok(Self::into_sink(McapFile::create(path)?))
     }
 }
 
@@ -66,12 +56,19 @@ impl<W: Write + Seek> McapWriter<W> {
     /// # Errors
     /// When `out` fails.
     pub fn new(out: W) -> Result<Self, LogError> {
-        let writer = WriteOptions::new()
-            .compression(None)
-            .library("wayfix")
-            .chunk_size(Some(CHUNK_BYTES))
-            .create(out)?;
-        Ok(Self { writer, channels: BTreeMap::new(), held: Held::default(), scan_frame: topics::BODY_FRAME })
+        Ok(Self::into_sink(McapFile::new(out)?))
+    }
+}
+
+impl<S: MessageSink> MessageWriter<S> {
+    /// Writes into `sink`.
+    pub fn into_sink(sink: S) -> Self {
+        Self { sink, held: Held::default(), scan_frame: topics::BODY_FRAME }
+    }
+
+    /// Where the messages go.
+    pub fn sink(&self) -> &S {
+        &self.sink
     }
 
     /// Says which format the records come from; reading gives it back as [`LogMeta::origin`](crate::LogMeta::origin).
@@ -82,10 +79,7 @@ impl<W: Write + Seek> McapWriter<W> {
     /// # Errors
     /// When the output fails.
     pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
-        if origin != Format::Mcap {
-            self.writer.write_metadata(&origin::encode(origin))?;
-        }
-        Ok(())
+        self.sink.origin(origin)
     }
 
     /// A pose in `frame`, as `foxglove.PoseInFrame`.
@@ -188,15 +182,25 @@ impl<W: Write + Seek> McapWriter<W> {
         self.message(topic, stamp, &message)
     }
 
-    /// Completes the file with its index.
+    /// A picture as it is stored, as `foxglove.CompressedImage`; JPEG or PNG.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    pub fn image(&mut self, topic: &str, stamp: Stamp, image: &EncodedImage) -> Result<(), LogError> {
+        if image.format == ImageFormat::Pnm || ImageFormat::of_bytes(&image.bytes) != Some(image.format) {
+            let (what, n_bytes) = ("image", image.bytes.len());
+            return Err(LogError::NotAnImage { what, format: image.format, n_bytes, stamp });
+        }
+        self.message(topic, stamp, &camera::encode_image(encode::timestamp(stamp)?, image))
+    }
+
+    /// Completes the file with its index, or whatever else the messages went into.
     ///
     /// # Errors
     /// When the output fails.
     pub fn finish(mut self) -> Result<(), LogError> {
         self.flush_held()?;
-        self.writer.finish()?;
-        self.writer.into_inner().flush().map_err(mcap::McapError::from)?;
-        Ok(())
+        Box::new(self.sink).finish()
     }
 
     /// Keeps a landmark or a wall until another kind of record or stamp comes.
@@ -234,24 +238,13 @@ impl<W: Write + Seek> McapWriter<W> {
         M: Encode + prost::Message,
     {
         let schema = M::get_schema().expect("invariant: every Foxglove message has a schema");
-        let key = (topic.to_owned(), schema.name.clone(), metadata.clone());
-        let channel = match self.channels.entry(key) {
-            Entry::Occupied(entry) => entry.into_mut(),
-            Entry::Vacant(entry) => {
-                let schema_id = self.writer.add_schema(&schema.name, &schema.encoding, &schema.data)?;
-                let id = self.writer.add_channel(schema_id, topic, "protobuf", metadata)?;
-                entry.insert(Channel { id, sequence: 0 })
-            }
-        };
-        let time = stamp.nanoseconds();
-        let header = MessageHeader {
-            channel_id: channel.id,
-            sequence: channel.sequence,
-            log_time: time,
-            publish_time: time,
-        };
-        channel.sequence = channel.sequence.wrapping_add(1);
-        self.writer.write_to_known_channel(&header, &message.encode_to_vec())?;
-        Ok(())
+        self.sink.message(&Message {
+            topic,
+            schema: &schema.name,
+            descriptors: &schema.data,
+            metadata,
+            stamp,
+            data: &message.encode_to_vec(),
+        })
     }
 }

@@ -1,5 +1,7 @@
 use std::path::PathBuf;
 
+use super::live::LiveArguments;
+
 /// What every `wayfix run` takes.
 #[derive(clap::Args)]
 pub(super) struct Common {
@@ -22,4 +24,6 @@ pub(super) struct Common {
     /// Seed of every generator; systems that draw nothing pass it on to the output.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
+    #[command(flatten)]
+    pub(super) live: LiveArguments,
 }

@@ -1,4 +1,7 @@
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use anyhow::{Context, Result};
 
@@ -9,6 +12,11 @@ pub(super) struct Topics {
     /// the topic with the most messages, see `wayfix info`].
     #[arg(long = "topic", value_name = "NAME")]
     pub(super) topics: Vec<String>,
+}
+
+/// What the figures are of: the log, or the files of it.
+pub(super) fn name_of(log: &[PathBuf]) -> String {
+    log.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
 }
 
 /// Parameters from a TOML file; the error names the file and the key, or the line where the text is no TOML.

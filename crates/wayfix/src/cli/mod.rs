@@ -1,14 +1,17 @@
 //! The command line: one command a file.
 
+mod account;
 mod common;
 mod completions;
 mod convert;
-mod finish;
 mod fixtures;
 mod info;
 mod input;
+#[cfg_attr(not(feature = "live"), path = "no_live.rs")]
+mod live;
 mod merge_reports;
 mod output;
+mod outputs;
 mod params;
 mod progress;
 mod regress;

@@ -5,14 +5,15 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{OpenOptions, Record};
 
 use super::{
+    account::account,
     common::Common,
-    finish::{self, ESTIMATES},
-    input::{Topics, read_toml},
+    input::{Topics, name_of, read_toml},
     output::{print, tell},
+    outputs::Outputs,
     progress,
 };
 use crate::{
-    color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, StartPose, priors},
+    color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleFilm, StartPose, priors},
     commented::commented,
     plot::Picture,
     report::Run,
@@ -33,8 +34,10 @@ use crate::{
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// The log, an MCAP file; it may be a ROS 2 bag with rectified images and the transforms from the robot to its camera.
-    #[arg(long, value_name = "PATH")]
-    log: PathBuf,
+    ///
+    /// Given several times, the files of one recording; of a ROS 2 bag that was split, the folder does.
+    #[arg(long, value_name = "PATH", required = true)]
+    log: Vec<PathBuf>,
     #[command(flatten)]
     topics: Topics,
     /// The map: coloured polygons and posts, TOML or JSON.
@@ -108,16 +111,17 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     );
     let bank = priors::bank(&priors, &params)?;
     let options = OpenOptions { topics: arguments.topics.topics, ..OpenOptions::default() };
-    let log = wayfix_sensor_log::open(&arguments.log, &options)?;
+    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let origin = log.meta().first_format();
     let (records, read) = log.read_all();
     if !read.is_clean() {
         tell(&read);
     }
 
+    let mut outputs = Outputs::open("color", &arguments.common)?;
+    let mut estimates: Option<ColorEstimateLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut estimates: Option<ColorEstimateLog> =
-        finish::open_estimates(arguments.common.out.as_deref(), origin)?;
+    let mut particles = ParticleFilm::new(color::n_images(&records));
     let bar = progress::bar(records.len(), "colour localization");
     let mut remaining = records.iter();
     let start = arguments.start.map(|start| start.0);
@@ -125,35 +129,29 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
             estimates.observe(record, system);
         }
+        particles.observe(system);
         bar.inc(1);
     });
     bar.finish_and_clear();
     let mut color = color?;
-    finish::account(color.system.events(), &read);
+    account(color.system.events(), &read);
 
-    let name = arguments.log.display().to_string();
+    let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let mut run = Run { name, seconds, ..color::summarize(&mut color) };
+    let run = Run { name, seconds, ..color::summarize(&mut color) };
     if let Some(estimates) = estimates {
         estimates.finish()?;
-        run.log = Some(ESTIMATES.to_owned());
-        run.figures = pictures(&mut color, &records)?;
     }
-    finish::show(
-        "color",
-        run,
-        arguments.common.out.as_deref(),
-        arguments.common.json,
-        arguments.common.seed,
-    )?;
+    outputs.show(run, || pictures(&mut color, &records, &particles))?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Frames of the film strip.
 const FILM_FRAMES: usize = 5;
 
-fn pictures(color: &mut ColorRun, records: &[Record]) -> Result<Vec<Picture>> {
+fn pictures(color: &mut ColorRun, records: &[Record], particles: &ParticleFilm) -> Result<Vec<Picture>> {
     let mut pictures = color::pictures(color)?;
+    pictures.push(particles.draw(color)?);
     pictures.push(color::film(color, records, FILM_FRAMES)?);
     Ok(pictures)
 }

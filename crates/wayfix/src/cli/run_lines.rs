@@ -5,10 +5,11 @@ use wayfix_line_extract::Params;
 use wayfix_sensor_log::{Format, OpenOptions};
 
 use super::{
+    account::account,
     common::Common,
-    finish::{self, ESTIMATES},
-    input::{Topics, read_toml},
+    input::{Topics, name_of, read_toml},
     output::{print, tell},
+    outputs::Outputs,
     progress,
 };
 use crate::{
@@ -27,8 +28,10 @@ use crate::{
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// The log: CARMEN, scans as JSON, or MCAP, which may be a ROS 2 bag; text may be compressed with gzip.
-    #[arg(long, value_name = "PATH")]
-    log: PathBuf,
+    ///
+    /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
+    #[arg(long, value_name = "PATH", required = true)]
+    log: Vec<PathBuf>,
     /// How the log is stored: carmen, scan-json or mcap [default: found out by looking].
     #[arg(long)]
     format: Option<Format>,
@@ -56,15 +59,16 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut system = LineSystem::new(params)?;
     let options =
         OpenOptions { format: arguments.format, topics: arguments.topics.topics, ..OpenOptions::default() };
-    let log = wayfix_sensor_log::open(&arguments.log, &options)?;
+    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let origin = log.meta().first_format();
     let (records, read) = log.read_all();
     if !read.is_clean() {
         tell(&read);
     }
 
+    let mut outputs = Outputs::open("lines", &arguments.common)?;
+    let mut walls: Option<LineLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut walls: Option<LineLog> = finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let bar = progress::bar(records.len(), "walls");
     let mut remaining = records.iter();
     drive(&mut system, &records, |system| {
@@ -74,23 +78,15 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         bar.inc(1);
     });
     bar.finish_and_clear();
-    ensure!(system.n_scans() > 0, "{}: no laser scan in the log", arguments.log.display());
-    finish::account(system.events(), &read);
+    ensure!(system.n_scans() > 0, "{}: no laser scan in the log", name_of(&arguments.log));
+    account(system.events(), &read);
 
-    let name = arguments.log.display().to_string();
+    let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let mut run = Run { name, seconds, ..lines::summarize(&mut system) };
+    let run = Run { name, seconds, ..lines::summarize(&mut system) };
     if let Some(walls) = walls {
         walls.finish()?;
-        run.log = Some(ESTIMATES.to_owned());
-        run.figures = lines::pictures(&system)?;
     }
-    finish::show(
-        "lines",
-        run,
-        arguments.common.out.as_deref(),
-        arguments.common.json,
-        arguments.common.seed,
-    )?;
+    outputs.show(run, || Ok(lines::pictures(&system)?))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -7,10 +7,11 @@ use anyhow::{Context, Result};
 use wayfix_sensor_log::{Format, LogMeta, OpenOptions, Record};
 
 use super::{
+    account::account,
     common::Common,
-    finish::{self, ESTIMATES},
-    input::{Topics, read_toml},
+    input::{Topics, name_of, read_toml},
     output::{print, tell},
+    outputs::Outputs,
     progress, run_walls,
 };
 use crate::{
@@ -42,8 +43,10 @@ use crate::{
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// The log: an MCAP file, which may be a ROS 2 bag, the folder of a UTIAS or Victoria Park set, a text file of range-bearing lines, or laser scans of CARMEN or JSON.
-    #[arg(long, value_name = "PATH")]
-    pub(super) log: PathBuf,
+    ///
+    /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
+    #[arg(long, value_name = "PATH", required = true)]
+    pub(super) log: Vec<PathBuf>,
     /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: found out by looking].
     #[arg(long)]
     pub(super) format: Option<Format>,
@@ -107,14 +110,14 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         topics: arguments.topics.topics.clone(),
         ..OpenOptions::default()
     };
-    let log = wayfix_sensor_log::open(&arguments.log, &options)?;
+    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let meta = log.meta().clone();
     let (records, read) = log.read_all();
     if !read.is_clean() {
         tell(&read);
     }
     if run_walls::is_for(&records) {
-        return run_walls::main(&arguments, &records, &read);
+        return run_walls::main(&arguments, &records, meta.first_format(), &read);
     }
     let params = params(&arguments, &meta)?;
     if arguments.common.print_params {
@@ -123,28 +126,27 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
     let origin = meta.first_format();
 
+    let mut outputs = Outputs::open("slam", &arguments.common)?;
+    let mut estimates = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut estimates = finish::open_estimates(arguments.common.out.as_deref(), origin)?;
     let saved = arguments.resume.as_deref().map(saved_map).transpose()?;
     let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
     let mut slam = run(&records, &params, saved, estimates.as_mut(), saver.as_mut())?;
     if let Some(saver) = saver {
         saver.finish(&slam.system).context("cannot save the map")?;
     }
-    finish::account(slam.events(), &read);
+    account(slam.events(), &read);
 
-    let mut run = Run {
-        name: arguments.log.display().to_string(),
+    let run = Run {
+        name: name_of(&arguments.log),
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..slam::summarize(&mut slam)
     };
     run.notes.iter().for_each(tell);
     if let Some(estimates) = estimates {
         estimates.finish()?;
-        run.log = Some(ESTIMATES.to_owned());
-        run.figures = slam::pictures(&slam)?;
     }
-    finish::show("slam", run, arguments.common.out.as_deref(), arguments.common.json, arguments.common.seed)?;
+    outputs.show(run, || Ok(slam::pictures(&slam)?))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,7 @@
 use std::{
-    fs,
-    path::{Path, PathBuf},
+    fs::File,
+    io::{self, BufWriter, Write},
+    path::PathBuf,
     process::ExitCode,
     str::FromStr,
 };
@@ -10,10 +11,11 @@ use wayfix_condensation::BoundingBox;
 use wayfix_sensor_log::{Format, Log, OpenOptions};
 
 use super::{
+    account::account,
     common::Common,
-    finish::{self, ESTIMATES},
     input::read_toml,
     output::{print, tell},
+    outputs::Outputs,
     progress,
 };
 use crate::{
@@ -40,9 +42,9 @@ pub(super) struct Arguments {
     /// A folder of pictures, JPEG or PNG, in the order of their names.
     #[arg(long, value_name = "DIR", required_unless_present_any = ["log", "print_params"], conflicts_with = "log")]
     frames: Option<PathBuf>,
-    /// A log with images, an MCAP file, instead of --frames.
+    /// A log with images, an MCAP file, instead of --frames; several are the files of one recording.
     #[arg(long, value_name = "PATH")]
-    log: Option<PathBuf>,
+    log: Vec<PathBuf>,
     /// Where the target is in the first frame: x,y,w,h or eight numbers [default: the first true box].
     #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["truth", "print_params"])]
     init: Option<BoxArgument>,
@@ -93,7 +95,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     };
     let (mut log, rate_hz) = arguments.open()?;
     let origin = log.meta().first_format();
-    let mut estimates = arguments.common.out.as_deref().map(|out| open_estimates(out, origin)).transpose()?;
+    let mut outputs = Outputs::open("track", &arguments.common)?;
+    let mut estimates = open_estimates(&mut outputs, origin)?;
 
     let stopwatch = Stopwatch::start();
     let init = arguments.init.map(|init| init.0);
@@ -111,24 +114,16 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         tell(log.report());
     }
     let mut track = track?;
-    finish::account(track.system.events(), log.report());
+    account(track.system.events(), log.report());
 
     let name = log.meta().source.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let mut run = Run { name, seconds, ..track::summarize(&mut track) };
+    let run = Run { name, seconds, ..track::summarize(&mut track) };
     run.notes.iter().for_each(|note| tell(format!("note: {note}")));
     if let Some(estimates) = estimates {
         estimates.finish(track.system.n_frames())?;
-        run.log = Some(ESTIMATES.to_owned());
-        run.figures = track::pictures(&track.story)?;
     }
-    finish::show(
-        "track",
-        run,
-        arguments.common.out.as_deref(),
-        arguments.common.json,
-        arguments.common.seed,
-    )?;
+    outputs.show(run, || Ok(track::pictures(&track.story)?))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -136,19 +131,29 @@ impl Arguments {
     /// The log, and the frames a second of a folder.
     fn open(&self) -> Result<(Log, Option<f64>)> {
         let mut options = OpenOptions::default();
-        match (&self.frames, &self.log) {
+        match (&self.frames, self.log.as_slice()) {
             (Some(folder), _) => {
                 options.format = Some(Format::Images);
                 let rate_hz = Some(options.frame_rate_hz);
                 Ok((wayfix_sensor_log::open(folder, &options)?, rate_hz))
             }
-            (None, Some(path)) => Ok((wayfix_sensor_log::open(path, &options)?, None)),
-            (None, None) => anyhow::bail!("give --frames or --log"),
+            (None, []) => anyhow::bail!("give --frames or --log"),
+            (None, paths) => Ok((wayfix_sensor_log::open_all(paths, &options)?, None)),
         }
     }
 }
 
-fn open_estimates(out: &Path, origin: Format) -> Result<TrackLog> {
-    fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-    TrackLog::create(&out.join(ESTIMATES), &out.join(BOXES), origin)
+fn open_estimates(outputs: &mut Outputs<'_>, origin: Format) -> Result<Option<TrackLog>> {
+    let sinks = outputs.sinks()?;
+    if sinks.is_empty() {
+        return Ok(None);
+    }
+    let boxes: Box<dyn Write> = match outputs.file(BOXES) {
+        Some(path) => {
+            let file = File::create(&path).with_context(|| format!("cannot create {}", path.display()))?;
+            Box::new(BufWriter::new(file))
+        }
+        None => Box::new(io::sink()),
+    };
+    Ok(Some(TrackLog::new(sinks, boxes, origin)?))
 }

@@ -1,19 +1,18 @@
 use std::{
-    fs,
     path::{Path, PathBuf},
     process::ExitCode,
     str::FromStr,
 };
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::builder::RangedU64ValueParser;
 use wayfix_condensation::{ActionChoice, Light};
 
 use super::{
     common::Common,
-    finish,
     input::read_toml,
     output::{print, tell},
+    outputs::Outputs,
     progress,
 };
 use crate::{
@@ -129,10 +128,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         ));
         real = real.shifted(-dx, -dy);
     }
-    if let Some(out) = &arguments.common.out {
-        fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-    }
 
+    let mut outputs = Outputs::open("views", &arguments.common)?;
     let stopwatch = Stopwatch::start();
     let setup = Setup {
         view: arguments.view as usize,
@@ -148,17 +145,12 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let name = arguments.scene.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let mut run = Run { name, seconds, ..views::summarize(&views) };
-    if arguments.common.out.is_some() {
-        run.figures = views::pictures(&views, learned, &real, arguments.common.seed)?;
+    let run = Run { name, seconds, ..views::summarize(&views) };
+    let sinks = outputs.sinks()?;
+    if !sinks.is_empty() {
+        views::draw_drive(&views, &real, arguments.common.seed, sinks)?;
     }
-    finish::show(
-        "views",
-        run,
-        arguments.common.out.as_deref(),
-        arguments.common.json,
-        arguments.common.seed,
-    )?;
+    outputs.show(run, || views::pictures(&views, learned, &real, arguments.common.seed))?;
     Ok(ExitCode::SUCCESS)
 }
 

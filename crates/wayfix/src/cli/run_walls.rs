@@ -1,12 +1,13 @@
-use std::{fs, process::ExitCode};
+use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use wayfix_sensor_log::{Data, ReadReport, Record, read_relations};
+use wayfix_sensor_log::{Data, Format, ReadReport, Record, read_relations};
 
 use super::{
-    finish,
-    input::read_toml,
+    account::account,
+    input::{name_of, read_toml},
     output::{print, tell},
+    outputs::Outputs,
     progress, run_slam,
 };
 use crate::{
@@ -14,7 +15,7 @@ use crate::{
     report::Run,
     slam::AssociationRule,
     system::Stopwatch,
-    walls::{self, WallSlamParams},
+    walls::{self, WallEstimateLog, WallSlamParams},
 };
 
 /// Whether a log is one of scans: walls are its landmarks then.
@@ -27,6 +28,7 @@ pub(super) fn is_for(records: &[Record]) -> bool {
 pub(super) fn main(
     arguments: &run_slam::Arguments,
     records: &[Record],
+    origin: Format,
     read: &ReadReport,
 ) -> Result<ExitCode> {
     for (given, option) in [
@@ -42,14 +44,25 @@ pub(super) fn main(
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
+    let mut outputs = Outputs::open("slam", &arguments.common)?;
+    let mut estimates: Option<WallEstimateLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let bar = progress::bar(records.len(), "EKF-SLAM with walls");
-    let slam = walls::run(records, &params, |_| bar.inc(1));
+    let mut remaining = records.iter();
+    let slam = walls::run(records, &params, |system| {
+        if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
+            estimates.observe(record, system);
+        }
+        bar.inc(1);
+    });
     bar.finish_and_clear();
     let mut slam = slam?;
-    finish::account(slam.events(), read);
+    if let Some(estimates) = estimates {
+        estimates.finish()?;
+    }
+    account(slam.events(), read);
     let mut run = Run {
-        name: arguments.log.display().to_string(),
+        name: name_of(&arguments.log),
         seconds: stopwatch.elapsed().as_secs_f64(),
         ..walls::summarize(&mut slam)
     };
@@ -60,11 +73,7 @@ pub(super) fn main(
         }
         run.metrics.extend(walls::relation_metrics(&slam, &relations));
     }
-    if let Some(out) = &arguments.common.out {
-        fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
-        run.figures = walls::pictures(&slam)?;
-    }
-    finish::show("slam", run, arguments.common.out.as_deref(), arguments.common.json, arguments.common.seed)?;
+    outputs.show(run, || Ok(walls::pictures(&slam)?))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,10 +1,8 @@
-use std::{fs::File, io::BufWriter};
-
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{LogError, McapWriter, Record, topics};
+use wayfix_sensor_log::{LogError, Record, topics};
 
 use super::CmlSystem;
-use crate::system::{self, EstimateLog};
+use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// The views, the path and the references of an appearance map beside the records, for viewers.
 pub type CmlEstimateLog = EstimateLog<CmlDrawing>;
@@ -22,12 +20,7 @@ const PERIOD: usize = 20;
 impl system::Drawing for CmlDrawing {
     type System = CmlSystem;
 
-    fn draw(
-        &mut self,
-        _: &Record,
-        system: &CmlSystem,
-        writer: &mut McapWriter<BufWriter<File>>,
-    ) -> Result<(), LogError> {
+    fn draw(&mut self, _: &Record, system: &CmlSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {
         let Some(frame) = system.frames().get(self.n_written) else { return Ok(()) };
         self.n_written += 1;
         let (stamp, world) = (frame.stamp, topics::WORLD_FRAME);

@@ -1,12 +1,10 @@
-use std::{fs::File, io::BufWriter};
-
 use nalgebra::Matrix2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{Drawing, LogError, McapWriter, Record, Shape, topics};
+use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
 
 use super::{ColorSystem, FrameResult};
-use crate::system::{self, EstimateLog};
+use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// The camera's images, the path and the particles beside the records, for viewers.
 pub type ColorEstimateLog = EstimateLog<ColorDrawing>;
@@ -31,7 +29,7 @@ impl system::Drawing for ColorDrawing {
         &mut self,
         _: &Record,
         system: &ColorSystem,
-        writer: &mut McapWriter<BufWriter<File>>,
+        writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
         let Some(frame) = system.frames().get(self.n_written) else { return Ok(()) };
         self.n_written += 1;

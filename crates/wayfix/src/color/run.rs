@@ -56,6 +56,11 @@ pub fn run(
     Ok(ColorRun { system, truth })
 }
 
+/// How many camera frames a log has.
+pub fn n_images(records: &[Record]) -> usize {
+    records.iter().filter(|record| matches!(record.data, Data::Image(_))).count()
+}
+
 /// A start as far off the truth as it is said to be.
 fn guess(truth: &Pose2<f64>, params: &ColorSystemParams, seed: u64) -> Pose2<f64> {
     // Not the stream that the particles are drawn from.

@@ -1,9 +1,7 @@
-use std::{fs::File, io::BufWriter};
-
-use wayfix_sensor_log::{Data, Drawing, LogError, McapWriter, Record, Shape, topics};
+use wayfix_sensor_log::{Data, Drawing, LogError, Record, Shape, topics};
 
 use super::{LineSystem, ScanWalls};
-use crate::system::{self, EstimateLog};
+use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// The walls of every scan beside the records, for viewers.
 pub type LineLog = EstimateLog<LineDrawing>;
@@ -28,11 +26,13 @@ const WALL_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 impl system::Drawing for LineDrawing {
     type System = LineSystem;
 
+    const DRAWS_POSES: bool = false;
+
     fn draw(
         &mut self,
         record: &Record,
         system: &LineSystem,
-        writer: &mut McapWriter<BufWriter<File>>,
+        writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
         if let Data::TruePose(pose) | Data::EstimatedPose(pose) = &record.data {
             let (world, body) = (topics::WORLD_FRAME, topics::BODY_FRAME);

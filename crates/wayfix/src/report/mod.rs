@@ -7,6 +7,7 @@
 //! Times are never among the `metrics`: those are the same bits for any number of threads, and times go into `timings`.
 
 pub mod html;
+mod layout;
 mod metric;
 mod model;
 mod number;
@@ -16,6 +17,7 @@ pub mod table;
 mod tally;
 mod write;
 
+pub use layout::foxglove_layout;
 pub use metric::{Metric, Peer, Spread};
 pub use model::{Report, Run, Suite};
 pub use provenance::{Machine, commit};

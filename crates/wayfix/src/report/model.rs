@@ -60,6 +60,9 @@ pub struct Run {
     /// MCAP of the estimates, relative to the folder of the report.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub log: Option<String>,
+    /// A layout with which Foxglove shows the log, beside the report.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layout: Option<String>,
     /// Why the run ended early; such a run fails.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,

@@ -1,12 +1,10 @@
-use std::{fs::File, io::BufWriter};
-
 use nalgebra::Matrix2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{Drawing, LogError, McapWriter, Record, Shape, topics};
+use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
 
 use super::{Keyframe, SlamSystem};
-use crate::system::{self, EstimateLog};
+use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// The map as it is built beside the records, for viewers.
 pub type SlamEstimateLog = EstimateLog<SlamDrawing>;
@@ -28,28 +26,10 @@ const LANDMARK_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 impl system::Drawing for SlamDrawing {
     type System = SlamSystem;
 
-    fn draw(
-        &mut self,
-        _: &Record,
-        system: &SlamSystem,
-        writer: &mut McapWriter<BufWriter<File>>,
-    ) -> Result<(), LogError> {
+    fn draw(&mut self, _: &Record, system: &SlamSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {
         for keyframe in &system.keyframes()[self.n_written..] {
             self.path.push(keyframe.pose);
-            writer.pose_in_frame(
-                topics::ESTIMATED_POSE,
-                keyframe.stamp,
-                topics::WORLD_FRAME,
-                &keyframe.pose,
-            )?;
-            writer.frame_transform(
-                "/tf",
-                keyframe.stamp,
-                topics::WORLD_FRAME,
-                topics::BODY_FRAME,
-                &keyframe.pose,
-            )?;
-            writer.scene_update("/estimate/robot", keyframe.stamp, topics::WORLD_FRAME, &robot(keyframe))?;
+            draw_keyframe(keyframe, writer)?;
             if self.path.len() % MAP_PERIOD == 1 {
                 let (points, drawings) = map(system);
                 writer.poses_in_frame("/estimate/path", keyframe.stamp, topics::WORLD_FRAME, &self.path)?;
@@ -60,6 +40,14 @@ impl system::Drawing for SlamDrawing {
         self.n_written = system.keyframes().len();
         Ok(())
     }
+}
+
+/// The robot and how sure it is of its place.
+pub(crate) fn draw_keyframe(keyframe: &Keyframe, writer: &mut EstimateWriter) -> Result<(), LogError> {
+    let (stamp, pose, world) = (keyframe.stamp, &keyframe.pose, topics::WORLD_FRAME);
+    writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, world, pose)?;
+    writer.frame_transform("/tf", stamp, world, topics::BODY_FRAME, pose)?;
+    writer.scene_update("/estimate/robot", stamp, world, &robot(keyframe))
 }
 
 fn robot(keyframe: &Keyframe) -> Vec<Drawing> {

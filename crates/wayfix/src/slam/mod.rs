@@ -12,6 +12,7 @@ mod run;
 mod saved;
 mod system;
 
+pub(crate) use estimates::draw_keyframe;
 pub use estimates::{SlamDrawing, SlamEstimateLog};
 pub(crate) use event_name::event_name;
 pub use figures::summarize;

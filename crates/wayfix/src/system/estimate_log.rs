@@ -1,13 +1,22 @@
-use std::{fs::File, io::BufWriter, path::Path};
+use std::path::Path;
 
-use wayfix_sensor_log::{Format, LogError, McapWriter, Record};
+use wayfix_sensor_log::{Data, Format, LogError, McapFile, MessageWriter, Record, Sinks, topics};
+
+/// What estimates are drawn with, wherever they go.
+pub type EstimateWriter = MessageWriter<Sinks>;
+
+/// Poses in the log that another program estimated, beside those of ours.
+pub const OTHER_POSES: &str = "/other/pose";
 
 /// What a system's estimates look like in a viewer.
 pub trait Drawing: Default {
     /// The system.
     type System;
 
-    /// Adds what the system made of `record`, which is in the file already.
+    /// Whether it draws where the robot is. Poses that another program estimated are then kept apart, on [`OTHER_POSES`].
+    const DRAWS_POSES: bool = true;
+
+    /// Adds what the system made of `record`, which is written already.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -15,13 +24,13 @@ pub trait Drawing: Default {
         &mut self,
         record: &Record,
         system: &Self::System,
-        writer: &mut McapWriter<BufWriter<File>>,
+        writer: &mut EstimateWriter,
     ) -> Result<(), LogError>;
 }
 
-/// Writes the estimates of a system beside the records of its log into an MCAP file, for Foxglove and Rerun.
+/// Writes the estimates of a system beside the records of its log, into an MCAP file or to viewers, Foxglove and Rerun.
 pub struct EstimateLog<D: Drawing> {
-    writer: McapWriter<BufWriter<File>>,
+    writer: EstimateWriter,
     drawing: D,
     failure: Option<LogError>,
 }
@@ -32,7 +41,15 @@ impl<D: Drawing> EstimateLog<D> {
     /// # Errors
     /// When it cannot be created.
     pub fn create(path: &Path, origin: Format) -> Result<Self, LogError> {
-        let mut writer = McapWriter::create(path)?;
+        Self::new(vec![Box::new(McapFile::create(path)?)], origin)
+    }
+
+    /// Writes into all of `sinks`.
+    ///
+    /// # Errors
+    /// When one of them fails.
+    pub fn new(sinks: Sinks, origin: Format) -> Result<Self, LogError> {
+        let mut writer = MessageWriter::into_sink(sinks);
         writer.origin(origin)?;
         Ok(Self { writer, drawing: D::default(), failure: None })
     }
@@ -44,7 +61,7 @@ impl<D: Drawing> EstimateLog<D> {
         }
     }
 
-    /// Completes the file.
+    /// Completes what was written.
     ///
     /// # Errors
     /// When anything could not be written.
@@ -56,7 +73,13 @@ impl<D: Drawing> EstimateLog<D> {
     }
 
     fn write(&mut self, record: &Record, system: &D::System) -> Result<(), LogError> {
-        match self.writer.record(record) {
+        let written = match &record.data {
+            Data::EstimatedPose(pose) if D::DRAWS_POSES && pose.is_finite() => {
+                self.writer.pose_in_frame(OTHER_POSES, record.stamp, topics::WORLD_FRAME, pose)
+            }
+            _ => self.writer.record(record),
+        };
+        match written {
             Err(LogError::NotFinite { .. }) => {} // refused by the system and counted there
             written => written?,
         }

@@ -6,7 +6,7 @@ mod events;
 mod stopwatch;
 
 pub use drive::{drive, stream};
-pub use estimate_log::{Drawing, EstimateLog};
+pub use estimate_log::{Drawing, EstimateLog, EstimateWriter, OTHER_POSES};
 pub use events::{Events, Refusal};
 pub use stopwatch::Stopwatch;
 

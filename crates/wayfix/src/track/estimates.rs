@@ -6,14 +6,15 @@ use std::{
 
 use anyhow::{Context, Result};
 use wayfix_condensation::TrackStatus;
-use wayfix_sensor_log::{Data, Format, ImageOutline, McapWriter, Record, topics};
+use wayfix_sensor_log::{Data, Format, ImageOutline, McapFile, MessageWriter, Record, Sinks, topics};
 
 use super::{FrameResult, TrackSystem, Truth, overlay, story::outline};
+use crate::system::EstimateWriter;
 
-/// Writes the images and the outlines in them to an MCAP file, and the boxes to a text file of the form that truth has.
+/// Writes the images and the outlines in them to an MCAP file or to viewers, and the boxes to a text of the form that truth has.
 pub struct TrackLog {
-    writer: McapWriter<BufWriter<File>>,
-    boxes: BufWriter<File>,
+    writer: EstimateWriter,
+    boxes: Box<dyn Write>,
     n_lines: usize,
     failure: Option<anyhow::Error>,
 }
@@ -24,10 +25,18 @@ impl TrackLog {
     /// # Errors
     /// When one cannot be created.
     pub fn create(log: &Path, boxes: &Path, origin: Format) -> Result<Self> {
-        let mut writer = McapWriter::create(log)?;
-        writer.origin(origin)?;
         let file = File::create(boxes).with_context(|| format!("cannot create {}", boxes.display()))?;
-        Ok(Self { writer, boxes: BufWriter::new(file), n_lines: 0, failure: None })
+        Self::new(vec![Box::new(McapFile::create(log)?)], Box::new(BufWriter::new(file)), origin)
+    }
+
+    /// Writes images and outlines into all of `sinks`.
+    ///
+    /// # Errors
+    /// When one of them fails.
+    pub fn new(sinks: Sinks, boxes: Box<dyn Write>, origin: Format) -> Result<Self> {
+        let mut writer = MessageWriter::into_sink(sinks);
+        writer.origin(origin)?;
+        Ok(Self { writer, boxes, n_lines: 0, failure: None })
     }
 
     /// Writes an image of the log and what the tracker made of it. A failure is kept until [`finish`](Self::finish).
@@ -37,7 +46,7 @@ impl TrackLog {
         }
     }
 
-    /// Completes both files; so many frames there were.
+    /// Completes both; so many frames there were.
     ///
     /// # Errors
     /// When anything could not be written.

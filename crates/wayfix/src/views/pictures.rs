@@ -2,9 +2,9 @@ use std::cmp::Reverse;
 
 use anyhow::Result;
 use wayfix_condensation::{Grid, Picture as Pixels};
-use wayfix_sensor_log::EncodedImage;
+use wayfix_sensor_log::{EncodedImage, ImageError};
 
-use super::{Trial, ViewSystem, ViewsRun};
+use super::{Step, Trial, ViewSystem, ViewsRun};
 use crate::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, Series};
 
 /// Moves after which the belief is shown, beside the last.
@@ -13,10 +13,10 @@ const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];
 const FRAMES_A_ROW: usize = 3;
 /// Pixels a place of a belief map.
 const CELL: usize = 12;
-const TRUTH: [u8; 3] = [214, 39, 40];
-const GOAL: [u8; 3] = [24, 140, 60];
-const BEST: [u8; 3] = [240, 160, 0];
-const JPEG_QUALITY: u8 = 85;
+pub(super) const TRUTH: [u8; 3] = [214, 39, 40];
+pub(super) const GOAL: [u8; 3] = [24, 140, 60];
+pub(super) const BEST: [u8; 3] = [240, 160, 0];
+pub(super) const JPEG_QUALITY: u8 = 85;
 
 /// The scene learned and seen, the belief in the drive that was unsure for longest, and how fast all of them became certain.
 ///
@@ -36,11 +36,10 @@ pub fn pictures(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> R
 /// When the trial cannot be driven or a picture not be encoded.
 pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture> {
     let grid = *system.views().grid();
-    let mut maps: Vec<(usize, Vec<u8>)> = Vec::new();
+    let mut maps = Vec::new();
     let mut last = None;
     system.trial(seed, trial, |step| {
-        let marks = [(step.goal, GOAL), (step.localizer.best().state, BEST), (step.at, TRUTH)];
-        let map = belief_map(&grid, step.localizer.belief(), &marks);
+        let map = belief_image(&grid, &step);
         if SHOWN.contains(&step.number) {
             maps.push((step.number, map));
             last = None;
@@ -50,11 +49,10 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture
     })?;
     maps.extend(last);
     let size = ((grid.columns() * CELL) as u32, (grid.rows() * CELL) as u32);
-    let frame = |(number, map): (usize, Vec<u8>)| -> Result<FilmFrame> {
-        let image = EncodedImage::png_rgb(size.0, size.1, &map)?;
-        Ok(FilmFrame { image, caption: format!("{number} moves") })
+    let frame = |(number, image): (usize, Result<EncodedImage, ImageError>)| {
+        Ok(FilmFrame { image: image?, caption: format!("{number} moves") })
     };
-    let frames: Vec<FilmFrame> = maps.into_iter().map(frame).collect::<Result<_>>()?;
+    let frames: Vec<FilmFrame> = maps.into_iter().map(frame).collect::<Result<_, ImageError>>()?;
     let legends =
         ["red: true place, orange: best, green: goal", "dark: believed, by the logarithm to a millionth"];
     let rows =
@@ -65,6 +63,13 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture
         frame_size: size,
     };
     Ok(film.draw()?)
+}
+
+/// What is believed at a moment, with the true place, the best and the goal.
+pub(super) fn belief_image(grid: &Grid, step: &Step<'_>) -> Result<EncodedImage, ImageError> {
+    let marks = [(step.goal, GOAL), (step.localizer.best().state, BEST), (step.at, TRUTH)];
+    let pixels = belief_map(grid, step.localizer.belief(), &marks);
+    EncodedImage::png_rgb((grid.columns() * CELL) as u32, (grid.rows() * CELL) as u32, &pixels)
 }
 
 /// A square a place, darker where belief is larger. The marks of one place lie inside each other, the last outermost.
@@ -90,7 +95,7 @@ pub(super) fn shade(share: f64) -> [u8; 3] {
 }
 
 /// The trial that became certain last; one that never did is the slowest of all.
-fn slowest(trials: &[Trial]) -> u64 {
+pub(super) fn slowest(trials: &[Trial]) -> u64 {
     let steps = |trial: &Trial| trial.report.steps_to_certainty.unwrap_or(usize::MAX);
     let slowest = (0_u64..).zip(trials).max_by_key(|(index, trial)| (steps(trial), Reverse(*index)));
     slowest.map_or(0, |(index, _)| index)

@@ -1,5 +1,6 @@
 //! EKF-SLAM on laser scans: walls in every scan → map of walls, path, figures, pictures.
 
+mod estimates;
 mod figures;
 mod params;
 mod pictures;
@@ -7,6 +8,7 @@ mod run;
 mod system;
 mod truth;
 
+pub use estimates::{WallDrawing, WallEstimateLog};
 pub use figures::{relation_metrics, summarize};
 pub use params::WallSlamParams;
 pub use pictures::pictures;

@@ -4,7 +4,10 @@ use wayfix_appearance_cml::{Donut, RingOrder, TurnSense};
 use wayfix_estimation_traits::Pose2;
 
 use crate::{
-    cli::{common::Common, input::Topics},
+    cli::{
+        common::Common,
+        input::{Topics, name_of},
+    },
     cml::Task,
 };
 
@@ -33,9 +36,9 @@ use crate::{
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES, group(clap::ArgGroup::new("input").required(true).multiple(true).args(["log", "frames", "print_params"])))]
 pub(crate) struct Arguments {
-    /// A log with images, odometry (increments or velocities) and, where it is to be judged, true poses.
+    /// A log with images, odometry (increments or velocities) and, where it is to be judged, true poses; several are the files of one recording.
     #[arg(long, value_name = "PATH", conflicts_with = "frames")]
-    pub(super) log: Option<PathBuf>,
+    pub(super) log: Vec<PathBuf>,
     #[command(flatten)]
     pub(super) topics: Topics,
     /// A folder of PNG or JPEG frames.
@@ -152,8 +155,7 @@ const WITHHOLD: usize = 5;
 
 impl Arguments {
     pub(super) fn name(&self) -> String {
-        let input = self.log.as_deref().or(self.frames.as_deref());
-        input.map_or_else(String::new, |path| path.display().to_string())
+        name_of(self.frames.as_ref().map_or(self.log.as_slice(), std::slice::from_ref))
     }
 
     pub(super) fn withhold(&self) -> usize {

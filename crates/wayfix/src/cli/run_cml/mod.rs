@@ -13,9 +13,10 @@ pub(super) use arguments::Arguments;
 use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
 
 use super::{
-    finish::{self, ESTIMATES},
+    account::account,
     input::read_toml,
     output::{print, tell},
+    outputs::Outputs,
     progress,
 };
 use crate::{
@@ -45,8 +46,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let reader = ViewReader::new(params.views, arguments.donut());
     let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
 
-    let mut estimates: Option<CmlEstimateLog> =
-        finish::open_estimates(arguments.common.out.as_deref(), origin)?;
+    let mut outputs = Outputs::open("cml", &arguments.common)?;
+    let mut estimates: Option<CmlEstimateLog> = outputs.estimates(origin)?;
     let mut saver = arguments.save_map.clone().map(|path| MapSaver::new(path, arguments.save_every));
     let bar = progress::bar(plan.records.len(), "appearance map");
     let mut remaining = plan.records.iter();
@@ -59,26 +60,18 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let mut run = run?;
-    finish::account(run.system.events(), &read);
+    account(run.system.events(), &read);
     if let Some(saver) = saver {
         saver.finish(&run.system).context("cannot save the map")?;
     }
 
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let mut summary = Run { name: arguments.name(), seconds, ..cml::summarize(&mut run) };
+    let summary = Run { name: arguments.name(), seconds, ..cml::summarize(&mut run) };
     tell(summary.notes.join("\n"));
     if let Some(estimates) = estimates {
         estimates.finish()?;
-        summary.log = Some(ESTIMATES.to_owned());
-        summary.figures = cml::pictures(&run)?;
     }
-    finish::show(
-        "cml",
-        summary,
-        arguments.common.out.as_deref(),
-        arguments.common.json,
-        arguments.common.seed,
-    )?;
+    outputs.show(summary, || Ok(cml::pictures(&run)?))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -117,9 +110,9 @@ impl Arguments {
             ColumnsArgument::Counterclockwise => TurnSense::Counterclockwise,
         });
         let camera = CameraChoice { donut: self.donut(), sense: told.or(saved_sense) };
-        if let Some(log) = &self.log {
+        if !self.log.is_empty() {
             let options = OpenOptions { topics: self.topics.topics.clone(), ..OpenOptions::default() };
-            let log = wayfix_sensor_log::open(log, &options)?;
+            let log = wayfix_sensor_log::open_all(&self.log, &options)?;
             let origin = log.meta().first_format();
             let (records, read) = log.read_all();
             if !read.is_clean() {

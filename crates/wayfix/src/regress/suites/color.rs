@@ -8,7 +8,7 @@ use wayfix_sensor_log::{OpenOptions, Record};
 
 use super::super::Job;
 use crate::{
-    color::{self, ColorEstimateLog, ColorSystemParams, experiments, priors},
+    color::{self, ColorEstimateLog, ColorSystemParams, ParticleFilm, experiments, priors},
     report::Run,
     system::System,
 };
@@ -132,15 +132,18 @@ fn localize(job: &Job<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Re
     let mut estimates = ColorEstimateLog::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let bank = priors::bank(&priors::built_in()?, params)?;
+    let mut particles = ParticleFilm::new(color::n_images(&records));
     let mut remaining = records.iter();
     let mut run = color::run(&records, map, bank, params, None, job.options.seed, |system| {
         if let Some(record) = remaining.next() {
             estimates.observe(record, system);
         }
+        particles.observe(system);
     })?;
     estimates.finish()?;
     run.system.events().add("log_problem", read.n_problems());
     let mut figures = color::pictures(&run)?;
+    figures.push(particles.draw(&run)?);
     figures.push(color::film(&mut run, &records, FILM_FRAMES)?);
     Ok(Run { log: Some(name), figures, ..color::summarize(&mut run) })
 }

@@ -86,6 +86,7 @@ mod tests {
             figures: vec![plot.draw().unwrap()],
             notes: vec![evil.to_owned()],
             log: Some("javascript:alert(1)\" onclick=\"x".to_owned()),
+            layout: Some("javascript:alert(1)\" onclick=\"x".to_owned()),
             error: Some(evil.to_owned()),
             ..Run::default()
         };

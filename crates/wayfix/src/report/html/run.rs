@@ -107,14 +107,12 @@ fn events(run: &Run) -> String {
 }
 
 fn log_link(run: &Run) -> String {
-    let link = |log: &String| {
-        format!(
-            "<p><a href=\"{}\" download>{}</a>, the estimates for Foxglove and Rerun</p>\n",
-            as_reference(log),
-            escape(log)
-        )
-    };
-    run.log.as_ref().map_or_else(String::new, link)
+    let file = |path: &String| format!("<a href=\"{}\" download>{}</a>", as_reference(path), escape(path));
+    let Some(log) = &run.log else { return String::new() };
+    let layout = run.layout.as_ref().map(|layout| {
+        format!("; for Foxglove there is the layout {} (Layouts, Import from file)", file(layout))
+    });
+    format!("<p>{}, the estimates for Foxglove and Rerun{}</p>\n", file(log), layout.unwrap_or_default())
 }
 
 /// A relative path as a reference: a colon or a quote in a file name is only a character.

@@ -1,0 +1,104 @@
+use std::collections::BTreeMap;
+
+use crate::{Format, LogError, Stamp};
+
+/// A Foxglove message, encoded as protobuf.
+#[derive(Clone, Copy, Debug)]
+pub struct Message<'a> {
+    /// Where it belongs.
+    pub topic: &'a str,
+    /// Name of its schema, for instance `foxglove.PoseInFrame`.
+    pub schema: &'a str,
+    /// The schema itself: a file descriptor set.
+    pub descriptors: &'a [u8],
+    /// What is the same for all messages of the channel.
+    pub metadata: &'a BTreeMap<String, String>,
+    /// When it was.
+    pub stamp: Stamp,
+    /// Its bytes.
+    pub data: &'a [u8],
+}
+
+impl Message<'_> {
+    /// How schemas and messages are encoded.
+    pub const ENCODING: &'static str = "protobuf";
+
+    /// The channel that it goes into.
+    pub fn channel(&self) -> ChannelKey {
+        ChannelKey {
+            topic: self.topic.to_owned(),
+            schema: self.schema.to_owned(),
+            metadata: self.metadata.clone(),
+        }
+    }
+}
+
+/// What tells channels apart.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ChannelKey {
+    topic: String,
+    schema: String,
+    metadata: BTreeMap<String, String>,
+}
+
+/// Where messages go: a file, a viewer, several of them.
+///
+/// ```
+/// use wayfix_estimation_traits::Pose2;
+/// use wayfix_sensor_log::{LogError, Message, MessageSink, MessageWriter, Stamp};
+/// #[derive(Default)]
+/// struct Count(usize);
+/// impl MessageSink for Count {
+///     fn message(&mut self, message: &Message<'_>) -> Result<(), LogError> {
+///         assert_eq!((message.topic, message.schema), ("/pose", "foxglove.PoseInFrame"));
+///         self.0 += 1;
+///         Ok(())
+///     }
+/// }
+/// let mut writer = MessageWriter::into_sink(Count::default());
+/// writer.pose_in_frame("/pose", Stamp::from_nanoseconds(5), "world", &Pose2::new(1.0, 2.0, 0.5))?;
+/// assert_eq!(writer.sink().0, 1);
+/// writer.finish()?;
+/// # Ok::<(), LogError>(())
+/// ```
+pub trait MessageSink {
+    /// Takes a message.
+    ///
+    /// # Errors
+    /// When it cannot be passed on.
+    fn message(&mut self, message: &Message<'_>) -> Result<(), LogError>;
+
+    /// Is told, before the first message, in which format the records were stored first.
+    ///
+    /// # Errors
+    /// When that cannot be passed on.
+    fn origin(&mut self, origin: Format) -> Result<(), LogError> {
+        let _ = origin;
+        Ok(())
+    }
+
+    /// Nothing more comes.
+    ///
+    /// # Errors
+    /// When what was taken cannot be completed.
+    fn finish(self: Box<Self>) -> Result<(), LogError> {
+        Ok(())
+    }
+}
+
+/// Several sinks, each of which gets everything.
+pub type Sinks = Vec<Box<dyn MessageSink>>;
+
+impl MessageSink for Sinks {
+    fn message(&mut self, message: &Message<'_>) -> Result<(), LogError> {
+        self.iter_mut().try_for_each(|sink| sink.message(message))
+    }
+
+    fn origin(&mut self, origin: Format) -> Result<(), LogError> {
+        self.iter_mut().try_for_each(|sink| sink.origin(origin))
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), LogError> {
+        self.into_iter().try_for_each(MessageSink::finish)
+    }
+}

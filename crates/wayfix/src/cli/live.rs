@@ -1,0 +1,86 @@
+use std::net::{IpAddr, SocketAddr};
+
+use anyhow::Result;
+use wayfix_sensor_log::MessageSink;
+
+use super::output::tell;
+use crate::live::{LiveServer, Pace};
+
+// No documentation: it would become that of every command that takes these arguments.
+#[derive(clap::Args)]
+pub(super) struct LiveArguments {
+    /// Show the run as it goes: its messages on a WebSocket that Foxglove opens [address: 127.0.0.1:8765].
+    ///
+    /// PORT, IP or IP:PORT. It is seen on this machine alone unless an address says otherwise. The run begins when a viewer is there; its
+    /// end stays in view until the last one has gone. It does not go faster than `--pace`.
+    #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1", value_parser = address)]
+    live: Option<SocketAddr>,
+    /// How fast `--live` goes: 1 as the log was recorded, 4 four times as fast, 0 as fast as it is computed.
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        default_value_t = 1.0,
+        requires = "live",
+        allow_negative_numbers = true
+    )]
+    pace: f64,
+}
+
+/// The server of a run.
+pub(super) struct Live {
+    server: LiveServer,
+    pace: Pace,
+}
+
+impl LiveArguments {
+    /// Starts the server where one is wanted, and tells where it is.
+    pub(super) fn start(&self) -> Result<Option<Live>> {
+        let Some(address) = self.live else { return Ok(None) };
+        let live = Live { pace: Pace::new(self.pace)?, server: LiveServer::start(address)? };
+        tell(format!(
+            "live: open {} in Foxglove (Open connection, Foxglove WebSocket); the run begins then",
+            live.server.url()
+        ));
+        Ok(Some(live))
+    }
+}
+
+impl Live {
+    /// Takes messages; returns when a viewer is there.
+    pub(super) fn sink(&self) -> Box<dyn MessageSink> {
+        self.server.wait_for_viewer();
+        self.server.sink(self.pace)
+    }
+
+    /// Keeps the end of the run in view until all viewers have gone.
+    pub(super) fn stay(&self) {
+        tell("live: the end of the run stays in view until you close it there, or Ctrl-C");
+        self.server.wait_until_all_left();
+    }
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    let at = |ip: IpAddr, port: u16| SocketAddr::new(ip, port);
+    let (ip, port) = (LiveServer::ADDRESS.ip(), LiveServer::ADDRESS.port());
+    let read = text.parse().ok();
+    let read = read.or_else(|| text.parse().ok().map(|port| at(ip, port)));
+    let read = read.or_else(|| text.parse().ok().map(|ip| at(ip, port)));
+    read.ok_or_else(|| "give PORT, IP or IP:PORT, for instance 8766 or 0.0.0.0:8765".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_port_is_one_of_this_machine_and_an_address_has_the_usual_port() {
+        let read = |text: &str| address(text).map(|address| address.to_string());
+        assert_eq!(read("8766").as_deref(), Ok("127.0.0.1:8766"));
+        assert_eq!(read("0.0.0.0").as_deref(), Ok("0.0.0.0:8765"));
+        assert_eq!(read("[::1]:9000").as_deref(), Ok("[::1]:9000"));
+        assert_eq!(read("::1").as_deref(), Ok("[::1]:8765"));
+        for bad in ["", "70000", "here:8765", "127.0.0.1:x"] {
+            assert!(read(bad).is_err(), "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,107 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result};
+use wayfix_sensor_log::{Format, McapFile, Sinks};
+
+use super::{
+    common::Common,
+    live::Live,
+    output::{print, tell},
+};
+use crate::{
+    plot::Picture,
+    report::{Machine, Report, Run, RunSummary, Suite, foxglove_layout, table, table::TableStyle},
+    system::{Drawing, EstimateLog},
+};
+
+/// The estimates beside the report.
+const ESTIMATES: &str = "estimates.mcap";
+/// How Foxglove should show them.
+const LAYOUT: &str = "foxglove-layout.json";
+
+/// Where the results of a `wayfix run` go: standard output, and where they are wanted a folder and viewers.
+pub(super) struct Outputs<'a> {
+    suite: &'static str,
+    common: &'a Common,
+    live: Option<Live>,
+    /// Beside the report, when it was written.
+    log: Option<&'static str>,
+}
+
+impl<'a> Outputs<'a> {
+    /// Makes the folder and starts the live view, where they are wanted.
+    pub(super) fn open(suite: &'static str, common: &'a Common) -> Result<Self> {
+        if let Some(out) = &common.out {
+            fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
+        }
+        Ok(Self { suite, common, live: common.live.start()?, log: None })
+    }
+
+    /// A file in the folder, where one is wanted.
+    pub(super) fn file(&self, name: &str) -> Option<PathBuf> {
+        self.common.out.as_ref().map(|out| out.join(name))
+    }
+
+    /// Where messages go; nowhere without a folder and without a live view. Returns when there is somebody to see the latter.
+    pub(super) fn sinks(&mut self) -> Result<Sinks> {
+        let mut sinks: Sinks = Vec::new();
+        if let Some(path) = self.file(ESTIMATES) {
+            sinks.push(Box::new(McapFile::create(path)?));
+            self.log = Some(ESTIMATES);
+        }
+        sinks.extend(self.live.as_ref().map(Live::sink));
+        Ok(sinks)
+    }
+
+    /// Draws the estimates, where somebody will see them.
+    pub(super) fn estimates<D: Drawing>(&mut self, origin: Format) -> Result<Option<EstimateLog<D>>> {
+        let sinks = self.sinks()?;
+        Ok(if sinks.is_empty() { None } else { Some(EstimateLog::new(sinks, origin)?) })
+    }
+
+    /// Prints the figures, writes the report where there is a folder for it, and stays until viewers have gone.
+    pub(super) fn show(self, mut run: Run, pictures: impl FnOnce() -> Result<Vec<Picture>>) -> Result<()> {
+        let Common { json, seed, .. } = *self.common;
+        if self.common.out.is_some() {
+            run.figures = pictures()?;
+            run.log = self.log.map(str::to_owned);
+            run.layout = self.write_layout()?;
+        }
+        let figures = if json {
+            serde_json::to_string(&RunSummary::new(&run, seed))? + "\n"
+        } else {
+            table::run(&run, TableStyle::of_stdout())
+        };
+        if let Some(out) = &self.common.out {
+            write_report(out, self.suite, run, seed)?;
+        }
+        print(figures)?;
+        self.live.iter().for_each(Live::stay);
+        Ok(())
+    }
+
+    /// The layout beside the estimates, where both are wanted and there is one.
+    fn write_layout(&self) -> Result<Option<String>> {
+        let (Some(path), Some(layout), Some(_)) = (self.file(LAYOUT), foxglove_layout(self.suite), self.log)
+        else {
+            return Ok(None);
+        };
+        fs::write(&path, layout).with_context(|| format!("cannot write {}", path.display()))?;
+        Ok(Some(LAYOUT.to_owned()))
+    }
+}
+
+fn write_report(out: &Path, suite: &str, run: Run, seed: u64) -> Result<()> {
+    for (number, figure) in run.figures.iter().enumerate() {
+        let path = out.join(format!("figure-{}.svg", number + 1));
+        fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    let log = run.log.as_ref().map(|log| format!(", {log}")).unwrap_or_default();
+    let suites = vec![Suite { name: suite.to_owned(), runs: vec![run] }];
+    Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
+    tell(format!("wrote index.html, report.json{log} and the figures as SVG to {}", out.display()));
+    Ok(())
+}

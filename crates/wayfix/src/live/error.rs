@@ -1,0 +1,30 @@
+use std::{io, net::SocketAddr};
+
+/// Why nothing can be served.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LiveError {
+    /// Another program listens there.
+    #[error("{address} is in use by another program: end that one, or choose another port")]
+    InUse {
+        /// Where it should have been.
+        address: SocketAddr,
+    },
+    /// The operating system refuses.
+    #[error("cannot listen on {address}: {source}")]
+    Bind {
+        /// Where it should have been.
+        address: SocketAddr,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The server does not start.
+    #[error("the live view does not start: {0}")]
+    Server(Box<foxglove::FoxgloveError>),
+    /// A pace that is none.
+    #[error("a pace of {factor} is not a finite number of 0 or more")]
+    Pace {
+        /// Times the speed of the log.
+        factor: f64,
+    },
+}

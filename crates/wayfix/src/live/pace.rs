@@ -1,0 +1,88 @@
+use std::{thread, time::Duration};
+
+use wayfix_sensor_log::Stamp;
+
+use super::LiveError;
+use crate::system::Stopwatch;
+
+/// Nobody wants to look at nothing for longer; a first stamp of 0 before those of today would be a pause of decades.
+const LONGEST_PAUSE: Duration = Duration::from_secs(5);
+
+/// Holds messages back until their time has come.
+///
+/// ```
+/// use wayfix::live::Pace;
+/// assert!(Pace::new(2.0).is_ok());
+/// assert!(Pace::new(-1.0).is_err() && Pace::new(f64::NAN).is_err());
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    factor: f64,
+    begun: Option<Begun>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Begun {
+    since: Stopwatch,
+    latest: Stamp,
+    /// When the latest message was due, after the first.
+    due: Duration,
+}
+
+impl Pace {
+    /// `factor` times as fast as the log was recorded; 0: nothing is held back. Pauses of more than five seconds are cut to five.
+    ///
+    /// # Errors
+    /// [`LiveError::Pace`].
+    pub fn new(factor: f64) -> Result<Self, LiveError> {
+        if !factor.is_finite() || factor < 0.0 {
+            return Err(LiveError::Pace { factor });
+        }
+        Ok(Self { factor, begun: None })
+    }
+
+    /// Returns when what has this stamp is due; the first is due at once.
+    pub fn wait_for(&mut self, stamp: Stamp) {
+        let (since, due) = self.due(stamp);
+        thread::sleep(due.saturating_sub(since.elapsed()));
+    }
+
+    /// When it is due, after when.
+    fn due(&mut self, stamp: Stamp) -> (Stopwatch, Duration) {
+        let factor = self.factor;
+        let start = || Begun { since: Stopwatch::start(), latest: stamp, due: Duration::ZERO };
+        let begun = self.begun.get_or_insert_with(start);
+        if factor > 0.0 && stamp > begun.latest {
+            let pause = stamp.seconds_since(begun.latest) / factor;
+            begun.due += Duration::try_from_secs_f64(pause).unwrap_or(LONGEST_PAUSE).min(LONGEST_PAUSE);
+            begun.latest = stamp;
+        }
+        (begun.since, begun.due)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dues(factor: f64, seconds: &[f64]) -> Vec<Duration> {
+        let mut pace = Pace::new(factor).expect("a factor");
+        let due = |seconds: &f64| pace.due(Stamp::from_seconds(*seconds).expect("a stamp")).1;
+        seconds.iter().map(due).collect()
+    }
+
+    #[test]
+    fn a_message_is_due_by_its_stamp_and_the_factor() {
+        let ms = Duration::from_millis;
+        assert_eq!(dues(1.0, &[100.0, 100.5, 103.0]), [ms(0), ms(500), ms(3000)]);
+        assert_eq!(dues(4.0, &[100.0, 103.0, 101.0, 103.0, 104.0]), [0, 750, 750, 750, 1000].map(ms));
+        assert_eq!(dues(0.0, &[100.0, 103.0, 104.0]), [ms(0); 3]);
+    }
+
+    #[test]
+    fn a_stamp_of_another_age_stops_nothing() {
+        let seconds = Duration::from_secs;
+        assert_eq!(dues(1.0, &[0.0, 1.7e9, 1.7e9 + 1.0]), [seconds(0), LONGEST_PAUSE, seconds(6)]);
+        assert_eq!(dues(f64::MIN_POSITIVE, &[0.0, 1.0]), [seconds(0), LONGEST_PAUSE]);
+    }
+}

@@ -1,0 +1,105 @@
+use std::{
+    io,
+    net::{IpAddr, SocketAddr},
+    sync::Arc,
+    time::Duration,
+};
+
+use foxglove::{Context, FoxgloveError, WebSocketServer, WebSocketServerHandle, websocket::Capability};
+use wayfix_sensor_log::MessageSink;
+
+use super::{
+    LiveError, Pace,
+    audience::Audience,
+    sink::{Clock, LiveSink},
+};
+
+/// Who loads the page of a viewer again is back within this time.
+const GRACE: Duration = Duration::from_secs(2);
+
+/// A WebSocket on which Foxglove, and whatever else speaks its protocol, sees a run as it goes.
+///
+/// It only tells: viewers cannot change or publish anything.
+///
+/// ```
+/// use wayfix::live::{LiveError, LiveServer, Pace};
+/// use wayfix::system::EstimateLog;
+/// # use wayfix::slam::SlamDrawing;
+/// let server = LiveServer::start(([127, 0, 0, 1], 0).into())?; // port 0: any that is free
+/// let estimates = EstimateLog::<SlamDrawing>::new(vec![server.sink(Pace::new(1.0)?)], wayfix_sensor_log::Format::Utias)?;
+/// assert!(server.url().starts_with("ws://127.0.0.1:"));
+/// let again = LiveServer::start(server.address());
+/// assert!(matches!(again, Err(LiveError::InUse { .. })));
+/// estimates.finish()?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct LiveServer {
+    context: Arc<Context>,
+    handle: Arc<WebSocketServerHandle>,
+    audience: Arc<Audience>,
+    address: SocketAddr,
+}
+
+impl LiveServer {
+    /// Where it listens unless told otherwise: this machine alone, the port that Foxglove offers first.
+    pub const ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8765);
+
+    /// Listens at `address`.
+    ///
+    /// # Errors
+    /// [`LiveError::InUse`], [`LiveError::Bind`], [`LiveError::Server`].
+    pub fn start(address: SocketAddr) -> Result<Self, LiveError> {
+        let (context, audience) = (Context::new(), Arc::new(Audience::default()));
+        let listener = Arc::clone(&audience);
+        let host = match address.ip() {
+            IpAddr::V4(ip) => ip.to_string(),
+            IpAddr::V6(ip) => format!("[{ip}]"),
+        };
+        let server = WebSocketServer::new()
+            .name("wayfix")
+            .context(&context)
+            .bind(host, address.port())
+            .capabilities([Capability::Time])
+            .listener(listener);
+        let handle = server.start_blocking().map_err(|error| match error {
+            FoxgloveError::Bind(source) if source.kind() == io::ErrorKind::AddrInUse => {
+                LiveError::InUse { address }
+            }
+            FoxgloveError::Bind(source) => LiveError::Bind { address, source },
+            other => LiveError::Server(Box::new(other)),
+        })?;
+        let address = SocketAddr::new(address.ip(), handle.port());
+        Ok(Self { context, handle: Arc::new(handle), audience, address })
+    }
+
+    /// Where it listens.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// What a viewer opens.
+    pub fn url(&self) -> String {
+        format!("ws://{}", self.address)
+    }
+
+    /// Takes messages and passes them on at a pace.
+    pub fn sink(&self, pace: Pace) -> Box<dyn MessageSink> {
+        Box::new(LiveSink {
+            context: Arc::clone(&self.context),
+            server: Arc::clone(&self.handle),
+            audience: Arc::clone(&self.audience),
+            pace,
+            clock: Clock::default(),
+        })
+    }
+
+    /// Returns when somebody is watching.
+    pub fn wait_for_viewer(&self) {
+        self.audience.wait_for_viewer();
+    }
+
+    /// Returns when nobody is watching any more.
+    pub fn wait_until_all_left(&self) {
+        self.audience.wait_until_all_left(GRACE);
+    }
+}

@@ -1,0 +1,63 @@
+use anyhow::Result;
+use wayfix_condensation::Picture;
+use wayfix_sensor_log::{Data, EncodedImage, ImageOutline, MessageWriter, Record, Sinks, Stamp, topics};
+
+use super::{
+    Step, ViewSystem, ViewsError, ViewsRun,
+    pictures::{BEST, GOAL, JPEG_QUALITY, TRUTH, belief_image, slowest},
+};
+use crate::system::EstimateWriter;
+
+/// What is believed, as a picture of the places.
+const BELIEF: &str = "/estimate/belief";
+/// A move takes a second: nothing tells how long a robot needs.
+const NANOSECONDS_A_MOVE: u64 = 1_000_000_000;
+
+/// Shows the drive that was unsure for longest to viewers: the scene with the view that the robot has, the one that it believes most in and that
+/// of the goal, and the belief over the places, once a move.
+///
+/// # Errors
+/// When the drive cannot be repeated, a picture not be encoded or one of `sinks` fails.
+pub fn draw_drive(run: &ViewsRun, real: &Picture, seed: u64, sinks: Sinks) -> Result<()> {
+    let (width, height) = (real.width() as u32, real.height() as u32);
+    let scene = EncodedImage::jpeg(width, height, real.pixels().as_flattened(), JPEG_QUALITY)?;
+    let mut drawing = Drawing { writer: MessageWriter::into_sink(sinks), scene };
+    let mut failure = None;
+    run.system.trial(seed, slowest(&run.trials), |step| {
+        if failure.is_none() {
+            failure = drawing.draw(&run.system, &step).err();
+        }
+    })?;
+    match failure {
+        Some(failure) => Err(failure),
+        None => Ok(drawing.writer.finish()?),
+    }
+}
+
+struct Drawing {
+    writer: EstimateWriter,
+    scene: EncodedImage,
+}
+
+impl Drawing {
+    fn draw(&mut self, system: &ViewSystem, step: &Step<'_>) -> Result<()> {
+        let stamp = Stamp::from_nanoseconds(step.number as u64 * NANOSECONDS_A_MOVE);
+        self.writer.record(&Record { stamp, data: Data::Image(self.scene.clone()) })?;
+        let best = step.localizer.best().state;
+        let marked = [(step.goal, GOAL), (best, BEST), (step.at, TRUTH)];
+        let outlines: Vec<ImageOutline> =
+            marked.into_iter().map(|(state, ink)| outline(system, state, ink)).collect::<Result<_, _>>()?;
+        self.writer.image_outlines(topics::TARGET, stamp, &outlines)?;
+        let belief = belief_image(system.views().grid(), step)?;
+        Ok(self.writer.image(BELIEF, stamp, &belief)?)
+    }
+}
+
+/// The view of a state in the scene.
+fn outline(system: &ViewSystem, state: usize, ink: [u8; 3]) -> Result<ImageOutline, ViewsError> {
+    let [x, y] = <[usize; 2]>::from(system.views().corner(state)?).map(|pixel| pixel as f64);
+    let [width, height] = <[usize; 2]>::from(system.views().view_size()).map(|pixels| pixels as f64);
+    let points = vec![[x, y], [x + width, y], [x + width, y + height], [x, y + height]];
+    let [r, g, b] = ink.map(|value| f64::from(value) / 255.0);
+    Ok(ImageOutline { color: [r, g, b, 1.0], points })
+}
