@@ -61,7 +61,10 @@ fn scripts(text: &str) -> Vec<String> {
             }
             ("```", true) => inside = false,
             (command, true) => {
-                scripts.last_mut().into_iter().for_each(|script| *script += &(command.to_owned() + "\n"))
+                if let Some(script) = scripts.last_mut() {
+                    *script += command;
+                    script.push('\n');
+                }
             }
             _ => {}
         }

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DMatrixViewMut};
 /// Columns that one matrix product handles: wide enough for the product to be fast, narrow enough to waste little of the triangle.
 const PANEL: usize = 64;
 /// Columns solved one by one between two matrix products.
-const SOLVE_PANEL: usize = 24;
+const SOLVE_PANEL: usize = 8;
 /// Side of the tiles that are mirrored: two of them, 2 kB each, stay in the nearest cache.
 const MIRROR_TILE: usize = 16;
 
