@@ -96,7 +96,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             map,
             state,
             anywhere,
-            doubt: if was_unimodal { Doubt::none() } else { Doubt::great() },
+            doubt: Doubt::none(),
             motion: Motion::none(),
             journey: Journey::default(),
             scale_learner: ScaleLearner::default(),
@@ -141,7 +141,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         self.state = start.into_state()?;
         self.was_unimodal = self.state.is_some();
         self.anywhere = if self.was_unimodal { Anywhere::nothing() } else { Anywhere::everything() };
-        self.doubt = if self.was_unimodal { Doubt::none() } else { Doubt::great() };
+        self.doubt = Doubt::none();
         self.motion = Motion::none();
         self.has_seen = false;
         self.journey = Journey::default();
@@ -199,7 +199,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let fused = if hypotheses.is_empty() {
             None
         } else {
-            Some(PoseHypothesis::into_mixture(simplify(hypotheses, &self.params.simplify)?)?)
+            Some(PoseHypothesis::into_mixture(simplify(hypotheses, &self.simplification())?)?)
         };
         let mut events = self.change_of(fused.as_ref(), anywhere)?;
         (self.state, self.anywhere) = (fused, anywhere);

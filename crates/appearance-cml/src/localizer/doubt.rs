@@ -27,11 +27,6 @@ impl Doubt {
         Self { missed: 0.0, settled: true }
     }
 
-    /// Of a robot that may be anywhere.
-    pub(super) fn great() -> Self {
-        Self { missed: 0.0, settled: false }
-    }
-
     pub(super) fn is_great(self) -> bool {
         !self.settled
     }
@@ -52,25 +47,24 @@ impl Doubt {
 mod tests {
     use super::*;
 
-    fn after(start: Doubt, fits: &[(Fit, usize)]) -> Doubt {
+    fn after(share: f64, fits: &[(Fit, usize)]) -> Doubt {
+        let params = RelocationParams { doubt: share, ..RelocationParams::default() };
         let views = fits.iter().flat_map(|(fit, n)| std::iter::repeat_n(*fit, *n));
-        views.fold(start, |doubt, fit| doubt.after(fit, &RelocationParams::default()))
+        views.fold(Doubt::none(), |doubt, fit| doubt.after(fit, &params))
     }
 
     #[test]
     fn who_misses_what_should_be_there_doubts_and_who_sees_nothing_known_does_not() {
-        assert!(!after(Doubt::none(), &[(Fit::Unknown, 1000)]).is_great());
-        // 1 - (7/8)^n reaches 0.85 at n = 14.2.
-        assert!(!after(Doubt::none(), &[(Fit::Missed, 14)]).is_great());
-        assert!(after(Doubt::none(), &[(Fit::Missed, 15)]).is_great());
+        assert!(!after(0.5, &[(Fit::Unknown, 1000)]).is_great());
+        // 1 - (7/8)^n reaches a half at n = 5.2.
+        assert!(!after(0.5, &[(Fit::Missed, 5)]).is_great());
+        assert!(after(0.5, &[(Fit::Missed, 6)]).is_great());
+        assert!(!after(1.0, &[(Fit::Missed, 1000)]).is_great(), "1 never doubts");
     }
 
     #[test]
     fn doubt_lasts_until_one_view_is_sure() {
-        assert!(after(Doubt::none(), &[(Fit::Missed, 15), (Fit::Recognized, 50)]).is_great());
-        assert!(!after(Doubt::great(), &[(Fit::Sure, 1)]).is_great());
-        let never = RelocationParams { doubt: 1.0, ..RelocationParams::default() };
-        let doubt = (0..100).fold(Doubt::none(), |doubt, _| doubt.after(Fit::Missed, &never));
-        assert!(!doubt.is_great());
+        assert!(after(0.5, &[(Fit::Missed, 6), (Fit::Recognized, 50)]).is_great());
+        assert!(!after(0.5, &[(Fit::Missed, 6), (Fit::Recognized, 50), (Fit::Sure, 1)]).is_great());
     }
 }

@@ -4,8 +4,8 @@ use wayfix_gaussian_core::{Gaussian, Mixture};
 use super::doubt::Fit;
 use super::{AppearanceLocalizer, Observation};
 use crate::{
-    AppearanceError, Descriptor, PoseHypothesis, Recognition, ReferenceSearch, Sighting, Weighting,
-    interpolate, similarity, superpose, unimodal,
+    AppearanceError, Descriptor, PoseHypothesis, Recognition, ReferenceSearch, Sighting, SimplifyParams,
+    Weighting, interpolate, similarity, superpose, unimodal,
 };
 
 /// What a view says.
@@ -44,20 +44,21 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         !self.has_seen || self.state.is_none() || way >= LEAST_NEWS * self.map.scale().step()
     }
 
-    /// Whether the robot may be elsewhere than it thinks, so that all of the map is asked.
-    fn is_in_doubt(&self) -> bool {
-        self.doubt.is_great() || !self.anywhere.is_little()
-    }
-
     /// What weights are made of, with this much doubt.
     pub(super) fn weighting(&self) -> Weighting {
         match self.params.fusion.weighting {
-            Weighting::Evidence { .. } if self.is_in_doubt() => {
+            Weighting::Evidence { .. } if self.doubt.is_great() => {
                 let n_places = self.map.len() as f64 / REFERENCES_OF_A_PLACE;
                 self.params.relocation.weighting(self.anywhere.weight(), n_places)
             }
             weighting => self.anywhere.weighting(weighting),
         }
+    }
+
+    /// How small the mixture is kept, with this much doubt.
+    pub(super) fn simplification(&self) -> SimplifyParams {
+        let usual = &self.params.simplify;
+        if self.doubt.is_great() { self.params.relocation.simplification(usual) } else { *usual }
     }
 
     /// $`p(x_t | y_t)`$.
@@ -75,7 +76,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
                     sightings.retain(|s| !self.trail.holds(s.matched.id));
                     sightings
                 };
-                let in_doubt = self.is_in_doubt();
+                let in_doubt = self.doubt.is_great();
                 let how = (&params.map, if in_doubt { Recognition::Weak } else { Recognition::Sure });
                 let mut sightings = apart_from_trail(self.map.sightings_near(view, belief, how));
                 let fit = self.fit(view, &sightings);
@@ -91,7 +92,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
 
     /// How the view fits the heaviest hypothesis; `near` is what looks like it there and at all others.
     fn fit(&self, view: &D, near: &[Sighting]) -> Fit {
-        let Some(heaviest) = self.estimate() else { return Fit::Unknown };
+        let Some(heaviest) = self.estimate().filter(|_| self.params.relocation.doubt < 1.0) else {
+            return Fit::Unknown;
+        };
         let (at, sigmas) = (heaviest.mean(), heaviest.sigmas());
         let reach = self.map.reach_of_match(&self.params.map);
         let is_here = |place: &Pose2<f64>| {

@@ -149,8 +149,7 @@ impl ViewScale {
         let deviation = ((alike - distance) / spread).max(0.0);
         let odds = alike / (spread * TAU.sqrt()) * (-0.5 * deviation * deviation).exp();
         // What is not a number speaks for nothing.
-        let share = LOOKS_THE_SAME / (LOOKS_THE_SAME + odds);
-        Some(if share.is_nan() { 0.0 } else { share })
+        Some(if distance.is_nan() { 0.0 } else { LOOKS_THE_SAME / (LOOKS_THE_SAME + odds) })
     }
 
     /// The distance beyond which [`recognition`](Self::recognition) is too little to be looked at.

@@ -14,15 +14,15 @@ use crate::{AppearanceError, check};
 pub struct SimplifyParams {
     /// Squared Mahalanobis distance below which two components are one. Default 2: they overlap by more than half.
     pub merge_distance: f64,
-    /// Share of the whole weight below which a component goes. Default 1e-10: what appears elsewhere starts light.
+    /// Share of the whole weight below which a component goes. Default 1e-7: what appears elsewhere starts light.
     pub least_weight: f64,
-    /// Most components that are kept. Default 60.
+    /// Most components that are kept. Default 30.
     pub most: usize,
 }
 
 impl Default for SimplifyParams {
     fn default() -> Self {
-        Self { merge_distance: 2.0, least_weight: 1e-10, most: 60 }
+        Self { merge_distance: 2.0, least_weight: 1e-7, most: 30 }
     }
 }
 
