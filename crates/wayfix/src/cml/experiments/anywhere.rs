@@ -96,8 +96,8 @@ fn known_route(building: &Building, map: &PanoramaMap, rng: &mut ChaCha8Rng) -> 
     for _ in 0..MOST_DRAWS {
         let start = crossings[rng.random_range(0..crossings.len())];
         let route = building.aisles().tour_from(start, TRAVEL_M, rng)?;
-        let points = (0..=TRAVEL_M as usize).map(|metre| route.at(metre as f64).translation);
-        if points.into_iter().all(is_known) {
+        let mut points = (0..=TRAVEL_M as usize).map(|metre| route.at(metre as f64).translation);
+        if points.all(is_known) {
             return Ok(route);
         }
     }
