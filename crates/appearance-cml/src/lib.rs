@@ -17,11 +17,12 @@ pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState,
 pub use error::AppearanceError;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
 pub use localizer::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Start, UpdateOutcome, smooth,
+    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, RelocationParams, Start,
+    UpdateOutcome, smooth,
 };
 pub use model::{
     AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,
-    Reference, Sighting, ViewScale, interpolate, similarity, superpose,
+    Recognition, Reference, Sighting, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
     AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,

@@ -2,7 +2,9 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, Mixture};
 
 use super::anywhere::Anywhere;
+use super::doubt::Doubt;
 use super::journey::Journey;
+use super::observe::Observed;
 use super::scale_learner::ScaleLearner;
 use super::trail::Trail;
 use super::{Event, Learning, LocalizerParams, Motion, Start, UpdateOutcome};
@@ -47,6 +49,7 @@ pub struct AppearanceLocalizer<D, S = LinearSearch<D>> {
     pub(super) map: AppearanceMap<D, S>,
     pub(super) state: Option<Mixture<Pose2<f64>>>,
     pub(super) anywhere: Anywhere,
+    pub(super) doubt: Doubt,
     /// Since the last view.
     pub(super) motion: Motion,
     pub(super) journey: Journey<D>,
@@ -93,6 +96,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             map,
             state,
             anywhere,
+            doubt: Doubt::none(),
             motion: Motion::none(),
             journey: Journey::default(),
             scale_learner: ScaleLearner::default(),
@@ -137,6 +141,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         self.state = start.into_state()?;
         self.was_unimodal = self.state.is_some();
         self.anywhere = if self.was_unimodal { Anywhere::nothing() } else { Anywhere::everything() };
+        self.doubt = Doubt::none();
         self.motion = Motion::none();
         self.has_seen = false;
         self.journey = Journey::default();
@@ -182,13 +187,10 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         sources: &[&dyn PoseSource],
     ) -> Result<UpdateOutcome, AppearanceError> {
         let is_news = self.is_news();
-        let (observed, n_sightings) = if is_news { self.observe(&view)? } else { (Vec::new(), 0) };
+        let seen = if is_news { self.observe(&view)? } else { Observed::nothing() };
         let mut hypotheses = self.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();
-        let fusion = FusionParams {
-            weighting: self.anywhere.weighting(self.params.fusion.weighting),
-            ..self.params.fusion
-        };
-        hypotheses = fuse(&hypotheses, &observed, &fusion)?;
+        let fusion = FusionParams { weighting: self.weighting(), ..self.params.fusion };
+        hypotheses = fuse(&hypotheses, &seen.hypotheses, &fusion)?;
         for source in sources {
             hypotheses = fuse(&hypotheses, &source.hypotheses(self.state.as_ref())?, &fusion)?;
         }
@@ -197,10 +199,11 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let fused = if hypotheses.is_empty() {
             None
         } else {
-            Some(PoseHypothesis::into_mixture(simplify(hypotheses, &self.params.simplify)?)?)
+            Some(PoseHypothesis::into_mixture(simplify(hypotheses, &self.simplification())?)?)
         };
         let mut events = self.change_of(fused.as_ref(), anywhere)?;
         (self.state, self.anywhere) = (fused, anywhere);
+        self.doubt = self.doubt.after(seen.fit, &self.params.relocation);
         if is_news {
             if self.params.learning == Learning::Adapting {
                 self.learn(view, &mut events)?;
@@ -209,7 +212,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             self.has_seen = true;
         }
         let estimate = self.one_place().cloned();
-        Ok(UpdateOutcome { events, estimate, n_sightings })
+        Ok(UpdateOutcome { events, estimate, n_sightings: seen.n_sightings })
     }
 
     /// Learns that `view` is seen from `pose`, which is known: the map is taught, the state is not touched.

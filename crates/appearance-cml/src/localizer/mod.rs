@@ -2,11 +2,13 @@
 
 mod anywhere;
 mod appearance_localizer;
+mod doubt;
 mod journey;
 mod learning;
 mod observe;
 mod outcome;
 mod params;
+mod relocation;
 mod scale_learner;
 mod smooth;
 mod start;
@@ -15,5 +17,6 @@ mod trail;
 pub use appearance_localizer::AppearanceLocalizer;
 pub use outcome::{Event, UpdateOutcome};
 pub use params::{Learning, LocalizerParams, Observation};
+pub use relocation::RelocationParams;
 pub use smooth::{Motion, smooth};
 pub use start::Start;

@@ -1,10 +1,34 @@
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{Pose2, wrap_angle};
 use wayfix_gaussian_core::{Gaussian, Mixture};
 
+use super::doubt::Fit;
 use super::{AppearanceLocalizer, Observation};
 use crate::{
-    AppearanceError, Descriptor, PoseHypothesis, ReferenceSearch, Sighting, interpolate, superpose, unimodal,
+    AppearanceError, Descriptor, PoseHypothesis, Recognition, ReferenceSearch, Sighting, SimplifyParams,
+    Weighting, interpolate, similarity, superpose, unimodal,
 };
+
+/// What a view says.
+pub(super) struct Observed {
+    pub(super) hypotheses: Vec<PoseHypothesis>,
+    /// Of how many places they are made.
+    pub(super) n_sightings: usize,
+    /// How it fits what was thought before.
+    pub(super) fit: Fit,
+}
+
+impl Observed {
+    pub(super) fn nothing() -> Self {
+        Self { hypotheses: Vec::new(), n_sightings: 0, fit: Fit::Unknown }
+    }
+}
+
+/// References that look like one view: those a group of neighbours is made of, along a lane driven once.
+const REFERENCES_OF_A_PLACE: f64 = 12.0;
+/// A heading that differs by more, and by more than the belief is in doubt, is not the same, rad.
+const HERE_TURN: f64 = 0.6;
+/// σ of a belief within which it may be.
+const GATE_SIGMAS: f64 = 3.0;
 
 /// Similarity of a view to a reference of the place where the robot is thought to be, from which on nothing else is looked for.
 const SURE_SIMILARITY: f64 = 0.3;
@@ -20,13 +44,31 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         !self.has_seen || self.state.is_none() || way >= LEAST_NEWS * self.map.scale().step()
     }
 
-    /// $`p(x_t | y_t)`$, and how many places it is made of.
-    pub(super) fn observe(&self, view: &D) -> Result<(Vec<PoseHypothesis>, usize), AppearanceError> {
+    /// What weights are made of, with this much doubt.
+    pub(super) fn weighting(&self) -> Weighting {
+        match self.params.fusion.weighting {
+            Weighting::Evidence { .. } if self.doubt.is_great() => {
+                let n_places = self.map.len() as f64 / REFERENCES_OF_A_PLACE;
+                self.params.relocation.weighting(self.anywhere.weight(), n_places)
+            }
+            weighting => self.anywhere.weighting(weighting),
+        }
+    }
+
+    /// How small the mixture is kept, with this much doubt.
+    pub(super) fn simplification(&self) -> SimplifyParams {
+        let usual = &self.params.simplify;
+        if self.doubt.is_great() { self.params.relocation.simplification(usual) } else { *usual }
+    }
+
+    /// $`p(x_t | y_t)`$.
+    pub(super) fn observe(&self, view: &D) -> Result<Observed, AppearanceError> {
         let params = &self.params;
         match params.observation {
             Observation::Superposition => {
                 let sightings = self.map.all_sightings(view, &params.map);
-                Ok((superpose(&sightings), sightings.len()))
+                let (hypotheses, n_sightings) = (superpose(&sightings), sightings.len());
+                Ok(Observed { hypotheses, n_sightings, ..Observed::nothing() })
             }
             Observation::Interpolation => {
                 let belief = self.state.as_ref().map_or(&[][..], Mixture::components);
@@ -34,14 +76,45 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
                     sightings.retain(|s| !self.trail.holds(s.matched.id));
                     sightings
                 };
-                let mut sightings = apart_from_trail(self.map.sightings_near(view, belief, &params.map));
-                if !self.is_supported_by(&sightings) {
+                let in_doubt = self.doubt.is_great();
+                let how = (&params.map, if in_doubt { Recognition::Weak } else { Recognition::Sure });
+                let mut sightings = apart_from_trail(self.map.sightings_near(view, belief, how));
+                let fit = self.fit(view, &sightings);
+                if in_doubt || !self.is_supported_by(&sightings) {
                     let most = params.most_matches;
-                    let anywhere = self.map.sightings_anywhere(view, belief, most, &params.map);
-                    sightings = apart_from_trail(anywhere);
+                    sightings = apart_from_trail(self.map.sightings_anywhere(view, belief, most, how));
                 }
-                Ok((interpolate(&sightings, belief, self.map.scale())?, sightings.len()))
+                let hypotheses = interpolate(&sightings, belief, self.map.scale())?;
+                Ok(Observed { hypotheses, n_sightings: sightings.len(), fit })
             }
+        }
+    }
+
+    /// How the view fits the heaviest hypothesis; `near` is what looks like it there and at all others.
+    fn fit(&self, view: &D, near: &[Sighting]) -> Fit {
+        let Some(heaviest) = self.estimate().filter(|_| self.params.relocation.doubt < 1.0) else {
+            return Fit::Unknown;
+        };
+        let (at, sigmas) = (heaviest.mean(), heaviest.sigmas());
+        let reach = self.map.reach_of_match(&self.params.map);
+        let is_here = |place: &Pose2<f64>| {
+            (place.translation - at.translation).norm() <= reach + GATE_SIGMAS * sigmas.xy().norm()
+                && wrap_angle(place.heading() - at.heading()).abs() <= HERE_TURN + GATE_SIGMAS * sigmas.z
+        };
+        let limit = self.map.match_limit(&self.params.map);
+        let sure = |s: &Sighting| similarity(s.matched.comparison.distance, limit) > SURE_SIMILARITY;
+        let here: Vec<&Sighting> = near.iter().filter(|s| is_here(s.gaussian.mean())).collect();
+        if here.iter().any(|s| sure(s)) {
+            Fit::Sure
+        } else if !here.is_empty() {
+            Fit::Recognized
+        } else if !self.map.is_well_known(heaviest, reach, |id| !self.trail.holds(id)) {
+            Fit::Unknown
+        } else {
+            let how = (&self.params.map, Recognition::Weak);
+            let weak = self.map.sightings_near(view, std::slice::from_ref(heaviest), how);
+            let is_weak = |s: &Sighting| !self.trail.holds(s.matched.id) && is_here(s.gaussian.mean());
+            if weak.iter().any(is_weak) { Fit::Recognized } else { Fit::Missed }
         }
     }
 

@@ -1,3 +1,4 @@
+use super::RelocationParams;
 use crate::{AppearanceError, FusionParams, MapParams, OdometryNoise, SimplifyParams, UnimodalParams, check};
 
 /// What happens to the map while the robot drives.
@@ -43,6 +44,8 @@ pub struct LocalizerParams {
     pub fusion: FusionParams,
     /// How the mixture is kept small.
     pub simplify: SimplifyParams,
+    /// When the robot doubts where it is, and how it finds itself again.
+    pub relocation: RelocationParams,
     /// When the mixture counts as one place.
     pub unimodal: UnimodalParams,
     /// Default [`Learning::Adapting`].
@@ -69,6 +72,7 @@ impl Default for LocalizerParams {
             most_matches: 40,
             fusion: FusionParams::default(),
             simplify: SimplifyParams::default(),
+            relocation: RelocationParams::default(),
             unimodal: UnimodalParams::default(),
             learning: Learning::default(),
             map: MapParams::default(),
@@ -103,6 +107,7 @@ impl LocalizerParams {
         check::count("matches", self.most_matches)?;
         self.fusion.validate()?;
         self.simplify.validate()?;
+        self.relocation.validate()?;
         self.unimodal.validate()?;
         self.map.validate()?;
         check::count("longest wait (views)", self.longest_wait)?;

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
 use super::grid::Grid;
-use super::{MapParams, PlaceComponent, Reference, Sighting, ViewScale};
+use super::{MapParams, PlaceComponent, Recognition, Reference, Sighting, ViewScale, similarity};
 use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
 
 /// What places look like: reference views and where each was seen. [Gross et al. 2005, Eqs. 9-10]
@@ -141,11 +141,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         &self,
         view: &D,
         belief: &[Gaussian<Pose2<f64>>],
-        params: &MapParams,
+        (params, recognition): (&MapParams, Recognition),
     ) -> Vec<Sighting> {
-        let limit = self.match_limit(params);
+        let limit = self.limit_of(params, recognition);
         let near = belief.iter().flat_map(|component| self.compare_near(view, component, limit));
-        self.places_of(once_each(near.collect()), limit)
+        self.places_of(once_each(near.collect()), params, recognition)
     }
 
     /// Places near the components of `belief`, and those of the `most` references of the whole map that look most like the view.
@@ -154,18 +154,18 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         view: &D,
         belief: &[Gaussian<Pose2<f64>>],
         most: usize,
-        params: &MapParams,
+        (params, recognition): (&MapParams, Recognition),
     ) -> Vec<Sighting> {
-        let limit = self.match_limit(params);
+        let limit = self.limit_of(params, recognition);
         let mut matches = self.search.nearest_within(view, most, limit);
         matches.extend(belief.iter().flat_map(|component| self.compare_near(view, component, limit)));
-        self.places_of(once_each(matches), limit)
+        self.places_of(once_each(matches), params, recognition)
     }
 
     /// All places of all references that look like the view, as printed.
     pub fn all_sightings(&self, view: &D, params: &MapParams) -> Vec<Sighting> {
         let limit = self.match_limit(params);
-        self.places_of(self.search.within(view, limit), limit)
+        self.places_of(self.search.within(view, limit), params, Recognition::Sure)
     }
 
     /// Distance of the view to some reference of a far place, another one with each `turn`; `None` when that one is near.
@@ -180,10 +180,46 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Some(view.compare(reference).distance)
     }
 
-    fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<Sighting> {
+    /// Whether it is well known what the robot would see there: whether a reference that counts, seen more than once, has a place within `radius` of
+    /// the belief, and neither the place nor the belief is in doubt by more.
+    pub(crate) fn is_well_known(
+        &self,
+        belief: &Gaussian<Pose2<f64>>,
+        radius: f64,
+        counts: impl Fn(ReferenceId) -> bool,
+    ) -> bool {
+        let at = belief.mean().translation;
+        let sigma = |gaussian: &Gaussian<Pose2<f64>>| gaussian.sigmas().xy().norm();
+        let own = sigma(belief);
+        let is_there = |place: &PlaceComponent| {
+            place.weight >= WELL_KNOWN
+                && (place.gaussian.mean().translation - at).norm() < radius
+                && own.hypot(sigma(&place.gaussian)) < radius
+        };
+        let has = |id: &ReferenceId| self.references.get(id).is_some_and(|r| r.places.iter().any(is_there));
+        self.grid.near(&at, radius).iter().any(|id| counts(*id) && has(id))
+    }
+
+    fn limit_of(&self, params: &MapParams, recognition: Recognition) -> f64 {
+        let sure = self.match_limit(params);
+        match recognition {
+            Recognition::Sure => sure,
+            Recognition::Weak => self.scale.recognition_limit().map_or(sure, |weak| weak.max(sure)),
+        }
+    }
+
+    fn places_of(&self, matches: Vec<Match>, params: &MapParams, recognition: Recognition) -> Vec<Sighting> {
+        let limit = self.match_limit(params);
+        let speaks = |distance: f64| match recognition {
+            Recognition::Sure => similarity(distance, limit),
+            Recognition::Weak => {
+                self.scale.recognition(distance).unwrap_or_else(|| similarity(distance, limit))
+            }
+        };
         let places = |m: &Match| {
             let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);
-            places.iter().enumerate().map(|place| Sighting::new(*m, place, limit)).collect::<Vec<_>>()
+            let similarity = speaks(m.comparison.distance);
+            places.iter().enumerate().map(|place| Sighting::new(*m, place, similarity)).collect::<Vec<_>>()
         };
         matches.iter().flat_map(places).collect()
     }
@@ -262,6 +298,9 @@ fn once_each(mut matches: Vec<Match>) -> Vec<Match> {
 const GATE_SIGMAS: f64 = 3.0;
 /// σ beyond which a belief says nothing that the search of the whole map does not say better, m.
 const MOST_SIGMA: f64 = 1.0;
+
+/// Weight from which on a place was seen more than once: twice the learning rate, about.
+const WELL_KNOWN: f64 = 0.5;
 
 /// From how many steps on a place is far.
 const FAR_STEPS: f64 = 20.0;

@@ -121,7 +121,12 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             .iter()
             .flat_map(|m| {
                 let places = self.reference(m.id).map_or(&[][..], |reference| &reference.places);
-                places.iter().enumerate().map(|place| Sighting::new(*m, place, limit)).collect::<Vec<_>>()
+                let similarity = similarity(m.comparison.distance, limit);
+                places
+                    .iter()
+                    .enumerate()
+                    .map(|place| Sighting::new(*m, place, similarity))
+                    .collect::<Vec<_>>()
             })
             .collect();
         let mut nearest = None;

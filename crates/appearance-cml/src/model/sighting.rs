@@ -2,7 +2,7 @@ use nalgebra::Vector3;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
-use super::{PlaceComponent, similarity};
+use super::PlaceComponent;
 use crate::Match;
 
 /// A place whose reference looks like the view: what it says of the pose, and how strongly.
@@ -14,19 +14,19 @@ pub struct Sighting {
     pub place: usize,
     /// Weight of the place in the map, in [0, 1].
     pub weight: f64,
-    /// $`S`$, in (0, 1].
+    /// How much it speaks for its place, in [0, 1]: $`S`$, or what [`Recognition`](super::Recognition) says.
     pub similarity: f64,
     /// The place, turned to the heading of the view.
     pub gaussian: Gaussian<Pose2<f64>>,
 }
 
 impl Sighting {
-    pub(super) fn new(matched: Match, (place, component): (usize, &PlaceComponent), limit: f64) -> Self {
+    pub(super) fn new(matched: Match, (place, component): (usize, &PlaceComponent), similarity: f64) -> Self {
         Self {
             matched,
             place,
             weight: component.weight,
-            similarity: similarity(matched.comparison.distance, limit),
+            similarity,
             gaussian: turned(&component.gaussian, matched.comparison.rotation),
         }
     }
