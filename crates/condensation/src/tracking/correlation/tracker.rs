@@ -195,7 +195,11 @@ impl CorrelationTracker {
 
     /// Whether the colours in the middle of what is seen may be the target's.
     pub(super) fn is_alike(&self, sight: &Sight) -> bool {
-        self.agreement(sight) >= self.params.alike_share * self.usual_agreement
+        self.is_usual(self.agreement(sight))
+    }
+
+    fn is_usual(&self, agreement: f64) -> bool {
+        agreement >= self.params.alike_share * self.usual_agreement
     }
 
     fn agreement(&self, sight: &Sight) -> f64 {
@@ -206,9 +210,8 @@ impl CorrelationTracker {
         let recognized = self.recognized(trust);
         self.n_untrusted = if recognized { 0 } else { self.n_untrusted + 1 };
         let agreement = self.agreement(sight);
-        let may_be_another = !recognized
-            && agreement < self.params.alike_share * self.usual_agreement
-            && self.n_untrusted <= self.params.forget_after;
+        let may_be_another =
+            !recognized && !self.is_usual(agreement) && self.n_untrusted <= self.params.forget_after;
         if evidence.standing_out < self.params.learn_above || may_be_another {
             return;
         }
