@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p wayfix-condensation --example 04_track_boxes -- FOLDER… [parameter=value…]`, where each folder holds the frames in
 //! `img` and a line `x,y,w,h` for each in `groundtruth_rect.txt`. With `out=FOLDER`, the boxes are written there;
-//! `tracker=` is `correlation`, `head`, `head-one-mode` or `mean-shift`.
+//! `tracker=` is `correlation`, `head` or `mean-shift`.
 
 use std::error::Error;
 use std::fs;
@@ -16,6 +16,12 @@ use wayfix_condensation::{
     HeadTrackerParams, MeanShift, MeanShiftParams, Picture, Target, TrackStatus, Tracker,
 };
 
+#[derive(Default)]
+struct Params {
+    correlation: CorrelationTrackerParams,
+    head: HeadTrackerParams,
+}
+
 /// One of the trackers that start from a box.
 enum Any {
     Correlation(Box<CorrelationTracker>),
@@ -28,17 +34,15 @@ impl Any {
         name: &str,
         picture: &Picture,
         first: BoundingBox,
-        params: &CorrelationTrackerParams,
+        params: &Params,
     ) -> Result<Self, Box<dyn Error>> {
         Ok(match name {
-            "correlation" => {
-                Self::Correlation(Box::new(CorrelationTracker::new(picture, first, params.clone())?))
-            }
-            "head" => Self::Head(Box::new(HeadTracker::new(picture, first, HeadTrackerParams::default())?)),
-            "head-one-mode" => {
-                let params = HeadTrackerParams { bimodal: false, ..Default::default() };
-                Self::Head(Box::new(HeadTracker::new(picture, first, params)?))
-            }
+            "correlation" => Self::Correlation(Box::new(CorrelationTracker::new(
+                picture,
+                first,
+                params.correlation.clone(),
+            )?)),
+            "head" => Self::Head(Box::new(HeadTracker::new(picture, first, params.head.clone())?)),
             "mean-shift" => {
                 Self::MeanShift(Box::new(MeanShift::start(picture, &first, MeanShiftParams::default())?))
             }
@@ -58,12 +62,13 @@ impl Any {
 fn main() -> Result<(), Box<dyn Error>> {
     let (options, folders): (Vec<String>, Vec<String>) =
         std::env::args().skip(1).partition(|argument| argument.contains('='));
-    let mut params = CorrelationTrackerParams::default();
+    let mut all = Params::default();
     let mut out = None;
     let mut name_of_tracker = String::from("correlation");
     for option in &options {
         let (name, value) = option.split_once('=').ok_or("name=value")?;
         let number = || value.parse::<f64>();
+        let (params, head) = (&mut all.correlation, &mut all.head);
         match name {
             "padding" => params.padding = number()?,
             "response_width" => params.response_width = number()?,
@@ -78,6 +83,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             "forget_after" => params.forget_after = value.parse()?,
             "learn_above" => params.learn_above = number()?,
             "patience" => params.patience = value.parse()?,
+            "bimodal" => head.bimodal = value.parse()?,
+            "reach" => head.reach = number()?,
+            "head_scale_step" => head.scale_step = number()?,
+            "gradient_weight" => head.gradient_weight = number()?,
+            "adaptation" => head.adaptation = number()?,
+            "adapt_above" => head.adapt_above = number()?,
             "tracker" => value.clone_into(&mut name_of_tracker),
             "out" => out = Some(PathBuf::from(value)),
             _ => return Err(format!("no parameter {name}").into()),
@@ -89,7 +100,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     let mut total = [0.0; 3];
     for folder in &folders {
-        let row = follow(Path::new(folder), &name_of_tracker, &params, out.as_deref())?;
+        let row = follow(Path::new(folder), &name_of_tracker, &all, out.as_deref())?;
         for i in 0..3 {
             total[i] += row[i] / folders.len() as f64;
         }
@@ -101,7 +112,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn follow(
     folder: &Path,
     name_of_tracker: &str,
-    params: &CorrelationTrackerParams,
+    params: &Params,
     out: Option<&Path>,
 ) -> Result<[f64; 3], Box<dyn Error>> {
     let truth: Vec<Option<BoundingBox>> = fs::read_to_string(folder.join("groundtruth_rect.txt"))?

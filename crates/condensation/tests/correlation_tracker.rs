@@ -44,6 +44,14 @@ impl Painting {
             .expect("that many pixels")
     }
 
+    /// The target of `side` pixels around `center`, a quarter turned.
+    fn turned_at(&self, center: [f64; 2], side: f64) -> Picture {
+        let pixels = self.target.pixels();
+        let turned = |i: usize| pixels[(119 - i % 120) * 120 + i / 120];
+        let target = Picture::from_rgb(120, 120, (0..120 * 120).flat_map(turned).collect());
+        Self { ground: self.ground.clone(), target: target.expect("that many pixels") }.at(center, side)
+    }
+
     fn at(&self, center: [f64; 2], side: f64) -> Picture {
         self.with(center, side, 0..0)
     }
@@ -107,6 +115,24 @@ fn a_target_that_leaves_is_lost_and_found_where_it_comes_back() {
         .find(|t| t.status == TrackStatus::Tracked);
     let iou = found.map(|target| target.bounding_box.iou(&square(back, 28.0)));
     assert!(iou.is_some_and(|iou| iou > RIGHT), "{iou:?}");
+}
+
+#[test]
+fn a_target_that_comes_back_turned_is_found() {
+    let painting = Painting::new();
+    let mut tracker = tracker(&painting, [50.0, 50.0], 28.0);
+    for _ in 0..10 {
+        next(&mut tracker, &painting.at([50.0, 50.0], 28.0));
+    }
+    for _ in 0..15 {
+        next(&mut tracker, &painting.ground);
+    }
+    let back = [90.0, 70.0];
+    // half of the angles are tried in every picture
+    let targets: Vec<_> = (0..4).map(|_| next(&mut tracker, &painting.turned_at(back, 28.0))).collect();
+    let found = targets.iter().find(|target| target.status == TrackStatus::Tracked);
+    let iou = found.map(|target| target.bounding_box.iou(&square(back, 28.0)));
+    assert!(iou.is_some_and(|iou| iou > RIGHT), "{targets:?}");
 }
 
 #[test]

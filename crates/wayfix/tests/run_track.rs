@@ -175,6 +175,35 @@ fn a_start_that_makes_no_sense_is_refused() {
 }
 
 #[test]
+fn a_mask_begins_where_its_pixels_are() {
+    let shot = Shot::new();
+    let film = Film { n_frames: 1, ..Film::named("head").unwrap() };
+    let first = film.frames().unwrap().next().unwrap();
+    let bytes: Vec<u8> = first.target.pixels().iter().flat_map(|&on| [0, 0, u8::from(on)]).collect();
+    shot.scratch.file("mask.png", EncodedImage::png_rgb(320, 240, &bytes).unwrap().bytes);
+    shot.scratch.file("small.png", EncodedImage::png_rgb(40, 30, &[1; 3 * 40 * 30]).unwrap().bytes);
+    shot.scratch.file("black.png", EncodedImage::png_rgb(320, 240, &[0; 3 * 320 * 240]).unwrap().bytes);
+    shot.scratch.file("text.png", "no picture");
+    let path = |name: &str| shot.scratch.path(name).to_str().unwrap().to_owned();
+    let truth = path("truth.txt");
+    let from = |name: &str, method: &str| {
+        shot.run(&["--init-mask", &path(name), "--method", method, "--truth", &truth])
+    };
+
+    // The box tracker knows but the box around the mask, which is the first true box.
+    assert_eq!(figures(&from("mask.png", "box")), figures(&shot.run_with_truth()));
+    let contour = from("mask.png", "contour");
+    assert!(contour.metric("n_lost") == 0.0 && contour.metric("iou_mean") >= 0.8, "{}", contour.stderr);
+    for method in ["box", "contour"] {
+        refused(&from("small.png", method), 1, "size 40");
+        refused(&from("black.png", method), 1, "target in the mask");
+    }
+    refused(&from("text.png", "contour"), 1, "text.png");
+    refused(&from("missing.png", "contour"), 1, "missing.png");
+    refused(&shot.run(&["--init-mask", &path("mask.png"), "--init", "1,1,9,9"]), 2, "--init");
+}
+
+#[test]
 fn folders_without_a_usable_frame_are_refused() {
     let scratch = Scratch::new();
     scratch.file("empty/readme.txt", "nothing");

@@ -22,7 +22,7 @@ use crate::{
     commented::commented,
     report::Run,
     system::{Stopwatch, System},
-    track::{self, Method, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
+    track::{self, Method, Start, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
 };
 
 /// Tracking: where a target is in every picture, from where it is in the first one.
@@ -46,8 +46,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "PATH")]
     log: Vec<PathBuf>,
     /// Where the target is in the first frame: x,y,w,h or eight numbers [default: the first true box].
-    #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["truth", "print_params"])]
+    #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["init_mask", "truth", "print_params"])]
     init: Option<BoxArgument>,
+    /// The same as a picture of the size of the frames, in which the target is not black: its outline, which `contour` needs not guess.
+    #[arg(long, value_name = "FILE", conflicts_with = "init")]
+    init_mask: Option<PathBuf>,
     /// True boxes, one line a frame.
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
@@ -62,6 +65,7 @@ const EXAMPLES: &str = "\
 Examples:
   wayfix run track --frames David/img --truth David/groundtruth_rect.txt
   wayfix run track --frames holiday --init 120,80,40,56 --out results
+  wayfix run track --frames snail --init-mask snail.png --method contour
   wayfix run track --log camera.mcap --init 120,80,40,56 --json";
 
 /// The boxes beside the report, in the form of true ones.
@@ -99,7 +103,10 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut estimates = open_estimates(&mut outputs, origin)?;
 
     let stopwatch = Stopwatch::start();
-    let init = arguments.init.map(|init| init.0);
+    let init = match &arguments.init_mask {
+        Some(path) => Some(Start::read_mask(path)?),
+        None => arguments.init.map(|init| Start::Box(init.0)),
+    };
     let setup = TrackSetup { method: arguments.method, params, init, truth, rate_hz };
     let system = TrackSystem::new(setup, arguments.common.seed);
     let bar = progress::counter("tracking");

@@ -30,6 +30,14 @@ pub enum TrackError {
         /// What is wrong with it.
         source: Box<TrackError>,
     },
+    /// A file is not usable as a mask.
+    #[error("{} is no mask: {reason}", path.display())]
+    NotAMask {
+        /// Which one.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// Nobody says where the target is at the beginning.
     #[error(
         "no frame that could be used has a true box: say with --init where the target is in the first one"
@@ -42,9 +50,9 @@ pub enum TrackError {
         because: String,
     },
     /// The tracker cannot begin with what it was given.
-    #[error("the tracker cannot begin with the box {init} in a frame of {width} x {height} pixels")]
+    #[error("the tracker cannot begin with the {init} in a frame of {width} x {height} pixels")]
     Start {
-        /// The box, as x,y,w,h.
+        /// What it was given.
         init: String,
         /// Of the first frame.
         width: usize,

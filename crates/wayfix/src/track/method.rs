@@ -1,11 +1,10 @@
 use clap::ValueEnum;
 use serde::Deserialize;
 use wayfix_condensation::{
-    BitMask, BoundingBox, CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture,
-    TrackingCues,
+    CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture, TrackingCues,
 };
 
-use super::{Follower, TrackParams, follower::ContourFollower};
+use super::{Follower, Start, TrackParams, follower::ContourFollower};
 
 /// Which tracker follows the target.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -24,15 +23,6 @@ pub enum Method {
     ContourColorOnly,
     /// The same without colours: a snake on the edges of the picture.
     ContourShapeOnly,
-}
-
-/// Where a target is in the first picture.
-#[derive(Clone, Debug)]
-pub enum Start<'a> {
-    /// In this box.
-    Box(BoundingBox),
-    /// These pixels are it.
-    Mask(&'a BitMask),
 }
 
 impl Method {
@@ -56,17 +46,17 @@ impl Method {
         self,
         params: &TrackParams,
         picture: &Picture,
-        start: &Start<'_>,
+        start: &Start,
     ) -> Result<Box<dyn Follower>, CondensationError> {
         let mut contour = params.contour;
         match self {
             Self::Box => {
-                let bounds = start.bounding_box()?;
+                let bounds = start.box_in(picture)?;
                 let tracker = CorrelationTracker::new(picture, bounds, params.correlation.clone())?;
                 return Ok(Box::new(tracker));
             }
             Self::Head => {
-                let bounds = start.bounding_box()?;
+                let bounds = start.box_in(picture)?;
                 return Ok(Box::new(HeadTracker::new(picture, bounds, params.head.clone())?));
             }
             Self::Contour => {}
@@ -79,22 +69,5 @@ impl Method {
             Start::Mask(mask) => ContourTracker::from_mask(picture, mask, contour)?,
         };
         Ok(Box::new(ContourFollower { tracker, space: contour.color_space }))
-    }
-}
-
-impl Start<'_> {
-    /// The box around the target.
-    ///
-    /// # Errors
-    /// When a mask is empty.
-    pub fn bounding_box(&self) -> Result<BoundingBox, CondensationError> {
-        match self {
-            Self::Box(bounds) => Ok(*bounds),
-            Self::Mask(mask) => {
-                let rect =
-                    mask.bounding_rect().ok_or(CondensationError::Empty { what: "target in the mask" })?;
-                rect.to_box()
-            }
-        }
     }
 }

@@ -1,7 +1,7 @@
 use std::time::Duration;
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_condensation::{BoundingBox, Picture, Target, TrackStatus};
+use wayfix_condensation::{Picture, Target, TrackStatus};
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
 use super::{Follower, Method, Score, Start, TargetColors, TrackError, TrackParams, TrueBoxes, Truth};
@@ -9,7 +9,7 @@ use crate::system::{Events, Stopwatch, System};
 
 /// A tracker, fed with the images of a log.
 ///
-/// It begins in the first frame that can be read, with the box it is given, or else with the first true box. A frame that cannot be read or
+/// It begins in the first frame that can be read, with the box or mask it is given, or else with the first true box. A frame that cannot be read or
 /// is refused has no estimate: where the truth is known it counts with overlap 0, like a frame in which the tracker says that it has lost
 /// the target.
 pub struct TrackSystem {
@@ -33,7 +33,7 @@ pub struct TrackSetup {
     /// Its parameters.
     pub params: TrackParams,
     /// Where the target is in the first frame; `None` is in its first true box.
-    pub init: Option<BoundingBox>,
+    pub init: Option<Start>,
     /// Where it truly is.
     pub truth: TrueBoxes,
     /// Frames a second of a folder, whose stamps tell the number of each frame; without it frames are counted.
@@ -174,21 +174,23 @@ impl TrackSystem {
             let target = tracker.follow(&picture, &mut self.rng).map_err(|error| error.to_string())?;
             return Ok(Some((picture, target, stopwatch.elapsed())));
         }
-        let Some(init) = self.setup.init.or(self.setup.truth.at(self.next_index).target()) else {
+        let first_true_box = || self.setup.truth.at(self.next_index).target().map(Start::Box);
+        let Some(start) = self.setup.init.clone().or_else(first_true_box) else {
             return Ok(None);
         };
-        match self.setup.method.begin(&self.setup.params, &picture, &Start::Box(init)) {
-            Ok(tracker) => self.tracker = Some(tracker),
+        let begun = self.setup.method.begin(&self.setup.params, &picture, &start);
+        match begun.and_then(|tracker| Ok((tracker, start.bounding_box()?))) {
+            Ok((tracker, bounding_box)) => {
+                self.tracker = Some(tracker);
+                let (outline, status) = (Vec::new(), TrackStatus::Tracked);
+                let target = Target { bounding_box, outline, status, quality: 1.0 };
+                Ok(Some((picture, target, Duration::ZERO)))
+            }
             Err(source) => {
-                let ([x, y], w, h) = (init.corner(), init.width(), init.height());
-                let init = format!("{x},{y},{w},{h}");
-                self.failure = Some(TrackError::Start { init, width, height, source });
-                return Err("the tracker could not begin".to_owned());
+                self.failure = Some(TrackError::Start { init: start.name(), width, height, source });
+                Err("the tracker could not begin".to_owned())
             }
         }
-        let target =
-            Target { bounding_box: init, outline: Vec::new(), status: TrackStatus::Tracked, quality: 1.0 };
-        Ok(Some((picture, target, Duration::ZERO)))
     }
 
     fn account(&mut self, stamp: Stamp, picture: Picture, target: Target, step: Duration) {

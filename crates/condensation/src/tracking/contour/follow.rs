@@ -6,7 +6,7 @@ use super::samples::Samples;
 use super::scene::Scene;
 use super::search::in_other_light;
 use super::{ContourTracker, TrackingCues};
-use crate::{BinSet, BitMask, ColorCloud, ColorState, CondensationError, Outline, Picture};
+use crate::{BinSet, BitMask, ColorCloud, ColorState, CondensationError, Outline, Picture, TrackStatus};
 
 /// Where the target was found, and what is to be learned from it.
 pub(super) struct Found {
@@ -38,10 +38,11 @@ impl ContourTracker {
         let log_weights: Vec<f64> =
             candidates.iter().map(|candidate| candidate.agreement.log_weight(&self.params)).collect();
         let best = first_max(&log_weights);
-        let set = scene.bin_set(&states[best]);
+        let state = states[best];
+        let set = scene.bin_set(&state);
         let samples = self.samples.weighed(states, log_weights)?;
         let Some(mask) = scene.target_mask(&set) else { return Ok(None) };
-        self.finish(&scene, candidates[best], &set, &mask, samples).map(Some)
+        self.finish(&scene, candidates[best], &state, &set, &mask, samples).map(Some)
     }
 
     /// In the whole picture.
@@ -62,13 +63,13 @@ impl ContourTracker {
         }
         let found = map_each(&states, |state| scene.find(state));
         let better = |best: usize, i: usize| {
-            let score = |i: usize| found[i].as_ref().map_or(0.0, |(candidate, _)| scene.score(candidate));
+            let score = |i: usize| found[i].as_ref().map_or(0.0, |found| found.score);
             if score(i) > score(best) { i } else { best }
         };
         let best = (0..found.len()).fold(0, better);
-        let Some(Some((candidate, mask))) = found.get(best) else { return Ok(None) };
+        let Some(Some(seen)) = found.get(best) else { return Ok(None) };
         let set = scene.bin_set(&states[best]);
-        self.finish(&scene, *candidate, &set, mask, self.samples.clone()).map(Some)
+        self.finish(&scene, seen.candidate, &states[best], &set, &seen.mask, self.samples.clone()).map(Some)
     }
 
     /// What the next picture shall be compared with.
@@ -76,11 +77,16 @@ impl ContourTracker {
         &self,
         scene: &Scene<'_>,
         candidate: Candidate,
+        state: &ColorState,
         set: &BinSet,
         mask: &BitMask,
         samples: Samples,
     ) -> Result<Found, CondensationError> {
-        let quality = scene.confidence(&candidate, mask)?;
+        let mut quality = scene.confidence(&candidate, mask)?;
+        if self.status == TrackStatus::Lost {
+            // Out of the place that spoke for it, the segmentation alone proves little.
+            quality *= scene.likeness(state, &candidate, mask)?;
+        }
         let candidate = candidate.refined(scene, mask);
         let cloud = if self.params.adapts { scene.colors_of(&candidate, set, mask)? } else { None };
         let blob_outline = || Outline::of_mask(mask, scene.region.rect.corner());

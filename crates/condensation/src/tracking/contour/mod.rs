@@ -5,6 +5,7 @@ mod candidate;
 mod each;
 mod follow;
 mod history;
+mod likeness;
 mod params;
 mod recolor;
 mod reference;

@@ -73,7 +73,7 @@ pub struct ContourTrackerParams {
     pub edge_contrast: f64,
     /// Below this quality the target is lost. Default 0.5.
     pub lost_below: f64,
-    /// From this quality on it is found again. Default 0.8.
+    /// From this quality on, times the likeness of the colours, it is found again. Default 0.75.
     pub found_above: f64,
     /// Hypotheses about the colours when the whole picture is searched, besides those about the strength of the
     /// light. Default 12.
@@ -104,7 +104,7 @@ impl Default for ContourTrackerParams {
             band_radius: 2,
             edge_contrast: 20.0,
             lost_below: 0.5,
-            found_above: 0.8,
+            found_above: 0.75,
             n_search_samples: 12,
         }
     }

@@ -30,14 +30,7 @@ impl Scene<'_> {
             let i = usize::from(bin);
             plain || (shares[i] > self.background[i] && (is_open || near.contains(bin)))
         };
-        let (left, top) = self.region.rect.corner();
-        let pixel = |u: usize, v: usize| self.picture.pixels()[(top + v) * self.picture.width() + left + u];
-        let colors = self.region.bins.rows().enumerate().flat_map(|(v, row)| {
-            let (inside, is_target) = (&inside, &is_target);
-            let of_target =
-                row.iter().enumerate().filter(move |(u, bin)| inside.get(*u, v) && is_target(**bin));
-            of_target.map(move |(u, _)| self.params.color_space.convert(pixel(u, v)))
-        });
+        let colors = self.colors_in(&inside).filter(|(bin, _)| is_target(*bin)).map(|(_, color)| color);
         match ColorCloud::from_colors(colors, self.params.max_colors) {
             Ok(cloud) if cloud.n_pixels() >= n_expected => Ok(Some(cloud)),
             Ok(_) | Err(CondensationError::Empty { .. }) => Ok(None),
@@ -45,8 +38,23 @@ impl Scene<'_> {
         }
     }
 
+    /// Bin and colour of every pixel of a mask of the region.
+    pub(super) fn colors_in(&self, mask: &BitMask) -> impl Iterator<Item = (u16, [f64; 3])> {
+        let ((left, top), width) = (self.region.rect.corner(), self.picture.width());
+        let pixels = mask.runs().flat_map(|(v, run)| run.map(move |u| (u, v)));
+        pixels.map(move |(u, v)| {
+            let bin = self.region.bins.bins()[v * self.region.bins.width() + u];
+            let color = self.picture.pixels()[(top + v) * width + left + u];
+            (bin, self.params.color_space.convert(color))
+        })
+    }
+
     /// The pixels inside a candidate but for its rim.
-    fn interior(&self, candidate: &Candidate, mask: &BitMask) -> Result<BitMask, CondensationError> {
+    pub(super) fn interior(
+        &self,
+        candidate: &Candidate,
+        mask: &BitMask,
+    ) -> Result<BitMask, CondensationError> {
         let inside = match self.params.cues {
             TrackingCues::Color => mask.clone(),
             _ => self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?,

@@ -19,6 +19,13 @@ const N_GAINS: i32 = 6;
 /// Most blobs that are looked at for one hypothesis.
 const MAX_BLOBS: usize = 4;
 
+/// A blob that may be the target.
+pub(super) struct Sighting {
+    pub(super) candidate: Candidate,
+    pub(super) mask: BitMask,
+    pub(super) score: f64,
+}
+
 impl<'a> Scene<'a> {
     /// The whole picture; nothing is known of the place. What is common in all of it counts as background.
     pub(super) fn whole(
@@ -44,8 +51,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The best blob of a hypothesis, anywhere.
-    pub(super) fn find(&self, state: &ColorState) -> Option<(Candidate, BitMask)> {
+    /// The best blob of a hypothesis, anywhere, by its score times the likeness of its colours.
+    pub(super) fn find(&self, state: &ColorState) -> Option<Sighting> {
         let blobs = self.segment(&self.bin_set(state)).blobs(Connectivity::Eight);
         let ratio = |area: usize| area as f64 / self.expected_area;
         let mut near: Vec<(usize, f64)> = blobs
@@ -57,13 +64,15 @@ impl<'a> Scene<'a> {
         near.sort_by(|a, b| a.1.total_cmp(&b.1));
         let weigh = |&(i, _): &(usize, f64)| {
             let mask = blobs.mask(i)?;
-            Some((self.placed_on(&mask)?, mask))
+            let candidate = self.placed_on(&mask)?;
+            let score = self.score(&candidate) * self.likeness(state, &candidate, &mask).ok()?;
+            Some(Sighting { candidate, mask, score })
         };
         let candidates = near.iter().take(MAX_BLOBS).filter_map(weigh);
-        candidates.reduce(|best, other| if self.score(&other.0) > self.score(&best.0) { other } else { best })
+        candidates.reduce(|best, other| if other.score > best.score { other } else { best })
     }
 
-    pub(super) fn score(&self, candidate: &Candidate) -> f64 {
+    fn score(&self, candidate: &Candidate) -> f64 {
         candidate.agreement.score(self.params)
     }
 
@@ -109,13 +118,16 @@ fn axes(points: &[[f64; 2]]) -> (Matrix2<f64>, Vector2<f64>) {
     (Matrix2::new(cos, -sin, sin, cos), spread)
 }
 
+/// Where stronger light scales colours from; none in a space in which it does not.
+pub(super) fn black(space: ColorSpace) -> Option<Vector3<f64>> {
+    matches!(space, ColorSpace::Rgb | ColorSpace::Yuv | ColorSpace::Opponent)
+        .then(|| Vector3::from(space.convert([0; 3])))
+}
+
 /// The colours of a reference in light of other strengths, from a third to three times as strong. Empty in a space in which stronger light
 /// does not scale colours from black.
 pub(super) fn in_other_light(space: ColorSpace, colors: &PrincipalColors) -> Vec<ColorState> {
-    if !matches!(space, ColorSpace::Rgb | ColorSpace::Yuv | ColorSpace::Opponent) {
-        return Vec::new();
-    }
-    let black = Vector3::from(space.convert([0; 3]));
+    let Some(black) = black(space) else { return Vec::new() };
     let lit = |step: i32| {
         let gain = 3_f64.powf(f64::from(step) / f64::from(N_GAINS));
         let mut state = ColorState::at_rest(colors);

@@ -19,8 +19,8 @@ use crate::{
 /// segments the picture, lays an affine snake on the blob of the target and is weighed by how well that agrees with the contour and the
 /// area of before. The best one is refined on the edges of the picture; what lies inside is the reference for the next picture.
 ///
-/// A target that is out of the picture, hidden or not recognized is [`TrackStatus::Lost`]; nothing is learned from such a picture, and the
-/// whole of it is searched until the target is found again.
+/// When the target is not recognized where it was expected, the whole picture is searched. It is [`TrackStatus::Lost`] when it is not found there
+/// either, with its shape and with colours that are alike; nothing is learned from such a picture.
 ///
 /// ```
 /// use rand::SeedableRng;
@@ -91,18 +91,42 @@ impl ContourTracker {
         Ok(target(&outline, TrackStatus::Tracked, found.quality))
     }
 
-    /// The target is not to be seen: it is looked for as it was before it began to vanish, in colours that may have changed by as much as the
-    /// dynamics allow.
-    fn lose<R: Rng + ?Sized>(&mut self, quality: f64, rng: &mut R) -> Result<Target, CondensationError> {
+    /// The target is not where it was expected: it is looked for everywhere.
+    fn look_again<R: Rng + ?Sized>(
+        &mut self,
+        picture: &Picture,
+        here: Option<Found>,
+        rng: &mut R,
+    ) -> Result<Target, CondensationError> {
         let outline = self.reference.snake.outline();
+        // What was just not good enough to go on with is not what is sought.
+        let here = here.filter(|_| self.status == TrackStatus::Lost);
+        self.miss()?;
+        let quality = |found: &Option<Found>| found.as_ref().map_or(0.0, |found| found.quality);
+        let mut best = here;
+        if quality(&best) < self.params.found_above {
+            let elsewhere = self.search(picture, rng)?;
+            if quality(&elsewhere) > quality(&best) {
+                best = elsewhere;
+            }
+        }
+        match best {
+            Some(found) if found.quality >= self.params.found_above => self.accept(found),
+            best => {
+                self.samples.drift(&self.dynamics, rng);
+                Ok(target(&outline, TrackStatus::Lost, quality(&best)))
+            }
+        }
+    }
+
+    /// Takes the target as it was before it began to vanish.
+    fn miss(&mut self) -> Result<(), CondensationError> {
         if self.status == TrackStatus::Tracked {
             let before = self.history.restart().left_at(&self.reference);
             self.samples = Samples::at_start(&before.colors, self.params.n_samples)?;
-            self.reference = before;
+            (self.reference, self.status) = (before, TrackStatus::Lost);
         }
-        self.samples.drift(&self.dynamics, rng);
-        self.status = TrackStatus::Lost;
-        Ok(target(&outline, TrackStatus::Lost, quality))
+        Ok(())
     }
 }
 
@@ -118,21 +142,16 @@ impl Tracker for ContourTracker {
     ) -> Result<Target, CondensationError> {
         check_size("width of the picture", self.size.0, picture.width())?;
         check_size("height of the picture", self.size.1, picture.height())?;
-        let least = match self.status {
-            TrackStatus::Tracked => self.params.lost_below,
-            TrackStatus::Lost => self.params.found_above,
-        };
-        let quality = |found: &Option<Found>| found.as_ref().map_or(0.0, |found| found.quality);
-        let mut found = self.follow(picture, rng)?;
-        if self.status == TrackStatus::Lost && quality(&found) < least {
-            let elsewhere = self.search(picture, rng)?;
-            if quality(&elsewhere) > quality(&found) {
-                found = elsewhere;
+        match self.follow(picture, rng)? {
+            Some(found) if self.status == TrackStatus::Tracked && found.quality >= self.params.lost_below => {
+                self.accept(found)
             }
-        }
-        match found {
-            Some(found) if found.quality >= least => self.accept(found),
-            found => self.lose(quality(&found), rng),
+            found => {
+                let mut next = self.clone();
+                let target = next.look_again(picture, found, rng)?;
+                *self = next;
+                Ok(target)
+            }
         }
     }
 }

@@ -7,6 +7,7 @@ mod filter;
 mod fourier;
 mod gradient_channels;
 mod lane;
+mod lost;
 mod params;
 mod patch;
 mod planes;
@@ -14,6 +15,7 @@ mod recognizer;
 mod response;
 mod scale_filter;
 mod tracker;
+mod turned;
 mod window;
 
 pub use params::CorrelationTrackerParams;

@@ -49,6 +49,8 @@ pub struct CorrelationTrackerParams {
     pub recognize_above: f64,
     /// Share of the usual response that it takes for that, too; three fifths of it suffice for a lost target. Default 0.5.
     pub recognize_share: f64,
+    /// Share of the usual agreement of colours below which something is not the target unless its shape is recognized. Default 0.5.
+    pub alike_share: f64,
     /// Pictures after which a changed target is believed to be the target, if what it was is not seen elsewhere. Default 60.
     pub forget_after: usize,
     /// Places beside the last one that are searched in each picture while the target is lost. Default 2.
@@ -75,6 +77,7 @@ impl Default for CorrelationTrackerParams {
             learn_above: 12.0,
             recognize_above: 15.0,
             recognize_share: 0.5,
+            alike_share: 0.5,
             forget_after: 60,
             n_searches: 2,
         }
@@ -98,6 +101,7 @@ impl CorrelationTrackerParams {
             ("colour rate", self.color_rate),
             ("scale rate", self.scale_rate),
             ("share to recognize by", self.recognize_share),
+            ("share of alike colours", self.alike_share),
         ] {
             probability(what, value)?;
         }

@@ -47,6 +47,30 @@ impl Patch {
         }
         Self { width, height, pixels }
     }
+
+    /// The square of `side` pixels in the middle, turned: what lies along `angle` (radians, from the first axis to the second) comes to lie
+    /// along the first axis. What it needs must be inside.
+    pub(super) fn turned(&self, angle: f64, side: usize) -> Self {
+        let (sin, cos) = (libm::sin(angle) as f32, libm::cos(angle) as f32);
+        let off = |i: usize| i as f32 + 0.5 - 0.5 * side as f32;
+        let pixel = |i: usize| {
+            let (x, y) = (off(i % side), off(i / side));
+            let along = |at: f32, n: usize| (0.5 * n as f32 + at - 0.5).clamp(0.0, n as f32 - 1.001);
+            self.between(along(cos * x - sin * y, self.width), along(sin * x + cos * y, self.height))
+        };
+        Self { width: side, height: side, pixels: (0..side * side).map(pixel).collect() }
+    }
+
+    /// The colour between four pixels.
+    fn between(&self, u: f32, v: f32) -> [f32; 3] {
+        let (column, row) = (u as usize, v as usize);
+        let (du, dv) = (u - column as f32, v - row as f32);
+        let at = |du: usize, dv: usize| self.pixels[(row + dv) * self.width + column + du];
+        let (a, b, c, d) = (at(0, 0), at(1, 0), at(0, 1), at(1, 1));
+        std::array::from_fn(|k| {
+            (a[k] * (1.0 - du) + b[k] * du) * (1.0 - dv) + (c[k] * (1.0 - du) + d[k] * du) * dv
+        })
+    }
 }
 
 impl Taps {
@@ -104,6 +128,18 @@ mod tests {
         let patch = Patch::sampled(&ramp(), [8.0, 7.0], [4.0, 6.0], (4, 6));
         assert_eq!(patch.pixels[0], [24.0, 20.0, 7.0]);
         assert_eq!(patch.pixels[23], [36.0, 45.0, 7.0]);
+    }
+
+    #[test]
+    fn a_quarter_turn_lays_the_second_axis_along_the_first() {
+        let patch = Patch::sampled(&ramp(), [10.0, 8.0], [8.0, 8.0], (8, 8));
+        let turned = patch.turned(std::f64::consts::FRAC_PI_2, 4);
+        let row: Vec<f32> = turned.pixels[..4].iter().map(|pixel| pixel[1]).collect();
+        // rows 6 to 9 of the ramp, which grows by 5 a row
+        for (value, expected) in row.iter().zip([30.0, 35.0, 40.0, 45.0]) {
+            assert!((value - expected).abs() < 1e-3, "{row:?}");
+        }
+        assert!(turned.pixels[..4].iter().all(|pixel| (pixel[0] - turned.pixels[0][0]).abs() < 1e-3));
     }
 
     #[test]

@@ -46,7 +46,11 @@ impl Recognizer {
     }
 
     pub(super) fn look(&self, picture: &Picture, pose: Pose) -> Sight {
-        let patch = self.window.patch(picture, pose);
+        self.sight(self.window.patch(picture, pose))
+    }
+
+    /// What a patch of the window shows.
+    pub(super) fn sight(&self, patch: Patch) -> Sight {
         let features = features(&patch, self.window.taper(), self.shares);
         Sight { spectrum: self.filter.fourier().forward(&features), patch }
     }

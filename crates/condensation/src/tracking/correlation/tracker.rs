@@ -31,8 +31,9 @@ const USUAL_RATE: f64 = 0.05;
 /// stays near the one before [Galoogahi et al. 2017; Li et al. 2018], and $`p(c)`$ the ratio of the colour histograms of target and
 /// surroundings [Bertinetto et al. 2016]. Size: a correlation filter over scales [Danelljan et al. 2017]. Whatever is found is learned,
 /// if it stands out of the rest of the response. The filter that recognized the target last beyond doubt is kept: when something passes
-/// in front and is learned, the kept one finds the target where it comes out again. Without evidence for some pictures the target is
-/// [`Lost`](TrackStatus::Lost), and looked for in the whole picture.
+/// in front and is learned, the kept one finds the target where it comes out again. What the kept filter does not recognize and what has other
+/// colours is not learned. The target is [`Lost`](TrackStatus::Lost) when such a thing hardly stands out, or nothing does for some pictures. It
+/// is then looked for in the whole picture, upright and turned, and found where shape and colours agree.
 ///
 /// The memory does not grow, and nothing is random: the generator of [`Tracker::track`] is not used.
 ///
@@ -59,24 +60,26 @@ const USUAL_RATE: f64 = 0.05;
 /// ```
 #[derive(Clone, Debug)]
 pub struct CorrelationTracker {
-    params: CorrelationTrackerParams,
-    picture_size: (usize, usize),
-    recognizer: Recognizer,
-    colors: ColorRatio,
-    scales: ScaleFilter,
-    pose: Pose,
+    pub(super) params: CorrelationTrackerParams,
+    pub(super) picture_size: (usize, usize),
+    pub(super) recognizer: Recognizer,
+    pub(super) colors: ColorRatio,
+    pub(super) scales: ScaleFilter,
+    pub(super) pose: Pose,
     /// The filter as it was learned last.
-    current: Spectrum,
+    pub(super) current: Spectrum,
     /// The filter when the target was last recognized beyond doubt.
-    trusted: Spectrum,
+    pub(super) trusted: Spectrum,
     /// Pictures since then.
-    n_untrusted: usize,
+    pub(super) n_untrusted: usize,
     /// The response that is usual for the target.
-    usual: f64,
+    pub(super) usual: f64,
+    /// The agreement of colours that is usual for it.
+    pub(super) usual_agreement: f64,
     /// Pictures in a row without evidence.
-    n_doubts: usize,
+    pub(super) n_doubts: usize,
     /// Pictures since the target was lost; 0 while it is not.
-    n_lost: usize,
+    pub(super) n_lost: usize,
 }
 
 impl CorrelationTracker {
@@ -110,6 +113,7 @@ impl CorrelationTracker {
         }
         let mut colors = ColorRatio::new();
         colors.learn(&sight.patch, recognizer.window.target_pixels(), 1.0);
+        let usual_agreement = colors.agreement(&sight.patch, recognizer.window.target_pixels());
         let mut scales = ScaleFilter::new(params.n_scales, params.scale_step, size);
         scales.learn(picture, pose.center, size, 1.0);
         Ok(Self {
@@ -123,6 +127,7 @@ impl CorrelationTracker {
             current,
             n_untrusted: 0,
             usual,
+            usual_agreement,
             n_doubts: 0,
             n_lost: 0,
         })
@@ -141,9 +146,12 @@ impl CorrelationTracker {
             self.current = self.trusted.clone();
         }
         let evidence = self.recognizer.evidence(&self.current, &sight);
-        if evidence.standing_out < self.params.doubt_below {
+        let is_unlike = !self.recognized(trust) && !self.is_alike(&sight);
+        // what may be something else must show more
+        let least = if is_unlike { self.params.recognize_above } else { self.params.doubt_below };
+        if evidence.standing_out < least {
             self.n_doubts += 1;
-            self.n_lost = usize::from(self.n_doubts > self.params.patience);
+            self.n_lost = usize::from(is_unlike || self.n_doubts > self.params.patience);
         } else {
             self.n_doubts = 0;
             self.pose = pose;
@@ -166,7 +174,7 @@ impl CorrelationTracker {
     }
 
     /// The pose at the peak of a response, at the scale that fits there.
-    fn shifted(&self, picture: &Picture, pose: Pose, response: &[f32]) -> Pose {
+    pub(super) fn shifted(&self, picture: &Picture, pose: Pose, response: &[f32]) -> Pose {
         let window = &self.recognizer.window;
         let mut pose = window.moved(pose, Peak::of(response, SIDE).shift);
         let (width, height) = (self.picture_size.0 as f64, self.picture_size.1 as f64);
@@ -179,50 +187,32 @@ impl CorrelationTracker {
         pose
     }
 
-    /// Where the trusted filter recognizes the target, if it does: in sight or, when it has not for a while, in another place in turn.
-    fn recognized_elsewhere(&self, picture: &Picture, around: &Sight) -> Option<(Pose, Sight, Evidence)> {
-        self.recognized_by(&self.trusted, picture, self.pose, around).or_else(|| {
-            let turn = self.n_untrusted.checked_sub(self.params.patience)?;
-            let center = self.place(turn);
-            let from = Pose { center, ..self.pose };
-            self.recognized_by(&self.trusted, picture, from, &self.recognizer.look(picture, from))
-        })
-    }
-
-    /// Where in what is seen `around` a pose a filter recognizes the target, if it does.
-    fn recognized_by(
-        &self,
-        filter: &Spectrum,
-        picture: &Picture,
-        pose: Pose,
-        around: &Sight,
-    ) -> Option<(Pose, Sight, Evidence)> {
-        let response = self.recognizer.response(filter, around);
-        if Peak::of(&response, SIDE).standing_out < self.params.doubt_below {
-            return None;
-        }
-        let pose = self.shifted(picture, pose, &response);
-        let sight = self.recognizer.look(picture, pose);
-        let evidence = self.recognizer.evidence(filter, &sight);
-        self.recognized(evidence).then_some((pose, sight, evidence))
-    }
-
-    /// One place after the other, so that the whole picture is looked at again and again.
-    fn place(&self, turn: usize) -> [f64; 2] {
-        let tiles = self.recognizer.window.tiles(self.picture_size, self.pose.scale);
-        tiles[turn % tiles.len()]
-    }
-
-    fn recognized(&self, evidence: Evidence) -> bool {
+    pub(super) fn recognized(&self, evidence: Evidence) -> bool {
         // a lost target has changed more since it was learned, and nothing is given up for it
         let share = self.params.recognize_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
         evidence.standing_out > self.params.recognize_above && evidence.value > share * self.usual
     }
 
+    /// Whether the colours in the middle of what is seen may be the target's.
+    pub(super) fn is_alike(&self, sight: &Sight) -> bool {
+        self.is_usual(self.agreement(sight))
+    }
+
+    fn is_usual(&self, agreement: f64) -> bool {
+        agreement >= self.params.alike_share * self.usual_agreement
+    }
+
+    fn agreement(&self, sight: &Sight) -> f64 {
+        self.colors.agreement(&sight.patch, self.recognizer.window.target_pixels())
+    }
+
     fn learn(&mut self, picture: &Picture, sight: &Sight, evidence: Evidence, trust: Evidence) {
         let recognized = self.recognized(trust);
         self.n_untrusted = if recognized { 0 } else { self.n_untrusted + 1 };
-        if evidence.standing_out < self.params.learn_above {
+        let agreement = self.agreement(sight);
+        let may_be_another =
+            !recognized && !self.is_usual(agreement) && self.n_untrusted <= self.params.forget_after;
+        if evidence.standing_out < self.params.learn_above || may_be_another {
             return;
         }
         let window = &self.recognizer.window;
@@ -236,29 +226,8 @@ impl CorrelationTracker {
             self.n_untrusted = 0;
             let value = if recognized { trust.value } else { evidence.value };
             self.usual += USUAL_RATE * (value - self.usual);
+            self.usual_agreement += USUAL_RATE * (agreement - self.usual_agreement);
         }
-    }
-
-    /// Looks for a lost target around where it was, and in a few other places of the picture in turn; the quality.
-    fn search(&mut self, picture: &Picture) -> f64 {
-        let Pose { center, scale } = self.pose;
-        let first = self.n_lost * self.params.n_searches;
-        let others = (first..first + self.params.n_searches).map(|turn| self.place(turn));
-        let centers: Vec<[f64; 2]> = std::iter::once(center).chain(others).collect();
-        self.n_lost += 1;
-        for center in centers {
-            let from = Pose { center, scale };
-            let around = self.recognizer.look(picture, from);
-            let found = [&self.trusted, &self.current].into_iter().find_map(|filter| {
-                let (pose, _, evidence) = self.recognized_by(filter, picture, from, &around)?;
-                Some((filter.clone(), pose, evidence.value / self.usual))
-            });
-            if let Some((filter, pose, quality)) = found {
-                (self.current, self.pose, self.n_lost, self.n_doubts) = (filter, pose, 0, 0);
-                return quality;
-            }
-        }
-        0.0
     }
 }
 

@@ -1,4 +1,4 @@
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 use super::features::CELL;
 use super::patch::Patch;
@@ -58,6 +58,18 @@ impl Window {
     /// What the picture shows in the window.
     pub(super) fn patch(&self, picture: &Picture, pose: Pose) -> Patch {
         Patch::sampled(picture, pose.center, [self.side * pose.scale; 2], (PIXELS, PIXELS))
+    }
+
+    /// What the picture shows in the window and a little around it, so that the window can be [turned](Self::turned).
+    pub(super) fn surroundings(&self, picture: &Picture, pose: Pose) -> Patch {
+        let pixels = (PIXELS as f64 * SQRT_2).ceil() as usize;
+        let extent = self.side * pose.scale * pixels as f64 / PIXELS as f64;
+        Patch::sampled(picture, pose.center, [extent; 2], (pixels, pixels))
+    }
+
+    /// The window, turned by `angle` about its middle.
+    pub(super) fn turned(surroundings: &Patch, angle: f64) -> Patch {
+        surroundings.turned(angle, PIXELS)
     }
 
     /// `pose` moved by `shift` cells.

@@ -27,8 +27,7 @@ pub fn follow(
 ) -> Result<Vec<FilmScore>> {
     let mut frames = film.frames()?;
     let first = frames.next().context("a film without frames")?;
-    let (picture, silhouette) = (pixels(&first)?, mask(&first.target)?);
-    let start = Start::Mask(&silhouette);
+    let (picture, start) = (pixels(&first)?, Start::Mask(mask(&first.target)?));
     let begin = |method: &Method| method.begin(params, &picture, &start);
     let mut trackers = methods.iter().map(begin).collect::<Result<Vec<_>, _>>()?;
     let mut rngs = vec![ChaCha8Rng::seed_from_u64(film.seed); methods.len()];

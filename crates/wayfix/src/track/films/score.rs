@@ -2,6 +2,10 @@ use anyhow::{Context, Result};
 use wayfix_condensation::{BitMask, BoundingBox, Target, TrackStatus};
 use wayfix_scene_sim::film::{Frame, Silhouette};
 
+/// Overlap of an outline from which on it is right. [Everingham et al. 2010, for detections]
+const RIGHT: f64 = 0.5;
+/// Distance of the centre of a box in pixels up to which it is right. [Wu, Lim & Yang 2013, "precision"]
+const NEAR: f64 = 20.0;
 /// Fewer pixels of a neck in a frame say nothing of where it is.
 const LEAST_NECK: usize = 100;
 
@@ -15,6 +19,9 @@ pub struct FilmScore {
     pub iou: Vec<f64>,
     /// Distance of the centres in pixels, of those frames in which it is not lost.
     pub center_error: Vec<f64>,
+    /// Whether each frame in which something of the target is visible is right: the outline covers it, or the centre of the box is near. The
+    /// overlap of a box is no measure for a target that turns in it.
+    pub right: Vec<bool>,
     /// Share of the neck that is inside the outline, of the frames with enough of a neck.
     pub neck_share: Vec<f64>,
     /// In how many frames with a visible target the tracker says that it is lost.
@@ -40,6 +47,7 @@ impl FilmScore {
         if lost {
             self.n_lost += 1;
             self.iou.push(0.0);
+            self.right.push(false);
             return Ok(());
         }
         let (iou, [du, dv]) = if target.outline.is_empty() {
@@ -55,14 +63,17 @@ impl FilmScore {
             let centers = estimate.centroid().zip(truth.centroid());
             (estimate.iou(&truth)?, centers.map_or([f64::NAN; 2], |(one, other)| apart(one, other)))
         };
+        let off = du.hypot(dv);
+        self.right.push(if target.outline.is_empty() { off <= NEAR } else { iou > RIGHT });
         self.iou.push(iou);
-        self.center_error.push(du.hypot(dv));
+        self.center_error.push(off);
         Ok(())
     }
 
-    /// Mean overlap over the last frames.
-    pub fn iou_at_the_end(&self, n_frames: usize) -> f64 {
-        mean(&self.iou[self.iou.len().saturating_sub(n_frames)..])
+    /// Whether most of the last frames are right.
+    pub fn is_right_at_the_end(&self, n_frames: usize) -> bool {
+        let last = &self.right[self.right.len().saturating_sub(n_frames)..];
+        2 * last.iter().filter(|right| **right).count() > last.len()
     }
 }
 

@@ -13,8 +13,6 @@ use crate::{
 
 /// Frames at the end of a film by which it is judged whether the target was found again.
 const N_END: usize = 20;
-/// Overlap from which on it counts as found. [Everingham et al. 2010, for detections]
-const FOUND: f64 = 0.5;
 
 /// A film with many seeds through several methods: overlap with its interval over the seeds, centre error, frames lost. Pictures are of
 /// the first method and seed.
@@ -71,7 +69,7 @@ fn over_seeds(scores: &[&FilmScore], incident: Incident) -> Vec<Metric> {
         metrics.push(Metric::new("neck_share_mean", mean(&necks), ""));
     }
     if incident != Incident::None {
-        let found = scores.iter().filter(|score| score.iou_at_the_end(N_END) > FOUND).count();
+        let found = scores.iter().filter(|score| score.is_right_at_the_end(N_END)).count();
         metrics.push(Metric::new("found_again_share", found as f64 / scores.len() as f64, ""));
     }
     let n_hidden = sum(|score| score.n_hidden);
