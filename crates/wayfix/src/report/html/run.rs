@@ -33,6 +33,7 @@ fn remarks(run: &Run) -> String {
     error.chain(run.notes.iter().map(|note| format!("<p>{}</p>\n", escape(note)))).collect()
 }
 
+/// What a bound, a paper or a peer would say has columns where one of them says something.
 fn metrics(run: &Run) -> String {
     let heads = [
         ("figure", false),
@@ -45,26 +46,34 @@ fn metrics(run: &Run) -> String {
         ("bound from", false),
         ("pass", false),
     ];
-    let rows: String = run.all_metrics().map(metric_row).collect();
-    if rows.is_empty() { rows } else { table(&format!("Figures of {}", run.name), &heads, &rows) }
+    let is_compared =
+        |metric: &Metric| metric.is_bounded() || metric.paper.is_some() || metric.peer.is_some();
+    let compared = run.all_metrics().any(is_compared);
+    let heads = if compared { &heads[..] } else { &heads[..3] };
+    let rows: String = run.all_metrics().map(|metric| metric_row(metric, compared)).collect();
+    if rows.is_empty() { rows } else { table(&format!("Figures of {}", run.name), heads, &rows) }
 }
 
-fn metric_row(metric: &Metric) -> String {
+fn metric_row(metric: &Metric, compared: bool) -> String {
     let class = if metric.passes() { "" } else { " class=\"failed\"" };
+    format!(
+        "<tr{class}><th scope=\"row\"><code>{}</code></th>{}<td>{}</td>{}</tr>\n",
+        escape(&metric.name),
+        value_cell(metric),
+        escape(&metric.unit),
+        if compared { comparison(metric) } else { String::new() },
+    )
+}
+
+fn comparison(metric: &Metric) -> String {
     let pass = match (metric.passes(), metric.is_bounded()) {
         (false, _) => "<td class=\"fail\">✗ fail</td>",
         (true, true) => "<td class=\"pass\">✓ pass</td>",
         (true, false) => "<td></td>",
     };
     let numbers: String = [metric.low, metric.high, metric.paper].into_iter().map(number_cell).collect();
-    format!(
-        "<tr{class}><th scope=\"row\"><code>{}</code></th>{}<td>{}</td>{numbers}{}<td>{}</td>{pass}</tr>\n",
-        escape(&metric.name),
-        value_cell(metric),
-        escape(&metric.unit),
-        peer_cell(metric),
-        escape(metric.bound_source.as_deref().unwrap_or_default()),
-    )
+    let source = escape(metric.bound_source.as_deref().unwrap_or_default());
+    format!("{numbers}{}<td>{source}</td>{pass}", peer_cell(metric))
 }
 
 /// The figure, and how sure it is.
