@@ -12,6 +12,8 @@ use crate::{BinSet, BitMask, ColorCloud, ColorState, CondensationError, Outline,
 pub(super) struct Found {
     pub(super) candidate: Candidate,
     pub(super) quality: f64,
+    /// Whether the contour jumped to the whole of a target of which it had a part.
+    pub(super) regrown: bool,
     /// Where it is not the snake that says.
     pub(super) outline: Option<Outline>,
     pub(super) cloud: Option<ColorCloud>,
@@ -31,7 +33,14 @@ impl ContourTracker {
             let (candidate, samples) = (Candidate::of_edges(&scene), self.samples.clone());
             // Area and quality say nothing where no edge is found.
             let quality = candidate.agreement.score(&self.params).min(candidate.agreement.affine);
-            return Ok(Some(Found { candidate, quality, outline: None, cloud: None, samples }));
+            return Ok(Some(Found {
+                candidate,
+                quality,
+                regrown: false,
+                outline: None,
+                cloud: None,
+                samples,
+            }));
         }
         let states = self.hypotheses(rng)?;
         let candidates = map_each(&states, |state| Candidate::of_colors(&scene, state));
@@ -82,6 +91,8 @@ impl ContourTracker {
         mask: &BitMask,
         samples: Samples,
     ) -> Result<Found, CondensationError> {
+        let larger = candidate.regrown(scene, mask)?;
+        let (candidate, regrown) = (larger.unwrap_or(candidate), larger.is_some());
         let mut quality = scene.confidence(&candidate, mask)?;
         if self.status == TrackStatus::Lost {
             // Out of the place that spoke for it, the segmentation alone proves little.
@@ -91,7 +102,7 @@ impl ContourTracker {
         let cloud = if self.params.adapts { scene.colors_of(&candidate, set, mask)? } else { None };
         let blob_outline = || Outline::of_mask(mask, scene.region.rect.corner());
         let outline = if self.params.cues == TrackingCues::Color { blob_outline() } else { None };
-        Ok(Found { candidate, quality, outline, cloud, samples })
+        Ok(Found { candidate, quality, regrown, outline, cloud, samples })
     }
 
     fn hypotheses<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<ColorState>, CondensationError> {

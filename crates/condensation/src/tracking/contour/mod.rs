@@ -11,6 +11,7 @@ mod recolor;
 mod reference;
 mod refine;
 mod region;
+mod regrow;
 mod samples;
 mod scene;
 mod search;

@@ -6,7 +6,7 @@ use crate::{BinSet, BitMask, ColorCloud, CondensationError};
 const LEAST_SHARE: f64 = 0.25;
 
 /// Support of a contour from which on nothing covers the target.
-const SEEN_ALL_ROUND: f64 = 0.8;
+pub(super) const SEEN_ALL_ROUND: f64 = 0.8;
 
 impl Scene<'_> {
     /// The colours inside the contour of the best candidate; none when there are too few pixels to tell.

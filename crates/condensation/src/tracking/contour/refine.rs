@@ -3,7 +3,7 @@ use crate::tracking::Element;
 use crate::{BitMask, ColorEdges, CondensationError, SnakeParams};
 
 /// Overlap of contour and segmentation from which on nothing speaks against either.
-const COVERED: f64 = 0.7;
+pub(super) const COVERED: f64 = 0.7;
 
 /// How much worse the area may agree after refinement.
 const AREA_SLACK: f64 = 0.05;
@@ -40,7 +40,12 @@ impl Scene<'_> {
         if self.params.cues != TrackingCues::ColorAndShape {
             return Ok(score);
         }
+        Ok(score * (self.coverage(candidate, mask)? / COVERED).min(1.0))
+    }
+
+    /// Overlap of a candidate's contour and the segmentation.
+    pub(super) fn coverage(&self, candidate: &Candidate, mask: &BitMask) -> Result<f64, CondensationError> {
         let inside = self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?;
-        Ok(score * (inside.iou(mask)? / COVERED).min(1.0))
+        inside.iou(mask)
     }
 }

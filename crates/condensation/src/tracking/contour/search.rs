@@ -77,19 +77,20 @@ impl<'a> Scene<'a> {
     }
 
     /// The snake laid on a blob in each of the ways that [`placements`] gives, and fitted.
-    fn placed_on(&self, mask: &BitMask) -> Option<Candidate> {
-        let fitted = placements(&self.reference.snake, mask);
+    pub(super) fn placed_on(&self, mask: &BitMask) -> Option<Candidate> {
+        let fitted = placements(&self.reference.snake, mask, self.region.rect.corner());
         let fitted = fitted.iter().map(|start| Candidate::of_mask(self, start, mask));
         fitted.reduce(|best, other| if self.score(&other) > self.score(&best) { other } else { best })
     }
 }
 
-/// Maps that lay a snake on a blob of the whole picture: in its middle, of its area, and turned as it is; and with the axes of the snake along
+/// Maps that lay a snake on a blob of a region with this corner: in its middle, of its area, and turned as it is; and with the axes of the snake along
 /// those of the blob, either way round, stretched by as much as the blob is, within bounds.
-fn placements(snake: &AffineSnake, mask: &BitMask) -> Vec<AffineMap> {
+fn placements(snake: &AffineSnake, mask: &BitMask, corner: (usize, usize)) -> Vec<AffineMap> {
     let last = snake.map();
     let scale = (mask.area() as f64 / snake.area_at(last)).sqrt();
-    let middle = mask.centroid().unwrap_or_default();
+    let [u, v] = mask.centroid().unwrap_or_default();
+    let middle = Vector2::new(u + corner.0 as f64, v + corner.1 as f64);
     let pixels = mask.outer_contour();
     let rim: Vec<[f64; 2]> = pixels.iter().map(|pixel| pixel.map(|x| x as f64)).collect();
     let (to, to_spread) = axes(&rim);
@@ -99,7 +100,7 @@ fn placements(snake: &AffineSnake, mask: &BitMask) -> Vec<AffineMap> {
     });
     let aligned = to * Matrix2::from_diagonal(&stretch) * from.transpose() * last.linear;
     let linears = [last.linear * scale, aligned, -aligned];
-    linears.map(|linear| AffineMap { linear, translation: middle.into() }).into()
+    linears.map(|linear| AffineMap { linear, translation: middle }).into()
 }
 
 /// The principal axes of points as columns of a rotation, the longer one first, and the standard deviations along them.
@@ -158,7 +159,9 @@ mod tests {
             let outline = snake.outline_at(map).unwrap();
             BitMask::from_polygon(140, 120, outline.points()).unwrap().iou(&blob).unwrap()
         };
-        let [as_it_is, aligned, turned_back] = placements(&snake, &blob)[..] else { panic!("three ways") };
+        let [as_it_is, aligned, turned_back] = placements(&snake, &blob, (0, 0))[..] else {
+            panic!("three ways")
+        };
         // The middles of the rim are half a pixel within the blob, which is 1.7 and 2.8 % of its half axes.
         assert!(overlap(&aligned) > 0.93 && overlap(&turned_back) > 0.93 && overlap(&as_it_is) < 0.7);
         assert!((aligned.linear + turned_back.linear).norm() < 1e-9);

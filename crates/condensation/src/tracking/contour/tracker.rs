@@ -73,9 +73,10 @@ impl ContourTracker {
         let mut reference = self.reference.clone();
         let mut samples = found.samples;
         let Candidate { map, area, .. } = found.candidate;
-        match self.status {
-            TrackStatus::Tracked => reference.move_to(&map, area)?,
-            TrackStatus::Lost => reference.jump_to(&map, area)?,
+        if self.status == TrackStatus::Lost || found.regrown {
+            reference.jump_to(&map, area)?;
+        } else {
+            reference.move_to(&map, area)?;
         }
         if let Some(cloud) = found.cloud {
             let before = reference.colors;

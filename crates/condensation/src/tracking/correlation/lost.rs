@@ -1,6 +1,7 @@
 use super::planes::Spectrum;
 use super::recognizer::{Evidence, Sight};
 use super::response::Peak;
+use super::settle::SETTLING;
 use super::tracker::CorrelationTracker;
 use super::window::{Pose, SIDE};
 use crate::Picture;
@@ -34,11 +35,17 @@ impl CorrelationTracker {
                 Some((filter.clone(), pose, evidence.value / self.usual))
             });
             if let Some((filter, pose, quality)) = found {
-                (self.current, self.pose, self.n_lost, self.n_doubts) = (filter, pose, 0, 0);
+                (self.current, self.pose) = (filter, pose);
+                self.found();
                 return quality;
             }
         }
         self.search_turned(picture)
+    }
+
+    /// A lost target is found.
+    pub(super) fn found(&mut self) {
+        (self.n_lost, self.n_doubts, self.n_settling) = (0, 0, SETTLING);
     }
 
     /// Where in what is seen `around` a pose a filter recognizes the target, if it does.

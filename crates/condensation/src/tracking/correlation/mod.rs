@@ -14,6 +14,7 @@ mod planes;
 mod recognizer;
 mod response;
 mod scale_filter;
+mod settle;
 mod tracker;
 mod turned;
 mod window;

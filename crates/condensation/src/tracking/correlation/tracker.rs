@@ -80,6 +80,8 @@ pub struct CorrelationTracker {
     pub(super) n_doubts: usize,
     /// Pictures since the target was lost; 0 while it is not.
     pub(super) n_lost: usize,
+    /// Pictures in which a target that was found again may come further into sight.
+    pub(super) n_settling: usize,
 }
 
 impl CorrelationTracker {
@@ -130,6 +132,7 @@ impl CorrelationTracker {
             usual_agreement,
             n_doubts: 0,
             n_lost: 0,
+            n_settling: 0,
         })
     }
 
@@ -156,6 +159,7 @@ impl CorrelationTracker {
             self.n_doubts = 0;
             self.pose = pose;
             self.learn(picture, &sight, evidence, trust);
+            self.settle(picture);
         }
         evidence.value / self.usual
     }
@@ -218,7 +222,9 @@ impl CorrelationTracker {
         let window = &self.recognizer.window;
         let learning = Learning { inertia: self.params.inertia as f32, penalty: self.params.penalty as f32 };
         self.current = self.recognizer.filter.learned(Some(&self.current), &sight.spectrum, learning);
-        self.colors.learn(&sight.patch, window.target_pixels(), self.params.color_rate as f32);
+        if self.n_settling == 0 {
+            self.colors.learn(&sight.patch, window.target_pixels(), self.params.color_rate as f32);
+        }
         let size = window.size(self.pose.scale);
         self.scales.learn(picture, self.pose.center, size, self.params.scale_rate as f32);
         if recognized || self.n_untrusted > self.params.forget_after {

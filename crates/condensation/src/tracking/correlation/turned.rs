@@ -42,12 +42,19 @@ impl CorrelationTracker {
         if !is_clear || !self.is_alike(&sight) {
             return 0.0;
         }
+        self.begin_again(picture, pose);
+        self.found();
+        peak.value / self.usual
+    }
+
+    /// Learns the target afresh as it stands there.
+    pub(super) fn begin_again(&mut self, picture: &Picture, pose: Pose) {
+        let sight = self.recognizer.look(picture, pose);
         let learning = Learning { inertia: 0.0, penalty: self.params.penalty as f32 };
         self.current = self.recognizer.filter.learned(None, &sight.spectrum, learning);
         self.trusted.clone_from(&self.current);
         self.scales.learn(picture, pose.center, self.recognizer.window.size(pose.scale), 1.0);
-        (self.pose, self.n_lost, self.n_doubts, self.n_untrusted) = (pose, 0, 0, 0);
-        peak.value / self.usual
+        (self.pose, self.n_untrusted) = (pose, 0);
     }
 
     /// The place where a square of the target's area has the most of its colours.
