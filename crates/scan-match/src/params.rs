@@ -18,13 +18,13 @@ pub struct Params {
     /// What a point is off its surface by, m: the laser, and what a straight line between neighbours gets wrong. Default: 0.03.
     pub sigma_m: f64,
     /// Over this angle the errors of neighbouring points are one error, rad: a wall that bulges, a person's coat, an edge. A denser scan says
-    /// no more. Default: 0.1.
+    /// no more. Default: 0.4.
     pub independent_rad: f64,
     /// Misfit beyond which a point is rather something else, m: half its weight is lost at 0.64 of it. Default: 0.1.
     pub kernel_m: f64,
     /// The same at the beginning, m: how far off the guess may be. Default: 0.5.
     pub first_kernel_m: f64,
-    /// Headings from which the search starts are this far apart, rad, over two deviations of the guess to either side. Default: 0.2.
+    /// Headings from which the search starts are this far apart, rad, over three deviations of the guess to either side. Default: 0.2.
     pub start_spacing_rad: f64,
     /// Steps of one search at most. Default: 30.
     pub max_steps: usize,
@@ -34,7 +34,7 @@ impl Default for Params {
     fn default() -> Self {
         Self {
             sigma_m: 0.03,
-            independent_rad: 0.1,
+            independent_rad: 0.4,
             kernel_m: 0.1,
             first_kernel_m: 0.5,
             start_spacing_rad: 0.2,

@@ -65,7 +65,7 @@ fn align(
     matcher.align(&clouds[0], &clouds[1], guess, covariance).expect("enough points")
 }
 
-/// Guesses are drawn from the covariance that the matcher is told; the posterior covariance counts points within 0.1 rad as one, so it is wider than
+/// Guesses are drawn from the covariance that the matcher is told; the posterior covariance counts points within 0.4 rad as one, so it is wider than
 /// the independent errors of these scans make it, and the mean of 100 squared distances must be below that of chi-squared with three
 /// degrees of freedom, 3, by more than chance alone.
 #[test]
@@ -117,11 +117,12 @@ fn points_and_guess_add_up() {
     let covariance = sigmas(0.05, 0.05);
     let (truth, guess) = (Pose2::new(0.2, 0.1, 0.1), Pose2::new(0.25, 0.05, 0.05));
     let found = align(&room(), &truth, &guess, &covariance, 5);
-    let prior = covariance.try_inverse().expect("a covariance");
+    let prior = covariance.try_inverse().expect("a covariance") / found.guess_scale;
     let posterior = (found.information + prior).try_inverse().expect("definite") * found.information_vector;
     assert!((posterior - found.correction).norm() < 1e-9);
     assert!((guess.retract(&posterior).local(&found.pose)).norm() < 1e-9);
-    assert!((found.nis - found.correction.dot(&(prior * found.correction))).abs() < 1e-9);
+    let nis = found.correction.dot(&(prior * found.correction)) * found.guess_scale;
+    assert!((found.guess_scale - (4.0 + nis) / 7.0).abs() < 1e-9, "{}", found.guess_scale);
 }
 
 #[test]

@@ -6,11 +6,12 @@ mod params;
 mod pictures;
 mod run;
 mod system;
+mod travel;
 mod truth;
 
 pub use estimates::{WallDrawing, WallEstimateLog};
 pub use figures::{relation_metrics, summarize};
-pub use params::WallSlamParams;
+pub use params::{Gait, WallSlamParams};
 pub use pictures::pictures;
 pub use run::{WallRun, run};
 pub use system::{WallModel, WallSystem};

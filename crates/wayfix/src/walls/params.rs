@@ -2,6 +2,7 @@ use anyhow::ensure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_line_extract::Params as LineParams;
+use wayfix_scan_match::Params as ScanMatchParams;
 use wayfix_slam_ekf::{
     Confirmation, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
     NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
@@ -32,6 +33,16 @@ pub struct WallSlamParams {
     /// How many true walls of the log, nearest to the start first, the robot is given as known: anchors that tie the map to the world. For
     /// experiments with logs that have true walls.
     pub n_anchors: usize,
+    /// Which scans are looked at.
+    pub looks: Gait,
+    /// What odometry and scans of a moving robot disagree by because their stamps do, m.
+    pub scan_sigma: f64,
+    /// The same for the heading, rad.
+    pub scan_heading_sigma: f64,
+    /// Whether each scan is laid on the one before, to tell the motion between them better than wheels do.
+    pub match_scans: bool,
+    /// How that is done.
+    pub scan_match: ScanMatchParams,
     /// How walls are found in a scan.
     pub lines: LineParams,
     /// Pieces shorter than this correct nothing, m: legs, posters and door leaves.
@@ -50,6 +61,22 @@ pub struct WallSlamParams {
     pub joint_compatibility: JointCompatibilityParams,
 }
 
+/// How far a robot moves between two looks: a scan before that shows the same walls with the same errors once more, and is passed by.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Gait {
+    /// Way after which a scan is looked at, m.
+    pub least_way: f64,
+    /// Turn after which a scan is looked at, rad.
+    pub least_turn: f64,
+}
+
+impl Default for Gait {
+    fn default() -> Self {
+        Self { least_way: 0.25, least_turn: 0.2 }
+    }
+}
+
 impl Default for WallSlamParams {
     fn default() -> Self {
         Self {
@@ -57,14 +84,19 @@ impl Default for WallSlamParams {
             start: None,
             laser: None,
             n_anchors: 0,
+            looks: Gait::default(),
+            scan_sigma: 0.02,
+            scan_heading_sigma: 0.01,
+            match_scans: true,
+            scan_match: ScanMatchParams::default(),
             lines: LineParams::default(),
             min_wall_length: 0.7,
             sensor: WallSensor::default(),
             heading_drift_sigma: 0.05,
             increment: IncrementMotion {
-                translation_variance_per_meter: 3e-3,
+                translation_variance_per_meter: 1e-2,
                 heading_variance_per_meter: 5e-3,
-                heading_variance_per_radian: 1e-3,
+                heading_variance_per_radian: 3e-2,
                 ..IncrementMotion::default()
             },
             filter: SlamParams {
@@ -74,6 +106,7 @@ impl Default for WallSlamParams {
             },
             nearest_neighbour: NearestNeighbourParams::default(),
             joint_compatibility: JointCompatibilityParams {
+                probability: 0.95,
                 ambiguity_margin: 9.0,
                 ..JointCompatibilityParams::default()
             },
@@ -101,6 +134,7 @@ impl WallSlamParams {
     /// The first that is not, by name.
     pub fn validated(self) -> anyhow::Result<Self> {
         self.lines.check()?;
+        self.scan_match.check()?;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
         ensure!(

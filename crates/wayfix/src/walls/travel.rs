@@ -1,0 +1,129 @@
+use nalgebra::{Matrix1, Matrix3, Matrix4, Vector1, Vector3};
+use serde::{Deserialize, Serialize};
+use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorModel};
+use wayfix_scan_match::Alignment;
+use wayfix_slam_ekf::{DriftingPose, IncrementMotion};
+
+/// What odometry says of the way since the last scan, and how sure that is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Travel {
+    /// The motion, in the frame of the last scan's robot, with the drift that is estimated taken out.
+    pub motion: Pose2<f64>,
+    /// Covariance in the frame at its end, but for the drift.
+    pub covariance: Matrix3<f64>,
+    /// Derivative by the drift.
+    pub by_drift: Vector3<f64>,
+    /// Whether odometry has moved since the last scan.
+    pub has_moved: bool,
+}
+
+impl Default for Travel {
+    /// No way at all.
+    fn default() -> Self {
+        Self { motion: Pose2::identity(), covariance: Matrix3::zeros(), by_drift: Vector3::zeros(), has_moved: false }
+    }
+}
+
+/// A motion of zero is known this well at least, m and rad: a laser has to be able to object.
+const SMALLEST_SIGMA: f64 = 1e-3;
+
+impl Travel {
+    /// One increment more, of odometry that turns by `drift` rad/m without turning.
+    pub(super) fn then(&self, noise: &IncrementMotion, drift: f64, increment: &Pose2<f64>) -> Self {
+        let distance = increment.translation.norm();
+        let moved = Pose2::new(increment.x(), increment.y(), increment.heading() + drift * distance);
+        let carry = noise.jacobian(&self.motion, &moved);
+        Self {
+            motion: noise.propagate(&self.motion, &moved),
+            covariance: carry * self.covariance * carry.transpose() + noise.noise(&self.motion, &moved),
+            by_drift: carry * self.by_drift + Vector3::z() * distance,
+            has_moved: self.has_moved || distance > 0.0 || increment.heading() != 0.0,
+        }
+    }
+
+    /// The same at the time of a scan, when stamps of odometry and scans differ a little: a robot that stands still does not notice.
+    pub(super) fn at_a_scan(self, translation_sigma: f64, heading_sigma: f64) -> Self {
+        if !self.has_moved {
+            return self;
+        }
+        let sigmas = Vector3::new(translation_sigma, translation_sigma, heading_sigma);
+        Self { covariance: self.covariance + Matrix3::from_diagonal(&sigmas.map(|sigma| sigma * sigma)), has_moved: false, ..self }
+    }
+
+    /// Whether the robot is still about where it was.
+    pub(super) fn is_within(&self, way: f64, turn: f64) -> bool {
+        self.motion.translation.norm() < way && self.motion.heading().abs() < turn
+    }
+
+    /// How sure the motion is, the drift and its variance included.
+    pub(super) fn total_covariance(&self, drift_variance: f64) -> Matrix3<f64> {
+        self.covariance
+            + self.by_drift * drift_variance * self.by_drift.transpose()
+            + Matrix3::identity() * SMALLEST_SIGMA.powi(2)
+    }
+
+    /// The same when its covariance proved too small by this factor.
+    pub(super) fn doubted(self, scale: f64) -> Self {
+        Self { covariance: self.covariance * scale.max(1.0), ..self }
+    }
+
+    /// What a match of two scans says of the drift: its change and the variance of that; `None` where it says nothing.
+    ///
+    /// The match measures $`δ = b\, κ + w`$ with information $`Λ`$, where $`w`$ is what odometry errs beside the drift, with covariance $`Q`$.
+    pub(super) fn drift_seen(&self, found: &Alignment) -> Option<(f64, f64)> {
+        let gain = (Matrix3::identity() + found.information * self.covariance).try_inverse()?;
+        let information = self.by_drift.dot(&(gain * found.information * self.by_drift));
+        let change = self.by_drift.dot(&(gain * found.information_vector)) / information;
+        (information > NOTHING && change.is_finite()).then(|| (change, 1.0 / information))
+    }
+
+    /// The motion that odometry and a match make together, once the drift has changed by `drift_change`.
+    pub(super) fn corrected_by(&self, found: &Alignment, drift_change: f64) -> Option<Self> {
+        let Self { motion, covariance, by_drift, .. } = *self;
+        // Q (1 + Λ Q)⁻¹ is (Q⁻¹ + Λ)⁻¹, also where odometry is certain.
+        let posterior = covariance * (Matrix3::identity() + found.information * covariance).try_inverse()?;
+        let posterior = (posterior + posterior.transpose()) * 0.5;
+        let by_drift_left = by_drift - posterior * found.information * by_drift;
+        let correction = posterior * found.information_vector + by_drift_left * drift_change;
+        let motion = motion.retract(&correction);
+        Some(Self { motion, covariance: posterior, by_drift: by_drift_left, ..*self })
+    }
+}
+
+/// Information below this, m²/rad², cannot change a drift that is known to a thousandth of a radian on a metre.
+const NOTHING: f64 = 1.0;
+
+/// The motion model of a [`Travel`]: noise and derivative come with the motion.
+impl MotionModel for Travel {
+    type State = DriftingPose;
+    type Control = Pose2<f64>;
+
+    fn propagate(&self, state: &DriftingPose, motion: &Pose2<f64>) -> DriftingPose {
+        DriftingPose { pose: state.pose.compose(motion), ..*state }
+    }
+    fn jacobian(&self, _: &DriftingPose, motion: &Pose2<f64>) -> Matrix4<f64> {
+        let mut jacobian = motion.inverse().adjoint().to_homogeneous();
+        jacobian.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.by_drift);
+        jacobian
+    }
+    fn noise(&self, _: &DriftingPose, _: &Pose2<f64>) -> Matrix4<f64> {
+        let mut noise = self.covariance.to_homogeneous();
+        noise.m44 = 0.0;
+        noise
+    }
+}
+
+/// A look at the drift, with its variance, rad²/m².
+pub(super) struct DriftSeen(pub(super) f64);
+
+impl SensorModel for DriftSeen {
+    type State = DriftingPose;
+    type Measurement = Vector1<f64>;
+
+    fn expected(&self, robot: &DriftingPose) -> Vector1<f64> {
+        Vector1::new(robot.heading_drift)
+    }
+    fn noise(&self, _: &DriftingPose) -> Matrix1<f64> {
+        Matrix1::new(self.0)
+    }
+}
