@@ -1,8 +1,13 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
+use wayfix_estimation_traits::Pose2;
 
-use crate::{ScanMatchError, surface::surfaces, tree::Tree};
+use crate::{
+    ScanMatchError,
+    surface::{Surface, surfaces},
+    tree::Tree,
+};
 
 /// A scan, ready to be matched: its points, and what they show of surfaces.
 #[derive(Clone, Debug, Default)]
@@ -56,6 +61,14 @@ impl Cloud {
             spacing: angle_increment.abs() * stride as f64,
             surfaces: Tree::new(surfaces(&all)),
         })
+    }
+
+    /// The same scan in the frame of a robot that carries the laser at `mount`.
+    pub fn carried_at(self, mount: &Pose2<f64>) -> Self {
+        let rotation = mount.rotation_matrix();
+        let points = self.points.iter().map(|point| mount.transform(point)).collect();
+        let carry = |surface: &Surface| Surface { at: mount.transform(&surface.at), normal: rotation * surface.normal };
+        Self { points, surfaces: Tree::new(self.surfaces.iter().map(carry).collect()), ..self }
     }
 
     /// How many points of it lie on something straight.

@@ -6,7 +6,7 @@
 //! ```
 //! use nalgebra::{Matrix3, Vector3};
 //! use wayfix_estimation_traits::{Manifold, Pose2};
-//! use wayfix_scan_match::{Cloud, Matcher, Params};
+//! use wayfix_scan_match::{Cloud, Guess, Matcher, Params};
 //!
 //! // A room of 8 m by 6 m, seen from its middle and from 20 cm further on.
 //! let wall = |x: f64, bearing: f64| {
@@ -18,8 +18,8 @@
 //! let cloud = |x: f64| Cloud::from_ranges(-3.13, 0.0174, &scan(x), 20.0);
 //!
 //! let covariance = Matrix3::from_diagonal(&Vector3::new(0.01, 0.01, 0.01)); // σ 10 cm and 0.1 rad
-//! let odometry = Pose2::new(0.15, 0.05, 0.1);
-//! let found = Matcher::new(Params::default())?.align(&cloud(0.0)?, &cloud(0.2)?, &odometry, &covariance)?;
+//! let odometry = Guess { pose: Pose2::new(0.15, 0.05, 0.1), covariance, others: &[] };
+//! let found = Matcher::new(Params::default())?.align(&cloud(0.0)?, &cloud(0.2)?, &odometry)?;
 //! assert!(Pose2::new(0.2, 0.0, 0.0).local(&found.pose).norm() < 0.01);
 //! # Ok::<(), wayfix_scan_match::ScanMatchError>(())
 //! ```
@@ -37,5 +37,5 @@ mod tree;
 
 pub use cloud::Cloud;
 pub use error::ScanMatchError;
-pub use matcher::{Alignment, Matcher};
+pub use matcher::{Alignment, Guess, Matcher};
 pub use params::Params;

@@ -9,6 +9,18 @@ pub struct Matcher {
     params: Params,
 }
 
+/// Where the second scan was taken, as far as is known before the scans are compared.
+#[derive(Clone, Copy, Debug)]
+pub struct Guess<'a> {
+    /// The most likely pose in the frame of the first scan.
+    pub pose: Pose2<f64>,
+    /// Its covariance in its own frame: m and rad.
+    pub covariance: Matrix3<f64>,
+    /// Poses to start from where the scans hardly fit near the guess: for wheels that slip, where the robot was, or where it would be if it had gone on
+    /// as before.
+    pub others: &'a [Pose2<f64>],
+}
+
 /// Where a scan was taken, seen from another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
@@ -28,6 +40,8 @@ pub struct Alignment {
 
 /// A match needs so many points in either scan.
 const FEWEST_POINTS: usize = 10;
+/// Scans that have this share of points in common fit; below it, a search from elsewhere may find better.
+const WELL: f64 = 0.8;
 /// Degrees of freedom of the guess, $`ν`$.
 const TAIL: f64 = 4.0;
 /// The kernel narrows by this factor a step.
@@ -47,7 +61,7 @@ impl Matcher {
         Ok(Self { params })
     }
 
-    /// Where `cloud` was taken in the frame of `reference`, from a guess and its covariance in the guess's own frame.
+    /// Where `cloud` was taken in the frame of `reference`.
     ///
     /// Maximizes the posterior, the guess times a robust likelihood of the distances of points from the lines through their neighbours, by
     /// iteratively reweighted least squares with a kernel that narrows. The guess has the tails of a Student-t distribution, for wheels slip.
@@ -59,25 +73,30 @@ impl Matcher {
         &self,
         reference: &Cloud,
         cloud: &Cloud,
-        guess: &Pose2<f64>,
-        covariance: &Matrix3<f64>,
+        guess: &Guess,
     ) -> Result<Alignment, ScanMatchError> {
         let got = reference.n_surfaces().min(cloud.points.len());
         if got < FEWEST_POINTS {
             return Err(ScanMatchError::TooFewPoints { got, needed: FEWEST_POINTS });
         }
-        let prior = Cholesky::new(*covariance).map(|factor| factor.inverse());
-        let prior = prior.filter(|prior| guess.is_finite() && prior.iter().all(|entry| entry.is_finite()));
+        let prior = Cholesky::new(guess.covariance).map(|factor| factor.inverse());
+        let prior = prior.filter(|prior| guess.pose.is_finite() && prior.iter().all(|entry| entry.is_finite()));
         let prior = prior.ok_or(ScanMatchError::Guess)?;
-        let searched = self.starts(covariance[(2, 2)].sqrt()).filter_map(|heading| {
-            let start = Vector3::new(0.0, 0.0, heading);
-            self.search(reference, cloud, guess, &prior, start)
-        });
-        let best = searched.min_by(|a, b| a.cost.total_cmp(&b.cost)).ok_or(ScanMatchError::Guess)?;
+        let search = |start| self.search(reference, cloud, &guess.pose, &prior, start, self.params.first_kernel_m);
+        let mut found: Vec<Found> = self.starts(guess.covariance[(2, 2)].sqrt()).filter_map(search).collect();
+        let fits = |found: &Found| found.misfit.n_on_surface as f64 >= WELL * cloud.points.len() as f64;
+        if !found.iter().any(fits) {
+            let others = guess.others.iter().filter(|other| other.is_finite());
+            found.extend(others.filter_map(|other| {
+                let start = guess.pose.local(other);
+                self.search(reference, cloud, &guess.pose, &prior, start, self.params.kernel_m) // near already
+            }));
+        }
+        let best = found.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).ok_or(ScanMatchError::Guess)?;
         let Found { correction, misfit, .. } = best;
         let guess_scale = guess_scale(&prior, &correction);
         Ok(Alignment {
-            pose: guess.retract(&correction),
+            pose: guess.pose.retract(&correction),
             correction,
             information: misfit.information,
             information_vector: (misfit.information + prior / guess_scale) * correction,
@@ -87,10 +106,10 @@ impl Matcher {
     }
 
     /// Headings to start from: the guess, and more to either side as far as three deviations reach.
-    fn starts(&self, sigma: f64) -> impl Iterator<Item = f64> {
+    fn starts(&self, sigma: f64) -> impl Iterator<Item = Vector3<f64>> {
         let spacing = self.params.start_spacing_rad;
         let n = ((3.0 * sigma / spacing).round() as usize).min(MOST_STARTS) as i32;
-        (-n..=n).map(move |i| f64::from(i) * spacing)
+        (-n..=n).map(move |i| Vector3::new(0.0, 0.0, f64::from(i) * spacing))
     }
 
     /// Goes downhill from one start; `None` when the numbers give out.
@@ -101,10 +120,11 @@ impl Matcher {
         guess: &Pose2<f64>,
         prior: &Matrix3<f64>,
         start: Vector3<f64>,
+        first_kernel: f64,
     ) -> Option<Found> {
-        let Params { kernel_m, first_kernel_m, max_steps, .. } = self.params;
+        let Params { kernel_m, max_steps, .. } = self.params;
         let mut correction = start;
-        let mut kernel = first_kernel_m.max(kernel_m);
+        let mut kernel = first_kernel.max(kernel_m);
         for _ in 0..max_steps {
             let misfit = Misfit::of(reference, cloud, guess, &correction, kernel, &self.params);
             let prior = prior / guess_scale(prior, &correction);

@@ -16,6 +16,10 @@ impl Tree {
         self.0.len()
     }
 
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Surface> {
+        self.0.iter()
+    }
+
     /// The nearest surface within a distance, m.
     pub(crate) fn nearest(&self, point: &Vector2<f64>, within: f64) -> Option<&Surface> {
         let mut best = (within * within, None);

@@ -1,6 +1,7 @@
 use anyhow::ensure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use wayfix_estimation_traits::Pose2;
 use wayfix_line_extract::Params as LineParams;
 use wayfix_scan_match::Params as ScanMatchParams;
 use wayfix_slam_ekf::{
@@ -35,10 +36,8 @@ pub struct WallSlamParams {
     pub n_anchors: usize,
     /// Which scans are looked at.
     pub looks: Gait,
-    /// What odometry and scans of a moving robot disagree by because their stamps do, m.
-    pub scan_sigma: f64,
-    /// The same for the heading, rad.
-    pub scan_heading_sigma: f64,
+    /// What odometry and scans of a moving robot disagree by.
+    pub disagreement: Disagreement,
     /// Whether each scan is laid on the one before, to tell the motion between them better than wheels do.
     pub match_scans: bool,
     /// How that is done.
@@ -59,6 +58,26 @@ pub struct WallSlamParams {
     pub nearest_neighbour: NearestNeighbourParams,
     /// Thresholds of joint compatibility.
     pub joint_compatibility: JointCompatibilityParams,
+    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    #[serde(skip)]
+    pub record_observability: bool,
+}
+
+/// What odometry and scans of a moving robot disagree by because their stamps do, at every scan: a robot that stands still does not notice.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Disagreement {
+    /// Along either axis, m.
+    pub translation_sigma: f64,
+    /// Of the heading, rad.
+    pub heading_sigma: f64,
+}
+
+impl Default for Disagreement {
+    /// A tenth of a second at walking pace, less what odometry at the scan's own stamp saves.
+    fn default() -> Self {
+        Self { translation_sigma: 0.02, heading_sigma: 0.01 }
+    }
 }
 
 /// How far a robot moves between two looks: a scan before that shows the same walls with the same errors once more, and is passed by.
@@ -85,12 +104,11 @@ impl Default for WallSlamParams {
             laser: None,
             n_anchors: 0,
             looks: Gait::default(),
-            scan_sigma: 0.02,
-            scan_heading_sigma: 0.01,
+            disagreement: Disagreement::default(),
             match_scans: true,
             scan_match: ScanMatchParams::default(),
             lines: LineParams::default(),
-            min_wall_length: 0.7,
+            min_wall_length: 1.0,
             sensor: WallSensor::default(),
             heading_drift_sigma: 0.05,
             increment: IncrementMotion {
@@ -110,6 +128,7 @@ impl Default for WallSlamParams {
                 ambiguity_margin: 9.0,
                 ..JointCompatibilityParams::default()
             },
+            record_observability: false,
         }
     }
 }
@@ -120,6 +139,12 @@ const POSITIVE: Range = (1e-9, "from 1e-9 to 1e6");
 const NOT_NEGATIVE: Range = (0.0, "from 0 to 1e6");
 
 impl WallSlamParams {
+    /// Where the laser sits on the robot.
+    pub(super) fn mount(&self) -> Pose2<f64> {
+        let [x, y, heading] = self.laser.unwrap_or_default();
+        Pose2::new(x, y, heading)
+    }
+
     /// Parameters from TOML text; what it does not name keeps its default.
     ///
     /// # Errors
@@ -150,6 +175,10 @@ impl WallSlamParams {
             ("sensor.reach", reach, POSITIVE),
             ("sensor.half_field_of_view", half_field_of_view, POSITIVE),
             ("min_wall_length", self.min_wall_length, NOT_NEGATIVE),
+            ("looks.least_way", self.looks.least_way, NOT_NEGATIVE),
+            ("looks.least_turn", self.looks.least_turn, NOT_NEGATIVE),
+            ("disagreement.translation_sigma", self.disagreement.translation_sigma, NOT_NEGATIVE),
+            ("disagreement.heading_sigma", self.disagreement.heading_sigma, NOT_NEGATIVE),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
             (
                 "increment.translation_variance_per_meter",

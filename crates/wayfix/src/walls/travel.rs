@@ -4,9 +4,11 @@ use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorMod
 use wayfix_scan_match::Alignment;
 use wayfix_slam_ekf::{DriftingPose, IncrementMotion};
 
+use super::Disagreement;
+
 /// What odometry says of the way since the last scan, and how sure that is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Travel {
+pub struct Travel {
     /// The motion, in the frame of the last scan's robot, with the drift that is estimated taken out.
     pub motion: Pose2<f64>,
     /// Covariance in the frame at its end, but for the drift.
@@ -15,12 +17,23 @@ pub(super) struct Travel {
     pub by_drift: Vector3<f64>,
     /// Whether odometry has moved since the last scan.
     pub has_moved: bool,
+    /// Where the robot was at the last scan.
+    pub at_last_scan: Pose2<f64>,
+    /// How it had moved from the scan before that.
+    pub last_step: Pose2<f64>,
 }
 
 impl Default for Travel {
     /// No way at all.
     fn default() -> Self {
-        Self { motion: Pose2::identity(), covariance: Matrix3::zeros(), by_drift: Vector3::zeros(), has_moved: false }
+        Self {
+            motion: Pose2::identity(),
+            covariance: Matrix3::zeros(),
+            by_drift: Vector3::zeros(),
+            has_moved: false,
+            at_last_scan: Pose2::identity(),
+            last_step: Pose2::identity(),
+        }
     }
 }
 
@@ -38,14 +51,32 @@ impl Travel {
             covariance: carry * self.covariance * carry.transpose() + noise.noise(&self.motion, &moved),
             by_drift: carry * self.by_drift + Vector3::z() * distance,
             has_moved: self.has_moved || distance > 0.0 || increment.heading() != 0.0,
+            ..*self
         }
     }
 
-    /// The same at the time of a scan, when stamps of odometry and scans differ a little: a robot that stands still does not notice.
-    pub(super) fn at_a_scan(self, translation_sigma: f64, heading_sigma: f64) -> Self {
+    /// Where the robot could be if its wheels are wrong: where it was at the last scan, or gone on as before.
+    pub(super) fn without_wheels(&self) -> [Pose2<f64>; 2] {
+        [self.at_last_scan, self.at_last_scan.compose(&self.last_step)]
+    }
+
+    /// The same once a scan has said where it ends.
+    pub(super) fn after_scan(self) -> Self {
+        let last_step = self.at_last_scan.inverse().compose(&self.motion);
+        Self { at_last_scan: self.motion, last_step, ..self }
+    }
+
+    /// A new way, from where this one ends.
+    pub(super) fn from_its_end(&self) -> Self {
+        Self { last_step: self.last_step, ..Self::default() }
+    }
+
+    /// The same at the time of a scan, with what odometry and scan disagree by.
+    pub(super) fn at_a_scan(self, disagreement: &Disagreement) -> Self {
         if !self.has_moved {
             return self;
         }
+        let Disagreement { translation_sigma, heading_sigma } = *disagreement;
         let sigmas = Vector3::new(translation_sigma, translation_sigma, heading_sigma);
         Self { covariance: self.covariance + Matrix3::from_diagonal(&sigmas.map(|sigma| sigma * sigma)), has_moved: false, ..self }
     }
@@ -53,6 +84,13 @@ impl Travel {
     /// Whether the robot is still about where it was.
     pub(super) fn is_within(&self, way: f64, turn: f64) -> bool {
         self.motion.translation.norm() < way && self.motion.heading().abs() < turn
+    }
+
+    /// Whether every number is one.
+    pub(super) fn is_sound(&self) -> bool {
+        let poses = [self.motion, self.at_last_scan, self.last_step];
+        let numbers = self.covariance.iter().chain(&self.by_drift);
+        poses.iter().all(Pose2::is_finite) && numbers.into_iter().all(|number| number.is_finite())
     }
 
     /// How sure the motion is, the drift and its variance included.
