@@ -67,7 +67,10 @@ impl Cloud {
     pub fn carried_at(self, mount: &Pose2<f64>) -> Self {
         let rotation = mount.rotation_matrix();
         let points = self.points.iter().map(|point| mount.transform(point)).collect();
-        let carry = |surface: &Surface| Surface { at: mount.transform(&surface.at), normal: rotation * surface.normal };
+        let carry = |surface: &Surface| Surface {
+            at: mount.transform(&surface.at),
+            normal: rotation * surface.normal,
+        };
         Self { points, surfaces: Tree::new(self.surfaces.iter().map(carry).collect()), ..self }
     }
 

@@ -80,9 +80,11 @@ impl Matcher {
             return Err(ScanMatchError::TooFewPoints { got, needed: FEWEST_POINTS });
         }
         let prior = Cholesky::new(guess.covariance).map(|factor| factor.inverse());
-        let prior = prior.filter(|prior| guess.pose.is_finite() && prior.iter().all(|entry| entry.is_finite()));
+        let prior =
+            prior.filter(|prior| guess.pose.is_finite() && prior.iter().all(|entry| entry.is_finite()));
         let prior = prior.ok_or(ScanMatchError::Guess)?;
-        let search = |start| self.search(reference, cloud, &guess.pose, &prior, start, self.params.first_kernel_m);
+        let search =
+            |start| self.search(reference, cloud, &guess.pose, &prior, start, self.params.first_kernel_m);
         let mut found: Vec<Found> = self.starts(guess.covariance[(2, 2)].sqrt()).filter_map(search).collect();
         let fits = |found: &Found| found.misfit.n_on_surface as f64 >= WELL * cloud.points.len() as f64;
         if !found.iter().any(fits) {

@@ -62,7 +62,9 @@ fn align(
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let clouds = [Pose2::new(0.0, 0.0, 0.0), *truth].map(|pose| scan(walls, &pose, &mut rng));
     let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
-    matcher.align(&clouds[0], &clouds[1], &Guess { pose: *guess, covariance: *covariance, others: &[] }).expect("enough points")
+    matcher
+        .align(&clouds[0], &clouds[1], &Guess { pose: *guess, covariance: *covariance, others: &[] })
+        .expect("enough points")
 }
 
 /// Guesses are drawn from the covariance that the matcher is told; the posterior covariance counts points within 0.4 rad as one, so it is wider than
@@ -178,8 +180,9 @@ fn what_is_no_scan_is_refused() {
     for ranges in [vec![], vec![f64::NAN; 360], vec![f64::INFINITY; 360], vec![-1.0; 360], vec![1.0; 3]] {
         let empty = cloud(0.0, 0.0174, &ranges, 10.0).expect("sound geometry");
         for pair in [(&sound, &empty), (&empty, &sound)] {
-            let error =
-                matcher.align(pair.0, pair.1, &Guess { pose: guess, covariance: sigmas(0.1, 0.1), others: &[] }).expect_err("nothing to match");
+            let error = matcher
+                .align(pair.0, pair.1, &Guess { pose: guess, covariance: sigmas(0.1, 0.1), others: &[] })
+                .expect_err("nothing to match");
             assert!(matches!(error, ScanMatchError::TooFewPoints { needed: 10, .. }), "{error}");
         }
     }

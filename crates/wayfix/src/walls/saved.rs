@@ -47,7 +47,8 @@ impl Save for WallSystem {
             Rule::NearestNeighbour(rule) => (AssociationRule::Nn, rule.next_id()),
             Rule::JointCompatibility(rule) => (AssociationRule::Jcbb, rule.next_id()),
         };
-        let held = |(since, velocity): (Stamp, Velocity)| (since.nanoseconds(), velocity.linear, velocity.angular);
+        let held =
+            |(since, velocity): (Stamp, Velocity)| (since.nanoseconds(), velocity.linear, velocity.angular);
         let scan = |Look { scan, .. }: &Look| {
             (scan.angle_min, scan.angle_increment, scan.range_max, scan.ranges.clone())
         };
@@ -87,7 +88,9 @@ impl WallSystem {
             Rule::JointCompatibility(rule) => Rule::JointCompatibility(rule.numbering_from(next_id)),
         };
         if !travel.is_sound() {
-            return Err(SavedMapError::from(SlamError::NotFinite { what: "saved way since the last look" }).into());
+            return Err(
+                SavedMapError::from(SlamError::NotFinite { what: "saved way since the last look" }).into()
+            );
         }
         system.travel = travel;
         if let Some((angle_min, angle_increment, range_max, ranges)) = last_look {

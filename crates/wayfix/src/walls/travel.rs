@@ -67,7 +67,7 @@ impl Travel {
     }
 
     /// A new way, from where this one ends.
-    pub(super) fn from_its_end(&self) -> Self {
+    pub(super) fn begun_anew(&self) -> Self {
         Self { last_step: self.last_step, ..Self::default() }
     }
 
@@ -78,7 +78,11 @@ impl Travel {
         }
         let Disagreement { translation_sigma, heading_sigma } = *disagreement;
         let sigmas = Vector3::new(translation_sigma, translation_sigma, heading_sigma);
-        Self { covariance: self.covariance + Matrix3::from_diagonal(&sigmas.map(|sigma| sigma * sigma)), has_moved: false, ..self }
+        Self {
+            covariance: self.covariance + Matrix3::from_diagonal(&sigmas.map(|sigma| sigma * sigma)),
+            has_moved: false,
+            ..self
+        }
     }
 
     /// Whether the robot is still about where it was.
@@ -163,5 +167,63 @@ impl SensorModel for DriftSeen {
     }
     fn noise(&self, _: &DriftingPose) -> Matrix1<f64> {
         Matrix1::new(self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix4, linalg::Cholesky};
+
+    use super::*;
+
+    /// Drift and way, corrected one after the other as the system does, are what conditioning their joint Gaussian at once gives.
+    #[test]
+    fn a_match_corrects_drift_and_way_as_one_gaussian() {
+        let noise = IncrementMotion { heading_variance_per_meter: 0.01, ..IncrementMotion::default() };
+        let increments = [(0.3, 0.1), (0.4, -0.3), (0.2, 0.5)].map(|(x, turn)| Pose2::new(x, 0.02, turn));
+        let travel =
+            increments.iter().fold(Travel::default(), |travel, step| travel.then(&noise, 0.02, step));
+        let (drift_variance, asked) = (0.05_f64.powi(2), Vector3::new(0.03, -0.02, 0.06));
+        let information = Matrix3::new(900.0, 100.0, 50.0, 100.0, 400.0, 20.0, 50.0, 20.0, 2500.0);
+
+        // (κ, δ) with δ = b κ + w, and a look at δ.
+        let mut joint = Matrix4::zeros();
+        joint
+            .fixed_view_mut::<3, 3>(1, 1)
+            .copy_from(&(travel.covariance + travel.by_drift * drift_variance * travel.by_drift.transpose()));
+        joint[(0, 0)] = drift_variance;
+        for row in 0..3 {
+            joint[(0, row + 1)] = travel.by_drift[row] * drift_variance;
+            joint[(row + 1, 0)] = joint[(0, row + 1)];
+        }
+        let looked_at = joint.fixed_view::<3, 3>(1, 1) + information.try_inverse().unwrap();
+        let gain = joint.fixed_columns::<3>(1) * Cholesky::new(looked_at).unwrap().inverse();
+        let mean = gain * asked;
+        let posterior = joint - gain * joint.fixed_rows::<3>(1);
+
+        let found = Alignment {
+            pose: travel.motion,
+            correction: Vector3::zeros(),
+            information,
+            information_vector: information * asked,
+            guess_scale: 1.0,
+            overlap: 1.0,
+        };
+        let (change, variance) = travel.drift_seen(&found).unwrap();
+        let weight = drift_variance / (drift_variance + variance);
+        let left = drift_variance * (1.0 - weight);
+        let corrected = travel.corrected_by(&found, weight * change).unwrap();
+        assert!((weight * change - mean[0]).abs() < 1e-9 && (left - posterior[(0, 0)]).abs() < 1e-9);
+        assert!((travel.motion.local(&corrected.motion) - mean.fixed_rows::<3>(1)).norm() < 1e-9);
+        let total = corrected.covariance + corrected.by_drift * left * corrected.by_drift.transpose();
+        assert!((total - posterior.fixed_view::<3, 3>(1, 1)).norm() < 1e-9);
+    }
+
+    #[test]
+    fn a_robot_that_stands_still_stays_where_it_was() {
+        let still = Travel::default().then(&IncrementMotion::default(), 0.1, &Pose2::identity());
+        assert_eq!(still.at_a_scan(&Disagreement::default()).covariance, Matrix3::zeros());
+        let moved = still.then(&IncrementMotion::default(), 0.0, &Pose2::new(0.0, 0.0, 0.01));
+        assert!(moved.at_a_scan(&Disagreement::default()).covariance.m11 >= 0.02_f64.powi(2));
     }
 }

@@ -127,7 +127,10 @@ mod tests {
             (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<SystemState>() }, "robot is Ackermann"),
             (Kind { landmark: "wall".to_owned(), ..Kind::of::<SystemState>() }, "landmark is wall"),
             (Kind { robot_dimension: 3, ..Kind::of::<SystemState>() }, "robot dimension is 3, here it is 4"),
-            (Kind { landmark_dimension: 3, ..Kind::of::<SystemState>() }, "landmark dimension is 3, here it is 2"),
+            (
+                Kind { landmark_dimension: 3, ..Kind::of::<SystemState>() },
+                "landmark dimension is 3, here it is 2",
+            ),
         ] {
             let sealed = envelope::seal(&postcard::to_stdvec(&kind).unwrap());
             let error = SavedMap::from_bytes(&sealed).unwrap_err();
