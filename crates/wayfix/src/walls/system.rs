@@ -198,9 +198,9 @@ impl WallSystem {
     /// Moves the robot on by the way since the last look.
     fn move_on(&mut self) -> Result<(), String> {
         let travel = self.travel;
-        self.travel = travel.begun_anew();
         let jacobian = travel.jacobian(self.filter.robot(), &travel.motion);
         self.filter.predict(&travel, &travel.motion).map_err(|error| error.to_string())?;
+        self.travel = travel.begun_anew();
         if let Some(recorder) = &mut self.observability {
             recorder.moved(&jacobian);
         }
