@@ -56,13 +56,29 @@ fn printed_parameters_are_those_of_walls_and_given_back_change_nothing() {
     assert_eq!(again, decided(metrics(&["--log", log])));
 }
 
+/// Walls are seen from the robot alone: nothing tells where the floor lies as a whole. A wall that is known to be where it is ends two of the three.
+#[test]
+fn what_a_map_of_walls_cannot_know_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = office();
+    let log = log.to_str().unwrap();
+    let free = |arguments: &[&str]| {
+        metrics(&[&["--log", log, "--observability"], arguments].concat())["n_free_directions"].as_f64()
+    };
+    assert_eq!(free(&[]), Some(3.0));
+    let path = folder.path().join("anchors.toml");
+    fs::write(&path, "n_anchors = 1").unwrap();
+    assert_eq!(free(&["--params", path.to_str().unwrap()]), Some(1.0), "along the one wall");
+    assert!(metrics(&["--log", log])["n_free_directions"].is_null());
+}
+
 #[test]
 fn what_makes_no_sense_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let log = office();
     let log = log.to_str().unwrap();
     assert!(refusal(&["--log", log, "--association", "known"]).contains("--association nn or jcbb"));
-    assert!(refusal(&["--log", log, "--observability"]).contains("--observability"));
+    assert!(refusal(&["--log", log, "--profile", "utias"]).contains("--profile"));
     for (text, named) in [
         ("min_wall_length = nan", "min_wall_length"),
         ("[sensor]\nrho_sigma = -1.0", "rho_sigma"),
@@ -72,6 +88,9 @@ fn what_makes_no_sense_is_refused_by_name() {
         ("association = 'known'", "association"),
         ("[increment]\nheading_variance_per_meter = -1.0", "heading_variance_per_meter"),
         ("laser = [0.0, inf, 0.0]", "laser"),
+        ("[scan_match]\nkernel_m = 0.0", "kernel_m"),
+        ("[looks]\nleast_way = -1.0", "looks.least_way"),
+        ("[disagreement]\nheading_sigma = nan", "disagreement.heading_sigma"),
     ] {
         let path = folder.path().join("params.toml");
         fs::write(&path, text).unwrap();

@@ -4,12 +4,13 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const MAY_KNOW: [(&str, &[&str]); 12] = [
+const MAY_KNOW: [(&str, &[&str]); 13] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
     ("particle", &["estimation-traits", "gaussian-core"]),
     ("line-extract", &[]),
+    ("scan-match", &["estimation-traits"]),
     ("slam-ekf", &["estimation-traits", "gaussian-core", "kalman", "line-extract"]),
     ("color-map", &["estimation-traits"]),
     ("color-model", &["estimation-traits", "gaussian-core", "kalman", "particle", "color-map"]),
@@ -23,8 +24,8 @@ const MAY_KNOW: [(&str, &[&str]); 12] = [
 const KNOW_ALL: [&str; 2] = ["wayfix", "xtask"];
 
 /// Crates that must not learn what an image is.
-const BLIND: [&str; 6] =
-    ["estimation-traits", "gaussian-core", "kalman", "particle", "line-extract", "slam-ekf"];
+const BLIND: [&str; 7] =
+    ["estimation-traits", "gaussian-core", "kalman", "particle", "line-extract", "scan-match", "slam-ekf"];
 
 const WHY_TABLE: &str = "see the direction table in docs/architecture.md and xtask/src/tidy/direction.rs";
 

@@ -9,6 +9,7 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, S
 /// Wheels of unequal size make a straight drive look like an arc, so that heading drifts in proportion to the way. Tangent order
 /// `(x, y, θ, κ)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct DriftingPose {
     /// Where the robot is.
     pub pose: Pose2<f64>,

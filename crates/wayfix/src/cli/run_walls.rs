@@ -1,4 +1,4 @@
-use std::process::ExitCode;
+use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_sensor_log::{Data, Format, ReadReport, Record, read_relations};
@@ -13,9 +13,9 @@ use super::{
 use crate::{
     commented::commented,
     report::Run,
-    slam::AssociationRule,
+    slam::{AssociationRule, Saved, Saver},
     system::Stopwatch,
-    walls::{self, WallEstimateLog, WallSlamParams},
+    walls::{self, WallEstimateLog, WallSlamParams, WallState, WallSystem},
 };
 
 /// Whether a log is one of scans: walls are its landmarks then.
@@ -31,14 +31,10 @@ pub(super) fn main(
     origin: Format,
     read: &ReadReport,
 ) -> Result<ExitCode> {
-    for (given, option) in [
-        (arguments.save.is_some(), "--save"),
-        (arguments.resume.is_some(), "--resume"),
-        (arguments.observability, "--observability"),
-        (arguments.profile.is_some(), "--profile"),
-    ] {
-        ensure!(!given, "{option} is for logs of range-bearing sightings; this one has laser scans");
-    }
+    ensure!(
+        arguments.profile.is_none(),
+        "--profile is for logs of range-bearing sightings; this one has laser scans"
+    );
     let params = params(arguments)?;
     if arguments.common.print_params {
         print(commented(&params)?)?;
@@ -47,16 +43,28 @@ pub(super) fn main(
     let mut outputs = Outputs::open("slam", &arguments.common)?;
     let mut estimates: Option<WallEstimateLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
+    let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
     let bar = progress::bar(records.len(), "EKF-SLAM with walls");
     let mut remaining = records.iter();
-    let slam = walls::run(records, &params, |system| {
-        if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
+    let observe = |system: &WallSystem| {
+        let Some(record) = remaining.next() else { return };
+        if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
+        if let Some(saver) = &mut saver {
+            saver.observe(record, remaining.as_slice().first(), system);
+        }
         bar.inc(1);
-    });
+    };
+    let slam = match arguments.resume.as_deref().map(saved_map).transpose()? {
+        Some(saved) => walls::run_on(saved, records, &params, arguments.association, observe),
+        None => walls::run(records, &params, observe),
+    };
     bar.finish_and_clear();
     let mut slam = slam?;
+    if let Some(saver) = saver {
+        saver.finish(&slam.system).context("cannot save the map")?;
+    }
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
@@ -73,6 +81,7 @@ pub(super) fn main(
         }
         run.metrics.extend(walls::relation_metrics(&slam, &relations));
     }
+    run.notes.iter().for_each(tell);
     outputs.show(run, || Ok(walls::pictures(&slam)?))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -91,5 +100,10 @@ fn params(arguments: &run_slam::Arguments) -> Result<WallSlamParams> {
         Some(rule) => params.association = rule,
         None => {}
     }
+    params.record_observability = arguments.observability;
     Ok(params)
+}
+
+fn saved_map(path: &Path) -> Result<Saved<WallState>> {
+    Saved::read(path).with_context(|| format!("cannot go on from {}", path.display()))
 }

@@ -1,4 +1,5 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_slam_ekf::observability::ObservabilityRecorder;
 
 use super::{Keyframe, SlamRun};
 use crate::{
@@ -10,19 +11,23 @@ use crate::{
 pub fn summarize(run: &mut SlamRun) -> Run {
     let (metrics, timings) = metrics(run);
     let mut summary = Run { metrics, timings, events: run.events().counts(), ..Run::default() };
-    if let Some(recorder) = run.system.observability() {
-        let free = recorder.free_directions();
-        summary.metrics.push(Metric::new("state_dimension", recorder.dimension() as f64, ""));
-        summary.metrics.push(Metric::new("n_free_directions", free.len() as f64, ""));
-        summary.notes.push(match free.as_slice() {
-            [] => "Everything about the map is tied to the world.".to_owned(),
-            free => {
-                let names: Vec<String> = free.iter().map(ToString::to_string).collect();
-                format!("Nothing has ever constrained: {}.", names.join("; "))
-            }
-        });
-    }
+    free_directions(run.system.observability(), &mut summary);
     summary
+}
+
+/// Adds which motions of the whole map nothing has ever constrained, where that was recorded.
+pub(crate) fn free_directions(recorder: Option<&ObservabilityRecorder>, summary: &mut Run) {
+    let Some(recorder) = recorder else { return };
+    let free = recorder.free_directions();
+    summary.metrics.push(Metric::new("state_dimension", recorder.dimension() as f64, ""));
+    summary.metrics.push(Metric::new("n_free_directions", free.len() as f64, ""));
+    summary.notes.push(match free.as_slice() {
+        [] => "Everything about the map is tied to the world.".to_owned(),
+        free => {
+            let names: Vec<String> = free.iter().map(ToString::to_string).collect();
+            format!("Nothing has ever constrained: {}.", names.join("; "))
+        }
+    });
 }
 
 /// Figures that the log decides, then those that change from call to call. Names as in the contract of `docs/architecture.md`.

@@ -1,7 +1,7 @@
 use std::time::Duration;
 
-use nalgebra::{Matrix3, Matrix4, Vector2, Vector4};
-use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
+use nalgebra::{DefaultAllocator, Matrix3, Matrix4, Vector2, Vector4, allocator::Allocator};
+use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2};
 use wayfix_sensor_log::{AckermannDrive, Data, Record, Sighting, Stamp, Target, Velocity};
 use wayfix_slam_ekf::{
     EkfSlam, JointCompatibility, KnownIds, LandmarkId, Mounted, NearestNeighbour, Observation, Outcome,
@@ -299,8 +299,12 @@ impl SlamSystem {
 }
 
 /// Landmarks that corrected or started in a look.
-fn seen_landmarks(report: &StepReport<RangeBearing>) -> Vec<LandmarkId> {
-    let seen = |outcome: &Outcome<RangeBearing>| match outcome {
+pub(crate) fn seen_landmarks<Z>(report: &StepReport<Z>) -> Vec<LandmarkId>
+where
+    Z: Manifold<Scalar = f64>,
+    DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
+{
+    let seen = |outcome: &Outcome<Z>| match outcome {
         Outcome::Accepted { landmark, .. }
         | Outcome::Initialized { landmark }
         | Outcome::Restarted { landmark } => Some(*landmark),

@@ -5,7 +5,7 @@ use super::WallRun;
 use crate::{
     evaluate::{Sample, trajectory_errors},
     report::{Metric, Run},
-    slam::{Keyframe, timings},
+    slam::{Keyframe, free_directions, timings},
 };
 
 /// The figures and events of a run, ready for the report.
@@ -34,7 +34,10 @@ pub fn summarize(run: &mut WallRun) -> Run {
     metrics.push(Metric::new("n_landmarks", run.system.filter().n_landmarks() as f64, ""));
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
     let events = run.events().counts();
-    Run { metrics, timings: timings(run.system.keyframes()), events, ..Run::default() }
+    let timings = timings(run.system.keyframes());
+    let mut summary = Run { metrics, timings, events, ..Run::default() };
+    free_directions(run.system.observability(), &mut summary);
+    summary
 }
 
 /// How many walls of the map are walls of the world, and which share of them is within two standard deviations (in two dimensions: the ellipse

@@ -5,12 +5,16 @@ mod figures;
 mod params;
 mod pictures;
 mod run;
+mod saved;
 mod system;
+mod travel;
 mod truth;
 
 pub use estimates::{WallDrawing, WallEstimateLog};
 pub use figures::{relation_metrics, summarize};
-pub use params::WallSlamParams;
+pub use params::{Disagreement, Gait, WallSlamParams};
 pub use pictures::pictures;
-pub use run::{WallRun, run};
+pub use run::{WallRun, run, run_on};
+pub use saved::WallState;
 pub use system::{WallModel, WallSystem};
+pub use travel::Travel;

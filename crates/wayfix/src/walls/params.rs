@@ -1,7 +1,9 @@
 use anyhow::ensure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use wayfix_estimation_traits::Pose2;
 use wayfix_line_extract::Params as LineParams;
+use wayfix_scan_match::Params as ScanMatchParams;
 use wayfix_slam_ekf::{
     Confirmation, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
     NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
@@ -32,6 +34,14 @@ pub struct WallSlamParams {
     /// How many true walls of the log, nearest to the start first, the robot is given as known: anchors that tie the map to the world. For
     /// experiments with logs that have true walls.
     pub n_anchors: usize,
+    /// Which scans are looked at.
+    pub looks: Gait,
+    /// What odometry and scans of a moving robot disagree by.
+    pub disagreement: Disagreement,
+    /// Whether each scan is laid on the one before, to tell the motion between them better than wheels do.
+    pub match_scans: bool,
+    /// How that is done.
+    pub scan_match: ScanMatchParams,
     /// How walls are found in a scan.
     pub lines: LineParams,
     /// Pieces shorter than this correct nothing, m: legs, posters and door leaves.
@@ -48,6 +58,42 @@ pub struct WallSlamParams {
     pub nearest_neighbour: NearestNeighbourParams,
     /// Thresholds of joint compatibility.
     pub joint_compatibility: JointCompatibilityParams,
+    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    #[serde(skip)]
+    pub record_observability: bool,
+}
+
+/// What odometry and scans of a moving robot disagree by because their stamps do, at every scan: a robot that stands still does not notice.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Disagreement {
+    /// Along either axis, m.
+    pub translation_sigma: f64,
+    /// Of the heading, rad.
+    pub heading_sigma: f64,
+}
+
+impl Default for Disagreement {
+    /// A tenth of a second at walking pace, less what odometry at the scan's own stamp saves.
+    fn default() -> Self {
+        Self { translation_sigma: 0.02, heading_sigma: 0.01 }
+    }
+}
+
+/// How far a robot moves between two looks: a scan before that shows the same walls with the same errors once more, and is passed by.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Gait {
+    /// Way after which a scan is looked at, m.
+    pub least_way: f64,
+    /// Turn after which a scan is looked at, rad.
+    pub least_turn: f64,
+}
+
+impl Default for Gait {
+    fn default() -> Self {
+        Self { least_way: 0.25, least_turn: 0.2 }
+    }
 }
 
 impl Default for WallSlamParams {
@@ -57,14 +103,18 @@ impl Default for WallSlamParams {
             start: None,
             laser: None,
             n_anchors: 0,
+            looks: Gait::default(),
+            disagreement: Disagreement::default(),
+            match_scans: true,
+            scan_match: ScanMatchParams::default(),
             lines: LineParams::default(),
-            min_wall_length: 0.7,
+            min_wall_length: 1.0,
             sensor: WallSensor::default(),
             heading_drift_sigma: 0.05,
             increment: IncrementMotion {
-                translation_variance_per_meter: 3e-3,
+                translation_variance_per_meter: 1e-2,
                 heading_variance_per_meter: 5e-3,
-                heading_variance_per_radian: 1e-3,
+                heading_variance_per_radian: 3e-2,
                 ..IncrementMotion::default()
             },
             filter: SlamParams {
@@ -74,9 +124,11 @@ impl Default for WallSlamParams {
             },
             nearest_neighbour: NearestNeighbourParams::default(),
             joint_compatibility: JointCompatibilityParams {
+                probability: 0.95,
                 ambiguity_margin: 9.0,
                 ..JointCompatibilityParams::default()
             },
+            record_observability: false,
         }
     }
 }
@@ -87,6 +139,12 @@ const POSITIVE: Range = (1e-9, "from 1e-9 to 1e6");
 const NOT_NEGATIVE: Range = (0.0, "from 0 to 1e6");
 
 impl WallSlamParams {
+    /// Where the laser sits on the robot.
+    pub(super) fn mount(&self) -> Pose2<f64> {
+        let [x, y, heading] = self.laser.unwrap_or_default();
+        Pose2::new(x, y, heading)
+    }
+
     /// Parameters from TOML text; what it does not name keeps its default.
     ///
     /// # Errors
@@ -101,6 +159,7 @@ impl WallSlamParams {
     /// The first that is not, by name.
     pub fn validated(self) -> anyhow::Result<Self> {
         self.lines.check()?;
+        self.scan_match.check()?;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
         ensure!(
@@ -116,6 +175,10 @@ impl WallSlamParams {
             ("sensor.reach", reach, POSITIVE),
             ("sensor.half_field_of_view", half_field_of_view, POSITIVE),
             ("min_wall_length", self.min_wall_length, NOT_NEGATIVE),
+            ("looks.least_way", self.looks.least_way, NOT_NEGATIVE),
+            ("looks.least_turn", self.looks.least_turn, NOT_NEGATIVE),
+            ("disagreement.translation_sigma", self.disagreement.translation_sigma, NOT_NEGATIVE),
+            ("disagreement.heading_sigma", self.disagreement.heading_sigma, NOT_NEGATIVE),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
             (
                 "increment.translation_variance_per_meter",

@@ -3,10 +3,10 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Data, Record, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
-use super::{WallSlamParams, WallSystem, truth};
+use super::{WallSlamParams, WallState, WallSystem, truth};
 use crate::{
     evaluate::{Sample, TrueTrack},
-    slam::Keyframe,
+    slam::{AssociationRule, Keyframe, Saved},
     system::{Events, System, drive},
 };
 
@@ -50,9 +50,39 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
     {
         system.add_anchor(LandmarkId(id), truth::landmark(wall))?;
     }
+    drive_through(system, track, true_walls, records, observe)
+}
+
+/// Goes on from a saved map with the records of a log that are later than it, and shows the system to `observe` after each. `association` is the rule
+/// that was asked for, if any.
+///
+/// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
+///
+/// # Errors
+/// When the map is of another kind or is no state of the filter, when no later scan can be used, or a parameter is out of range.
+pub fn run_on(
+    saved: Saved<WallState>,
+    records: &[Record],
+    params: &WallSlamParams,
+    association: Option<AssociationRule>,
+    observe: impl FnMut(&WallSystem),
+) -> Result<WallRun> {
+    let system = WallSystem::resume(params.clone(), saved, association)?;
+    let track = TrueTrack::from_records_or_estimates(records);
+    drive_through(system, track, truth::true_walls(records), records, observe)
+}
+
+fn drive_through(
+    mut system: WallSystem,
+    track: TrueTrack,
+    true_walls: Vec<TrueWall>,
+    records: &[Record],
+    observe: impl FnMut(&WallSystem),
+) -> Result<WallRun> {
     drive(&mut system, records, observe);
     if system.keyframes().is_empty() {
-        bail!("none of the scans could be used; the events tell why");
+        let n_before = system.events().get("before_resume");
+        bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
     }
     let mut run = WallRun { system, truth: track, true_walls };
     if run

@@ -1,17 +1,21 @@
 use std::time::Duration;
 
-use nalgebra::{Matrix4, Vector3, Vector4};
-use wayfix_estimation_traits::{LieGroup, Pose2};
+use nalgebra::{Matrix1x4, Matrix4, Vector1, Vector3, Vector4};
+use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 use wayfix_line_extract::{Extractor, Scan};
+use wayfix_scan_match::{Cloud, Guess, Matcher};
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp, Velocity};
 use wayfix_slam_ekf::{
-    DriftingMotion, DriftingPose, EkfSlam, JointCompatibility, LandmarkId, Mounted, NearestNeighbour,
-    Observation, OnDrifting, SeenWall, SlamError, StepReport, Wall, WallSensor,
+    DriftingPose, EkfSlam, JointCompatibility, LandmarkId, Mounted, NearestNeighbour, Observation,
+    OnDrifting, SeenWall, SlamError, StepReport, Wall, WallSensor, observability::ObservabilityRecorder,
 };
 
-use super::WallSlamParams;
+use super::{
+    Gait, WallSlamParams,
+    travel::{DriftSeen, Travel},
+};
 use crate::{
-    slam::{AssociationRule, Keyframe, event_name},
+    slam::{AssociationRule, Keyframe, event_name, seen_landmarks},
     system::{Events, Stopwatch, System},
 };
 
@@ -20,24 +24,44 @@ pub type WallModel = OnDrifting<Mounted<WallSensor>>;
 
 /// EKF-SLAM that takes scans and keeps a map of walls.
 pub struct WallSystem {
-    params: WallSlamParams,
-    moves_by_velocity: bool,
+    pub(super) params: WallSlamParams,
+    pub(super) moves_by_velocity: bool,
     extractor: Extractor,
-    filter: EkfSlam<WallModel>,
-    association: Rule,
-    time: Stamp,
+    matcher: Option<Matcher>,
+    /// The scan that was looked at last, which those after it are laid on.
+    pub(super) last_look: Option<Look>,
+    /// The way since.
+    pub(super) travel: Travel,
+    pub(super) filter: EkfSlam<WallModel>,
+    pub(super) association: Rule,
+    /// Stamp of the last record that was taken.
+    pub(super) taken_until: Stamp,
+    /// Records up to this stamp were taken by the run that this one goes on from.
+    pub(super) resumed_at: Option<Stamp>,
     /// The velocity that holds, and since when: only where a log has no increments.
-    velocity: Option<(Stamp, Velocity)>,
-    dead_reckoning: Pose2<f64>,
+    pub(super) velocity: Option<(Stamp, Velocity)>,
+    pub(super) dead_reckoning: Pose2<f64>,
+    observability: Option<ObservabilityRecorder>,
     keyframes: Vec<Keyframe>,
     events: Events,
     step: Duration,
 }
 
-enum Rule {
+/// A scan that walls were taken from.
+pub(super) struct Look {
+    pub(super) scan: LaserScan,
+    pub(super) cloud: Cloud,
+}
+
+pub(super) enum Rule {
     NearestNeighbour(NearestNeighbour),
     JointCompatibility(JointCompatibility),
 }
+
+/// No robot goes farther from one record to the next, m; and no echo comes from farther away.
+const FARTHEST: f64 = 1e5;
+/// Scans that have less in common are not laid on one another, share of points.
+const LEAST_OVERLAP: f64 = 0.15;
 
 impl WallSystem {
     /// A robot at `start` among walls that it does not know; its motion is told by velocities, else by increments.
@@ -56,19 +80,23 @@ impl WallSystem {
             }
             _ => Rule::NearestNeighbour(NearestNeighbour::new(params.nearest_neighbour)?),
         };
-        let [x, y, heading] = params.laser.unwrap_or_default();
-        let sensor = OnDrifting(Mounted { sensor: params.sensor, mount: Pose2::new(x, y, heading) });
+        let sensor = OnDrifting(Mounted { sensor: params.sensor, mount: params.mount() });
         let state = DriftingPose { pose: start, heading_drift: 0.0 };
         let drift_variance = params.heading_drift_sigma.powi(2);
         let covariance = Matrix4::from_diagonal(&Vector4::new(0.0, 0.0, 0.0, drift_variance));
-        let extractor = Extractor::new(params.lines)?;
+        let filter = EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?;
         Ok(Self {
-            filter: EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?,
-            extractor,
+            extractor: Extractor::new(params.lines)?,
+            matcher: params.match_scans.then(|| Matcher::new(params.scan_match)).transpose()?,
+            last_look: None,
+            travel: Travel::default(),
+            observability: params.record_observability.then(|| ObservabilityRecorder::new(&filter)),
+            filter,
             association,
             params,
             moves_by_velocity,
-            time: Stamp::default(),
+            taken_until: Stamp::default(),
+            resumed_at: None,
             velocity: None,
             dead_reckoning: start,
             keyframes: Vec::new(),
@@ -89,15 +117,21 @@ impl WallSystem {
     pub fn keyframes(&self) -> &[Keyframe] {
         &self.keyframes
     }
+    /// Where the laser sits on the robot.
+    pub(super) fn mount(&self) -> Pose2<f64> {
+        self.params.mount()
+    }
+    /// What the run observed, when that was to be recorded.
+    pub fn observability(&self) -> Option<&ObservabilityRecorder> {
+        self.observability.as_ref()
+    }
 
-    fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
-        let stopwatch = Stopwatch::start();
-        self.filter
-            .predict(&DriftingMotion(self.params.increment), increment)
-            .map_err(|error| error.to_string())?;
-        self.step += stopwatch.elapsed();
+    fn take_increment(&mut self, increment: &Pose2<f64>) -> Result<(), String> {
+        if !(increment.is_finite() && increment.translation.norm() <= FARTHEST) {
+            return Err(format!("an increment of {increment:?} is beyond {FARTHEST} m or not finite"));
+        }
+        self.travel = self.travel.then(&self.params.increment, self.filter.robot().heading_drift, increment);
         self.dead_reckoning = self.dead_reckoning.compose(increment);
-        self.time = stamp;
         Ok(())
     }
 
@@ -107,40 +141,108 @@ impl WallSystem {
         let seconds = stamp.seconds_since(since);
         self.velocity = Some((stamp, velocity));
         let twist = Vector3::new(velocity.linear * seconds, 0.0, velocity.angular * seconds);
-        self.take_increment(stamp, &Pose2::exp(&twist))
+        self.take_increment(&Pose2::exp(&twist))
     }
 
     fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
         let stopwatch = Stopwatch::start();
-        let observations = self.walls_in(scan)?;
-        let report = match &mut self.association {
-            Rule::NearestNeighbour(rule) => self.filter.update(&observations, rule),
-            Rule::JointCompatibility(rule) => self.filter.update(&observations, rule),
+        let cloud = cloud_of(scan, &self.mount())?;
+        self.lay_on_the_last_look(&cloud);
+        let Gait { least_way, least_turn } = self.params.looks;
+        let nis = if self.last_look.is_some() && self.travel.is_within(least_way, least_turn) {
+            self.events.count("scan_passed_by");
+            (0.0, 0)
+        } else {
+            let observations = self.walls_in(scan)?;
+            self.move_on()?;
+            self.last_look = Some(Look { scan: scan.clone(), cloud });
+            self.look_at(&observations)?
         };
         self.step += stopwatch.elapsed();
+        self.add_keyframe(stamp, nis);
+        Ok(())
+    }
+
+    /// Corrects the way since the last look, and the drift, by how a scan lies on that of the last look.
+    fn lay_on_the_last_look(&mut self, cloud: &Cloud) {
+        self.travel = self.travel.at_a_scan(&self.params.disagreement);
+        if let (Some(look), Some(matcher)) = (&self.last_look, self.matcher) {
+            let drift_variance = self.filter.robot_covariance()[(3, 3)];
+            let covariance = self.travel.total_covariance(drift_variance);
+            let others = self.travel.without_wheels();
+            let guess = Guess { pose: self.travel.motion, covariance, others: &others };
+            let found = matcher.align(&look.cloud, cloud, &guess);
+            if let Some(found) = found.ok().filter(|found| found.overlap >= LEAST_OVERLAP) {
+                self.events.count("scan_matched");
+                let travel = self.travel.doubted(found.guess_scale);
+                let drift_change = travel.drift_seen(&found).map_or(0.0, |seen| self.correct_drift(seen));
+                self.travel = travel.corrected_by(&found, drift_change).unwrap_or(travel);
+            } else {
+                self.events.count("scan_unmatched");
+            }
+        }
+        self.travel = self.travel.after_scan();
+    }
+
+    /// Corrects the drift by a change and its variance, and says by how much. A look that the filter refuses leaves it as it is.
+    fn correct_drift(&mut self, (change, variance): (f64, f64)) -> f64 {
+        let before = self.filter.robot().heading_drift;
+        let seen = self.filter.update_robot(&DriftSeen(variance), &Vector1::new(before + change));
+        if let (Ok(innovation), Some(recorder)) = (seen, &mut self.observability) {
+            let jacobian = Matrix1x4::new(0.0, 0.0, 0.0, 1.0);
+            recorder.record_robot(&self.filter, &jacobian, &innovation.covariance);
+        }
+        self.filter.robot().heading_drift - before
+    }
+
+    /// Moves the robot on by the way since the last look.
+    fn move_on(&mut self) -> Result<(), String> {
+        let travel = self.travel;
+        let jacobian = travel.jacobian(self.filter.robot(), &travel.motion);
+        self.filter.predict(&travel, &travel.motion).map_err(|error| error.to_string())?;
+        self.travel = travel.begun_anew();
+        if let Some(recorder) = &mut self.observability {
+            recorder.moved(&jacobian);
+        }
+        Ok(())
+    }
+
+    /// Corrects robot and map with the walls of a scan; sum and number of the NIS of what corrected.
+    fn look_at(&mut self, observations: &[Observation<SeenWall>]) -> Result<(f64, usize), String> {
+        let report = match &mut self.association {
+            Rule::NearestNeighbour(rule) => self.filter.update(observations, rule),
+            Rule::JointCompatibility(rule) => self.filter.update(observations, rule),
+        };
         let report = report.map_err(|error| error.to_string())?;
+        if let Some(recorder) = &mut self.observability {
+            recorder.record(&self.filter, &seen_landmarks(&report));
+        }
         self.count(&report);
+        Ok(report.innovations().fold((0.0, 0), |(sum, n), innovation| (sum + innovation.nis, n + 1)))
+    }
+
+    /// The filter is at the last scan that was looked at; the keyframe says where the robot is by now.
+    fn add_keyframe(&mut self, stamp: Stamp, nis: (f64, usize)) {
+        let (state, travel) = (self.filter.robot(), &self.travel);
+        let jacobian = travel.jacobian(state, &travel.motion);
+        let covariance = jacobian * self.filter.robot_covariance() * jacobian.transpose()
+            + travel.noise(state, &travel.motion);
         self.keyframes.push(Keyframe {
             stamp,
-            pose: self.filter.robot().pose,
-            covariance: self.filter.robot_covariance().fixed_view::<3, 3>(0, 0).into_owned(),
+            pose: travel.propagate(state, &travel.motion).pose,
+            covariance: covariance.fixed_view::<3, 3>(0, 0).into_owned(),
             dead_reckoning: self.dead_reckoning,
             n_landmarks: self.filter.n_landmarks(),
-            nis: report.innovations().fold((0.0, 0), |(sum, n), innovation| (sum + innovation.nis, n + 1)),
+            nis,
             step: std::mem::take(&mut self.step),
         });
-        Ok(())
     }
 
     /// The walls of a scan that are long enough to be walls.
     fn walls_in(&mut self, scan: &LaserScan) -> Result<Vec<Observation<SeenWall>>, String> {
-        let LaserScan { angle_min, angle_increment, range_max, ranges } = scan;
-        let scan = Scan {
-            angle_min: *angle_min,
-            angle_increment: *angle_increment,
-            ranges,
-            max_range: range_max.next_down(), // a range of `range_max` is no echo
-        };
+        let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
+        let (angle_min, angle_increment) = (*angle_min, *angle_increment);
+        let scan = Scan { angle_min, angle_increment, ranges, max_range: max_range(scan) };
         let found = self.extractor.extract(&scan).map_err(|error| error.to_string())?;
         let long = found.segments.iter().filter(|segment| segment.length() >= self.params.min_wall_length);
         Ok(long.map(|segment| Observation { label: None, measurement: SeenWall::from(segment) }).collect())
@@ -153,10 +255,27 @@ impl WallSystem {
     }
 }
 
+/// A range of `range_max` is no echo.
+fn max_range(scan: &LaserScan) -> f64 {
+    scan.range_max.next_down().min(FARTHEST)
+}
+
+/// The points of a scan in the frame of the robot.
+pub(super) fn cloud_of(scan: &LaserScan, mount: &Pose2<f64>) -> Result<Cloud, String> {
+    let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
+    let cloud = Cloud::from_ranges(*angle_min, *angle_increment, ranges, max_range(scan));
+    cloud.map(|cloud| cloud.carried_at(mount)).map_err(|error| error.to_string())
+}
+
 impl System for WallSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
+        if self.resumed_at.is_some_and(|resumed_at| record.stamp <= resumed_at) {
+            self.events.count("before_resume");
+            return Ok(());
+        }
+        self.taken_until = record.stamp;
         match &record.data {
-            Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
+            Data::OdometryIncrement(increment) => self.take_increment(increment),
             Data::Velocity(velocity) if self.moves_by_velocity => {
                 self.advance_to(record.stamp)?;
                 self.velocity = Some((record.stamp, *velocity));

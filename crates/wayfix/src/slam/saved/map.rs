@@ -1,20 +1,37 @@
 use std::{fs, path::Path};
 
-use nalgebra::DimName;
-use serde::{Deserialize, Serialize};
-use wayfix_slam_ekf::{LandmarkDim, RobotDim, ScaledRangeBearingSensor};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use super::{SavedMapError, SystemState, envelope};
 use crate::saved::write_atomically;
 
-/// What [`SlamSystem::save`](crate::slam::SlamSystem::save) gives, in a file.
+/// All that a system remembers between two records, and of what kind it is.
+pub trait SavedState: Serialize + DeserializeOwned {
+    /// The robot's state, in words, and how many numbers it has.
+    const ROBOT: (&str, usize);
+    /// The same of a landmark.
+    const LANDMARK: (&str, usize);
+}
+
+/// A system whose state can be saved.
+pub trait Save {
+    /// What it remembers.
+    type State: SavedState;
+    /// All that is needed to go on from here.
+    fn save(&self) -> Saved<Self::State>;
+}
+
+/// A map of points: what [`SlamSystem`](crate::slam::SlamSystem) saves.
+pub type SavedMap = Saved<SystemState>;
+
+/// What a system saves, in a file.
 ///
 /// Noise, gates and timing are not in it: they are parameters of the robot and come from its settings, so that a robot can go on with better
 /// ones. What must be the same is checked: the kind of robot and landmarks, and how sightings find their landmarks.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SavedMap {
+pub struct Saved<S> {
     /// The state of the system.
-    pub state: SystemState,
+    pub state: S,
 }
 
 /// What the state is of. It comes first in the payload: the rest of another kind would decode to nonsense.
@@ -27,20 +44,20 @@ struct Kind {
 }
 
 impl Kind {
-    fn here() -> Self {
+    fn of<S: SavedState>() -> Self {
         Self {
-            robot: "planar pose with range scale".to_owned(),
-            landmark: "point in the plane".to_owned(),
-            robot_dimension: RobotDim::<ScaledRangeBearingSensor>::DIM as u32,
-            landmark_dimension: LandmarkDim::<ScaledRangeBearingSensor>::DIM as u32,
+            robot: S::ROBOT.0.to_owned(),
+            landmark: S::LANDMARK.0.to_owned(),
+            robot_dimension: S::ROBOT.1 as u32,
+            landmark_dimension: S::LANDMARK.1 as u32,
         }
     }
 
-    fn check(&self) -> Result<(), SavedMapError> {
+    fn check<S: SavedState>(&self) -> Result<(), SavedMapError> {
         let differs = |((what, expected), (_, found)): ((_, String), (&str, String))| {
             (expected != found).then_some(SavedMapError::Kind { what, expected, found })
         };
-        let mut pairs = Self::here().properties().into_iter().zip(self.properties());
+        let mut pairs = Self::of::<S>().properties().into_iter().zip(self.properties());
         pairs.find_map(differs).map_or(Ok(()), Err)
     }
 
@@ -54,13 +71,13 @@ impl Kind {
     }
 }
 
-impl SavedMap {
+impl<S: SavedState> Saved<S> {
     /// The bytes of the file.
     ///
     /// # Errors
     /// When the encoder refuses, which it does not for want of anything but memory.
     pub fn to_bytes(&self) -> Result<Vec<u8>, SavedMapError> {
-        let kind = postcard::to_stdvec(&Kind::here()).map_err(SavedMapError::Payload)?;
+        let kind = postcard::to_stdvec(&Kind::of::<S>()).map_err(SavedMapError::Payload)?;
         let payload = postcard::to_extend(&self.state, kind).map_err(SavedMapError::Payload)?;
         Ok(envelope::seal(&payload))
     }
@@ -72,7 +89,7 @@ impl SavedMap {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, SavedMapError> {
         let payload = envelope::open(bytes)?;
         let (kind, rest): (Kind, _) = postcard::take_from_bytes(payload).map_err(SavedMapError::Payload)?;
-        kind.check()?;
+        kind.check::<S>()?;
         let (state, rest) = postcard::take_from_bytes(rest).map_err(SavedMapError::Payload)?;
         if !rest.is_empty() {
             let expected = (bytes.len() - rest.len()) as u64;
@@ -107,10 +124,13 @@ mod tests {
     #[test]
     fn a_map_of_another_kind_says_what_differs() {
         for (kind, what) in [
-            (Kind { robot: "Ackermann".to_owned(), ..Kind::here() }, "robot is Ackermann"),
-            (Kind { landmark: "wall".to_owned(), ..Kind::here() }, "landmark is wall"),
-            (Kind { robot_dimension: 3, ..Kind::here() }, "robot dimension is 3, here it is 4"),
-            (Kind { landmark_dimension: 3, ..Kind::here() }, "landmark dimension is 3, here it is 2"),
+            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<SystemState>() }, "robot is Ackermann"),
+            (Kind { landmark: "wall".to_owned(), ..Kind::of::<SystemState>() }, "landmark is wall"),
+            (Kind { robot_dimension: 3, ..Kind::of::<SystemState>() }, "robot dimension is 3, here it is 4"),
+            (
+                Kind { landmark_dimension: 3, ..Kind::of::<SystemState>() },
+                "landmark dimension is 3, here it is 2",
+            ),
         ] {
             let sealed = envelope::seal(&postcard::to_stdvec(&kind).unwrap());
             let error = SavedMap::from_bytes(&sealed).unwrap_err();

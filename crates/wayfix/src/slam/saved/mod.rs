@@ -15,6 +15,7 @@ mod saver;
 mod state;
 
 pub use error::SavedMapError;
-pub use map::SavedMap;
+pub use map::{Save, Saved, SavedMap, SavedState};
 pub use saver::Saver;
+pub(crate) use state::check_association;
 pub use state::{Odometry, SystemState};

@@ -2,8 +2,7 @@ use std::path::PathBuf;
 
 use wayfix_sensor_log::{Record, Stamp};
 
-use super::SavedMapError;
-use crate::slam::SlamSystem;
+use super::{Save, SavedMapError};
 
 /// Saves a system while it runs, every so often by the clock of the log, and at its end.
 pub struct Saver {
@@ -22,7 +21,7 @@ impl Saver {
 
     /// Saves when it is time, after a record and before `next`. Only between two stamps, so that a resumed run knows by the
     /// stamp what was taken. A failure is kept until [`finish`](Self::finish).
-    pub fn observe(&mut self, record: &Record, next: Option<&Record>, system: &SlamSystem) {
+    pub fn observe(&mut self, record: &Record, next: Option<&Record>, system: &impl Save) {
         let Some(period) = self.period else { return };
         let is_whole = next.is_some_and(|next| next.stamp > record.stamp);
         let first = *self.saved_at.get_or_insert(record.stamp);
@@ -36,7 +35,7 @@ impl Saver {
     ///
     /// # Errors
     /// When that or anything before could not be written.
-    pub fn finish(self, system: &SlamSystem) -> Result<(), SavedMapError> {
+    pub fn finish(self, system: &impl Save) -> Result<(), SavedMapError> {
         system.save().write(&self.path)?;
         self.failure.map_or(Ok(()), Err)
     }

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Stamp, Velocity};
 use wayfix_slam_ekf::{EkfSlam, ScaledPose, SlamError, Snapshot};
 
-use super::{SavedMap, SavedMapError};
+use super::{Save, SavedMap, SavedMapError, SavedState};
 use crate::slam::{
     AssociationRule, SlamSystem, SlamSystemParams,
     system::{Past, Rule, is_possible},
@@ -51,6 +51,18 @@ impl Odometry {
             Data::Ackermann(_) => Some(Self::Drives),
             _ => None,
         }
+    }
+}
+
+impl SavedState for SystemState {
+    const ROBOT: (&str, usize) = ("planar pose with range scale", 4);
+    const LANDMARK: (&str, usize) = ("point in the plane", 2);
+}
+
+impl Save for SlamSystem {
+    type State = SystemState;
+    fn save(&self) -> SavedMap {
+        Self::save(self)
     }
 }
 
@@ -113,7 +125,10 @@ impl SlamSystem {
 }
 
 /// Numbers that association made up are not those that a sensor reads.
-fn check_association(asked: Option<AssociationRule>, saved: AssociationRule) -> Result<(), SavedMapError> {
+pub(crate) fn check_association(
+    asked: Option<AssociationRule>,
+    saved: AssociationRule,
+) -> Result<(), SavedMapError> {
     match asked {
         Some(asked) if asked != saved => Err(SavedMapError::Kind {
             what: "association",

@@ -1,0 +1,81 @@
+use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
+use wayfix_estimation_traits::Pose2;
+
+use crate::{
+    ScanMatchError,
+    surface::{Surface, surfaces},
+    tree::Tree,
+};
+
+/// A scan, ready to be matched: its points, and what they show of surfaces.
+#[derive(Clone, Debug, Default)]
+pub struct Cloud {
+    /// Every so many beams a point, at most one a degree: enough to be laid on another scan.
+    pub(crate) points: Vec<Vector2<f64>>,
+    /// Radians from one of the points to the next.
+    pub(crate) spacing: f64,
+    pub(crate) surfaces: Tree,
+}
+
+/// Points of a cloud are no denser than this, rad.
+const SPACING: f64 = 0.0174;
+/// More beams than any laser has; a longer list is not a scan.
+const MOST_BEAMS: usize = 1 << 20;
+
+impl Cloud {
+    /// The cloud of a scan: beam $`i`$ looks along `angle_min` $`+ i\,`$`angle_increment`, radians; `ranges` in metres. What is not in (0, `max_range`] is
+    /// no echo.
+    ///
+    /// # Errors
+    /// When the geometry is not finite, the range not positive, or the beams go around more than once.
+    pub fn from_ranges(
+        angle_min: f64,
+        angle_increment: f64,
+        ranges: &[f64],
+        max_range: f64,
+    ) -> Result<Self, ScanMatchError> {
+        let refuse = |what, value, must| Err(ScanMatchError::Value { what, value, must });
+        if !angle_min.is_finite() {
+            return refuse("angle_min (rad)", angle_min, "finite");
+        }
+        if !(max_range > 0.0 && max_range <= 1e6) {
+            return refuse("max_range (m)", max_range, "in (0, 1e6]");
+        }
+        if ranges.len() > MOST_BEAMS {
+            return refuse("number of beams", ranges.len() as f64, "at most 2^20");
+        }
+        let turn = angle_increment.abs() * ranges.len().saturating_sub(1) as f64;
+        if !(turn <= TAU * 1.001 && angle_increment != 0.0) {
+            return refuse("angle_increment (rad)", angle_increment, "not zero, and within one turn");
+        }
+        let point = |(beam, range): (usize, &f64)| {
+            let (sin, cos) = (angle_min + beam as f64 * angle_increment).sin_cos();
+            (*range > 0.0 && *range <= max_range).then(|| Vector2::new(cos, sin) * *range)
+        };
+        let all: Vec<Option<Vector2<f64>>> = ranges.iter().enumerate().map(point).collect();
+        let stride = ((SPACING / angle_increment.abs()).round() as usize).max(1);
+        Ok(Self {
+            points: all.iter().step_by(stride).flatten().copied().collect(),
+            spacing: angle_increment.abs() * stride as f64,
+            surfaces: Tree::new(surfaces(&all)),
+        })
+    }
+
+    /// The same scan in the frame of a robot that carries the laser at `mount`.
+    pub fn carried_at(self, mount: &Pose2<f64>) -> Self {
+        let rotation = mount.rotation_matrix();
+        let points = self.points.iter().map(|point| mount.transform(point)).collect();
+        let carry = |surface: &Surface| Surface {
+            at: mount.transform(&surface.at),
+            normal: rotation * surface.normal,
+        };
+        Self { points, surfaces: Tree::new(self.surfaces.iter().map(carry).collect()), ..self }
+    }
+
+    /// How many points of it lie on something straight.
+    pub fn n_surfaces(&self) -> usize {
+        self.surfaces.len()
+    }
+}

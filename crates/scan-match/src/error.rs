@@ -1,0 +1,26 @@
+/// Why two scans were not matched.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScanMatchError {
+    /// A parameter or a number of a scan's geometry without meaning.
+    #[error("{what} is {value}, must be {must}")]
+    Value {
+        /// Which, with its unit.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// Too little in a scan to find one's way by.
+    #[error("{got} points on surfaces, a match needs {needed}")]
+    TooFewPoints {
+        /// How many there are.
+        got: usize,
+        /// How many it takes.
+        needed: usize,
+    },
+    /// The covariance of the guess is none, or the guess is not finite.
+    #[error("the guess is not finite, or its covariance is not positive definite")]
+    Guess,
+}

@@ -1,0 +1,41 @@
+//! How a robot moved between two laser scans.
+//!
+//! Odometry says where the robot should be by now and how sure that is; the two scans say it much better in all directions in which they
+//! have walls. [`Matcher::align`] finds the motion that fits both best, and tells what the scans know of it by themselves, so that a filter can weigh them.
+//!
+//! ```
+//! use nalgebra::{Matrix3, Vector3};
+//! use wayfix_estimation_traits::{Manifold, Pose2};
+//! use wayfix_scan_match::{Cloud, Guess, Matcher, Params};
+//!
+//! // A room of 8 m by 6 m, seen from its middle and from 20 cm further on.
+//! let wall = |x: f64, bearing: f64| {
+//!     let (sin, cos) = bearing.sin_cos();
+//!     ((4.0 * cos.signum() - x) / cos).min(3.0 / sin.abs())
+//! };
+//! let beams = (0..360).map(|i| -3.13 + f64::from(i) * 0.0174);
+//! let scan = |x: f64| beams.clone().map(|bearing| wall(x, bearing)).collect::<Vec<_>>();
+//! let cloud = |x: f64| Cloud::from_ranges(-3.13, 0.0174, &scan(x), 20.0);
+//!
+//! let covariance = Matrix3::from_diagonal(&Vector3::new(0.01, 0.01, 0.01)); // σ 10 cm and 0.1 rad
+//! let odometry = Guess { pose: Pose2::new(0.15, 0.05, 0.1), covariance, others: &[] };
+//! let found = Matcher::new(Params::default())?.align(&cloud(0.0)?, &cloud(0.2)?, &odometry)?;
+//! assert!(Pose2::new(0.2, 0.0, 0.0).local(&found.pose).norm() < 0.01);
+//! # Ok::<(), wayfix_scan_match::ScanMatchError>(())
+//! ```
+//!
+//! Metres and radians, x forward, y left, everything in the frame of the laser. No filter and no map is known here. What it is worth in a
+//! map of walls is in `docs/slam.md`. [Censi 2008; Chen & Medioni 1992]
+
+mod cloud;
+mod error;
+mod matcher;
+mod misfit;
+mod params;
+mod surface;
+mod tree;
+
+pub use cloud::Cloud;
+pub use error::ScanMatchError;
+pub use matcher::{Alignment, Guess, Matcher};
+pub use params::Params;

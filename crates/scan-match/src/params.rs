@@ -1,0 +1,68 @@
+use crate::ScanMatchError;
+
+/// How scans are matched; the defaults suit indoor lasers from 1 cm and beams 0.25° to 1° apart.
+///
+/// ```
+/// use wayfix_scan_match::{Matcher, Params};
+/// assert!(Matcher::new(Params::default()).is_ok());
+/// assert!(Matcher::new(Params { sigma_m: 0.0, ..Params::default() }).is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct Params {
+    /// What a point is off its surface by, m: the laser, and what a straight line between neighbours gets wrong. Default: 0.03.
+    pub sigma_m: f64,
+    /// Over this angle the errors of neighbouring points are one error, rad: a wall that bulges, a person's coat, an edge. A denser scan says
+    /// no more. Default: 0.4.
+    pub independent_rad: f64,
+    /// Misfit beyond which a point is rather something else, m: half its weight is lost at 0.64 of it. Default: 0.1.
+    pub kernel_m: f64,
+    /// The same at the beginning, m: how far off the guess may be. Default: 0.5.
+    pub first_kernel_m: f64,
+    /// Headings from which the search starts are this far apart, rad, over three deviations of the guess to either side. Default: 0.2.
+    pub start_spacing_rad: f64,
+    /// Steps of one search at most. Default: 30.
+    pub max_steps: usize,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            sigma_m: 0.03,
+            independent_rad: 0.4,
+            kernel_m: 0.1,
+            first_kernel_m: 0.5,
+            start_spacing_rad: 0.2,
+            max_steps: 30,
+        }
+    }
+}
+
+impl Params {
+    /// Whether every number has a meaning.
+    ///
+    /// # Errors
+    /// The first that has none.
+    pub fn check(&self) -> Result<(), ScanMatchError> {
+        for (what, value) in [
+            ("sigma_m", self.sigma_m),
+            ("independent_rad", self.independent_rad),
+            ("kernel_m", self.kernel_m),
+            ("first_kernel_m", self.first_kernel_m),
+            ("start_spacing_rad", self.start_spacing_rad),
+        ] {
+            if !(1e-6..=1e3).contains(&value) {
+                return Err(ScanMatchError::Value { what, value, must: "from 1e-6 to 1e3" });
+            }
+        }
+        if self.max_steps == 0 {
+            return Err(ScanMatchError::Value { what: "max_steps", value: 0.0, must: "at least 1" });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,41 @@
+use nalgebra::{Matrix2, SymmetricEigen, Vector2};
+
+/// A point of a scan on something that is straight around it, with the unit normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Surface {
+    pub(crate) at: Vector2<f64>,
+    pub(crate) normal: Vector2<f64>,
+}
+
+/// Neighbours to either side that say which way a surface looks.
+const N_NEIGHBOURS: usize = 3;
+/// So many of them must be near.
+const FEWEST: usize = 4;
+/// Neighbours are near within this distance, m, or this share of the range: a flat view spreads the points.
+const NEAR: (f64, f64) = (0.3, 0.1);
+/// A surface is straight when its points spread across it by less than this share of what they spread along it, in variance, and a centimetre.
+const STRAIGHT: (f64, f64) = (0.05, 1e-4);
+
+/// What the points of a scan, in the order of the beams, show of surfaces.
+pub(crate) fn surfaces(points: &[Option<Vector2<f64>>]) -> Vec<Surface> {
+    (0..points.len()).filter_map(|beam| surface(points, beam)).collect()
+}
+
+fn surface(points: &[Option<Vector2<f64>>], beam: usize) -> Option<Surface> {
+    let at = points[beam]?;
+    let reach = NEAR.0.max(NEAR.1 * at.norm());
+    let window = &points[beam.saturating_sub(N_NEIGHBOURS)..points.len().min(beam + N_NEIGHBOURS + 1)];
+    let near: Vec<Vector2<f64>> =
+        window.iter().flatten().filter(|point| (*point - at).norm() < reach).copied().collect();
+    if near.len() < FEWEST {
+        return None;
+    }
+    let n = near.len() as f64;
+    let mean = near.iter().sum::<Vector2<f64>>() / n;
+    let scatter: Matrix2<f64> =
+        near.iter().map(|point| (point - mean) * (point - mean).transpose()).sum::<Matrix2<f64>>() / n;
+    let spread = SymmetricEigen::new(scatter);
+    let across = spread.eigenvalues.imin();
+    let is_straight = spread.eigenvalues[across] <= STRAIGHT.0 * spread.eigenvalues[1 - across] + STRAIGHT.1;
+    is_straight.then(|| Surface { at, normal: spread.eigenvectors.column(across).into_owned() })
+}

@@ -1,0 +1,108 @@
+use serde::{Deserialize, Serialize};
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{LaserScan, Stamp, Velocity};
+use wayfix_slam_ekf::{DriftingPose, EkfSlam, SlamError, Snapshot, Wall};
+
+use super::{
+    WallSlamParams, WallSystem,
+    system::{Look, Rule, cloud_of},
+    travel::Travel,
+};
+use crate::slam::{AssociationRule, Save, Saved, SavedMapError, SavedState, check_association};
+
+/// All that a [`WallSystem`] remembers between two records.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WallState {
+    /// Robot, walls and covariance.
+    pub filter: Snapshot<DriftingPose, Wall>,
+    /// How pieces of walls find their walls.
+    pub association: AssociationRule,
+    /// The number that the next new wall gets.
+    pub next_id: u32,
+    /// Stamp of the last record that was taken, nanoseconds; a resumed run leaves out what is not later.
+    pub taken_until: u64,
+    /// Where odometry alone would put the robot.
+    pub dead_reckoning: Pose2<f64>,
+    /// Where the laser sits on the robot.
+    pub laser: Option<[f64; 3]>,
+    /// Whether velocities move the robot, and not increments.
+    pub moves_by_velocity: bool,
+    /// The velocity that holds: since when in nanoseconds, m/s, rad/s.
+    pub velocity: Option<(u64, f64, f64)>,
+    /// The way since the last look.
+    pub travel: Travel,
+    /// The scan of the last look: first bearing, increment, largest range, ranges.
+    pub last_look: Option<(f64, f64, f64, Vec<f64>)>,
+}
+
+impl SavedState for WallState {
+    const ROBOT: (&str, usize) = ("planar pose with heading drift", 4);
+    const LANDMARK: (&str, usize) = ("wall in the plane", 2);
+}
+
+impl Save for WallSystem {
+    type State = WallState;
+    fn save(&self) -> Saved<WallState> {
+        let (association, next_id) = match &self.association {
+            Rule::NearestNeighbour(rule) => (AssociationRule::Nn, rule.next_id()),
+            Rule::JointCompatibility(rule) => (AssociationRule::Jcbb, rule.next_id()),
+        };
+        let held =
+            |(since, velocity): (Stamp, Velocity)| (since.nanoseconds(), velocity.linear, velocity.angular);
+        let scan = |Look { scan, .. }: &Look| {
+            (scan.angle_min, scan.angle_increment, scan.range_max, scan.ranges.clone())
+        };
+        Saved {
+            state: WallState {
+                filter: self.filter.snapshot(),
+                association,
+                next_id,
+                taken_until: self.taken_until.nanoseconds(),
+                dead_reckoning: self.dead_reckoning,
+                laser: self.params.laser,
+                moves_by_velocity: self.moves_by_velocity,
+                velocity: self.velocity.map(held),
+                travel: self.travel,
+                last_look: self.last_look.as_ref().map(scan),
+            },
+        }
+    }
+}
+
+impl WallSystem {
+    /// The system that a map was saved of, with these parameters; the laser sits where it sat, unless they place it.
+    pub(super) fn resume(
+        params: WallSlamParams,
+        saved: Saved<WallState>,
+        asked: Option<AssociationRule>,
+    ) -> anyhow::Result<Self> {
+        let WallState { filter, association, next_id, taken_until, travel, last_look, .. } = saved.state;
+        check_association(asked, association)?;
+        let laser = params.laser.or(saved.state.laser);
+        let params = WallSlamParams { association, laser, ..params };
+        let mut system = Self::new(params, saved.state.dead_reckoning, saved.state.moves_by_velocity)?;
+        let (sensor, filter_params) = (*system.filter.model(), *system.filter.params());
+        system.filter = EkfSlam::resume(sensor, filter_params, filter).map_err(SavedMapError::from)?;
+        system.association = match system.association {
+            Rule::NearestNeighbour(rule) => Rule::NearestNeighbour(rule.numbering_from(next_id)),
+            Rule::JointCompatibility(rule) => Rule::JointCompatibility(rule.numbering_from(next_id)),
+        };
+        if !travel.is_sound() {
+            return Err(
+                SavedMapError::from(SlamError::NotFinite { what: "saved way since the last look" }).into()
+            );
+        }
+        system.travel = travel;
+        if let Some((angle_min, angle_increment, range_max, ranges)) = last_look {
+            let scan = LaserScan { angle_min, angle_increment, range_max, ranges };
+            let unsound = |_| SavedMapError::from(SlamError::NotFinite { what: "saved scan" });
+            let cloud = cloud_of(&scan, &system.mount()).map_err(unsound)?;
+            system.last_look = Some(Look { scan, cloud });
+        }
+        let held = |(since, linear, angular)| (Stamp::from_nanoseconds(since), Velocity { linear, angular });
+        system.velocity = saved.state.velocity.map(held);
+        system.taken_until = Stamp::from_nanoseconds(taken_until);
+        system.resumed_at = Some(system.taken_until);
+        Ok(system)
+    }
+}
