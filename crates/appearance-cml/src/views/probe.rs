@@ -53,8 +53,8 @@ impl Sums {
     /// The sum of their magnitudes, rounded up.
     fn magnitude(&self) -> f64 {
         let mut magnitudes = [0.0; HARMONICS];
-        for lane in 0..HARMONICS {
-            magnitudes[lane] = (self.re[lane] * self.re[lane] + self.im[lane] * self.im[lane]).sqrt();
+        for (magnitude, (re, im)) in magnitudes.iter_mut().zip(self.re.iter().zip(&self.im)) {
+            *magnitude = (re * re + im * im).sqrt();
         }
         f64::from(magnitudes.iter().sum::<f32>()) * (1.0 + ROUNDING)
     }
@@ -170,8 +170,8 @@ const INCOMPARABLE: Comparison = Comparison { distance: f64::INFINITY, rotation:
 fn best_rotation(constant: f64, products: impl Iterator<Item = Sums>, n_harmonics: usize) -> (f64, f64) {
     let mut harmonics = [(0.0, 0.0); MOST_GROUPS * HARMONICS];
     for (sums, harmonics) in products.zip(harmonics.chunks_exact_mut(HARMONICS)) {
-        for lane in 0..HARMONICS {
-            harmonics[lane] = (f64::from(sums.re[lane]), f64::from(sums.im[lane]));
+        for (harmonic, (re, im)) in harmonics.iter_mut().zip(sums.re.iter().zip(&sums.im)) {
+            *harmonic = (f64::from(*re), f64::from(*im));
         }
     }
     Correlation { constant, harmonics: &harmonics[..n_harmonics - 1] }.maximum()
