@@ -97,7 +97,7 @@ impl<D: Bounded> AppearanceIndex<D> {
 
     /// As [`nearest_within`](ReferenceSearch::nearest_within), and what it took.
     ///
-    /// Rough bounds of all come first; then the references are taken in their order, sharper bounds before distances, until none can be nearer than the last
+    /// Bounds of all come first, without a limit rough ones; then the references are taken in their order, sharper bounds before distances, until none can be nearer than the last
     /// answer.
     pub fn nearest_counted(&self, view: &D, n: usize, max_distance: f64) -> (Vec<Match>, SearchCost) {
         let mut cost = SearchCost::default();
@@ -105,9 +105,11 @@ impl<D: Bounded> AppearanceIndex<D> {
             return (Vec::new(), cost);
         }
         let probe = view.probe();
+        // Where there is a limit most are given up after their first numbers, and for the few others sharp bounds make the better order.
+        let enough = if max_distance.is_finite() { max_distance + BOUND_SLACK } else { 0.0 };
         let rough = |slot: u32| {
             let (_, reference) = self.slots[slot as usize].as_ref()?;
-            Some(Candidate { bound: reference.bound(&probe, 0.0), slot })
+            Some(Candidate { bound: reference.bound(&probe, enough), slot })
         };
         let mut candidates: Vec<Candidate> = self.reached(view, max_distance).filter_map(rough).collect();
         cost.bounded = candidates.len();

@@ -1,4 +1,4 @@
-use super::probe::{HARMONICS, compare_once};
+use super::probe::{HARMONICS, SLOW, compare_once};
 use crate::{AppearanceError, Comparison, Descriptor};
 
 /// Harmonics beside the constant one, in groups.
@@ -12,17 +12,18 @@ const MOST_HARMONICS: usize = MOST_GROUPS * HARMONICS;
 /// $`s\sqrt{n/12}`$ in the mean, about 0.015 for views whose distances are from 0.1 to 1. Sums of products of whole numbers are exact, so that
 /// a view is at distance 0 from itself, and every search that compares the stored numbers gives the same bits.
 ///
-/// The distance is $`d² = \min_φ \sum_{rk} |a_{rk} e^{\mathrm i kφ} - b_{rk}|²`$: the root mean square difference of the cells of two normalized views
+/// Over the rings they are cosines. The distance is $`d² = \min_φ \sum_{rk} |a_{rk} e^{\mathrm i kφ} - b_{rk}|²`$: the root mean square difference of the cells of two normalized views
 /// at the best rotation, as far as the harmonics go. It obeys the triangle inequality. Views of different shape are at infinite distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanoramaDescriptor {
     scale: f32,
     n_rings: u8,
     n_harmonics: u8,
-    /// The constant harmonic of all rings; then, group by group of eight harmonics and ring by ring, eight real and eight imaginary parts.
+    /// The constant harmonic of all cosines; then, group by group of eight harmonics and cosine by cosine, eight real and eight imaginary parts.
     lanes: Box<[i8]>,
-    /// Sums of squares of the whole numbers: of all, and of the harmonics after each group.
+    /// Sums of squares of the whole numbers: of all, of what comes after the slow cosines of the first group, and after each group.
     energy: u32,
+    after_slow: u32,
     remaining: [u32; MOST_GROUPS],
 }
 
@@ -64,8 +65,17 @@ impl PanoramaDescriptor {
         }
         let energy = |lanes: &[i8]| lanes.iter().map(|q| u32::from(q.unsigned_abs()).pow(2)).sum();
         let after = |group: usize| lanes.get(n + (group + 1) * n * 2 * HARMONICS..).map_or(0, energy);
+        let after_slow = lanes.get(n + SLOW.min(n) * 2 * HARMONICS..).map_or(0, energy);
         let (energy, remaining) = (energy(&lanes), std::array::from_fn(after));
-        Self { scale, n_rings, n_harmonics: n_harmonics as u8, lanes: lanes.into(), energy, remaining }
+        Self {
+            scale,
+            n_rings,
+            n_harmonics: n_harmonics as u8,
+            lanes: lanes.into(),
+            energy,
+            after_slow,
+            remaining,
+        }
     }
 
     /// What a coefficient is to be multiplied with.
@@ -83,7 +93,7 @@ impl PanoramaDescriptor {
         usize::from(self.n_harmonics) + 1
     }
 
-    /// Harmonic by harmonic: the real parts of all rings, then, but for the constant one, their imaginary parts.
+    /// Harmonic by harmonic: the real parts, then, but for the constant one, the imaginary parts; each as cosines over the rings, the slowest first.
     pub fn coefficients(&self) -> Vec<i8> {
         let mut coefficients = self.constant().to_vec();
         for harmonic in 1..self.n_harmonics() {
@@ -109,7 +119,7 @@ impl PanoramaDescriptor {
         &self.lanes[..usize::from(self.n_rings)]
     }
 
-    /// Real and imaginary parts of a harmonic from the first on, ring by ring.
+    /// Real and imaginary parts of a harmonic from the first on, cosine by cosine.
     pub(super) fn harmonic(&self, harmonic: usize) -> (Vec<i8>, Vec<i8>) {
         let n = usize::from(self.n_rings);
         let part = |part| (0..n).map(|ring| self.lanes[n + place(n, harmonic - 1, part, ring)]).collect();
@@ -120,6 +130,11 @@ impl PanoramaDescriptor {
     pub(super) fn groups(&self) -> impl Iterator<Item = &[i8]> {
         let n = usize::from(self.n_rings);
         self.lanes[n..].chunks_exact(n * 2 * HARMONICS)
+    }
+
+    /// Sum of squares of what comes after the slow cosines of the first group.
+    pub(super) fn after_slow(&self) -> f64 {
+        f64::from(self.after_slow)
     }
 
     /// Sum of squares of the harmonics after a group.

@@ -1,10 +1,11 @@
-use super::{Panorama, PanoramaDescriptor, PanoramaParams, TurnSense, sectors::cell_means};
+use super::{Panorama, PanoramaDescriptor, PanoramaParams, TurnSense, cosines::Cosines, sectors::cell_means};
 use crate::{AppearanceError, check};
 
 /// Turns the panoramas of one camera into descriptors.
 ///
 /// Averages per ring and sector are normalized and expanded over the azimuth,
-/// $`c_{rk} = \frac{1}{n} \sum_j f_{rj} e^{-2π\mathrm i jk/n}`$ for ring $`r`$ and harmonic $`k`$. [Gross et al., Section 2.2]
+/// $`c_{rk} = \frac{1}{n} \sum_j f_{rj} e^{-2π\mathrm i jk/n}`$ for ring $`r`$ and harmonic $`k`$ [Gross et al., Section 2.2], and then over the rings,
+/// in cosines.
 ///
 /// ```
 /// use wayfix_appearance_cml::{Descriptor, Panorama, PanoramaFeatures, PanoramaParams};
@@ -65,7 +66,10 @@ impl PanoramaFeatures {
         self.check_saturation(panorama)?;
         let mut cells = cell_means(panorama, self.n_rings, self.n_sectors, self.params.tone);
         self.params.normalization.apply(self.params.tone, self.params.min_contrast, &mut cells)?;
-        Ok(PanoramaDescriptor::quantized(self.n_rings, &self.spectrum(&cells)))
+        let cosines = Cosines::over(self.n_rings as u8);
+        let spectrum = self.spectrum(&cells);
+        let spectrum = spectrum.chunks_exact(self.n_rings).flat_map(|part| cosines.transform(part));
+        Ok(PanoramaDescriptor::quantized(self.n_rings, &spectrum.collect::<Vec<f64>>()))
     }
 
     fn check_saturation(&self, panorama: &Panorama) -> Result<(), AppearanceError> {
