@@ -16,7 +16,7 @@ impl CorrelationTracker {
     /// What comes out from behind something is found when a part of it is in sight, and what has turned is found by what looks as it did. A filter
     /// that learns it there keeps it there, beside the middle; the colours say where the rest has come out.
     pub(super) fn settle(&mut self, picture: &Picture) {
-        if self.n_settling == 0 || self.n_lost > 0 {
+        if self.n_settling == 0 {
             return;
         }
         self.n_settling -= 1;
@@ -26,7 +26,8 @@ impl CorrelationTracker {
             shares.iter().zip(window.shift_prior(REACH)).map(|(share, prior)| share * prior).collect();
         let peak = Peak::of(&near, SIDE);
         if peak.value > f64::from(shares[0]) + CLEARLY {
-            self.begin_again(picture, window.moved(self.pose, peak.shift));
+            let pose = window.moved(self.pose, peak.shift);
+            self.begin_again(picture, pose, &self.recognizer.look(picture, pose));
         }
     }
 }

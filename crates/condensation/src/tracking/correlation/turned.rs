@@ -2,6 +2,7 @@ use std::f64::consts::TAU;
 
 use super::filter::Learning;
 use super::patch::Patch;
+use super::recognizer::Sight;
 use super::response::Peak;
 use super::tracker::CorrelationTracker;
 use super::window::{Pose, SIDE, Window};
@@ -42,14 +43,13 @@ impl CorrelationTracker {
         if !is_clear || !self.is_alike(&sight) {
             return 0.0;
         }
-        self.begin_again(picture, pose);
+        self.begin_again(picture, pose, &sight);
         self.found();
         peak.value / self.usual
     }
 
     /// Learns the target afresh as it stands there.
-    pub(super) fn begin_again(&mut self, picture: &Picture, pose: Pose) {
-        let sight = self.recognizer.look(picture, pose);
+    pub(super) fn begin_again(&mut self, picture: &Picture, pose: Pose, sight: &Sight) {
         let learning = Learning { inertia: 0.0, penalty: self.params.penalty as f32 };
         self.current = self.recognizer.filter.learned(None, &sight.spectrum, learning);
         self.trusted.clone_from(&self.current);
