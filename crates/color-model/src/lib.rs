@@ -24,7 +24,7 @@ pub use likelihood::{
 };
 pub use localizer::{
     AcquisitionParams, CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome,
-    LocalizerParams, OdometryNoise, OdometryStep, PoseEstimate, Start,
+    HiddenViews, LocalizerParams, OdometryNoise, OdometryStep, PoseEstimate, Start,
 };
 pub use prior::{
     KMeans, LightingPriors, PixelSpread, PriorError, PriorParams, TrainingVenue, k_means, learn_priors,

@@ -10,4 +10,4 @@ pub use classifier::Classifier;
 pub use table::LookUpTable;
 
 /// Label of a pixel that shows no colour of the map.
-const NO_COLOR: u8 = u8::MAX;
+pub(crate) const NO_COLOR: u8 = u8::MAX;

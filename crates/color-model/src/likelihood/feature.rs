@@ -160,7 +160,7 @@ fn features(blobs: &[Blob], camera: &Camera, params: &FeatureParams, is_feature:
 }
 
 /// Colours of the map that no horizontal polygon has.
-fn feature_colors(map: &ColorMap) -> Vec<bool> {
+pub(crate) fn feature_colors(map: &ColorMap) -> Vec<bool> {
     let mut is_feature = vec![true; map.colors().len()];
     for shape in map.shapes() {
         if let Shape::Polygon { color, vertices } = shape

@@ -11,6 +11,7 @@ mod view;
 
 pub use density::SumDensity;
 pub use feature::FeatureView;
+pub(crate) use feature::feature_colors;
 pub use feature_params::FeatureParams;
 pub(crate) use joint::JointLikelihood;
 pub use params::{PixelLight, PixelParams};

@@ -32,6 +32,8 @@ pub struct AcquisitionParams {
     /// By how much the frames have to make another place more likely than the one where the robot believes to be, when that is doubted, nats: it
     /// is carried away in one of thousands of frames, and then may be in any of some hundred thousand places.
     pub elsewhere: f64,
+    /// A place is pursued beside the one where the robot believes to be if the frames of a search make it at most this much less likely, nats.
+    pub margin: f64,
     /// The robot is looked for in images of which squares of this many pixels a side are averaged to one.
     pub shrink: u32,
     /// Pixels left out at both ends of each span of the shrunk images.
@@ -46,6 +48,8 @@ pub struct AcquisitionParams {
     pub n_particles: usize,
     /// Passes after the first.
     pub n_passes: u32,
+    /// Steps that each tries in a pass.
+    pub n_moves: usize,
     /// A pass is softened until this share of the trajectories is effective.
     pub least_effective: f64,
     /// Standard deviation of the steps after the first pass, metres. They shrink by the same factor from pass to pass, to a tenth at the last.
@@ -64,13 +68,15 @@ impl Default for AcquisitionParams {
             n_undecided: 4,
             hopeless: 60.0,
             elsewhere: 40.0,
+            margin: 20.0,
             shrink: 2,
             edge_margin: 1,
-            n_drawn: 6000,
+            n_drawn: 4000,
             n_coarse: 3,
-            n_niches: 150,
-            n_particles: 600,
-            n_passes: 8,
+            n_niches: 100,
+            n_particles: 150,
+            n_passes: 6,
+            n_moves: 10,
             least_effective: 0.2,
             reach: 0.15,
             turn: 0.15,
@@ -79,10 +85,11 @@ impl Default for AcquisitionParams {
 }
 
 impl AcquisitionParams {
-    pub(crate) fn values(&self) -> [(&'static str, f64); 5] {
+    pub(crate) fn values(&self) -> [(&'static str, f64); 6] {
         [
             ("nats of a hopeless place", self.hopeless),
             ("lead of the place believed in, nats", self.elsewhere),
+            ("margin of a place to pursue, nats", self.margin),
             ("least effective share of a pass", self.least_effective),
             ("reach of a pass (m)", self.reach),
             ("turn of a pass (rad)", self.turn),
@@ -95,8 +102,27 @@ impl AcquisitionParams {
         camera.shrunk(self.shrink).map_err(|_| ColorModelError::OutOfRange { what, value })
     }
 
+    /// How closely a pass looks: at few frames in the first third.
+    pub(crate) fn effort(&self, pass: u32) -> Effort {
+        if 3 * pass < self.n_passes { Effort::Coarse } else { Effort::Full }
+    }
+
+    /// Whether a pass looks for errors of odometry and camera too.
+    pub(crate) fn is_fine(&self, pass: u32) -> bool {
+        3 * pass >= 2 * self.n_passes
+    }
+
     /// Size of the steps after a pass, as a share of those after the first.
     pub(crate) fn scale(&self, pass: u32) -> f64 {
         0.1_f64.powf(f64::from(pass) / f64::from(self.n_passes.max(2) - 1))
     }
+}
+
+/// How closely candidates are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// By a few of the frames.
+    Coarse,
+    /// By all of them.
+    Full,
 }

@@ -7,10 +7,16 @@ pub(crate) struct Candidate {
     pub(crate) trajectory: Trajectory,
     /// What every colour shows in every frame: the colours of the first frame, then those of the next.
     pub(crate) sums: Vec<PixelSums>,
+    /// What every frame says under every member of the lighting bank, where the light is known: the members of the first frame, then of the next.
+    pub(crate) by_frame: Vec<f64>,
     /// Log-likelihood under every member of the lighting bank.
     pub(crate) log_likelihoods: Vec<f64>,
     /// Log of likelihood and prior, nats.
     pub(crate) score: f64,
+    /// Log of the prior of the first pose and of what went wrong since, nats.
+    pub(crate) log_prior: f64,
+    /// Length of its next step, as a share of the first.
+    pub(crate) step: f64,
     /// Whether it descends from a place that was pursued before the search.
     pub(crate) is_known: bool,
 }

@@ -5,11 +5,26 @@ use rand::Rng;
 use wayfix_color_map::Projector;
 use wayfix_particle::{ChunkRng, ParticleSet};
 
-use super::{candidate::Candidate, search::Search};
+use super::{
+    acquisition::Effort,
+    candidate::Candidate,
+    hidden::or_hidden,
+    search::{Search, stride},
+    trajectory::Trajectory,
+};
 use crate::{
     ColorModelError, Frame, PixelSums,
     likelihood::{JointLikelihood, gather},
 };
+
+/// What a step's length is multiplied by after a success, and after a failure: it stays the same when one in five succeeds [Rechenberg 1973].
+const LONGER: f64 = 1.5;
+const SHORTER: f64 = 0.9036;
+
+/// A place from which less of the frames shows the map than this share is not looked at more closely: nothing speaks against it, whatever is seen.
+const LEAST_IN_VIEW: f64 = 0.1;
+/// What puts such a place behind all others, nats.
+const BLIND: f64 = 1e6;
 
 /// What one thread works with.
 pub(super) struct Scratch {
@@ -37,47 +52,91 @@ impl Search<'_> {
         Ok(set.states().to_vec())
     }
 
-    /// Tries steps, and takes those that explain the frames better.
+    /// Tries steps in a pass, and takes those that explain the frames better: first of the whole trajectory, longer after a success and shorter after a
+    /// failure, then, in the later passes, of the odometry and of the camera's error at every frame.
     pub(super) fn refine<R: Rng + ?Sized>(
         &self,
         scratch: &mut Scratch,
         candidate: &mut Candidate,
-        scale: f64,
+        pass: u32,
         rng: &mut R,
     ) {
         let acquisition = &self.params.acquisition;
-        let n_colors = self.map.colors().len();
-        let sigmas = Vector3::new(acquisition.reach, acquisition.reach, acquisition.turn) * scale;
-        let mut trajectory = candidate.trajectory.moved(&sigmas, scale, rng);
-        self.area.clamp(&mut trajectory.newest);
-        let mut moved = Candidate { trajectory, ..candidate.clone() };
-        self.weigh(scratch, &mut moved, self.shots.len());
-        if moved.score > candidate.score {
-            *candidate = moved;
+        let effort = acquisition.effort(pass);
+        if pass == 0 || effort != acquisition.effort(pass - 1) {
+            self.weigh(scratch, candidate, effort);
         }
-        for at in 0..self.shots.len() {
-            let trajectory = candidate.trajectory.jolted(at, scale, rng);
-            let mut jolted = Candidate { trajectory, ..candidate.clone() };
-            let locations = jolted.trajectory.locations(&self.shots, &self.params.camera);
-            let camera_pose = locations[at].camera_pose(&self.shots[at].mount);
-            let sums = &mut jolted.sums[at * n_colors..][..n_colors];
-            let margin = self.params.acquisition.edge_margin;
-            if gather(&mut scratch.projector, |_| Some(&self.frames[at]), &camera_pose, margin, sums).is_ok()
-            {
-                self.score(scratch, &mut jolted);
-                if jolted.score > candidate.score {
-                    *candidate = jolted;
-                }
+        for _ in 0..acquisition.n_moves {
+            let sigmas =
+                Vector3::new(acquisition.reach, acquisition.reach, acquisition.turn) * candidate.step;
+            let is_better =
+                self.consider(scratch, candidate, candidate.trajectory.moved(&sigmas, rng), effort);
+            candidate.step *= if is_better { LONGER } else { SHORTER };
+        }
+        if acquisition.is_fine(pass) {
+            let fresh = acquisition.scale(pass);
+            self.consider(scratch, candidate, candidate.trajectory.rewalked(fresh, rng), effort);
+            for at in 0..self.shots.len() {
+                self.jolt(scratch, candidate, at, fresh, rng);
             }
         }
     }
 
-    /// Weighs a candidate by `n_shots` of the frames.
-    pub(super) fn weigh(&self, scratch: &mut Scratch, candidate: &mut Candidate, n_shots: usize) {
+    /// Takes a trajectory if it is better, and says whether.
+    fn consider(
+        &self,
+        scratch: &mut Scratch,
+        candidate: &mut Candidate,
+        mut trajectory: Trajectory,
+        effort: Effort,
+    ) -> bool {
+        self.area.clamp(&mut trajectory.newest);
+        let mut moved = Candidate { trajectory, ..candidate.clone() };
+        self.weigh(scratch, &mut moved, effort);
+        let is_better = moved.score > candidate.score;
+        if is_better {
+            *candidate = moved;
+        }
+        is_better
+    }
+
+    /// Tries another error of the camera at one frame.
+    fn jolt<R: Rng + ?Sized>(
+        &self,
+        scratch: &mut Scratch,
+        candidate: &mut Candidate,
+        at: usize,
+        fresh: f64,
+        rng: &mut R,
+    ) {
+        let n_colors = self.map.colors().len();
+        let trajectory = candidate.trajectory.jolted(at, fresh, rng);
+        let mut jolted = Candidate { trajectory, ..candidate.clone() };
+        let locations = jolted.trajectory.locations(&self.shots, &self.params.camera);
+        let camera_pose = locations[at].camera_pose(&self.shots[at].mount);
+        let sums = &mut jolted.sums[at * n_colors..][..n_colors];
+        let margin = self.params.acquisition.edge_margin;
+        if gather(&mut scratch.projector, |_| Some(&self.frames[at]), &camera_pose, margin, sums).is_ok() {
+            jolted.log_prior += jolted.trajectory.log_prior() - candidate.trajectory.log_prior();
+            self.weigh_frame(scratch, &mut jolted, at, Effort::Full);
+            self.score(scratch, &mut jolted);
+            if jolted.score > candidate.score {
+                *candidate = jolted;
+            }
+        }
+    }
+
+    /// Weighs a candidate by all frames or by a few.
+    pub(super) fn weigh(&self, scratch: &mut Scratch, candidate: &mut Candidate, effort: Effort) {
         let n_colors = self.map.colors().len();
         let locations = candidate.trajectory.locations(&self.shots, &self.params.camera);
-        let stride = self.shots.len().div_ceil(n_shots.max(1)).max(1);
+        candidate.log_prior = self.start.log_prior(&locations[0].body) + candidate.trajectory.log_prior();
+        let stride = match effort {
+            Effort::Coarse => stride(self.shots.len(), self.params.acquisition.n_coarse),
+            Effort::Full => 1,
+        };
         candidate.sums.fill(PixelSums::default());
+        candidate.by_frame.fill(0.0);
         for at in (0..self.shots.len()).rev().step_by(stride) {
             let camera_pose = locations[at].camera_pose(&self.shots[at].mount);
             let sums = &mut candidate.sums[at * n_colors..][..n_colors];
@@ -86,21 +145,52 @@ impl Search<'_> {
             {
                 sums.fill(PixelSums::default());
             }
+            self.weigh_frame(scratch, candidate, at, effort);
         }
         self.score(scratch, candidate);
+        let n_seen = candidate.sums.iter().map(|sums| sums.count() + sums.n_outliers()).sum::<u64>() as f64;
+        let n_pixels = self.frames.first().map_or(0, Frame::n_pixels) * self.shots.len().div_ceil(stride);
+        if effort == Effort::Coarse && !candidate.is_known && n_seen < LEAST_IN_VIEW * n_pixels as f64 {
+            candidate.score -= BLIND;
+        }
     }
 
-    /// $`\ln \int \prod_k p(z_k | x_k, θ)\, p(θ)\, dθ`$: the sums of all frames as if they were of one.
+    /// What frame `at` says alone, which in a light that is known is all that it says.
+    fn weigh_frame(&self, scratch: &mut Scratch, candidate: &mut Candidate, at: usize, effort: Effort) {
+        let Some(hidden) = self.hidden else { return };
+        let (n_colors, n_members) = (self.map.colors().len(), self.light.bank.n_members());
+        let sums = &candidate.sums[at * n_colors..][..n_colors];
+        for member in 0..n_members {
+            let value = self.log_likelihood(&mut scratch.joint, sums, member);
+            // From afar nothing fits, so that all would be hidden: there it counts how badly.
+            let value = if effort == Effort::Full { or_hidden(value, hidden) } else { value };
+            candidate.by_frame[at * n_members + member] = value;
+        }
+    }
+
+    /// Under a light that is not known yet, $`\ln \int \prod_k p(z_k | x_k, θ)\, p(θ)\, dθ`$: the sums of all frames as if they were of one. Under a
+    /// known one the frames are independent, and each of them may be hidden.
     fn score(&self, scratch: &mut Scratch, candidate: &mut Candidate) {
         let Scratch { joint, totals, .. } = scratch;
-        candidate.total(totals.len(), totals);
-        let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
-        for (member, log_likelihood) in candidate.log_likelihoods.iter_mut().enumerate() {
-            let filter = self.light.bank.member(member);
-            let value = joint.log_likelihood(totals, filter, &self.params.pixels, &self.noise, n_pixels);
-            *log_likelihood = if value.is_nan() { f64::NEG_INFINITY } else { value };
+        let n_members = self.light.bank.n_members();
+        if self.hidden.is_none() {
+            candidate.total(totals.len(), totals);
+        }
+        for member in 0..n_members {
+            candidate.log_likelihoods[member] = if self.hidden.is_none() {
+                self.log_likelihood(joint, totals, member)
+            } else {
+                candidate.by_frame[member..].iter().step_by(n_members).sum()
+            };
         }
         let best = candidate.log_likelihoods.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        candidate.score = best + candidate.trajectory.log_prior();
+        candidate.score = best + candidate.log_prior;
+    }
+
+    fn log_likelihood(&self, joint: &mut JointLikelihood, sums: &[PixelSums], member: usize) -> f64 {
+        let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
+        let filter = self.light.bank.member(member);
+        let value = joint.log_likelihood(sums, filter, &self.params.pixels, &self.noise, n_pixels);
+        if value.is_nan() { f64::NEG_INFINITY } else { value }
     }
 }

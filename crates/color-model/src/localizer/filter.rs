@@ -16,6 +16,9 @@ use super::{
 };
 use crate::{AcquisitionParams, Background, ColorModelError, LightingBank, YuvImage};
 
+/// Probability of the best place from which on it is called tracked.
+const SURE: f64 = 0.95;
+
 /// Finds out where a robot stands on a colour-coded field and what the colours look like in today's light, at once.
 ///
 /// The Rao-Blackwellised particle filter of [Schulz & Fox 2004, IV]: a particle is a camera location and, conditioned on it, a switching
@@ -38,6 +41,8 @@ pub struct ColorLocalizer {
     pub(super) shots: Shots,
     pub(super) vigilance: Vigilance,
     pub(super) n_updates: usize,
+    /// Searches since the place was sure and the light with it.
+    pub(super) n_in_vain: usize,
     /// Frames since the robot was looked for.
     pub(super) n_since_search: usize,
 }
@@ -80,6 +85,7 @@ impl ColorLocalizer {
                 particles,
                 weights: Weights::from_linear(vec![1.0; params.max_particles])?,
                 log_evidence: 0.0,
+                hidden: 0.0,
             }],
             trusted: Arc::clone(&prior),
             prior,
@@ -88,6 +94,7 @@ impl ColorLocalizer {
             shots: Shots::default(),
             vigilance: Vigilance::default(),
             n_updates: 0,
+            n_in_vain: 1,
             n_since_search: 0,
         })
     }
@@ -188,12 +195,14 @@ impl ColorLocalizer {
         let hypotheses =
             judged.iter().map(|one| self.renewed(one, judged.len(), rng)).collect::<Result<Vec<_>, _>>()?;
         outcome.n_particles = hypotheses.iter().map(|hypothesis| hypothesis.particles.len()).sum();
-        let is_confirmed = hypotheses.len() == 1 && !vigilance.is_doubtful();
+        let is_confirmed = hypotheses.len() == 1 && vigilance.is_sound(&self.params);
         if let Some(light) = hypotheses.first().and_then(Hypothesis::light)
             && is_confirmed
-            && (is_search || Arc::ptr_eq(&self.trusted, &self.prior))
+            && (is_search || self.n_in_vain > 0)
         {
-            self.trusted = Arc::clone(light);
+            (self.trusted, self.n_in_vain) = (Arc::clone(light), 0);
+        } else if is_search {
+            self.n_in_vain += 1;
         }
         (self.hypotheses, self.shots, self.vigilance) = (hypotheses, shots, vigilance);
         (self.walked, self.n_updates, self.n_since_search) =
@@ -204,6 +213,7 @@ impl ColorLocalizer {
     /// Whether it is time to look for the robot again although nothing is doubted.
     fn is_routine(&self) -> bool {
         let AcquisitionParams { n_frames, every, .. } = self.params.acquisition;
+        let every = if self.n_in_vain > 1 { every.div_ceil(2) } else { every };
         every > 0 && self.n_since_search + 1 >= every && self.n_updates > n_frames
     }
 
@@ -224,7 +234,7 @@ impl ColorLocalizer {
         let is_narrow = estimate.position_sigma() < 0.3 && estimate.heading_sigma() < 0.3;
         if vigilance.recent() < self.params.lost_fit {
             Fix::Lost
-        } else if share > 0.5 && is_narrow && self.n_updates >= self.params.acquisition.n_frames {
+        } else if share > SURE && is_narrow && self.n_updates >= self.params.acquisition.n_frames {
             Fix::Tracking
         } else {
             Fix::Ambiguous

@@ -15,6 +15,8 @@ pub(crate) struct Hypothesis {
     pub(crate) weights: Weights,
     /// Log-likelihood of the frames since the robot was looked for, nats.
     pub(crate) log_evidence: f64,
+    /// Probability that the last view was hidden, if the robot is here.
+    pub(crate) hidden: f64,
 }
 
 impl Hypothesis {
@@ -41,6 +43,8 @@ pub(crate) struct Judged {
     pub(crate) seen: Seen,
     pub(crate) estimate: PoseEstimate,
     pub(crate) log_evidence: f64,
+    /// Probability that the view was hidden.
+    pub(crate) hidden: f64,
 }
 
 /// Poses nearer to each other than this, in metres and in radians, belong together.

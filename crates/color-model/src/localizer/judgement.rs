@@ -41,7 +41,7 @@ impl ColorLocalizer {
         };
         let most = (params.max_particles_lost / n.max(1)).clamp(1, params.max_particles);
         let (particles, weights) = renew(particles, &weighed.weights, &relight, params, most, rng)?;
-        Ok(Hypothesis { particles, weights, log_evidence: judged.log_evidence })
+        Ok(Hypothesis { particles, weights, log_evidence: judged.log_evidence, hidden: judged.hidden })
     }
 
     /// What a frame says of the hypotheses.
@@ -66,17 +66,24 @@ impl ColorLocalizer {
         let frames = &Palette::of(&hypotheses)?.look(image, nats, -pixels.floor)?;
         let weighing = Weighing { map: &self.map, camera: self.camera, frames, mount, pixels, noise };
         let mut judged = Vec::new();
-        for Hypothesis { mut particles, weights, log_evidence } in hypotheses {
+        for Hypothesis { mut particles, weights, log_evidence, hidden } in hypotheses {
             for particle in &mut particles {
                 particle.sampled.error = self.params.camera.after(&particle.sampled.error, seconds, rng);
             }
+            let hidden = self.params.hidden_views.predict(hidden, seconds);
             let views = weighing.views(&particles).ok_or(ColorModelError::NoPose)?;
             let banks = particles.iter().map(|particle| &particle.conditional().bank);
-            let weighed = Weighed::new(banks, &weights, &views, self.params.least_effective, rng)?;
+            let weighed = Weighed::new(banks, &weights, &views, hidden, self.params.least_effective, rng)?;
             let estimate = dominant_cluster(&weighed.poses(&particles)).ok_or(ColorModelError::NoPose)?;
             let fit = weighed.mean_log_likelihood / pixels.independent_pixels;
-            let log_evidence = log_evidence + weighed.mean_log_likelihood;
-            judged.push(Judged { seen: Seen { particles, views, weighed, fit }, estimate, log_evidence });
+            let log_evidence = log_evidence + weighed.mean_log_evidence;
+            let hidden = weighed.hidden;
+            judged.push(Judged {
+                seen: Seen { particles, views, weighed, fit },
+                estimate,
+                log_evidence,
+                hidden,
+            });
         }
         Ok(judged)
     }
@@ -91,13 +98,23 @@ impl ColorLocalizer {
     ) -> Result<Vec<Found>, ColorModelError> {
         let shots = shots.spread(self.params.acquisition.n_weighed);
         let background = self.background.as_ref();
-        let search = Search::new(&self.map, self.camera, &self.area, &self.params, light, shots, background)?;
+        let is_known = !Arc::ptr_eq(light, &self.prior);
+        let search = Search::new(
+            &self.map,
+            self.camera,
+            (&self.area, start),
+            &self.params,
+            light,
+            is_known,
+            shots,
+            background,
+        )?;
         let known: Vec<Pose2<f64>> = if self.n_updates == 0 {
             Vec::new()
         } else {
             self.hypotheses.iter().filter_map(|hypothesis| hypothesis.place()).collect()
         };
-        search.run(|rng| start.draw(&self.area, rng), &known, rng)
+        search.run(&known, rng)
     }
 
     /// The places that are believed in, and those that explain the last frames better.
@@ -108,7 +125,7 @@ impl ColorLocalizer {
         rng: &mut R,
     ) -> Result<Vec<Judged>, ColorModelError> {
         // The light stays as it was when somebody lifts the robot; but it may have been wrong as well.
-        let is_light_doubted = self.vigilance.n_searches() % 2 == 1;
+        let is_light_doubted = self.n_in_vain % 2 == 1;
         let light = if is_light_doubted { &self.prior } else { &self.trusted };
         let found = self.search(shots, &Start::Anywhere, light, rng)?;
         let best = |scores: &mut dyn Iterator<Item = f64>| scores.fold(f64::NEG_INFINITY, f64::max);
@@ -119,10 +136,15 @@ impl ColorLocalizer {
         let start = best(&mut believed.iter().map(|one| one.log_evidence)) - odds;
         // The frames that a place was chosen by among thousands flatter it: only those to come count for it. Meanwhile their order decides.
         let newcomer = |Found { judged, .. }: Found| {
-            let order = 1e-3 * (judged.log_evidence - best_found);
+            let order = judged.log_evidence - best_found;
             Judged { log_evidence: start + order, ..judged }
         };
-        let better = found.into_iter().filter(|one| !one.is_known && of_found(one) > as_known).map(newcomer);
+        let better = found
+            .into_iter()
+            .filter(|one| {
+                !one.is_known && of_found(one) > (as_known - self.params.acquisition.margin).max(0.0)
+            })
+            .map(newcomer);
         Ok(believed.into_iter().chain(better).collect())
     }
 }

@@ -1,3 +1,4 @@
+use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_particle::{Resampler, Systematic, Weights};
 
 use super::{candidate::Candidate, hypothesis::is_same_place, weighed::softened};
@@ -25,19 +26,29 @@ impl Niche {
         niches
     }
 
-    /// Keeps the best, `most` of them, and those that descend from known places; the best first.
+    /// Keeps the best, `most` of them, and those that descend from known places; the best first, and of those that met at one place the best.
     pub(crate) fn retain_best(niches: &mut Vec<Self>, most: usize) {
         niches.sort_by(|a, b| b.best().total_cmp(&a.best()));
-        let mut rank = 0;
-        niches.retain(|niche| {
-            rank += 1;
-            rank <= most || niche.0.iter().any(|candidate| candidate.is_known)
-        });
+        let mut kept: Vec<Self> = Vec::new();
+        for niche in niches.drain(..) {
+            let has_met = |other: &Self| is_same_place(&other.place(), &niche.place());
+            let is_known = niche.0.iter().any(|candidate| candidate.is_known);
+            if is_known || kept.len() < most && !kept.iter().any(has_met) {
+                kept.push(niche);
+            }
+        }
+        *niches = kept;
     }
 
     /// The score of the best.
     pub(crate) fn best(&self) -> f64 {
         self.0.iter().map(|candidate| candidate.score).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Where the best is.
+    fn place(&self) -> Pose2<f64> {
+        let best = self.0.iter().max_by(|a, b| a.score.total_cmp(&b.score));
+        best.map_or_else(Pose2::identity, |candidate| candidate.trajectory.newest)
     }
 
     /// The next generation, of `n` candidates.

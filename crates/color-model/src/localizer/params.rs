@@ -1,4 +1,4 @@
-use super::{AcquisitionParams, CameraNoise, OdometryNoise};
+use super::{AcquisitionParams, CameraNoise, HiddenViews, OdometryNoise};
 use crate::{ColorModelError, PixelParams};
 
 /// What [`ColorLocalizer`](crate::ColorLocalizer) is tuned by.
@@ -32,6 +32,8 @@ pub struct LocalizerParams {
     pub withheld: Option<usize>,
     /// Share of the effective particles that a frame has to leave: its likelihood is softened until it does.
     pub least_effective: f64,
+    /// How often and for how long somebody stands in front of the camera.
+    pub hidden_views: HiddenViews,
     /// How the long-term and the short-term average of the fit follow a frame's: rates of augmented Monte Carlo localization.
     pub slow_rate: f64,
     /// See [`slow_rate`](Self::slow_rate).
@@ -56,6 +58,7 @@ impl Default for LocalizerParams {
             min_pixels: 30,
             withheld: None,
             least_effective: 0.2,
+            hidden_views: HiddenViews::default(),
             slow_rate: 0.02,
             fast_rate: 0.3,
             doubtful_fit: 0.1,
@@ -71,6 +74,9 @@ impl LocalizerParams {
             self.odometry.values().into_iter().chain(self.camera.values()).chain(self.acquisition.values())
         {
             check(what, value, 0.0, f64::MAX)?;
+        }
+        for (what, value) in self.hidden_views.values() {
+            check(what, value, f64::MIN_POSITIVE, f64::MAX)?;
         }
         check("fewest particles", self.min_particles as f64, 1.0, f64::MAX)?;
         check("most particles", self.max_particles as f64, self.min_particles as f64, f64::MAX)?;

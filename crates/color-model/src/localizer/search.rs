@@ -7,9 +7,10 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_particle::{RaoBlackwell, Weights};
 
 use super::{
-    AcquisitionParams, LocalizerParams, candidate::Candidate, estimate::dominant_cluster, hypothesis::Judged,
-    light::Light, niche::Niche, particle::ColorParticle, seen::Seen, shots::Shot, start::Area,
-    surroundings::Surroundings, trajectory::Trajectory, views::Views, weighed::Weighed,
+    AcquisitionParams, LocalizerParams, Start, acquisition::Effort, candidate::Candidate,
+    estimate::dominant_cluster, hypothesis::Judged, light::Light, niche::Niche, particle::ColorParticle,
+    seen::Seen, shots::Shot, sightings::Sightings, start::Area, surroundings::Surroundings,
+    trajectory::Trajectory, views::Views, weighed::Weighed,
 };
 use crate::{Background, ColorModelError, Frame, PixelSums};
 
@@ -25,10 +26,14 @@ pub(crate) struct Search<'a> {
     pub(super) map: &'a Arc<ColorMap>,
     pub(super) camera: Camera,
     pub(super) area: &'a Area,
+    pub(super) start: &'a Start,
     pub(super) params: &'a LocalizerParams,
     pub(super) light: &'a Arc<Light>,
     pub(super) shots: Vec<Shot>,
     pub(super) frames: Vec<Frame>,
+    /// Probability that a view is hidden, if the light is known; under a light that is not, all frames are weighed at once.
+    pub(super) hidden: Option<f64>,
+    sightings: Sightings,
     /// Variance of a map colour's pixels.
     pub(super) noise: Vector3<f64>,
 }
@@ -37,9 +42,10 @@ impl<'a> Search<'a> {
     pub(crate) fn new(
         map: &'a Arc<ColorMap>,
         camera: Camera,
-        area: &'a Area,
+        (area, start): (&'a Area, &'a Start),
         params: &'a LocalizerParams,
         light: &'a Arc<Light>,
+        is_light_known: bool,
         shots: Vec<Shot>,
         background: Option<&Background>,
     ) -> Result<Self, ColorModelError> {
@@ -56,19 +62,22 @@ impl<'a> Search<'a> {
             .map(|image| Frame::with_background(image, |pixel| Some(nats(pixel))))
             .collect::<Result<_, _>>()?;
         let camera = params.acquisition.camera(&camera)?;
-        Ok(Self { map, camera, area, params, light, shots, frames, noise })
+        let stride = stride(shots.len(), params.acquisition.n_coarse);
+        let coarse = images.iter().enumerate().rev().step_by(stride);
+        let sightings = Sightings::of(coarse, &shots, &camera, map, light, nats)?;
+        let hidden = is_light_known.then(|| params.hidden_views.usual());
+        Ok(Self { map, camera, area, start, params, light, shots, frames, hidden, sightings, noise })
     }
 
-    /// The places that explain the frames best, of those whose first poses are drawn from `first` and of those `known` at the newest frame, with
+    /// The places that explain the frames best, of those whose first poses are drawn from `start` or fit a sighting, and of those `known` at the newest frame, with
     /// the log-likelihood of all frames.
     pub(crate) fn run<R: Rng + ?Sized>(
         &self,
-        first: impl FnMut(&mut R) -> Pose2<f64>,
         known: &[Pose2<f64>],
         rng: &mut R,
     ) -> Result<Vec<Found>, ColorModelError> {
         let AcquisitionParams { n_niches, n_passes, n_kept, .. } = self.params.acquisition;
-        let mut niches = Niche::apart(self.candidates(first, known, rng)?, n_niches);
+        let mut niches = Niche::apart(self.candidates(known, rng)?, n_niches);
         for pass in 0..n_passes {
             niches = self.refined(&niches, pass, rng)?;
             let fewer = (2 * niches.len()).div_ceil(3).max(n_kept);
@@ -80,7 +89,7 @@ impl<'a> Search<'a> {
             let seen = self.seen(&niche.0, rng)?;
             let estimate =
                 dominant_cluster(&seen.weighed.poses(&seen.particles)).ok_or(ColorModelError::NoPose)?;
-            Ok(Found { judged: Judged { seen, estimate, log_evidence: niche.best() }, is_known })
+            Ok(Found { judged: Judged { seen, estimate, log_evidence: niche.best(), hidden: 0.0 }, is_known })
         };
         niches.iter().map(found).collect()
     }
@@ -88,15 +97,15 @@ impl<'a> Search<'a> {
     /// Candidates all over the start, weighed by a few frames, and those of known places, before them.
     fn candidates<R: Rng + ?Sized>(
         &self,
-        mut first: impl FnMut(&mut R) -> Pose2<f64>,
         known: &[Pose2<f64>],
         rng: &mut R,
     ) -> Result<Vec<Candidate>, ColorModelError> {
-        let AcquisitionParams { n_drawn, n_coarse, .. } = self.params.acquisition;
+        let AcquisitionParams { n_drawn, .. } = self.params.acquisition;
         let mut candidates: Vec<Candidate> = known.iter().map(|place| self.known_candidate(place)).collect();
-        let drawn = (0..n_drawn).map(|_| self.candidate(&first(rng))).collect();
-        candidates
-            .extend(self.each(drawn, rng, |scratch, candidate, _| self.weigh(scratch, candidate, n_coarse))?);
+        let drawn = (0..n_drawn).map(|n| self.drawn(n, rng)).collect();
+        candidates.extend(
+            self.each(drawn, rng, |scratch, candidate, _| self.weigh(scratch, candidate, Effort::Coarse))?,
+        );
         Ok(candidates)
     }
 
@@ -113,12 +122,8 @@ impl<'a> Search<'a> {
         for niche in niches {
             candidates.extend(niche.resampled(n_each, least_effective, rng)?);
         }
-        let scale = self.params.acquisition.scale(pass);
         let refined = self.each(candidates, rng, |scratch, candidate, rng| {
-            if pass == 0 {
-                self.weigh(scratch, candidate, self.shots.len());
-            }
-            self.refine(scratch, candidate, scale, rng);
+            self.refine(scratch, candidate, pass, rng);
         })?;
         Ok(refined.chunks(n_each).map(|candidates| Niche(candidates.to_vec())).collect())
     }
@@ -133,7 +138,7 @@ impl<'a> Search<'a> {
         }
         let banks = candidates.iter().map(|_| &self.light.bank);
         let equal = Weights::from_linear(vec![1.0; candidates.len()])?;
-        let weighed = Weighed::new(banks, &equal, &views, self.params.acquisition.least_effective, rng)?;
+        let weighed = Weighed::new(banks, &equal, &views, 0.0, self.params.acquisition.least_effective, rng)?;
         let particle = |candidate: &Candidate| -> Option<ColorParticle> {
             let newest = candidate.trajectory.locations(&self.shots, &self.params.camera).pop()?;
             Some(RaoBlackwell::from_shared(newest, Arc::clone(self.light)))
@@ -144,21 +149,40 @@ impl<'a> Search<'a> {
         Ok(Seen { particles, views, weighed, fit })
     }
 
+    /// A candidate that the start allows; if that is anywhere, every other one shows a landmark where a frame does.
+    fn drawn<R: Rng + ?Sized>(&self, n: usize, rng: &mut R) -> Candidate {
+        let sighted = match self.start {
+            Start::Anywhere if n % 2 == 0 => self.sightings.draw(self.area, rng),
+            _ => None,
+        };
+        let (at, pose) = sighted.unwrap_or_else(|| (0, self.start.draw(self.area, rng)));
+        self.candidate(&pose, at)
+    }
+
     fn known_candidate(&self, place: &Pose2<f64>) -> Candidate {
-        let mut candidate = Candidate { is_known: true, score: f64::MAX, ..self.candidate(place) };
+        let mut candidate =
+            Candidate { is_known: true, score: f64::MAX, ..self.candidate(place, self.shots.len()) };
         candidate.trajectory.newest = *place;
         candidate
     }
 
-    fn candidate(&self, first: &Pose2<f64>) -> Candidate {
-        let mut trajectory = Trajectory::from(first, &self.shots);
+    fn candidate(&self, pose: &Pose2<f64>, at: usize) -> Candidate {
+        let mut trajectory = Trajectory::through(pose, at, &self.shots);
         self.area.clamp(&mut trajectory.newest);
         Candidate {
             trajectory,
             sums: vec![PixelSums::default(); self.shots.len() * self.map.colors().len()],
+            by_frame: vec![0.0; self.shots.len() * self.light.bank.n_members()],
             log_likelihoods: vec![0.0; self.light.bank.n_members()],
+            log_prior: 0.0,
             score: f64::NEG_INFINITY,
+            step: 1.0,
             is_known: false,
         }
     }
+}
+
+/// Steps between frames of `len` that leave at most `most`.
+pub(super) fn stride(len: usize, most: usize) -> usize {
+    len.div_ceil(most.max(1)).max(1)
 }

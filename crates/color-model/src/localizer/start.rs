@@ -35,6 +35,11 @@ impl Area {
         }
     }
 
+    /// Whether a pose is inside.
+    pub(crate) fn contains(&self, pose: &Pose2<f64>) -> bool {
+        (0..2).all(|axis| (self.min[axis]..=self.max[axis]).contains(&pose.translation[axis]))
+    }
+
     pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Pose2<f64> {
         let mut between =
             |axis: usize| self.min[axis] + rng.random::<f64>() * (self.max[axis] - self.min[axis]);
@@ -49,6 +54,15 @@ impl Start {
         match self {
             Self::Near(about) => about.sampler().sample(rng),
             Self::Anywhere => area.sample(rng),
+        }
+    }
+
+    /// $`\ln p`$ of a pose, up to a constant.
+    pub(crate) fn log_prior(&self, pose: &Pose2<f64>) -> f64 {
+        match self {
+            // A start without uncertainty is drawn where it is; it cannot be weighed.
+            Self::Near(about) => about.mahalanobis_squared(pose).map_or(0.0, |squared| -0.5 * squared),
+            Self::Anywhere => 0.0,
         }
     }
 }

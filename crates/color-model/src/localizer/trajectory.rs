@@ -16,9 +16,9 @@ pub(crate) struct Trajectory {
 }
 
 impl Trajectory {
-    /// One that starts at `first` and goes as odometry says.
-    pub(crate) fn from(first: &Pose2<f64>, shots: &[Shot]) -> Self {
-        let newest = shots.iter().skip(1).fold(*first, |body, shot| body.compose(&shot.walked.increment));
+    /// One that is at `pose` at shot `at` and goes as odometry says.
+    pub(crate) fn through(pose: &Pose2<f64>, at: usize, shots: &[Shot]) -> Self {
+        let newest = shots.iter().skip(at + 1).fold(*pose, |body, shot| body.compose(&shot.walked.increment));
         Self {
             newest,
             walks: vec![Vector3::zeros(); shots.len()],
@@ -33,12 +33,17 @@ impl Trajectory {
         -0.5 * walks.chain(errors).sum::<f64>()
     }
 
-    /// Another near it: the newest pose moved by a normal step, and so are the deviates of odometry.
-    pub(crate) fn moved<R: Rng + ?Sized>(&self, sigmas: &Vector3<f64>, fresh: f64, rng: &mut R) -> Self {
-        let mut normal = |sigma: f64| sigma * rng.sample::<f64, _>(StandardNormal);
-        let newest = self.newest.retract(&sigmas.map(&mut normal));
-        let walks = self.walks.iter().map(|walk| walk.map(|deviate| deviate + normal(fresh))).collect();
-        Self { newest, walks, errors: self.errors.clone() }
+    /// Another near it: moved as a whole by a normal step.
+    pub(crate) fn moved<R: Rng + ?Sized>(&self, sigmas: &Vector3<f64>, rng: &mut R) -> Self {
+        let step = sigmas.map(|sigma| sigma * rng.sample::<f64, _>(StandardNormal));
+        Self { newest: self.newest.retract(&step), ..self.clone() }
+    }
+
+    /// Another whose odometry erred a little differently.
+    pub(crate) fn rewalked<R: Rng + ?Sized>(&self, fresh: f64, rng: &mut R) -> Self {
+        let mut normal = |deviate: f64| deviate + fresh * rng.sample::<f64, _>(StandardNormal);
+        let walks = self.walks.iter().map(|walk| walk.map(&mut normal)).collect();
+        Self { walks, ..self.clone() }
     }
 
     /// Another whose camera erred a little differently at one shot.

@@ -12,12 +12,13 @@ pub(crate) struct Vigilance {
     n_doubtful: usize,
     /// Frames of doubt until the next search: more after each that was in vain.
     patience: usize,
-    /// Searches since there was no doubt.
-    n_searches: usize,
 }
 
 /// Share of its usual value below which a fit has fallen.
 const FALLEN: f64 = 0.7;
+
+/// Fit, as a multiple of the doubtful one, from which on nothing is doubted.
+const SOUND: f64 = 2.0;
 
 /// Most frames of doubt between two searches.
 const LONGEST_PATIENCE: usize = 200;
@@ -32,7 +33,7 @@ impl Vigilance {
         if fast < FALLEN * slow || fast < params.doubtful_fit {
             self.n_doubtful += 1;
         } else {
-            (self.n_doubtful, self.patience, self.n_searches) = (0, 0, 0);
+            (self.n_doubtful, self.patience) = (0, 0);
         }
     }
 
@@ -46,12 +47,9 @@ impl Vigilance {
         n_frames > 0 && self.n_doubtful >= self.patience.max(n_frames)
     }
 
-    pub(crate) fn is_doubtful(&self) -> bool {
-        self.n_doubtful > 0
-    }
-
-    pub(crate) fn n_searches(&self) -> usize {
-        self.n_searches
+    /// Whether what is seen leaves no doubt of the place, nor of the light that was learned there.
+    pub(crate) fn is_sound(&self, params: &LocalizerParams) -> bool {
+        self.n_doubtful == 0 && self.recent() >= SOUND * params.doubtful_fit
     }
 
     /// Begins anew after a search.
@@ -61,7 +59,7 @@ impl Vigilance {
         } else {
             (2 * self.patience).min(LONGEST_PATIENCE)
         };
-        Self { patience, averages: self.averages, n_doubtful: 0, n_searches: self.n_searches + 1 }
+        Self { patience, averages: self.averages, n_doubtful: 0 }
     }
 
     /// How far the doubt is from leading to a search, 0 to 1.

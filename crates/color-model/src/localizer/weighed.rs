@@ -2,8 +2,15 @@ use rand::{Rng, RngExt};
 use wayfix_estimation_traits::Pose2;
 use wayfix_particle::Weights;
 
-use super::{particle::ColorParticle, views::Views};
+use super::{
+    hidden::{or_hidden, was_hidden},
+    particle::ColorParticle,
+    views::Views,
+};
 use crate::{ColorModelError, LightingBank};
+
+/// Log-likelihood of a view that cannot be, where a mean is taken, nats.
+const IMPOSSIBLE: f64 = -1e6;
 
 /// Importance weights, and the lighting filter that each particle chose.
 pub(crate) struct Weighed {
@@ -14,6 +21,10 @@ pub(crate) struct Weighed {
     pub(crate) log_evidence: f64,
     /// Mean log-likelihood over the weighed particles, nats.
     pub(crate) mean_log_likelihood: f64,
+    /// The same of a frame that may be hidden.
+    pub(crate) mean_log_evidence: f64,
+    /// Probability that it is.
+    pub(crate) hidden: f64,
     /// The exponent of the likelihoods that left enough particles effective, at most 1.
     pub(crate) tempering: f64,
     n_members: usize,
@@ -29,6 +40,7 @@ impl Weighed {
         banks: impl Iterator<Item = &'a LightingBank>,
         prior: &Weights,
         views: &Views,
+        hidden: f64,
         least_effective: f64,
         rng: &mut R,
     ) -> Result<Self, ColorModelError> {
@@ -36,15 +48,20 @@ impl Weighed {
             banks.enumerate().map(|(at, bank)| draw_member(bank, views.by_member(at), rng)).collect();
         let log_likelihoods: Vec<f64> = draws.iter().map(|(_, log_likelihood)| *log_likelihood).collect();
         let least = least_effective * prior.effective_sample_size();
-        let (weights, tempering) = softened(&log_likelihoods, prior, least)?;
+        let log_evidences: Vec<f64> = log_likelihoods.iter().map(|l| or_hidden(*l, hidden)).collect();
+        let (weights, tempering) = softened(&log_evidences, prior, least)?;
         let log_weights: Vec<f64> =
-            log_likelihoods.iter().zip(prior.as_slice()).map(|(l, w)| l + w.ln()).collect();
-        let weighed = || draws.iter().zip(weights.as_slice()).filter(|(_, weight)| **weight > 0.0);
-        let mean_log_likelihood = weighed().map(|((_, l), w)| l * w).sum();
+            log_evidences.iter().zip(prior.as_slice()).map(|(l, w)| l + w.ln()).collect();
+        let mean = |value: &dyn Fn(usize) -> f64| {
+            let weighed = weights.as_slice().iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+            weighed.map(|(at, weight)| value(at) * weight).sum()
+        };
         Ok(Self {
             log_evidence: wayfix_gaussian_core::log_sum_exp(&log_weights),
             members: draws.iter().map(|(member, _)| *member).collect(),
-            mean_log_likelihood,
+            mean_log_likelihood: mean(&|at| log_likelihoods[at].max(IMPOSSIBLE)),
+            mean_log_evidence: mean(&|at| log_evidences[at]),
+            hidden: mean(&|at| was_hidden(log_likelihoods[at], hidden)),
             tempering,
             n_members: views.n_members(),
             weights,
