@@ -7,7 +7,8 @@ use crate::ColorModelError;
 /// One frame is not enough: under a light that is hardly known, some false place explains it better than the true one, with a light to
 /// suit. The same light has to explain all frames of a while, and of those the false place cannot make sense. So the last frames are kept, and
 /// whole trajectories are weighed by all of them at once under one light. The likelihood is narrow, hence the trajectories are drawn near to its
-/// peaks by an annealed particle filter [Deutscher et al. 2000]: weighed softly, resampled, moved by ever smaller steps.
+/// peaks: drawn where landmarks would be seen as they are, gathered into places, and moved by steps that grow with success and shrink with failure
+/// [Rechenberg 1973], while of the places only the better go on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -52,7 +53,7 @@ pub struct AcquisitionParams {
     pub n_moves: usize,
     /// A pass is softened until this share of the trajectories is effective.
     pub least_effective: f64,
-    /// Standard deviation of the steps after the first pass, metres. They shrink by the same factor from pass to pass, to a tenth at the last.
+    /// Standard deviation of the first steps, metres.
     pub reach: f64,
     /// The same for the heading, radians.
     pub turn: f64,

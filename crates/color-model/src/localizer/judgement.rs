@@ -12,7 +12,7 @@ use super::{
     palette::Palette,
     relight::{Relight, predict_light},
     renewal::renew,
-    search::{Found, Search},
+    search::{Found, Premise, Search},
     seen::Seen,
     shots::Shots,
     surroundings::Surroundings,
@@ -98,17 +98,9 @@ impl ColorLocalizer {
     ) -> Result<Vec<Found>, ColorModelError> {
         let shots = shots.spread(self.params.acquisition.n_weighed);
         let background = self.background.as_ref();
-        let is_known = !Arc::ptr_eq(light, &self.prior);
-        let search = Search::new(
-            &self.map,
-            self.camera,
-            (&self.area, start),
-            &self.params,
-            light,
-            is_known,
-            shots,
-            background,
-        )?;
+        let premise = Premise { start, light, is_light_known: !Arc::ptr_eq(light, &self.prior) };
+        let search =
+            Search::new(&self.map, self.camera, &self.area, &self.params, premise, shots, background)?;
         let known: Vec<Pose2<f64>> = if self.n_updates == 0 {
             Vec::new()
         } else {

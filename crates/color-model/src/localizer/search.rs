@@ -21,6 +21,15 @@ pub(crate) struct Found {
     pub(crate) is_known: bool,
 }
 
+/// What is known before the frames.
+pub(crate) struct Premise<'a> {
+    /// Where the robot may have been at the first of them.
+    pub(crate) start: &'a Start,
+    pub(crate) light: &'a Arc<Light>,
+    /// Whether that light was learned here, or is only what light may be.
+    pub(crate) is_light_known: bool,
+}
+
 /// Looks for the robot in several frames at once, under one light.
 pub(crate) struct Search<'a> {
     pub(super) map: &'a Arc<ColorMap>,
@@ -42,10 +51,9 @@ impl<'a> Search<'a> {
     pub(crate) fn new(
         map: &'a Arc<ColorMap>,
         camera: Camera,
-        (area, start): (&'a Area, &'a Start),
+        area: &'a Area,
         params: &'a LocalizerParams,
-        light: &'a Arc<Light>,
-        is_light_known: bool,
+        Premise { start, light, is_light_known }: Premise<'a>,
         shots: Vec<Shot>,
         background: Option<&Background>,
     ) -> Result<Self, ColorModelError> {
@@ -69,7 +77,7 @@ impl<'a> Search<'a> {
         Ok(Self { map, camera, area, start, params, light, shots, frames, hidden, sightings, noise })
     }
 
-    /// The places that explain the frames best, of those whose first poses are drawn from `start` or fit a sighting, and of those `known` at the newest frame, with
+    /// The places that explain the frames best, of those that the start allows or a sighting suggests and of those `known` at the newest frame, with
     /// the log-likelihood of all frames.
     pub(crate) fn run<R: Rng + ?Sized>(
         &self,
@@ -152,7 +160,7 @@ impl<'a> Search<'a> {
     /// A candidate that the start allows; if that is anywhere, every other one shows a landmark where a frame does.
     fn drawn<R: Rng + ?Sized>(&self, n: usize, rng: &mut R) -> Candidate {
         let sighted = match self.start {
-            Start::Anywhere if n % 2 == 0 => self.sightings.draw(self.area, rng),
+            Start::Anywhere if n.is_multiple_of(2) => self.sightings.draw(self.area, rng),
             _ => None,
         };
         let (at, pose) = sighted.unwrap_or_else(|| (0, self.start.draw(self.area, rng)));

@@ -128,3 +128,51 @@ fn marks(map: &ColorMap) -> Vec<Mark> {
     }
     marks
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use wayfix_color_map::Band;
+
+    use super::*;
+
+    #[test]
+    fn from_every_drawn_pose_the_post_is_where_the_blob_was_and_about_as_large() {
+        let bands = vec![Band { color: ColorId(1), from: 0.2, to: 0.4 }];
+        let post = Shape::Post { x: 1.0, y: 0.5, radius: 0.05, bands };
+        let carpet = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)];
+        let vertices = carpet.map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec();
+        let carpet = Shape::Polygon { color: ColorId(0), vertices };
+        let map = ColorMap::new(vec!["green".into(), "pink".into()], vec![carpet, post]).unwrap();
+        let area = Area::of(&map).unwrap();
+        // A square metre at a distance of one is a steradian: the band of 0.02 m² is seen from 1 m.
+        let camera = Vector2::new(0.1, 0.02);
+        let sighting = Sighting { shot: 3, azimuth: 0.4, extent: 0.02, camera };
+        let sightings = Sightings { marks: marks(&map), blobs: vec![Vec::new(), vec![sighting]] };
+        assert_eq!(sightings.marks.len(), 1, "the carpet is no landmark");
+
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let (mut log_distances, mut n_left) = (Vec::new(), 0);
+        for (shot, pose) in (0..500).filter_map(|_| sightings.draw(&area, &mut rng)) {
+            let rotation = nalgebra::Rotation2::new(pose.heading());
+            let to_post = Vector2::new(1.0, 0.5) - (pose.translation + rotation * camera);
+            let off = to_post.y.atan2(to_post.x) - pose.heading() - 0.4;
+            assert!(off.rem_euclid(2.0 * PI).min((-off).rem_euclid(2.0 * PI)) < 1e-9 && shot == 3);
+            log_distances.push(to_post.norm().ln());
+            n_left += usize::from(to_post.x > 0.0);
+        }
+        let n = log_distances.len();
+        assert!(n > 400 && (n / 5..4 * n / 5).contains(&n_left), "from all around: {n_left} of {n}");
+        let mean = log_distances.iter().sum::<f64>() / n as f64;
+        let variance = log_distances.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / n as f64;
+        // Five standard errors; the border of the field takes away what is farthest.
+        let standard_error = LOG_DISTANCE / (n as f64).sqrt();
+        assert!(
+            mean.abs() < 5.0 * standard_error && variance.sqrt() < 1.2 * LOG_DISTANCE,
+            "{mean} {variance}"
+        );
+    }
+}
