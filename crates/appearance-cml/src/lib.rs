@@ -22,7 +22,7 @@ pub use localizer::{
 };
 pub use model::{
     AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,
-    Recognition, Reference, Sighting, ViewScale, interpolate, similarity, superpose,
+    Reference, Sighting, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
     AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,

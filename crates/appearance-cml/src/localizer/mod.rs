@@ -2,7 +2,10 @@
 
 mod anywhere;
 mod appearance_localizer;
+mod belief;
+mod contest;
 mod doubt;
+mod fit;
 mod journey;
 mod learning;
 mod observe;
