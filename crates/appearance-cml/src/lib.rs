@@ -17,8 +17,8 @@ pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState,
 pub use error::AppearanceError;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
 pub use localizer::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, RelocationParams, Start,
-    UpdateOutcome, smooth,
+    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Proof, RelocationParams,
+    Start, UpdateOutcome, smooth,
 };
 pub use model::{
     AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,

@@ -184,7 +184,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let (mut belief, n_sightings) = self.seen(&self.belief, is_news.then_some(&view), sources)?;
         if is_news {
             let contest = self.contested(&view, &belief)?;
-            (self.contest, belief) = contest.decided(belief, &self.params.relocation);
+            (self.contest, belief) = contest.decided(belief, &self.params);
         }
         let mut events = self.change_to(&belief)?;
         self.belief = belief;

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::Pose2;
 use super::belief::Belief;
 use super::doubt::Doubt;
 use super::fit::Fit;
-use super::{AppearanceLocalizer, RelocationParams};
+use super::{AppearanceLocalizer, LocalizerParams, Proof};
 use crate::{AppearanceError, Descriptor, OdometryNoise, ReferenceSearch, separation_squared};
 
 /// Where the robot is thought to be against where else it may be: a second belief, begun from nothing when the first misses what it should see.
@@ -62,10 +62,12 @@ impl Contest {
     }
 
     /// The belief that is believed from now on: the rival's, when it has won.
-    pub(super) fn decided(self, first: Belief, params: &RelocationParams) -> (Self, Belief) {
+    pub(super) fn decided(self, first: Belief, params: &LocalizerParams) -> (Self, Belief) {
+        let proof = params.relocation.proof(self.broken);
         match self.rival {
             Some(rival)
-                if rival.has_won(if self.broken { params.way } else { params.unbroken_way }, params) =>
+                if rival.belief.one_place(&params.unimodal).is_some()
+                    && rival.has_won(proof, params.relocation.by_chance) =>
             {
                 (Self::default(), rival.belief)
             }
@@ -75,15 +77,15 @@ impl Contest {
 }
 
 impl Rival {
-    fn has_won(&self, least: f64, params: &RelocationParams) -> bool {
+    fn has_won(&self, proof: &Proof, by_chance: f64) -> bool {
         let way: f64 = self.record.iter().map(|round| round.way).sum();
         let share = |side: fn(&Round) -> Fit| {
             let n = self.record.iter().filter(|round| side(round) == Fit::Recognized).count();
             n as f64 / self.record.len().max(1) as f64
         };
-        way >= least
-            && share(|round| round.rival) >= params.recognized
-            && share(|round| round.first) <= params.by_chance
+        way >= proof.way
+            && share(|round| round.rival) >= proof.recognized
+            && share(|round| round.first) <= by_chance
     }
 }
 
@@ -114,7 +116,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         if !self.goes_on(&before.belief, &belief)? {
             record.clear();
         }
-        let least = if broken { params.way } else { params.unbroken_way };
+        let least = params.proof(broken).way;
         let mut way: f64 = record.iter().map(|round| round.way).sum();
         while let Some(oldest) = record.front().filter(|oldest| way - oldest.way >= least) {
             way -= oldest.way;
@@ -132,12 +134,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         is_near && self.last_seen.as_ref().is_some_and(strange)
     }
 
-    /// Whether a belief is one place, and the same as before the view.
+    /// Whether the heaviest hypothesis is the same as before the view.
     fn goes_on(&self, before: &Belief, after: &Belief) -> Result<bool, AppearanceError> {
-        let unimodal = &self.params.unimodal;
-        let (Some(before), Some(after)) = (before.one_place(unimodal), after.one_place(unimodal)) else {
-            return Ok(false);
-        };
+        let (Some(before), Some(after)) = (before.heaviest(), after.heaviest()) else { return Ok(false) };
         Ok(separation_squared(before, after)? <= self.params.fusion.gate)
     }
 }

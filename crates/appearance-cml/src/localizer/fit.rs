@@ -17,8 +17,6 @@ pub(super) enum Fit {
 
 /// A heading that differs by more, and by more than the belief is in doubt, is not the same, rad.
 const HERE_TURN: f64 = 0.35;
-/// Reaches of a match from which on a reference is of another place.
-const ELSEWHERE_REACHES: f64 = 3.0;
 /// σ of a belief within which it may be.
 const GATE_SIGMAS: f64 = 3.0;
 
@@ -31,10 +29,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let Some(heaviest) = belief.heaviest() else { return Fit::Unknown };
         let (at, sigmas) = (heaviest.mean(), heaviest.sigmas());
         let reach = self.map.reach_of_match(&self.params.map);
-        let beyond = ELSEWHERE_REACHES * reach;
-        let Some(limit) = self.map.least_distance_elsewhere(view, (at, beyond), self.views) else {
-            return Fit::Unknown;
-        };
+        let Some(limit) = self.map.least_distance_to_far(view, at, self.views) else { return Fit::Unknown };
         let is_here = |place: &Pose2<f64>| {
             (place.translation - at.translation).norm() <= reach + GATE_SIGMAS * sigmas.xy().norm()
                 && wrap_angle(place.heading() - at.heading()).abs() <= HERE_TURN + GATE_SIGMAS * sigmas.z

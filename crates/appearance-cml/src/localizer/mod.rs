@@ -20,6 +20,6 @@ mod trail;
 pub use appearance_localizer::AppearanceLocalizer;
 pub use outcome::{Event, UpdateOutcome};
 pub use params::{Learning, LocalizerParams, Observation};
-pub use relocation::RelocationParams;
+pub use relocation::{Proof, RelocationParams};
 pub use smooth::{Motion, smooth};
 pub use start::Start;

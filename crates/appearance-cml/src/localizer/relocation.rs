@@ -30,21 +30,36 @@ pub struct RelocationParams {
     pub views: f64,
     /// Share of them in which it does not, where it should, from which on it doubts; 1 never doubts. Default 0.5: after 6 views.
     pub doubt: f64,
-    /// Way over which two beliefs are compared after a break, m: after a view that is as strange to the one before as a far place is, which who is
-    /// carried sees, and who drives into an aisle that was rearranged does not. Default 5: longer than anything is that stands in a shelf here and may stand in another
-    /// tomorrow, and a quarter of the way after which a robot should know where it is.
-    pub way: f64,
-    /// Way over which they are compared without a break, m. Default 25: whole aisles look like others when their lamps are out.
-    pub unbroken_way: f64,
-    /// Share of the views of this way in which the second belief has to recognize where it is, to take over. Default 0.5.
-    pub recognized: f64,
-    /// Share in which the first may do so still. Default 0.15: what chance makes of it, and a little more.
+    /// What the second belief has to show after a break: after a view that is as strange to the one before as a far place, which who is carried
+    /// sees, and who drives into an aisle that was rearranged does not. Default: over 5 m, a quarter of the way after which a robot should know
+    /// where it is, a fifth of the views, twice what chance makes; it may have been carried into an aisle that was rearranged.
+    pub carried: Proof,
+    /// What it has to show without one. Default: half of the views over 25 m, because whole aisles look like others when their lamps are out.
+    pub strayed: Proof,
+    /// Share of these views in which the first may recognize where it is. Default 0.15: what chance makes of it, and a little more.
     pub by_chance: f64,
+}
+
+/// What a second belief has to show before it is believed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct Proof {
+    /// Way over which both are compared, m.
+    pub way: f64,
+    /// Share of the views of this way in which it recognizes where it is.
+    pub recognized: f64,
 }
 
 impl Default for RelocationParams {
     fn default() -> Self {
-        Self { views: 8.0, doubt: 0.5, way: 5.0, unbroken_way: 25.0, recognized: 0.5, by_chance: 0.15 }
+        Self {
+            views: 8.0,
+            doubt: 0.5,
+            carried: Proof { way: 5.0, recognized: 0.2 },
+            strayed: Proof { way: 25.0, recognized: 0.5 },
+            by_chance: 0.15,
+        }
     }
 }
 
@@ -56,9 +71,15 @@ impl RelocationParams {
     pub fn validate(&self) -> Result<(), AppearanceError> {
         check::positive("views to doubt after", self.views)?;
         check::share("share of views from which on the robot doubts", self.doubt)?;
-        check::positive("way over which two beliefs are compared (m)", self.way)?;
-        check::positive("way over which they are compared without a break (m)", self.unbroken_way)?;
-        check::share("share of views that the second belief recognizes", self.recognized)?;
+        for proof in [&self.carried, &self.strayed] {
+            check::positive("way over which two beliefs are compared (m)", proof.way)?;
+            check::share("share of views that the second belief recognizes", proof.recognized)?;
+        }
         check::share("share of views that the first belief recognizes by chance", self.by_chance)
+    }
+
+    /// What the second belief has to show, after a break or without one.
+    pub(super) fn proof(&self, broken: bool) -> &Proof {
+        if broken { &self.carried } else { &self.strayed }
     }
 }

@@ -173,23 +173,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         Some(view.compare(reference).distance)
     }
 
-    /// The least distance of the view to references elsewhere: to [`N_FAR`] of far places, others with each `turn`, and to as many of the way from
-    /// `beyond` to there. `None` when hardly half of the first are far.
-    pub(crate) fn least_distance_elsewhere(
-        &self,
-        view: &D,
-        (pose, beyond): (&Pose2<f64>, f64),
-        turn: u32,
-    ) -> Option<f64> {
+    /// The least distance of the view to [`N_FAR`] references of far places, others with each `turn`; `None` when hardly half of them are far.
+    pub(crate) fn least_distance_to_far(&self, view: &D, pose: &Pose2<f64>, turn: u32) -> Option<f64> {
         let turns = (0..N_FAR as u32).map(|k| turn.wrapping_mul(N_FAR as u32).wrapping_add(k));
         let far: Vec<f64> = turns.filter_map(|turn| self.distance_to_far(view, pose, turn)).collect();
-        let is_beyond =
-            |place: &PlaceComponent| (place.gaussian.mean().translation - pose.translation).norm() > beyond;
-        let mut around = self.grid.near(&pose.translation, FAR_STEPS * self.scale.step());
-        around.retain(|id| self.references.get(id).is_some_and(|r| r.places.iter().all(is_beyond)));
-        let some = around.iter().step_by(around.len().div_ceil(N_FAR).max(1));
-        let around = some.filter_map(|id| Some(view.compare(self.search.get(*id)?).distance));
-        (2 * far.len() >= N_FAR).then(|| around.chain(far.iter().copied()).fold(f64::INFINITY, f64::min))
+        (2 * far.len() >= N_FAR).then(|| far.into_iter().fold(f64::INFINITY, f64::min))
     }
 
     /// Whether it is well known what the robot would see there: whether a reference that counts, seen more than once, has a place within `radius` of
