@@ -25,8 +25,8 @@ pub use model::{
     Reference, Sighting, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
-    AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,
-    SearchCost,
+    AppearanceIndex, BoundTable, Bounded, Comparison, Descriptor, LinearSearch, Match, NoTable, ReferenceId,
+    ReferenceSearch, SearchCost,
 };
 pub use state::{
     OdometryNoise, PoseHypothesis, SimplifyParams, UnimodalParams, propagate, separation_squared, simplify,
@@ -34,5 +34,5 @@ pub use state::{
 };
 pub use views::{
     Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,
-    RingOrder, Tone, TurnSense,
+    PanoramaTable, RingOrder, Tone, TurnSense,
 };
