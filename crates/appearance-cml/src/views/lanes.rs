@@ -24,7 +24,7 @@ impl Pairs {
     pub(super) fn new(lanes: &[i8]) -> Self {
         let turned = |half: &i16x8| {
             let own = half.to_array();
-            let lane = |lane: usize| if lane % 2 == 0 { own[lane + 1] } else { -own[lane - 1] };
+            let lane = |lane: usize| if lane.is_multiple_of(2) { own[lane + 1] } else { -own[lane - 1] };
             i16x8::new(std::array::from_fn(lane))
         };
         let own = [eight(lanes), eight(&lanes[HARMONICS..])];
@@ -38,9 +38,9 @@ impl Sums {
     pub(super) fn add(&mut self, own: &[Pairs], other: &[i8]) {
         for (own, other) in own.iter().zip(other.chunks_exact(2 * HARMONICS)) {
             let halves = [eight(other), eight(&other[HARMONICS..])];
-            for half in 0..2 {
-                self.re[half] += own.own[half].dot(halves[half]);
-                self.im[half] += own.turned[half].dot(halves[half]);
+            for (half, other) in halves.into_iter().enumerate() {
+                self.re[half] += own.own[half].dot(other);
+                self.im[half] += own.turned[half].dot(other);
             }
         }
     }
