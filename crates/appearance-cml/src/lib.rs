@@ -17,16 +17,16 @@ pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState,
 pub use error::AppearanceError;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
 pub use localizer::{
-    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, RelocationParams, Start,
-    UpdateOutcome, smooth,
+    AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Proof, RelocationParams,
+    Start, UpdateOutcome, smooth,
 };
 pub use model::{
     AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,
-    Recognition, Reference, Sighting, ViewScale, interpolate, similarity, superpose,
+    Reference, Sighting, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
-    AppearanceIndex, Bounded, Comparison, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch,
-    SearchCost,
+    AppearanceIndex, BoundTable, Bounded, Comparison, Descriptor, LinearSearch, Match, NoTable, ReferenceId,
+    ReferenceSearch, SearchCost,
 };
 pub use state::{
     OdometryNoise, PoseHypothesis, SimplifyParams, UnimodalParams, propagate, separation_squared, simplify,
@@ -34,5 +34,5 @@ pub use state::{
 };
 pub use views::{
     Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,
-    RingOrder, Tone, TurnSense,
+    PanoramaTable, RingOrder, Tone, TurnSense,
 };

@@ -4,8 +4,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
-    AppearanceError, AppearanceIndex, Bounded, Descriptor, LinearSearch, PanoramaDescriptor, ReferenceId,
-    ReferenceSearch,
+    AppearanceError, AppearanceIndex, BoundTable, Bounded, Descriptor, LinearSearch, PanoramaDescriptor,
+    PanoramaTable, ReferenceId, ReferenceSearch,
 };
 
 const QUERY_SEED: u64 = 17;
@@ -100,6 +100,8 @@ fn bounds_keep_their_order() {
     let mut walk = Walk::new(QUERY_SEED);
     let views: Vec<PanoramaDescriptor> = (0..120).map(|_| walk.next()).collect();
     let invariants: Vec<Vec<f64>> = views.iter().map(Bounded::invariants).collect();
+    let mut table = PanoramaTable::default();
+    views.iter().enumerate().for_each(|(slot, view)| table.put(slot, view));
     for (a, b) in (0..120 * 120).map(|pair| (pair / 120, pair % 120)) {
         let difference = invariants[a].iter().zip(&invariants[b]).map(|(x, y)| (x - y).powi(2));
         let (loose, bound) =
@@ -109,6 +111,9 @@ fn bounds_keep_their_order() {
         let distance = comparison.distance;
         // Single precision of sums near 1, and the root of their difference: 1e-6, near 0 its root.
         assert!(loose <= bound + 2e-3 && bound <= distance + 1e-7, "{loose} {bound} {distance}");
+        let rough = table.may_be_within(b, &views[a].probe(), f64::INFINITY).unwrap();
+        assert!(rough <= bound + 2e-3 && rough <= distance, "{rough} {bound} {distance}");
+        assert!(table.may_be_within(b, &views[a].probe(), distance).is_some());
         let early = views[b].bound(&views[a].probe(), 0.3);
         assert!(early <= bound + 1e-5 && (early > 0.3) == (bound > 0.3), "{early} {bound}");
     }

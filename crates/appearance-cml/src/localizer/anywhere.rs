@@ -23,10 +23,6 @@ impl Anywhere {
         self.0 < LITTLE
     }
 
-    pub(super) fn weight(self) -> f64 {
-        self.0
-    }
-
     /// Hypotheses appear with this weight, or with the least that is always left.
     pub(super) fn weighting(self, weighting: Weighting) -> Weighting {
         match weighting {

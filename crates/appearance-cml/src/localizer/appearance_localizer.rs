@@ -1,16 +1,15 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::{Gaussian, Mixture};
 
-use super::anywhere::Anywhere;
-use super::doubt::Doubt;
+use super::belief::Belief;
+use super::contest::Contest;
 use super::journey::Journey;
-use super::observe::Observed;
 use super::scale_learner::ScaleLearner;
 use super::trail::Trail;
 use super::{Event, Learning, LocalizerParams, Motion, Start, UpdateOutcome};
 use crate::{
-    AppearanceError, AppearanceMap, Descriptor, FusionParams, LinearSearch, PoseHypothesis, PoseSource,
-    ReferenceId, ReferenceSearch, fuse, propagate, separation_squared, simplify, unimodal,
+    AppearanceError, AppearanceMap, Descriptor, LinearSearch, PoseSource, ReferenceId, ReferenceSearch,
+    separation_squared,
 };
 
 /// Localizes in an appearance map, and learns it. [Gross et al. 2005]
@@ -47,13 +46,14 @@ use crate::{
 pub struct AppearanceLocalizer<D, S = LinearSearch<D>> {
     pub(super) params: LocalizerParams,
     pub(super) map: AppearanceMap<D, S>,
-    pub(super) state: Option<Mixture<Pose2<f64>>>,
-    pub(super) anywhere: Anywhere,
-    pub(super) doubt: Doubt,
+    pub(super) belief: Belief,
+    pub(super) contest: Contest,
     /// Since the last view.
     pub(super) motion: Motion,
     pub(super) journey: Journey<D>,
     pub(super) scale_learner: ScaleLearner<D>,
+    /// The last view that was used.
+    pub(super) last_seen: Option<D>,
     /// The last view that was learned.
     pub(super) learned_last: Option<D>,
     pub(super) taught_last: Option<Pose2<f64>>,
@@ -88,18 +88,17 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         start: Start,
     ) -> Result<Self, AppearanceError> {
         params.validate()?;
-        let state = start.into_state()?;
-        let was_unimodal = state.is_some();
-        let anywhere = if was_unimodal { Anywhere::nothing() } else { Anywhere::everything() };
+        let belief = Belief::of_start(start)?;
+        let was_unimodal = belief.state.is_some();
         Ok(Self {
             params,
             map,
-            state,
-            anywhere,
-            doubt: Doubt::none(),
+            belief,
+            contest: Contest::default(),
             motion: Motion::none(),
             journey: Journey::default(),
             scale_learner: ScaleLearner::default(),
+            last_seen: None,
             learned_last: None,
             taught_last: None,
             was_unimodal,
@@ -125,12 +124,11 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     }
     /// Where the robot may be; `None` when it may be anywhere.
     pub fn state(&self) -> Option<&Mixture<Pose2<f64>>> {
-        self.state.as_ref()
+        self.belief.state.as_ref()
     }
     /// The heaviest hypothesis.
     pub fn estimate(&self) -> Option<&Gaussian<Pose2<f64>>> {
-        // The heaviest comes first since the mixture is simplified after each view, and odometry changes no weight.
-        self.state.as_ref().and_then(|state| state.components().first())
+        self.belief.heaviest()
     }
 
     /// Puts the robot somewhere else; what waits to be learned is given up.
@@ -138,15 +136,15 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// # Errors
     /// When the start has no meaning.
     pub fn restart(&mut self, start: Start) -> Result<(), AppearanceError> {
-        self.state = start.into_state()?;
-        self.was_unimodal = self.state.is_some();
-        self.anywhere = if self.was_unimodal { Anywhere::nothing() } else { Anywhere::everything() };
-        self.doubt = Doubt::none();
+        self.belief = Belief::of_start(start)?;
+        self.was_unimodal = self.belief.state.is_some();
+        self.contest = Contest::default();
         self.motion = Motion::none();
         self.has_seen = false;
         self.journey = Journey::default();
         self.trail = Trail::default();
         self.scale_learner.interrupt();
+        self.last_seen = None;
         self.learned_last = None;
         Ok(())
     }
@@ -156,15 +154,11 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// # Errors
     /// When the increment is not finite; the state is as before.
     pub fn predict(&mut self, increment: &Pose2<f64>) -> Result<(), AppearanceError> {
-        let motion = self.motion.then(increment, &self.params.odometry)?;
-        if let Some(state) = &self.state {
-            let moved = state.log_weights().iter().zip(state.components()).map(|(log_weight, component)| {
-                propagate(component, increment, &self.params.odometry).map(|moved| (*log_weight, moved))
-            });
-            let moved: Result<Vec<_>, AppearanceError> = moved.collect();
-            self.state = Some(Mixture::from_log_weights(moved?)?);
-        }
-        self.motion = motion;
+        let noise = &self.params.odometry;
+        let motion = self.motion.then(increment, noise)?;
+        let belief = self.belief.moved(increment, noise)?;
+        self.contest = self.contest.moved(increment, noise)?;
+        (self.belief, self.motion) = (belief, motion);
         Ok(())
     }
 
@@ -187,32 +181,23 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         sources: &[&dyn PoseSource],
     ) -> Result<UpdateOutcome, AppearanceError> {
         let is_news = self.is_news();
-        let seen = if is_news { self.observe(&view)? } else { Observed::nothing() };
-        let mut hypotheses = self.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();
-        let fusion = FusionParams { weighting: self.weighting(), ..self.params.fusion };
-        hypotheses = fuse(&hypotheses, &seen.hypotheses, &fusion)?;
-        for source in sources {
-            hypotheses = fuse(&hypotheses, &source.hypotheses(self.state.as_ref())?, &fusion)?;
-        }
-        let anywhere =
-            if is_news { self.anywhere.after(fusion.weighting, &hypotheses) } else { self.anywhere };
-        let fused = if hypotheses.is_empty() {
-            None
-        } else {
-            Some(PoseHypothesis::into_mixture(simplify(hypotheses, &self.simplification())?)?)
-        };
-        let mut events = self.change_of(fused.as_ref(), anywhere)?;
-        (self.state, self.anywhere) = (fused, anywhere);
-        self.doubt = self.doubt.after(seen.fit, &self.params.relocation);
+        let (mut belief, n_sightings) = self.seen(&self.belief, is_news.then_some(&view), sources)?;
         if is_news {
+            let contest = self.contested(&view, &belief)?;
+            (self.contest, belief) = contest.decided(belief, &self.params);
+        }
+        let mut events = self.change_to(&belief)?;
+        self.belief = belief;
+        if is_news {
+            self.last_seen = Some(view.clone());
             if self.params.learning == Learning::Adapting {
                 self.learn(view, &mut events)?;
             }
             self.motion = Motion::none();
             self.has_seen = true;
         }
-        let estimate = self.one_place().cloned();
-        Ok(UpdateOutcome { events, estimate, n_sightings: seen.n_sightings })
+        let estimate = self.belief.one_place(&self.params.unimodal).cloned();
+        Ok(UpdateOutcome { events, estimate, n_sightings })
     }
 
     /// Learns that `view` is seen from `pose`, which is known: the map is taught, the state is not touched.
@@ -227,31 +212,22 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         Ok(id)
     }
 
-    /// What becomes of the state with this mixture.
-    fn change_of(
-        &mut self,
-        fused: Option<&Mixture<Pose2<f64>>>,
-        anywhere: Anywhere,
-    ) -> Result<Vec<Event>, AppearanceError> {
-        let now = fused
-            .filter(|_| anywhere.is_little())
-            .and_then(|mixture| unimodal(mixture, &self.params.unimodal));
+    /// What changes with this belief.
+    fn change_to(&mut self, belief: &Belief) -> Result<Vec<Event>, AppearanceError> {
+        let is_unimodal = belief.one_place(&self.params.unimodal).is_some();
         let mut events = Vec::new();
-        match (self.was_unimodal, now) {
-            (true, None) => events.push(Event::Lost),
-            (false, Some(_)) => events.push(Event::Found),
+        match (self.was_unimodal, is_unimodal) {
+            (true, false) => events.push(Event::Lost),
+            (false, true) => events.push(Event::Found),
             _ => {}
         }
-        let followed = self.state.as_ref().and_then(|state| state.components().first());
-        if let (Some(now), Some(followed)) =
-            (fused.and_then(|mixture| mixture.components().first()), followed)
-        {
+        if let (Some(now), Some(followed)) = (belief.heaviest(), self.belief.heaviest()) {
             self.corrected += (now.mean().translation - followed.mean().translation).norm();
             if separation_squared(now, followed)? > self.params.fusion.gate {
                 events.push(Event::Relocated);
             }
         }
-        self.was_unimodal = now.is_some();
+        self.was_unimodal = is_unimodal;
         Ok(events)
     }
 }

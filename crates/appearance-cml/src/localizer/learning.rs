@@ -12,7 +12,7 @@ const REVISION_SHARE: f64 = 0.5;
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// The view joins the way, and those that have waited long enough are learned.
     pub(super) fn learn(&mut self, view: D, events: &mut Vec<Event>) -> Result<(), AppearanceError> {
-        let estimate = self.one_place().cloned();
+        let estimate = self.belief.one_place(&self.params.unimodal).cloned();
         let way = self.motion.increment.translation.norm();
         self.trail.moved(way, self.map.reach_of_match(&self.params.map));
         self.measure(way, &view, estimate.as_ref().map(Gaussian::mean));
@@ -22,7 +22,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             self.learned_last = None;
         }
         while self.journey.n_waiting() > self.params.delay {
-            let settled = self.journey.settled_pose();
+            let settled = self.journey.settled_pose().filter(|_| !self.contest.is_open());
             if settled.is_none() && self.journey.n_waiting() <= self.params.longest_wait {
                 break;
             }

@@ -2,7 +2,10 @@
 
 mod anywhere;
 mod appearance_localizer;
+mod belief;
+mod contest;
 mod doubt;
+mod fit;
 mod journey;
 mod learning;
 mod observe;
@@ -17,6 +20,6 @@ mod trail;
 pub use appearance_localizer::AppearanceLocalizer;
 pub use outcome::{Event, UpdateOutcome};
 pub use params::{Learning, LocalizerParams, Observation};
-pub use relocation::RelocationParams;
+pub use relocation::{Proof, RelocationParams};
 pub use smooth::{Motion, smooth};
 pub use start::Start;

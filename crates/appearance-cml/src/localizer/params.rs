@@ -92,6 +92,7 @@ impl LocalizerParams {
             fusion: FusionParams::printed(),
             simplify: SimplifyParams { least_weight: 0.005, ..SimplifyParams::default() },
             map: MapParams::printed(),
+            relocation: RelocationParams { doubt: 1.0, ..RelocationParams::default() },
             corroboration: None,
             memory: 0,
             ..Self::default()

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
 use super::grid::Grid;
-use super::{MapParams, PlaceComponent, Recognition, Reference, Sighting, ViewScale, similarity};
+use super::{MapParams, PlaceComponent, Reference, Sighting, ViewScale, similarity};
 use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
 
 /// What places look like: reference views and where each was seen. [Gross et al. 2005, Eqs. 9-10]
@@ -136,36 +136,29 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.insert(view, Reference { places: vec![PlaceComponent { weight: 1.0, count: 1.0, gaussian }] })
     }
 
-    /// Places near the components of `belief` whose references look like the view.
-    pub fn sightings_near(
-        &self,
-        view: &D,
-        belief: &[Gaussian<Pose2<f64>>],
-        (params, recognition): (&MapParams, Recognition),
-    ) -> Vec<Sighting> {
-        let limit = self.limit_of(params, recognition);
+    /// Places near the components of `belief` whose references are nearer to the view than `limit`.
+    pub fn sightings_near(&self, view: &D, belief: &[Gaussian<Pose2<f64>>], limit: f64) -> Vec<Sighting> {
         let near = belief.iter().flat_map(|component| self.compare_near(view, component, limit));
-        self.places_of(once_each(near.collect()), params, recognition)
+        self.places_of(once_each(near.collect()), limit)
     }
 
-    /// Places near the components of `belief`, and those of the `most` references of the whole map that look most like the view.
+    /// Places near the components of `belief`, and those of the `most` references of the whole map that look most like the view, all nearer than `limit`.
     pub fn sightings_anywhere(
         &self,
         view: &D,
         belief: &[Gaussian<Pose2<f64>>],
         most: usize,
-        (params, recognition): (&MapParams, Recognition),
+        limit: f64,
     ) -> Vec<Sighting> {
-        let limit = self.limit_of(params, recognition);
         let mut matches = self.search.nearest_within(view, most, limit);
         matches.extend(belief.iter().flat_map(|component| self.compare_near(view, component, limit)));
-        self.places_of(once_each(matches), params, recognition)
+        self.places_of(once_each(matches), limit)
     }
 
     /// All places of all references that look like the view, as printed.
     pub fn all_sightings(&self, view: &D, params: &MapParams) -> Vec<Sighting> {
         let limit = self.match_limit(params);
-        self.places_of(self.search.within(view, limit), params, Recognition::Sure)
+        self.places_of(self.search.within(view, limit), limit)
     }
 
     /// Distance of the view to some reference of a far place, another one with each `turn`; `None` when that one is near.
@@ -178,6 +171,13 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             |place: &PlaceComponent| (place.gaussian.mean().translation - pose.translation).norm() > far;
         let reference = reference.places.iter().all(is_far).then(|| self.search.get(*id)).flatten()?;
         Some(view.compare(reference).distance)
+    }
+
+    /// The least distance of the view to [`N_FAR`] references of far places, others with each `turn`; `None` when hardly half of them are far.
+    pub(crate) fn least_distance_to_far(&self, view: &D, pose: &Pose2<f64>, turn: u32) -> Option<f64> {
+        let turns = (0..N_FAR as u32).map(|k| turn.wrapping_mul(N_FAR as u32).wrapping_add(k));
+        let far: Vec<f64> = turns.filter_map(|turn| self.distance_to_far(view, pose, turn)).collect();
+        (2 * far.len() >= N_FAR).then(|| far.into_iter().fold(f64::INFINITY, f64::min))
     }
 
     /// Whether it is well known what the robot would see there: whether a reference that counts, seen more than once, has a place within `radius` of
@@ -200,25 +200,10 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.grid.near(&at, radius).iter().any(|id| counts(*id) && has(id))
     }
 
-    fn limit_of(&self, params: &MapParams, recognition: Recognition) -> f64 {
-        let sure = self.match_limit(params);
-        match recognition {
-            Recognition::Sure => sure,
-            Recognition::Weak => self.scale.recognition_limit().map_or(sure, |weak| weak.max(sure)),
-        }
-    }
-
-    fn places_of(&self, matches: Vec<Match>, params: &MapParams, recognition: Recognition) -> Vec<Sighting> {
-        let limit = self.match_limit(params);
-        let speaks = |distance: f64| match recognition {
-            Recognition::Sure => similarity(distance, limit),
-            Recognition::Weak => {
-                self.scale.recognition(distance).unwrap_or_else(|| similarity(distance, limit))
-            }
-        };
+    fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<Sighting> {
         let places = |m: &Match| {
             let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);
-            let similarity = speaks(m.comparison.distance);
+            let similarity = similarity(m.comparison.distance, limit);
             places.iter().enumerate().map(|place| Sighting::new(*m, place, similarity)).collect::<Vec<_>>()
         };
         matches.iter().flat_map(places).collect()
@@ -301,6 +286,10 @@ const MOST_SIGMA: f64 = 1.0;
 
 /// Weight from which on a place was seen more than once: twice the learning rate, about.
 const WELL_KNOWN: f64 = 0.5;
+
+/// References of far places that a view is measured against: the best of the half dozen that are near a wrong pose is nearer than all of them once in
+/// ten views or more seldom.
+const N_FAR: usize = 64;
 
 /// From how many steps on a place is far.
 const FAR_STEPS: f64 = 20.0;

@@ -14,7 +14,7 @@ pub struct Sighting {
     pub place: usize,
     /// Weight of the place in the map, in [0, 1].
     pub weight: f64,
-    /// How much it speaks for its place, in [0, 1]: $`S`$, or what [`Recognition`](super::Recognition) says.
+    /// How much it speaks for its place, in [0, 1]: $`S`$.
     pub similarity: f64,
     /// The place, turned to the heading of the view.
     pub gaussian: Gaussian<Pose2<f64>>,

@@ -1,4 +1,4 @@
-use std::{collections::VecDeque, f64::consts::TAU};
+use std::collections::VecDeque;
 
 use crate::AppearanceError;
 
@@ -46,8 +46,6 @@ struct Fitted {
     nugget: f64,
     slope: f64,
     sill: f64,
-    /// Median distance of far places; 0 before enough of them are known.
-    far: f64,
 }
 
 /// Samples kept of each kind: enough for a median, few enough to follow another season.
@@ -56,10 +54,6 @@ const KEPT: usize = 255;
 const ENOUGH_FAR: usize = 10;
 /// Share of the far views that the sill lies under: places that look alike by chance.
 const SILL_QUANTILE: f64 = 0.1;
-/// Chance that another place looks exactly the same: goods, doors and desks repeat.
-const LOOKS_THE_SAME: f64 = 0.2;
-/// From two σ below what is found elsewhere on, own and other places are about equally likely.
-const WORTHLESS_SIGMAS: f64 = 2.0;
 
 impl ViewScale {
     /// A scale from its samples, as [`near`](Self::near), [`ahead`](Self::ahead) and [`far`](Self::far) give them.
@@ -138,30 +132,9 @@ impl ViewScale {
         (nugget + share * (self.fitted.sill - nugget)).max(0.0).sqrt().max(self.fitted.near)
     }
 
-    /// How much a reference at this distance speaks for its place, from 1 (only its place looks so) down to 0 (any place may look so).
-    ///
-    /// The best of a few references that pass a robot which is somewhere else lies at $`N(E_{10}, s)`$, with the lowest tenth $`E_{10}`$ of
-    /// the distances of far places and half their way to the median as $`s`$; of its own place a view has any distance below. The
-    /// share is $`c / (c + o)`$, where $`o`$ is how much likelier the distance is elsewhere, and $`c`$ the chance that another place looks the same.
-    /// `None` before far places are known.
-    pub fn recognition(&self, distance: f64) -> Option<f64> {
-        let (alike, spread) = self.elsewhere()?;
-        let deviation = ((alike - distance) / spread).max(0.0);
-        let odds = alike / (spread * TAU.sqrt()) * (-0.5 * deviation * deviation).exp();
-        // What is not a number speaks for nothing.
-        Some(if distance.is_nan() { 0.0 } else { LOOKS_THE_SAME / (LOOKS_THE_SAME + odds) })
-    }
-
-    /// The distance beyond which [`recognition`](Self::recognition) is too little to be looked at.
-    pub fn recognition_limit(&self) -> Option<f64> {
-        self.elsewhere().map(|(alike, spread)| (alike - WORTHLESS_SIGMAS * spread).max(0.0))
-    }
-
-    /// Mean and σ of the distance of the most similar of a few references of other places.
-    fn elsewhere(&self) -> Option<(f64, f64)> {
-        let (alike, far) = (self.fitted.sill.sqrt(), self.fitted.far);
-        // Views that are all alike tell no places apart.
-        (far > alike && alike > 0.0).then_some((alike, 0.5 * (far - alike)))
+    /// Distance from which on two views are of places far from one another, but for one in ten of these; infinite before such places are known.
+    pub fn strangeness(&self) -> f64 {
+        if self.far.len() >= ENOUGH_FAR { self.fitted.sill.sqrt() } else { f64::INFINITY }
     }
 
     /// How far away a view of this distance was taken, m: $`(E^2 - n)/s`$, between half a step and forty steps.
@@ -191,9 +164,8 @@ impl ViewScale {
         } else {
             4.0 * near * near
         };
-        let far = if self.far.len() >= ENOUGH_FAR { median(self.far.iter().copied()) } else { 0.0 };
         self.fitted =
-            Fitted { step, near, nugget: if nugget.is_finite() { nugget } else { 0.0 }, slope, sill, far };
+            Fitted { step, near, nugget: if nugget.is_finite() { nugget } else { 0.0 }, slope, sill };
     }
 }
 
@@ -227,21 +199,13 @@ mod tests {
     }
 
     #[test]
-    fn what_far_places_reach_too_speaks_for_nothing() {
+    fn strange_is_what_one_far_place_of_ten_is_not() {
         let mut scale = ViewScale::default();
-        assert_eq!((scale.recognition(0.1), scale.recognition_limit()), (None, None));
+        assert_eq!(scale.strangeness(), f64::INFINITY);
         for k in 0..100 {
             scale.add_far(1.0 + 0.002 * f64::from(k));
         }
-        // The lowest tenth is 1.02, the median 1.1: 0.94 is two σ below what others reach.
-        let limit = scale.recognition_limit().unwrap();
-        assert!((limit - 0.94).abs() < 0.005, "{limit}");
-        let share = |distance: f64| scale.recognition(distance).unwrap();
-        assert!(share(0.5) > 0.99 && share(0.94) < 0.2 && share(1.1) < 0.02);
-        assert!(share(0.8) > share(0.85) && share(f64::NAN) == 0.0);
-        let mut uniform = ViewScale::default();
-        (0..20).for_each(|_| uniform.add_far(1.0));
-        assert_eq!(uniform.recognition(0.5), None, "views that are all alike");
+        assert!((scale.strangeness() - 1.02).abs() < 0.005, "{}", scale.strangeness());
     }
 
     #[test]

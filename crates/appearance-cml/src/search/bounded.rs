@@ -1,4 +1,4 @@
-use super::{Comparison, Descriptor};
+use super::{BoundTable, Comparison, Descriptor};
 
 /// A descriptor whose distance can be bounded from below for less than it costs: what an exact index needs.
 ///
@@ -7,7 +7,7 @@ use super::{Comparison, Descriptor};
 /// `r.compare_with(&v.probe())` is `v.compare(&r)` to the bit; descriptors that are not comparable have infinite distance.
 ///
 /// ```
-/// use wayfix_appearance_cml::{Bounded, Comparison, Descriptor};
+/// use wayfix_appearance_cml::{Bounded, Comparison, Descriptor, NoTable};
 /// /// A colour that looks the same from everywhere.
 /// #[derive(Clone)]
 /// struct Grey(f64);
@@ -18,6 +18,7 @@ use super::{Comparison, Descriptor};
 /// }
 /// impl Bounded for Grey {
 ///     type Probe = Grey;
+///     type Table = NoTable;
 ///     fn invariants(&self) -> Vec<f64> {
 ///         vec![self.0]
 ///     }
@@ -36,9 +37,11 @@ use super::{Comparison, Descriptor};
 /// }
 /// assert_eq!(Grey(3.0).bound(&Grey(5.0), 1.0), 2.0);
 /// ```
-pub trait Bounded: Descriptor {
+pub trait Bounded: Descriptor + Sized {
     /// A view made ready to be compared with many references.
     type Probe;
+    /// The first numbers of many references, side by side.
+    type Table: BoundTable<Self>;
 
     /// Numbers that do not depend on the heading.
     fn invariants(&self) -> Vec<f64>;

@@ -1,7 +1,7 @@
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
 use super::{
-    Bounded, Match, ReferenceId, ReferenceSearch,
+    BoundTable, Bounded, Match, ReferenceId, ReferenceSearch,
     box_tree::BoxTree,
     nearest::{Candidate, Nearest, by_distance},
     projection::{Projection, Sketch},
@@ -11,10 +11,11 @@ use crate::AppearanceError;
 
 /// Finds what [`LinearSearch`](super::LinearSearch) finds, to the bit, in a fraction of the comparisons.
 ///
-/// Three stages, each a lower bound of the distance that is sharper and dearer than the one before:
+/// Four stages, each a lower bound of the distance that is sharper and dearer than the one before:
 /// 1. sixteen numbers a view, the directions in which the invariants of the map spread most, in a tree of boxes: whole branches are passed over;
-/// 2. the descriptors' own [`bound`](Bounded::bound), first roughly, then as sharp as need be;
-/// 3. the distance itself, with its rotation.
+/// 2. the first numbers of each, side by side in memory ([`BoundTable`](super::BoundTable));
+/// 3. the descriptors' own [`bound`](Bounded::bound), as sharp as need be;
+/// 4. the distance itself, with its rotation.
 ///
 /// The directions are learned anew when the map has grown eightfold, up to 16 384 references; in between, insertion and removal cost
 /// little more than the way down the tree. Descriptors that are not comparable with the first of the map are refused.
@@ -30,12 +31,13 @@ use crate::AppearanceError;
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct AppearanceIndex<D> {
+pub struct AppearanceIndex<D: Bounded> {
     slots: Vec<Option<(ReferenceId, D)>>,
     free: Vec<u32>,
     slot_of: BTreeMap<ReferenceId, u32>,
     projection: Projection,
     tree: BoxTree,
+    table: D::Table,
     relearn_at: usize,
 }
 
@@ -61,7 +63,7 @@ const SKETCH_SLACK: f64 = 1e-5;
 /// More than the rounding of distances of double precision: near 0 the root of a difference of two sums makes 1e-8 of 1e-16.
 const BOUND_SLACK: f64 = 1e-7;
 
-impl<D> Default for AppearanceIndex<D> {
+impl<D: Bounded> Default for AppearanceIndex<D> {
     fn default() -> Self {
         Self {
             slots: Vec::new(),
@@ -69,6 +71,7 @@ impl<D> Default for AppearanceIndex<D> {
             slot_of: BTreeMap::new(),
             projection: Projection::learn(&[]),
             tree: BoxTree::default(),
+            table: D::Table::default(),
             relearn_at: FIRST_LEARNING,
         }
     }
@@ -82,8 +85,11 @@ impl<D: Bounded> AppearanceIndex<D> {
         let radius = max_distance + BOUND_SLACK;
         let mut found = Vec::new();
         for slot in self.reached(view, max_distance) {
-            let Some((id, reference)) = &self.slots[slot as usize] else { continue };
             cost.bounded += 1;
+            if self.table.may_be_within(slot as usize, &probe, radius).is_none() {
+                continue;
+            }
+            let Some((id, reference)) = &self.slots[slot as usize] else { continue };
             if reference.bound(&probe, radius) <= radius {
                 cost.compared += 1;
                 found.push(Match { id: *id, comparison: reference.compare_with(&probe) });
@@ -97,32 +103,33 @@ impl<D: Bounded> AppearanceIndex<D> {
 
     /// As [`nearest_within`](ReferenceSearch::nearest_within), and what it took.
     ///
-    /// Bounds of all come first, without a limit rough ones; then the references are taken in their order, sharper bounds before distances, until none can be nearer than the last
-    /// answer.
+    /// Rough bounds of all come first; then those of the least, and then all whose bounds leave a chance, sharper bounds before distances.
     pub fn nearest_counted(&self, view: &D, n: usize, max_distance: f64) -> (Vec<Match>, SearchCost) {
         let mut cost = SearchCost::default();
         if n == 0 {
             return (Vec::new(), cost);
         }
         let probe = view.probe();
-        // Where there is a limit most are given up after their first numbers, and for the few others sharp bounds make the better order.
-        let enough = if max_distance.is_finite() { max_distance + BOUND_SLACK } else { 0.0 };
-        let rough = |slot: u32| {
-            let (_, reference) = self.slots[slot as usize].as_ref()?;
-            Some(Candidate { bound: reference.bound(&probe, enough), slot })
-        };
-        let mut candidates: Vec<Candidate> = self.reached(view, max_distance).filter_map(rough).collect();
-        cost.bounded = candidates.len();
-        candidates.retain(|candidate| candidate.bound <= max_distance + BOUND_SLACK);
+        let radius = max_distance + BOUND_SLACK;
+        let mut candidates = Vec::new();
+        for slot in self.reached(view, max_distance) {
+            cost.bounded += 1;
+            let bound = self.table.may_be_within(slot as usize, &probe, radius);
+            candidates.extend(bound.map(|bound| Candidate { bound, slot }));
+        }
 
+        // Some of the least bounds first: then the radius is small, and the others can be taken as they lie in memory.
+        let n_first = (2 * n).min(candidates.len());
+        if n_first < candidates.len() {
+            candidates.select_nth_unstable_by(n_first, |a, b| b.cmp(a));
+        }
+        candidates[n_first..].sort_unstable_by_key(|candidate| candidate.slot);
         let mut nearest = Nearest::new(n, max_distance);
-        let mut candidates = BinaryHeap::from(candidates);
-        while let Some(Candidate { bound, slot }) = candidates.pop() {
+        for Candidate { bound, slot } in candidates {
             let radius = nearest.radius() + BOUND_SLACK;
-            if bound > radius {
-                break;
-            }
-            let Some((id, reference)) = &self.slots[slot as usize] else { continue };
+            let Some((id, reference)) = self.slots[slot as usize].as_ref().filter(|_| bound <= radius) else {
+                continue;
+            };
             if reference.bound(&probe, radius) <= radius {
                 cost.compared += 1;
                 nearest.extend([Match { id: *id, comparison: reference.compare_with(&probe) }]);
@@ -185,6 +192,7 @@ impl<D: Bounded> ReferenceSearch<D> for AppearanceIndex<D> {
         if slot as usize == self.slots.len() {
             self.slots.push(None);
         }
+        self.table.put(slot as usize, &descriptor);
         self.slots[slot as usize] = Some((id, descriptor));
         self.slot_of.insert(id, slot);
         self.tree.insert(sketch, slot);

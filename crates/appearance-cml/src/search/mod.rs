@@ -1,5 +1,6 @@
 //! Which reference views look like the view of this moment.
 
+mod bound_table;
 mod bounded;
 mod box_tree;
 mod descriptor;
@@ -10,6 +11,7 @@ mod projection;
 mod reference_search;
 mod slot_set;
 
+pub use bound_table::{BoundTable, NoTable};
 pub use bounded::Bounded;
 pub use descriptor::{Comparison, Descriptor};
 pub use index::{AppearanceIndex, SearchCost};

@@ -1,4 +1,5 @@
-use super::probe::{HARMONICS, SLOW, compare_once};
+use super::lanes::HARMONICS;
+use super::probe::{SLOW, compare_once};
 use crate::{AppearanceError, Comparison, Descriptor};
 
 /// Harmonics beside the constant one, in groups.
@@ -19,7 +20,7 @@ pub struct PanoramaDescriptor {
     scale: f32,
     n_rings: u8,
     n_harmonics: u8,
-    /// The constant harmonic of all cosines; then, group by group of eight harmonics and cosine by cosine, eight real and eight imaginary parts.
+    /// The constant harmonic of all cosines; then, group by group of eight harmonics and cosine by cosine, eight pairs of real and imaginary parts.
     lanes: Box<[i8]>,
     /// Sums of squares of the whole numbers: of all, of what comes after the slow cosines of the first group, and after each group.
     energy: u32,
@@ -152,7 +153,7 @@ impl Descriptor for PanoramaDescriptor {
 /// Where a part (real or imaginary) of a harmonic, counted from the first that is not constant, is among the groups.
 fn place(n_rings: usize, harmonic: usize, part: usize, ring: usize) -> usize {
     let (group, lane) = (harmonic / HARMONICS, harmonic % HARMONICS);
-    ((group * n_rings + ring) * 2 + part) * HARMONICS + lane
+    ((group * n_rings + ring) * HARMONICS + lane) * 2 + part
 }
 
 #[cfg(test)]

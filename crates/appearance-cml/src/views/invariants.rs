@@ -1,4 +1,4 @@
-use super::{PanoramaDescriptor, PanoramaProbe};
+use super::{PanoramaDescriptor, PanoramaProbe, PanoramaTable};
 use crate::{Bounded, Comparison};
 
 /// Harmonics whose phases between rings count; of the others only how strong they are.
@@ -18,6 +18,7 @@ const N_CONSTANT_COSINES: usize = 8;
 /// $`(|a'| - |b'|)² + |a'||b'|(1 - c²) ≤ (|a'| - |b'|)² + 2|a'||b'|(1 - c) = d'^2`$. All of these are coordinates of a Euclidean space.
 impl Bounded for PanoramaDescriptor {
     type Probe = PanoramaProbe;
+    type Table = PanoramaTable;
 
     fn invariants(&self) -> Vec<f64> {
         let scale = f64::from(self.scale());

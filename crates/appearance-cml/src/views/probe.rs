@@ -1,17 +1,17 @@
 use super::{
     correlation::Correlation,
     descriptor::{MOST_GROUPS, PanoramaDescriptor},
+    lanes::{HARMONICS, Pairs, Sums},
+    slow::SlowProbe,
 };
 use crate::Comparison;
 
-/// Harmonics that are multiplied side by side.
-pub(super) const HARMONICS: usize = 8;
 /// Cosines of the first group after which a comparison may be given up.
 pub(super) const SLOW: usize = 8;
 
 /// A view that is about to be compared with many references.
 ///
-/// Single precision is exact here: whole numbers of up to 127, and sums of at most 2 · 255 of their products, stay below $`2^{24}`$.
+/// Its products with a reference are exact.
 #[derive(Clone, Debug)]
 pub struct PanoramaProbe {
     scale: f64,
@@ -20,50 +20,15 @@ pub struct PanoramaProbe {
     energy: f64,
     after_slow: f64,
     remaining: [f64; MOST_GROUPS],
+    slow: SlowProbe,
     constant: Vec<f32>,
     /// As the lanes of the descriptor.
-    groups: Vec<Vec<[f32; 2 * HARMONICS]>>,
-}
-
-/// $`\sum_r a_r \bar b_r`$ of the eight harmonics of a group, real and imaginary parts.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    re: [f32; HARMONICS],
-    im: [f32; HARMONICS],
-}
-
-impl Sums {
-    /// Takes in some cosines of a view and as many of a reference.
-    fn add(&mut self, own: &[[f32; 2 * HARMONICS]], other: &[i8]) {
-        for (own, other) in own.iter().zip(other.chunks_exact(2 * HARMONICS)) {
-            self.add_one(own, other);
-        }
-    }
-
-    #[inline(always)]
-    fn add_one(&mut self, own: &[f32; 2 * HARMONICS], other: &[i8]) {
-        for lane in 0..HARMONICS {
-            let (a_re, a_im) = (own[lane], own[HARMONICS + lane]);
-            let (b_re, b_im) = (f32::from(other[lane]), f32::from(other[HARMONICS + lane]));
-            self.re[lane] += a_re * b_re + a_im * b_im;
-            self.im[lane] += a_im * b_re - a_re * b_im;
-        }
-    }
-
-    /// The sum of their magnitudes, rounded up.
-    fn magnitude(&self) -> f64 {
-        let mut magnitudes = [0.0; HARMONICS];
-        for (magnitude, (re, im)) in magnitudes.iter_mut().zip(self.re.iter().zip(&self.im)) {
-            *magnitude = (re * re + im * im).sqrt();
-        }
-        f64::from(magnitudes.iter().sum::<f32>()) * (1.0 + ROUNDING)
-    }
+    groups: Vec<Vec<Pairs>>,
 }
 
 impl PanoramaProbe {
     pub(super) fn new(view: &PanoramaDescriptor) -> Self {
-        let ring = |lanes: &[i8]| std::array::from_fn(|lane| f32::from(lanes[lane]));
-        let group = |lanes: &[i8]| lanes.chunks_exact(2 * HARMONICS).map(ring).collect();
+        let group = |lanes: &[i8]| lanes.chunks_exact(2 * HARMONICS).map(Pairs::new).collect();
         Self {
             scale: f64::from(view.scale()),
             n_rings: view.n_rings(),
@@ -71,9 +36,14 @@ impl PanoramaProbe {
             energy: view.energy(),
             after_slow: view.after_slow(),
             remaining: std::array::from_fn(|group| view.remaining(group)),
+            slow: SlowProbe::new(view),
             constant: view.constant().iter().map(|q| f32::from(*q)).collect(),
             groups: view.groups().map(group).collect(),
         }
+    }
+
+    pub(super) fn slow(&self) -> &SlowProbe {
+        &self.slow
     }
 
     fn fits(&self, reference: &PanoramaDescriptor) -> bool {
@@ -97,13 +67,13 @@ impl PanoramaProbe {
             let mut sums = Sums::default();
             sums.add(own, other);
             if index == 0 {
-                bound = least(overlap + sums.magnitude(), self.after_slow, reference.after_slow());
+                bound = least(overlap + magnitude(&sums), self.after_slow, reference.after_slow());
                 if bound > enough {
                     break;
                 }
                 sums.add(own_rest, other_rest);
             }
-            overlap += sums.magnitude();
+            overlap += magnitude(&sums);
             bound = least(overlap, self.remaining[index], reference.remaining(index));
             if bound > enough {
                 break;
@@ -151,11 +121,10 @@ pub(super) fn compare_once(view: &PanoramaDescriptor, reference: &PanoramaDescri
     }
     let constant = view.constant().iter().zip(reference.constant());
     let constant = constant.map(|(a, b)| i32::from(*a) * i32::from(*b)).sum::<i32>();
-    let ready = |lanes: &[i8]| std::array::from_fn(|lane| f32::from(lanes[lane]));
     let products = view.groups().zip(reference.groups()).map(|(own, other)| {
         let mut sums = Sums::default();
         for (own, other) in own.chunks_exact(2 * HARMONICS).zip(other.chunks_exact(2 * HARMONICS)) {
-            sums.add_one(&ready(own), other);
+            sums.add(&[Pairs::new(own)], other);
         }
         sums
     });
@@ -170,8 +139,8 @@ const INCOMPARABLE: Comparison = Comparison { distance: f64::INFINITY, rotation:
 fn best_rotation(constant: f64, products: impl Iterator<Item = Sums>, n_harmonics: usize) -> (f64, f64) {
     let mut harmonics = [(0.0, 0.0); MOST_GROUPS * HARMONICS];
     for (sums, harmonics) in products.zip(harmonics.chunks_exact_mut(HARMONICS)) {
-        for (harmonic, (re, im)) in harmonics.iter_mut().zip(sums.re.iter().zip(&sums.im)) {
-            *harmonic = (f64::from(*re), f64::from(*im));
+        for (harmonic, sum) in harmonics.iter_mut().zip(sums.harmonics()) {
+            *harmonic = sum;
         }
     }
     Correlation { constant, harmonics: &harmonics[..n_harmonics - 1] }.maximum()
@@ -180,6 +149,11 @@ fn best_rotation(constant: f64, products: impl Iterator<Item = Sums>, n_harmonic
 /// The distance of views whose energies add up to so much and whose whole numbers overlap so much.
 fn distance(scales: f64, energies: f64, overlap: f64) -> f64 {
     (energies - 2.0 * scales * overlap).max(0.0).sqrt()
+}
+
+/// The sum of the magnitudes of the harmonics, rounded up.
+fn magnitude(sums: &Sums) -> f64 {
+    f64::from(sums.magnitude()) * (1.0 + ROUNDING)
 }
 
 /// More than what square roots and sums of single precision lose: eight sums, a root and a product of 6e-8 each.

@@ -1,6 +1,6 @@
 use anyhow::Result;
 
-use super::{Blessed, Done, Options, Plan, PlannedRun, over_seeds::over_seeds, plan::judge};
+use super::{Blessed, Bound, Done, Options, Plan, PlannedRun, over_seeds::over_seeds, plan::judge};
 use crate::report::{Machine, Report, Run, Suite, commit};
 
 /// The report of everything that was done, in the order of the plans, whoever did it: figures over all seeds, judged.
@@ -24,7 +24,10 @@ fn assemble_suite(options: &Options, suite: &str, done: &[Done]) -> Result<Suite
         let mut of_seeds: Vec<&Done> = done.iter().filter(is_of).collect();
         of_seeds.sort_by_key(|done| done.cell.seed);
         let mut run = over_seeds(&of_seeds)?;
-        judge(&planned.bound, &mut run.metrics);
+        let is_timed = |bound: &Bound| run.timings.iter().any(|timing| timing.name == bound.metric);
+        let (of_timings, of_metrics): (Vec<_>, Vec<_>) = planned.bound.iter().cloned().partition(is_timed);
+        judge(&of_metrics, &mut run.metrics);
+        judge(&of_timings, &mut run.timings);
         run.notes.extend(planned.note.clone());
         Some(run)
     };

@@ -1,0 +1,29 @@
+use super::slow::Slow;
+use super::{PanoramaDescriptor, PanoramaProbe};
+use crate::BoundTable;
+
+/// The slow changes of many panoramas from top to bottom, side by side: 148 bytes each.
+#[derive(Clone, Debug, Default)]
+pub struct PanoramaTable {
+    rows: Vec<Slow>,
+}
+
+impl BoundTable<PanoramaDescriptor> for PanoramaTable {
+    fn put(&mut self, slot: usize, reference: &PanoramaDescriptor) {
+        let row = Slow::new(reference);
+        match self.rows.get_mut(slot) {
+            Some(old) => *old = row,
+            None => self.rows.push(row),
+        }
+    }
+
+    #[inline]
+    fn may_be_within(&self, slot: usize, view: &PanoramaProbe, enough: f64) -> Option<f64> {
+        let squared = f64::from(view.slow().squared_bound(&self.rows[slot]));
+        // What is no number bounds nothing.
+        if squared.is_nan() {
+            return Some(0.0);
+        }
+        (squared <= enough * enough).then(|| squared.max(0.0).sqrt())
+    }
+}
