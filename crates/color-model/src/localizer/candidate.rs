@@ -1,5 +1,14 @@
+use wayfix_estimation_traits::Pose2;
+
 use super::trajectory::Trajectory;
 use crate::PixelSums;
+
+/// One of the places that were pursued before the search.
+#[derive(Clone, Copy)]
+pub(crate) struct Known {
+    pub(crate) index: usize,
+    pub(crate) place: Pose2<f64>,
+}
 
 /// A trajectory, and how well it explains the frames.
 #[derive(Clone)]
@@ -17,8 +26,8 @@ pub(crate) struct Candidate {
     pub(crate) log_prior: f64,
     /// Length of its next step, as a share of the first.
     pub(crate) step: f64,
-    /// Whether it descends from a place that was pursued before the search.
-    pub(crate) is_known: bool,
+    /// The place that was pursued before the search and that it descends from, if any: it does not leave that.
+    pub(crate) known: Option<Known>,
 }
 
 impl Candidate {

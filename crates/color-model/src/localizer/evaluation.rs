@@ -9,6 +9,7 @@ use super::{
     acquisition::Effort,
     candidate::Candidate,
     hidden::or_hidden,
+    hypothesis::is_same_place,
     search::{Search, stride},
     trajectory::Trajectory,
 };
@@ -91,6 +92,9 @@ impl Search<'_> {
         effort: Effort,
     ) -> bool {
         self.area.clamp(&mut trajectory.newest);
+        if candidate.known.is_some_and(|known| !is_same_place(&known.place, &trajectory.newest)) {
+            return false;
+        }
         let mut moved = Candidate { trajectory, ..candidate.clone() };
         self.weigh(scratch, &mut moved, effort);
         let is_better = moved.score > candidate.score;
@@ -150,7 +154,7 @@ impl Search<'_> {
         self.score(scratch, candidate);
         let n_seen = candidate.sums.iter().map(|sums| sums.count() + sums.n_outliers()).sum::<u64>() as f64;
         let n_pixels = self.frames.first().map_or(0, Frame::n_pixels) * self.shots.len().div_ceil(stride);
-        if effort == Effort::Coarse && !candidate.is_known && n_seen < LEAST_IN_VIEW * n_pixels as f64 {
+        if effort == Effort::Coarse && candidate.known.is_none() && n_seen < LEAST_IN_VIEW * n_pixels as f64 {
             candidate.score -= BLIND;
         }
     }

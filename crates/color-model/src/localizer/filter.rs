@@ -157,24 +157,20 @@ impl ColorLocalizer {
         shots.push(shot, self.params.acquisition.n_frames);
         let n_frames = self.params.acquisition.n_frames;
         let is_start = self.n_updates < n_frames && (self.n_updates + 1).is_power_of_two();
-        let is_doubted = self.vigilance.is_search_due(&self.params);
-        let is_search = is_doubted || self.is_routine();
+        let is_search = self.vigilance.is_search_due(&self.params) || self.is_routine();
         let (judged, n_since_search) = if is_start {
             let found = self.search(&shots, &self.start, &self.prior, rng)?;
             (found.into_iter().map(|one| one.judged).collect(), 0)
         } else if is_search {
-            (self.reconsider(self.look(image, mount, rng)?, &shots, rng)?, 0)
+            (self.reconsider(image, mount, &shots, rng)?, 0)
         } else {
-            (self.look(image, mount, rng)?, self.n_since_search + 1)
+            (self.look(self.hypotheses.clone(), image, mount, rng)?, self.n_since_search + 1)
         };
         let acquisition = &self.params.acquisition;
         let most = acquisition.n_kept.saturating_sub(n_since_search).max(acquisition.n_undecided);
         let judged = shortlist(judged, most, acquisition.hopeless);
         let best = judged.first().ok_or(ColorModelError::NoPose)?;
         let mut vigilance = self.vigilance;
-        if is_doubted {
-            vigilance = vigilance.after_search(&self.params);
-        }
         if !is_start {
             vigilance.observe(best.seen.fit, &self.params);
         }
@@ -213,8 +209,12 @@ impl ColorLocalizer {
     /// Whether it is time to look for the robot again although nothing is doubted.
     fn is_routine(&self) -> bool {
         let AcquisitionParams { n_frames, every, .. } = self.params.acquisition;
-        let every = if self.n_in_vain > 1 { every.div_ceil(2) } else { every };
-        every > 0 && self.n_since_search + 1 >= every && self.n_updates > n_frames
+        let is_doubted = self.n_in_vain > 1 || !self.vigilance.is_sound(&self.params);
+        let every = if is_doubted { every.div_ceil(2) } else { every };
+        every > 0
+            && self.n_since_search + 1 >= every
+            && self.n_updates > n_frames
+            && !self.vigilance.is_undecided(&self.params)
     }
 
     fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {
@@ -234,7 +234,11 @@ impl ColorLocalizer {
         let is_narrow = estimate.position_sigma() < 0.3 && estimate.heading_sigma() < 0.3;
         if vigilance.recent() < self.params.lost_fit {
             Fix::Lost
-        } else if share > SURE && is_narrow && self.n_updates >= self.params.acquisition.n_frames {
+        } else if share > SURE
+            && is_narrow
+            && vigilance.suspicion(&self.params) < 1.0
+            && self.n_updates >= self.params.acquisition.n_frames
+        {
             Fix::Tracking
         } else {
             Fix::Ambiguous

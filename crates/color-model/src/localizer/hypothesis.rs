@@ -1,9 +1,11 @@
 use std::sync::Arc;
 
+use rand::Rng;
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_particle::Weights;
+use wayfix_particle::{RaoBlackwell, Resampler, Systematic, Weights};
 
 use super::{PoseEstimate, estimate::dominant_cluster, light::Light, particle::ColorParticle, seen::Seen};
+use crate::ColorModelError;
 
 /// One place where the robot may be: particles that are weighed and resampled among themselves, and what all frames say for it.
 ///
@@ -29,6 +31,23 @@ impl Hypothesis {
     pub(crate) fn light(&self) -> Option<&Arc<Light>> {
         let heaviest = self.particles.iter().zip(self.weights.as_slice()).max_by(|a, b| a.1.total_cmp(b.1));
         heaviest.map(|(particle, _)| particle.shared_conditional())
+    }
+
+    /// Gives half of the weight to particles that a search found here, under the light that is known here.
+    pub(crate) fn join<R: Rng + ?Sized>(
+        &mut self,
+        refined: &Seen,
+        rng: &mut R,
+    ) -> Result<(), ColorModelError> {
+        let Some(light) = self.light().map(Arc::clone) else { return Ok(()) };
+        let n = self.particles.len();
+        let ancestors = Systematic.ancestors(&refined.weighed.weights, n, rng)?;
+        let newcomer =
+            |&at: &usize| RaoBlackwell::from_shared(refined.particles[at].sampled, Arc::clone(&light));
+        self.particles.extend(ancestors.iter().map(newcomer));
+        let weights = self.weights.as_slice().iter().copied().chain(std::iter::repeat_n(1.0 / n as f64, n));
+        self.weights = Weights::from_linear(weights.collect())?;
+        Ok(())
     }
 
     /// Body poses with weights.

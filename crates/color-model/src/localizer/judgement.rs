@@ -21,6 +21,11 @@ use super::{
 };
 use crate::{ColorModelError, YuvImage};
 
+/// Searches in vain, one after the other, with which the light is doubted as well.
+const SEARCHES_TO_DOUBT_LIGHT: usize = 4;
+/// How many times the lead a place needs that is found under another light than the one that was learned.
+const OTHER_LIGHT: f64 = 3.0;
+
 /// What frames say of where the robot may be.
 impl ColorLocalizer {
     /// The particles of one of `n` hypotheses after the frame.
@@ -47,12 +52,12 @@ impl ColorLocalizer {
     /// What a frame says of the hypotheses.
     pub(super) fn look<R: Rng + ?Sized>(
         &self,
+        mut hypotheses: Vec<Hypothesis>,
         image: &YuvImage,
         mount: &Pose3<f64>,
         rng: &mut R,
     ) -> Result<Vec<Judged>, ColorModelError> {
         let seconds = self.walked.seconds;
-        let mut hypotheses = self.hypotheses.clone();
         for hypothesis in &mut hypotheses {
             predict_light(&mut hypothesis.particles, seconds, &self.params.pixels)?;
         }
@@ -112,31 +117,52 @@ impl ColorLocalizer {
     /// The places that are believed in, and those that explain the last frames better.
     pub(super) fn reconsider<R: Rng + ?Sized>(
         &self,
-        believed: Vec<Judged>,
+        image: &YuvImage,
+        mount: &Pose3<f64>,
         shots: &Shots,
         rng: &mut R,
     ) -> Result<Vec<Judged>, ColorModelError> {
+        let shots = shots.last(self.vigilance.n_telling());
+        let found = self.search(&shots, &Start::Anywhere, &self.trusted, rng)?;
+        let mut hypotheses = self.hypotheses.clone();
+        for Found { judged, known } in &found {
+            if let Some(hypothesis) = known.and_then(|known| hypotheses.get_mut(known)) {
+                hypothesis.join(&judged.seen, rng)?;
+            }
+        }
+        let mut judged = self.look(hypotheses, image, mount, rng)?;
+        let lead = best(judged.iter());
+        let elsewhere = self.params.acquisition.elsewhere;
+        judged.extend(self.newcomers(found, lead, elsewhere));
         // The light stays as it was when somebody lifts the robot; but it may have been wrong as well.
-        let is_light_doubted = self.n_in_vain % 2 == 1;
-        let light = if is_light_doubted { &self.prior } else { &self.trusted };
-        let found = self.search(shots, &Start::Anywhere, light, rng)?;
-        let best = |scores: &mut dyn Iterator<Item = f64>| scores.fold(f64::NEG_INFINITY, f64::max);
-        let of_found = |one: &Found| one.judged.log_evidence;
-        let as_known = best(&mut found.iter().filter(|one| one.is_known).map(of_found));
-        let best_found = best(&mut found.iter().map(of_found));
-        let odds = self.params.acquisition.elsewhere * if is_light_doubted { 3.0 } else { 1.0 };
-        let start = best(&mut believed.iter().map(|one| one.log_evidence)) - odds;
-        // The frames that a place was chosen by among thousands flatter it: only those to come count for it. Meanwhile their order decides.
-        let newcomer = |Found { judged, .. }: Found| {
-            let order = judged.log_evidence - best_found;
-            Judged { log_evidence: start + order, ..judged }
-        };
-        let better = found
-            .into_iter()
-            .filter(|one| {
-                !one.is_known && of_found(one) > (as_known - self.params.acquisition.margin).max(0.0)
-            })
-            .map(newcomer);
-        Ok(believed.into_iter().chain(better).collect())
+        let is_light_doubted = self.n_in_vain % SEARCHES_TO_DOUBT_LIGHT == SEARCHES_TO_DOUBT_LIGHT - 1;
+        if is_light_doubted && !Arc::ptr_eq(&self.trusted, &self.prior) {
+            let found = self.search(&shots, &Start::Anywhere, &self.prior, rng)?;
+            judged.extend(self.newcomers(found, lead, OTHER_LIGHT * elsewhere));
+        }
+        Ok(judged)
     }
+
+    /// The places found that are worth to be pursued beside those that are believed in, of which the best has the log-evidence `lead`.
+    ///
+    /// A robot that is elsewhere is so with odds of $`e^{-o}`$ only, and the frames that a place was chosen by among thousands flatter it, by as much
+    /// again at most: what they say for it beyond that counts, up to a draw. The frames to come decide.
+    fn newcomers(&self, found: Vec<Found>, lead: f64, odds: f64) -> impl Iterator<Item = Judged> {
+        let best_found = best(found.iter().map(|one| &one.judged));
+        let as_known = best(found.iter().filter(|one| one.known.is_some()).map(|one| &one.judged));
+        let shown = best_found - as_known - odds;
+        let start = lead - odds + if shown.is_finite() { shown.clamp(0.0, odds) } else { 0.0 };
+        let least = (as_known - self.params.acquisition.margin).max(0.0);
+        found.into_iter().filter(move |one| one.known.is_none() && one.judged.log_evidence > least).map(
+            move |Found { judged, .. }| {
+                let order = judged.log_evidence - best_found;
+                Judged { log_evidence: start + order, ..judged }
+            },
+        )
+    }
+}
+
+/// The log-evidence of the best.
+fn best<'a>(judged: impl Iterator<Item = &'a Judged>) -> f64 {
+    judged.map(|one| one.log_evidence).fold(f64::NEG_INFINITY, f64::max)
 }

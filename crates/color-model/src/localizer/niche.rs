@@ -32,12 +32,16 @@ impl Niche {
         let mut kept: Vec<Self> = Vec::new();
         for niche in niches.drain(..) {
             let has_met = |other: &Self| is_same_place(&other.place(), &niche.place());
-            let is_known = niche.0.iter().any(|candidate| candidate.is_known);
-            if is_known || kept.len() < most && !kept.iter().any(has_met) {
+            if niche.known().is_some() || kept.len() < most && !kept.iter().any(has_met) {
                 kept.push(niche);
             }
         }
         *niches = kept;
+    }
+
+    /// Which of the places that were pursued before the search it descends from, if any.
+    pub(crate) fn known(&self) -> Option<usize> {
+        self.0.iter().find_map(|candidate| candidate.known.map(|known| known.index))
     }
 
     /// The score of the best.

@@ -7,18 +7,30 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_particle::{RaoBlackwell, Weights};
 
 use super::{
-    AcquisitionParams, LocalizerParams, Start, acquisition::Effort, candidate::Candidate,
-    estimate::dominant_cluster, hypothesis::Judged, light::Light, niche::Niche, particle::ColorParticle,
-    seen::Seen, shots::Shot, sightings::Sightings, start::Area, surroundings::Surroundings,
-    trajectory::Trajectory, views::Views, weighed::Weighed,
+    AcquisitionParams, LocalizerParams, Start,
+    acquisition::Effort,
+    candidate::{Candidate, Known},
+    estimate::dominant_cluster,
+    hypothesis::Judged,
+    light::Light,
+    niche::Niche,
+    particle::ColorParticle,
+    seen::Seen,
+    shots::Shot,
+    sightings::Sightings,
+    start::Area,
+    surroundings::Surroundings,
+    trajectory::Trajectory,
+    views::Views,
+    weighed::Weighed,
 };
 use crate::{Background, ColorModelError, Frame, PixelSums};
 
 /// A place that explains the frames well, its log-evidence that of all frames.
 pub(crate) struct Found {
     pub(crate) judged: Judged,
-    /// Whether it descends from a known one.
-    pub(crate) is_known: bool,
+    /// Which of the known places it descends from, if any.
+    pub(crate) known: Option<usize>,
 }
 
 /// What is known before the frames.
@@ -93,11 +105,11 @@ impl<'a> Search<'a> {
             Niche::retain_best(&mut niches, most);
         }
         let found = |niche: &Niche| {
-            let is_known = niche.0.iter().any(|candidate| candidate.is_known);
             let seen = self.seen(&niche.0, rng)?;
             let estimate =
                 dominant_cluster(&seen.weighed.poses(&seen.particles)).ok_or(ColorModelError::NoPose)?;
-            Ok(Found { judged: Judged { seen, estimate, log_evidence: niche.best(), hidden: 0.0 }, is_known })
+            let judged = Judged { seen, estimate, log_evidence: niche.best(), hidden: 0.0 };
+            Ok(Found { judged, known: niche.known() })
         };
         niches.iter().map(found).collect()
     }
@@ -109,7 +121,8 @@ impl<'a> Search<'a> {
         rng: &mut R,
     ) -> Result<Vec<Candidate>, ColorModelError> {
         let AcquisitionParams { n_drawn, .. } = self.params.acquisition;
-        let mut candidates: Vec<Candidate> = known.iter().map(|place| self.known_candidate(place)).collect();
+        let mut candidates: Vec<Candidate> =
+            known.iter().enumerate().map(|(at, place)| self.known_candidate(at, place)).collect();
         let drawn = (0..n_drawn).map(|n| self.drawn(n, rng)).collect();
         candidates.extend(
             self.each(drawn, rng, |scratch, candidate, _| self.weigh(scratch, candidate, Effort::Coarse))?,
@@ -167,9 +180,12 @@ impl<'a> Search<'a> {
         self.candidate(&pose, at)
     }
 
-    fn known_candidate(&self, place: &Pose2<f64>) -> Candidate {
-        let mut candidate =
-            Candidate { is_known: true, score: f64::MAX, ..self.candidate(place, self.shots.len()) };
+    fn known_candidate(&self, index: usize, place: &Pose2<f64>) -> Candidate {
+        let mut candidate = Candidate {
+            known: Some(Known { index, place: *place }),
+            score: f64::MAX,
+            ..self.candidate(place, self.shots.len())
+        };
         candidate.trajectory.newest = *place;
         candidate
     }
@@ -185,7 +201,7 @@ impl<'a> Search<'a> {
             log_prior: 0.0,
             score: f64::NEG_INFINITY,
             step: 1.0,
-            is_known: false,
+            known: None,
         }
     }
 }

@@ -64,6 +64,11 @@ impl Shots {
         }
     }
 
+    /// The last `n` of them.
+    pub(crate) fn last(&self, n: usize) -> Self {
+        Self(self.0.iter().skip(self.0.len().saturating_sub(n)).cloned().collect())
+    }
+
     /// At most `most` of them, evenly spread, the newest among them, with the odometry between.
     pub(crate) fn spread(&self, most: usize) -> Vec<Shot> {
         let stride = self.0.len().div_ceil(most.max(1)).max(1);
