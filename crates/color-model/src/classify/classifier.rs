@@ -68,11 +68,7 @@ impl Classifier {
 
     /// The colour of a pixel; `None` for background. Of equally probable colours the first.
     pub fn classify(&self, pixel: [u8; 3]) -> Option<ColorId> {
-        let better = |best: (Option<ColorId>, f64), (at, density): (u8, &SumDensity)| {
-            let log = density.log(pixel);
-            if log > best.1 { (Some(ColorId(at)), log) } else { best }
-        };
-        (0..).zip(&self.densities).fold((None, self.floor(pixel)), better).0
+        most_probable(&self.densities, pixel, self.floor(pixel))
     }
 
     /// The colour of every pixel: [`ColorId`] as a number, 255 for background.
@@ -109,6 +105,15 @@ impl Classifier {
         let background = self.background.as_ref();
         background.map_or(f64::NEG_INFINITY, |bg| bg.log_density(pixel) + self.background_odds)
     }
+}
+
+/// The colour that gives a pixel the highest log-density, the first of equal ones; none that is not above `floor`.
+pub(crate) fn most_probable(densities: &[SumDensity], pixel: [u8; 3], floor: f64) -> Option<ColorId> {
+    let better = |best: (Option<ColorId>, f64), (at, density): (u8, &SumDensity)| {
+        let log = density.log(pixel);
+        if log > best.1 { (Some(ColorId(at)), log) } else { best }
+    };
+    (0..).zip(densities).fold((None, floor), better).0
 }
 
 /// A row of a table while it is compiled: the labels, and how probable they are.

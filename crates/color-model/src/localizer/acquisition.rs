@@ -20,7 +20,7 @@ pub struct AcquisitionParams {
     /// Frames that are kept. At the start the robot is looked for after 1, 2, 4, ... frames, up to this number.
     pub n_frames: usize,
     /// Frames until the robot is looked for again even if nothing is doubted: a wrong place may explain what is seen quite well, and only
-    /// another that does so better gives it away. 0 for never.
+    /// another that does so better gives it away. Half as many while the fit leaves doubts. 0 for never.
     pub every: usize,
     /// Most of them that trajectories are weighed by, evenly spread.
     pub n_weighed: usize,
@@ -31,7 +31,8 @@ pub struct AcquisitionParams {
     /// A place is given up when the frames make it this much less likely than the best, nats.
     pub hopeless: f64,
     /// By how much the frames have to make another place more likely than the one where the robot believes to be, when that is doubted, nats: it
-    /// is carried away in one of thousands of frames, and then may be in any of some hundred thousand places.
+    /// is carried away in one of thousands of frames, and then may be in any of some hundred thousand places. The frames of a search count beyond twice as
+    /// many, since a place chosen among thousands is flattered by them.
     pub elsewhere: f64,
     /// A place is pursued beside the one where the robot believes to be if the frames of a search make it at most this much less likely, nats.
     pub margin: f64,

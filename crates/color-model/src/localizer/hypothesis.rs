@@ -94,3 +94,59 @@ pub(crate) fn share_of_first(judged: &[Judged]) -> f64 {
     let Some(first) = judged.first() else { return 0.0 };
     1.0 / judged.iter().map(|one| (one.log_evidence - first.log_evidence).exp()).sum::<f64>()
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use wayfix_gaussian_core::Gaussian;
+    use wayfix_kalman::MarkovChain;
+
+    use super::*;
+    use crate::{
+        LightingBank, LightingFilter, LightingParams, PixelParams,
+        localizer::{CameraError, CameraLocation, views::Views, weighed::Weighed},
+    };
+
+    fn light(brightness: f64) -> Arc<Light> {
+        let prior =
+            Gaussian::new(DVector::from_element(3, brightness), DMatrix::from_diagonal_element(3, 3, 100.0));
+        let filter = LightingFilter::new(prior.unwrap(), LightingParams::default()).unwrap();
+        let bank = LightingBank::new(vec![filter], MarkovChain::sticky(1, 0.9).unwrap()).unwrap();
+        Arc::new(Light::new(bank, &PixelParams::default()).unwrap())
+    }
+
+    fn particles(n: usize, x: f64, light: &Arc<Light>) -> Vec<ColorParticle> {
+        let location = CameraLocation { body: Pose2::new(x, 0.0, 0.0), error: CameraError::default() };
+        (0..n).map(|_| RaoBlackwell::from_shared(location, Arc::clone(light))).collect()
+    }
+
+    #[test]
+    fn a_refined_place_takes_half_of_the_weight_and_the_light_that_is_known() {
+        let (learned, of_search) = (light(90.0), light(140.0));
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let equal = |n: usize| Weights::from_linear(vec![1.0; n]).unwrap();
+        let (found, views) = (particles(2, 0.2, &of_search), Views::new(2, &of_search.bank));
+        let banks = found.iter().map(|particle| &particle.conditional().bank);
+        let weighed = Weighed::new(banks, &equal(2), &views, 0.0, 0.2, &mut rng).unwrap();
+        let refined = Seen { weighed, views, particles: found, fit: 0.3 };
+
+        let mut drifted = Hypothesis {
+            particles: particles(4, 0.0, &learned),
+            weights: equal(4),
+            log_evidence: -7.0,
+            hidden: 0.1,
+        };
+        drifted.join(&refined, &mut rng).unwrap();
+        let there: f64 =
+            drifted.poses().iter().filter(|(pose, _)| pose.x() > 0.1).map(|(_, weight)| weight).sum();
+        assert!((there - 0.5).abs() < 1e-12 && drifted.particles.len() == 8);
+        assert!(drifted.particles.iter().all(|p| Arc::ptr_eq(p.shared_conditional(), &learned)));
+        assert_eq!(
+            (drifted.log_evidence, drifted.hidden),
+            (-7.0, 0.1),
+            "what the frames said of the place stays"
+        );
+    }
+}

@@ -1,7 +1,10 @@
 use nalgebra::Matrix3;
 use wayfix_color_map::ColorId;
 
-use crate::{ColorDensity, ColorModelError, LightingBank, PixelParams, SumDensity, classify::NO_COLOR};
+use crate::{
+    ColorDensity, ColorModelError, LightingBank, PixelParams, SumDensity,
+    classify::{NO_COLOR, most_probable},
+};
 
 /// A particle's knowledge of the light: a bank of filters, and its colours' densities ready for weighing.
 ///
@@ -32,14 +35,7 @@ impl Light {
 
     /// The colour that explains a pixel best under one member, as a number; 255 where the background, of this log-density, does better.
     pub(crate) fn label(&self, member: usize, pixel: [u8; 3], background: f64) -> u8 {
-        let mut best = (NO_COLOR, background);
-        for (color, density) in (0..).zip(self.member(member)) {
-            let log = density.log(pixel);
-            if log > best.1 {
-                best = (color, log);
-            }
-        }
-        best.0
+        most_probable(self.member(member), pixel, background).map_or(NO_COLOR, |color| color.0)
     }
 
     /// Densities of the colours under one member.

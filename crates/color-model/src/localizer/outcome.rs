@@ -18,7 +18,7 @@ pub struct FrameOutcome {
     /// How much better the best place explains the frame than the colours that the frame shows on average, nats a pixel: 0.2 to 0.5 where the
     /// robot sees much of the map, about 0 or less where it sees none of it, or is elsewhere.
     pub fit: f64,
-    /// How long the recent fit has been low, as a share of the time after which the robot is looked for again, 0 to 1.
+    /// How long the recent fit has been low, as a share of the time after which the robot is looked for in doubt, 0 to 1.
     pub kidnap_suspicion: f64,
     /// Places that are still pursued.
     pub n_hypotheses: usize,
@@ -29,7 +29,7 @@ pub struct FrameOutcome {
 /// What a pose estimate is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fix {
-    /// One narrow cluster has most of the weight, and it fits what is seen.
+    /// One narrow cluster has most of the weight, and what is seen has not spoken against it for long.
     Tracking,
     /// Several places fit, or one wide one.
     Ambiguous,
