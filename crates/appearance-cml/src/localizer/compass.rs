@@ -10,6 +10,10 @@ use crate::{
 /// Weight from which on a hypothesis is worth the comparisons.
 const LEAST_WEIGHT: f64 = 0.05;
 
+/// σ of a learned heading up to which references speak, rad: that of a comparison with the best of them. Whose heading is known worse has it from a robot that
+/// built the map on its way, and errs with it.
+const MOST_LEARNED_SIGMA: f64 = 0.03;
+
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// Tells hypotheses that nothing observed agrees with at least which way they look.
     ///
@@ -57,6 +61,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let mut around =
             self.apart_from_trail(self.map.sightings_near(view, std::slice::from_ref(belief), limit));
         around.retain(|s| wrap_angle(s.gaussian.mean().heading() - belief.mean().heading()).abs() <= most);
-        Facing::of(&around, self.map.scale())
+        let facing = Facing::of(&around, self.map.scale())?;
+        Ok(facing.filter(|facing| facing.learned <= MOST_LEARNED_SIGMA * MOST_LEARNED_SIGMA))
     }
 }
