@@ -15,11 +15,13 @@ mod views;
 
 pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState, MapArchive};
 pub use error::AppearanceError;
+pub(crate) use fusion::told_heading;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
 pub use localizer::{
     AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Proof, RelocationParams,
     Start, UpdateOutcome, smooth,
 };
+pub(crate) use model::Facing;
 pub use model::{
     AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,
     Reference, Sighting, ViewScale, interpolate, similarity, superpose,

@@ -2,11 +2,13 @@
 
 mod combine;
 mod fuse;
+mod heading;
 mod params;
 mod source;
 mod split;
 
 pub use combine::combine;
 pub use fuse::fuse;
+pub(crate) use heading::told_heading;
 pub use params::{Combination, FusionParams, Weighting};
 pub use source::{PoseSource, PositionFix};

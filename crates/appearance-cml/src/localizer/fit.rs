@@ -16,9 +16,9 @@ pub(super) enum Fit {
 }
 
 /// A heading that differs by more, and by more than the belief is in doubt, is not the same, rad.
-const HERE_TURN: f64 = 0.35;
+pub(super) const HERE_TURN: f64 = 0.35;
 /// σ of a belief within which it may be.
-const GATE_SIGMAS: f64 = 3.0;
+pub(super) const GATE_SIGMAS: f64 = 3.0;
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// How the view fits the heaviest hypothesis of a belief.

@@ -33,7 +33,10 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         };
         let weighting = belief.anywhere.weighting(self.params.fusion.weighting);
         let fusion = FusionParams { weighting, ..self.params.fusion };
-        let predicted = belief.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();
+        let mut predicted = belief.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();
+        if let Some(view) = view {
+            self.steady(view, &mut predicted, &observed)?;
+        }
         let mut fused = fuse(&predicted, &observed, &fusion)?;
         for source in sources {
             fused = fuse(&fused, &source.hypotheses(belief.state.as_ref())?, &fusion)?;

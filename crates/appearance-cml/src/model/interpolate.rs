@@ -23,7 +23,7 @@ pub fn interpolate(
     belief: &[Gaussian<Pose2<f64>>],
     scale: &ViewScale,
 ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
-    groups(sightings, GROUP_STEPS * scale.step()).iter().map(|group| pose_of(group, belief, scale)).collect()
+    groups(sightings, scale).iter().map(|group| pose_of(group, belief, scale)).collect()
 }
 
 /// Radius of a group, in steps between views.
@@ -33,7 +33,7 @@ const GROUP_TURN: f64 = 0.6;
 /// Places of a group that are interpolated: those on all sides of the robot, no more.
 const GROUP_SIZE: usize = 6;
 /// Width $`h`$ of the kernel, in distances of successive views. On the Sussex route 0.3 to 0.5 are equally good, 1 is worse.
-const KERNEL_WIDTH: f64 = 0.4;
+pub(super) const KERNEL_WIDTH: f64 = 0.4;
 /// σ of the heading that a comparison gives at best, rad.
 const HEADING_SIGMA: f64 = 0.03;
 /// What is added to it for a view that differs from its reference as much as one of a far place, rad. A robot that stands beside its reference sees
@@ -43,7 +43,8 @@ const PARALLAX_SIGMA: f64 = 0.25;
 type Group<'a> = Vec<&'a Sighting>;
 
 /// Greedy: the most similar place that is left leads a group and takes its neighbours.
-fn groups(sightings: &[Sighting], radius: f64) -> Vec<Group<'_>> {
+pub(super) fn groups<'a>(sightings: &'a [Sighting], scale: &ViewScale) -> Vec<Group<'a>> {
+    let radius = GROUP_STEPS * scale.step();
     let mut left: Vec<&Sighting> = sightings.iter().collect();
     left.sort_by(|a, b| a.matched.comparison.distance.total_cmp(&b.matched.comparison.distance));
     let mut groups = Vec::new();
@@ -63,20 +64,22 @@ fn groups(sightings: &[Sighting], radius: f64) -> Vec<Group<'_>> {
     groups
 }
 
+/// The places of a group that are interpolated.
+pub(super) fn nearest_of<'a, 'b>(whole: &'b Group<'a>) -> &'b [&'a Sighting] {
+    &whole[..whole.len().min(GROUP_SIZE)]
+}
+
 fn pose_of(
     whole: &Group<'_>,
     belief: &[Gaussian<Pose2<f64>>],
     scale: &ViewScale,
 ) -> Result<PoseHypothesis, AppearanceError> {
-    let group = &whole[..whole.len().min(GROUP_SIZE)];
+    let group = nearest_of(whole);
     let nearest = group[0].matched.comparison.distance;
     let shares = shares(group, KERNEL_WIDTH * scale.step_distance());
     let places = || group.iter().zip(&shares).map(|(s, share)| (s.gaussian.mean(), *share));
     let interpolated: Vector2<f64> = places().map(|(mean, share)| mean.translation * share).sum();
-    let headings: Vec<Angle<f64>> = places().map(|(mean, _)| mean.rotation).collect();
-    let moments = CircularMoments::from_weighted(&headings, &shares)?;
-    // Headings of a group lie within a fraction of a turn, so that they never cancel.
-    let heading = moments.mean_direction().unwrap_or(headings[0]).radians();
+    let (heading, heading_variance) = turn_of(group, &shares, scale)?;
     let beyond = beyond_border(whole, &interpolated, belief, scale);
     let position = interpolated + beyond.unwrap_or_default();
     let mean = Pose2::new(position.x, position.y, heading);
@@ -88,8 +91,7 @@ fn pose_of(
     let gap = if beyond.is_some() { 1.0 } else { 0.5 } * scale.metres(nearest);
     let comparison = to_body * spread * to_body.transpose() * 0.5 + Matrix2::identity() * (gap * gap);
     let mut compared = comparison.to_homogeneous();
-    let heading_sigma = HEADING_SIGMA + PARALLAX_SIGMA * scale.share_of_sill(nearest);
-    compared[(2, 2)] = heading_sigma * heading_sigma + moments.standard_deviation().powi(2);
+    compared[(2, 2)] = heading_variance;
 
     let mut learned = Matrix3::zeros();
     for (sighting, share) in group.iter().zip(&shares) {
@@ -105,6 +107,20 @@ fn pose_of(
         gaussian: Gaussian::new(mean, covariance)?,
         independent: plane(&compared) / plane(&covariance),
     })
+}
+
+/// The heading that a group says, and the variance of the comparison.
+pub(super) fn turn_of(
+    group: &[&Sighting],
+    shares: &[f64],
+    scale: &ViewScale,
+) -> Result<(f64, f64), AppearanceError> {
+    let headings: Vec<Angle<f64>> = group.iter().map(|s| s.gaussian.mean().rotation).collect();
+    let moments = CircularMoments::from_weighted(&headings, shares)?;
+    // Headings of a group lie within a fraction of a turn, so that they never cancel.
+    let heading = moments.mean_direction().unwrap_or(headings[0]).radians();
+    let sigma = HEADING_SIGMA + PARALLAX_SIGMA * scale.share_of_sill(group[0].matched.comparison.distance);
+    Ok((heading, sigma * sigma + moments.standard_deviation().powi(2)))
 }
 
 /// From the interpolated position towards the nearest component of the belief, when that lies beyond all places that look like the view:
@@ -130,7 +146,7 @@ fn beyond_border(
 }
 
 /// Kernel weights, adding up to one.
-fn shares(group: &[&Sighting], width: f64) -> Vec<f64> {
+pub(super) fn shares(group: &[&Sighting], width: f64) -> Vec<f64> {
     let nearest = group[0].matched.comparison.distance;
     let kernel = |s: &&Sighting| {
         let beyond = (s.matched.comparison.distance.powi(2) - nearest.powi(2)) / (2.0 * width * width);

@@ -1,6 +1,7 @@
 //! What places look like: reference views, where each was seen, and how both are learned and forgotten.
 
 mod appearance_map;
+mod facing;
 mod grid;
 mod interpolate;
 mod learn;
@@ -15,6 +16,7 @@ mod view_scale;
 mod weigh;
 
 pub use appearance_map::AppearanceMap;
+pub(crate) use facing::Facing;
 pub use interpolate::interpolate;
 pub use learn::Learned;
 pub use params::{Forgetting, ForgettingParams, MapParams, PlaceUpdate};

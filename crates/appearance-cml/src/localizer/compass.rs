@@ -1,0 +1,67 @@
+use wayfix_estimation_traits::{Pose2, wrap_angle};
+use wayfix_gaussian_core::Gaussian;
+
+use super::fit::{GATE_SIGMAS, HERE_TURN};
+use super::{AppearanceLocalizer, Observation};
+use crate::{
+    AppearanceError, Descriptor, Facing, PoseHypothesis, ReferenceSearch, separation_squared, told_heading,
+};
+
+/// Weight from which on a hypothesis is worth the comparisons.
+const LEAST_WEIGHT: f64 = 0.05;
+
+/// σ of a learned heading up to which references speak, rad: half of what a comparison errs by at best, so that what they have in common hardly counts beside it.
+/// Whose heading is known worse has it from a robot that built the map on its way, and errs with it.
+const MOST_LEARNED_SIGMA: f64 = 0.015;
+
+impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
+    /// Tells hypotheses that nothing observed agrees with at least which way they look.
+    ///
+    /// Who drives beside the taught lane, or past shelves that were rearranged, recognizes nothing for many metres, and goes astray by its heading: 4° are
+    /// 1.4 m after 20 m.
+    pub(super) fn steady(
+        &self,
+        view: &D,
+        predicted: &mut [PoseHypothesis],
+        observed: &[PoseHypothesis],
+    ) -> Result<(), AppearanceError> {
+        if self.params.observation != Observation::Interpolation {
+            return Ok(());
+        }
+        for hypothesis in predicted.iter_mut().filter(|hypothesis| hypothesis.weight >= LEAST_WEIGHT) {
+            if self.agrees(&hypothesis.gaussian, observed)? {
+                continue;
+            }
+            if let Some(facing) = self.facing(view, &hypothesis.gaussian)? {
+                hypothesis.gaussian = told_heading(&hypothesis.gaussian, &facing)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn agrees(
+        &self,
+        belief: &Gaussian<Pose2<f64>>,
+        observed: &[PoseHypothesis],
+    ) -> Result<bool, AppearanceError> {
+        for hypothesis in observed {
+            if separation_squared(belief, &hypothesis.gaussian)? < self.params.fusion.gate {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Which way the robot looks by the references around a belief, those that look more like the view than all of some far places do.
+    fn facing(&self, view: &D, belief: &Gaussian<Pose2<f64>>) -> Result<Option<Facing>, AppearanceError> {
+        let Some(limit) = self.map.least_distance_to_far(view, belief.mean(), self.views) else {
+            return Ok(None);
+        };
+        let most = HERE_TURN + GATE_SIGMAS * belief.sigmas().z;
+        let mut around =
+            self.apart_from_trail(self.map.sightings_near(view, std::slice::from_ref(belief), limit));
+        around.retain(|s| wrap_angle(s.gaussian.mean().heading() - belief.mean().heading()).abs() <= most);
+        let facing = Facing::of(&around, self.map.scale())?;
+        Ok(facing.filter(|facing| facing.learned <= MOST_LEARNED_SIGMA * MOST_LEARNED_SIGMA))
+    }
+}
