@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Field, FieldView, between, known, lap};
+use common::{Field, FieldView, N_STEPS, beside, between, known};
 use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -13,7 +13,6 @@ use wayfix_gaussian_core::Gaussian;
 type Localizer = AppearanceLocalizer<FieldView>;
 
 const N_SEEDS: u64 = 10;
-const N_STEPS: usize = 160;
 /// Steps of 25 m, more than half of a lap.
 const TRAVEL: usize = 96;
 /// Beside the lane that was taught, m: too far to be recognized.
@@ -22,10 +21,6 @@ const BESIDE: f64 = 0.9;
 const TURNED: f64 = 0.15;
 /// How well it is said to be known, rad.
 const SIGMA: f64 = 0.2;
-
-fn beside(step: usize, offset: f64) -> Pose2<f64> {
-    lap(14.0, 8.0, N_STEPS)[step % N_STEPS].compose(&Pose2::new(0.0, offset, 0.0))
-}
 
 /// By how much the heading is off after 25 m, rad, and how often a place was recognized on the way.
 fn heading_error(seed: u64, params: LocalizerParams) -> (f64, usize) {

@@ -2,31 +2,23 @@
 
 mod common;
 
-use common::{Field, FieldView, between, drifting, known, lap};
+use common::{Field, FieldView, N_STEPS, beside, between, drifting, known};
 use nalgebra::Vector2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
     AppearanceLocalizer, Event, Learning, LocalizerParams, RelocationParams, Start, UpdateOutcome,
 };
-use wayfix_estimation_traits::{LieGroup, Pose2};
 
 type Localizer = AppearanceLocalizer<FieldView>;
 
 /// It does by default; with this share of the views missed it never does.
 const NEVER: f64 = 1.0;
 const N_SEEDS: u64 = 10;
-/// Steps of the way, about 0.26 m each.
-const N_STEPS: usize = 160;
 /// Beside the lane, m: views are strange to one another from two metres on, and alike over half a metre.
 const BESIDE: f64 = 0.3;
 /// Steps of 20 m.
 const TRAVEL: usize = 77;
-
-/// Where the robot is at a step when it drives so far beside the lane that was taught, m.
-fn beside(step: usize, offset: f64) -> Pose2<f64> {
-    lap(14.0, 8.0, N_STEPS)[step % N_STEPS].compose(&Pose2::new(0.0, offset, 0.0))
-}
 
 /// A localizer that is told where it is, in a map of the lane that stays as it is.
 fn at_start(field: &Field, doubt: f64, rng: &mut ChaCha8Rng) -> Localizer {

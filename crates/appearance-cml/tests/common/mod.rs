@@ -80,6 +80,14 @@ pub fn drifting<R: Rng + ?Sized>(step: &Pose2<f64>, rng: &mut R) -> Pose2<f64> {
     )
 }
 
+/// Steps of a way once round, about 0.26 m each.
+pub const N_STEPS: usize = 160;
+
+/// Where the robot is at a step when it drives so far beside the lane that was taught, m.
+pub fn beside(step: usize, offset: f64) -> Pose2<f64> {
+    lap(14.0, 8.0, N_STEPS)[step % N_STEPS].compose(&Pose2::new(0.0, offset, 0.0))
+}
+
 /// Poses along a closed way, a rectangle with round corners.
 pub fn lap(width: f64, height: f64, steps: usize) -> Vec<Pose2<f64>> {
     let at = |k: usize| {
