@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_color_map::{Camera, ColorMap, Projector};
 use wayfix_color_model::{
     Classifier, ColorLocalizer, ColorMeans, Frame, LightingBank, LightingFilter, LightingParams,
-    LocalizerParams, LookUpTable, PixelSums, Start, YuvImage, gather,
+    LocalizerParams, LookUpTable, PixelParams, PixelSums, Start, YuvImage, gather,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -56,13 +56,13 @@ fn main() {
     let lit = bank();
     report("lighting update", 2000, || lit.clone().update_member(1, &means));
 
-    let light = lit.member(1);
+    let light = PixelParams::default().uneven(lit.member(1).colors());
     report("classify 208x160, exact", 20, || {
-        Classifier::of_light(light).map(|exact| exact.classify_image(&image))
+        Classifier::new(light.iter().copied()).map(|exact| exact.classify_image(&image))
     });
-    let table = LookUpTable::new(light, None).expect("a proper light");
+    let table = LookUpTable::new(light.clone(), None).expect("a proper light");
     report("classify 208x160, table", 50, || table.classify_image(&image));
-    report("compile the table", 3, || LookUpTable::new(light, None));
+    report("compile the table", 3, || LookUpTable::new(light.clone(), None));
 
     let params = LocalizerParams { min_particles: 1000, ..LocalizerParams::default() };
     let start = Start::Near(Gaussian::from_sigmas(body, &Vector3::new(0.05, 0.05, 0.05)).expect("sigmas"));

@@ -7,7 +7,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, normal};
 use wayfix_color_model::{
-    Background, Classifier, ColorDensity, LightingFilter, LightingParams, LookUpTable, YuvImage, find_blobs,
+    Background, Classifier, ColorDensity, LightingFilter, LightingParams, LookUpTable, PixelParams, YuvImage,
+    find_blobs,
 };
 
 /// A view of the field as a cheap camera has it: patches of the five colours and of clutter, shaded, vignetted, blurred at edges, with noise.
@@ -45,17 +46,22 @@ fn light(gain: f64) -> LightingFilter {
     light
 }
 
+/// What the localizer classifies by.
+fn densities(light: &LightingFilter) -> Vec<ColorDensity> {
+    PixelParams::default().uneven(light.colors())
+}
+
 #[test]
 fn the_table_agrees_with_the_classifier_on_natural_frames() {
     let mut rng = ChaCha8Rng::seed_from_u64(441);
     for gain in [0.7, 1.0] {
         let light = light(gain);
         for background in [None, Some(Background::Uniform)] {
-            let mut classifier = Classifier::of_light(&light).unwrap();
+            let mut classifier = Classifier::new(densities(&light)).unwrap();
             if let Some(background) = &background {
                 classifier = classifier.with_background(background.clone());
             }
-            let table = LookUpTable::new(&light, background.clone()).unwrap();
+            let table = LookUpTable::new(densities(&light), background.clone()).unwrap();
             let (mut equal, mut total) = (0, 0);
             for _ in 0..6 {
                 let frame = frame(&light, &mut rng);
@@ -75,14 +81,14 @@ fn the_table_agrees_with_the_classifier_on_natural_frames() {
 #[test]
 fn cells_hold_what_is_most_probable_at_their_centres() {
     let light = light(0.9);
-    let table = LookUpTable::new(&light, None).unwrap();
+    let table = LookUpTable::new(densities(&light), None).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(442);
     let log = |density: &ColorDensity, at: Vector3<f64>| {
         let factor = density.covariance.cholesky().unwrap();
         let from_mean = at - density.mean;
         -0.5 * (factor.determinant().ln() + from_mean.dot(&factor.solve(&from_mean)))
     };
-    let colors: Vec<ColorDensity> = light.colors().collect();
+    let colors = densities(&light);
     for _ in 0..20_000 {
         let pixel: [u8; 3] = rng.random();
         let [y, u, v] = pixel;
@@ -97,31 +103,34 @@ fn cells_hold_what_is_most_probable_at_their_centres() {
 #[test]
 fn the_table_follows_the_light_and_only_then() {
     let mut light = light(1.0);
-    let mut table = LookUpTable::new(&light, None).unwrap();
-    assert!(!table.follow(&light).unwrap());
+    let mut table = LookUpTable::new(densities(&light), None).unwrap();
+    assert!(!table.follow(densities(&light)).unwrap());
     // A change far below a quarter of a standard deviation.
     light.update(&means(light.mean(), 0)).unwrap();
-    assert!(!table.follow(&light).unwrap());
+    assert!(!table.follow(densities(&light)).unwrap());
     let darker = support::stacked(&BRIGHT) * 0.5;
     let mut n_rebuilt = 0;
     for _ in 0..40 {
         light.predict(1.0).unwrap();
         light.update(&means(&darker, 0)).unwrap();
-        n_rebuilt += usize::from(table.follow(&light).unwrap());
-        assert!(!table.follow(&light).unwrap(), "it is as the light is, or near enough");
+        n_rebuilt += usize::from(table.follow(densities(&light)).unwrap());
+        assert!(!table.follow(densities(&light)).unwrap(), "it is as the light is, or near enough");
     }
     assert!((2..20).contains(&n_rebuilt), "{n_rebuilt}"); // it moves fast at first, then settles
     // Compiled anew when it settled: the same table as a fresh one where the light is as it was compiled for.
     table.rebuild_above = 0.0;
-    table.follow(&light).unwrap();
-    let fresh = LookUpTable::new(&light, None).unwrap();
+    table.follow(densities(&light)).unwrap();
+    let fresh = LookUpTable::new(densities(&light), None).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(443);
     assert!((0..10_000).all(|_| {
         let pixel = rng.random();
         table.classify(pixel) == fresh.classify(pixel)
     }));
     table.rebuild_above = f64::NAN;
-    assert!(table.follow(&light).unwrap(), "what cannot be compared is no reason to trust the table");
+    assert!(
+        table.follow(densities(&light)).unwrap(),
+        "what cannot be compared is no reason to trust the table"
+    );
 }
 
 #[test]

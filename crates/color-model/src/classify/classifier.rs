@@ -2,7 +2,7 @@ use nalgebra::Vector3;
 use wayfix_color_map::ColorId;
 
 use super::NO_COLOR;
-use crate::{Background, ColorDensity, ColorModelError, LightingFilter, SumDensity, YuvImage};
+use crate::{Background, ColorDensity, ColorModelError, SumDensity, YuvImage};
 
 /// The most probable map colour of a pixel, $`\arg\max_m p(c | m)`$ under Eq. 9 of [Schulz & Fox 2004], all colours being equally frequent.
 ///
@@ -26,7 +26,8 @@ pub struct Classifier {
 }
 
 impl Classifier {
-    /// Tells colours with these densities apart; every pixel is one of them.
+    /// Tells colours with these densities apart; every pixel is one of them. The densities of a light are [`LightingFilter::colors`](crate::LightingFilter::colors),
+    /// those of a light that falls unevenly on a field [`PixelParams::uneven`](crate::PixelParams::uneven).
     ///
     /// # Errors
     /// When a density has no peak, or there are more than 255.
@@ -38,14 +39,6 @@ impl Classifier {
             return Err(ColorModelError::Dimension { what: "colours to tell apart", expected, got });
         }
         Ok(Self { densities, background: None, background_odds: 0.0 })
-    }
-
-    /// Tells the map's colours apart in the light that a filter knows.
-    ///
-    /// # Errors
-    /// As for [`new`](Self::new).
-    pub fn of_light(light: &LightingFilter) -> Result<Self, ColorModelError> {
-        Self::new(light.colors())
     }
 
     /// The same, with a class for whatever the background explains better than any map colour. It is as frequent as each of the colours.

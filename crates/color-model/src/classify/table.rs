@@ -1,5 +1,5 @@
 use super::{Classifier, NO_COLOR, classifier::Row};
-use crate::{Background, ColorDensity, ColorModelError, LightingFilter, YuvImage};
+use crate::{Background, ColorDensity, ColorModelError, YuvImage};
 use wayfix_color_map::ColorId;
 
 /// A [`Classifier`] compiled into a table over YUV, made anew when the light has moved: one look-up a pixel. [Schulz & Fox 2004, VI]
@@ -8,16 +8,15 @@ use wayfix_color_map::ColorId;
 /// place, so chroma wants the finer cells. Four megabytes, of which an image touches little.
 ///
 /// ```
-/// use nalgebra::{DMatrix, DVector};
+/// use nalgebra::{Matrix3, Vector3};
 /// use wayfix_color_map::ColorId;
-/// use wayfix_color_model::{LightingFilter, LightingParams, LookUpTable};
-/// use wayfix_gaussian_core::Gaussian;
-/// let means = DVector::from_vec(vec![80.0, 110.0, 100.0, 140.0, 125.0, 180.0]);
-/// let light = LightingFilter::new(Gaussian::new(means, DMatrix::identity(6, 6) * 9.0)?, LightingParams::default())?;
-/// let mut table = LookUpTable::new(&light, None)?;
+/// use wayfix_color_model::{ColorDensity, LookUpTable};
+/// let density = |mean| ColorDensity { mean, covariance: Matrix3::identity() * 60.0 };
+/// let light = vec![density(Vector3::new(80.0, 110.0, 100.0)), density(Vector3::new(140.0, 125.0, 180.0))];
+/// let mut table = LookUpTable::new(light.clone(), None)?;
 /// assert_eq!(table.classify([138, 126, 175]), Some(ColorId(1)));
-/// assert!(!table.follow(&light)?); // the light is the same: nothing to do
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// assert!(!table.follow(light)?); // the light is the same: nothing to do
+/// # Ok::<(), wayfix_color_model::ColorModelError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct LookUpTable {
@@ -33,14 +32,14 @@ pub struct LookUpTable {
 const BITS: [u32; 3] = [6, 8, 8];
 
 impl LookUpTable {
-    /// A table for the light that a filter knows, with a class for the background if there is one.
+    /// A table for colours with these densities, with a class for the background if there is one.
     ///
     /// # Errors
     /// When a colour's density has no peak, or there are more than 255 colours.
-    pub fn new(light: &LightingFilter, background: Option<Background>) -> Result<Self, ColorModelError> {
+    pub fn new(colors: Vec<ColorDensity>, background: Option<Background>) -> Result<Self, ColorModelError> {
         let cells = vec![NO_COLOR; 1 << BITS.iter().sum::<u32>()];
         let mut table = Self { cells, compiled_for: Vec::new(), background, rebuild_above: 0.05 };
-        table.compile(light)?;
+        table.compile(colors)?;
         Ok(table)
     }
 
@@ -48,14 +47,14 @@ impl LookUpTable {
     ///
     /// # Errors
     /// When a colour's density has no peak; the table is unchanged then.
-    pub fn follow(&mut self, light: &LightingFilter) -> Result<bool, ColorModelError> {
-        let moved = light.n_colors() != self.compiled_for.len()
-            || light.colors().zip(&self.compiled_for).any(|(now, then)| {
+    pub fn follow(&mut self, colors: Vec<ColorDensity>) -> Result<bool, ColorModelError> {
+        let moved = colors.len() != self.compiled_for.len()
+            || colors.iter().zip(&self.compiled_for).any(|(now, then)| {
                 // What cannot be compared is no reason to trust the table.
                 !now.divergence(then).is_some_and(|divergence| divergence <= self.rebuild_above)
             });
         if moved {
-            self.compile(light)?;
+            self.compile(colors)?;
         }
         Ok(moved)
     }
@@ -71,8 +70,8 @@ impl LookUpTable {
         image.pixels().iter().map(|pixel| self.cells[cell(*pixel)]).collect()
     }
 
-    fn compile(&mut self, light: &LightingFilter) -> Result<(), ColorModelError> {
-        let mut classifier = Classifier::of_light(light)?;
+    fn compile(&mut self, colors: Vec<ColorDensity>) -> Result<(), ColorModelError> {
+        let mut classifier = Classifier::new(colors.iter().copied())?;
         if let Some(background) = &self.background {
             classifier = classifier.with_background(background.clone());
         }
@@ -84,7 +83,7 @@ impl LookUpTable {
             classifier.label_row(at, [centre(0, v), v], &mut row);
             cells.copy_from_slice(&row.labels);
         }
-        self.compiled_for = light.colors().collect();
+        self.compiled_for = colors;
         Ok(())
     }
 }

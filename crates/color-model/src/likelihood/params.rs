@@ -1,6 +1,6 @@
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
-use crate::{ColorModelError, PixelSums};
+use crate::{ColorDensity, ColorModelError, PixelSums};
 
 /// Whether pixels share the light that is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,7 +83,16 @@ impl Region {
 }
 
 impl PixelParams {
-    /// The variances of `uneven_…` in the light of one filter.
+    /// The densities of all colours of one light over a whole image, with the variances of `uneven_…`: what pixels are weighed and classified by.
+    pub fn uneven(&self, colors: impl IntoIterator<Item = ColorDensity>) -> Vec<ColorDensity> {
+        let mut colors: Vec<ColorDensity> = colors.into_iter().collect();
+        let brightness = colors.iter().map(|color| color.mean.x).sum::<f64>() / colors.len() as f64;
+        let unevenness = Matrix3::from_diagonal(&self.unevenness(brightness));
+        colors.iter_mut().for_each(|color| color.covariance += unevenness);
+        colors
+    }
+
+    /// The variances of `uneven_…` in a light of this mean Y.
     pub(crate) fn unevenness(&self, brightness: f64) -> Vector3<f64> {
         let [y, uv] = [self.uneven_brightness, self.uneven_chroma].map(|share| (share * brightness).powi(2));
         Vector3::new(y, uv, uv)

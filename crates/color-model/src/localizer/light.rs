@@ -1,8 +1,5 @@
-use nalgebra::Matrix3;
-use wayfix_color_map::ColorId;
-
 use crate::{
-    ColorDensity, ColorModelError, LightingBank, PixelParams, SumDensity,
+    ColorModelError, LightingBank, PixelParams, SumDensity,
     classify::{NO_COLOR, most_probable},
 };
 
@@ -20,15 +17,11 @@ pub(crate) struct Light {
 impl Light {
     pub(crate) fn new(bank: LightingBank, pixels: &PixelParams) -> Result<Self, ColorModelError> {
         let n_colors = bank.n_colors();
-        let densities = (0..bank.n_members())
-            .flat_map(|member| (0..n_colors).map(move |color| (member, ColorId(color as u8))))
-            .map(|(member, color)| {
-                let filter = bank.member(member);
-                let brightness = filter.mean().iter().step_by(3).sum::<f64>() / n_colors as f64;
-                let ColorDensity { mean, covariance } = filter.color(color);
-                let covariance = covariance + Matrix3::from_diagonal(&pixels.unevenness(brightness));
-                SumDensity::new(&ColorDensity { mean, covariance })
-            })
+        let densities = bank
+            .members()
+            .iter()
+            .flat_map(|filter| pixels.uneven(filter.colors()))
+            .map(|density| SumDensity::new(&density))
             .collect::<Result<_, _>>()?;
         Ok(Self { bank, densities, n_colors })
     }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::{Camera, ColorMap};
 use wayfix_color_model::{
-    Classifier, ColorLocalizer, Fix, LightingBank, LookUpTable, OdometryStep, Start, YuvImage,
+    Classifier, ColorDensity, ColorLocalizer, Fix, LightingBank, LookUpTable, OdometryStep, Start, YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -120,6 +120,12 @@ impl ColorSystem {
         self.localizer.as_ref().map_or(&self.bank, ColorLocalizer::light)
     }
 
+    /// What the map's colours look like in an image by now.
+    fn colors(&self) -> Vec<ColorDensity> {
+        let light = self.light();
+        self.params.localizer.pixels.uneven(light.member(light.active()).colors())
+    }
+
     /// What it is tuned by.
     pub fn params(&self) -> &ColorSystemParams {
         &self.params
@@ -135,14 +141,14 @@ impl ColorSystem {
     /// # Errors
     /// When a colour's density has no peak.
     pub fn classified(&mut self, image: &YuvImage) -> Result<Vec<u8>, String> {
-        let light = self.light().member(self.light().active()).clone();
+        let colors = self.colors();
         let table = match self.table.take() {
             Some(mut table) => {
-                table.follow(&light).map_err(|error| error.to_string())?;
+                table.follow(colors).map_err(|error| error.to_string())?;
                 table
             }
             None => {
-                LookUpTable::new(&light, Some(self.params.background.clone())).map_err(|e| e.to_string())?
+                LookUpTable::new(colors, Some(self.params.background.clone())).map_err(|e| e.to_string())?
             }
         };
         let classified = table.classify_image(image);
@@ -221,8 +227,7 @@ impl ColorSystem {
     fn labelled(&mut self, stamp: Stamp, image: &YuvImage) -> Option<LabelCounts> {
         let (_, labels) = self.labels.take().filter(|(labelled, _)| *labelled == stamp)?;
         let labels = labels.decode_gray().ok()?;
-        let light = self.light();
-        let classifier = Classifier::of_light(light.member(light.active())).ok()?;
+        let classifier = Classifier::new(self.colors()).ok()?;
         tally(image, &labels, &classifier, self.map.colors().len())
     }
 }

@@ -4,8 +4,8 @@ use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::{
-    Classifier, ColorMeans, Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker, LightingBank, YuvImage,
-    YuvStandard,
+    Classifier, ColorMeans, Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker, LightingBank,
+    PixelParams, YuvImage, YuvStandard,
 };
 use wayfix_kalman::JumpMarkovParams;
 use wayfix_sensor_log::{Data, DecodedImage, Record, Stamp};
@@ -39,11 +39,12 @@ pub fn switching(
     let curves = [("jump_markov", localized(bank)?), ("single", localized(single)?)];
     let frames = labelled_frames(records, params.yuv, map.colors().len())?;
     let jump = JumpMarkovParams::default();
+    let pixels = &params.localizer.pixels;
     let known: [(&str, Curve); 4] = [
-        ("known_pose_jump_markov", follow(JumpMarkovTracker::new(bank, jump)?, &frames)?),
-        ("known_pose_imm", follow(ImmTracker::new(bank)?, &frames)?),
-        ("known_pose_gpb2", follow(Gpb2Tracker::new(bank)?, &frames)?),
-        ("known_pose_single", follow(single.member(0).clone(), &frames)?),
+        ("known_pose_jump_markov", follow(JumpMarkovTracker::new(bank, jump)?, &frames, pixels)?),
+        ("known_pose_imm", follow(ImmTracker::new(bank)?, &frames, pixels)?),
+        ("known_pose_gpb2", follow(Gpb2Tracker::new(bank)?, &frames, pixels)?),
+        ("known_pose_single", follow(single.member(0).clone(), &frames, pixels)?),
     ];
     let mut metrics = Vec::new();
     for (name, curve) in curves.iter().chain(&known) {
@@ -144,7 +145,7 @@ fn means(image: &YuvImage, labels: &DecodedImage, n_colors: usize) -> ColorMeans
 }
 
 /// The rate of every frame after the tracker has seen it.
-fn follow(mut tracker: impl LightTracker, frames: &[Labelled]) -> Result<Curve> {
+fn follow(mut tracker: impl LightTracker, frames: &[Labelled], pixels: &PixelParams) -> Result<Curve> {
     let mut last = frames.first().map(|frame| frame.stamp);
     let mut curve = Curve::new();
     for (at, frame) in frames.iter().enumerate() {
@@ -152,7 +153,7 @@ fn follow(mut tracker: impl LightTracker, frames: &[Labelled]) -> Result<Curve> 
         tracker.predict(seconds)?;
         tracker.update(&frame.means)?;
         last = Some(frame.stamp);
-        let classifier = Classifier::new(tracker.colors()?)?;
+        let classifier = Classifier::new(pixels.uneven(tracker.colors()?))?;
         let counts = tally(&frame.image, &frame.labels, &classifier, frame.means.n_colors());
         curve.extend(counts.and_then(|counts| counts.rate()).map(|rate| (at as f64, rate)));
     }
