@@ -5,7 +5,9 @@ use crate::{AppearanceError, PoseHypothesis, separation_squared};
 
 /// Fuses two mixtures over poses; weights stay as they come out, for the next source to be fused.
 ///
-/// Components nearer than the gate are combined in pairs; those without a counterpart are copied. Normalize after the last source
+/// Components nearer than the gate are combined in pairs; those without a counterpart are copied. With [`Weighting::Evidence`] a predicted component is
+/// copied beside its pairs too, with the chance that none of its counterparts is where the view is from: what merely looks alike within the gate of a robot that knows
+/// its place to some metres must not take it there alone. Normalize after the last source
 /// ([`PoseHypothesis::into_mixture`]): that is what makes unsupported components fade. [Gross et al. 2005, Eqs. 2-8]
 ///
 /// ```
@@ -41,18 +43,18 @@ pub fn fuse(
         let (a, b) = (&predicted[pair.predicted], &observed[pair.observed]);
         let weight = match params.weighting {
             Weighting::Support => support(pair, predicted, observed, &agreeing),
-            Weighting::Evidence { missed, .. } => a.weight * evidence(pair, missed, observed, &agreeing),
+            Weighting::Evidence { .. } => a.weight * b.weight * (-0.5 * pair.squared).exp(),
         };
         fused.push(PoseHypothesis::new(weight, combine(a, b, params.combination)?));
     }
-    let (missed, appeared) = match params.weighting {
-        Weighting::Support => (1.0, 1.0),
-        Weighting::Evidence { missed, appeared } => (missed, appeared),
+    let (missed, appeared, all_stay) = match params.weighting {
+        Weighting::Support => (1.0, 1.0, false),
+        Weighting::Evidence { missed, appeared } => (missed, appeared, true),
     };
     let is_alone =
         |index: usize, index_of: fn(&Pair) -> usize| !agreeing.iter().any(|p| index_of(p) == index);
     for (index, a) in predicted.iter().enumerate() {
-        if is_alone(index, |pair| pair.predicted) {
+        if all_stay || is_alone(index, |pair| pair.predicted) {
             fused.push(PoseHypothesis::new(a.weight * missed, a.gaussian.clone()));
         }
     }
@@ -103,9 +105,51 @@ fn support(pair: &Pair, predicted: &[PoseHypothesis], observed: &[PoseHypothesis
     part(a, b, counterparts_of_a) + part(b, a, counterparts_of_b)
 }
 
-/// $`w_b e^{-d^2/2} (1 + m / \sum_b w_b e^{-d^2/2})`$: together the counterparts of a component never count for less than none.
-fn evidence(pair: &Pair, missed: f64, observed: &[PoseHypothesis], agreeing: &[Pair]) -> f64 {
-    let fit = |p: &Pair| observed[p.observed].weight * (-0.5 * p.squared).exp();
-    let all: f64 = agreeing.iter().filter(|p| p.predicted == pair.predicted).map(fit).sum();
-    fit(pair) * (1.0 + missed / all)
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use wayfix_estimation_traits::Pose2;
+
+    use super::*;
+
+    fn at(x: f64, sigma: f64, weight: f64) -> PoseHypothesis {
+        let gaussian = Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(sigma, sigma, 0.1));
+        PoseHypothesis::new(weight, gaussian.unwrap())
+    }
+
+    fn fused(predicted: &[PoseHypothesis], observed: &PoseHypothesis) -> Vec<PoseHypothesis> {
+        fuse(predicted, std::slice::from_ref(observed), &FusionParams::default()).unwrap()
+    }
+
+    #[test]
+    fn one_look_alike_within_the_gate_takes_nobody_there() {
+        let (robot, look_alike) = (at(0.0, 3.0, 1.0), at(8.0, 0.3, 0.1));
+        let state = PoseHypothesis::into_mixture(fused(&[robot], &look_alike)).unwrap();
+        // w_b e^{-d²/2} against m: 0.1 · e^{-32 / 9.09} = 0.003 against 0.2.
+        let stays: f64 = (0..state.len())
+            .filter(|i| state.components()[*i].mean().x() == 0.0)
+            .map(|i| state.weight(i))
+            .sum();
+        assert!((stays - 0.2 / (0.2 + 0.1 * (-32.0_f64 / 9.09).exp())).abs() < 1e-9, "{stays}");
+    }
+
+    #[test]
+    fn who_is_seen_there_again_and_again_is_there() {
+        let (mut robot, place) = (vec![at(0.0, 3.0, 1.0)], at(4.0, 0.3, 0.5));
+        for _ in 0..4 {
+            robot = fused(&robot, &place);
+        }
+        let there: f64 = robot.iter().filter(|h| h.gaussian.mean().x() > 2.0).map(|h| h.weight).sum();
+        let all: f64 = robot.iter().map(|h| h.weight).sum();
+        assert!(there > 0.9 * all, "{there} of {all}");
+    }
+
+    #[test]
+    fn as_printed_what_agrees_leaves_no_copy() {
+        let [robot, place] = [at(0.0, 0.3, 1.0), at(0.1, 0.3, 0.5)];
+        let printed =
+            fuse(std::slice::from_ref(&robot), std::slice::from_ref(&place), &FusionParams::printed());
+        assert_eq!(printed.unwrap().len(), 1);
+        assert_eq!(fused(&[robot], &place).len(), 2);
+    }
 }

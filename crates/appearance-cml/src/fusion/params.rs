@@ -20,8 +20,8 @@ pub enum Combination {
 pub enum Weighting {
     /// Weights of what agrees add up; what is alone keeps its weight and loses it by the normalization. [Gross et al. 2005, Eqs. 6-8]
     Support,
-    /// Weights are probabilities: a component is multiplied by the chance that the view is not recognized where it should be, and
-    /// by the weight of its counterparts and how well they fit, $`w_a (m + \sum_b w_b e^{-d^2/2})`$, shared out among them.
+    /// Weights are probabilities: with each counterpart a component has the weight $`w_a w_b e^{-d^2/2}`$, and it remains as it is, with the chance
+    /// $`w_a m`$ that the view is not recognized where it should be: the missed detection of probabilistic data association [Bar-Shalom & Tse 1975].
     Evidence {
         /// $`m`$: not being recognized, beside 1 for a counterpart that looks exactly the same.
         missed: f64,

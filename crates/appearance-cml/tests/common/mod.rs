@@ -108,7 +108,7 @@ pub fn between(from: &Pose2<f64>, to: &Pose2<f64>) -> Pose2<f64> {
     from.inverse().compose(to)
 }
 
-/// A pose known to 2 cm and 0.02 rad.
+/// A pose that was surveyed: known to 2 cm and 0.01 rad.
 pub fn known(pose: Pose2<f64>) -> Gaussian<Pose2<f64>> {
-    Gaussian::from_sigmas(pose, &Vector3::new(0.02, 0.02, 0.02)).expect("sigmas are positive")
+    Gaussian::from_sigmas(pose, &Vector3::new(0.02, 0.02, 0.01)).expect("sigmas are positive")
 }
