@@ -56,7 +56,7 @@ fn main() {
     let lit = bank();
     report("lighting update", 2000, || lit.clone().update_member(1, &means));
 
-    let light = PixelParams::default().uneven(lit.member(1).colors());
+    let light = PixelParams::default().shaded(lit.member(1).colors());
     report("classify 208x160, exact", 20, || {
         Classifier::new(light.iter().copied()).map(|exact| exact.classify_image(&image))
     });

@@ -48,7 +48,7 @@ fn light(gain: f64) -> LightingFilter {
 
 /// What the localizer classifies by.
 fn densities(light: &LightingFilter) -> Vec<ColorDensity> {
-    PixelParams::default().uneven(light.colors())
+    PixelParams::default().shaded(light.colors())
 }
 
 #[test]

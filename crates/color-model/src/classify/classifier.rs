@@ -27,7 +27,7 @@ pub struct Classifier {
 
 impl Classifier {
     /// Tells colours with these densities apart; every pixel is one of them. The densities of a light are [`LightingFilter::colors`](crate::LightingFilter::colors),
-    /// those of a light that falls unevenly on a field [`PixelParams::uneven`](crate::PixelParams::uneven).
+    /// those of a light that falls unevenly on a field [`PixelParams::shaded`](crate::PixelParams::shaded).
     ///
     /// # Errors
     /// When a density has no peak, or there are more than 255.

@@ -83,8 +83,23 @@ impl Region {
 }
 
 impl PixelParams {
-    /// The densities of all colours of one light over a whole image, with the variances of `uneven_…`: what pixels are weighed and classified by.
-    pub fn uneven(&self, colors: impl IntoIterator<Item = ColorDensity>) -> Vec<ColorDensity> {
+    /// The densities of all colours of one light, spread by `uneven_brightness`: what tells the pixels of an image apart. Shade moves Y over the whole
+    /// field, and chroma, which it moves little, is what colours differ in.
+    ///
+    /// ```
+    /// use nalgebra::{Matrix3, Vector3};
+    /// use wayfix_color_model::{ColorDensity, PixelParams};
+    /// let white = ColorDensity { mean: Vector3::new(100.0, 130.0, 125.0), covariance: Matrix3::identity() * 25.0 };
+    /// let [shaded] = PixelParams::default().shaded([white])[..] else { panic!("as many as there were") };
+    /// assert_eq!(shaded.covariance[(0, 0)], 25.0 + 12.0 * 12.0); // 0.12 of a mean Y of 100
+    /// assert_eq!(shaded.covariance[(1, 1)], 25.0);
+    /// ```
+    pub fn shaded(&self, colors: impl IntoIterator<Item = ColorDensity>) -> Vec<ColorDensity> {
+        Self { uneven_chroma: 0.0, ..*self }.uneven(colors)
+    }
+
+    /// The densities of all colours of one light over a whole image, with the variances of `uneven_…`: what a pose's pixels are weighed by.
+    pub(crate) fn uneven(&self, colors: impl IntoIterator<Item = ColorDensity>) -> Vec<ColorDensity> {
         let mut colors: Vec<ColorDensity> = colors.into_iter().collect();
         let brightness = colors.iter().map(|color| color.mean.x).sum::<f64>() / colors.len() as f64;
         let unevenness = Matrix3::from_diagonal(&self.unevenness(brightness));

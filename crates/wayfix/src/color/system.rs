@@ -123,7 +123,7 @@ impl ColorSystem {
     /// What the map's colours look like in an image by now.
     fn colors(&self) -> Vec<ColorDensity> {
         let light = self.light();
-        self.params.localizer.pixels.uneven(light.member(light.active()).colors())
+        self.params.localizer.pixels.shaded(light.member(light.active()).colors())
     }
 
     /// What it is tuned by.

@@ -153,7 +153,7 @@ fn follow(mut tracker: impl LightTracker, frames: &[Labelled], pixels: &PixelPar
         tracker.predict(seconds)?;
         tracker.update(&frame.means)?;
         last = Some(frame.stamp);
-        let classifier = Classifier::new(pixels.uneven(tracker.colors()?))?;
+        let classifier = Classifier::new(pixels.shaded(tracker.colors()?))?;
         let counts = tally(&frame.image, &frame.labels, &classifier, frame.means.n_colors());
         curve.extend(counts.and_then(|counts| counts.rate()).map(|rate| (at as f64, rate)));
     }
