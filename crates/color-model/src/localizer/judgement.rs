@@ -2,10 +2,11 @@ use std::sync::Arc;
 
 use rand::Rng;
 use wayfix_color_map::ColorId;
-use wayfix_estimation_traits::{Pose2, Pose3};
+use wayfix_estimation_traits::Pose3;
 
 use super::{
     ColorLocalizer, Start,
+    candidate::Known,
     estimate::dominant_cluster,
     hypothesis::{Hypothesis, Judged},
     light::Light,
@@ -106,10 +107,11 @@ impl ColorLocalizer {
         let premise = Premise { start, light, is_light_known: !Arc::ptr_eq(light, &self.prior) };
         let search =
             Search::new(&self.map, self.camera, &self.area, &self.params, premise, shots, background)?;
-        let known: Vec<Pose2<f64>> = if self.n_updates == 0 {
+        let places = self.hypotheses.iter().enumerate();
+        let known: Vec<Known> = if self.n_updates == 0 {
             Vec::new()
         } else {
-            self.hypotheses.iter().filter_map(|hypothesis| hypothesis.place()).collect()
+            places.filter_map(|(index, one)| Some(Known { index, place: one.place()? })).collect()
         };
         search.run(&known, rng)
     }
@@ -124,13 +126,7 @@ impl ColorLocalizer {
     ) -> Result<Vec<Judged>, ColorModelError> {
         let shots = shots.last(self.vigilance.n_telling());
         let found = self.search(&shots, &Start::Anywhere, &self.trusted, rng)?;
-        let mut hypotheses = self.hypotheses.clone();
-        for Found { judged, known } in &found {
-            if let Some(hypothesis) = known.and_then(|known| hypotheses.get_mut(known)) {
-                hypothesis.join(&judged.seen, rng)?;
-            }
-        }
-        let mut judged = self.look(hypotheses, image, mount, rng)?;
+        let mut judged = self.look(self.joined(&found, rng)?, image, mount, rng)?;
         let lead = best(judged.iter());
         let elsewhere = self.params.acquisition.elsewhere;
         judged.extend(self.newcomers(found, lead, elsewhere));
@@ -141,6 +137,21 @@ impl ColorLocalizer {
             judged.extend(self.newcomers(found, lead, OTHER_LIGHT * elsewhere));
         }
         Ok(judged)
+    }
+
+    /// The places that are believed in, each with what a search refined it to.
+    fn joined<R: Rng + ?Sized>(
+        &self,
+        found: &[Found],
+        rng: &mut R,
+    ) -> Result<Vec<Hypothesis>, ColorModelError> {
+        let mut hypotheses = self.hypotheses.clone();
+        for Found { judged, known } in found {
+            if let Some(hypothesis) = known.and_then(|known| hypotheses.get_mut(known)) {
+                hypothesis.join(&judged.seen, rng)?;
+            }
+        }
+        Ok(hypotheses)
     }
 
     /// The places found that are worth to be pursued beside those that are believed in, of which the best has the log-evidence `lead`.

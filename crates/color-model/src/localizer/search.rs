@@ -93,7 +93,7 @@ impl<'a> Search<'a> {
     /// the log-likelihood of all frames.
     pub(crate) fn run<R: Rng + ?Sized>(
         &self,
-        known: &[Pose2<f64>],
+        known: &[Known],
         rng: &mut R,
     ) -> Result<Vec<Found>, ColorModelError> {
         let AcquisitionParams { n_niches, n_passes, n_kept, .. } = self.params.acquisition;
@@ -117,12 +117,12 @@ impl<'a> Search<'a> {
     /// Candidates all over the start, weighed by a few frames, and those of known places, before them.
     fn candidates<R: Rng + ?Sized>(
         &self,
-        known: &[Pose2<f64>],
+        known: &[Known],
         rng: &mut R,
     ) -> Result<Vec<Candidate>, ColorModelError> {
         let AcquisitionParams { n_drawn, .. } = self.params.acquisition;
         let mut candidates: Vec<Candidate> =
-            known.iter().enumerate().map(|(at, place)| self.known_candidate(at, place)).collect();
+            known.iter().map(|known| self.known_candidate(*known)).collect();
         let drawn = (0..n_drawn).map(|n| self.drawn(n, rng)).collect();
         candidates.extend(
             self.each(drawn, rng, |scratch, candidate, _| self.weigh(scratch, candidate, Effort::Coarse))?,
@@ -180,13 +180,13 @@ impl<'a> Search<'a> {
         self.candidate(&pose, at)
     }
 
-    fn known_candidate(&self, index: usize, place: &Pose2<f64>) -> Candidate {
+    fn known_candidate(&self, known: Known) -> Candidate {
         let mut candidate = Candidate {
-            known: Some(Known { index, place: *place }),
+            known: Some(known),
             score: f64::MAX,
-            ..self.candidate(place, self.shots.len())
+            ..self.candidate(&known.place, self.shots.len())
         };
-        candidate.trajectory.newest = *place;
+        candidate.trajectory.newest = known.place;
         candidate
     }
 
