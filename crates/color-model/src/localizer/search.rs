@@ -121,8 +121,7 @@ impl<'a> Search<'a> {
         rng: &mut R,
     ) -> Result<Vec<Candidate>, ColorModelError> {
         let AcquisitionParams { n_drawn, .. } = self.params.acquisition;
-        let mut candidates: Vec<Candidate> =
-            known.iter().map(|known| self.known_candidate(*known)).collect();
+        let mut candidates: Vec<Candidate> = known.iter().map(|known| self.known_candidate(*known)).collect();
         let drawn = (0..n_drawn).map(|n| self.drawn(n, rng)).collect();
         candidates.extend(
             self.each(drawn, rng, |scratch, candidate, _| self.weigh(scratch, candidate, Effort::Coarse))?,
