@@ -39,6 +39,13 @@ impl PixelSums {
         }
     }
 
+    /// Takes away the pixels of another sum, all of which are in this one.
+    pub(crate) fn remove(&mut self, other: &Self) {
+        for (sum, lane) in self.lanes.iter_mut().zip(other.lanes) {
+            *sum -= lane;
+        }
+    }
+
     /// How many pixels.
     pub fn count(&self) -> u64 {
         self.lanes[COUNT]

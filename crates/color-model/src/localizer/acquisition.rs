@@ -109,6 +109,12 @@ impl AcquisitionParams {
         if 3 * pass < self.n_passes { Effort::Coarse } else { Effort::Full }
     }
 
+    /// Whether a pass is the first that looks at all frames.
+    pub(crate) fn is_first_full(&self, pass: u32) -> bool {
+        let is_full = |pass: u32| self.effort(pass) == Effort::Full;
+        is_full(pass) && !pass.checked_sub(1).is_some_and(is_full)
+    }
+
     /// Whether a pass looks for errors of odometry and camera too.
     pub(crate) fn is_fine(&self, pass: u32) -> bool {
         3 * pass >= 2 * self.n_passes

@@ -18,6 +18,8 @@ pub(crate) struct Candidate {
     pub(crate) sums: Vec<PixelSums>,
     /// What every frame says under every member of the lighting bank, where the light is known: the members of the first frame, then of the next.
     pub(crate) by_frame: Vec<f64>,
+    /// Which frames are likely to be hidden if it is right.
+    pub(crate) is_hidden: Vec<bool>,
     /// Log-likelihood under every member of the lighting bank.
     pub(crate) log_likelihoods: Vec<f64>,
     /// Log of likelihood and prior, nats.
@@ -31,10 +33,15 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// The sums of all frames.
-    pub(crate) fn total(&self, n_colors: usize, totals: &mut [PixelSums]) {
+    /// What every frame shows.
+    pub(crate) fn frames(&self, n_colors: usize) -> impl Iterator<Item = &[PixelSums]> {
+        self.sums.chunks(n_colors.max(1))
+    }
+
+    /// The sums of all frames but the hidden ones.
+    pub(crate) fn total(&self, is_hidden: &[bool], totals: &mut [PixelSums]) {
         totals.fill(PixelSums::default());
-        for frame in self.sums.chunks(n_colors.max(1)) {
+        for (frame, _) in self.frames(totals.len()).zip(is_hidden).filter(|(_, is_hidden)| !**is_hidden) {
             totals.iter_mut().zip(frame).for_each(|(total, sums)| total.add(sums));
         }
     }

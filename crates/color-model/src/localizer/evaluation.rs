@@ -1,22 +1,16 @@
-use std::sync::Arc;
-
 use nalgebra::Vector3;
 use rand::Rng;
-use wayfix_color_map::Projector;
 use wayfix_particle::{ChunkRng, ParticleSet};
 
 use super::{
     acquisition::Effort,
     candidate::Candidate,
-    hidden::or_hidden,
+    evidence::Scratch,
     hypothesis::is_same_place,
     search::{Search, stride},
     trajectory::Trajectory,
 };
-use crate::{
-    ColorModelError, Frame, PixelSums,
-    likelihood::{JointLikelihood, gather},
-};
+use crate::{ColorModelError, Frame, PixelSums, likelihood::gather};
 
 /// What a step's length is multiplied by after a success, and after a failure: it stays the same when one in five succeeds [Rechenberg 1973].
 const LONGER: f64 = 1.5;
@@ -27,14 +21,7 @@ const LEAST_IN_VIEW: f64 = 0.1;
 /// What puts such a place behind all others, nats.
 const BLIND: f64 = 1e6;
 
-/// What one thread works with.
-pub(super) struct Scratch {
-    projector: Projector,
-    joint: JointLikelihood,
-    totals: Vec<PixelSums>,
-}
-
-/// How well candidates explain the frames, and how they do so better.
+/// How candidates come to explain the frames better.
 impl Search<'_> {
     /// Does `job` to every candidate, each with a random stream of its chunk's.
     pub(super) fn each<R: Rng + ?Sized>(
@@ -44,12 +31,7 @@ impl Search<'_> {
         job: impl Fn(&mut Scratch, &mut Candidate, &mut ChunkRng) + Sync,
     ) -> Result<Vec<Candidate>, ColorModelError> {
         let mut set = ParticleSet::new(candidates)?;
-        let scratch = || Scratch {
-            projector: Projector::new(Arc::clone(self.map), self.camera),
-            joint: JointLikelihood::new(),
-            totals: vec![PixelSums::default(); self.map.colors().len()],
-        };
-        set.propagate_with(scratch, job, rng);
+        set.propagate_with(|| Scratch::new(self), job, rng);
         Ok(set.states().to_vec())
     }
 
@@ -123,7 +105,7 @@ impl Search<'_> {
         if gather(&mut scratch.projector, |_| Some(&self.frames[at]), &camera_pose, margin, sums).is_ok() {
             jolted.log_prior += jolted.trajectory.log_prior() - candidate.trajectory.log_prior();
             self.weigh_frame(scratch, &mut jolted, at, Effort::Full);
-            self.score(scratch, &mut jolted);
+            self.score(scratch, &mut jolted, Effort::Full);
             if jolted.score > candidate.score {
                 *candidate = jolted;
             }
@@ -151,50 +133,11 @@ impl Search<'_> {
             }
             self.weigh_frame(scratch, candidate, at, effort);
         }
-        self.score(scratch, candidate);
+        self.score(scratch, candidate, effort);
         let n_seen = candidate.sums.iter().map(|sums| sums.count() + sums.n_outliers()).sum::<u64>() as f64;
         let n_pixels = self.frames.first().map_or(0, Frame::n_pixels) * self.shots.len().div_ceil(stride);
         if effort == Effort::Coarse && candidate.known.is_none() && n_seen < LEAST_IN_VIEW * n_pixels as f64 {
             candidate.score -= BLIND;
         }
-    }
-
-    /// What frame `at` says alone, which in a light that is known is all that it says.
-    fn weigh_frame(&self, scratch: &mut Scratch, candidate: &mut Candidate, at: usize, effort: Effort) {
-        let Some(hidden) = self.hidden else { return };
-        let (n_colors, n_members) = (self.map.colors().len(), self.light.bank.n_members());
-        let sums = &candidate.sums[at * n_colors..][..n_colors];
-        for member in 0..n_members {
-            let value = self.log_likelihood(&mut scratch.joint, sums, member);
-            // From afar nothing fits, so that all would be hidden: there it counts how badly.
-            let value = if effort == Effort::Full { or_hidden(value, hidden) } else { value };
-            candidate.by_frame[at * n_members + member] = value;
-        }
-    }
-
-    /// Under a light that is not known yet, $`\ln \int \prod_k p(z_k | x_k, θ)\, p(θ)\, dθ`$: the sums of all frames as if they were of one. Under a
-    /// known one the frames are independent, and each of them may be hidden.
-    fn score(&self, scratch: &mut Scratch, candidate: &mut Candidate) {
-        let Scratch { joint, totals, .. } = scratch;
-        let n_members = self.light.bank.n_members();
-        if self.hidden.is_none() {
-            candidate.total(totals.len(), totals);
-        }
-        for member in 0..n_members {
-            candidate.log_likelihoods[member] = if self.hidden.is_none() {
-                self.log_likelihood(joint, totals, member)
-            } else {
-                candidate.by_frame[member..].iter().step_by(n_members).sum()
-            };
-        }
-        let best = candidate.log_likelihoods.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        candidate.score = best + candidate.log_prior;
-    }
-
-    fn log_likelihood(&self, joint: &mut JointLikelihood, sums: &[PixelSums], member: usize) -> f64 {
-        let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
-        let filter = self.light.bank.member(member);
-        let value = joint.log_likelihood(sums, filter, &self.params.pixels, &self.noise, n_pixels);
-        if value.is_nan() { f64::NEG_INFINITY } else { value }
     }
 }

@@ -159,8 +159,7 @@ impl ColorLocalizer {
         let is_start = self.n_updates < n_frames && (self.n_updates + 1).is_power_of_two();
         let is_search = self.vigilance.is_search_due(&self.params) || self.is_routine();
         let (judged, n_since_search) = if is_start {
-            let found = self.search(&shots, &self.start, &self.prior, rng)?;
-            (found.into_iter().map(|one| one.judged).collect(), 0)
+            (self.acquire(image, mount, &shots, rng)?, 0)
         } else if is_search {
             (self.reconsider(image, mount, &shots, rng)?, 0)
         } else {

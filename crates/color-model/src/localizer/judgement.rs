@@ -95,7 +95,7 @@ impl ColorLocalizer {
     }
 
     /// Where the robot may be, by the last frames, if it was where `start` says when the first of them was taken.
-    pub(super) fn search<R: Rng + ?Sized>(
+    fn search<R: Rng + ?Sized>(
         &self,
         shots: &Shots,
         start: &Start,
@@ -114,6 +114,33 @@ impl ColorLocalizer {
             places.filter_map(|(index, one)| Some(Known { index, place: one.place()? })).collect()
         };
         search.run(&known, rng)
+    }
+
+    /// The places that explain the first frames. Of those that are pursued there are two opinions: that of their particles, which may be off the peak, and
+    /// that of the search, which looks at some of the frames; their mean counts. Nothing is believed yet: a place that is new begins level with the best.
+    pub(super) fn acquire<R: Rng + ?Sized>(
+        &self,
+        image: &YuvImage,
+        mount: &Pose3<f64>,
+        shots: &Shots,
+        rng: &mut R,
+    ) -> Result<Vec<Judged>, ColorModelError> {
+        let found = self.search(shots, &self.start, &self.prior, rng)?;
+        if self.n_updates == 0 {
+            return Ok(found.into_iter().map(|one| one.judged).collect());
+        }
+        let mut judged = self.look(self.joined(&found, rng)?, image, mount, rng)?;
+        let by_particles = best(judged.iter());
+        let by_search = best(found.iter().filter(|one| one.known.is_some()).map(|one| &one.judged));
+        for Found { judged: refined, known } in &found {
+            if let Some(one) = known.and_then(|known| judged.get_mut(known)) {
+                let behind = (one.log_evidence - by_particles, refined.log_evidence - by_search);
+                one.log_evidence = by_particles + 0.5 * (behind.0 + behind.1);
+            }
+        }
+        let lead = best(judged.iter());
+        judged.extend(self.newcomers(found, lead, 0.0));
+        Ok(judged)
     }
 
     /// The places that are believed in, and those that explain the last frames better.

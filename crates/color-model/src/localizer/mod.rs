@@ -5,6 +5,7 @@ mod camera_error;
 mod candidate;
 mod estimate;
 mod evaluation;
+mod evidence;
 mod filter;
 mod hidden;
 mod hypothesis;

@@ -31,7 +31,7 @@ impl Niche {
         niches.sort_by(|a, b| b.best().total_cmp(&a.best()));
         let mut kept: Vec<Self> = Vec::new();
         for niche in niches.drain(..) {
-            let has_met = |other: &Self| is_same_place(&other.place(), &niche.place());
+            let has_met = |other: &Self| other.is_at(&niche.place());
             if niche.known().is_some() || kept.len() < most && !kept.iter().any(has_met) {
                 kept.push(niche);
             }
@@ -49,10 +49,18 @@ impl Niche {
         self.0.iter().map(|candidate| candidate.score).fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// Whether a pose is where the best is.
+    pub(crate) fn is_at(&self, pose: &Pose2<f64>) -> bool {
+        is_same_place(&self.place(), pose)
+    }
+
+    pub(crate) fn best_candidate(&self) -> Option<&Candidate> {
+        self.0.iter().max_by(|a, b| a.score.total_cmp(&b.score))
+    }
+
     /// Where the best is.
     fn place(&self) -> Pose2<f64> {
-        let best = self.0.iter().max_by(|a, b| a.score.total_cmp(&b.score));
-        best.map_or_else(Pose2::identity, |candidate| candidate.trajectory.newest)
+        self.best_candidate().map_or_else(Pose2::identity, |candidate| candidate.trajectory.newest)
     }
 
     /// The next generation, of `n` candidates.

@@ -52,8 +52,8 @@ pub(crate) struct Search<'a> {
     pub(super) light: &'a Arc<Light>,
     pub(super) shots: Vec<Shot>,
     pub(super) frames: Vec<Frame>,
-    /// Probability that a view is hidden, if the light is known; under a light that is not, all frames are weighed at once.
-    pub(super) hidden: Option<f64>,
+    /// Under a light that is not known, all frames are weighed at once.
+    pub(super) is_light_known: bool,
     sightings: Sightings,
     /// Variance of a map colour's pixels.
     pub(super) noise: Vector3<f64>,
@@ -85,8 +85,7 @@ impl<'a> Search<'a> {
         let stride = stride(shots.len(), params.acquisition.n_coarse);
         let coarse = images.iter().enumerate().rev().step_by(stride);
         let sightings = Sightings::of(coarse, &shots, &camera, map, light, nats)?;
-        let hidden = is_light_known.then(|| params.hidden_views.usual());
-        Ok(Self { map, camera, area, start, params, light, shots, frames, hidden, sightings, noise })
+        Ok(Self { map, camera, area, start, params, light, shots, frames, is_light_known, sightings, noise })
     }
 
     /// The places that explain the frames best, of those that the start allows or a sighting suggests and of those `known` at the newest frame, with
@@ -99,6 +98,9 @@ impl<'a> Search<'a> {
         let AcquisitionParams { n_niches, n_passes, n_kept, .. } = self.params.acquisition;
         let mut niches = Niche::apart(self.candidates(known, rng)?, n_niches);
         for pass in 0..n_passes {
+            if *self.start == Start::Anywhere && self.params.acquisition.is_first_full(pass) {
+                self.add_opposites(&mut niches);
+            }
             niches = self.refined(&niches, pass, rng)?;
             let fewer = (2 * niches.len()).div_ceil(3).max(n_kept);
             let most = if pass + 1 < n_passes { fewer } else { niches.len() };
@@ -112,6 +114,19 @@ impl<'a> Search<'a> {
             Ok(Found { judged, known: niche.known() })
         };
         niches.iter().map(found).collect()
+    }
+
+    /// Adds to every niche the one that is opposite: the two halves of a field are alike but for a few colours, which a light that is not known explains,
+    /// so that a place that was found says where else to look.
+    fn add_opposites(&self, niches: &mut Vec<Niche>) {
+        for at in 0..niches.len() {
+            let Some(best) = niches[at].best_candidate() else { continue };
+            let mut opposite = Candidate { known: None, ..best.clone() };
+            opposite.trajectory.newest = self.area.opposite(&best.trajectory.newest);
+            if !niches.iter().any(|niche| niche.is_at(&opposite.trajectory.newest)) {
+                niches.push(Niche(vec![opposite]));
+            }
+        }
     }
 
     /// Candidates all over the start, weighed by a few frames, and those of known places, before them.
@@ -150,10 +165,9 @@ impl<'a> Search<'a> {
 
     /// A niche's candidates as particles at the newest frame.
     fn seen<R: Rng + ?Sized>(&self, candidates: &[Candidate], rng: &mut R) -> Result<Seen, ColorModelError> {
-        let n_colors = self.map.colors().len();
         let mut views = Views::new(candidates.len(), &self.light.bank);
         for (view, candidate) in views.chunks_mut(1).flatten().zip(candidates) {
-            candidate.total(n_colors, view.sums);
+            candidate.total(&candidate.is_hidden, view.sums);
             view.log_likelihoods.copy_from_slice(&candidate.log_likelihoods);
         }
         let banks = candidates.iter().map(|_| &self.light.bank);
@@ -189,13 +203,14 @@ impl<'a> Search<'a> {
         candidate
     }
 
-    fn candidate(&self, pose: &Pose2<f64>, at: usize) -> Candidate {
+    pub(super) fn candidate(&self, pose: &Pose2<f64>, at: usize) -> Candidate {
         let mut trajectory = Trajectory::through(pose, at, &self.shots);
         self.area.clamp(&mut trajectory.newest);
         Candidate {
             trajectory,
             sums: vec![PixelSums::default(); self.shots.len() * self.map.colors().len()],
             by_frame: vec![0.0; self.shots.len() * self.light.bank.n_members()],
+            is_hidden: vec![false; self.shots.len()],
             log_likelihoods: vec![0.0; self.light.bank.n_members()],
             log_prior: 0.0,
             score: f64::NEG_INFINITY,

@@ -1,6 +1,6 @@
 use rand::{Rng, RngExt, distr::Distribution};
 use wayfix_color_map::ColorMap;
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{Pose2, wrap_angle};
 use wayfix_gaussian_core::Gaussian;
 
 use crate::ColorModelError;
@@ -40,6 +40,12 @@ impl Area {
         (0..2).all(|axis| (self.min[axis]..=self.max[axis]).contains(&pose.translation[axis]))
     }
 
+    /// The pose after half a turn of the world about the middle.
+    pub(crate) fn opposite(&self, pose: &Pose2<f64>) -> Pose2<f64> {
+        let [x, y] = [0, 1].map(|axis| self.min[axis] + self.max[axis]);
+        Pose2::new(x - pose.x(), y - pose.y(), wrap_angle(pose.heading() + std::f64::consts::PI))
+    }
+
     pub(crate) fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Pose2<f64> {
         let mut between =
             |axis: usize| self.min[axis] + rng.random::<f64>() * (self.max[axis] - self.min[axis]);
@@ -64,5 +70,21 @@ impl Start {
             Self::Near(about) => about.mahalanobis_squared(pose).map_or(0.0, |squared| -0.5 * squared),
             Self::Anywhere => 0.0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_opposite_of_the_opposite_is_here() {
+        let area = Area { min: [-1.0, 0.0], max: [3.0, 2.0] };
+        let pose = Pose2::new(2.5, 0.5, 0.3);
+        let opposite = area.opposite(&pose);
+        assert_eq!((opposite.x(), opposite.y()), (-0.5, 1.5));
+        assert!((opposite.heading() - (0.3 - std::f64::consts::PI)).abs() < 1e-12);
+        let back = area.opposite(&opposite);
+        assert!((back.x() - 2.5).abs() < 1e-12 && (back.heading() - 0.3).abs() < 1e-12);
     }
 }
