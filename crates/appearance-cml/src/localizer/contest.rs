@@ -16,7 +16,9 @@ use crate::{AppearanceError, Descriptor, OdometryNoise, ReferenceSearch, separat
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contest {
     doubt: Doubt,
-    /// Whether this doubt has seen a break: a view that is strange to the one before, over no more than a step.
+    /// Share of the last views for which nothing was known where the first is: 1 for who explores.
+    exploring: f64,
+    /// Whether this doubt has seen a break, while the robot was not exploring: a view that is strange to the one before, over no more than a step.
     broken: bool,
     rival: Option<Rival>,
 }
@@ -39,6 +41,9 @@ struct Round {
 
 /// Steps between two views up to which they look alike, unless there is a break.
 const MOST_STEPS: f64 = 1.5;
+
+/// Who explores more than this is not thought to be carried: there is nothing to recognize there, so that any aisle that looks alike would win.
+const MOST_EXPLORING: f64 = 0.9;
 
 impl Contest {
     /// After the robot has moved.
@@ -97,12 +102,15 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             return Ok(Contest::default());
         }
         let fit = self.fit(view, &self.belief);
+        let is_unknown = if fit == Fit::Unknown { 1.0 } else { 0.0 };
+        let exploring =
+            self.contest.exploring + (is_unknown - self.contest.exploring) / params.views.max(1.0);
         let is_break = self.is_break(view);
         let doubt = if is_break { Doubt::great(params) } else { self.contest.doubt.after(fit, params) };
         if !doubt.is_great() {
-            return Ok(Contest { doubt, ..Contest::default() });
+            return Ok(Contest { doubt, exploring, ..Contest::default() });
         }
-        let broken = is_break || self.contest.broken;
+        let broken = self.contest.broken || is_break && self.contest.exploring <= MOST_EXPLORING;
         let nowhere = Rival { belief: Belief::nowhere(), record: VecDeque::new() };
         let before = self.contest.rival.as_ref().filter(|_| !is_break).unwrap_or(&nowhere);
         let (belief, _) = self.seen(&before.belief, Some(view), &[])?;
@@ -122,7 +130,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             way -= oldest.way;
             record.pop_front();
         }
-        Ok(Contest { doubt, broken, rival: Some(Rival { belief, record }) })
+        Ok(Contest { doubt, exploring, broken, rival: Some(Rival { belief, record }) })
     }
 
     /// Whether the view is as strange to the one before as one of a far place, although the wheels say that it is a step away. Who is carried sees it, or
