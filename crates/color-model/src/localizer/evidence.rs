@@ -87,7 +87,10 @@ impl Search<'_> {
         candidate.total(is_hidden, totals);
         let mut constant = self.shots.len() as f64 * free;
         let mut best = self.log_likelihood(joint, totals, member) + constant;
-        while effort == Effort::Full {
+        if effort == Effort::Coarse {
+            return best;
+        }
+        loop {
             constant += odds;
             let mut hide = None;
             for (at, frame) in candidate.frames(totals.len()).enumerate().filter(|(at, _)| !is_hidden[*at]) {
@@ -98,11 +101,10 @@ impl Search<'_> {
                     (best, hide) = (value, Some(at));
                 }
             }
-            let Some(at) = hide else { break };
+            let Some(at) = hide else { return best };
             is_hidden[at] = true;
             candidate.total(is_hidden, totals);
         }
-        best
     }
 
     fn log_likelihood(&self, joint: &mut JointLikelihood, sums: &[PixelSums], member: usize) -> f64 {
