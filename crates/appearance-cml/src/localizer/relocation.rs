@@ -31,8 +31,9 @@ pub struct RelocationParams {
     /// Share of them in which it does not, where it should, from which on it doubts; 1 never doubts. Default 0.5: after 6 views.
     pub doubt: f64,
     /// What the second belief has to show after a break: after a view that is as strange to the one before as a far place, which who is carried
-    /// sees, and who drives into an aisle that was rearranged does not. Who explores is not thought to be carried. Default: over 5 m, a quarter of the way after which a robot should know
-    /// where it is, a fifth of the views, twice what chance makes; it may have been carried into an aisle that was rearranged.
+    /// sees, and who drives into an aisle that was rearranged does not; who explores is not thought to be carried. Default: over 5 m, a quarter of
+    /// the way after which a robot should know where it is, a fifth of the views, twice what chance makes; it may have been carried into an aisle
+    /// that was rearranged.
     pub carried: Proof,
     /// What it has to show without one. Default: half of the views over 25 m, because whole aisles look like others when their lamps are out.
     pub strayed: Proof,

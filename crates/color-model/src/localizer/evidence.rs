@@ -70,6 +70,7 @@ impl Search<'_> {
     /// $`\sum_k \ln [(1 - h)\, p(z_k | x_k) + h]`$.
     fn singly(&self, scratch: &mut Scratch, candidate: &Candidate, member: usize, effort: Effort) -> f64 {
         let by_frame = candidate.by_frame[member..].iter().step_by(self.light.bank.n_members());
+        // More likely hidden than not: h is more than half of the sum.
         let least = (2.0 * self.params.hidden_views.usual()).ln();
         scratch.is_hidden.clear();
         scratch.is_hidden.extend(by_frame.clone().map(|value| effort == Effort::Full && *value < least));

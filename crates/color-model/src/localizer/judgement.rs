@@ -133,9 +133,11 @@ impl ColorLocalizer {
         let by_particles = best(judged.iter());
         let by_search = best(found.iter().filter(|one| one.known.is_some()).map(|one| &one.judged));
         for Found { judged: refined, known } in &found {
-            if let Some(one) = known.and_then(|known| judged.get_mut(known)) {
-                let behind = (one.log_evidence - by_particles, refined.log_evidence - by_search);
-                one.log_evidence = by_particles + 0.5 * (behind.0 + behind.1);
+            if let Some(one) = known.and_then(|known| judged.get_mut(known))
+                && refined.log_evidence.is_finite()
+            {
+                let behind = (one.log_evidence - by_particles) + (refined.log_evidence - by_search);
+                one.log_evidence = by_particles + 0.5 * behind;
             }
         }
         let lead = best(judged.iter());
