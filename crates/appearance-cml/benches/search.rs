@@ -104,13 +104,8 @@ fn reference(learned: &[PanoramaDescriptor], id: usize) -> PanoramaDescriptor {
     let (round, at) = (id / learned.len(), id % learned.len());
     let (a, b) = (&learned[at], &learned[(at + 1) % learned.len()]);
     // Multiples of the golden section spread evenly.
-    let share = (round as f64 * 0.618_034).fract() as f32;
-    let coefficients = a.coefficients().into_iter().zip(b.coefficients()).map(|(a_q, b_q)| {
-        let value = (1.0 - share) * a.scale() * f32::from(a_q) + share * b.scale() * f32::from(b_q);
-        (value / a.scale().max(b.scale())).round() as i8
-    });
-    PanoramaDescriptor::from_parts(a.scale().max(b.scale()), a.n_rings(), coefficients.collect())
-        .expect("between two spectra")
+    let share = (round as f64 * 0.618_034).fract();
+    a.blend(b, share).expect("views of one camera")
 }
 
 fn report(job: &str, seconds: f64) {

@@ -12,6 +12,10 @@ pub(super) struct BoxTree {
 /// Sketches of a leaf before it is split.
 const LEAF_SIZE: usize = 48;
 
+/// Sketches of which this share is within the radius are not worth to be looked at one by one, once so many were.
+const MOST_WITHIN: f64 = 0.75;
+const N_TRIED: usize = 10 * LEAF_SIZE;
+
 #[derive(Clone, Debug)]
 struct Node {
     low: Sketch,
@@ -73,11 +77,12 @@ impl BoxTree {
         }
     }
 
-    /// All slots below `n_slots` whose sketches are within `radius`.
+    /// All slots below `n_slots` whose sketches are within `radius`; where hardly any is not, those of their leaves as well.
     pub(super) fn within(&self, sketch: &Sketch, radius: f32, n_slots: usize) -> SlotSet {
         let within = radius * radius;
         let mut found = SlotSet::new(n_slots);
         let mut branches = vec![0];
+        let (mut n_within, mut n_tried) = (0, 0);
         while let Some(index) = branches.pop() {
             let node = &self.nodes[index];
             if node.squared_distance(sketch) > within {
@@ -85,9 +90,16 @@ impl BoxTree {
             }
             match &node.content {
                 Content::Fork { below, above, .. } => branches.extend([*below, *above]),
+                Content::Leaf { slots, .. }
+                    if n_tried >= N_TRIED && n_within as f64 > MOST_WITHIN * n_tried as f64 =>
+                {
+                    slots.iter().for_each(|slot| found.insert(*slot));
+                }
                 Content::Leaf { sketches, slots } => {
+                    n_tried += slots.len();
                     for (other, slot) in sketches.iter().zip(slots) {
                         if squared_distance(sketch, other) <= within {
+                            n_within += 1;
                             found.insert(*slot);
                         }
                     }

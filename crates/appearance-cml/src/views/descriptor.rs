@@ -105,6 +105,15 @@ impl PanoramaDescriptor {
         coefficients
     }
 
+    /// A view between two, `share` of the way to the other, if they can be compared: what might be seen in between where both face the same way.
+    pub fn blend(&self, other: &Self, share: f64) -> Option<Self> {
+        let value = |own: &Self, q: i8| f64::from(own.scale) * f64::from(q);
+        let between = |(a, b): (i8, i8)| (1.0 - share) * value(self, a) + share * value(other, b);
+        let spectrum: Vec<f64> =
+            self.coefficients().into_iter().zip(other.coefficients()).map(between).collect();
+        self.has_shape_of(other).then(|| Self::quantized(usize::from(self.n_rings), &spectrum))
+    }
+
     /// Whether two descriptors can be compared.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         self.n_rings == other.n_rings && self.n_harmonics == other.n_harmonics
@@ -159,6 +168,19 @@ fn place(n_rings: usize, harmonic: usize, part: usize, ring: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_blend_lies_between_its_views() {
+        let view = |first: i8| PanoramaDescriptor::from_parts(0.01, 1, vec![10, first, 40]).unwrap();
+        let (a, b) = (view(-100), view(100));
+        let blend = a.blend(&b, 0.25).unwrap();
+        // A byte rounds by half of 0.005 at most.
+        let value = |at: usize| f64::from(blend.scale()) * f64::from(blend.coefficients()[at]);
+        for (at, expected) in [(0, 0.1), (1, -0.5), (2, 0.4)] {
+            assert!((value(at) - expected).abs() <= 0.0026, "{} {expected}", value(at));
+        }
+        assert!(a.blend(&PanoramaDescriptor::from_parts(0.01, 1, vec![10]).unwrap(), 0.5).is_none());
+    }
 
     #[test]
     fn coefficients_come_back_for_any_number_of_rings_and_harmonics() {

@@ -1,12 +1,13 @@
-use wide::i16x8;
+use wide::i16x16;
 
 use super::descriptor::PanoramaDescriptor;
-use super::lanes::{HARMONICS, Pairs, Sums, eight};
+use super::lanes::{HARMONICS, Pairs, Sums, sixteen};
 
-/// Cosines over the rings that are looked at first, of the constant harmonic and of the first eight.
-pub(super) const N_SLOW: usize = 8;
+/// Cosines over the rings that are looked at first: of the constant harmonic, and of the first eight.
+const N_CONSTANT: usize = 16;
+const N_SLOW: usize = 8;
 /// Their numbers: of the constant harmonic, then cosine by cosine real and imaginary parts side by side.
-const N_NUMBERS: usize = N_SLOW + N_SLOW * 2 * HARMONICS;
+const N_NUMBERS: usize = N_CONSTANT + N_SLOW * 2 * HARMONICS;
 
 /// The slow changes of a view from top to bottom, and how much there is of everything else.
 #[derive(Clone, Debug)]
@@ -21,7 +22,7 @@ pub(super) struct Slow {
 /// The same of a view that is about to be compared with many, its products with a number and with its conjugate made ready.
 #[derive(Clone, Debug)]
 pub(super) struct SlowProbe {
-    constant: i16x8,
+    constant: i16x16,
     cosines: [Pairs; N_SLOW],
     scale: f32,
     energy: f32,
@@ -34,11 +35,11 @@ const ROUNDING: f32 = 4e-6;
 impl Slow {
     pub(super) fn new(view: &PanoramaDescriptor) -> Self {
         let mut numbers = [0; N_NUMBERS];
-        for (number, constant) in numbers.iter_mut().zip(view.constant().iter().take(N_SLOW)) {
+        for (number, constant) in numbers.iter_mut().zip(view.constant().iter().take(N_CONSTANT)) {
             *number = *constant;
         }
         let cosines = view.groups().next().into_iter().flat_map(|group| group.chunks_exact(2 * HARMONICS));
-        for (pairs, lanes) in numbers[N_SLOW..].chunks_exact_mut(2 * HARMONICS).zip(cosines) {
+        for (pairs, lanes) in numbers[N_CONSTANT..].chunks_exact_mut(2 * HARMONICS).zip(cosines) {
             for (pair, lane) in pairs.iter_mut().zip(lanes) {
                 *pair = *lane;
             }
@@ -58,9 +59,9 @@ impl Slow {
 impl SlowProbe {
     pub(super) fn new(view: &PanoramaDescriptor) -> Self {
         let slow = Slow::new(view);
-        let pairs = |cosine: usize| Pairs::new(&slow.numbers[N_SLOW + cosine * 2 * HARMONICS..]);
+        let pairs = |cosine: usize| Pairs::new(&slow.numbers[N_CONSTANT + cosine * 2 * HARMONICS..]);
         Self {
-            constant: eight(&slow.numbers),
+            constant: sixteen(&slow.numbers),
             cosines: std::array::from_fn(pairs),
             scale: slow.scale,
             energy: slow.energy,
@@ -74,10 +75,10 @@ impl SlowProbe {
     /// nor that of the others greater than the product of their norms. Sums of products of whole numbers are exact.
     #[inline]
     pub(super) fn squared_bound(&self, reference: &Slow) -> f32 {
-        let (constant, cosines) = reference.numbers.split_at(N_SLOW);
+        let (constant, cosines) = reference.numbers.split_at(N_CONSTANT);
         let mut sums = Sums::default();
         sums.add(&self.cosines, cosines);
-        let constant = self.constant.dot(eight(constant)).reduce_add() as f32;
+        let constant = self.constant.dot(sixteen(constant)).reduce_add() as f32;
         let overlap = constant + sums.magnitude() + self.rest * reference.rest;
         let energies = self.energy + reference.energy;
         energies - 2.0 * self.scale * reference.scale * overlap - ROUNDING * energies.max(f32::MIN_POSITIVE)

@@ -32,7 +32,7 @@ mod map;
 mod markup;
 mod panel;
 mod picture;
-mod statistics;
+pub(crate) mod statistics;
 mod times;
 
 pub use axis::Scale;

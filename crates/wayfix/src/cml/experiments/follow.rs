@@ -73,6 +73,6 @@ pub(super) fn known_start(trip: &Trip) -> Result<Start> {
     })
 }
 
-fn surveyed(pose: Pose2<f64>) -> Result<Gaussian<Pose2<f64>>> {
+pub(super) fn surveyed(pose: Pose2<f64>) -> Result<Gaussian<Pose2<f64>>> {
     Ok(Gaussian::from_sigmas(pose, &Vector3::from(SURVEYED))?)
 }

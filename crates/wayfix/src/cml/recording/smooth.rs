@@ -1,3 +1,5 @@
+use crate::plot::statistics::median;
+
 /// Values along a path smoothed by a Gaussian of `sigma` steps; near the ends a straight line through what is left stands in for the mean, so
 /// that ends do not shrink.
 pub fn smoothed(values: &[f64], sigma: f64) -> Vec<f64> {
@@ -34,8 +36,8 @@ pub fn smoothing_of(x: &[f64], y: &[f64]) -> f64 {
     let bend = |values: &[f64]| values[0] - 2.0 * values[1] + values[2];
     let bends = x.windows(3).zip(y.windows(3)).map(|(x, y)| bend(x).hypot(bend(y)));
     // A second difference of white noise has 6 times its variance, the length of two such a median of 1.18.
-    let trembling = median(bends.collect()) / (1.18 * 6_f64.sqrt());
-    let ratio = trembling / (HEADING_SIGMA * median(steps.collect()));
+    let trembling = median(bends).unwrap_or(f64::NAN) / (1.18 * 6_f64.sqrt());
+    let ratio = trembling / (HEADING_SIGMA * median(steps).unwrap_or(f64::NAN));
     if ratio.is_finite() {
         ratio.powf(2.0 / 3.0).clamp(LEAST_SMOOTHING, MOST_SMOOTHING)
     } else {
@@ -49,11 +51,6 @@ const HEADING_SIGMA: f64 = 0.02;
 const LEAST_SMOOTHING: f64 = 0.5;
 /// Frames.
 const MOST_SMOOTHING: f64 = 8.0;
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
-}
 
 #[cfg(test)]
 mod tests {

@@ -7,7 +7,7 @@ use wayfix_sensor_log::{Data, Record};
 
 use crate::{
     color::{ColorSystemParams, run},
-    plot::{LinesPlot, Scale, Series},
+    plot::{LinesPlot, Scale, Series, statistics::median},
     report::{Metric, Run},
 };
 
@@ -36,9 +36,8 @@ pub fn frame_time(
         params.localizer.max_particles = n_particles;
         params.localizer.max_particles_lost = n_particles;
         let run = run(&records[..end], Arc::clone(map), bank.clone(), &params, None, seed, |_| {})?;
-        let mut steps: Vec<f64> = run.system.frames().iter().map(|f| 1e3 * f.step.as_secs_f64()).collect();
-        steps.sort_by(f64::total_cmp);
-        points.push((n_particles as f64, steps[steps.len() / 2]));
+        let steps = run.system.frames().iter().map(|frame| 1e3 * frame.step.as_secs_f64());
+        points.push((n_particles as f64, median(steps).unwrap_or(f64::NAN)));
     }
     let timings = points
         .iter()
