@@ -2,7 +2,7 @@ use super::slow::Slow;
 use super::{PanoramaDescriptor, PanoramaProbe};
 use crate::BoundTable;
 
-/// The slow changes of many panoramas from top to bottom, side by side: 148 bytes each.
+/// The slow changes of many panoramas from top to bottom, side by side: 156 bytes each.
 #[derive(Clone, Debug, Default)]
 pub struct PanoramaTable {
     rows: Vec<Slow>,
