@@ -10,7 +10,7 @@ pub(super) struct Margin {
     n_rows: usize,
     words_per_row: usize,
     planes: Vec<Plane>,
-    /// A row, or a plane, before it was eroded.
+    /// A plane before it was eroded.
     before: Vec<u64>,
 }
 
@@ -57,7 +57,7 @@ impl Margin {
             let words = &mut words[rows.start * self.words_per_row..rows.end * self.words_per_row];
             for step in steps(reach) {
                 for row in words.chunks_mut(self.words_per_row) {
-                    erode_row(row, self.n_columns, step, &mut self.before);
+                    erode_row(row, self.n_columns, step);
                 }
                 erode_columns(words, self.words_per_row, step, &mut self.before);
             }
@@ -78,43 +78,33 @@ impl Margin {
     }
 }
 
-/// Shifts that together reach `reach`: with all within `r` pixels seen, a shift by `2 r + 1` to both sides leaves no gap.
+/// Shifts that together reach `reach`, each shorter than a word: with all within `r` pixels seen, a shift by `2 r + 1` to both sides leaves no gap.
 fn steps(reach: usize) -> impl Iterator<Item = usize> {
     let mut reached = 0;
     std::iter::from_fn(move || {
-        let step = (2 * reached + 1).min(reach - reached);
+        let step = (2 * reached + 1).min(reach - reached).min(BITS - 1);
         reached += step;
         (step > 0).then_some(step)
     })
 }
 
-/// Leaves the pixels that are set `step` columns to the left and to the right, too.
+/// Leaves the pixels that are set `step` columns to the left and to the right, too, `step` from 1 to 63.
 ///
 /// Beside the image its border pixel goes on: what that one has reached so far lies within what the wanted one would have.
-fn erode_row(row: &mut [u64], n_columns: usize, step: usize, before: &mut Vec<u64>) {
+fn erode_row(row: &mut [u64], n_columns: usize, step: usize) {
     let beside = |column: usize| 0_u64.wrapping_sub(row[column / BITS] >> (column % BITS) & 1);
     let (left_border, right_border) = (beside(0), beside(n_columns - 1));
-    let (words, bits) = (step / BITS, step % BITS);
-    let around = words + 1;
-    before.clear();
-    before.resize(around, left_border);
-    before.extend_from_slice(row);
-    if !n_columns.is_multiple_of(BITS) {
-        let padding = u64::MAX << (n_columns % BITS);
-        let last = before.len() - 1;
-        before[last] = before[last] & !padding | right_border & padding;
+    let padding = if n_columns.is_multiple_of(BITS) { 0 } else { u64::MAX << (n_columns % BITS) };
+    let last = row.len() - 1;
+    row[last] |= right_border & padding;
+    let mut before = left_border;
+    for i in 0..row.len() {
+        let here = row[i];
+        let after = if i < last { row[i + 1] } else { right_border };
+        row[i] &= (here << step | before >> (BITS - step)) & (here >> step | after << (BITS - step));
+        before = here;
     }
-    before.resize(before.len() + around, right_border);
-    for (i, out) in row.iter_mut().enumerate() {
-        // The words that hold what is `step` columns to the left, and to the right.
-        let left = &before[i..i + 2];
-        let right = &before[i + 2 * words + 1..i + 2 * words + 3];
-        *out &= if bits == 0 {
-            left[1] & right[0]
-        } else {
-            (left[1] << bits | left[0] >> (BITS - bits)) & (right[0] >> bits | right[1] << (BITS - bits))
-        };
-    }
+    row[last] &= !padding;
 }
 
 /// Leaves the pixels that are set `step` rows above and below, too; beyond the image, its border row goes on.

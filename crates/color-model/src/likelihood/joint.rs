@@ -22,28 +22,16 @@ impl JointLikelihood {
         Self { covariance: Vec::new(), residuals: Vec::new(), rows: Vec::new(), noises: Vec::new() }
     }
 
-    pub(crate) fn log_likelihood(
+    /// What the colours' means say of a light: $`\ln N(\bar v; μ, Σ + R + ν/βn) - \ln N(0; 0, ν/βn)`$ over the colours that are seen.
+    pub(crate) fn log_innovation(
         &mut self,
         sums: &[PixelSums],
         filter: &LightingFilter,
         params: &PixelParams,
-        noise: &Vector3<f64>,
+        pixel: &Vector3<f64>,
         n_pixels: usize,
     ) -> LogWeight {
         let tempering = params.independent_pixels / n_pixels.max(1) as f64;
-        let scatter = |sums: &PixelSums| Region::new(sums, log_scatter(sums, noise));
-        let within = params.log_likelihood(n_pixels, sums.iter().map(scatter));
-        within + self.log_innovation(sums, filter, noise, tempering)
-    }
-
-    /// $`\ln N(\bar v; μ, Σ + R + ν/βn) - \ln N(0; 0, ν/βn)`$ over the colours that are seen.
-    fn log_innovation(
-        &mut self,
-        sums: &[PixelSums],
-        filter: &LightingFilter,
-        pixel: &Vector3<f64>,
-        tempering: f64,
-    ) -> f64 {
         let of_mean = filter.params().mean_noise;
         self.rows.clear();
         self.residuals.clear();
@@ -51,13 +39,13 @@ impl JointLikelihood {
         let mut log = 0.0;
         for (color, sums) in sums.iter().enumerate() {
             let Some(mean) = sums.mean() else { continue };
+            let noise = pixel / (tempering * sums.count() as f64);
+            log += 0.5 * noise.product().ln();
             for channel in 0..3 {
                 let row = 3 * color + channel;
-                let noise = pixel[channel] / (tempering * sums.count() as f64);
-                log += 0.5 * noise.ln();
                 self.rows.push(row);
                 self.residuals.push(mean[channel] - filter.mean()[row]);
-                self.noises.push(noise + of_mean[channel]);
+                self.noises.push(noise[channel] + of_mean[channel]);
             }
         }
         let covariance = filter.covariance();
@@ -71,6 +59,17 @@ impl JointLikelihood {
     }
 }
 
+/// What all pixels say about their colours' own means, whatever the light is.
+pub(crate) fn log_within(
+    sums: &[PixelSums],
+    params: &PixelParams,
+    noise: &Vector3<f64>,
+    n_pixels: usize,
+) -> LogWeight {
+    let scatter = |sums: &PixelSums| Region::new(sums, log_scatter(sums, noise));
+    params.log_likelihood(n_pixels, sums.iter().map(scatter))
+}
+
 /// $`\sum_c \ln N(c; \bar c, ν + \hat S)`$ about the pixels' own mean: the `noise` and the scatter that they have.
 fn log_scatter(sums: &PixelSums, noise: &Vector3<f64>) -> f64 {
     let Some(mean) = sums.mean() else { return 0.0 };
@@ -78,13 +77,16 @@ fn log_scatter(sums: &PixelSums, noise: &Vector3<f64>) -> f64 {
     let scatter = sums.scatter_about(&mean);
     let covariance = Matrix3::from_diagonal(noise) + scatter / n;
     let Some(factor) = covariance.cholesky() else { return f64::NEG_INFINITY };
-    let log_root: f64 = factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
+    let log_root = factor.l_dirty().diagonal().product().ln();
     n * (-1.5 * std::f64::consts::TAU.ln() - log_root) - 0.5 * factor.inverse().dot(&scatter)
 }
 
+/// Standard deviations whose product is far from what a double holds.
+const FACTORS: usize = 15;
+
 /// $`-\tfrac{1}{2} (\ln |S| + r^T S^{-1} r)`$ of a covariance given as the rows of its lower triangle, by Cholesky in place.
 fn log_normal(covariance: &mut [f64], residuals: &mut [f64]) -> f64 {
-    let mut log = 0.0;
+    let (mut log, mut root) = (0.0, 1.0);
     for i in 0..residuals.len() {
         let (above, row) = covariance.split_at_mut(i * (i + 1) / 2);
         for j in 0..i {
@@ -97,7 +99,13 @@ fn log_normal(covariance: &mut [f64], residuals: &mut [f64]) -> f64 {
         let pivot = (row[i] - square).sqrt();
         row[i] = pivot;
         residuals[i] = (residuals[i] - dot) / pivot;
-        log -= pivot.ln() + 0.5 * residuals[i] * residuals[i];
+        log -= 0.5 * residuals[i] * residuals[i];
+        // A logarithm of a few factors costs as much as one of each; all of them could be too large.
+        root *= pivot;
+        if i % FACTORS == FACTORS - 1 {
+            log -= root.ln();
+            root = 1.0;
+        }
     }
-    log
+    log - root.ln()
 }

@@ -13,7 +13,7 @@ pub use density::SumDensity;
 pub use feature::FeatureView;
 pub(crate) use feature::feature_colors;
 pub use feature_params::FeatureParams;
-pub(crate) use joint::JointLikelihood;
+pub(crate) use joint::{JointLikelihood, log_within};
 pub use params::{PixelLight, PixelParams};
 pub use pixel::PixelView;
 pub(crate) use span::log_likelihood;

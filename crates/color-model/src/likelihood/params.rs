@@ -136,9 +136,10 @@ impl PixelParams {
 
     /// $`\sum_m \max(-f n_m,\; \sum_{c ∈ m} [\ln p(c | m) - \ln p_{bg}(c)] + o_m \ln ε)`$, tempered.
     pub(crate) fn log_likelihood(&self, n_pixels: usize, regions: impl Iterator<Item = Region>) -> f64 {
+        let log_outlier = self.outlier_share.ln();
         let log_ratio = |region: Region| {
             let n = region.count + region.n_outliers;
-            let outliers = self.outlier_share.ln() * region.n_outliers;
+            let outliers = log_outlier * region.n_outliers;
             let log_ratio = region.log_density + region.background + outliers;
             if n > 0.0 { log_ratio.max(-self.floor * n) } else { 0.0 }
         };

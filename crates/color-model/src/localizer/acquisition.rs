@@ -64,7 +64,7 @@ impl Default for AcquisitionParams {
     fn default() -> Self {
         Self {
             n_frames: 16,
-            every: 20,
+            every: 10,
             n_weighed: 8,
             n_kept: 12,
             n_undecided: 4,

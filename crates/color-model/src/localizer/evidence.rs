@@ -3,7 +3,10 @@ use std::sync::Arc;
 use wayfix_color_map::Projector;
 
 use super::{acquisition::Effort, candidate::Candidate, hidden::or_hidden, search::Search};
-use crate::{Frame, PixelSums, likelihood::JointLikelihood};
+use crate::{
+    Frame, PixelSums,
+    likelihood::{JointLikelihood, log_within},
+};
 
 /// What one thread works with.
 pub(super) struct Scratch {
@@ -40,8 +43,9 @@ impl Search<'_> {
         let (n_colors, n_members) = (self.map.colors().len(), self.light.bank.n_members());
         let sums = &candidate.sums[at * n_colors..][..n_colors];
         let hidden = self.params.hidden_views.usual();
+        let within = self.log_within(sums);
         for member in 0..n_members {
-            let value = self.log_likelihood(&mut scratch.joint, sums, member);
+            let value = self.log_likelihood(&mut scratch.joint, sums, within, member);
             // From afar nothing fits, so that all would be hidden: there it counts how badly.
             let value = if effort == Effort::Full { or_hidden(value, hidden) } else { value };
             candidate.by_frame[at * n_members + member] = value;
@@ -87,7 +91,10 @@ impl Search<'_> {
         is_hidden.resize(self.shots.len(), false);
         candidate.total(is_hidden, totals);
         let mut constant = self.shots.len() as f64 * free;
-        let mut best = self.log_likelihood(joint, totals, member) + constant;
+        let says = |joint: &mut JointLikelihood, totals: &[PixelSums]| {
+            self.log_likelihood(joint, totals, self.log_within(totals), member)
+        };
+        let mut best = says(joint, totals) + constant;
         if effort == Effort::Coarse {
             return best;
         }
@@ -96,7 +103,7 @@ impl Search<'_> {
             let mut hide = None;
             for (at, frame) in candidate.frames(totals.len()).enumerate().filter(|(at, _)| !is_hidden[*at]) {
                 totals.iter_mut().zip(frame).for_each(|(total, sums)| total.remove(sums));
-                let value = self.log_likelihood(joint, totals, member) + constant;
+                let value = says(joint, totals) + constant;
                 totals.iter_mut().zip(frame).for_each(|(total, sums)| total.add(sums));
                 if value > best {
                     (best, hide) = (value, Some(at));
@@ -108,11 +115,26 @@ impl Search<'_> {
         }
     }
 
-    fn log_likelihood(&self, joint: &mut JointLikelihood, sums: &[PixelSums], member: usize) -> f64 {
-        let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
+    /// What sums say of one member of the light, of which `within` is what they say whatever the light is.
+    fn log_likelihood(
+        &self,
+        joint: &mut JointLikelihood,
+        sums: &[PixelSums],
+        within: f64,
+        member: usize,
+    ) -> f64 {
         let filter = self.light.bank.member(member);
-        let value = joint.log_likelihood(sums, filter, &self.params.pixels, &self.noise, n_pixels);
+        let value =
+            within + joint.log_innovation(sums, filter, &self.params.pixels, &self.noise, self.n_pixels());
         if value.is_nan() { f64::NEG_INFINITY } else { value }
+    }
+
+    fn log_within(&self, sums: &[PixelSums]) -> f64 {
+        log_within(sums, &self.params.pixels, &self.noise, self.n_pixels())
+    }
+
+    fn n_pixels(&self) -> usize {
+        self.frames.first().map_or(1, Frame::n_pixels)
     }
 }
 

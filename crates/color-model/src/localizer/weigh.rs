@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     Frame, PixelLight, PixelParams,
-    likelihood::{JointLikelihood, gather, log_likelihood},
+    likelihood::{JointLikelihood, gather, log_likelihood, log_within},
 };
 
 /// Particles that one thread weighs with one projector: small enough to share out evenly, large enough to hide the cost of a task.
@@ -62,12 +62,17 @@ impl Weighing<'_> {
             sums,
         )
         .is_ok();
+        let light = particle.conditional();
+        let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
+        let within = match self.pixels.light {
+            PixelLight::Common => log_within(sums, self.pixels, &self.noise, n_pixels),
+            PixelLight::Each => 0.0,
+        };
         for (member, log_likelihood_of) in log_likelihoods.iter_mut().enumerate() {
-            let light = particle.conditional();
-            let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
             let value = match self.pixels.light {
                 PixelLight::Common => {
-                    joint.log_likelihood(sums, light.bank.member(member), self.pixels, &self.noise, n_pixels)
+                    let member = light.bank.member(member);
+                    within + joint.log_innovation(sums, member, self.pixels, &self.noise, n_pixels)
                 }
                 PixelLight::Each => log_likelihood(sums, light.member(member), self.pixels, n_pixels),
             };
