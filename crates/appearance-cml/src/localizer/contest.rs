@@ -5,6 +5,7 @@ use wayfix_estimation_traits::Pose2;
 use super::belief::Belief;
 use super::doubt::Doubt;
 use super::fit::Fit;
+use super::running_share::RunningShare;
 use super::{AppearanceLocalizer, LocalizerParams, Proof};
 use crate::{AppearanceError, Descriptor, OdometryNoise, ReferenceSearch, separation_squared};
 
@@ -17,7 +18,7 @@ use crate::{AppearanceError, Descriptor, OdometryNoise, ReferenceSearch, separat
 pub(super) struct Contest {
     doubt: Doubt,
     /// Share of the last views for which nothing was known where the first is: 1 for who explores.
-    exploring: f64,
+    exploring: RunningShare,
     /// Whether this doubt has seen a break, while the robot was not exploring: a view that is strange to the one before, over no more than a step.
     broken: bool,
     rival: Option<Rival>,
@@ -102,15 +103,13 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             return Ok(Contest::default());
         }
         let fit = self.fit(view, &self.belief);
-        let is_unknown = if fit == Fit::Unknown { 1.0 } else { 0.0 };
-        let exploring =
-            self.contest.exploring + (is_unknown - self.contest.exploring) / params.views.max(1.0);
+        let exploring = self.contest.exploring.after(fit == Fit::Unknown, params.views);
         let is_break = self.is_break(view);
         let doubt = if is_break { Doubt::great(params) } else { self.contest.doubt.after(fit, params) };
         if !doubt.is_great() {
             return Ok(Contest { doubt, exploring, ..Contest::default() });
         }
-        let broken = self.contest.broken || is_break && self.contest.exploring <= MOST_EXPLORING;
+        let broken = self.contest.broken || is_break && self.contest.exploring.0 <= MOST_EXPLORING;
         let nowhere = Rival { belief: Belief::nowhere(), record: VecDeque::new() };
         let before = self.contest.rival.as_ref().filter(|_| !is_break).unwrap_or(&nowhere);
         let (belief, _) = self.seen(&before.belief, Some(view), &[])?;

@@ -1,34 +1,33 @@
 use super::RelocationParams;
 use super::fit::Fit;
+use super::running_share::RunningShare;
 
 /// Whether the robot recognizes where it thinks it is.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct Doubt {
-    /// Average over the last views: 1 for those not recognized where they should have been.
-    missed: f64,
+    /// Share of the last views that were not recognized where they should have been.
+    missed: RunningShare,
     is_great: bool,
 }
 
 impl Doubt {
     /// As great as it takes.
     pub(super) fn great(params: &RelocationParams) -> Self {
-        Self { missed: params.doubt, is_great: true }
+        Self { missed: RunningShare(params.doubt), is_great: true }
     }
 
     pub(super) fn is_great(self) -> bool {
         self.is_great
     }
 
-    /// It begins when the average passes the share of the parameters, and ends when it falls below half of that.
+    /// It begins when the share passes that of the parameters, and ends when it falls below half of that.
     pub(super) fn after(self, fit: Fit, params: &RelocationParams) -> Self {
-        let miss = match fit {
-            Fit::Unknown => return self,
-            Fit::Missed => 1.0,
-            Fit::Recognized => 0.0,
-        };
-        let missed = self.missed + (miss - self.missed) / params.views.max(1.0);
+        if fit == Fit::Unknown {
+            return self;
+        }
+        let missed = self.missed.after(fit == Fit::Missed, params.views);
         let least = if self.is_great { 0.5 * params.doubt } else { params.doubt };
-        Self { missed, is_great: missed >= least }
+        Self { missed, is_great: missed.0 >= least }
     }
 }
 

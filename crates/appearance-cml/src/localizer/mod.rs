@@ -13,6 +13,7 @@ mod observe;
 mod outcome;
 mod params;
 mod relocation;
+mod running_share;
 mod scale_learner;
 mod smooth;
 mod start;

@@ -51,6 +51,7 @@ impl Margin {
 
     /// Leaves, in every colour, the pixels with nothing else within `reach` pixels. What is beside the image counts as more of the same.
     pub(super) fn erode(&mut self, reach: usize) {
+        let reach = reach.min(self.n_columns.max(self.n_rows));
         for Plane { words, rows } in self.planes.iter_mut().filter(|plane| !plane.rows.is_empty()) {
             // With a row of zeros around it, if the image has one: they eat into it.
             let rows = rows.start.saturating_sub(1)..(rows.end + 1).min(self.n_rows);

@@ -8,7 +8,8 @@ use crate::{LightingFilter, PixelSums};
 ///
 /// $`\ln \int \prod_m \prod_{c ∈ m} N(c; θ_m + e_m, ν)^β\, N(e; 0, R)\, N(θ; μ, Σ)\, dθ\, de`$, with $`β`$ the tempering and $`R`$ the variance of an image's
 /// means. Eq. 9 gives every pixel a light of its own, so that under a light hardly known the right pose pays for that ignorance pixel by
-/// pixel; here it pays once. In closed form, from the same sums: the scatter of each colour about its own mean, and the innovation of all means.
+/// pixel; here it pays once. In closed form, from the same sums: [`log_within`], the scatter of each colour about its own mean, and
+/// [`log_innovation`](Self::log_innovation) of all means.
 pub(crate) struct JointLikelihood {
     /// Lower triangle of the means' covariance, row by row, and their residuals.
     covariance: Vec<f64>,
@@ -81,7 +82,7 @@ fn log_scatter(sums: &PixelSums, noise: &Vector3<f64>) -> f64 {
     n * (-1.5 * std::f64::consts::TAU.ln() - log_root) - 0.5 * factor.inverse().dot(&scatter)
 }
 
-/// Standard deviations whose product is far from what a double holds.
+/// So many standard deviations have a product that a double holds.
 const FACTORS: usize = 15;
 
 /// $`-\tfrac{1}{2} (\ln |S| + r^T S^{-1} r)`$ of a covariance given as the rows of its lower triangle, by Cholesky in place.
@@ -100,7 +101,7 @@ fn log_normal(covariance: &mut [f64], residuals: &mut [f64]) -> f64 {
         row[i] = pivot;
         residuals[i] = (residuals[i] - dot) / pivot;
         log -= 0.5 * residuals[i] * residuals[i];
-        // A logarithm of a few factors costs as much as one of each; all of them could be too large.
+        // One logarithm for several: all of them together could be too large.
         root *= pivot;
         if i % FACTORS == FACTORS - 1 {
             log -= root.ln();
