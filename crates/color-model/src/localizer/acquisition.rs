@@ -20,7 +20,8 @@ pub struct AcquisitionParams {
     /// Frames that are kept. At the start the robot is looked for after 1, 2, 4, ... frames, up to this number.
     pub n_frames: usize,
     /// Frames until the robot is looked for again even if nothing is doubted: a wrong place may explain what is seen quite well, and only
-    /// another that does so better gives it away. Half as many while the fit leaves doubts. 0 for never.
+    /// another that does so better gives it away. Half as many while the fit leaves doubts; twice and four times as many when searches in a row
+    /// confirmed the place and the fit is as good as usual. 0 for never.
     pub every: usize,
     /// Most of them that trajectories are weighed by, evenly spread.
     pub n_weighed: usize,

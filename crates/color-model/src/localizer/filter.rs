@@ -7,9 +7,10 @@ use wayfix_particle::{RaoBlackwell, Weights};
 
 use super::{
     Fix, FrameOutcome, LocalizerParams, OdometryStep, PoseEstimate, Start,
-    hypothesis::{Hypothesis, share_of_first, shortlist},
+    hypothesis::{Hypothesis, Judged, share_of_first, shortlist},
     light::Light,
     particle::CameraLocation,
+    routine::Routine,
     shots::{Shot, Shots, Walked},
     start::Area,
     vigilance::Vigilance,
@@ -41,10 +42,7 @@ pub struct ColorLocalizer {
     pub(super) shots: Shots,
     pub(super) vigilance: Vigilance,
     pub(super) n_updates: usize,
-    /// Searches since the place was sure and the light with it.
-    pub(super) n_in_vain: usize,
-    /// Frames since the robot was looked for.
-    pub(super) n_since_search: usize,
+    pub(super) routine: Routine,
 }
 
 impl ColorLocalizer {
@@ -94,8 +92,7 @@ impl ColorLocalizer {
             shots: Shots::default(),
             vigilance: Vigilance::default(),
             n_updates: 0,
-            n_in_vain: 1,
-            n_since_search: 0,
+            routine: Routine::default(),
         })
     }
 
@@ -158,15 +155,16 @@ impl ColorLocalizer {
         let n_frames = self.params.acquisition.n_frames;
         let is_start = self.n_updates < n_frames && (self.n_updates + 1).is_power_of_two();
         let is_search = self.vigilance.is_search_due(&self.params) || self.is_routine();
-        let (judged, n_since_search) = if is_start {
-            (self.acquire(image, mount, &shots, rng)?, 0)
+        let judged = if is_start {
+            self.acquire(image, mount, &shots, rng)?
         } else if is_search {
-            (self.reconsider(image, mount, &shots, rng)?, 0)
+            self.reconsider(image, mount, &shots, rng)?
         } else {
-            (self.look(self.hypotheses.clone(), image, mount, rng)?, self.n_since_search + 1)
+            self.look(self.hypotheses.clone(), image, mount, rng)?
         };
+        let routine = self.routine.next(is_start || is_search);
         let acquisition = &self.params.acquisition;
-        let most = acquisition.n_kept.saturating_sub(n_since_search).max(acquisition.n_undecided);
+        let most = acquisition.n_kept.saturating_sub(routine.n_since()).max(acquisition.n_undecided);
         let judged = shortlist(judged, most, acquisition.hopeless);
         let best = judged.first().ok_or(ColorModelError::NoPose)?;
         let mut vigilance = self.vigilance;
@@ -190,30 +188,32 @@ impl ColorLocalizer {
         let hypotheses =
             judged.iter().map(|one| self.renewed(one, judged.len(), rng)).collect::<Result<Vec<_>, _>>()?;
         outcome.n_particles = hypotheses.iter().map(|hypothesis| hypothesis.particles.len()).sum();
-        let is_confirmed = hypotheses.len() == 1 && vigilance.is_sound(&self.params);
+        let is_sure = vigilance.is_sound(&self.params) && self.is_decided(&judged);
         if let Some(light) = hypotheses.first().and_then(Hypothesis::light)
-            && is_confirmed
-            && (is_search || self.n_in_vain > 0)
+            && is_sure
+            && (is_search || routine.n_in_vain() > 0)
         {
-            (self.trusted, self.n_in_vain) = (Arc::clone(light), 0);
-        } else if is_search {
-            self.n_in_vain += 1;
+            self.trusted = Arc::clone(light);
         }
+        self.routine = routine.after(is_search, is_sure, vigilance.is_as_usual(&self.params));
         (self.hypotheses, self.shots, self.vigilance) = (hypotheses, shots, vigilance);
-        (self.walked, self.n_updates, self.n_since_search) =
-            (Walked::default(), self.n_updates + 1, n_since_search);
+        (self.walked, self.n_updates) = (Walked::default(), self.n_updates + 1);
         Ok(outcome)
     }
 
     /// Whether it is time to look for the robot again although nothing is doubted.
     fn is_routine(&self) -> bool {
         let AcquisitionParams { n_frames, every, .. } = self.params.acquisition;
-        let is_doubted = self.n_in_vain > 1 || !self.vigilance.is_sound(&self.params);
-        let every = if is_doubted { every.div_ceil(2) } else { every };
-        every > 0
-            && self.n_since_search + 1 >= every
+        self.routine.is_due(every, self.vigilance.is_sound(&self.params))
             && self.n_updates > n_frames
             && !self.vigilance.is_undecided(&self.params)
+    }
+
+    /// Whether one place is left, or those beside it are as far behind as a place has to be that nothing speaks for.
+    fn is_decided(&self, judged: &[Judged]) -> bool {
+        let [best, second, ..] = judged else { return true };
+        let behind = best.log_evidence - second.log_evidence;
+        behind >= self.params.acquisition.elsewhere && self.n_updates >= self.params.acquisition.n_frames
     }
 
     fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {

@@ -160,7 +160,8 @@ impl ColorLocalizer {
         let elsewhere = self.params.acquisition.elsewhere;
         judged.extend(self.newcomers(found, lead, elsewhere));
         // The light stays as it was when somebody lifts the robot; but it may have been wrong as well.
-        let is_light_doubted = self.n_in_vain % SEARCHES_TO_DOUBT_LIGHT == SEARCHES_TO_DOUBT_LIGHT - 1;
+        let is_light_doubted =
+            self.routine.n_in_vain() % SEARCHES_TO_DOUBT_LIGHT == SEARCHES_TO_DOUBT_LIGHT - 1;
         if is_light_doubted && !Arc::ptr_eq(&self.trusted, &self.prior) {
             let found = self.search(&shots, &Start::Anywhere, &self.prior, rng)?;
             judged.extend(self.newcomers(found, lead, OTHER_LIGHT * elsewhere));

@@ -19,6 +19,7 @@ mod params;
 mod particle;
 mod relight;
 mod renewal;
+mod routine;
 mod search;
 mod seen;
 mod shots;

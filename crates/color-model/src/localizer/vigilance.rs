@@ -18,6 +18,12 @@ const FALLEN: f64 = 0.7;
 /// Fit, as a multiple of the doubtful one, from which on nothing is doubted.
 const SOUND: f64 = 2.0;
 
+/// Share of its usual value from which on a fit is as usual.
+const USUAL: f64 = 0.9;
+
+/// Fit, as a multiple of the doubtful one, from which on it is good.
+const WELL: f64 = 3.0;
+
 impl Vigilance {
     pub(crate) fn observe(&mut self, fit: f64, params: &LocalizerParams) {
         let fit = fit.clamp(-1.0, 1.0);
@@ -57,6 +63,12 @@ impl Vigilance {
         self.n_doubtful == 0 && self.recent() >= SOUND * params.doubtful_fit
     }
 
+    /// Whether what is seen fits as well as it usually does, and well.
+    pub(crate) fn is_as_usual(&self, params: &LocalizerParams) -> bool {
+        let is_usual = self.averages.is_some_and(|(slow, fast)| fast >= USUAL * slow);
+        is_usual && self.recent() >= WELL * params.doubtful_fit
+    }
+
     /// How far the doubt is from leading to a search, 0 to 1.
     pub(crate) fn suspicion(&self, params: &LocalizerParams) -> f64 {
         (self.n_doubtful as f64 / patience(params) as f64).min(1.0)
@@ -90,5 +102,21 @@ mod tests {
         assert_eq!(searches, [(9, 9), (17, 17), (33, 33), (65, 65)]);
         (0..30).for_each(|_| vigilance.observe(0.4, &params));
         assert!(vigilance.is_sound(&params) && vigilance.suspicion(&params) == 0.0);
+    }
+
+    #[test]
+    fn a_fit_that_leaves_no_doubt_may_still_be_worse_than_usual() {
+        let params = LocalizerParams::default();
+        let after = |fits: [f64; 2]| {
+            let mut vigilance = Vigilance::default();
+            (0..100).for_each(|_| vigilance.observe(fits[0], &params));
+            (0..10).for_each(|_| vigilance.observe(fits[1], &params));
+            (vigilance.is_sound(&params), vigilance.is_as_usual(&params))
+        };
+        assert_eq!(after([0.4, 0.4]), (true, true));
+        assert_eq!(after([0.5, 0.4]), (true, false));
+        assert_eq!(after([0.4, 0.5]), (true, true));
+        // As always, and never good.
+        assert_eq!(after([0.25, 0.25]), (true, false));
     }
 }
