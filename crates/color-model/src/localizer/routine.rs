@@ -1,4 +1,4 @@
-/// The searches that come although nothing is doubted, and what became of them.
+/// When a search comes although no doubt calls for one, by what became of those before.
 ///
 /// A wrong place may explain what is seen quite well, so that only another gives it away: the younger a place, the more often it is looked at. Searches
 /// that confirm it one after the other, while everything is seen as well as usual, become rarer; those in vain come more often.
