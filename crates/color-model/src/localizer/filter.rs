@@ -7,7 +7,7 @@ use wayfix_particle::{RaoBlackwell, Weights};
 
 use super::{
     Fix, FrameOutcome, LocalizerParams, OdometryStep, PoseEstimate, Start,
-    hypothesis::{Hypothesis, Judged, share_of_first, shortlist},
+    hypothesis::{Hypothesis, Judged, lead, share_of_first, shortlist},
     light::Light,
     particle::CameraLocation,
     routine::Routine,
@@ -211,9 +211,8 @@ impl ColorLocalizer {
 
     /// Whether one place is left, or those beside it are as far behind as a place has to be that nothing speaks for.
     fn is_decided(&self, judged: &[Judged]) -> bool {
-        let [best, second, ..] = judged else { return true };
-        let behind = best.log_evidence - second.log_evidence;
-        behind >= self.params.acquisition.elsewhere && self.n_updates >= self.params.acquisition.n_frames
+        let AcquisitionParams { elsewhere, n_frames, .. } = self.params.acquisition;
+        judged.len() == 1 || (lead(judged) >= elsewhere && self.n_updates >= n_frames)
     }
 
     fn check(&self, image: &YuvImage, mount: &Pose3<f64>) -> Result<(), ColorModelError> {

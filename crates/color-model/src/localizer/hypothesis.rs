@@ -95,6 +95,12 @@ pub(crate) fn share_of_first(judged: &[Judged]) -> f64 {
     1.0 / judged.iter().map(|one| (one.log_evidence - first.log_evidence).exp()).sum::<f64>()
 }
 
+/// By how many nats the first of several hypotheses is ahead of the second; infinitely many when it is the only one.
+pub(crate) fn lead(judged: &[Judged]) -> f64 {
+    let [first, second, ..] = judged else { return f64::INFINITY };
+    first.log_evidence - second.log_evidence
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::{DMatrix, DVector};
@@ -122,15 +128,44 @@ mod tests {
         (0..n).map(|_| RaoBlackwell::from_shared(location, Arc::clone(light))).collect()
     }
 
+    /// What a look at `particles` gives while nothing tells them apart.
+    fn seen(particles: Vec<ColorParticle>, light: &Light, rng: &mut ChaCha8Rng) -> Seen {
+        let (n, views) = (particles.len(), Views::new(particles.len(), &light.bank));
+        let banks = particles.iter().map(|particle| &particle.conditional().bank);
+        let weighed = Weighed::new(banks, &equal(n), &views, 0.0, 0.2, rng).unwrap();
+        Seen { weighed, views, particles, fit: 0.3 }
+    }
+
+    fn equal(n: usize) -> Weights {
+        Weights::from_linear(vec![1.0; n]).unwrap()
+    }
+
+    fn judged(x: f64, log_evidence: f64) -> Judged {
+        let light = light(90.0);
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let seen = seen(particles(2, x, &light), &light, &mut rng);
+        let estimate = dominant_cluster(&[(Pose2::new(x, 0.0, 0.0), 1.0)]).unwrap();
+        Judged { seen, estimate, log_evidence, hidden: 0.0 }
+    }
+
+    #[test]
+    fn the_lead_is_over_the_next_best_place_that_is_left() {
+        let apart = |hopeless| shortlist(vec![judged(1.0, -50.0), judged(0.0, -9.0)], 4, hopeless);
+        assert_eq!(lead(&apart(100.0)), 41.0);
+        assert_eq!(lead(&apart(40.0)), f64::INFINITY, "the other is hopeless");
+        assert_eq!(
+            lead(&shortlist(vec![judged(0.1, -50.0), judged(0.0, -9.0)], 4, 100.0)),
+            f64::INFINITY,
+            "one place"
+        );
+        assert!((share_of_first(&apart(100.0)) - 1.0 / (1.0 + (-41.0_f64).exp())).abs() < 1e-15);
+    }
+
     #[test]
     fn a_refined_place_takes_half_of_the_weight_and_the_light_that_is_known() {
         let (learned, of_search) = (light(90.0), light(140.0));
         let mut rng = ChaCha8Rng::seed_from_u64(1);
-        let equal = |n: usize| Weights::from_linear(vec![1.0; n]).unwrap();
-        let (found, views) = (particles(2, 0.2, &of_search), Views::new(2, &of_search.bank));
-        let banks = found.iter().map(|particle| &particle.conditional().bank);
-        let weighed = Weighed::new(banks, &equal(2), &views, 0.0, 0.2, &mut rng).unwrap();
-        let refined = Seen { weighed, views, particles: found, fit: 0.3 };
+        let refined = seen(particles(2, 0.2, &of_search), &of_search, &mut rng);
 
         let mut drifted = Hypothesis {
             particles: particles(4, 0.0, &learned),
