@@ -112,6 +112,11 @@ fn trial(
 }
 
 impl Trial {
+    /// Whether the last frame is near the truth.
+    pub fn is_near_at_end(&self) -> bool {
+        self.errors.last().is_some_and(|error| *error <= NEAR_M)
+    }
+
     /// Whether the last frames are all near the truth.
     pub fn succeeded(&self) -> bool {
         let from = self.errors.len().saturating_sub(LAST_FRAMES);
@@ -127,10 +132,11 @@ impl Convergence {
     pub fn report(&self) -> Result<Run, PlotError> {
         let n = self.trials.len();
         let n_succeeded = self.trials.iter().filter(|trial| trial.succeeded()).count();
+        let n_near_at_end = self.trials.iter().filter(|trial| trial.is_near_at_end()).count();
         let n_deceived = self.trials.iter().filter(|trial| trial.trusted && !trial.succeeded()).count();
         let (low, high) = proportion_interval(n_succeeded as u64, n as u64);
         let mut notes = vec![format!(
-            "{n} halls of their own, every other one dark; success: within {NEAR_M} m in each of the last {LAST_FRAMES} of {FRAMES} frames."
+            "{n} halls of their own, every other one dark; success: within {NEAR_M} m in each of the last {LAST_FRAMES} of {FRAMES} frames; near at the end: in the last one."
         )];
         let failed: Vec<String> =
             self.trials.iter().filter(|t| !t.succeeded()).map(|t| t.seed.to_string()).collect();
@@ -143,6 +149,7 @@ impl Convergence {
                 Metric::new("success_share", n_succeeded as f64 / n.max(1) as f64, ""),
                 Metric::new("success_share_low95", low, ""),
                 Metric::new("success_share_high95", high, ""),
+                Metric::new("near_at_end_share", n_near_at_end as f64 / n.max(1) as f64, ""),
                 Metric::new("n_confident_failures", n_deceived as f64, ""),
             ],
             figures: vec![self.plot().draw()?],

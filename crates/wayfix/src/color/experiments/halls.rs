@@ -37,12 +37,15 @@ pub fn other_halls(
         .collect::<Result<_>>()?;
     let value = |run: &Run, name: &str| run.metrics.iter().find(|m| m.name == name).map(|m| m.value);
     let mut metrics = vec![Metric::new("n_halls", seeds.len() as f64, "")];
-    let names = ["classification_rate", "position_mean_m", "heading_mean_deg", "odometry_position_mean_m"];
-    for (name, unit) in names.into_iter().zip(["", "m", "°", "m"]) {
-        let values: Vec<f64> = runs.iter().filter_map(|run| value(run, name)).collect();
+    let rates = map.colors().iter().map(|color| (format!("rate_{color}"), ""));
+    let errors = [("position_mean_m", "m"), ("heading_mean_deg", "°"), ("odometry_position_mean_m", "m")];
+    let overall = [("classification_rate", "")];
+    let named = overall.into_iter().chain(errors).map(|(name, unit)| (name.to_owned(), unit));
+    for (name, unit) in named.chain(rates) {
+        let values: Vec<f64> = runs.iter().filter_map(|run| value(run, &name)).collect();
         if let Some(mean) = MeanInterval::of(&values) {
-            metrics.push(Metric::new(name, mean.mean, unit));
-            metrics.push(Metric::new(format!("{name}_ci95"), mean.half_width, unit));
+            let half_width = Metric::new(format!("{name}_ci95"), mean.half_width, unit);
+            metrics.extend([Metric::new(name, mean.mean, unit), half_width]);
         }
     }
     let worst = runs.iter().filter_map(|run| value(run, "position_mean_m")).fold(0.0, f64::max);
