@@ -83,19 +83,26 @@ impl Region {
 }
 
 impl PixelParams {
-    /// The densities of all colours of one light, spread by `uneven_brightness`: what tells the pixels of an image apart. Shade moves Y over the whole
-    /// field, and chroma, which it moves little, is what colours differ in.
+    /// The densities of all colours of one light, each spread in the direction in which shade moves it, by $`σ^2 s_m s_m^\top`$ with
+    /// $`s_m = (Y_m,\; U_m - 128,\; V_m - 128)`$ and $`σ`$ = `uneven_brightness`: what tells the pixels of an image apart. Half the light halves red, green
+    /// and blue alike, with gamma or without, and so it moves a colour towards black, which is no other colour's chroma.
     ///
     /// ```
     /// use nalgebra::{Matrix3, Vector3};
     /// use wayfix_color_model::{ColorDensity, PixelParams};
-    /// let white = ColorDensity { mean: Vector3::new(100.0, 130.0, 125.0), covariance: Matrix3::identity() * 25.0 };
-    /// let [shaded] = PixelParams::default().shaded([white])[..] else { panic!("as many as there were") };
-    /// assert_eq!(shaded.covariance[(0, 0)], 25.0 + 12.0 * 12.0); // 0.12 of a mean Y of 100
-    /// assert_eq!(shaded.covariance[(1, 1)], 25.0);
+    /// let yellow = ColorDensity { mean: Vector3::new(100.0, 78.0, 128.0), covariance: Matrix3::identity() * 25.0 };
+    /// let [shaded] = PixelParams::default().shaded([yellow])[..] else { panic!("as many as there were") };
+    /// assert!((shaded.covariance[(0, 0)] - (25.0 + 12.0 * 12.0)).abs() < 1e-9); // 0.12 of a Y of 100
+    /// assert!((shaded.covariance[(0, 1)] - 12.0 * -6.0).abs() < 1e-9); // darker is less yellow
+    /// assert_eq!(shaded.covariance[(2, 2)], 25.0);
     /// ```
     pub fn shaded(&self, colors: impl IntoIterator<Item = ColorDensity>) -> Vec<ColorDensity> {
-        Self { uneven_chroma: 0.0, ..*self }.uneven(colors)
+        let shaded = |mut color: ColorDensity| {
+            let from_black = (color.mean - Vector3::new(0.0, 128.0, 128.0)) * self.uneven_brightness;
+            color.covariance += from_black * from_black.transpose();
+            color
+        };
+        colors.into_iter().map(shaded).collect()
     }
 
     /// The densities of all colours of one light over a whole image, with the variances of `uneven_…`: what a pose's pixels are weighed by.
