@@ -84,8 +84,8 @@ impl Region {
 
 impl PixelParams {
     /// The densities of all colours of one light, each spread in the direction in which shade moves it, by $`σ^2 s_m s_m^\top`$ with
-    /// $`s_m = (Y_m,\; U_m - 128,\; V_m - 128)`$ and $`σ`$ = `uneven_brightness`: what tells the pixels of an image apart. Half the light halves red, green
-    /// and blue alike, with gamma or without, and so it moves a colour towards black, which is no other colour's chroma.
+    /// $`s_m = (Y_m,\; U_m - 128,\; V_m - 128)`$ and $`σ`$ = `uneven_brightness`: what tells the pixels of an image apart. Less light scales red, green
+    /// and blue by one factor, with a power for gamma too, which moves a colour towards black. Black is taken to be Y = 0, as in full-range YUV.
     ///
     /// ```
     /// use nalgebra::{Matrix3, Vector3};
