@@ -11,18 +11,21 @@ pub(super) struct Belief {
     /// The heaviest component first; `None` when the robot may be anywhere.
     pub(super) state: Option<Mixture<Pose2<f64>>>,
     pub(super) anywhere: Anywhere,
+    /// Whether it began from nothing in a robot that knows to be lost, and so looks for places that look less alike as well.
+    pub(super) is_of_lost: bool,
 }
 
 impl Belief {
     /// Nothing is known.
-    pub(super) fn nowhere() -> Self {
-        Self { state: None, anywhere: Anywhere::everything() }
+    pub(super) fn nowhere(is_of_lost: bool) -> Self {
+        Self { state: None, anywhere: Anywhere::everything(), is_of_lost }
     }
 
     pub(super) fn of_start(start: Start) -> Result<Self, AppearanceError> {
         let state = start.into_state()?;
-        let anywhere = if state.is_some() { Anywhere::nothing() } else { Anywhere::everything() };
-        Ok(Self { state, anywhere })
+        let is_of_lost = state.is_none();
+        let anywhere = if is_of_lost { Anywhere::everything() } else { Anywhere::nothing() };
+        Ok(Self { state, anywhere, is_of_lost })
     }
 
     pub(super) fn components(&self) -> &[Gaussian<Pose2<f64>>] {
@@ -51,6 +54,6 @@ impl Belief {
             propagate(component, increment, noise).map(|moved| (*log_weight, moved))
         });
         let moved: Result<Vec<_>, AppearanceError> = moved.collect();
-        Ok(Self { state: Some(Mixture::from_log_weights(moved?)?), anywhere: self.anywhere })
+        Ok(Self { state: Some(Mixture::from_log_weights(moved?)?), ..*self })
     }
 }

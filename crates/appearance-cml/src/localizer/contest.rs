@@ -1,12 +1,11 @@
-use std::collections::VecDeque;
-
 use wayfix_estimation_traits::Pose2;
 
 use super::belief::Belief;
 use super::doubt::Doubt;
 use super::fit::Fit;
+use super::rival::{Rival, Round};
 use super::running_share::RunningShare;
-use super::{AppearanceLocalizer, LocalizerParams, Proof};
+use super::{AppearanceLocalizer, LocalizerParams, Proof, RelocationParams};
 use crate::{AppearanceError, Descriptor, OdometryNoise, ReferenceSearch, separation_squared};
 
 /// Where the robot is thought to be against where else it may be: a second belief, begun from nothing when the first misses what it should see.
@@ -19,32 +18,28 @@ pub(super) struct Contest {
     doubt: Doubt,
     /// Share of the last views for which nothing was known where the first is: 1 for who explores.
     exploring: RunningShare,
-    /// Whether this doubt has seen a break, while the robot was not exploring: a view that is strange to the one before, over no more than a step.
-    broken: bool,
+    /// The last one that this doubt has seen.
+    last_break: Option<Break>,
     rival: Option<Rival>,
 }
 
-#[derive(Clone, Debug)]
-struct Rival {
-    belief: Belief,
-    /// Since it has been at one place that odometry carries on.
-    record: VecDeque<Round>,
-}
-
-/// One view.
+/// A view that is strange to the one before, over no more than a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Round {
-    /// Since the view before, m.
+struct Break {
+    /// Way since then, m.
     way: f64,
-    first: Fit,
-    rival: Fit,
+    /// Whether nothing was known before it.
+    exploring: bool,
 }
 
 /// Steps between two views up to which they look alike, unless there is a break.
 const MOST_STEPS: f64 = 1.5;
 
-/// Who explores more than this is not thought to be carried: there is nothing to recognize there, so that any aisle that looks alike would win.
+/// Who explores more than this may not have been carried: there is nothing to recognize there, so that any aisle that looks alike would win.
 const MOST_EXPLORING: f64 = 0.9;
+
+/// Way after a break within which whoever was put where something is known has recognized it, m: a few views.
+const AT_ONCE_M: f64 = 1.0;
 
 impl Contest {
     /// After the robot has moved.
@@ -54,44 +49,39 @@ impl Contest {
         noise: &OdometryNoise,
     ) -> Result<Self, AppearanceError> {
         let Some(rival) = &self.rival else { return Ok(self.clone()) };
-        let rival = Rival { belief: rival.belief.moved(increment, noise)?, record: rival.record.clone() };
+        let rival = rival.with(rival.belief.moved(increment, noise)?);
         Ok(Self { rival: Some(rival), ..*self })
     }
 
     /// Whether the rival recognizes more than the first does: until that is decided nothing should be learned.
     pub(super) fn is_open(&self) -> bool {
-        let Some(rival) = &self.rival else { return false };
-        let n = |side: fn(&Round) -> Fit| {
-            rival.record.iter().filter(|round| side(round) == Fit::Recognized).count()
-        };
-        n(|round| round.rival) > n(|round| round.first)
+        self.rival.as_ref().is_some_and(Rival::leads)
+    }
+
+    fn recent_break(&self, params: &RelocationParams) -> Option<Break> {
+        self.last_break.filter(|last| last.way <= params.break_way)
+    }
+
+    /// What a rival has to show that has been at one place for this way.
+    fn proof(&self, rival_way: f64, params: &RelocationParams) -> Proof {
+        match self.recent_break(params) {
+            None => params.strayed,
+            Some(last) if last.exploring || last.way - rival_way > AT_ONCE_M => params.carried_unknown,
+            Some(_) => params.carried,
+        }
     }
 
     /// The belief that is believed from now on: the rival's, when it has won.
     pub(super) fn decided(self, first: Belief, params: &LocalizerParams) -> (Self, Belief) {
-        let proof = params.relocation.proof(self.broken);
-        match self.rival {
-            Some(rival)
-                if rival.belief.one_place(&params.unimodal).is_some()
-                    && rival.has_won(proof, params.relocation.by_chance) =>
-            {
-                (Self::default(), rival.belief)
-            }
+        let has_won = |rival: &Rival| {
+            let proof = self.proof(rival.way, &params.relocation);
+            rival.belief.one_place(&params.unimodal).is_some()
+                && rival.has_won(&proof, params.relocation.by_chance)
+        };
+        match &self.rival {
+            Some(rival) if has_won(rival) => (Self::default(), rival.belief.clone()),
             _ => (self, first),
         }
-    }
-}
-
-impl Rival {
-    fn has_won(&self, proof: &Proof, by_chance: f64) -> bool {
-        let way: f64 = self.record.iter().map(|round| round.way).sum();
-        let share = |side: fn(&Round) -> Fit| {
-            let n = self.record.iter().filter(|round| side(round) == Fit::Recognized).count();
-            n as f64 / self.record.len().max(1) as f64
-        };
-        way >= proof.way
-            && share(|round| round.rival) >= proof.recognized
-            && share(|round| round.first) <= by_chance
     }
 }
 
@@ -109,27 +99,26 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         if !doubt.is_great() {
             return Ok(Contest { doubt, exploring, ..Contest::default() });
         }
-        let broken = self.contest.broken || is_break && self.contest.exploring.0 <= MOST_EXPLORING;
-        let nowhere = Rival { belief: Belief::nowhere(), record: VecDeque::new() };
+        let way = self.motion.increment.translation.norm();
+        let last_break = if is_break {
+            Some(Break { way: 0.0, exploring: self.contest.exploring.0 > MOST_EXPLORING })
+        } else {
+            self.contest.last_break.map(|last| Break { way: last.way + way, ..last })
+        };
+        let contest = Contest { doubt, exploring, last_break, rival: None };
+        let nowhere = Rival::nowhere(contest.recent_break(params).is_some());
         let before = self.contest.rival.as_ref().filter(|_| !is_break).unwrap_or(&nowhere);
         let (belief, _) = self.seen(&before.belief, Some(view), &[])?;
-        let mut record = before.record.clone();
-        let round = Round {
-            way: self.motion.increment.translation.norm(),
-            first: fit,
-            rival: self.fit(view, &before.belief),
-        };
-        record.push_back(round);
-        if !self.goes_on(&before.belief, &belief)? {
-            record.clear();
+        let goes_on = self.goes_on(&before.belief, &belief)?;
+        let round = Round { way, first: fit, rival: self.fit(view, &before.belief) };
+        let mut rival = before.with(belief);
+        if goes_on {
+            rival.goes_on(round);
+        } else {
+            rival.is_elsewhere();
         }
-        let least = params.proof(broken).way;
-        let mut way: f64 = record.iter().map(|round| round.way).sum();
-        while let Some(oldest) = record.front().filter(|oldest| way - oldest.way >= least) {
-            way -= oldest.way;
-            record.pop_front();
-        }
-        Ok(Contest { doubt, exploring, broken, rival: Some(Rival { belief, record }) })
+        rival.shorten(contest.proof(rival.way, params).way);
+        Ok(Contest { rival: Some(rival), ..contest })
     }
 
     /// Whether the view is as strange to the one before as one of a far place, although the wheels say that it is a step away. Who is carried sees it, or
@@ -145,5 +134,24 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     fn goes_on(&self, before: &Belief, after: &Belief) -> Result<bool, AppearanceError> {
         let (Some(before), Some(after)) = (before.heaviest(), after.heaviest()) else { return Ok(false) };
         Ok(separation_squared(before, after)? <= self.params.fusion.gate)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_was_carried_where_it_knows_its_way_at_once_has_least_to_show() {
+        let params = RelocationParams::default();
+        let proof = |exploring: bool, way: f64, rival_way: f64| {
+            let contest = Contest { last_break: Some(Break { way, exploring }), ..Contest::default() };
+            contest.proof(rival_way, &params)
+        };
+        assert_eq!(proof(false, 5.5, 5.0), params.carried);
+        assert_eq!(proof(false, 7.0, 5.0), params.carried_unknown);
+        assert_eq!(proof(true, 5.5, 5.0), params.carried_unknown);
+        assert_eq!(proof(false, params.break_way + 0.1, 20.0), params.strayed);
+        assert_eq!(Contest::default().proof(5.0, &params), params.strayed);
     }
 }

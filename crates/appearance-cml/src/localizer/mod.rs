@@ -13,6 +13,7 @@ mod observe;
 mod outcome;
 mod params;
 mod relocation;
+mod rival;
 mod running_share;
 mod scale_learner;
 mod smooth;

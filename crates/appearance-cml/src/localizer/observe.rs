@@ -1,9 +1,9 @@
 use super::AppearanceLocalizer;
-use super::Observation;
 use super::belief::Belief;
+use super::{LocalizerParams, Observation};
 use crate::{
-    AppearanceError, Descriptor, FusionParams, PoseHypothesis, PoseSource, ReferenceSearch, Sighting, fuse,
-    interpolate, simplify, superpose,
+    AppearanceError, Descriptor, FusionParams, MapParams, PoseHypothesis, PoseSource, ReferenceSearch,
+    Sighting, fuse, interpolate, simplify, superpose,
 };
 
 /// Similarity of a view to a reference of the place where the robot is thought to be, from which on nothing else is looked for.
@@ -48,7 +48,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         } else {
             Some(PoseHypothesis::into_mixture(simplify(fused, &self.params.simplify)?)?)
         };
-        Ok((Belief { state, anywhere }, n_sightings))
+        Ok((Belief { state, anywhere, is_of_lost: belief.is_of_lost }, n_sightings))
     }
 
     /// $`p(x_t | y_t)`$, and of how many places it is made.
@@ -60,7 +60,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
                 Ok((superpose(&sightings), sightings.len()))
             }
             Observation::Interpolation => {
-                let limit = self.map.match_limit(&params.map);
+                let limit = self.match_limit(belief);
                 let components = belief.components();
                 let mut sightings = self.apart_from_trail(self.map.sightings_near(view, components, limit));
                 if !self.is_supported_by(belief, &sightings) {
@@ -70,6 +70,14 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
                 Ok((interpolate(&sightings, components, self.map.scale())?, sightings.len()))
             }
         }
+    }
+
+    /// $`E^{max}`$, which is greater for who is lost.
+    fn match_limit(&self, belief: &Belief) -> f64 {
+        let LocalizerParams { map, relocation, .. } = self.params;
+        let is_lost = belief.is_of_lost && !belief.anywhere.is_little();
+        let share = if is_lost { map.match_share.max(relocation.match_share) } else { map.match_share };
+        self.map.match_limit(&MapParams { match_share: share, ..map })
     }
 
     pub(super) fn apart_from_trail(&self, mut sightings: Vec<Sighting>) -> Vec<Sighting> {

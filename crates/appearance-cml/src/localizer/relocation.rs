@@ -30,11 +30,20 @@ pub struct RelocationParams {
     pub views: f64,
     /// Share of them in which it does not, where it should, from which on it doubts; 1 never doubts. Default 0.5: after 6 views.
     pub doubt: f64,
-    /// What the second belief has to show after a break: after a view that is as strange to the one before as a far place, which who is carried
-    /// sees, and who drives into an aisle that was rearranged does not; who explores is not thought to be carried. Default: over 5 m, a quarter of
-    /// the way after which a robot should know where it is, a fifth of the views, twice what chance makes; it may have been carried into an aisle
+    /// What the second belief has to show after a break, when it has known its place from there on: after a view that is as strange to the one before as
+    /// a far place, which who is carried sees, and who drives into an aisle that was rearranged does not. Default: over 5 m, a quarter of
+    /// the way after which a robot should know where it is, a fifth of the views, twice what chance makes; it may drive on into an aisle
     /// that was rearranged.
     pub carried: Proof,
+    /// What it has to show after a break when it found its place later, by more than a metre, or when the robot explored and knew nothing before. Default:
+    /// four fifths of the views over 8 m: such a robot may as well not have been carried, and come to an aisle that looks like another.
+    pub carried_unknown: Proof,
+    /// Way for which a break counts, m: whoever was carried should know by then where it is, and one that was none goes on to be a danger where
+    /// doubt lasts. Default 20.
+    pub break_way: f64,
+    /// [`MapParams::match_share`](crate::MapParams::match_share) for who is lost, from the start or after a break, until it believes in a place: it has to
+    /// be found by references that are further off, or have changed. Not less than that of the map. Default 0.5.
+    pub match_share: f64,
     /// What it has to show without one. Default: half of the views over 25 m, because whole aisles look like others when their lamps are out.
     pub strayed: Proof,
     /// Share of these views in which the first may recognize where it is. Default 0.15: what chance makes of it, and a little more.
@@ -58,6 +67,9 @@ impl Default for RelocationParams {
             views: 8.0,
             doubt: 0.5,
             carried: Proof { way: 5.0, recognized: 0.2 },
+            carried_unknown: Proof { way: 8.0, recognized: 0.8 },
+            break_way: 20.0,
+            match_share: 0.5,
             strayed: Proof { way: 25.0, recognized: 0.5 },
             by_chance: 0.15,
         }
@@ -72,15 +84,12 @@ impl RelocationParams {
     pub fn validate(&self) -> Result<(), AppearanceError> {
         check::positive("views to doubt after", self.views)?;
         check::share("share of views from which on the robot doubts", self.doubt)?;
-        for proof in [&self.carried, &self.strayed] {
+        check::positive("way for which a break counts (m)", self.break_way)?;
+        check::share("share of the match limit for who is lost", self.match_share)?;
+        for proof in [&self.carried, &self.carried_unknown, &self.strayed] {
             check::positive("way over which two beliefs are compared (m)", proof.way)?;
             check::share("share of views that the second belief recognizes", proof.recognized)?;
         }
         check::share("share of views that the first belief recognizes by chance", self.by_chance)
-    }
-
-    /// What the second belief has to show, after a break or without one.
-    pub(super) fn proof(&self, broken: bool) -> &Proof {
-        if broken { &self.carried } else { &self.strayed }
     }
 }
