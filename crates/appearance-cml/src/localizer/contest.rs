@@ -106,7 +106,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             self.contest.last_break.map(|last| Break { way: last.way + way, ..last })
         };
         let contest = Contest { doubt, exploring, last_break, rival: None };
-        let nowhere = Rival::nowhere(contest.recent_break(params).is_some());
+        let is_of_lost = contest.recent_break(params).is_some_and(|last| !last.exploring);
+        let nowhere = Rival::nowhere(is_of_lost);
         let before = self.contest.rival.as_ref().filter(|_| !is_break).unwrap_or(&nowhere);
         let (belief, _) = self.seen(&before.belief, Some(view), &[])?;
         let goes_on = self.goes_on(&before.belief, &belief)?;
