@@ -14,6 +14,9 @@ use crate::{
     AppearanceError, Descriptor, Match, ReferenceId, ReferenceSearch, separation_squared, similarity,
 };
 
+/// How far around the robot references are forgotten that it does not see, in parts of the distance at which views still match.
+const FORGOTTEN_SHARE: f64 = 2.0 / 3.0;
+
 /// What one view changed in the map.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Learned {
@@ -170,7 +173,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         pose: &Gaussian<Pose2<f64>>,
         (limit, params): (f64, &MapParams),
     ) {
-        let radius = params.active.radius.unwrap_or_else(|| 0.5 * self.scale().metres(limit));
+        let radius = params.active.radius.unwrap_or_else(|| FORGOTTEN_SHARE * self.scale().metres(limit));
         for id in missed {
             let Some(reference) = self.reference(id) else { continue };
             let mut reference = reference.clone();

@@ -37,7 +37,7 @@ pub enum PlaceUpdate {
 pub struct ForgettingParams {
     /// $`β_{for}`$: the share of weight that a reference at the very place loses. Default 0.6.
     pub rate: f64,
-    /// $`d^{for}`$: how far from the robot references are forgotten, m; `None` takes half the distance at which views still match, from the
+    /// $`d^{for}`$: how far from the robot references are forgotten, m; `None` takes two thirds of the distance at which views still match, from the
     /// [`ViewScale`](super::ViewScale). Default `None`.
     pub radius: Option<f64>,
     /// $`d^{gain}`$: the sum of the σ of x and y at which forgetting goes at full rate, m; a less certain pose forgets more slowly.

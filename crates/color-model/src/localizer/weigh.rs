@@ -64,19 +64,23 @@ impl Weighing<'_> {
         .is_ok();
         let light = particle.conditional();
         let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
-        let within = match self.pixels.light {
-            PixelLight::Common => log_within(sums, self.pixels, &self.noise, n_pixels),
-            PixelLight::Each => 0.0,
-        };
-        for (member, log_likelihood_of) in log_likelihoods.iter_mut().enumerate() {
-            let value = match self.pixels.light {
-                PixelLight::Common => {
-                    let member = light.bank.member(member);
-                    within + joint.log_innovation(sums, member, self.pixels, &self.noise, n_pixels)
+        let possible = |value: f64| if seen && !value.is_nan() { value } else { f64::NEG_INFINITY };
+        let members = log_likelihoods.iter_mut().enumerate();
+        match self.pixels.light {
+            PixelLight::Common => {
+                let within = log_within(sums, self.pixels, &self.noise, n_pixels);
+                for (at, log_likelihood) in members {
+                    let filter = light.bank.member(at);
+                    *log_likelihood = possible(
+                        within + joint.log_innovation(sums, filter, self.pixels, &self.noise, n_pixels),
+                    );
                 }
-                PixelLight::Each => log_likelihood(sums, light.member(member), self.pixels, n_pixels),
-            };
-            *log_likelihood_of = if seen && !value.is_nan() { value } else { f64::NEG_INFINITY };
+            }
+            PixelLight::Each => {
+                for (at, value) in members {
+                    *value = possible(log_likelihood(sums, light.member(at), self.pixels, n_pixels));
+                }
+            }
         }
     }
 }
