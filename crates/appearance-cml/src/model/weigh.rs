@@ -37,11 +37,16 @@ pub(super) fn weight_when_missed(
 ) -> f64 {
     let distance = (pose.mean().translation - place.gaussian.mean().translation).norm();
     let nearness = (1.0 - distance / radius).max(0.0);
-    let sigmas = pose.sigmas();
-    let sharpness = params.gain.unwrap_or_else(|| 2.0 * scale.step()) / (sigmas.x + sigmas.y);
+    let sharpness = params.gain.unwrap_or_else(|| 2.0 * scale.step()) / blur(place, pose);
     let loss = params.rate * nearness * sharpness.min(1.0);
     // A radius of nothing forgets nothing.
     if loss.is_finite() { (1.0 - loss.clamp(0.0, 1.0)) * place.weight } else { place.weight }
+}
+
+/// $`σ_x + σ_y`$ of where the robot is against the place, as far as they have no error in common.
+fn blur(place: &PlaceComponent, pose: &Gaussian<Pose2<f64>>) -> f64 {
+    let variance = |gaussian: &Gaussian<Pose2<f64>>| gaussian.sigmas().xy().norm_squared();
+    (2.0 * (variance(pose) - variance(&place.gaussian)).max(0.0)).sqrt()
 }
 
 fn widened(belief: &Gaussian<Pose2<f64>>, metres: f64) -> Gaussian<Pose2<f64>> {
