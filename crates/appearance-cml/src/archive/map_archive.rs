@@ -12,7 +12,7 @@ use crate::{AppearanceMap, PanoramaDescriptor, Reference, ReferenceId, Reference
 
 const MAGIC: [u8; 8] = *b"WAYFIXAM";
 /// Counts up with every change of what the bytes mean.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// A map of panoramas, where the robot is in it, and what views were described with.
 ///

@@ -22,7 +22,7 @@ impl ArchiveParams {
         writer.u8(views.tone as u8);
         writer.u8(views.normalization as u8);
         writer.u8(views.sense as u8);
-        writer.f64s([views.min_contrast, views.max_saturated]);
+        writer.f64s([views.min_contrast, views.max_saturated, views.smoothing]);
     }
 
     pub(super) fn read(bytes: &[u8]) -> Option<Self> {
@@ -48,11 +48,12 @@ impl ArchiveParams {
             1 => TurnSense::Counterclockwise,
             _ => return None,
         };
-        let [min_contrast, max_saturated] = reader.f64s()?;
+        let [min_contrast, max_saturated, smoothing] = reader.f64s()?;
         let views = PanoramaParams {
             n_rings,
             n_sectors,
             n_harmonics,
+            smoothing,
             tone,
             normalization,
             min_contrast,
@@ -70,6 +71,7 @@ impl ArchiveParams {
                 ("n_rings", views.n_rings.to_string()),
                 ("n_sectors", views.n_sectors.to_string()),
                 ("n_harmonics", views.n_harmonics.to_string()),
+                ("smoothing", views.smoothing.to_string()),
                 ("tone", format!("{:?}", views.tone)),
                 ("normalization", format!("{:?}", views.normalization)),
                 ("sense", format!("{:?}", views.sense)),

@@ -5,7 +5,8 @@ use crate::{AppearanceError, check};
 ///
 /// Averages per ring and sector are normalized and expanded over the azimuth,
 /// $`c_{rk} = \frac{1}{n} \sum_j f_{rj} e^{-2π\mathrm i jk/n}`$ for ring $`r`$ and harmonic $`k`$ [Gross et al., Section 2.2], and then over the rings,
-/// in cosines.
+/// in cosines. There a Gaussian of standard deviation $`σ`$ cells smooths by $`e^{-σ² ((2πk/n)² + (πl/n_r)²) / 2}`$ for harmonic $`k`$ of $`n`$ sectors and
+/// cosine $`l`$ of $`n_r`$ rings.
 ///
 /// ```
 /// use wayfix_appearance_cml::{Descriptor, Panorama, PanoramaFeatures, PanoramaParams};
@@ -26,6 +27,8 @@ pub struct PanoramaFeatures {
     n_sectors: usize,
     /// cos and sin of $`2πj/n`$ for each sector.
     circle: Vec<(f64, f64)>,
+    /// What smoothing leaves of each harmonic and of each cosine.
+    kept: [Vec<f64>; 2],
 }
 
 impl PanoramaFeatures {
@@ -40,7 +43,14 @@ impl PanoramaFeatures {
         params.check_harmonics(n_sectors)?;
         let angle = |sector: usize| std::f64::consts::TAU * sector as f64 / n_sectors as f64;
         let circle = (0..n_sectors).map(|sector| (angle(sector).cos(), angle(sector).sin())).collect();
-        Ok(Self { params, size: (n_columns, n_rows), n_rings, n_sectors, circle })
+        let kept = |n: usize, step: f64| {
+            (0..n).map(|k| (-0.5 * (params.smoothing * step * k as f64).powi(2)).exp()).collect()
+        };
+        let kept = [
+            kept(params.n_harmonics, std::f64::consts::TAU / n_sectors as f64),
+            kept(n_rings, std::f64::consts::PI / n_rings as f64),
+        ];
+        Ok(Self { params, size: (n_columns, n_rows), n_rings, n_sectors, circle, kept })
     }
 
     /// The parameters.
@@ -67,8 +77,16 @@ impl PanoramaFeatures {
         let mut cells = cell_means(panorama, self.n_rings, self.n_sectors, self.params.tone);
         self.params.normalization.apply(self.params.tone, self.params.min_contrast, &mut cells)?;
         let cosines = Cosines::over(self.n_rings as u8);
+        let [of_harmonics, of_cosines] = &self.kept;
+        let smoothed = |(part, values): (usize, &[f64])| {
+            let kept = of_cosines
+                .iter()
+                .map(|of_cosine| of_harmonics[part.div_ceil(2)] * of_cosine)
+                .collect::<Vec<_>>();
+            cosines.transform(values).zip(kept).map(|(value, kept)| value * kept).collect::<Vec<_>>()
+        };
         let spectrum = self.spectrum(&cells);
-        let spectrum = spectrum.chunks_exact(self.n_rings).flat_map(|part| cosines.transform(part));
+        let spectrum = spectrum.chunks_exact(self.n_rings).enumerate().flat_map(smoothed);
         Ok(PanoramaDescriptor::quantized(self.n_rings, &spectrum.collect::<Vec<f64>>()))
     }
 
