@@ -141,12 +141,13 @@ fn every_flipped_bit_is_found() {
 fn another_version_and_other_parameters_are_named() {
     let mut newer = bytes();
     newer[8] = 9;
-    assert_eq!(MapArchive::from_bytes(&newer).unwrap_err(), ArchiveError::Version { found: 9, known: 2 });
+    assert_eq!(MapArchive::from_bytes(&newer).unwrap_err(), ArchiveError::Version { found: 9, known: 3 });
     let good = params();
     for (params, named) in [
         (ArchiveParams { size: (240, 3), ..good }, "size of the panorama"),
         (ArchiveParams { views: PanoramaParams { tone: Tone::Linear, ..good.views }, ..good }, "tone"),
         (ArchiveParams { views: PanoramaParams { n_harmonics: 8, ..good.views }, ..good }, "n_harmonics"),
+        (ArchiveParams { views: PanoramaParams { smoothing: 0.0, ..good.views }, ..good }, "smoothing"),
     ] {
         let refused = MapArchive::from_bytes(&bytes()).unwrap().into_map::<AppearanceIndex<_>>(&params);
         assert!(matches!(refused, Err(ArchiveError::Parameters { what, .. }) if what == named), "{named}");
@@ -157,7 +158,7 @@ fn another_version_and_other_parameters_are_named() {
 #[test]
 fn forged_entries_never_panic() {
     let whole = bytes();
-    let header = 8 + 4 + 4 + 39 + 4;
+    let header = 8 + 4 + 4 + 47 + 4;
     let mut n_refused = 0;
     for place in header..whole.len() {
         let mut forged = whole.clone();
