@@ -23,8 +23,8 @@ pub use localizer::{
 };
 pub(crate) use model::Facing;
 pub use model::{
-    AppearanceMap, Forgetting, ForgettingParams, LagSample, Learned, MapParams, PlaceComponent, PlaceUpdate,
-    Reference, Sighting, ViewScale, interpolate, similarity, superpose,
+    AppearanceMap, Forgetting, ForgettingParams, ForgettingUncertainty, LagSample, Learned, MapParams,
+    PlaceComponent, PlaceUpdate, Reference, Sighting, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
     AppearanceIndex, BoundTable, Bounded, Comparison, Descriptor, LinearSearch, Match, NoTable, ReferenceId,

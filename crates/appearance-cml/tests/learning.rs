@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceMap, Comparison, Descriptor, Forgetting, ForgettingParams, MapParams, PlaceUpdate, similarity,
+    AppearanceMap, Comparison, Descriptor, Forgetting, ForgettingParams, ForgettingUncertainty, MapParams,
+    PlaceUpdate, similarity,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
@@ -29,7 +30,12 @@ fn printed() -> MapParams {
         match_limit: Some(1.0),
         learning_rate: 0.5,
         least_weight: 0.01,
-        active: ForgettingParams { rate: 0.4, radius: Some(2.0), gain: Some(0.1) },
+        active: ForgettingParams {
+            rate: 0.4,
+            radius: Some(2.0),
+            gain: Some(0.1),
+            ..MapParams::printed().active
+        },
         ..MapParams::printed()
     }
 }
@@ -95,9 +101,25 @@ fn what_is_not_seen_any_more_is_forgotten_only_actively() {
 }
 
 #[test]
+fn what_a_place_errs_by_does_not_slow_forgetting() {
+    let uncertainty = ForgettingUncertainty::AgainstPlace;
+    let params = MapParams { active: ForgettingParams { uncertainty, ..printed().active }, ..printed() };
+    // As uncertain as the place itself: at full rate, b = 0.4 · (1 − 1/2).
+    let alike = map_of(&[(0.0, 0.0), (3.0, 1.0)], &params);
+    assert!((weights(&alike)[0][0] - 0.5 * 0.8).abs() < 1e-12);
+    // Twice as uncertain: σ² = 2 (2 · 0.2² − 2 · 0.1²) = 0.12.
+    let mut map = map_of(&[(0.0, 0.0)], &params);
+    let pose =
+        Gaussian::from_sigmas(Pose2::new(1.0, 0.0, 0.0), &Vector3::repeat(2.0 * SIGMA)).expect("positive");
+    map.learn(Tone(3.0), &pose, &params).expect("a good pose");
+    let loss = 0.4 * 0.5 * 0.1 / 0.12_f64.sqrt();
+    assert!((weights(&map)[0][0] - 0.5 * (1.0 - loss)).abs() < 1e-12);
+}
+
+#[test]
 fn forgotten_references_go_and_the_map_stays_bounded() {
     let params = MapParams {
-        active: ForgettingParams { rate: 1.0, radius: Some(2.0), gain: Some(10.0) },
+        active: ForgettingParams { rate: 1.0, gain: Some(10.0), ..printed().active },
         ..printed()
     };
     let map = map_of(&[(0.0, 0.0), (3.0, 0.0)], &params);

@@ -19,7 +19,7 @@ pub use appearance_map::AppearanceMap;
 pub(crate) use facing::Facing;
 pub use interpolate::interpolate;
 pub use learn::Learned;
-pub use params::{Forgetting, ForgettingParams, MapParams, PlaceUpdate};
+pub use params::{Forgetting, ForgettingParams, ForgettingUncertainty, MapParams, PlaceUpdate};
 pub use reference::{PlaceComponent, Reference};
 pub use sighting::Sighting;
 pub use similarity::similarity;

@@ -26,6 +26,20 @@ pub enum PlaceUpdate {
     Residual,
 }
 
+/// Whose uncertainty slows active forgetting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum ForgettingUncertainty {
+    /// That of the robot, $`σ_x + σ_y`$. [Gross et al. 2005, Eq. 19 as printed] In a map that the robot builds on its way it is never less than what the map
+    /// itself errs by, and slows forgetting for good.
+    Pose,
+    /// That of the robot against the place: $`\sqrt{2 \max(σ_x^2 + σ_y^2 - σ_{x,i}^2 - σ_{y,i}^2, 0)}`$, which is the printed sum where
+    /// both axes are alike and the place is known. What the place errs by is common to both.
+    #[default]
+    AgainstPlace,
+}
+
 /// How active forgetting fades references. [Gross et al. 2005, Eq. 19]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -40,14 +54,16 @@ pub struct ForgettingParams {
     /// $`d^{for}`$: how far from the robot references are forgotten, m; `None` takes two thirds of the distance at which views still match, from the
     /// [`ViewScale`](super::ViewScale). Default `None`.
     pub radius: Option<f64>,
-    /// $`d^{gain}`$: the sum of the σ of x and y at which forgetting goes at full rate, m; a less certain pose forgets more slowly.
+    /// $`d^{gain}`$: the uncertainty up to which forgetting goes at full rate, m; a less certain pose forgets more slowly.
     /// `None` takes two steps between views. Default `None`.
     pub gain: Option<f64>,
+    /// Default [`ForgettingUncertainty::AgainstPlace`].
+    pub uncertainty: ForgettingUncertainty,
 }
 
 impl Default for ForgettingParams {
     fn default() -> Self {
-        Self { rate: 0.6, radius: None, gain: None }
+        Self { rate: 0.6, radius: None, gain: None, uncertainty: ForgettingUncertainty::default() }
     }
 }
 
@@ -109,7 +125,15 @@ impl Default for MapParams {
 impl MapParams {
     /// The learning rules as printed.
     pub fn printed() -> Self {
-        Self { place_update: PlaceUpdate::Pose, greatest_count: f64::MAX, ..Self::default() }
+        Self {
+            place_update: PlaceUpdate::Pose,
+            greatest_count: f64::MAX,
+            active: ForgettingParams {
+                uncertainty: ForgettingUncertainty::Pose,
+                ..ForgettingParams::default()
+            },
+            ..Self::default()
+        }
     }
 
     /// Whether the numbers have a meaning.

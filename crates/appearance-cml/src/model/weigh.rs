@@ -3,7 +3,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::sighting::turned;
-use super::{ForgettingParams, MapParams, PlaceComponent, PlaceUpdate, ViewScale};
+use super::{ForgettingParams, ForgettingUncertainty, MapParams, PlaceComponent, PlaceUpdate, ViewScale};
 use crate::{AppearanceError, Match, separation_squared, similarity};
 
 /// The weight of a place whose reference looks like the view: it grows when the robot is there and fades when the robot is elsewhere.
@@ -28,7 +28,8 @@ pub(super) fn weight_when_seen(
 
 /// The weight of a place where the robot is and whose reference it does not see. [Gross et al. 2005, Eqs. 18-19]
 ///
-/// $`w ← (1 - b) w`$, $`b = β_{for} \max(1 - d/d^{for}, 0)\, d^{gain}/(σ_x + σ_y)`$ with the distance $`d`$ in the plane, clamped to [0, 1].
+/// $`w ← (1 - b) w`$, $`b = β_{for} \max(1 - d/d^{for}, 0)\, d^{gain}/σ`$ with the distance $`d`$ in the plane, clamped to [0, 1], and the
+/// [uncertainty](ForgettingUncertainty) $`σ`$.
 pub(super) fn weight_when_missed(
     place: &PlaceComponent,
     pose: &Gaussian<Pose2<f64>>,
@@ -37,16 +38,22 @@ pub(super) fn weight_when_missed(
 ) -> f64 {
     let distance = (pose.mean().translation - place.gaussian.mean().translation).norm();
     let nearness = (1.0 - distance / radius).max(0.0);
-    let sharpness = params.gain.unwrap_or_else(|| 2.0 * scale.step()) / blur(place, pose);
+    let gain = params.gain.unwrap_or_else(|| 2.0 * scale.step());
+    let sharpness = gain / uncertainty(place, pose, params.uncertainty);
     let loss = params.rate * nearness * sharpness.min(1.0);
     // A radius of nothing forgets nothing.
     if loss.is_finite() { (1.0 - loss.clamp(0.0, 1.0)) * place.weight } else { place.weight }
 }
 
-/// $`σ_x + σ_y`$ of where the robot is against the place, as far as they have no error in common.
-fn blur(place: &PlaceComponent, pose: &Gaussian<Pose2<f64>>) -> f64 {
-    let variance = |gaussian: &Gaussian<Pose2<f64>>| gaussian.sigmas().xy().norm_squared();
-    (2.0 * (variance(pose) - variance(&place.gaussian)).max(0.0)).sqrt()
+fn uncertainty(place: &PlaceComponent, pose: &Gaussian<Pose2<f64>>, of: ForgettingUncertainty) -> f64 {
+    let sigmas = |gaussian: &Gaussian<Pose2<f64>>| gaussian.sigmas().xy();
+    match of {
+        ForgettingUncertainty::Pose => sigmas(pose).sum(),
+        ForgettingUncertainty::AgainstPlace => {
+            let own = sigmas(pose).norm_squared() - sigmas(&place.gaussian).norm_squared();
+            (2.0 * own.max(0.0)).sqrt()
+        }
+    }
 }
 
 fn widened(belief: &Gaussian<Pose2<f64>>, metres: f64) -> Gaussian<Pose2<f64>> {

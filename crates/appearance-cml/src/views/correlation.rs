@@ -28,6 +28,7 @@ impl Correlation<'_> {
         let step = TAU / n as f64;
         let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let enough = highest - step * step / 8.0 * self.largest_curvature();
+        let order = |(angle, value): (f64, f64)| (value, -angle.abs());
         let mut best = (0.0, f64::NEG_INFINITY);
         for (index, &value) in values.iter().enumerate() {
             let is_peak = value >= values[(index + 1) % n] && value >= values[(index + n - 1) % n];
@@ -35,9 +36,13 @@ impl Correlation<'_> {
                 continue;
             }
             let signed = if index > n / 2 { index as f64 - n as f64 } else { index as f64 };
-            let refined = self.refined(signed * step, value, step);
-            if refined.1 > best.1 {
-                best = refined;
+            // The point opposite is both ends of the circle: climbed from as either, so that exchanging two views mirrors what is found there, too.
+            let other_end = (2 * index == n).then_some(-signed);
+            for start in std::iter::once(signed).chain(other_end) {
+                let refined = self.refined(start * step, value, step);
+                if order(refined) > order(best) {
+                    best = refined;
+                }
             }
         }
         best
