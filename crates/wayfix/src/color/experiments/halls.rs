@@ -7,6 +7,7 @@ use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingBank;
 use wayfix_scene_sim::league::{LeagueParams, Lighting};
 use wayfix_scene_sim::random::Streams;
+use wayfix_sensor_log::Record;
 
 use crate::{
     color::{ColorSystemParams, run, summarize},
@@ -29,9 +30,8 @@ pub fn other_halls(
     let runs: Vec<Run> = seeds
         .par_iter()
         .map(|&seed| {
-            let drive = LeagueParams { lights: vec![(0, lighting)], ..LeagueParams::default() };
-            let records = drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?;
-            let mut run = run(&records, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
+            let mut run =
+                run(&drive(seed, lighting)?, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
             Ok(summarize(&mut run))
         })
         .collect::<Result<_>>()?;
@@ -51,4 +51,10 @@ pub fn other_halls(
     let worst = runs.iter().filter_map(|run| value(run, "position_mean_m")).fold(0.0, f64::max);
     metrics.push(Metric::new("worst_hall_position_mean_m", worst, "m"));
     Ok(Run { metrics, ..Run::default() })
+}
+
+/// The drive of the stored logs in a hall of its own.
+pub(super) fn drive(seed: u64, lighting: Lighting) -> Result<Vec<Record>> {
+    let drive = LeagueParams { lights: vec![(0, lighting)], ..LeagueParams::default() };
+    Ok(drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?)
 }

@@ -10,4 +10,4 @@ pub use convergence::{Convergence, Trial, global_start, kidnapped};
 pub use frame_time::frame_time;
 pub use halls::other_halls;
 pub use switching::switching;
-pub use withheld::withheld;
+pub use withheld::{withheld, withheld_in_halls};

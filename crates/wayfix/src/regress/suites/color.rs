@@ -51,6 +51,10 @@ enum Experiment {
     OtherHallsDark,
     /// The same in bright light.
     OtherHallsBright,
+    /// Each colour withheld in turn in dark halls that were not picked.
+    WithheldHallsDark,
+    /// The same in bright light.
+    WithheldHallsBright,
     /// Frame time against the number of particles.
     FrameTime,
     /// Recorded images of the middle-size league.
@@ -95,6 +99,12 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
         Experiment::OtherHallsDark => experiments::other_halls(seeds, Lighting::Dark, &map, &bank, &params),
         Experiment::OtherHallsBright => {
             experiments::other_halls(seeds, Lighting::Bright, &map, &bank, &params)
+        }
+        Experiment::WithheldHallsDark => {
+            experiments::withheld_in_halls(seeds, Lighting::Dark, &map, &learned, &params)
+        }
+        Experiment::WithheldHallsBright => {
+            experiments::withheld_in_halls(seeds, Lighting::Bright, &map, &learned, &params)
         }
         Experiment::FrameTime => experiments::frame_time(&records(job)?, &map, &bank, &params, seed),
         Experiment::Venues => color::venues::run(job.log()?),
