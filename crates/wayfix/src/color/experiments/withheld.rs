@@ -64,9 +64,9 @@ pub fn withheld_in_halls(
             [Some(joint), Some(independent)] => Some((joint.mean, independent.mean)),
             _ => None,
         };
-        let pairs: Vec<(f64, f64)> = halls.iter().filter_map(means).collect();
-        for (kind, value) in KINDS {
-            let values: Vec<f64> = pairs.iter().map(value).collect();
+        let (joint, independent): (Vec<f64>, Vec<f64>) = halls.iter().filter_map(means).unzip();
+        let gain: Vec<f64> = joint.iter().zip(&independent).map(|(joint, alone)| joint - alone).collect();
+        for (kind, values) in [("joint", joint), ("independent", independent), ("gain", gain)] {
             if let Some(mean) = MeanInterval::of(&values) {
                 metrics.extend(with_interval(format!("{name}_{kind}"), &mean));
                 if kind == "gain" {
@@ -78,10 +78,6 @@ pub fn withheld_in_halls(
     }
     Ok(Run { metrics, ..Run::default() })
 }
-
-/// What is said of a pair of rates, joint and independent.
-const KINDS: [(&str, fn(&(f64, f64)) -> f64); 3] =
-    [("joint", |pair| pair.0), ("independent", |pair| pair.1), ("gain", |pair| pair.0 - pair.1)];
 
 fn with_interval(name: String, rate: &MeanInterval) -> [Metric; 2] {
     let half_width = Metric::new(format!("{name}_ci95"), rate.half_width, "");
