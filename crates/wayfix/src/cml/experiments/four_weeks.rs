@@ -40,7 +40,8 @@ pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
         |at: usize| mean(&seeds.iter().map(|courses| mean(&courses[at].errors)).collect::<Vec<_>>());
     metrics.push(Metric::new("adapting_over_static", over_all(1) / over_all(0), ""));
     metrics.push(Metric::new("adapted_over_static", over_all(3) / over_all(2), ""));
-    metrics.push(Metric::new("adapting_over_static_printed", over_all(5) / over_all(4), ""));
+    metrics.push(Metric::new("adapting_over_static_printed", over_all(1) / over_all(4), ""));
+    metrics.push(Metric::new("adapting_printed_over_static_printed", over_all(5) / over_all(4), ""));
     let errors =
         |at: usize| seeds.iter().flat_map(|courses: &[Course; 6]| courses[at].errors.clone()).collect();
     let plot = histogram(
