@@ -61,16 +61,12 @@ fn classification(run: &ColorRun) -> Vec<Metric> {
         run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref()).collect();
     let overall: Vec<f64> = labelled.iter().filter_map(|counts| counts.rate()).collect();
     let Some(overall) = MeanInterval::of(&overall) else { return Vec::new() };
-    let mut metrics = vec![
-        Metric::new("classification_rate", overall.mean, ""),
-        Metric::new("classification_rate_ci95", overall.half_width, ""),
-        Metric::new("n_labelled", overall.n as f64, ""),
-    ];
+    let mut metrics = Metric::of_mean("classification_rate", &overall, "").to_vec();
+    metrics.push(Metric::new("n_labelled", overall.n as f64, ""));
     for (at, name) in run.system.map().colors().iter().enumerate() {
         let rates = rate_of(labelled.iter().copied(), ColorId(at as u8), MIN_PIXELS);
         if let Some(rate) = MeanInterval::of(&rates) {
-            metrics.push(Metric::new(format!("rate_{name}"), rate.mean, ""));
-            metrics.push(Metric::new(format!("rate_{name}_ci95"), rate.half_width, ""));
+            metrics.extend(Metric::of_mean(&format!("rate_{name}"), &rate, ""));
         }
     }
     metrics

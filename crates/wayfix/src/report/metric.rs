@@ -1,5 +1,7 @@
 use serde::{Deserialize, Serialize};
 
+use crate::evaluate::MeanInterval;
+
 /// One figure of a run and the bounds it must keep.
 ///
 /// Whether it passes is never stored by hand: `pass` in the JSON is computed when it is written and ignored when it is read.
@@ -55,6 +57,11 @@ impl Metric {
     /// The figure `name`, without bounds.
     pub fn new(name: impl Into<String>, value: f64, unit: impl Into<String>) -> Self {
         Self { name: name.into(), value, unit: unit.into(), ..Self::default() }
+    }
+    /// A mean of samples, and half the width of its 95 % interval as the figure `name_ci95`.
+    pub fn of_mean(name: &str, mean: &MeanInterval, unit: &str) -> [Self; 2] {
+        let half_width = Self::new(format!("{name}_ci95"), mean.half_width, unit);
+        [Self::new(name, mean.mean, unit), half_width]
     }
     /// The same with a smallest value that passes.
     pub fn at_least(self, low: f64) -> Self {

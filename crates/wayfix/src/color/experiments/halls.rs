@@ -44,8 +44,7 @@ pub fn other_halls(
     for (name, unit) in named.chain(rates) {
         let values: Vec<f64> = runs.iter().filter_map(|run| value(run, &name)).collect();
         if let Some(mean) = MeanInterval::of(&values) {
-            let half_width = Metric::new(format!("{name}_ci95"), mean.half_width, unit);
-            metrics.extend([Metric::new(name, mean.mean, unit), half_width]);
+            metrics.extend(Metric::of_mean(&name, &mean, unit));
         }
     }
     let worst = runs.iter().filter_map(|run| value(run, "position_mean_m")).fold(0.0, f64::max);

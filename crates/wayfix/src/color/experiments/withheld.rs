@@ -35,8 +35,8 @@ pub fn withheld(
     let mut metrics = Vec::new();
     for (name, rates) in map.colors().iter().zip(rates(records, map, learned, params, seed)?) {
         if let [Some(joint), Some(independent)] = rates {
-            metrics.extend(with_interval(format!("{name}_joint"), &joint));
-            metrics.extend(with_interval(format!("{name}_independent"), &independent));
+            metrics.extend(Metric::of_mean(&format!("{name}_joint"), &joint, ""));
+            metrics.extend(Metric::of_mean(&format!("{name}_independent"), &independent, ""));
             metrics.push(Metric::new(format!("{name}_gain"), joint.mean - independent.mean, ""));
         }
     }
@@ -68,7 +68,7 @@ pub fn withheld_in_halls(
         let gain: Vec<f64> = joint.iter().zip(&independent).map(|(joint, alone)| joint - alone).collect();
         for (kind, values) in [("joint", joint), ("independent", independent), ("gain", gain)] {
             if let Some(mean) = MeanInterval::of(&values) {
-                metrics.extend(with_interval(format!("{name}_{kind}"), &mean));
+                metrics.extend(Metric::of_mean(&format!("{name}_{kind}"), &mean, ""));
                 if kind == "gain" {
                     let low = mean.mean - mean.half_width;
                     metrics.push(Metric::new(format!("{name}_gain_low95"), low, ""));
@@ -77,11 +77,6 @@ pub fn withheld_in_halls(
         }
     }
     Ok(Run { metrics, ..Run::default() })
-}
-
-fn with_interval(name: String, rate: &MeanInterval) -> [Metric; 2] {
-    let half_width = Metric::new(format!("{name}_ci95"), rate.half_width, "");
-    [Metric::new(name, rate.mean, ""), half_width]
 }
 
 fn rates(
