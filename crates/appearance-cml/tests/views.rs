@@ -44,6 +44,20 @@ fn a_view_is_at_distance_0_from_itself_and_distances_are_symmetric_to_the_bit() 
 }
 
 #[test]
+fn smoothing_brings_views_nearer_and_nothing_further() {
+    let distances = |smoothing| {
+        let features = features(PanoramaParams { smoothing, ..PanoramaParams::default() });
+        let views: Vec<PanoramaDescriptor> =
+            scenes(8).iter().map(|scene| features.describe(scene).unwrap()).collect();
+        views[1..].iter().map(|view| views[0].compare(view).distance).collect::<Vec<f64>>()
+    };
+    let by_strength = [0.0, 1.0, 2.0].map(distances);
+    for ((sharp, smooth), smoother) in by_strength[0].iter().zip(&by_strength[1]).zip(&by_strength[2]) {
+        assert!(sharp > smooth && smooth > smoother, "{sharp} {smooth} {smoother}");
+    }
+}
+
+#[test]
 fn the_triangle_inequality_holds() {
     let features = features(PanoramaParams::default());
     let views: Vec<PanoramaDescriptor> =
@@ -134,6 +148,8 @@ fn parameters_outside_their_range_are_named() {
         (PanoramaParams { n_sectors: 2, ..good }, "n_sectors"),
         (PanoramaParams { n_harmonics: 1, ..good }, "n_harmonics"),
         (PanoramaParams { n_harmonics: 61, ..good }, "n_harmonics"),
+        (PanoramaParams { smoothing: f64::NAN, ..good }, "smoothing"),
+        (PanoramaParams { smoothing: -1.0, ..good }, "smoothing"),
         (PanoramaParams { min_contrast: f64::NAN, ..good }, "min_contrast"),
         (PanoramaParams { max_saturated: -0.1, ..good }, "max_saturated"),
     ] {
