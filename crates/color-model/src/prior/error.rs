@@ -61,3 +61,8 @@ pub enum PriorError {
 pub(super) fn check_positive(what: &'static str, value: f64) -> Result<(), PriorError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PriorError::OutOfRange { what, value }) }
 }
+
+/// A correlation that leaves any number of coordinates a covariance: not negative, and below one.
+pub(super) fn check_correlation(what: &'static str, value: f64) -> Result<(), PriorError> {
+    if (0.0..1.0).contains(&value) { Ok(()) } else { Err(PriorError::OutOfRange { what, value }) }
+}

@@ -1,15 +1,19 @@
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, Vector3};
 use wayfix_gaussian_core::{HierarchicalParams, InverseWishart};
 
-use super::{PriorError, error::check_positive};
+use super::{
+    PriorError,
+    error::{check_correlation, check_positive},
+};
 
 /// How priors are learned.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorParams {
-    /// Standard deviation of a colour between venues before any is seen, (Y, U, V): the mode of the hyperprior, colours uncorrelated.
-    /// Default 30, 10, 10.
+    /// Standard deviation of a colour between venues before any is seen, (Y, U, V): the mode of the hyperprior. Default 30, 10, 10.
     pub color_sigmas: Vector3<f64>,
-    /// How many venues the hyperprior is worth; more of them shrink the correlations between colours. Default 3.
+    /// Correlation of two colours between venues before any is seen, in Y as in U and V: one light falls on all of them. Default 0.9.
+    pub color_correlation: f64,
+    /// How many venues the hyperprior is worth. Default 3.
     pub pseudo_venues: f64,
     /// Variance of an image's mean of a colour about its venue's, (Y, U, V). Default none: pooled over the training images.
     pub mean_noise: Option<Vector3<f64>>,
@@ -27,6 +31,7 @@ impl Default for PriorParams {
     fn default() -> Self {
         Self {
             color_sigmas: Vector3::new(30.0, 10.0, 10.0),
+            color_correlation: 0.9,
             pseudo_venues: 3.0,
             mean_noise: None,
             pixel_noise: Vector3::new(144.0, 36.0, 36.0),
@@ -42,14 +47,21 @@ impl PriorParams {
         let noise = self.mean_noise.iter().flat_map(|noise| noise.iter()).chain(&self.pixel_noise);
         noise.into_iter().try_for_each(|variance| check_positive("variance of the noise", *variance))?;
         self.color_sigmas.iter().try_for_each(|sigma| check_positive("sigma of a colour", *sigma))?;
+        check_correlation("correlation of colours", self.color_correlation)?;
         check_positive("number of pseudo-venues", self.pseudo_venues)?;
         check_positive("number of restarts", self.restarts as f64)
     }
 
     /// The hyperprior for `n_colors` colours, and when to stop.
     pub(super) fn hierarchical(&self, n_colors: usize) -> Result<HierarchicalParams, PriorError> {
-        let variances = DVector::from_fn(3 * n_colors, |i, _| self.color_sigmas[i % 3].powi(2));
-        let mode = DMatrix::from_diagonal(&variances);
+        let mode = DMatrix::from_fn(3 * n_colors, 3 * n_colors, |i, j| {
+            let correlation = match (i == j, i % 3 == j % 3) {
+                (true, _) => 1.0,
+                (false, true) => self.color_correlation,
+                (false, false) => 0.0,
+            };
+            correlation * self.color_sigmas[i % 3] * self.color_sigmas[j % 3]
+        });
         Ok(HierarchicalParams {
             covariance_prior: Some(InverseWishart::from_mode(&mode, self.pseudo_venues)?),
             mean_prior: None,
