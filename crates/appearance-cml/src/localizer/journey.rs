@@ -83,6 +83,22 @@ impl<D> Journey<D> {
         Some((view(index)?, view(index + 1)))
     }
 
+    /// Whether the robot is as sure of its place now as it was at the oldest view that waits, so that what has come since has told all of that pose that it
+    /// will. Not in a place that nothing is known of: there only odometry speaks, until the robot is somewhere else that it knows.
+    pub(super) fn is_surer_now(&self) -> bool {
+        let at = |index: usize| {
+            let estimate = self.stops.get(index)?.estimate.as_ref()?;
+            Some(estimate.covariance().fixed_view::<2, 2>(0, 0).trace())
+        };
+        let then = self.oldest_index().and_then(at);
+        let now = self.stops.len().checked_sub(1).and_then(at);
+        match (then, now) {
+            (Some(then), Some(now)) => now <= then,
+            (None, Some(_)) => true,
+            (_, None) => false,
+        }
+    }
+
     /// Where the oldest view that waits was seen from, by all views up to the newest that is at one place; `None` when none is.
     pub(super) fn settled_pose(&self) -> Option<Gaussian<Pose2<f64>>> {
         self.smoothed_from(self.oldest_index()?)?.into_iter().next()

@@ -22,6 +22,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             self.learned_last = None;
         }
         while self.journey.n_waiting() > self.params.delay {
+            if self.journey.n_waiting() <= self.params.patience && !self.journey.is_surer_now() {
+                break;
+            }
             let settled = self.journey.settled_pose().filter(|_| !self.contest.is_open());
             if settled.is_none() && self.journey.n_waiting() <= self.params.longest_wait {
                 break;

@@ -54,6 +54,9 @@ pub struct LocalizerParams {
     pub map: MapParams,
     /// Views by which learning lags behind, so that a pose is not confirmed by what it has just taught. Default 10.
     pub delay: usize,
+    /// Views by which it lags behind at most where the robot is less sure of its place than it was there: when it comes to a place that it knows, what it
+    /// learned then is spread back over them first. No more than `delay`, and none waits for that, as printed. Default 60.
+    pub patience: usize,
     /// Views that wait at most for the state to become one place; older ones are not learned. Default 400.
     pub longest_wait: usize,
     /// Views of the way behind the robot over which a correction is spread, and with it the references made there; 0 leaves them where
@@ -77,6 +80,7 @@ impl Default for LocalizerParams {
             learning: Learning::default(),
             map: MapParams::default(),
             delay: 10,
+            patience: 60,
             longest_wait: 400,
             memory: 0,
             corroboration: Some(1.6),
@@ -94,6 +98,7 @@ impl LocalizerParams {
             map: MapParams::printed(),
             relocation: RelocationParams { doubt: 1.0, ..RelocationParams::default() },
             corroboration: None,
+            patience: 0,
             memory: 0,
             ..Self::default()
         }
