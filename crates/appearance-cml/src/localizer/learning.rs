@@ -6,6 +6,8 @@ use crate::{AppearanceError, Descriptor, ReferenceSearch};
 
 /// Views between two revisions of the way behind, at least: a correction that comes in pieces is spread once.
 const REVISION_VIEWS: usize = 20;
+/// How near the robot has to come to a reference to be where the map has been, in reaches of a match: less than what the [trail](super::trail::Trail) holds.
+const KNOWN_REACHES: f64 = 1.5;
 /// Correction that is worth a revision, in steps between views.
 const REVISION_SHARE: f64 = 0.5;
 
@@ -22,7 +24,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             self.learned_last = None;
         }
         while self.journey.n_waiting() > self.params.delay {
-            if self.journey.n_waiting() <= self.params.patience && !self.journey.is_surer_now() {
+            if self.awaits_correction() {
                 break;
             }
             let settled = self.journey.settled_pose().filter(|_| !self.contest.is_open());
@@ -34,6 +36,18 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         self.journey.shorten(self.params.memory.max(1));
         self.revise_when_due();
         Ok(())
+    }
+
+    /// Whether to wait for what a place that the robot comes to says of the view that has waited longest. Where the map has not been before nobody knows
+    /// whether there will be any, and what has just been seen would be missing from the map.
+    fn awaits_correction(&self) -> bool {
+        let is_mapped = |at: &Pose2<f64>| {
+            let radius = KNOWN_REACHES * self.map.reach_of_match(&self.params.map);
+            self.map.has_been_near(at, radius, |id| !self.trail.holds(id))
+        };
+        self.journey.n_waiting() <= self.params.patience
+            && !self.journey.is_surer_now()
+            && self.belief.heaviest().is_some_and(|belief| is_mapped(belief.mean()))
     }
 
     /// Learns the view that has waited longest; gives it up when it is nowhere, or an outlier.

@@ -200,6 +200,16 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.grid.near(&at, radius).iter().any(|id| counts(*id) && has(id))
     }
 
+    /// Whether the map has been there: whether a reference that counts has a place within `radius`.
+    pub(crate) fn has_been_near(
+        &self,
+        at: &Pose2<f64>,
+        radius: f64,
+        counts: impl Fn(ReferenceId) -> bool,
+    ) -> bool {
+        self.grid.near(&at.translation, radius).into_iter().any(counts)
+    }
+
     fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<Sighting> {
         let places = |m: &Match| {
             let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);

@@ -4,7 +4,7 @@ use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
 
 use super::follow::{known_start, taught};
 use super::histogram::histogram;
-use super::summary::{largest, mean, mean_of, over_seeds};
+use super::summary::{by_seed, largest, mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
 use super::{Course, Setup, Trip, follow};
 use crate::cml::{PanoramaLocalizer, PanoramaMap};
@@ -59,7 +59,10 @@ pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
         setup.length_m,
         100.0 * setup.rearranged
     );
-    Ok(Run { metrics, figures: vec![plot.draw()?], notes: vec![note], ..Run::default() })
+    let each =
+        |(at, name): (usize, &&str)| by_seed(name, seeds.iter().map(|courses| &courses[at].errors[..]));
+    let notes = std::iter::once(note).chain(COURSES.iter().enumerate().map(each)).collect();
+    Ok(Run { metrics, figures: vec![plot.draw()?], notes, ..Run::default() })
 }
 
 /// Two drives four weeks later: with the map as it was and while it adapts, then with the map as it was and with the adapted one; the first again as printed.

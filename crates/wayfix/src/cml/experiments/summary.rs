@@ -30,3 +30,10 @@ pub(super) fn mean(values: &[f64]) -> f64 {
 pub(super) fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NAN, f64::max)
 }
+
+/// One world astray moves a mean of ten: here they are one by one.
+pub(super) fn by_seed<'a>(what: &str, errors: impl Iterator<Item = &'a [f64]>) -> String {
+    let figures: Vec<String> =
+        errors.map(|errors| format!("{:.2} ({:.1})", mean(errors), largest(errors))).collect();
+    format!("{what}, mean (largest) error seed by seed, m: {}.", figures.join(", "))
+}

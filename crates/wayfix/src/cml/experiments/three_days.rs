@@ -4,7 +4,7 @@ use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
 use super::area::plan;
 use super::follow::known_start;
 use super::histogram::histogram;
-use super::summary::{largest, mean, mean_of, over_seeds};
+use super::summary::{by_seed, largest, mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
 use super::{Course, Setup, Trip, follow};
 use crate::cml::PanoramaLocalizer;
@@ -61,19 +61,11 @@ pub fn three_days(setup: &Setup, seed: u64) -> Result<Run> {
         setup.length_m,
         100.0 * REARRANGED
     );
-    let notes = std::iter::once(note).chain((0..N_DAYS).map(|day| by_seed(day, &seeds))).collect();
+    let each = |day: usize| {
+        by_seed(&format!("Day {}", day + 1), seeds.iter().map(|days| &days[day].course.errors[..]))
+    };
+    let notes = std::iter::once(note).chain((0..N_DAYS).map(each)).collect();
     Ok(Run { metrics, figures, notes, ..Run::default() })
-}
-
-/// One store astray moves a mean of ten: here they are one by one.
-fn by_seed(day: usize, seeds: &[Vec<Day>]) -> String {
-    let errors = seeds.iter().map(|days| &days[day].course.errors);
-    let figures = errors.map(|errors| format!("{:.2} ({:.1})", mean(errors), largest(errors)));
-    format!(
-        "Day {}, mean (largest) error seed by seed, m: {}.",
-        day + 1,
-        figures.collect::<Vec<_>>().join(", ")
-    )
 }
 
 fn one(setup: &Setup, seed: u64) -> Result<Vec<Day>> {
