@@ -20,6 +20,8 @@ pub(super) struct Contest {
     exploring: RunningShare,
     /// The last one that this doubt has seen.
     last_break: Option<Break>,
+    /// Whether the last view was one.
+    broke: bool,
     rival: Option<Rival>,
 }
 
@@ -30,6 +32,9 @@ struct Break {
     way: f64,
     /// Whether nothing was known before it.
     exploring: bool,
+    /// Whether the view before was as strange to the one before it. Who is carried sees one such step; at a corner or past the end of a shelf there may be
+    /// several in a row.
+    repeated: bool,
 }
 
 /// Steps between two views up to which they look alike, unless there is a break.
@@ -66,7 +71,9 @@ impl Contest {
     fn proof(&self, rival_way: f64, params: &RelocationParams) -> Proof {
         match self.recent_break(params) {
             None => params.strayed,
-            Some(last) if last.exploring || last.way - rival_way > AT_ONCE_M => params.carried_unknown,
+            Some(last) if last.exploring || last.repeated || last.way - rival_way > AT_ONCE_M => {
+                params.carried_unknown
+            }
             Some(_) => params.carried,
         }
     }
@@ -97,15 +104,16 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let is_break = self.is_break(view);
         let doubt = if is_break { Doubt::great(params) } else { self.contest.doubt.after(fit, params) };
         if !doubt.is_great() {
-            return Ok(Contest { doubt, exploring, ..Contest::default() });
+            return Ok(Contest { doubt, exploring, broke: is_break, ..Contest::default() });
         }
         let way = self.motion.increment.translation.norm();
         let last_break = if is_break {
-            Some(Break { way: 0.0, exploring: self.contest.exploring.0 > MOST_EXPLORING })
+            let exploring = self.contest.exploring.0 > MOST_EXPLORING;
+            Some(Break { way: 0.0, exploring, repeated: self.contest.broke })
         } else {
             self.contest.last_break.map(|last| Break { way: last.way + way, ..last })
         };
-        let contest = Contest { doubt, exploring, last_break, rival: None };
+        let contest = Contest { doubt, exploring, last_break, broke: is_break, rival: None };
         let is_of_lost = contest.recent_break(params).is_some_and(|last| !last.exploring);
         let nowhere = Rival::nowhere(is_of_lost);
         let before = self.contest.rival.as_ref().filter(|_| !is_break).unwrap_or(&nowhere);
@@ -145,14 +153,15 @@ mod tests {
     #[test]
     fn who_was_carried_where_it_knows_its_way_at_once_has_least_to_show() {
         let params = RelocationParams::default();
-        let proof = |exploring: bool, way: f64, rival_way: f64| {
-            let contest = Contest { last_break: Some(Break { way, exploring }), ..Contest::default() };
-            contest.proof(rival_way, &params)
+        let proof = |last: Break, rival_way: f64| {
+            Contest { last_break: Some(last), ..Contest::default() }.proof(rival_way, &params)
         };
-        assert_eq!(proof(false, 5.5, 5.0), params.carried);
-        assert_eq!(proof(false, 7.0, 5.0), params.carried_unknown);
-        assert_eq!(proof(true, 5.5, 5.0), params.carried_unknown);
-        assert_eq!(proof(false, params.break_way + 0.1, 20.0), params.strayed);
+        let plain = Break { way: 5.5, exploring: false, repeated: false };
+        assert_eq!(proof(plain, 5.0), params.carried);
+        assert_eq!(proof(Break { way: 7.0, ..plain }, 5.0), params.carried_unknown);
+        assert_eq!(proof(Break { exploring: true, ..plain }, 5.0), params.carried_unknown);
+        assert_eq!(proof(Break { repeated: true, ..plain }, 5.0), params.carried_unknown);
+        assert_eq!(proof(Break { way: params.break_way + 0.1, ..plain }, 20.0), params.strayed);
         assert_eq!(Contest::default().proof(5.0, &params), params.strayed);
     }
 }
