@@ -35,8 +35,9 @@ pub struct RelocationParams {
     /// the way after which a robot should know where it is, a fifth of the views, twice what chance makes; it may drive on into an aisle
     /// that was rearranged.
     pub carried: Proof,
-    /// What it has to show after a break when it found its place later, by more than a metre, or when the robot explored and knew nothing before. Default:
-    /// four fifths of the views over 8 m: such a robot may as well not have been carried, and come to an aisle that looks like another.
+    /// What it has to show after a break when it found its place later, by more than a metre, when the robot explored and knew nothing before, or when the
+    /// view before was a break too, as at a corner. Default: four fifths of the views over 8 m: such a robot may as well not have been carried, and come to
+    /// an aisle that looks like another.
     pub carried_unknown: Proof,
     /// Way for which a break counts, m: whoever was carried should know by then where it is, and one that was none goes on to be a danger where
     /// doubt lasts. Default 20.
