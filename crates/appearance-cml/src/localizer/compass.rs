@@ -12,7 +12,7 @@ const LEAST_WEIGHT: f64 = 0.05;
 
 /// σ of a learned heading up to which references speak, rad: half of what a comparison errs by at best, which a pose has that was surveyed. Whose heading is known
 /// worse has it from a robot that built the map on its way, and errs with it.
-const MOST_LEARNED_SIGMA: f64 = 0.015;
+pub(super) const MOST_LEARNED_SIGMA: f64 = 0.015;
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// Tells hypotheses that nothing observed agrees with at least which way they look.

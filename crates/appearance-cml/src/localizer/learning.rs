@@ -1,13 +1,14 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
+use super::compass::MOST_LEARNED_SIGMA;
 use super::{AppearanceLocalizer, Event};
 use crate::{AppearanceError, Descriptor, ReferenceSearch};
 
 /// Views between two revisions of the way behind, at least: a correction that comes in pieces is spread once.
 const REVISION_VIEWS: usize = 20;
-/// How near the robot has to come to a reference to be where the map has been, in reaches of a match: less than what the [trail](super::trail::Trail) holds.
-const KNOWN_REACHES: f64 = 1.5;
+/// How near to a surveyed reference the robot is where the map was surveyed, in reaches of a match: less than what the [trail](super::trail::Trail) holds.
+const SURVEYED_REACHES: f64 = 1.5;
 /// Correction that is worth a revision, in steps between views.
 const REVISION_SHARE: f64 = 0.5;
 
@@ -38,16 +39,16 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         Ok(())
     }
 
-    /// Whether to wait for what a place that the robot comes to says of the view that has waited longest. Where the map has not been before nobody knows
-    /// whether there will be any, and what has just been seen would be missing from the map.
+    /// Whether to wait for what a place that the robot comes to says of the view that has waited longest. Only where the map was surveyed: one that the robot
+    /// builds on its way errs with it, and would miss what has just been seen.
     fn awaits_correction(&self) -> bool {
-        let is_mapped = |at: &Pose2<f64>| {
-            let radius = KNOWN_REACHES * self.map.reach_of_match(&self.params.map);
-            self.map.has_been_near(at, radius, |id| !self.trail.holds(id))
+        let radius = SURVEYED_REACHES * self.map.reach_of_match(&self.params.map);
+        let is_surveyed = |at: &Pose2<f64>| {
+            self.map.is_surveyed(at, (radius, MOST_LEARNED_SIGMA), |id| !self.trail.holds(id))
         };
         self.journey.n_waiting() <= self.params.patience
             && !self.journey.is_surer_now()
-            && self.belief.heaviest().is_some_and(|belief| is_mapped(belief.mean()))
+            && self.belief.heaviest().is_some_and(|belief| is_surveyed(belief.mean()))
     }
 
     /// Learns the view that has waited longest; gives it up when it is nowhere, or an outlier.

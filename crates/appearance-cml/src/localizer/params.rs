@@ -54,8 +54,8 @@ pub struct LocalizerParams {
     pub map: MapParams,
     /// Views by which learning lags behind, so that a pose is not confirmed by what it has just taught. Default 10.
     pub delay: usize,
-    /// Views by which learning lags behind at most where the robot, among places that it should know, has become less sure of where it is: the next that it
-    /// recognizes corrects them first. 0 to wait for no such place, as printed. Default 60.
+    /// Views by which learning lags behind at most where the robot, in a part of the map that was surveyed, has become less sure of where it is: the next place
+    /// that it recognizes corrects them first. 0 to wait for no such place, as printed. Default 60.
     pub patience: usize,
     /// Views that wait at most for the state to become one place; older ones are not learned. Default 400.
     pub longest_wait: usize,

@@ -200,14 +200,19 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.grid.near(&at, radius).iter().any(|id| counts(*id) && has(id))
     }
 
-    /// Whether the map has been there: whether a reference that counts has a place within `radius`.
-    pub(crate) fn has_been_near(
+    /// Whether a reference that counts has a place within `radius` whose heading is known to `sigma`.
+    pub(crate) fn is_surveyed(
         &self,
         at: &Pose2<f64>,
-        radius: f64,
+        (radius, sigma): (f64, f64),
         counts: impl Fn(ReferenceId) -> bool,
     ) -> bool {
-        self.grid.near(&at.translation, radius).into_iter().any(counts)
+        let is_there = |place: &PlaceComponent| {
+            (place.gaussian.mean().translation - at.translation).norm() < radius
+                && place.gaussian.sigmas().z <= sigma
+        };
+        let has = |id: &ReferenceId| self.references.get(id).is_some_and(|r| r.places.iter().any(is_there));
+        self.grid.near(&at.translation, radius).iter().any(|id| counts(*id) && has(id))
     }
 
     fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<Sighting> {
