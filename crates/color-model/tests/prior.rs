@@ -109,6 +109,9 @@ fn venues_that_make_no_prior_are_refused() {
     assert!(matches!(learn(&[], 1, &params), Err(PriorError::TooFew { .. })));
     assert!(matches!(learn(&good, 0, &params), Err(PriorError::TooFew { .. })));
     assert!(matches!(learn(&good[..1], 2, &params), Err(PriorError::TooFew { .. })));
+    for bad in [-0.1, 1.0, f64::NAN, f64::INFINITY] {
+        assert!(learn(&good, 2, &PriorParams { color_correlation: bad, ..params.clone() }).is_err());
+    }
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(learn(&good, 2, &PriorParams { pseudo_venues: bad, ..params.clone() }).is_err());
         assert!(

@@ -7,10 +7,10 @@ use crate::{AppearanceError, Descriptor, ReferenceSearch};
 
 /// Views between two revisions of the way behind, at least: a correction that comes in pieces is spread once.
 const REVISION_VIEWS: usize = 20;
-/// How near to a surveyed reference the robot is where the map was surveyed, in reaches of a match: less than what the [trail](super::trail::Trail) holds.
-const SURVEYED_REACHES: f64 = 1.5;
 /// Correction that is worth a revision, in steps between views.
 const REVISION_SHARE: f64 = 0.5;
+/// How near to a surveyed reference the robot is where the map was surveyed, in reaches of a match: less than what the trail holds.
+const SURVEYED_REACHES: f64 = 1.5;
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// The view joins the way, and those that have waited long enough are learned.

@@ -188,16 +188,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         radius: f64,
         counts: impl Fn(ReferenceId) -> bool,
     ) -> bool {
-        let at = belief.mean().translation;
         let sigma = |gaussian: &Gaussian<Pose2<f64>>| gaussian.sigmas().xy().norm();
         let own = sigma(belief);
-        let is_there = |place: &PlaceComponent| {
-            place.weight >= WELL_KNOWN
-                && (place.gaussian.mean().translation - at).norm() < radius
-                && own.hypot(sigma(&place.gaussian)) < radius
-        };
-        let has = |id: &ReferenceId| self.references.get(id).is_some_and(|r| r.places.iter().any(is_there));
-        self.grid.near(&at, radius).iter().any(|id| counts(*id) && has(id))
+        let is_there =
+            |place: &PlaceComponent| place.weight >= WELL_KNOWN && own.hypot(sigma(&place.gaussian)) < radius;
+        self.has_place(belief.mean(), radius, |id, place| counts(id) && is_there(place))
     }
 
     /// Whether a reference that counts has a place within `radius` whose heading is known to `sigma`.
@@ -207,12 +202,22 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         (radius, sigma): (f64, f64),
         counts: impl Fn(ReferenceId) -> bool,
     ) -> bool {
-        let is_there = |place: &PlaceComponent| {
-            (place.gaussian.mean().translation - at.translation).norm() < radius
-                && place.gaussian.sigmas().z <= sigma
-        };
-        let has = |id: &ReferenceId| self.references.get(id).is_some_and(|r| r.places.iter().any(is_there));
-        self.grid.near(&at.translation, radius).iter().any(|id| counts(*id) && has(id))
+        self.has_place(at, radius, |id, place| counts(id) && place.gaussian.sigmas().z <= sigma)
+    }
+
+    /// Whether some reference has a place within `radius` that will do.
+    fn has_place(
+        &self,
+        at: &Pose2<f64>,
+        radius: f64,
+        will_do: impl Fn(ReferenceId, &PlaceComponent) -> bool,
+    ) -> bool {
+        let is_near =
+            |place: &PlaceComponent| (place.gaussian.mean().translation - at.translation).norm() < radius;
+        self.grid.near(&at.translation, radius).iter().any(|id| {
+            let places = self.references.get(id).map_or(&[][..], |reference| &reference.places);
+            places.iter().any(|place| is_near(place) && will_do(*id, place))
+        })
     }
 
     fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<Sighting> {
