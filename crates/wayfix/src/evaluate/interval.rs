@@ -27,6 +27,23 @@ impl MeanInterval {
         let variance = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1) as f64;
         Some(Self { mean, half_width: quantile * (variance / n as f64).sqrt(), n })
     }
+
+    /// The ratio $`r = \bar a / \bar b`$ of two means over the same samples, by linearization: the interval of the mean of $`a_i - r b_i`$ over $`|\bar b|`$.
+    /// [Cochran 1977, Sampling Techniques, 6.4] `None` for fewer than two pairs.
+    ///
+    /// ```
+    /// use wayfix::evaluate::MeanInterval;
+    /// let ratio = MeanInterval::of_ratio(&[1.0, 2.0, 3.0], &[2.0, 4.0, 6.0]).expect("three pairs");
+    /// assert_eq!((ratio.mean, ratio.half_width), (0.5, 0.0)); // the same in every pair, however they differ from one another
+    /// ```
+    pub fn of_ratio(numerators: &[f64], denominators: &[f64]) -> Option<Self> {
+        let mean = |samples: &[f64]| Self::of(samples).map(|interval| interval.mean);
+        let below = mean(denominators)?;
+        let ratio = mean(numerators)? / below;
+        let residuals: Vec<f64> = numerators.iter().zip(denominators).map(|(a, b)| a - ratio * b).collect();
+        let of_residuals = Self::of(&residuals)?;
+        Some(Self { mean: ratio, half_width: of_residuals.half_width / below.abs(), n: of_residuals.n })
+    }
 }
 
 /// The interval that holds a probability with 95 % confidence when `successes` of `trials` succeeded. [Clopper & Pearson 1934]

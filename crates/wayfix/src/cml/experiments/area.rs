@@ -4,7 +4,7 @@ use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
 use wayfix_scene_sim::world::World;
 
 use super::follow::known_start;
-use super::summary::{largest, mean, mean_of, over_seeds};
+use super::summary::{largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot};
 use super::{Course, Setup, Trip, follow};
 use crate::cml::PanoramaLocalizer;
@@ -35,14 +35,12 @@ pub fn laps(setup: &Setup, seed: u64) -> Result<Run> {
     metrics.extend(mean_of("dead_reckoning_error_mean_m", "m", &seeds, |lapped| {
         mean(&dead_reckoning_errors(&lapped.trip))
     }));
-    for (name, lap) in [("first", 0), ("last", N_LAPS - 1)] {
-        metrics.extend(mean_of(&format!("error_mean_m_{name}_lap"), "m", &seeds, |lapped| {
-            mean(of_lap(&lapped.course, lap))
-        }));
+    let error = |lap: usize| move |lapped: &Lapped| mean(of_lap(&lapped.course, lap));
+    for (name, lap) in [("first", 0), ("second", 1), ("last", N_LAPS - 1)] {
+        metrics.extend(mean_of(&format!("error_mean_m_{name}_lap"), "m", &seeds, error(lap)));
     }
-    let over_all =
-        |lap| mean(&seeds.iter().map(|lapped| mean(of_lap(&lapped.course, lap))).collect::<Vec<_>>());
-    metrics.push(Metric::new("last_lap_over_first", over_all(N_LAPS - 1) / over_all(0), ""));
+    metrics.extend(ratio_of("last_lap_over_first", &seeds, error(N_LAPS - 1), error(0)));
+    metrics.extend(ratio_of("last_lap_over_second", &seeds, error(N_LAPS - 1), error(1)));
     metrics.extend(mean_of("references", "", &seeds, |lapped| {
         lapped.course.n_references.last().map_or(0.0, |n| *n as f64)
     }));

@@ -4,7 +4,7 @@ use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
 
 use super::follow::{known_start, taught};
 use super::histogram::histogram;
-use super::summary::{by_seed, largest, mean, mean_of, over_seeds};
+use super::summary::{by_seed, largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot, tour};
 use super::{Course, Setup, Trip, follow};
 use crate::cml::{PanoramaLocalizer, PanoramaMap};
@@ -36,12 +36,15 @@ pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
             courses[at].n_relocated as f64
         }));
     }
-    let over_all =
-        |at: usize| mean(&seeds.iter().map(|courses| mean(&courses[at].errors)).collect::<Vec<_>>());
-    metrics.push(Metric::new("adapting_over_static", over_all(1) / over_all(0), ""));
-    metrics.push(Metric::new("adapted_over_static", over_all(3) / over_all(2), ""));
-    metrics.push(Metric::new("adapting_over_static_printed", over_all(1) / over_all(4), ""));
-    metrics.push(Metric::new("adapting_printed_over_static_printed", over_all(5) / over_all(4), ""));
+    for (name, ours, against) in [
+        ("adapting_over_static", 1, 0),
+        ("adapted_over_static", 3, 2),
+        ("adapting_over_static_printed", 1, 4),
+        ("adapting_printed_over_static_printed", 5, 4),
+    ] {
+        let error = |at: usize| move |courses: &[Course; 6]| mean(&courses[at].errors);
+        metrics.extend(ratio_of(name, &seeds, error(ours), error(against)));
+    }
     let errors =
         |at: usize| seeds.iter().flat_map(|courses: &[Course; 6]| courses[at].errors.clone()).collect();
     let plot = histogram(

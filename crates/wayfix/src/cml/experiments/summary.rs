@@ -23,6 +23,21 @@ pub(super) fn mean_of<T>(name: &str, unit: &str, seeds: &[T], value: impl Fn(&T)
     [Metric::new(name, mean, unit)].into_iter().chain(interval).collect()
 }
 
+/// The mean of the one over the seeds against that of the other, and, from two on, half the width of its 95 % interval.
+pub(super) fn ratio_of<T>(
+    name: &str,
+    seeds: &[T],
+    numerator: impl Fn(&T) -> f64,
+    denominator: impl Fn(&T) -> f64,
+) -> Vec<Metric> {
+    let above: Vec<f64> = seeds.iter().map(numerator).collect();
+    let below: Vec<f64> = seeds.iter().map(denominator).collect();
+    match MeanInterval::of_ratio(&above, &below) {
+        Some(interval) => Metric::of_mean(name, &interval, "").into(),
+        None => vec![Metric::new(name, mean(&above) / mean(&below), "")],
+    }
+}
+
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

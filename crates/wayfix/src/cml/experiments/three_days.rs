@@ -4,7 +4,7 @@ use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
 use super::area::plan;
 use super::follow::known_start;
 use super::histogram::histogram;
-use super::summary::{by_seed, largest, mean, mean_of, over_seeds};
+use super::summary::{by_seed, largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot, tour};
 use super::{Course, Setup, Trip, follow};
 use crate::cml::PanoramaLocalizer;
@@ -42,10 +42,9 @@ pub fn three_days(setup: &Setup, seed: u64) -> Result<Run> {
         let references = |days: &Vec<Day>| days[day].course.n_references.last().map_or(0.0, |n| *n as f64);
         metrics.extend(mean_of(&format!("references_day{number}"), "", &seeds, references));
     }
-    let over_all =
-        |day: usize| mean(&seeds.iter().map(|days| mean(&days[day].course.errors)).collect::<Vec<_>>());
-    metrics.push(Metric::new("day2_over_day1", over_all(1) / over_all(0), ""));
-    metrics.push(Metric::new("day3_over_day2", over_all(2) / over_all(1), ""));
+    let error = |day: usize| move |days: &Vec<Day>| mean(&days[day].course.errors);
+    metrics.extend(ratio_of("day2_over_day1", &seeds, error(1), error(0)));
+    metrics.extend(ratio_of("day3_over_day2", &seeds, error(2), error(1)));
     let errors = |day: usize| seeds.iter().flat_map(|days| days[day].course.errors.clone()).collect();
     let days = (0..N_DAYS).map(|day| (format!("day {}", day + 1), errors(day))).collect();
     let mut figures = vec![histogram("Errors of three days", 2.0, days).draw()?];

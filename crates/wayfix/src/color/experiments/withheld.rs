@@ -9,7 +9,7 @@ use wayfix_sensor_log::Record;
 
 use super::halls::drive;
 use crate::{
-    color::{ColorRun, ColorSystemParams, priors, rate_of, run},
+    color::{ColorSystemParams, priors, rate_of, run},
     evaluate::MeanInterval,
     report::{Metric, Run},
 };
@@ -17,11 +17,12 @@ use crate::{
 /// Fewer labelled pixels of a colour in an image give no rate of their own.
 const MIN_PIXELS: u64 = 20;
 
-/// How well each withheld colour is recognized with the joint prior and with the independent one; `None` for a colour that no image shows.
-type Rates = Vec<[Option<MeanInterval>; 2]>;
+/// How well a withheld colour is recognized in each image that shows it: with the joint prior and with the independent one.
+type Rates = [Vec<f64>; 2];
 
 /// Table 1 of [Schulz & Fox 2004], its lower half: each colour withheld from the lighting filter in turn, and how well it is recognized all the same,
-/// from what the other colours tell (joint prior) or from its prior alone (independent: all correlations between colours set to zero).
+/// from what the other colours tell (joint prior) or from its prior alone (independent: all correlations between colours set to zero). Means over the
+/// images of the log with 95 % intervals, the gain of the joint prior from differences in the same image.
 ///
 /// # Errors
 /// When no image of the log can be used.
@@ -32,14 +33,8 @@ pub fn withheld(
     params: &ColorSystemParams,
     seed: u64,
 ) -> Result<Run> {
-    let mut metrics = Vec::new();
-    for (name, rates) in map.colors().iter().zip(rates(records, map, learned, params, seed)?) {
-        if let [Some(joint), Some(independent)] = rates {
-            metrics.extend(Metric::of_mean(&format!("{name}_joint"), &joint, ""));
-            metrics.extend(Metric::of_mean(&format!("{name}_independent"), &independent, ""));
-            metrics.push(Metric::new(format!("{name}_gain"), joint.mean - independent.mean, ""));
-        }
-    }
+    let rates = rates(records, map, learned, params, seed)?;
+    let metrics = map.colors().iter().zip(&rates).flat_map(|(name, rates)| compared(name, rates)).collect();
     Ok(Run { metrics, ..Run::default() })
 }
 
@@ -54,29 +49,30 @@ pub fn withheld_in_halls(
     learned: &LightingPriors,
     params: &ColorSystemParams,
 ) -> Result<Run> {
-    let halls: Vec<Rates> = seeds
+    let halls: Vec<Vec<Rates>> = seeds
         .into_iter()
         .map(|seed| rates(&drive(seed, lighting)?, map, learned, params, seed))
         .collect::<Result<_>>()?;
     let mut metrics = vec![Metric::new("n_halls", halls.len() as f64, "")];
     for (color, name) in map.colors().iter().enumerate() {
-        let means = |hall: &Rates| match hall[color] {
-            [Some(joint), Some(independent)] => Some((joint.mean, independent.mean)),
-            _ => None,
-        };
-        let (joint, independent): (Vec<f64>, Vec<f64>) = halls.iter().filter_map(means).unzip();
-        let gain: Vec<f64> = joint.iter().zip(&independent).map(|(joint, alone)| joint - alone).collect();
-        for (kind, values) in [("joint", joint), ("independent", independent), ("gain", gain)] {
-            if let Some(mean) = MeanInterval::of(&values) {
-                metrics.extend(Metric::of_mean(&format!("{name}_{kind}"), &mean, ""));
-                if kind == "gain" {
-                    let low = mean.mean - mean.half_width;
-                    metrics.push(Metric::new(format!("{name}_gain_low95"), low, ""));
-                }
-            }
-        }
+        let mean_of = |rates: &Vec<f64>| MeanInterval::of(rates).map(|interval| interval.mean);
+        let means = |hall: &Vec<Rates>| Some((mean_of(&hall[color][0])?, mean_of(&hall[color][1])?));
+        let (joint, independent) = halls.iter().filter_map(means).unzip();
+        metrics.extend(compared(name, &[joint, independent]));
     }
     Ok(Run { metrics, ..Run::default() })
+}
+
+/// Both rates and their difference pair by pair, each a mean with its interval; nothing of a colour that is hardly shown.
+fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
+    let gain = joint.iter().zip(independent).map(|(joint, alone)| joint - alone).collect::<Vec<f64>>();
+    let mean_of = |what: &str, values: &[f64]| {
+        MeanInterval::of(values).map(|mean| (Metric::of_mean(&format!("{name}_{what}"), &mean, ""), mean))
+    };
+    let all = [mean_of("joint", joint), mean_of("independent", independent), mean_of("gain", &gain)];
+    let [Some((joint, _)), Some((independent, _)), Some((gain, mean))] = all else { return Vec::new() };
+    let low = Metric::new(format!("{name}_gain_low95"), mean.mean - mean.half_width, "");
+    joint.into_iter().chain(independent).chain(gain).chain([low]).collect()
 }
 
 fn rates(
@@ -85,24 +81,21 @@ fn rates(
     learned: &LightingPriors,
     params: &ColorSystemParams,
     seed: u64,
-) -> Result<Rates> {
+) -> Result<Vec<Rates>> {
     let kinds = [learned.clone(), learned.independent()];
     let cases: Vec<(usize, usize)> =
         (0..map.colors().len()).flat_map(|color| [(color, 0), (color, 1)]).collect();
-    let rates: Vec<Option<MeanInterval>> = cases
+    let rates: Vec<Vec<f64>> = cases
         .par_iter()
         .map(|&(color, kind)| {
             let mut params = params.clone();
             params.localizer.withheld = Some(color);
             let bank = priors::bank(&kinds[kind], &params)?;
             let run = run(records, Arc::clone(map), bank, &params, None, seed, |_| {})?;
-            Ok(rate(&run, ColorId(color as u8)))
+            let labelled = run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref());
+            Ok(rate_of(labelled, ColorId(color as u8), MIN_PIXELS))
         })
         .collect::<Result<_>>()?;
-    Ok(rates.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect())
-}
-
-fn rate(run: &ColorRun, color: ColorId) -> Option<MeanInterval> {
-    let labelled = run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref());
-    MeanInterval::of(&rate_of(labelled, color, MIN_PIXELS))
+    let mut rates = rates.into_iter();
+    Ok(std::iter::from_fn(|| Some([rates.next()?, rates.next()?])).collect())
 }

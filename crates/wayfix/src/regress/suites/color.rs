@@ -25,6 +25,8 @@ struct Settings {
     map: PathBuf,
     /// A file of parameters, relative to the folder of the plan.
     params: Option<PathBuf>,
+    /// Kinds of light to learn priors for, one Gaussian each; the built-in priors, of two, where nothing is said.
+    lights: Option<usize>,
     /// How many halls, for experiments over many.
     #[serde(default = "hundred")]
     n_seeds: u64,
@@ -84,7 +86,8 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
         Some(file) => toml::from_str(&job.read(file)?)?,
         None => ColorSystemParams::default(),
     };
-    let (learned, seed) = (priors::built_in()?, job.options.seed);
+    let learned = settings.lights.map_or_else(priors::built_in, priors::learn_from_simulation)?;
+    let seed = job.options.seed;
     let bank = priors::bank(&learned, &params)?;
     let seeds = settings.seeds(job);
     match settings.experiment {
