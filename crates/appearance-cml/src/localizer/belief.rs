@@ -5,27 +5,38 @@ use super::Start;
 use super::anywhere::Anywhere;
 use crate::{AppearanceError, OdometryNoise, UnimodalParams, propagate, unimodal};
 
+/// Where a belief looks for what the robot sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Outlook {
+    /// Where it puts the robot, and nowhere else.
+    Nearby,
+    /// In the whole map, when nothing nearby is seen.
+    Map,
+    /// In the whole map, and for places that look less alike as well, until it believes in one: it began from nothing in a robot that knows to be lost.
+    Lost,
+}
+
 /// Where a robot may be, and how much of the weight is left for all other places.
 #[derive(Clone, Debug)]
 pub(super) struct Belief {
     /// The heaviest component first; `None` when the robot may be anywhere.
     pub(super) state: Option<Mixture<Pose2<f64>>>,
     pub(super) anywhere: Anywhere,
-    /// Whether it began from nothing in a robot that knows to be lost, and so looks for places that look less alike as well.
-    pub(super) is_of_lost: bool,
+    pub(super) outlook: Outlook,
 }
 
 impl Belief {
     /// Nothing is known.
-    pub(super) fn nowhere(is_of_lost: bool) -> Self {
-        Self { state: None, anywhere: Anywhere::everything(), is_of_lost }
+    pub(super) fn nowhere(outlook: Outlook) -> Self {
+        Self { state: None, anywhere: Anywhere::everything(), outlook }
     }
 
     pub(super) fn of_start(start: Start) -> Result<Self, AppearanceError> {
         let state = start.into_state()?;
-        let is_of_lost = state.is_none();
-        let anywhere = if is_of_lost { Anywhere::everything() } else { Anywhere::nothing() };
-        Ok(Self { state, anywhere, is_of_lost })
+        Ok(match state {
+            Some(_) => Self { state, anywhere: Anywhere::nothing(), outlook: Outlook::Map },
+            None => Self::nowhere(Outlook::Lost),
+        })
     }
 
     pub(super) fn components(&self) -> &[Gaussian<Pose2<f64>>] {

@@ -1,5 +1,5 @@
 use super::AppearanceLocalizer;
-use super::belief::Belief;
+use super::belief::{Belief, Outlook};
 use super::{LocalizerParams, Observation};
 use crate::{
     AppearanceError, Descriptor, FusionParams, MapParams, PoseHypothesis, PoseSource, ReferenceSearch,
@@ -48,7 +48,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         } else {
             Some(PoseHypothesis::into_mixture(simplify(fused, &self.params.simplify)?)?)
         };
-        Ok((Belief { state, anywhere, is_of_lost: belief.is_of_lost }, n_sightings))
+        Ok((Belief { state, anywhere, outlook: belief.outlook }, n_sightings))
     }
 
     /// $`p(x_t | y_t)`$, and of how many places it is made.
@@ -63,7 +63,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
                 let limit = self.match_limit(belief);
                 let components = belief.components();
                 let mut sightings = self.apart_from_trail(self.map.sightings_near(view, components, limit));
-                if !self.is_supported_by(belief, &sightings) {
+                if belief.outlook != Outlook::Nearby && !self.is_supported_by(belief, &sightings) {
                     let found = self.map.sightings_anywhere(view, components, params.most_matches, limit);
                     sightings = self.apart_from_trail(found);
                 }
@@ -75,7 +75,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// $`E^{max}`$, which is greater for who is lost.
     fn match_limit(&self, belief: &Belief) -> f64 {
         let LocalizerParams { map, relocation, .. } = self.params;
-        let is_lost = belief.is_of_lost && !belief.anywhere.is_little();
+        let is_lost = belief.outlook == Outlook::Lost && !belief.anywhere.is_little();
         let share = if is_lost { map.match_share.max(relocation.match_share) } else { map.match_share };
         self.map.match_limit(&MapParams { match_share: share, ..map })
     }

@@ -5,7 +5,8 @@ use crate::{AppearanceError, check};
 /// A robot that was carried away is told by what it does *not* see: it believes to be where references are, and they look otherwise.
 /// An average over the last views says so, as the averages of augmented Monte Carlo localization do [Thrun et al. 2005, Sec. 8.3.5]. But a place that
 /// was rearranged looks otherwise too. So what it believes is not given up: while there is doubt a second belief is begun from nothing and goes
-/// along beside the first. It takes over when it alone has recognized where it is, over a way that no look-alike lasts for.
+/// along beside the first. It takes over when it alone has recognized where it is, over a way that few look-alikes last for; then the first goes along beside
+/// the second, to be believed again should it have been right.
 ///
 /// A view *recognizes* a place when a reference there, of that heading, is nearer to it than all of 64 references of far places. At a wrong
 /// place the best of half a dozen is so by chance in one view of eleven.
@@ -49,6 +50,11 @@ pub struct RelocationParams {
     pub strayed: Proof,
     /// Share of these views in which the first may recognize where it is. Default 0.15: what chance makes of it, and a little more.
     pub by_chance: f64,
+    /// Way for which the first goes along when the second has taken over, m, and nothing is learned: aisles that look like others end by then. Default 50.
+    pub ousted_way: f64,
+    /// What it has to show meanwhile to be believed again. Default: half of the views over 5 m. It had been right for as long as the robot has driven, and is not
+    /// looked for anywhere else.
+    pub reinstated: Proof,
 }
 
 /// What a second belief has to show before it is believed.
@@ -73,6 +79,8 @@ impl Default for RelocationParams {
             match_share: 0.5,
             strayed: Proof { way: 25.0, recognized: 0.5 },
             by_chance: 0.15,
+            ousted_way: 50.0,
+            reinstated: Proof { way: 5.0, recognized: 0.5 },
         }
     }
 }
@@ -87,7 +95,8 @@ impl RelocationParams {
         check::share("share of views from which on the robot doubts", self.doubt)?;
         check::positive("way for which a break counts (m)", self.break_way)?;
         check::share("share of the match limit for who is lost", self.match_share)?;
-        for proof in [&self.carried, &self.carried_unknown, &self.strayed] {
+        check::not_negative("way for which a belief goes along that was ousted (m)", self.ousted_way)?;
+        for proof in [&self.carried, &self.carried_unknown, &self.strayed, &self.reinstated] {
             check::positive("way over which two beliefs are compared (m)", proof.way)?;
             check::share("share of views that the second belief recognizes", proof.recognized)?;
         }

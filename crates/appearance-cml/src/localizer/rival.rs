@@ -1,7 +1,7 @@
 use std::collections::VecDeque;
 
 use super::Proof;
-use super::belief::Belief;
+use super::belief::{Belief, Outlook};
 use super::fit::Fit;
 
 /// Where else the robot may be, and how that has done against where it is thought to be.
@@ -24,8 +24,19 @@ pub(super) struct Round {
 }
 
 impl Rival {
-    pub(super) fn nowhere(is_of_lost: bool) -> Self {
-        Self { belief: Belief::nowhere(is_of_lost), record: VecDeque::new(), way: 0.0 }
+    /// Begun from nothing.
+    pub(super) fn nowhere(outlook: Outlook) -> Self {
+        Self { belief: Belief::nowhere(outlook), record: VecDeque::new(), way: 0.0 }
+    }
+
+    /// A belief that another has taken over from: it looks for nothing but what it expects, lest it follow the other.
+    pub(super) fn ousted(belief: Belief) -> Self {
+        Self { belief: Belief { outlook: Outlook::Nearby, ..belief }, record: VecDeque::new(), way: 0.0 }
+    }
+
+    /// What one that was ousted is when it is believed again.
+    pub(super) fn reinstated(&self) -> Belief {
+        Belief { outlook: Outlook::Map, ..self.belief.clone() }
     }
 
     pub(super) fn with(&self, belief: Belief) -> Self {
