@@ -50,7 +50,7 @@ pub struct RelocationParams {
     pub strayed: Proof,
     /// Share of these views in which the first may recognize where it is. Default 0.15: what chance makes of it, and a little more.
     pub by_chance: f64,
-    /// Way for which the first goes along when the second has taken over, m, and nothing is learned: aisles that look like others end by then. Default 50.
+    /// Way for which the first goes along when the second has taken over, m, and nothing is learned: most aisles that look like others end by then. Default 50.
     pub ousted_way: f64,
     /// What it has to show meanwhile to be believed again. Default: half of the views over 5 m. It had been right for as long as the robot has driven, and is not
     /// looked for anywhere else.
