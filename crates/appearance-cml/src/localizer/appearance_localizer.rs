@@ -182,12 +182,16 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     ) -> Result<UpdateOutcome, AppearanceError> {
         let is_news = self.is_news();
         let (mut belief, n_sightings) = self.seen(&self.belief, is_news.then_some(&view), sources)?;
+        let mut contest = None;
         if is_news {
-            let contest = self.contested(&view, &belief)?;
-            (self.contest, belief) = contest.decided(belief, &self.params);
+            let (decided, believed) = self.contested(&view, &belief)?.decided(belief, &self.params);
+            (contest, belief) = (Some(decided), believed);
         }
         let mut events = self.change_to(&belief)?;
         self.belief = belief;
+        if let Some(contest) = contest {
+            self.contest = contest;
+        }
         if is_news {
             self.last_seen = Some(view.clone());
             if self.params.learning == Learning::Adapting {

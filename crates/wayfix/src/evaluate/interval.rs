@@ -29,7 +29,7 @@ impl MeanInterval {
     }
 
     /// The ratio $`r = \bar a / \bar b`$ of two means over the same samples, by linearization: the interval of the mean of $`a_i - r b_i`$ over $`|\bar b|`$.
-    /// [Cochran 1977, Sampling Techniques, 6.4] `None` for fewer than two pairs.
+    /// [Cochran 1977, Sampling Techniques, 6.4] `None` for fewer than two pairs, and when the numbers of samples differ.
     ///
     /// ```
     /// use wayfix::evaluate::MeanInterval;
@@ -37,6 +37,9 @@ impl MeanInterval {
     /// assert_eq!((ratio.mean, ratio.half_width), (0.5, 0.0)); // the same in every pair, however they differ from one another
     /// ```
     pub fn of_ratio(numerators: &[f64], denominators: &[f64]) -> Option<Self> {
+        if numerators.len() != denominators.len() {
+            return None;
+        }
         let mean = |samples: &[f64]| Self::of(samples).map(|interval| interval.mean);
         let below = mean(denominators)?;
         let ratio = mean(numerators)? / below;
@@ -78,5 +81,6 @@ mod tests {
     fn one_sample_has_no_interval() {
         assert_eq!(MeanInterval::of(&[1.0]), None);
         assert_eq!(MeanInterval::of(&[]), None);
+        assert_eq!(MeanInterval::of_ratio(&[1.0, 2.0], &[1.0, 2.0, 3.0]), None);
     }
 }

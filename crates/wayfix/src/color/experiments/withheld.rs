@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use rayon::prelude::*;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::LightingPriors;
@@ -97,5 +97,11 @@ fn rates(
         })
         .collect::<Result<_>>()?;
     let mut rates = rates.into_iter();
-    Ok(std::iter::from_fn(|| Some([rates.next()?, rates.next()?])).collect())
+    let pairs: Vec<Rates> = std::iter::from_fn(|| Some([rates.next()?, rates.next()?])).collect();
+    // Images are paired by their order: one that only one of the two could use would shift all others.
+    ensure!(
+        pairs.iter().all(|[joint, independent]| joint.len() == independent.len()),
+        "an image was used with one prior only"
+    );
+    Ok(pairs)
 }
