@@ -5,7 +5,7 @@ use crate::{AppearanceError, check};
 /// A robot that was carried away is told by what it does *not* see: it believes to be where references are, and they look otherwise.
 /// An average over the last views says so, as the averages of augmented Monte Carlo localization do [Thrun et al. 2005, Sec. 8.3.5]. But a place that
 /// was rearranged looks otherwise too. So what it believes is not given up: while there is doubt a second belief is begun from nothing and goes
-/// along beside the first. It takes over when it alone has recognized where it is, over a way that few look-alikes last for; then the first goes along beside
+/// along beside the first. It takes over when it alone has recognized where it is, over a way that hardly any place that looks like another lasts for; then the first goes along beside
 /// the second, to be believed again should it have been right.
 ///
 /// A view *recognizes* a place when a reference there, of that heading, is nearer to it than all of 64 references of far places. At a wrong
