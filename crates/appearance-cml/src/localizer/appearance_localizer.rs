@@ -157,7 +157,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let noise = &self.params.odometry;
         let motion = self.motion.then(increment, noise)?;
         let belief = self.belief.moved(increment, noise)?;
-        self.contest = self.contest.moved(increment, noise)?;
+        self.contest = self.contest.moved(increment, noise);
         (self.belief, self.motion) = (belief, motion);
         Ok(())
     }
@@ -184,7 +184,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let (mut belief, n_sightings) = self.seen(&self.belief, is_news.then_some(&view), sources)?;
         let mut contest = None;
         if is_news {
-            let (decided, believed) = self.contested(&view, &belief)?.decided(belief, &self.params);
+            let (decided, believed) = self.contested(&view, &belief)?.decided(belief, &self.params)?;
             (contest, belief) = (Some(decided), believed);
         }
         let mut events = self.change_to(&belief)?;

@@ -8,7 +8,7 @@ use crate::{AppearanceError, OdometryNoise, UnimodalParams, propagate, unimodal}
 /// Where a belief looks for what the robot sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outlook {
-    /// Where it puts the robot, and nowhere else.
+    /// Where it puts the robot, and nowhere else: what agrees with no hypothesis is passed over.
     Nearby,
     /// In the whole map, when nothing nearby is seen.
     Map,
@@ -37,6 +37,12 @@ impl Belief {
             Some(_) => Self { state, anywhere: Anywhere::nothing(), outlook: Outlook::Map },
             None => Self::nowhere(Outlook::Lost),
         })
+    }
+
+    /// The heaviest hypothesis and no other, seen by what is where it is.
+    pub(super) fn heaviest_alone(&self) -> Result<Self, AppearanceError> {
+        let alone = self.heaviest().map(|heaviest| Mixture::from_log_weights(vec![(0.0, heaviest.clone())]));
+        Ok(Self { state: alone.transpose()?, anywhere: Anywhere::nothing(), outlook: Outlook::Nearby })
     }
 
     pub(super) fn components(&self) -> &[Gaussian<Pose2<f64>>] {

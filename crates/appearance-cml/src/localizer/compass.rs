@@ -3,9 +3,7 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::fit::{GATE_SIGMAS, HERE_TURN};
 use super::{AppearanceLocalizer, Observation};
-use crate::{
-    AppearanceError, Descriptor, Facing, PoseHypothesis, ReferenceSearch, separation_squared, told_heading,
-};
+use crate::{AppearanceError, Descriptor, Facing, PoseHypothesis, ReferenceSearch, told_heading};
 
 /// Weight from which on a hypothesis is worth the comparisons.
 const LEAST_WEIGHT: f64 = 0.05;
@@ -37,19 +35,6 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             }
         }
         Ok(())
-    }
-
-    fn agrees(
-        &self,
-        belief: &Gaussian<Pose2<f64>>,
-        observed: &[PoseHypothesis],
-    ) -> Result<bool, AppearanceError> {
-        for hypothesis in observed {
-            if separation_squared(belief, &hypothesis.gaussian)? < self.params.fusion.gate {
-                return Ok(true);
-            }
-        }
-        Ok(false)
     }
 
     /// Which way the robot looks by the references around a belief, those that look more like the view than all of some far places do.

@@ -51,17 +51,12 @@ const MOST_EXPLORING: f64 = 0.9;
 const AT_ONCE_M: f64 = 1.0;
 
 impl Contest {
-    /// After the robot has moved.
-    pub(super) fn moved(
-        &self,
-        increment: &Pose2<f64>,
-        noise: &OdometryNoise,
-    ) -> Result<Self, AppearanceError> {
+    /// After the robot has moved. A belief beside the first that has become singular is dropped: it must not keep the robot from driving on.
+    pub(super) fn moved(&self, increment: &Pose2<f64>, noise: &OdometryNoise) -> Self {
         let moved =
-            |rival: &Rival| Ok::<_, AppearanceError>(rival.with(rival.belief.moved(increment, noise)?));
-        let rival = self.rival.as_ref().map(moved).transpose()?;
-        let ousted = self.ousted.as_ref().map(moved).transpose()?;
-        Ok(Self { rival, ousted, ..*self })
+            |rival: &Rival| rival.belief.moved(increment, noise).map(|belief| rival.with(belief)).ok();
+        let (rival, ousted) = (self.rival.as_ref().and_then(moved), self.ousted.as_ref().and_then(moved));
+        Self { rival, ousted, ..*self }
     }
 
     /// Whether the rival recognizes more than the first does, or has just taken over: until that is decided nothing should be learned.
@@ -84,26 +79,31 @@ impl Contest {
         }
     }
 
-    /// The belief that is believed from now on: the rival's, or that of the one that was ousted, when it has won.
-    pub(super) fn decided(self, first: Belief, params: &LocalizerParams) -> (Self, Belief) {
+    /// The belief that is believed from now on: the rival's, or that of the one that was ousted, when it has won. One that has won where the first is ousts
+    /// nobody.
+    pub(super) fn decided(
+        self,
+        first: Belief,
+        params: &LocalizerParams,
+    ) -> Result<(Self, Belief), AppearanceError> {
         let has_won = |rival: &&Rival, proof: &Proof| {
             rival.belief.one_place(&params.unimodal).is_some()
                 && rival.has_won(proof, params.relocation.by_chance)
         };
         let reinstated = &params.relocation.reinstated;
         if let Some(ousted) = self.ousted.as_ref().filter(|ousted| has_won(ousted, reinstated)) {
-            return (Self::default(), ousted.reinstated());
+            return Ok((Self::default(), ousted.reinstated()));
         }
         let proven = |rival: &&Rival| has_won(rival, &self.proof(rival.way, &params.relocation));
-        match self.rival.as_ref().filter(proven) {
-            Some(rival) => {
-                let belief = rival.belief.clone();
-                // One that was ousted before has been believed for longer.
-                let ousted = self.ousted.or(Some(Rival::ousted(first)));
-                (Self { ousted, ..Self::default() }, belief)
-            }
-            None => (self, first),
-        }
+        let Some(rival) = self.rival.as_ref().filter(proven) else { return Ok((self, first)) };
+        let belief = rival.belief.clone();
+        let ousted = match self.ousted {
+            // It has been believed for longer.
+            Some(before) => Some(before.against_another()),
+            None if is_same_place(&first, &belief, params.fusion.gate) => None,
+            None => Some(Rival::ousted(&first)?),
+        };
+        Ok((Self { ousted, ..Self::default() }, belief))
     }
 }
 
@@ -119,7 +119,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let is_break = self.is_break(view);
         let doubt = if is_break { Doubt::great(params) } else { self.contest.doubt.after(fit, params) };
         let way = self.motion.increment.translation.norm();
-        let ousted = self.ousted_after(view, way, fit)?;
+        let ousted = self.ousted_after(view, way, fit);
         if !doubt.is_great() {
             return Ok(Contest { doubt, exploring, broke: is_break, ousted, ..Contest::default() });
         }
@@ -133,8 +133,10 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let is_of_lost = contest.recent_break(params).is_some_and(|last| !last.exploring);
         let nowhere = Rival::nowhere(if is_of_lost { Outlook::Lost } else { Outlook::Map });
         let before = self.contest.rival.as_ref().filter(|_| !is_break).unwrap_or(&nowhere);
-        let (belief, _) = self.seen(&before.belief, Some(view), &[])?;
-        let goes_on = self.goes_on(&before.belief, &belief)?;
+        // What has become singular begins again.
+        let belief =
+            self.seen(&before.belief, Some(view), &[]).map_or(nowhere.belief.clone(), |(seen, _)| seen);
+        let goes_on = is_same_place(&before.belief, &belief, self.params.fusion.gate);
         let round = Round { way, first: fit, rival: self.fit(view, &before.belief) };
         let mut rival = before.with(belief);
         if goes_on {
@@ -146,18 +148,15 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         Ok(Contest { rival: Some(rival), ..contest })
     }
 
-    /// The one that was ousted after the view; `None` when it has gone along for long enough.
-    fn ousted_after(&self, view: &D, way: f64, first: Fit) -> Result<Option<Rival>, AppearanceError> {
+    /// The one that was ousted after the view; `None` when it has gone along for long enough, or has become singular.
+    fn ousted_after(&self, view: &D, way: f64, first: Fit) -> Option<Rival> {
         let params = &self.params.relocation;
-        let Some(before) = self.contest.ousted.as_ref().filter(|ousted| ousted.way < params.ousted_way)
-        else {
-            return Ok(None);
-        };
-        let (belief, _) = self.seen(&before.belief, Some(view), &[])?;
+        let before = self.contest.ousted.as_ref().filter(|ousted| ousted.way < params.ousted_way)?;
+        let (belief, _) = self.seen(&before.belief, Some(view), &[]).ok()?;
         let mut ousted = before.with(belief);
         ousted.goes_on(Round { way, first, rival: self.fit(view, &before.belief) });
         ousted.shorten(params.reinstated.way);
-        Ok(Some(ousted))
+        Some(ousted)
     }
 
     /// Whether the view is as strange to the one before as one of a far place, although the wheels say that it is a step away. Who is carried sees it, or
@@ -168,17 +167,17 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let strange = |last: &D| view.compare(last).distance > scale.strangeness();
         is_near && self.last_seen.as_ref().is_some_and(strange)
     }
+}
 
-    /// Whether the heaviest hypothesis is the same as before the view.
-    fn goes_on(&self, before: &Belief, after: &Belief) -> Result<bool, AppearanceError> {
-        let (Some(before), Some(after)) = (before.heaviest(), after.heaviest()) else { return Ok(false) };
-        Ok(separation_squared(before, after)? <= self.params.fusion.gate)
-    }
+/// Whether two beliefs put the robot at one place, by their heaviest hypotheses; not when one of them is singular.
+fn is_same_place(one: &Belief, other: &Belief, gate: f64) -> bool {
+    let separation = one.heaviest().zip(other.heaviest()).map(|(one, other)| separation_squared(one, other));
+    matches!(separation, Some(Ok(squared)) if squared <= gate)
 }
 
 #[cfg(test)]
 mod tests {
-    use wayfix_gaussian_core::Gaussian;
+    use wayfix_gaussian_core::{Gaussian, Mixture};
 
     use super::*;
     use crate::Start;
@@ -198,22 +197,32 @@ mod tests {
         assert_eq!(Contest::default().proof(5.0, &params), params.strayed);
     }
 
+    fn at(x: f64) -> Belief {
+        let pose = Pose2::new(x, 0.0, 0.0);
+        let known = Gaussian::from_sigmas(pose, &nalgebra::Vector3::new(0.1, 0.1, 0.02));
+        Belief::of_start(Start::Known(known.expect("sigmas are positive"))).expect("a finite start")
+    }
+
+    fn x(belief: &Belief) -> f64 {
+        belief.heaviest().map_or(f64::NAN, |pose| pose.mean().x())
+    }
+
+    fn seen(rival: &mut Rival, fits: (Fit, Fit), n: usize) {
+        (0..n).for_each(|_| rival.goes_on(Round { way: 0.5, first: fits.0, rival: fits.1 }));
+    }
+
+    /// One that has shown all that can be asked.
+    fn proven(x: f64) -> Rival {
+        let mut rival = Rival::nowhere(Outlook::Map).with(at(x));
+        seen(&mut rival, (Fit::Missed, Fit::Recognized), 50);
+        rival
+    }
+
     #[test]
     fn who_was_ousted_goes_along_and_is_believed_again_when_it_alone_recognizes() {
         let params = LocalizerParams::default();
-        let at = |x: f64| {
-            let pose = Pose2::new(x, 0.0, 0.0);
-            let known = Gaussian::from_sigmas(pose, &nalgebra::Vector3::new(0.1, 0.1, 0.02));
-            Belief::of_start(Start::Known(known.expect("sigmas are positive"))).expect("a finite start")
-        };
-        let x = |belief: &Belief| belief.heaviest().map_or(f64::NAN, |pose| pose.mean().x());
-        let seen = |rival: &mut Rival, fits: (Fit, Fit), n: usize| {
-            (0..n).for_each(|_| rival.goes_on(Round { way: 0.5, first: fits.0, rival: fits.1 }));
-        };
-        let mut rival = Rival::nowhere(Outlook::Map).with(at(40.0));
-        seen(&mut rival, (Fit::Missed, Fit::Recognized), 50);
-        let contest = Contest { rival: Some(rival), ..Contest::default() };
-        let (mut contest, first) = contest.decided(at(0.0), &params);
+        let contest = Contest { rival: Some(proven(40.0)), ..Contest::default() };
+        let (mut contest, first) = contest.decided(at(0.0), &params).unwrap();
         assert!(x(&first) == 40.0 && contest.is_open() && contest.rival.is_none());
 
         let mut ousted = contest.ousted.clone().expect("the first goes along");
@@ -221,14 +230,52 @@ mod tests {
         // While both recognize something it stays as it is.
         seen(&mut ousted, (Fit::Recognized, Fit::Recognized), 10);
         contest.ousted = Some(ousted);
-        let (mut contest, first) = contest.decided(first, &params);
+        let (mut contest, first) = contest.decided(first, &params).unwrap();
         assert_eq!(x(&first), 40.0);
 
         let mut ousted = contest.ousted.clone().expect("it still goes along");
         seen(&mut ousted, (Fit::Missed, Fit::Recognized), 10);
         ousted.shorten(params.relocation.reinstated.way);
         contest.ousted = Some(ousted);
-        let (contest, first) = contest.decided(first, &params);
+        let (contest, first) = contest.decided(first, &params).unwrap();
         assert!(x(&first) == 0.0 && first.outlook == Outlook::Map && !contest.is_open());
+    }
+
+    #[test]
+    fn a_rival_that_is_where_the_first_is_ousts_nobody() {
+        let contest = Contest { rival: Some(proven(0.1)), ..Contest::default() };
+        let (contest, first) = contest.decided(at(0.0), &LocalizerParams::default()).unwrap();
+        assert!(x(&first) == 0.1 && !contest.is_open());
+    }
+
+    #[test]
+    fn what_was_shown_against_one_belief_counts_nothing_against_the_next() {
+        let params = LocalizerParams::default();
+        let mut ousted = Rival::ousted(&at(0.0)).unwrap();
+        // Half a metre short of what has to be shown.
+        seen(&mut ousted, (Fit::Missed, Fit::Recognized), 9);
+        let contest = Contest { rival: Some(proven(80.0)), ousted: Some(ousted), ..Contest::default() };
+        let (mut contest, first) = contest.decided(at(40.0), &params).unwrap();
+        assert_eq!(x(&first), 80.0);
+        let mut ousted = contest.ousted.clone().expect("the first of all goes on along");
+        assert_eq!(ousted.way, 4.5);
+        seen(&mut ousted, (Fit::Missed, Fit::Recognized), 1);
+        contest.ousted = Some(ousted);
+        let (contest, first) = contest.decided(first, &params).unwrap();
+        assert!(x(&first) == 80.0 && contest.is_open());
+    }
+
+    #[test]
+    fn a_belief_beside_the_first_that_breaks_is_dropped_and_the_robot_drives_on() {
+        let broken = Gaussian::from_parts_unchecked(
+            Pose2::new(0.0, 0.0, 0.0),
+            nalgebra::Matrix3::from_element(f64::NAN),
+        );
+        let state = Mixture::from_log_weights(vec![(0.0, broken)]).unwrap();
+        let belief = Belief { state: Some(state), ..at(0.0) };
+        let rival = Rival::nowhere(Outlook::Map).with(belief);
+        let contest = Contest { rival: Some(rival.clone()), ousted: Some(rival), ..Contest::default() };
+        let moved = contest.moved(&Pose2::new(0.25, 0.0, 0.0), &OdometryNoise::default());
+        assert!(moved.rival.is_none() && moved.ousted.is_none());
     }
 }

@@ -237,6 +237,25 @@ mod tests {
     }
 
     #[test]
+    fn who_comes_to_a_known_place_is_surer_than_who_waits() {
+        let mut journey = Journey::default();
+        assert!(!journey.is_surer_now(), "nothing waits");
+        let (start, unsure) = (at(0.0), metre().applied(&at(0.0)));
+        journey.push(Motion::none(), Some(unsure.clone()), ());
+        assert!(journey.is_surer_now(), "as sure as it is itself");
+        journey.push(metre(), Some(metre().applied(&unsure)), ());
+        assert!(!journey.is_surer_now(), "odometry alone");
+        journey.push(metre(), None, ());
+        assert!(!journey.is_surer_now(), "it does not know where it is");
+        journey.push(metre(), Some(start), ());
+        assert!(journey.is_surer_now(), "a known place");
+        let mut lost = Journey::default();
+        lost.push(Motion::none(), None, ());
+        lost.push(metre(), Some(unsure), ());
+        assert!(lost.is_surer_now(), "anything is surer than not to know");
+    }
+
+    #[test]
     fn a_way_that_was_wrong_keeps_its_newest_view_only() {
         let mut journey = Journey::default();
         for k in 0..5 {

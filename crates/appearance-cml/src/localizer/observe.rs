@@ -1,9 +1,11 @@
-use super::AppearanceLocalizer;
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::Gaussian;
+
 use super::belief::{Belief, Outlook};
-use super::{LocalizerParams, Observation};
+use super::{AppearanceLocalizer, LocalizerParams, Observation};
 use crate::{
     AppearanceError, Descriptor, FusionParams, MapParams, PoseHypothesis, PoseSource, ReferenceSearch,
-    Sighting, fuse, interpolate, simplify, superpose,
+    Sighting, fuse, interpolate, separation_squared, simplify, superpose,
 };
 
 /// Similarity of a view to a reference of the place where the robot is thought to be, from which on nothing else is looked for.
@@ -27,13 +29,16 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         view: Option<&D>,
         sources: &[&dyn PoseSource],
     ) -> Result<(Belief, usize), AppearanceError> {
-        let (observed, n_sightings) = match view {
+        let (mut observed, n_sightings) = match view {
             Some(view) => self.observe(belief, view)?,
             None => (Vec::new(), 0),
         };
         let weighting = belief.anywhere.weighting(self.params.fusion.weighting);
         let fusion = FusionParams { weighting, ..self.params.fusion };
         let mut predicted = belief.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();
+        if belief.outlook == Outlook::Nearby {
+            observed = self.expected(observed, &predicted)?;
+        }
         if let Some(view) = view {
             self.steady(view, &mut predicted, &observed)?;
         }
@@ -70,6 +75,31 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
                 Ok((interpolate(&sightings, components, self.map.scale())?, sightings.len()))
             }
         }
+    }
+
+    /// What of the observed agrees with something predicted.
+    fn expected(
+        &self,
+        observed: Vec<PoseHypothesis>,
+        predicted: &[PoseHypothesis],
+    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+        let agrees = |seen: &PoseHypothesis| self.agrees(&seen.gaussian, predicted);
+        let agreeing = observed.into_iter().map(|seen| Ok(agrees(&seen)?.then_some(seen)));
+        agreeing.filter_map(Result::transpose).collect()
+    }
+
+    /// Whether something observed means the same place.
+    pub(super) fn agrees(
+        &self,
+        belief: &Gaussian<Pose2<f64>>,
+        observed: &[PoseHypothesis],
+    ) -> Result<bool, AppearanceError> {
+        for hypothesis in observed {
+            if separation_squared(belief, &hypothesis.gaussian)? < self.params.fusion.gate {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// $`E^{max}`$, which is greater for who is lost.
