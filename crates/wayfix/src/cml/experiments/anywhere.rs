@@ -20,6 +20,12 @@ use crate::report::{Metric, Run};
 const NEAR_M: f64 = 1.0;
 /// How far the robot drives to find out where it is, metres.
 const TRAVEL_M: f64 = 20.0;
+/// Way between two views, metres, about.
+const VIEW_M: f64 = 0.25;
+/// How far one that was carried is followed, metres: what it was before goes along for 50 m from where it was found.
+const FOLLOWED_M: f64 = 80.0;
+/// Who has been found and is this far off afterwards was led away again, metres: across an aisle.
+const LED_AWAY_M: f64 = 3.0;
 /// Runs in each store: a map takes far longer to learn than a run.
 const RUNS_PER_STORE: u64 = 10;
 const REARRANGED: f64 = 0.1;
@@ -36,7 +42,7 @@ const MOST_DRAWS: usize = 1000;
 /// When a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
     let courses = in_stores(setup, seed, |map, later, at| {
-        let trip = away(later, map, at)?;
+        let trip = away(later, map, at, TRAVEL_M)?;
         follow(&mut PanoramaLocalizer::with_map(setup.localizer, map.clone(), Start::Anywhere)?, &trip)
     })?;
     report("From anywhere", setup, &courses)
@@ -47,13 +53,50 @@ pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
 /// # Errors
 /// As [`global_start`].
 pub fn carried_away(setup: &Setup, seed: u64) -> Result<Run> {
-    let courses = in_stores(setup, seed, |map, later, at| {
-        let (before, after) = (away(later, map, (at.0, at.1 + 1000))?, away(later, map, at)?);
+    report("Carried away", setup, &carried(setup, seed, TRAVEL_M)?)
+}
+
+/// How many runs in which a robot is carried elsewhere, and finds itself, are led away from there in the 60 m that follow: back to where it would be had
+/// it not been carried, or to any other place.
+///
+/// # Errors
+/// As [`global_start`].
+pub fn carried_on(setup: &Setup, seed: u64) -> Result<Run> {
+    let courses = carried(setup, seed, FOLLOWED_M)?;
+    let after = |course: &Course| course.errors.get((TRAVEL_M / VIEW_M) as usize..).map(<[f64]>::to_vec);
+    let mut found: Vec<Vec<f64>> = courses.iter().filter_map(after).collect();
+    found.retain(|errors| errors.first().is_some_and(|error| *error <= NEAR_M));
+    let n_led_away = found.iter().filter(|errors| errors.iter().any(|error| *error > LED_AWAY_M)).count();
+    let n_astray =
+        found.iter().filter(|errors| errors.last().is_some_and(|error| *error > LED_AWAY_M)).count();
+    let share = |n: usize| n as f64 / found.len().max(1) as f64;
+    let (low, high) = proportion_interval(n_led_away as u64, found.len() as u64);
+    let metrics = vec![
+        Metric::new("trials", courses.len() as f64, ""),
+        Metric::new("found", found.len() as f64, ""),
+        Metric::new("led_away_share", share(n_led_away), ""),
+        Metric::new("led_away_share_low95", low, ""),
+        Metric::new("led_away_share_high95", high, ""),
+        Metric::new("astray_at_end_share", share(n_astray), ""),
+    ];
+    let note = format!(
+        "{} carried robots, of whom {} are within {NEAR_M} m after {TRAVEL_M} m; led away: further off than {LED_AWAY_M} m at some time up to {FOLLOWED_M} m. Stores as for `carried_away`; routes are longer and others.",
+        courses.len(),
+        found.len()
+    );
+    let figures = vec![quantiles("Carried away, and on", &courses).draw()?];
+    Ok(Run { metrics, figures, notes: vec![note], ..Run::default() })
+}
+
+/// Robots that know where they are for 20 m, and are then carried to where a drive of `length_m` begins.
+fn carried(setup: &Setup, seed: u64, length_m: f64) -> Result<Vec<Course>> {
+    in_stores(setup, seed, |map, later, at| {
+        let before = away(later, map, (at.0, at.1 + 1000), TRAVEL_M)?;
+        let after = away(later, map, at, length_m)?;
         let mut localizer = PanoramaLocalizer::with_map(setup.localizer, map.clone(), known_start(&before)?)?;
         follow(&mut localizer, &before)?;
         follow(&mut localizer, &after)
-    })?;
-    report("Carried away", setup, &courses)
+    })
 }
 
 /// Several runs in each store, some days after its map was taught.
@@ -75,33 +118,33 @@ fn in_stores(
 }
 
 /// A drive from some crossing, through aisles that the map knows.
-fn away(building: &Building, map: &PanoramaMap, (seed, visit): (u64, u64)) -> Result<Trip> {
+fn away(building: &Building, map: &PanoramaMap, (seed, visit): (u64, u64), length_m: f64) -> Result<Trip> {
     let mut rng = Draw::Visit(visit).rng(seed);
-    let route = known_route(building, map, &mut rng)?;
+    let route = known_route(building, map, length_m, &mut rng)?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
     let mut trip = Trip::drive(building, route, params, Draw::Visit(visit).streams(seed))?;
     let mut travelled_m = 0.0;
     trip.steps.retain(|step| {
         travelled_m += step.odometry.map_or(0.0, |moved| moved.translation.norm());
-        travelled_m <= TRAVEL_M
+        travelled_m <= length_m
     });
     Ok(trip)
 }
 
-fn known_route(building: &Building, map: &PanoramaMap, rng: &mut ChaCha8Rng) -> Result<Route> {
+fn known_route(building: &Building, map: &PanoramaMap, length_m: f64, rng: &mut ChaCha8Rng) -> Result<Route> {
     let taught = || map.references().values().flat_map(|reference| &reference.places);
     let is_known =
         |at: Vector2<f64>| taught().any(|place| (place.gaussian.mean().translation - at).norm() <= KNOWN_M);
     let crossings = building.aisles().crossings();
     for _ in 0..MOST_DRAWS {
         let start = crossings[rng.random_range(0..crossings.len())];
-        let route = building.aisles().tour_from(start, TRAVEL_M, rng)?;
-        let mut points = (0..=TRAVEL_M as usize).map(|metre| route.at(metre as f64).translation);
+        let route = building.aisles().tour_from(start, length_m, rng)?;
+        let mut points = (0..=length_m as usize).map(|metre| route.at(metre as f64).translation);
         if points.all(is_known) {
             return Ok(route);
         }
     }
-    bail!("no drive of {TRAVEL_M} m through known aisles in {MOST_DRAWS} draws")
+    bail!("no drive of {length_m} m through known aisles in {MOST_DRAWS} draws")
 }
 
 fn report(title: &str, setup: &Setup, courses: &[Course]) -> Result<Run> {
@@ -130,7 +173,7 @@ fn quantiles(title: &str, courses: &[Course]) -> LinesPlot {
             let mut errors: Vec<f64> = courses.iter().map(|course| course.errors[step]).collect();
             errors.sort_by(f64::total_cmp);
             let index = (share * errors.len().saturating_sub(1) as f64).round() as usize;
-            (0.25 * step as f64, errors[index].min(99.0))
+            (VIEW_M * step as f64, errors[index].min(99.0))
         };
         (0..n_steps).map(at).collect()
     };

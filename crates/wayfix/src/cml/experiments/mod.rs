@@ -14,7 +14,7 @@ mod three_days;
 mod trip;
 mod worlds;
 
-pub use anywhere::{carried_away, global_start};
+pub use anywhere::{carried_away, carried_on, global_start};
 pub use area::laps;
 pub use crowded::crowded;
 pub use follow::{Course, follow};

@@ -33,6 +33,8 @@ enum Experiment {
     GlobalStart,
     /// Carried elsewhere.
     CarriedAway,
+    /// Carried elsewhere, and what becomes of it.
+    CarriedOn,
     /// People before the camera.
     Crowded,
     /// Time of a step against the number of references.
@@ -50,6 +52,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
         Experiment::ThreeDays => experiments::three_days,
         Experiment::GlobalStart => experiments::global_start,
         Experiment::CarriedAway => experiments::carried_away,
+        Experiment::CarriedOn => experiments::carried_on,
         Experiment::Crowded => experiments::crowded,
         Experiment::StepTime => experiments::step_time,
     };
