@@ -33,7 +33,7 @@ fn lap(localizer: &mut Localizer, fields: [&Field; 2], rng: &mut ChaCha8Rng) -> 
 }
 
 /// What the second lap errs by with what the first has learned.
-fn second_lap(seed: u64, patience: usize) -> f64 {
+fn second_lap(seed: u64, patience: usize, memory: usize) -> f64 {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (before, after) = (Field::new(&mut rng), Field::new(&mut rng));
     let mut teacher = Localizer::new(LocalizerParams::default(), Start::Anywhere).expect("valid defaults");
@@ -41,7 +41,7 @@ fn second_lap(seed: u64, patience: usize) -> f64 {
         teacher.teach(before.view(&beside(k, 0.0), &mut rng), &known(beside(k, 0.0))).expect("a good view");
     }
     let mut drive = |map: AppearanceMap<FieldView>, learning| {
-        let params = LocalizerParams { learning, patience, ..LocalizerParams::default() };
+        let params = LocalizerParams { learning, patience, memory, ..LocalizerParams::default() };
         let start = Start::Known(known(beside(0, 0.0)));
         let mut localizer = Localizer::with_map(params, map, start).expect("valid parameters");
         let error = lap(&mut localizer, [&before, &after], &mut rng);
@@ -53,8 +53,10 @@ fn second_lap(seed: u64, patience: usize) -> f64 {
 
 #[test]
 fn what_is_learned_in_a_rearranged_aisle_is_corrected_at_its_end() {
-    let of = |patience| (0..10).map(|seed| second_lap(seed, patience)).sum::<f64>() / 10.0;
-    let (waiting, at_once) = (of(LocalizerParams::default().patience), of(0));
+    let of = |patience, memory| (0..10).map(|seed| second_lap(seed, patience, memory)).sum::<f64>() / 10.0;
+    let LocalizerParams { patience, memory, .. } = LocalizerParams::default();
+    let (waiting, spread, at_once) = (of(patience, 0), of(0, memory), of(0, 0));
     // A random walk of length 1 has a mean variance of 1/2, one that is tied down at both ends of 1/6: 0.58 in σ. Half way from there to no gain.
     assert!(waiting < 0.79 * at_once, "{waiting} m, {at_once} m without waiting");
+    assert!(spread < 0.79 * at_once, "{spread} m, {at_once} m where nothing is spread back");
 }

@@ -42,13 +42,18 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// Whether to wait for what a place that the robot comes to says of the view that has waited longest. Only where the map was surveyed: one that the robot
     /// builds on its way errs with it, and would miss what has just been seen.
     fn awaits_correction(&self) -> bool {
+        self.journey.n_waiting() <= self.params.patience
+            && !self.journey.is_surer_now()
+            && self.is_where_surveyed()
+    }
+
+    /// Whether the map was surveyed around the robot, and not made by it on its way.
+    fn is_where_surveyed(&self) -> bool {
         let radius = SURVEYED_REACHES * self.map.reach_of_match(&self.params.map);
         let is_surveyed = |at: &Pose2<f64>| {
             self.map.is_surveyed(at, (radius, MOST_LEARNED_SIGMA), |id| !self.trail.holds(id))
         };
-        self.journey.n_waiting() <= self.params.patience
-            && !self.journey.is_surer_now()
-            && self.belief.heaviest().is_some_and(|belief| is_surveyed(belief.mean()))
+        self.belief.heaviest().is_some_and(|belief| is_surveyed(belief.mean()))
     }
 
     /// Learns the view that has waited longest; gives it up when it is nowhere, or an outlier.
@@ -86,11 +91,15 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             || neighbours.any(|(other, motion)| agrees(other, motion.increment.translation.norm()))
     }
 
-    /// Corrections add up until they are worth a walk over the whole way.
+    /// Corrections add up until they are worth a walk over the whole way. Where the map was surveyed: where the robot has built it, a loop that is closed
+    /// wrongly would bend the whole way behind it.
     fn revise_when_due(&mut self) {
         self.since_revision += 1;
         let worth = REVISION_SHARE * self.map.scale().step();
         if self.params.memory == 0 || self.since_revision < REVISION_VIEWS || self.corrected < worth {
+            return;
+        }
+        if !self.is_where_surveyed() {
             return;
         }
         (self.since_revision, self.corrected) = (0, 0.0);

@@ -59,8 +59,8 @@ pub struct LocalizerParams {
     pub patience: usize,
     /// Views that wait at most for the state to become one place; older ones are not learned. Default 400.
     pub longest_wait: usize,
-    /// Views of the way behind the robot over which a correction is spread, and with it the references made there; 0 leaves them where
-    /// they are, as printed. Default 0.
+    /// Views of the way behind the robot over which a correction is spread when it comes to a place that was surveyed, and with it the references made there; 0
+    /// leaves them where they are, as printed. Default 2000: half a kilometre.
     pub memory: usize,
     /// Distance to its neighbours along the way, as a multiple of the distance of successive views, beyond which a view is taken for an
     /// outlier (somebody passes) and not learned; `None` learns every view. Default 1.6.
@@ -82,7 +82,7 @@ impl Default for LocalizerParams {
             delay: 10,
             patience: 60,
             longest_wait: 400,
-            memory: 0,
+            memory: 2000,
             corroboration: Some(1.6),
         }
     }
