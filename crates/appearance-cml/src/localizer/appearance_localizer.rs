@@ -5,6 +5,7 @@ use super::belief::Belief;
 use super::contest::Contest;
 use super::journey::Journey;
 use super::scale_learner::ScaleLearner;
+use super::survey::Survey;
 use super::trail::Trail;
 use super::{Event, Learning, LocalizerParams, Motion, Start, UpdateOutcome};
 use crate::{
@@ -63,6 +64,7 @@ pub struct AppearanceLocalizer<D, S = LinearSearch<D>> {
     /// How far views have moved the estimate since the way behind was revised, m.
     pub(super) corrected: f64,
     pub(super) since_revision: usize,
+    pub(super) survey: Survey,
     /// Counts views, to pick another far reference with each.
     pub(super) views: u32,
 }
@@ -106,6 +108,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             trail: Trail::default(),
             corrected: 0.0,
             since_revision: 0,
+            survey: Survey::default(),
             views: 0,
         })
     }
@@ -184,7 +187,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let (mut belief, n_sightings) = self.seen(&self.belief, is_news.then_some(&view), sources)?;
         let mut contest = None;
         if is_news {
-            let (decided, believed) = self.contested(&view, &belief)?.decided(belief, &self.params)?;
+            let (decided, believed) =
+                self.contested(&view, &belief)?.decided(&self.belief, belief, &self.params)?;
             (contest, belief) = (Some(decided), believed);
         }
         let mut events = self.change_to(&belief)?;

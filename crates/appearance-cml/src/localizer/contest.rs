@@ -79,10 +79,11 @@ impl Contest {
         }
     }
 
-    /// The belief that is believed from now on: the rival's, or that of the one that was ousted, when it has won. One that has won where the first is ousts
-    /// nobody.
+    /// The belief that is believed from now on: the rival's, or that of the one that was ousted, when it has won. If that is elsewhere than it was `before`
+    /// the view, whether the rival has won or the first has itself been drawn away, what was believed goes along.
     pub(super) fn decided(
         self,
+        before: &Belief,
         first: Belief,
         params: &LocalizerParams,
     ) -> Result<(Self, Belief), AppearanceError> {
@@ -95,15 +96,19 @@ impl Contest {
             return Ok((Self::default(), ousted.reinstated()));
         }
         let proven = |rival: &&Rival| has_won(rival, &self.proof(rival.way, &params.relocation));
-        let Some(rival) = self.rival.as_ref().filter(proven) else { return Ok((self, first)) };
-        let belief = rival.belief.clone();
-        let ousted = match self.ousted {
-            // It has been believed for longer.
-            Some(before) => Some(before.against_another()),
-            None if is_same_place(&first, &belief, params.fusion.gate) => None,
-            None => Some(Rival::ousted(&first)?),
+        let (contest, believed) = match self.rival.as_ref().filter(proven) {
+            Some(rival) => (Self { ousted: self.ousted.clone(), ..Self::default() }, rival.belief.clone()),
+            None => (self, first),
         };
-        Ok((Self { ousted, ..Self::default() }, belief))
+        let ousted = match contest.ousted {
+            _ if params.relocation.doubt >= 1.0 => None,
+            ousted if is_same_place(before, &believed, params.fusion.gate) => ousted,
+            // It has been believed for longer.
+            Some(ousted) => Some(ousted.against_another()),
+            None if before.one_place(&params.unimodal).is_some() => Some(Rival::ousted(before)?),
+            None => None,
+        };
+        Ok((Self { ousted, ..contest }, believed))
     }
 }
 
@@ -222,7 +227,7 @@ mod tests {
     fn who_was_ousted_goes_along_and_is_believed_again_when_it_alone_recognizes() {
         let params = LocalizerParams::default();
         let contest = Contest { rival: Some(proven(40.0)), ..Contest::default() };
-        let (mut contest, first) = contest.decided(at(0.0), &params).unwrap();
+        let (mut contest, first) = contest.decided(&at(0.0), at(0.0), &params).unwrap();
         assert!(x(&first) == 40.0 && contest.is_open() && contest.rival.is_none());
 
         let mut ousted = contest.ousted.clone().expect("the first goes along");
@@ -230,21 +235,21 @@ mod tests {
         // While both recognize something it stays as it is.
         seen(&mut ousted, (Fit::Recognized, Fit::Recognized), 10);
         contest.ousted = Some(ousted);
-        let (mut contest, first) = contest.decided(first, &params).unwrap();
+        let (mut contest, first) = contest.decided(&first.clone(), first, &params).unwrap();
         assert_eq!(x(&first), 40.0);
 
         let mut ousted = contest.ousted.clone().expect("it still goes along");
         seen(&mut ousted, (Fit::Missed, Fit::Recognized), 10);
         ousted.shorten(params.relocation.reinstated.way);
         contest.ousted = Some(ousted);
-        let (contest, first) = contest.decided(first, &params).unwrap();
+        let (contest, first) = contest.decided(&first.clone(), first, &params).unwrap();
         assert!(x(&first) == 0.0 && first.outlook == Outlook::Map && !contest.is_open());
     }
 
     #[test]
     fn a_rival_that_is_where_the_first_is_ousts_nobody() {
         let contest = Contest { rival: Some(proven(0.1)), ..Contest::default() };
-        let (contest, first) = contest.decided(at(0.0), &LocalizerParams::default()).unwrap();
+        let (contest, first) = contest.decided(&at(0.0), at(0.0), &LocalizerParams::default()).unwrap();
         assert!(x(&first) == 0.1 && !contest.is_open());
     }
 
@@ -255,13 +260,13 @@ mod tests {
         // Half a metre short of what has to be shown.
         seen(&mut ousted, (Fit::Missed, Fit::Recognized), 9);
         let contest = Contest { rival: Some(proven(80.0)), ousted: Some(ousted), ..Contest::default() };
-        let (mut contest, first) = contest.decided(at(40.0), &params).unwrap();
+        let (mut contest, first) = contest.decided(&at(40.0), at(40.0), &params).unwrap();
         assert_eq!(x(&first), 80.0);
         let mut ousted = contest.ousted.clone().expect("the first of all goes on along");
         assert_eq!(ousted.way, 4.5);
         seen(&mut ousted, (Fit::Missed, Fit::Recognized), 1);
         contest.ousted = Some(ousted);
-        let (contest, first) = contest.decided(first, &params).unwrap();
+        let (contest, first) = contest.decided(&first.clone(), first, &params).unwrap();
         assert!(x(&first) == 80.0 && contest.is_open());
     }
 

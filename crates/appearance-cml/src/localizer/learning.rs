@@ -35,7 +35,9 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             self.learn_oldest(settled, events)?;
         }
         self.journey.shorten(self.params.memory.max(1));
-        self.revise_when_due();
+        if self.params.memory > 0 {
+            self.revise_when_due();
+        }
         Ok(())
     }
 
@@ -44,16 +46,20 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     fn awaits_correction(&self) -> bool {
         self.journey.n_waiting() <= self.params.patience
             && !self.journey.is_surer_now()
-            && self.is_where_surveyed()
+            && self.surveyed_place().is_some()
     }
 
-    /// Whether the map was surveyed around the robot, and not made by it on its way.
-    fn is_where_surveyed(&self) -> bool {
-        let radius = SURVEYED_REACHES * self.map.reach_of_match(&self.params.map);
-        let is_surveyed = |at: &Pose2<f64>| {
-            self.map.is_surveyed(at, (radius, MOST_LEARNED_SIGMA), |id| !self.trail.holds(id))
-        };
-        self.belief.heaviest().is_some_and(|belief| is_surveyed(belief.mean()))
+    /// Where the robot is, if the map was surveyed around it and not just made by it on its way.
+    fn surveyed_place(&self) -> Option<Pose2<f64>> {
+        let at = self.belief.heaviest()?.mean();
+        let is_surveyed = self
+            .map
+            .is_surveyed(at, (self.surveyed_radius(), MOST_LEARNED_SIGMA), |id| !self.trail.holds(id));
+        is_surveyed.then_some(*at)
+    }
+
+    fn surveyed_radius(&self) -> f64 {
+        SURVEYED_REACHES * self.map.reach_of_match(&self.params.map)
     }
 
     /// Learns the view that has waited longest; gives it up when it is nowhere, or an outlier.
@@ -91,15 +97,14 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             || neighbours.any(|(other, motion)| agrees(other, motion.increment.translation.norm()))
     }
 
-    /// Corrections add up until they are worth a walk over the whole way. Where the map was surveyed: where the robot has built it, a loop that is closed
-    /// wrongly would bend the whole way behind it.
+    /// Corrections add up until they are worth a walk over the whole way, and a place of a surveyed map has the last word: where the robot has built it, a loop
+    /// that is closed wrongly would bend the whole way behind it.
     fn revise_when_due(&mut self) {
         self.since_revision += 1;
-        let worth = REVISION_SHARE * self.map.scale().step();
-        if self.params.memory == 0 || self.since_revision < REVISION_VIEWS || self.corrected < worth {
-            return;
-        }
-        if !self.is_where_surveyed() {
+        let Some(at) = self.surveyed_place() else { return };
+        self.survey.passed(&at, self.surveyed_radius());
+        let is_worth_it = self.corrected >= REVISION_SHARE * self.map.scale().step();
+        if !self.survey.is_wide() || self.since_revision < REVISION_VIEWS || !is_worth_it {
             return;
         }
         (self.since_revision, self.corrected) = (0, 0.0);

@@ -18,6 +18,7 @@ mod running_share;
 mod scale_learner;
 mod smooth;
 mod start;
+mod survey;
 mod trail;
 
 pub use appearance_localizer::AppearanceLocalizer;
