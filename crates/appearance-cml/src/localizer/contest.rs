@@ -1,6 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 
 use super::belief::{Belief, Outlook};
+use super::breaks::Break;
 use super::doubt::Doubt;
 use super::fit::Fit;
 use super::rival::{Rival, Round};
@@ -28,21 +29,6 @@ pub(super) struct Contest {
     rival: Option<Rival>,
     ousted: Option<Rival>,
 }
-
-/// A view that is strange to the one before, over no more than a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Break {
-    /// Way since then, m.
-    way: f64,
-    /// Whether nothing was known before it.
-    exploring: bool,
-    /// Whether the view before was as strange to the one before it. Who is carried sees one such step; at a corner or past the end of a shelf there may be
-    /// several in a row.
-    repeated: bool,
-}
-
-/// Steps between two views up to which they look alike, unless there is a break.
-const MOST_STEPS: f64 = 1.5;
 
 /// Who explores more than this may not have been carried: there is nothing to recognize there, so that any aisle that looks alike would win.
 const MOST_EXPLORING: f64 = 0.9;
@@ -163,15 +149,6 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         ousted.shorten(params.reinstated.way);
         Some(ousted)
     }
-
-    /// Whether the view is as strange to the one before as one of a far place, although the wheels say that it is a step away. Who is carried sees it, or
-    /// is blind meanwhile; who drives into an aisle that was rearranged does not.
-    fn is_break(&self, view: &D) -> bool {
-        let scale = self.map.scale();
-        let is_near = self.motion.increment.translation.norm() <= MOST_STEPS * scale.step();
-        let strange = |last: &D| view.compare(last).distance > scale.strangeness();
-        is_near && self.last_seen.as_ref().is_some_and(strange)
-    }
 }
 
 /// Whether two beliefs put the robot at one place, by their heaviest hypotheses; not when one of them is singular.
@@ -244,6 +221,18 @@ mod tests {
         contest.ousted = Some(ousted);
         let (contest, first) = contest.decided(&first.clone(), first, &params).unwrap();
         assert!(x(&first) == 0.0 && first.outlook == Outlook::Map && !contest.is_open());
+    }
+
+    #[test]
+    fn what_was_believed_goes_along_when_the_first_is_drawn_away_as_well() {
+        let params = LocalizerParams::default();
+        let (contest, first) = Contest::default().decided(&at(0.0), at(40.0), &params).unwrap();
+        assert_eq!(x(&first), 40.0);
+        assert!(contest.ousted.is_some_and(|ousted| x(&ousted.belief) == 0.0));
+        let never =
+            LocalizerParams { relocation: RelocationParams { doubt: 1.0, ..params.relocation }, ..params };
+        let (contest, _) = Contest::default().decided(&at(0.0), at(40.0), &never).unwrap();
+        assert!(!contest.is_open(), "who never doubts has no second belief");
     }
 
     #[test]

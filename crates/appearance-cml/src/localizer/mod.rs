@@ -3,6 +3,7 @@
 mod anywhere;
 mod appearance_localizer;
 mod belief;
+mod breaks;
 mod compass;
 mod contest;
 mod doubt;
