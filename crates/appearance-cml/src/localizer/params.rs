@@ -57,7 +57,8 @@ pub struct LocalizerParams {
     /// Views by which learning lags behind at most where the robot, in a part of the map that was surveyed, has become less sure of where it is: the next place
     /// that it recognizes corrects them first. 0 to wait for no such place, as printed. Default 60.
     pub patience: usize,
-    /// Views that wait at most for the state to become one place; older ones are not learned. Default 400.
+    /// Views that wait at most for the state to become one place, and while a belief that was ousted goes along; older ones are not learned. Default 400: twice
+    /// [`RelocationParams::ousted_way`] at four views a metre.
     pub longest_wait: usize,
     /// Views of the way behind the robot over which a correction is spread when it comes to a place that was surveyed, and with it the references made there; 0
     /// leaves them where they are, as printed. Default 2000: half a kilometre.
