@@ -36,7 +36,7 @@ use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, Refer
 pub struct AppearanceMap<D, S = LinearSearch<D>> {
     pub(super) search: S,
     references: BTreeMap<ReferenceId, Reference>,
-    grid: Grid,
+    pub(super) grid: Grid,
     pub(super) scale: ViewScale,
     next: u32,
     descriptor: PhantomData<fn() -> D>,
@@ -161,65 +161,6 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.places_of(self.search.within(view, limit), limit)
     }
 
-    /// Distance of the view to some reference of a far place, another one with each `turn`; `None` when that one is near.
-    pub(crate) fn distance_to_far(&self, view: &D, pose: &Pose2<f64>, turn: u32) -> Option<f64> {
-        // Multiples of the golden section spread evenly over the numbers.
-        let start = (u64::from(turn.wrapping_mul(0x9E37_79B9)) * u64::from(self.next)) >> 32;
-        let (id, reference) = self.references.range(ReferenceId(start as u32)..).next()?;
-        let far = FAR_STEPS * self.scale.step();
-        let is_far =
-            |place: &PlaceComponent| (place.gaussian.mean().translation - pose.translation).norm() > far;
-        let reference = reference.places.iter().all(is_far).then(|| self.search.get(*id)).flatten()?;
-        Some(view.compare(reference).distance)
-    }
-
-    /// The least distance of the view to [`N_FAR`] references of far places, others with each `turn`; `None` when hardly half of them are far.
-    pub(crate) fn least_distance_to_far(&self, view: &D, pose: &Pose2<f64>, turn: u32) -> Option<f64> {
-        let turns = (0..N_FAR as u32).map(|k| turn.wrapping_mul(N_FAR as u32).wrapping_add(k));
-        let far: Vec<f64> = turns.filter_map(|turn| self.distance_to_far(view, pose, turn)).collect();
-        (2 * far.len() >= N_FAR).then(|| far.into_iter().fold(f64::INFINITY, f64::min))
-    }
-
-    /// Whether it is well known what the robot would see there: whether a reference that counts, seen more than once, has a place within `radius` of
-    /// the belief, and neither the place nor the belief is in doubt by more.
-    pub(crate) fn is_well_known(
-        &self,
-        belief: &Gaussian<Pose2<f64>>,
-        radius: f64,
-        counts: impl Fn(ReferenceId) -> bool,
-    ) -> bool {
-        let sigma = |gaussian: &Gaussian<Pose2<f64>>| gaussian.sigmas().xy().norm();
-        let own = sigma(belief);
-        let is_there =
-            |place: &PlaceComponent| place.weight >= WELL_KNOWN && own.hypot(sigma(&place.gaussian)) < radius;
-        self.has_place(belief.mean(), radius, |id, place| counts(id) && is_there(place))
-    }
-
-    /// Whether a reference that counts has a place within `radius` whose heading is known to `sigma`.
-    pub(crate) fn is_surveyed(
-        &self,
-        at: &Pose2<f64>,
-        (radius, sigma): (f64, f64),
-        counts: impl Fn(ReferenceId) -> bool,
-    ) -> bool {
-        self.has_place(at, radius, |id, place| counts(id) && place.gaussian.sigmas().z <= sigma)
-    }
-
-    /// Whether some reference has a place within `radius` that will do.
-    fn has_place(
-        &self,
-        at: &Pose2<f64>,
-        radius: f64,
-        will_do: impl Fn(ReferenceId, &PlaceComponent) -> bool,
-    ) -> bool {
-        let is_near =
-            |place: &PlaceComponent| (place.gaussian.mean().translation - at.translation).norm() < radius;
-        self.grid.near(&at.translation, radius).iter().any(|id| {
-            let places = self.references.get(id).map_or(&[][..], |reference| &reference.places);
-            places.iter().any(|place| is_near(place) && will_do(*id, place))
-        })
-    }
-
     fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<Sighting> {
         let places = |m: &Match| {
             let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);
@@ -303,16 +244,6 @@ fn once_each(mut matches: Vec<Match>) -> Vec<Match> {
 const GATE_SIGMAS: f64 = 3.0;
 /// σ beyond which a belief says nothing that the search of the whole map does not say better, m.
 const MOST_SIGMA: f64 = 1.0;
-
-/// Weight from which on a place was seen more than once: twice the learning rate, about.
-const WELL_KNOWN: f64 = 0.5;
-
-/// References of far places that a view is measured against: the best of the half dozen that are near a wrong pose is nearer than all of them once in
-/// ten views or more seldom.
-const N_FAR: usize = 64;
-
-/// From how many steps on a place is far.
-const FAR_STEPS: f64 = 20.0;
 
 fn enter(grid: &mut Grid, id: ReferenceId, reference: &Reference) {
     for place in &reference.places {

@@ -2,8 +2,10 @@
 
 mod appearance_map;
 mod facing;
+mod far;
 mod grid;
 mod interpolate;
+mod known;
 mod learn;
 mod merge;
 mod params;
