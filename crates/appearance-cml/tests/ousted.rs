@@ -33,11 +33,11 @@ struct Drive {
     n_learned_astray: usize,
 }
 
-/// `appeared`: what new places weigh against what is believed.
-fn drive(seed: u64, ousted_way: f64, appeared: f64) -> Drive {
+fn drive(seed: u64, ousted_way: f64) -> Drive {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let [aisle, here, strange, gap] = std::array::from_fn(|_| Field::new(&mut rng));
-    let weighting = Weighting::Evidence { missed: 0.2, appeared };
+    // Nothing new is weighed against what is believed, so that the second belief alone decides.
+    let weighting = Weighting::Evidence { missed: 0.2, appeared: 0.0 };
     let params = LocalizerParams {
         fusion: FusionParams { weighting, ..FusionParams::default() },
         relocation: RelocationParams { ousted_way, ..RelocationParams::default() },
@@ -76,9 +76,8 @@ fn drive(seed: u64, ousted_way: f64, appeared: f64) -> Drive {
 
 #[test]
 fn who_is_led_away_by_an_aisle_that_looks_like_another_learns_nothing_there_and_comes_back() {
-    // Nothing new is weighed against what is believed, so that the second belief alone decides.
     let drives =
-        |ousted_way: f64| -> Vec<Drive> { (0..N_SEEDS).map(|seed| drive(seed, ousted_way, 0.0)).collect() };
+        |ousted_way: f64| -> Vec<Drive> { (0..N_SEEDS).map(|seed| drive(seed, ousted_way)).collect() };
     let astray = |drives: &[Drive]| -> usize { drives.iter().map(|drive| drive.n_learned_astray).sum() };
     let (kept, forgotten) = (drives(RelocationParams::default().ousted_way), drives(0.0));
     assert!(kept.iter().all(|drive| drive.was_led_away), "an aisle that looks the same for 15 m");
@@ -90,17 +89,5 @@ fn who_is_led_away_by_an_aisle_that_looks_like_another_learns_nothing_there_and_
     for (seed, drive) in kept.iter().enumerate() {
         // Odometry errs by 1 % of 30 m along, and by 0.002 · 30² / 2 = 0.9 m across; what is seen at the end corrects it.
         assert!(drive.error < 1.0, "seed {seed}: {} m", drive.error);
-    }
-}
-
-#[test]
-fn who_believes_new_places_readily_learns_nothing_there_either() {
-    let drives =
-        |ousted_way: f64| -> Vec<Drive> { (0..N_SEEDS).map(|seed| drive(seed, ousted_way, 0.3)).collect() };
-    let (kept, forgotten) = (drives(RelocationParams::default().ousted_way), drives(0.0));
-    for (seed, (kept, forgotten)) in kept.iter().zip(&forgotten).enumerate() {
-        assert!(kept.was_led_away && forgotten.was_led_away, "seed {seed}");
-        assert!(kept.n_learned_astray == 0 && forgotten.n_learned_astray > 0, "seed {seed}");
-        assert!(kept.error < 1.0, "seed {seed}: {} m", kept.error);
     }
 }

@@ -146,6 +146,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         self.has_seen = false;
         self.journey = Journey::default();
         self.trail = Trail::default();
+        self.survey = Survey::default();
+        (self.corrected, self.since_revision) = (0.0, 0);
         self.scale_learner.interrupt();
         self.last_seen = None;
         self.learned_last = None;
@@ -168,7 +170,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// The robot sees `view`.
     ///
     /// # Errors
-    /// When a belief has become singular or something is not finite; state and map are as before. [`AppearanceError::Full`] when a new reference
+    /// When the belief has become singular or something is not finite; state and map are as before. [`AppearanceError::Full`] when a new reference
     /// finds no number; the map is as before, and the state is updated.
     pub fn update(&mut self, view: D) -> Result<UpdateOutcome, AppearanceError> {
         self.update_with(view, &[])
@@ -187,8 +189,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let (mut belief, n_sightings) = self.seen(&self.belief, is_news.then_some(&view), sources)?;
         let mut contest = None;
         if is_news {
-            let (decided, believed) =
-                self.contested(&view, &belief)?.decided(&self.belief, belief, &self.params)?;
+            let (decided, believed) = self.contested(&view, &belief).decided(belief, &self.params);
             (contest, belief) = (Some(decided), believed);
         }
         let mut events = self.change_to(&belief)?;
@@ -198,11 +199,11 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         }
         if is_news {
             self.last_seen = Some(view.clone());
-            if self.params.learning == Learning::Adapting {
-                self.learn(view, &mut events)?;
-            }
-            self.motion = Motion::none();
             self.has_seen = true;
+            let is_adapting = self.params.learning == Learning::Adapting;
+            let learned = if is_adapting { self.learn(view, &mut events) } else { Ok(()) };
+            self.motion = Motion::none();
+            learned?;
         }
         let estimate = self.belief.one_place(&self.params.unimodal).cloned();
         Ok(UpdateOutcome { events, estimate, n_sightings })
@@ -230,10 +231,10 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             _ => {}
         }
         if let (Some(now), Some(followed)) = (belief.heaviest(), self.belief.heaviest()) {
-            self.corrected += (now.mean().translation - followed.mean().translation).norm();
-            if separation_squared(now, followed)? > self.params.fusion.gate {
-                events.push(Event::Relocated);
-            }
+            let correction = (now.mean().translation - followed.mean().translation).norm();
+            let is_elsewhere = separation_squared(now, followed)? > self.params.fusion.gate;
+            self.corrected = if is_elsewhere { 0.0 } else { self.corrected + correction };
+            events.extend(is_elsewhere.then_some(Event::Relocated));
         }
         self.was_unimodal = is_unimodal;
         Ok(events)

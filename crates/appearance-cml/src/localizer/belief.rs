@@ -40,9 +40,10 @@ impl Belief {
     }
 
     /// The heaviest hypothesis and no other, seen by what is where it is.
-    pub(super) fn heaviest_alone(&self) -> Result<Self, AppearanceError> {
-        let alone = self.heaviest().map(|heaviest| Mixture::from_log_weights(vec![(0.0, heaviest.clone())]));
-        Ok(Self { state: alone.transpose()?, anywhere: Anywhere::nothing(), outlook: Outlook::Nearby })
+    pub(super) fn heaviest_alone(&self) -> Self {
+        let alone = |heaviest: &Gaussian<_>| Mixture::from_log_weights(vec![(0.0, heaviest.clone())]).ok();
+        let state = self.heaviest().and_then(alone);
+        Self { state, anywhere: Anywhere::nothing(), outlook: Outlook::Nearby }
     }
 
     pub(super) fn components(&self) -> &[Gaussian<Pose2<f64>>] {

@@ -7,7 +7,7 @@ use super::fit::Fit;
 use super::rival::{Rival, Round};
 use super::running_share::RunningShare;
 use super::{AppearanceLocalizer, LocalizerParams, Proof, RelocationParams};
-use crate::{AppearanceError, Descriptor, OdometryNoise, ReferenceSearch, separation_squared};
+use crate::{Descriptor, OdometryNoise, ReferenceSearch, separation_squared};
 
 /// Where the robot is thought to be against where else it may be: a second belief, begun from nothing when the first misses what it should see.
 ///
@@ -45,7 +45,7 @@ impl Contest {
         Self { rival, ousted, ..*self }
     }
 
-    /// Whether the rival recognizes more than the first does, or has just taken over: until that is decided nothing should be learned.
+    /// Whether the rival recognizes more than the first does, or another goes along that was ousted: until that is decided nothing should be learned.
     pub(super) fn is_open(&self) -> bool {
         self.ousted.is_some() || self.rival.as_ref().is_some_and(Rival::leads)
     }
@@ -65,54 +65,42 @@ impl Contest {
         }
     }
 
-    /// The belief that is believed from now on: the rival's, or that of the one that was ousted, when it has won. If that is elsewhere than it was `before`
-    /// the view, whether the rival has won or the first has itself been drawn away, what was believed goes along.
-    pub(super) fn decided(
-        self,
-        before: &Belief,
-        first: Belief,
-        params: &LocalizerParams,
-    ) -> Result<(Self, Belief), AppearanceError> {
+    /// The belief that is believed from now on: the rival's, or that of the one that was ousted, when it has won. One that has won where the first is ousts
+    /// nobody.
+    pub(super) fn decided(self, first: Belief, params: &LocalizerParams) -> (Self, Belief) {
         let has_won = |rival: &&Rival, proof: &Proof| {
             rival.belief.one_place(&params.unimodal).is_some()
                 && rival.has_won(proof, params.relocation.by_chance)
         };
         let reinstated = &params.relocation.reinstated;
         if let Some(ousted) = self.ousted.as_ref().filter(|ousted| has_won(ousted, reinstated)) {
-            return Ok((Self::default(), ousted.reinstated()));
+            return (Self::default(), ousted.reinstated());
         }
         let proven = |rival: &&Rival| has_won(rival, &self.proof(rival.way, &params.relocation));
-        let (contest, believed) = match self.rival.as_ref().filter(proven) {
-            Some(rival) => (Self { ousted: self.ousted.clone(), ..Self::default() }, rival.belief.clone()),
-            None => (self, first),
-        };
-        let ousted = match contest.ousted {
-            _ if params.relocation.doubt >= 1.0 => None,
-            ousted if is_same_place(before, &believed, params.fusion.gate) => ousted,
-            // It has been believed for longer.
-            Some(ousted) => Some(ousted.against_another()),
-            None if before.one_place(&params.unimodal).is_some() => Some(Rival::ousted(before)?),
-            None => None,
-        };
-        Ok((Self { ousted, ..contest }, believed))
+        let Some(rival) = self.rival.as_ref().filter(proven) else { return (self, first) };
+        let belief = rival.belief.clone();
+        // One that was ousted before has been believed for longer.
+        let left = self.ousted.map_or_else(|| Rival::ousted(&first), Rival::against_another);
+        let ousted = Some(left).filter(|left| !is_same_place(&left.belief, &belief, params.fusion.gate));
+        (Self { ousted, ..Self::default() }, belief)
     }
 }
 
 impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// The contest after a view; `first` is what the view makes of the first belief.
-    pub(super) fn contested(&self, view: &D, first: &Belief) -> Result<Contest, AppearanceError> {
+    pub(super) fn contested(&self, view: &D, first: &Belief) -> Contest {
         let params = &self.params.relocation;
         if params.doubt >= 1.0 || first.state.is_none() {
-            return Ok(Contest::default());
+            return Contest::default();
         }
         let fit = self.fit(view, &self.belief);
         let exploring = self.contest.exploring.after(fit == Fit::Unknown, params.views);
         let is_break = self.is_break(view);
         let doubt = if is_break { Doubt::great(params) } else { self.contest.doubt.after(fit, params) };
         let way = self.motion.increment.translation.norm();
-        let ousted = self.ousted_after(view, way, fit);
+        let ousted = self.ousted_after(view, first, way, fit);
         if !doubt.is_great() {
-            return Ok(Contest { doubt, exploring, broke: is_break, ousted, ..Contest::default() });
+            return Contest { doubt, exploring, broke: is_break, ousted, ..Contest::default() };
         }
         let last_break = if is_break {
             let exploring = self.contest.exploring.0 > MOST_EXPLORING;
@@ -125,8 +113,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let nowhere = Rival::nowhere(if is_of_lost { Outlook::Lost } else { Outlook::Map });
         let before = self.contest.rival.as_ref().filter(|_| !is_break).unwrap_or(&nowhere);
         // What has become singular begins again.
-        let belief =
-            self.seen(&before.belief, Some(view), &[]).map_or(nowhere.belief.clone(), |(seen, _)| seen);
+        let seen = self.seen(&before.belief, Some(view), &[]);
+        let belief = seen.map_or_else(|_| nowhere.belief.clone(), |(belief, _)| belief);
         let goes_on = is_same_place(&before.belief, &belief, self.params.fusion.gate);
         let round = Round { way, first: fit, rival: self.fit(view, &before.belief) };
         let mut rival = before.with(belief);
@@ -136,18 +124,18 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             rival.is_elsewhere();
         }
         rival.shorten(contest.proof(rival.way, params).way);
-        Ok(Contest { rival: Some(rival), ..contest })
+        Contest { rival: Some(rival), ..contest }
     }
 
-    /// The one that was ousted after the view; `None` when it has gone along for long enough, or has become singular.
-    fn ousted_after(&self, view: &D, way: f64, first: Fit) -> Option<Rival> {
+    /// The one that was ousted after the view; `None` when it has gone along for long enough, has become singular, or is where the first is again.
+    fn ousted_after(&self, view: &D, first: &Belief, way: f64, fit: Fit) -> Option<Rival> {
         let params = &self.params.relocation;
         let before = self.contest.ousted.as_ref().filter(|ousted| ousted.way < params.ousted_way)?;
         let (belief, _) = self.seen(&before.belief, Some(view), &[]).ok()?;
         let mut ousted = before.with(belief);
-        ousted.goes_on(Round { way, first, rival: self.fit(view, &before.belief) });
+        ousted.goes_on(Round { way, first: fit, rival: self.fit(view, &before.belief) });
         ousted.shorten(params.reinstated.way);
-        Some(ousted)
+        Some(ousted).filter(|ousted| !is_same_place(&ousted.belief, first, self.params.fusion.gate))
     }
 }
 
@@ -204,7 +192,7 @@ mod tests {
     fn who_was_ousted_goes_along_and_is_believed_again_when_it_alone_recognizes() {
         let params = LocalizerParams::default();
         let contest = Contest { rival: Some(proven(40.0)), ..Contest::default() };
-        let (mut contest, first) = contest.decided(&at(0.0), at(0.0), &params).unwrap();
+        let (mut contest, first) = contest.decided(at(0.0), &params);
         assert!(x(&first) == 40.0 && contest.is_open() && contest.rival.is_none());
 
         let mut ousted = contest.ousted.clone().expect("the first goes along");
@@ -212,50 +200,46 @@ mod tests {
         // While both recognize something it stays as it is.
         seen(&mut ousted, (Fit::Recognized, Fit::Recognized), 10);
         contest.ousted = Some(ousted);
-        let (mut contest, first) = contest.decided(&first.clone(), first, &params).unwrap();
+        let (mut contest, first) = contest.decided(first, &params);
         assert_eq!(x(&first), 40.0);
 
         let mut ousted = contest.ousted.clone().expect("it still goes along");
         seen(&mut ousted, (Fit::Missed, Fit::Recognized), 10);
         ousted.shorten(params.relocation.reinstated.way);
         contest.ousted = Some(ousted);
-        let (contest, first) = contest.decided(&first.clone(), first, &params).unwrap();
+        let (contest, first) = contest.decided(first, &params);
         assert!(x(&first) == 0.0 && first.outlook == Outlook::Map && !contest.is_open());
-    }
-
-    #[test]
-    fn what_was_believed_goes_along_when_the_first_is_drawn_away_as_well() {
-        let params = LocalizerParams::default();
-        let (contest, first) = Contest::default().decided(&at(0.0), at(40.0), &params).unwrap();
-        assert_eq!(x(&first), 40.0);
-        assert!(contest.ousted.is_some_and(|ousted| x(&ousted.belief) == 0.0));
-        let never =
-            LocalizerParams { relocation: RelocationParams { doubt: 1.0, ..params.relocation }, ..params };
-        let (contest, _) = Contest::default().decided(&at(0.0), at(40.0), &never).unwrap();
-        assert!(!contest.is_open(), "who never doubts has no second belief");
     }
 
     #[test]
     fn a_rival_that_is_where_the_first_is_ousts_nobody() {
         let contest = Contest { rival: Some(proven(0.1)), ..Contest::default() };
-        let (contest, first) = contest.decided(&at(0.0), at(0.0), &LocalizerParams::default()).unwrap();
+        let (contest, first) = contest.decided(at(0.0), &LocalizerParams::default());
+        assert!(x(&first) == 0.1 && !contest.is_open());
+    }
+
+    #[test]
+    fn a_rival_that_is_back_where_the_ousted_one_is_settles_it() {
+        let ousted = Some(Rival::ousted(&at(0.0)));
+        let contest = Contest { rival: Some(proven(0.1)), ousted, ..Contest::default() };
+        let (contest, first) = contest.decided(at(40.0), &LocalizerParams::default());
         assert!(x(&first) == 0.1 && !contest.is_open());
     }
 
     #[test]
     fn what_was_shown_against_one_belief_counts_nothing_against_the_next() {
         let params = LocalizerParams::default();
-        let mut ousted = Rival::ousted(&at(0.0)).unwrap();
+        let mut ousted = Rival::ousted(&at(0.0));
         // Half a metre short of what has to be shown.
         seen(&mut ousted, (Fit::Missed, Fit::Recognized), 9);
         let contest = Contest { rival: Some(proven(80.0)), ousted: Some(ousted), ..Contest::default() };
-        let (mut contest, first) = contest.decided(&at(40.0), at(40.0), &params).unwrap();
+        let (mut contest, first) = contest.decided(at(40.0), &params);
         assert_eq!(x(&first), 80.0);
         let mut ousted = contest.ousted.clone().expect("the first of all goes on along");
         assert_eq!(ousted.way, 4.5);
         seen(&mut ousted, (Fit::Missed, Fit::Recognized), 1);
         contest.ousted = Some(ousted);
-        let (contest, first) = contest.decided(&first.clone(), first, &params).unwrap();
+        let (contest, first) = contest.decided(first, &params);
         assert!(x(&first) == 80.0 && contest.is_open());
     }
 

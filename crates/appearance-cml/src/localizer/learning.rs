@@ -5,6 +5,8 @@ use super::compass::MOST_LEARNED_SIGMA;
 use super::{AppearanceLocalizer, Event};
 use crate::{AppearanceError, Descriptor, ReferenceSearch};
 
+/// Views that are learned with one view at most: what has waited is made up for without a step that takes many times as long as others.
+const MOST_AT_ONCE: usize = 8;
 /// Views between two revisions of the way behind, at least: a correction that comes in pieces is spread once.
 const REVISION_VIEWS: usize = 20;
 /// Correction that is worth a revision, in steps between views.
@@ -24,8 +26,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             self.journey.keep_newest();
             self.learned_last = None;
         }
-        while self.journey.n_waiting() > self.params.delay {
-            if self.awaits_correction() {
+        for _ in 0..MOST_AT_ONCE {
+            if self.journey.n_waiting() <= self.params.delay || self.awaits_correction() {
                 break;
             }
             let settled = self.journey.settled_pose().filter(|_| !self.contest.is_open());
@@ -97,14 +99,15 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             || neighbours.any(|(other, motion)| agrees(other, motion.increment.translation.norm()))
     }
 
-    /// Corrections add up until they are worth a walk over the whole way, and a place of a surveyed map has the last word: where the robot has built it, a loop
+    /// Corrections add up until they are worth a walk over the whole way. Only where surveyed references lie around: where the robot has built the map, a loop
     /// that is closed wrongly would bend the whole way behind it.
     fn revise_when_due(&mut self) {
         self.since_revision += 1;
         let Some(at) = self.surveyed_place() else { return };
         self.survey.passed(&at, self.surveyed_radius());
         let is_worth_it = self.corrected >= REVISION_SHARE * self.map.scale().step();
-        if !self.survey.is_wide() || self.since_revision < REVISION_VIEWS || !is_worth_it {
+        let is_due = self.since_revision >= REVISION_VIEWS && is_worth_it;
+        if !is_due || !self.survey.is_wide() || self.contest.is_open() {
             return;
         }
         (self.since_revision, self.corrected) = (0, 0.0);

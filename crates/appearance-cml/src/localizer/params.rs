@@ -60,7 +60,7 @@ pub struct LocalizerParams {
     /// Views that wait at most for the state to become one place, and while a belief that was ousted goes along; older ones are not learned. Default 400: twice
     /// [`RelocationParams::ousted_way`] at four views a metre.
     pub longest_wait: usize,
-    /// Views of the way behind the robot over which a correction is spread when it comes to a place that was surveyed, and with it the references made there; 0
+    /// Views of the way behind the robot over which a correction is spread where surveyed references lie around it, and with it the references made there; 0
     /// leaves them where they are, as printed. Default 2000: half a kilometre.
     pub memory: usize,
     /// Distance to its neighbours along the way, as a multiple of the distance of successive views, beyond which a view is taken for an

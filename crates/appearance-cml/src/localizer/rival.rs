@@ -3,7 +3,6 @@ use std::collections::VecDeque;
 use super::Proof;
 use super::belief::{Belief, Outlook};
 use super::fit::Fit;
-use crate::AppearanceError;
 
 /// Where else the robot may be, and how that has done against where it is thought to be.
 #[derive(Clone, Debug)]
@@ -31,8 +30,8 @@ impl Rival {
     }
 
     /// A belief that another has taken over from: one place, which looks for nothing but what it expects, lest it follow the other.
-    pub(super) fn ousted(belief: &Belief) -> Result<Self, AppearanceError> {
-        Ok(Self { belief: belief.heaviest_alone()?, record: VecDeque::new(), way: 0.0 })
+    pub(super) fn ousted(belief: &Belief) -> Self {
+        Self { belief: belief.heaviest_alone(), record: VecDeque::new(), way: 0.0 }
     }
 
     /// The same against another first belief, to which what it has shown against the one before says nothing.

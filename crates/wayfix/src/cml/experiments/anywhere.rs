@@ -69,7 +69,8 @@ pub fn carried_on(setup: &Setup, seed: u64) -> Result<Run> {
     let n_led_away = found.iter().filter(|errors| errors.iter().any(|error| *error > LED_AWAY_M)).count();
     let n_astray =
         found.iter().filter(|errors| errors.last().is_some_and(|error| *error > LED_AWAY_M)).count();
-    let share = |n: usize| n as f64 / found.len().max(1) as f64;
+    // Nobody was found: no share, and no bound is kept.
+    let share = |n: usize| n as f64 / found.len() as f64;
     let (low, high) = proportion_interval(n_led_away as u64, found.len() as u64);
     let metrics = vec![
         Metric::new("trials", courses.len() as f64, ""),
