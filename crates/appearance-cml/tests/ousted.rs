@@ -80,6 +80,8 @@ fn who_is_led_away_by_an_aisle_that_looks_like_another_learns_nothing_there_and_
         |ousted_way: f64| -> Vec<Drive> { (0..N_SEEDS).map(|seed| drive(seed, ousted_way)).collect() };
     let astray = |drives: &[Drive]| -> usize { drives.iter().map(|drive| drive.n_learned_astray).sum() };
     let (kept, forgotten) = (drives(RelocationParams::default().ousted_way), drives(0.0));
+    // It learns again when the belief that was ousted has gone along for its way.
+    assert!(astray(&drives(3.0)) > 0, "the other aisle goes on for 15 m");
     assert!(kept.iter().all(|drive| drive.was_led_away), "an aisle that looks the same for 15 m");
     assert_eq!(astray(&kept), 0);
     assert!(
