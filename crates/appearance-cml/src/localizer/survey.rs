@@ -2,8 +2,8 @@ use wayfix_estimation_traits::Pose2;
 
 /// Whether somebody surveyed the map, as far as the robot has come.
 ///
-/// Where it has set out to build a map the place is surveyed too, by whoever has put it there, and no other: a map that was surveyed has such places far apart. (Not told from one that was begun at several known starts, or whose headings have become as sure in many
-/// laps.)
+/// Where it has set out to build a map the place is surveyed too, by whoever has put it there, and no other: a map that was surveyed has such places far
+/// apart. One that was begun at several known starts, or whose headings have become as sure in many laps, is not told from it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Survey {
     first: Option<Pose2<f64>>,
