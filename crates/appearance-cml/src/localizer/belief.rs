@@ -39,7 +39,7 @@ impl Belief {
         })
     }
 
-    /// The heaviest hypothesis and no other, seen by what is where it is.
+    /// The heaviest hypothesis alone, looked for where it is.
     pub(super) fn heaviest_alone(&self) -> Self {
         let alone = |heaviest: &Gaussian<_>| Mixture::from_log_weights(vec![(0.0, heaviest.clone())]).ok();
         let state = self.heaviest().and_then(alone);
