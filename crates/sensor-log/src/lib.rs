@@ -70,7 +70,7 @@ pub use open::{OpenOptions, PoseKind, open, open_all};
 pub use record::{
     CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, TrueWall, Velocity,
 };
-pub use report::{LogEnd, Problem, ProblemKind, ReadReport};
+pub use report::{LogEnd, Problem, ProblemKind, ReadReport, Warning};
 pub use scan::{LaserScan, ScanSummary};
 pub use stamp::Stamp;
 pub use summary::{KindSummary, LogSummary};

@@ -19,6 +19,17 @@ pub struct ReadReport {
     pub ignored: BTreeMap<String, u64>,
     /// Whether the log ends as it should.
     pub end: LogEnd,
+    /// What was assumed because the log does not say it, or what its user should know; each once.
+    pub warnings: Vec<Warning>,
+}
+
+/// Something the user should know: an assumption that was made, or a doubt about the data.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Its kind, as it is counted among the events: `laser_mount_unknown`.
+    pub name: &'static str,
+    /// What was assumed or is doubtful, with numbers, and the option that changes it.
+    pub text: String,
 }
 
 /// How a log ends.
@@ -99,9 +110,16 @@ impl ReadReport {
     pub fn n_problems(&self) -> u64 {
         self.problems.values().sum()
     }
-    /// Whether all of the log was read: no problem, and an end where it should be.
+    /// Whether all of the log was read and nothing was assumed: no problem, no warning, and an end where it should be.
     pub fn is_clean(&self) -> bool {
-        self.n_problems() == 0 && self.end == LogEnd::Complete
+        self.n_problems() == 0 && self.end == LogEnd::Complete && self.warnings.is_empty()
+    }
+    /// Adds a warning, unless the same one is there.
+    pub fn warn(&mut self, name: &'static str, text: impl Into<String>) {
+        let warning = Warning { name, text: text.into() };
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
     }
     pub(crate) fn add(&mut self, problem: Problem) {
         *self.problems.entry(problem.kind).or_default() += 1;
@@ -133,10 +151,16 @@ impl fmt::Display for ReadReport {
         for (topic, count) in &self.ignored {
             writeln!(f, "ignored {topic}: {count} messages")?;
         }
-        match &self.end {
-            LogEnd::Complete => Ok(()),
-            end => writeln!(f, "{end}"),
+        if self.end != LogEnd::Complete {
+            writeln!(f, "{}", self.end)?;
         }
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "{warning}"))
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "warning: {}", self.text)
     }
 }
 

@@ -1,10 +1,19 @@
-use wayfix_sensor_log::{LogEnd, ReadReport};
+use wayfix_sensor_log::{Log, LogEnd, ReadReport, Record, Warning};
 
 use super::output::tell;
 use crate::system::Events;
 
-/// Names what was refused, and counts what could not be read.
-pub(super) fn account(events: &mut Events, read: &ReadReport) {
+/// All records of a log; tells what could not be read and what was assumed.
+pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
+    let (records, read) = log.read_all();
+    if !read.is_clean() {
+        tell(&read);
+    }
+    (records, read)
+}
+
+/// Names what was refused and what the run assumed, counts what could not be read, and gives all warnings for the report.
+pub(super) fn account(events: &mut Events, read: &ReadReport) -> Vec<String> {
     for refusal in events.refusals() {
         tell(format!("refused {refusal}"));
     }
@@ -12,8 +21,13 @@ pub(super) fn account(events: &mut Events, read: &ReadReport) {
     if n_unlisted > 0 {
         tell(format!("refused … and {n_unlisted} more"));
     }
+    events.warnings().iter().for_each(tell); // those of the log were told when it was read
     events.add("log_problem", read.n_problems());
     if read.end != LogEnd::Complete {
         events.count("log_incomplete");
     }
+    for Warning { name, .. } in &read.warnings {
+        events.count(name);
+    }
+    read.warnings.iter().chain(events.warnings()).map(|warning| warning.text.clone()).collect()
 }

@@ -5,10 +5,10 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{OpenOptions, Record};
 
 use super::{
-    account::account,
+    account::{account, read_all},
     common::Common,
     input::{Topics, name_of, read_toml},
-    output::{print, tell},
+    output::print,
     outputs::Outputs,
     progress,
 };
@@ -113,10 +113,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let options = OpenOptions { topics: arguments.topics.topics, ..OpenOptions::default() };
     let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let origin = log.meta().first_format();
-    let (records, read) = log.read_all();
-    if !read.is_clean() {
-        tell(&read);
-    }
+    let (records, read) = read_all(log);
 
     let mut outputs = Outputs::open("color", &arguments.common)?;
     let mut estimates: Option<ColorEstimateLog> = outputs.estimates(origin)?;
@@ -134,11 +131,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let mut color = color?;
-    account(color.system.events(), &read);
+    let warnings = account(color.system.events(), &read);
 
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let run = Run { name, seconds, ..color::summarize(&mut color) };
+    let run = Run { name, seconds, warnings, ..color::summarize(&mut color) };
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }

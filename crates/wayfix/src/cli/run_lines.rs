@@ -5,10 +5,10 @@ use wayfix_line_extract::Params;
 use wayfix_sensor_log::{Format, OpenOptions};
 
 use super::{
-    account::account,
+    account::{account, read_all},
     common::Common,
     input::{Topics, name_of, read_toml},
-    output::{print, tell},
+    output::print,
     outputs::Outputs,
     progress,
 };
@@ -61,10 +61,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         OpenOptions { format: arguments.format, topics: arguments.topics.topics, ..OpenOptions::default() };
     let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let origin = log.meta().first_format();
-    let (records, read) = log.read_all();
-    if !read.is_clean() {
-        tell(&read);
-    }
+    let (records, read) = read_all(log);
 
     let mut outputs = Outputs::open("lines", &arguments.common)?;
     let mut walls: Option<LineLog> = outputs.estimates(origin)?;
@@ -79,11 +76,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     ensure!(system.n_scans() > 0, "{}: no laser scan in the log", name_of(&arguments.log));
-    account(system.events(), &read);
+    let warnings = account(system.events(), &read);
 
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let run = Run { name, seconds, ..lines::summarize(&mut system) };
+    let run = Run { name, seconds, warnings, ..lines::summarize(&mut system) };
     if let Some(walls) = walls {
         walls.finish()?;
     }

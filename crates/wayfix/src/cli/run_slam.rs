@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use wayfix_sensor_log::{Format, LogMeta, OpenOptions, Record};
 
 use super::{
-    account::account,
+    account::{account, read_all},
     common::Common,
     input::{Topics, name_of, read_toml},
     output::{print, tell},
@@ -112,10 +112,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     };
     let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let meta = log.meta().clone();
-    let (records, read) = log.read_all();
-    if !read.is_clean() {
-        tell(&read);
-    }
+    let (records, read) = read_all(log);
     if run_walls::is_for(&records) {
         return run_walls::main(&arguments, &records, meta.first_format(), &read);
     }
@@ -135,11 +132,12 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     if let Some(saver) = saver {
         saver.finish(&slam.system).context("cannot save the map")?;
     }
-    account(slam.events(), &read);
+    let warnings = account(slam.events(), &read);
 
     let run = Run {
         name: name_of(&arguments.log),
         seconds: stopwatch.elapsed().as_secs_f64(),
+        warnings,
         ..slam::summarize(&mut slam)
     };
     run.notes.iter().for_each(tell);

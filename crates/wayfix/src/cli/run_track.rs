@@ -121,11 +121,11 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         tell(log.report());
     }
     let mut track = track?;
-    account(track.system.events(), log.report());
+    let warnings = account(track.system.events(), log.report());
 
     let name = log.meta().source.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let run = Run { name, seconds, ..track::summarize(&mut track) };
+    let run = Run { name, seconds, warnings, ..track::summarize(&mut track) };
     run.notes.iter().for_each(|note| tell(format!("note: {note}")));
     if let Some(estimates) = estimates {
         estimates.finish(track.system.n_frames())?;

@@ -68,10 +68,11 @@ pub(super) fn main(
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
-    account(slam.events(), read);
+    let warnings = account(slam.events(), read);
     let mut run = Run {
         name: name_of(&arguments.log),
         seconds: stopwatch.elapsed().as_secs_f64(),
+        warnings,
         ..walls::summarize(&mut slam)
     };
     if let Some(path) = &arguments.relations {

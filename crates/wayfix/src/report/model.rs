@@ -57,6 +57,9 @@ pub struct Run {
     /// Remarks for the reader, a paragraph each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// What was assumed for the user or is doubtful, a sentence each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// MCAP of the estimates, relative to the folder of the report.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub log: Option<String>,

@@ -1,6 +1,6 @@
 use std::{collections::BTreeMap, fmt};
 
-use wayfix_sensor_log::Stamp;
+use wayfix_sensor_log::{Stamp, Warning};
 
 /// How often each kind of event happened, and the first records that could not be used.
 ///
@@ -19,6 +19,7 @@ pub struct Events {
     counts: BTreeMap<&'static str, u64>,
     refusals: Vec<Refusal>,
     n_refusals: u64,
+    warnings: Vec<Warning>,
     record: (usize, Stamp),
 }
 
@@ -57,6 +58,18 @@ impl Events {
             let (index, stamp) = self.record;
             self.refusals.push(Refusal { index, stamp, reason });
         }
+    }
+    /// Counts an event, and tells the user what was assumed or is doubtful; each text once.
+    pub fn warn(&mut self, name: &'static str, text: impl Into<String>) {
+        self.count(name);
+        let warning = Warning { name, text: text.into() };
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
+    }
+    /// What the user should know, in the order in which it came up.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
     /// How often a kind of event happened.
     pub fn get(&self, name: &str) -> u64 {

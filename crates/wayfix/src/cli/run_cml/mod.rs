@@ -13,7 +13,7 @@ pub(super) use arguments::Arguments;
 use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
 
 use super::{
-    account::account,
+    account::{account, read_all},
     input::read_toml,
     output::{print, tell},
     outputs::Outputs,
@@ -60,13 +60,13 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let mut run = run?;
-    account(run.system.events(), &read);
+    let warnings = account(run.system.events(), &read);
     if let Some(saver) = saver {
         saver.finish(&run.system).context("cannot save the map")?;
     }
 
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let summary = Run { name: arguments.name(), seconds, ..cml::summarize(&mut run) };
+    let summary = Run { name: arguments.name(), seconds, warnings, ..cml::summarize(&mut run) };
     tell(summary.notes.join("\n"));
     if let Some(estimates) = estimates {
         estimates.finish()?;
@@ -114,10 +114,7 @@ impl Arguments {
             let options = OpenOptions { topics: self.topics.topics.clone(), ..OpenOptions::default() };
             let log = wayfix_sensor_log::open_all(&self.log, &options)?;
             let origin = log.meta().first_format();
-            let (records, read) = log.read_all();
-            if !read.is_clean() {
-                tell(&read);
-            }
+            let (records, read) = read_all(log);
             return Ok(Input {
                 plan: Plan::of_log(records, self.withhold(), params, &camera)?,
                 read,

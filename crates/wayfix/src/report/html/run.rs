@@ -30,7 +30,10 @@ fn remarks(run: &Run) -> String {
         .error
         .iter()
         .map(|error| format!("<p class=\"verdict fail\">Ended early: {}</p>\n", escape(error)));
-    error.chain(run.notes.iter().map(|note| format!("<p>{}</p>\n", escape(note)))).collect()
+    let warnings =
+        run.warnings.iter().map(|text| format!("<p class=\"warning\">Warning: {}</p>\n", escape(text)));
+    let notes = run.notes.iter().map(|note| format!("<p>{}</p>\n", escape(note)));
+    error.chain(warnings).chain(notes).collect()
 }
 
 /// What a bound, a paper or a peer would say has columns where one of them says something.
