@@ -23,7 +23,7 @@ Usage: cargo xtask TASK [OPTIONS]
                      DIR of --data defaults to $WAYFIX_DATA, of --out to target/regress
   fixtures           rebuild every stored log from its seed; --check compares and writes nothing
   ci                 what CI runs, cheap steps first; --from STEP resumes
-  tidy               check the invariants of docs/architecture.md that a machine can check
+  tidy               check the invariants of docs/architecture.md that a machine can check; --write redraws its picture
   spelling           look for misspelled words
   docs [PACKAGE…]    build one site of the API reference and docs/, with formulas, and follow its links; --open shows it
   tutorials [NAME…]  type what docs/tutorials tells a reader to type

@@ -5,6 +5,7 @@
 mod code;
 mod direction;
 mod files;
+mod graph;
 mod leftovers;
 mod links;
 mod manifest;
@@ -16,7 +17,7 @@ mod size;
 use std::fmt;
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
 use crate::shell;
 
@@ -53,8 +54,11 @@ impl fmt::Display for Finding {
 }
 
 pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
-    if !args.is_empty() {
-        bail!("usage: cargo xtask tidy");
+    let tree = shell::output(&mut shell::command("cargo", &graph::TREE))?;
+    match args {
+        [] => {}
+        [flag] if flag == "--write" => return write(&tree),
+        _ => bail!("usage: cargo xtask tidy [--write]"),
     }
     let paths = files::tracked()?;
     let sources = files::read(&paths)?;
@@ -63,6 +67,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     findings.extend(purity::check(&sources));
     findings.extend(direction::check(&sources));
     findings.extend(members::check(&sources));
+    findings.extend(graph::check(&sources, &tree));
     findings.extend(leftovers::check(&sources));
     findings.extend(links::check(&sources, &paths));
     findings.extend(size::lengths(&sources));
@@ -81,6 +86,16 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     }
     println!("tidy: {} files, {} findings", paths.len(), findings.len());
     Ok(if findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Writes what is drawn from the code into the docs.
+fn write(tree: &str) -> Result<ExitCode> {
+    let path = shell::root().join(graph::PAGE);
+    let page = std::fs::read_to_string(&path)?;
+    let drawn =
+        graph::with_picture(&page, tree).context("the marks of the dependency picture are missing")?;
+    std::fs::write(path, drawn)?;
+    Ok(ExitCode::SUCCESS)
 }
 
 #[cfg(test)]
