@@ -74,7 +74,7 @@ fn found_after_carrying(doubt: f64) -> usize {
 }
 
 #[test]
-fn who_is_carried_beside_the_lane_is_found_by_doubt_and_not_without() {
+fn kidnapped_robot_beside_the_lane_needs_the_mismatch_test() {
     let by_default = RelocationParams::default().doubt;
     let (doubting, sure) = (found_after_carrying(by_default), found_after_carrying(NEVER));
     // The aim is 95 of 100: fewer than nine of ten come about by chance in one run of eleven, fewer than eight in one of ninety.
@@ -141,7 +141,7 @@ fn steps_until_relocated(seed: u64) -> Option<usize> {
 }
 
 #[test]
-fn who_explores_is_carried_away_by_what_looks_alike_for_long_alone() {
+fn exploring_robot_is_relocated_only_after_a_long_match() {
     let found: Vec<Option<usize>> = (0..N_SEEDS).map(steps_until_relocated).collect();
     // Steps are 0.2 to 0.8 m: within 18 less than 7 m, more than who is carried has to show, and within 77 20 m.
     assert!(found.iter().flatten().all(|steps| *steps > 18), "{found:?}");
@@ -166,7 +166,7 @@ fn n_alike(match_share: f64, start: impl Fn(Pose2<f64>) -> Start) -> usize {
 }
 
 #[test]
-fn who_is_lost_looks_for_places_that_look_less_alike_and_nobody_else_does() {
+fn lost_robot_searches_with_a_wider_match_limit() {
     let wider = RelocationParams::default().match_share;
     let as_ever = LocalizerParams::default().map.match_share;
     assert!(n_alike(wider, |_| Start::Anywhere) > n_alike(as_ever, |_| Start::Anywhere));

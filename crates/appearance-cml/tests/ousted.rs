@@ -75,7 +75,7 @@ fn drive(seed: u64, ousted_way: f64) -> Drive {
 }
 
 #[test]
-fn who_is_led_away_by_an_aisle_that_looks_like_another_learns_nothing_there_and_comes_back() {
+fn robot_in_a_similar_aisle_learns_nothing_and_returns() {
     let drives =
         |ousted_way: f64| -> Vec<Drive> { (0..N_SEEDS).map(|seed| drive(seed, ousted_way)).collect() };
     let astray = |drives: &[Drive]| -> usize { drives.iter().map(|drive| drive.n_learned_astray).sum() };

@@ -52,7 +52,7 @@ fn second_lap(seed: u64, patience: usize, memory: usize) -> f64 {
 }
 
 #[test]
-fn what_is_learned_in_a_rearranged_aisle_is_corrected_at_its_end() {
+fn references_of_a_rearranged_aisle_are_corrected_at_its_end() {
     let of = |patience, memory| (0..10).map(|seed| second_lap(seed, patience, memory)).sum::<f64>() / 10.0;
     let LocalizerParams { patience, memory, .. } = LocalizerParams::default();
     let (waiting, spread, at_once) = (of(patience, 0), of(0, memory), of(0, 0));

@@ -29,7 +29,7 @@ fn scenes(n: usize) -> Vec<Panorama> {
 }
 
 #[test]
-fn a_view_is_at_distance_0_from_itself_and_distances_are_symmetric_to_the_bit() {
+fn view_distance_is_zero_to_itself_and_symmetric() {
     let features = features(PanoramaParams::default());
     let views: Vec<PanoramaDescriptor> =
         scenes(30).iter().map(|scene| features.describe(scene).unwrap()).collect();
@@ -69,7 +69,7 @@ fn the_triangle_inequality_holds() {
 }
 
 #[test]
-fn a_turn_is_found_and_does_not_change_distances_beyond_rounding() {
+fn rotated_view_gives_the_turn_and_the_same_distance() {
     for (sense, sign) in [(TurnSense::Clockwise, -1.0), (TurnSense::Counterclockwise, 1.0)] {
         let features = features(PanoramaParams { sense, ..PanoramaParams::default() });
         let views = scenes(2);
@@ -162,7 +162,7 @@ fn parameters_outside_their_range_are_named() {
 }
 
 #[test]
-fn parts_that_are_no_spectrum_are_refused_and_other_shapes_are_infinitely_far() {
+fn invalid_spectrum_is_refused_and_other_shape_is_far() {
     let good = PanoramaDescriptor::from_parts(0.01, 2, vec![1; 6]).unwrap();
     let parts = (good.scale(), good.n_rings(), good.coefficients());
     assert_eq!(PanoramaDescriptor::from_parts(parts.0, parts.1, parts.2).unwrap(), good);

@@ -94,7 +94,7 @@ fn of_two_decals_the_later_one_is_on_top_from_both_sides() {
 }
 
 #[test]
-fn a_floor_that_goes_on_behind_the_camera_fills_the_rows_below_the_horizon() {
+fn floor_behind_the_camera_fills_rows_below_the_horizon() {
     // Half a metre above the floor; its far end, 10 m ahead, is at v = 40 + 100 * 0.5 / 10 = 45.
     let labels = see(&map(vec![rug(GREY, [-10.0, 10.0], [-20.0, 20.0])]), &at(0.0, 0.0, 0.5));
     assert_eq!(labels.count(GREY), 100 * (80 - 45));

@@ -85,7 +85,7 @@ fn what_is_refused_leaves_the_light_as_it_was() {
 }
 
 #[test]
-fn a_hundred_thousand_hostile_steps_leave_every_colour_a_density() {
+fn hostile_steps_leave_every_colour_a_finite_density() {
     let mut rng = ChaCha8Rng::seed_from_u64(411);
     for run in 0..100 {
         let mut prior = random_prior(5, &mut rng);

@@ -54,7 +54,7 @@ fn scalar_updates_are_the_joint_update_of_the_general_filter() {
 }
 
 #[test]
-fn the_densities_of_colours_are_blocks_widened_by_the_noise_of_pixels() {
+fn colour_densities_are_covariance_blocks_plus_pixel_noise() {
     let prior = random_prior(5, &mut ChaCha8Rng::seed_from_u64(402));
     let light = filter(prior.clone(), LightingParams::default());
     for (color, density) in light.colors().enumerate() {
@@ -71,7 +71,7 @@ fn volume(light: &LightingFilter, color: usize) -> f64 {
 }
 
 #[test]
-fn regression_shrinks_what_nobody_saw_and_the_exact_filter_does_not() {
+fn only_regression_shrinks_unseen_colours() {
     // Pink is independent of everything: no other colour says anything about it.
     let mut covariance = common_gain(&BRIGHT, 0.3).covariance().clone();
     for i in 0..12 {
@@ -123,7 +123,7 @@ fn an_unseen_colour_keeps_what_its_correlations_leave_open() {
 }
 
 #[test]
-fn the_paper_and_the_exact_filter_agree_when_every_colour_is_seen() {
+fn printed_and_exact_filter_agree_when_all_colours_are_seen() {
     let mut rng = ChaCha8Rng::seed_from_u64(403);
     let prior = random_prior(5, &mut rng);
     let mut exact = filter(prior.clone(), LightingParams::default());

@@ -120,7 +120,7 @@ fn what_cannot_be_used_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn a_robot_that_sees_nothing_of_the_map_does_not_pretend_to_know() {
+fn robot_that_sees_nothing_of_the_map_is_not_tracking() {
     let scene = Scene::new();
     let n_pixels = (scene.camera.width() * scene.camera.height()) as usize;
     let mut noise = ChaCha8Rng::seed_from_u64(4);
@@ -139,7 +139,7 @@ fn a_robot_that_sees_nothing_of_the_map_does_not_pretend_to_know() {
 }
 
 #[test]
-fn parameters_that_make_no_sense_are_refused_before_the_first_frame() {
+fn invalid_parameters_are_refused_before_the_first_frame() {
     let scene = Scene::new();
     let refused = |change: &dyn Fn(&mut LocalizerParams)| {
         let (mut params, mut rng) = (params(), ChaCha8Rng::seed_from_u64(7));

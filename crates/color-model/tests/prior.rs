@@ -48,7 +48,7 @@ fn venues_are_split_where_the_light_is() {
 }
 
 #[test]
-fn the_joint_prior_foresees_a_colour_that_nobody_showed_and_the_independent_one_does_not() {
+fn only_the_joint_prior_predicts_an_unseen_colour() {
     let rng = &mut ChaCha8Rng::seed_from_u64(12);
     let joint = learn_priors(&colors(), &venues(rng), 2, &PriorParams::default(), rng).unwrap();
     let params = LightingParams {

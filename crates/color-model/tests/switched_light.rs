@@ -99,7 +99,7 @@ fn error_of_pink(tracker: &dyn LightTracker, truth: &DVector<f64>) -> f64 {
 }
 
 #[test]
-fn whatever_follows_switches_knows_a_colour_that_it_has_not_seen_since() {
+fn switching_filters_predict_a_colour_unseen_since_the_switch() {
     let params = LightingParams::default();
     let mut rng = ChaCha8Rng::seed_from_u64(422);
     let lights: Vec<DVector<f64>> =

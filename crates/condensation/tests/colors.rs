@@ -43,7 +43,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn all_segmentations_are_the_single_ones_and_those_pixel_by_pixel(
+    fn joint_segmentation_equals_single_and_pixelwise_ones(
         width in prop_oneof![Just(1), Just(63), Just(64), Just(65), 1_usize..150],
         height in 1_usize..20, n_sets in 0_usize..140, seed in any::<u64>(),
     ) {

@@ -86,7 +86,7 @@ fn simulated_targets_are_followed() {
 }
 
 #[test]
-fn the_neck_of_the_snail_stays_outside_the_contour_but_not_of_the_blob() {
+fn snail_neck_is_outside_the_contour_and_inside_the_blob() {
     let film = Film { seed: 3, n_frames: 60, ..Film::named("snail").unwrap() };
     let with_shape = follow(&film, ContourTrackerParams::default()).decoy_inside();
     let color = ContourTrackerParams { cues: TrackingCues::Color, ..ContourTrackerParams::default() };

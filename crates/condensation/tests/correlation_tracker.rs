@@ -85,7 +85,7 @@ fn follows_a_target_that_moves_grows_and_darkens() {
 }
 
 #[test]
-fn a_target_that_passes_behind_a_board_is_found_on_the_other_side() {
+fn occluded_target_is_found_behind_the_board() {
     let painting = Painting::new();
     let mut tracker = tracker(&painting, [30.0, 60.0], 28.0);
     let mut last = None;

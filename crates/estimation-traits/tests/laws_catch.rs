@@ -261,7 +261,7 @@ impl BayesFilter for Scalar {
 }
 
 #[test]
-fn a_filter_that_never_moves_and_one_that_changes_when_it_refuses() {
+fn law_suite_catches_a_frozen_filter_and_a_dirty_refusal() {
     let honest = Scalar { mean: 0.0, variance: 1.0, applies_gain: true, checks_first: true };
     let trial = laws::FilterTrial::<Scalar, _> {
         measurements: &[&5.0, &5.0, &5.0],

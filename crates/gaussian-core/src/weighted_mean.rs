@@ -104,7 +104,7 @@ mod tests {
     use wayfix_estimation_traits::{Angle, Pose2};
 
     #[test]
-    fn vectors_have_their_arithmetic_mean_at_any_distance_from_the_origin() {
+    fn mean_of_vectors_far_from_the_origin_is_arithmetic() {
         for origin in [0.0, 1e3, 1e9, -1e15] {
             let at = |x: f64, y: f64| Vector2::new(origin + x, origin - y);
             let mean = weighted_mean(&[at(0.0, 0.0), at(4.0, 2.0)], &[1.0, 3.0]).unwrap();

@@ -190,7 +190,7 @@ fn both_hyperpriors_speak_where_no_group_does() {
 }
 
 #[test]
-fn an_estimate_that_ran_out_of_iterations_comes_back_in_the_error() {
+fn iteration_limit_error_carries_the_last_estimate() {
     let groups = draw_groups(&known_prior(1), 10, &mut ChaCha8Rng::seed_from_u64(1));
     let params =
         HierarchicalParams { covariance_prior: hyperprior(4.0), max_iterations: 3, ..Default::default() };

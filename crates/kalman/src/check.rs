@@ -210,7 +210,7 @@ mod tests {
     use nalgebra::{Matrix2, Matrix3, Vector3};
 
     #[test]
-    fn a_rank_one_noise_is_semidefinite_and_its_factor_gives_it_back() {
+    fn rank_one_noise_factor_reproduces_the_matrix() {
         for scale in [1e-12, 1.0, 1e12] {
             let direction = Vector3::new(0.005, 0.1, 1.0) * scale;
             let noise: Matrix3<f64> = direction * direction.transpose();
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn infinities_off_the_diagonal_do_not_pass_for_positive_definite() {
+    fn infinite_off_diagonal_is_not_positive_definite() {
         let mut matrix = Matrix3::identity();
         matrix[(2, 0)] = f64::INFINITY;
         assert_eq!(positive_definite("p", &matrix), Err(GaussianError::NotFinite { what: "p" }.into()));

@@ -50,7 +50,7 @@ fn a_filter_that_knows_its_noise_is_consistent() {
 }
 
 #[test]
-fn an_overconfident_filter_is_above_the_band_and_a_timid_one_below() {
+fn overconfident_filter_is_above_and_timid_below_the_band() {
     let (errors, innovations) = simulate(Q / 10.0, R / 2.0);
     for consistency in [errors, innovations] {
         assert!(consistency.average() > consistency.band(0.95).unwrap().high, "{}", consistency.average());

@@ -81,7 +81,7 @@ fn a_lopsided_sensor_noise_leaves_the_belief_positive_definite() {
 }
 
 #[test]
-fn a_lopsided_motion_noise_leaves_the_belief_positive_definite_in_many_dimensions() {
+fn ill_conditioned_motion_noise_keeps_positive_definiteness() {
     let n = 12;
     for asymmetry in [LOPSIDED / 3.0, LOPSIDED] {
         for weak in [1e-9, 1e-10, 1e-11, 1e-12] {

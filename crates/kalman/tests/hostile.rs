@@ -163,7 +163,7 @@ fn ill_treated_filters_stay_positive_definite() {
 }
 
 #[test]
-fn the_linear_filter_with_sizes_known_at_run_time_stays_positive_definite() {
+fn dynamic_linear_filter_stays_positive_definite() {
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     let (motion, sensor) = common::dynamic(&constant_velocity(0.5), &position_sensor(0.25));
     let prior = || Gaussian::new(DVector::zeros(4), DMatrix::identity(4, 4)).unwrap();

@@ -83,7 +83,7 @@ impl SensorModel for ArcTangent {
 }
 
 #[test]
-fn no_convergence_returns_the_last_estimate_and_leaves_the_filter() {
+fn no_convergence_returns_last_estimate_and_keeps_the_filter() {
     let motion = wayfix_kalman::LinearMotion::stationary(Matrix1::new(0.0)).unwrap();
     let prior = Gaussian::new(Vector1::new(2.0), Matrix1::new(100.0)).unwrap();
     let hasty = IteratedExtended { max_iterations: 2, ..Default::default() };

@@ -278,7 +278,7 @@ fn light_sensor() -> LinearSensor<Vector1<f64>, Vector1<f64>> {
 }
 
 #[test]
-fn the_selected_light_is_the_one_that_is_on_and_the_other_is_untouched() {
+fn active_light_is_selected_and_the_other_is_unchanged() {
     for n_histories in [1, 8] {
         let mut light = lights(n_histories);
         let mut rng = ChaCha8Rng::seed_from_u64(11);

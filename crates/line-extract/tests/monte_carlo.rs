@@ -110,7 +110,7 @@ fn walls_of_a_room_are_within_their_two_sigma_ellipse() {
 }
 
 #[test]
-fn two_looks_at_a_wall_are_compatible_as_often_as_two_sigma_says() {
+fn two_scans_of_a_wall_are_compatible_at_the_two_sigma_rate() {
     const RUNS: usize = 4000;
     let mut rng = ChaCha8Rng::seed_from_u64(SEED_WALL);
     let laser = Laser::over(60.0, 121);

@@ -69,7 +69,7 @@ fn recovery(inject: bool, seed: u64) -> Option<usize> {
 }
 
 #[test]
-fn a_kidnapped_robot_finds_itself_with_injection_and_not_without() {
+fn kidnapped_robot_relocalizes_only_with_injection() {
     for seed in SEED..SEED + 20 {
         // The first step injects a share 0.3; 90 particles, one in 17 near by: some fail to hit with probability 0.004 a step.
         let steps = recovery(true, seed);

@@ -11,7 +11,7 @@ const SEED: u64 = 20_261_121;
 /// $`n = χ^2_{k-1,1-δ} / 2ε`$ [Fox 2003] with the quantile itself; the formula that everyone uses is Wilson and Hilferty's
 /// approximation, good to 1 % from two degrees of freedom on and to 3 % at one. [Johnson, Kotz & Balakrishnan 1994, Ch. 18]
 #[test]
-fn numbers_agree_with_the_quantiles_of_the_chi_squared_distribution() {
+fn kld_particle_counts_match_chi_squared_quantiles() {
     for confidence in [0.9, 0.95, 0.99] {
         for epsilon in [0.01, 0.05, 0.2] {
             let kld = KldSampling::new(KldParams { epsilon, confidence, min: 1, max: usize::MAX }).unwrap();

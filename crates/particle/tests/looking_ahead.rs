@@ -39,7 +39,7 @@ fn auxiliary_moment(k: f64) -> f64 {
 }
 
 #[test]
-fn effective_shares_after_one_sharp_measurement_are_those_of_the_integrals() {
+fn effective_share_after_sharp_measurement_matches_integral() {
     let motion = LinearMotion::<f64, U1>::stationary(Matrix1::new(MOTION_SIGMA.powi(2))).unwrap();
     let sensor =
         LinearSensor::<Line, Line>::new(Matrix1::identity(), Matrix1::new(SENSOR_SIGMA.powi(2))).unwrap();

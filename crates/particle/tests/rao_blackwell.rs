@@ -156,7 +156,7 @@ fn plain(seed: u64) -> Answer {
 }
 
 #[test]
-fn particles_agree_with_the_enumeration_and_rao_blackwellised_ones_are_surer() {
+fn rao_blackwellised_particles_match_the_enumeration() {
     let exact = exact();
     let part = |answers: &[Answer], part: fn(&Answer) -> f64| answers.iter().map(part).collect::<Vec<f64>>();
     let mut spreads = vec![];

@@ -105,7 +105,7 @@ fn a_heading_in_doubt_is_searched_for() {
 /// Odometry that counts backwards as forwards is off by twice the way, 1.6 m and 16 deviations. From there the walls of a pillared hall lead astray; from
 /// where the robot would be had it gone on as before they do not.
 #[test]
-fn a_robot_that_goes_on_as_before_is_found_whatever_its_wheels_say() {
+fn constant_motion_is_matched_despite_wrong_odometry() {
     let mut hall = room();
     for x in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0] {
         hall.extend([([x, 1.0], [x + 0.4, 1.0]), ([x, 1.0], [x, 1.4]), ([x + 0.4, 1.0], [x + 0.4, 1.4])]);

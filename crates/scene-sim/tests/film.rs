@@ -96,7 +96,7 @@ fn the_silhouette_is_where_the_circle_is() {
 }
 
 #[test]
-fn the_rectangle_is_much_brighter_beyond_the_lamp_than_before_it() {
+fn rectangle_is_brighter_beyond_the_lamp() {
     let brightness = |frame: Frame| mean_color(&frame, &frame.target)[0];
     let levels: Vec<f64> = shown("rectangle", Incident::None).map(brightness).collect();
     let (low, high) =

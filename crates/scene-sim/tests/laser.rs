@@ -115,7 +115,7 @@ fn only_beams_on_an_edge_mix_two_surfaces() {
 }
 
 #[test]
-fn losses_and_dust_come_at_their_rates_and_leave_the_other_beams_alone() {
+fn lost_and_short_beams_have_their_rates_and_others_are_kept() {
     let plain = scans(exact(), step(), 100, 4);
     let pairs = |params| -> Vec<(f64, f64)> {
         let sinful = scans(params, step(), 100, 4);

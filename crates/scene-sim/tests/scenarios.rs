@@ -42,7 +42,7 @@ fn all_have_truth_sightings_and_a_bounded_size() {
 }
 
 #[test]
-fn the_office_is_driven_around_once_and_beyond_and_the_laser_sees_most_of_its_walls() {
+fn office_drive_closes_its_loop_and_sees_most_walls() {
     let records = run("office_laser", 7);
     let scans = count(&records, |d| matches!(d, Data::Scan(_)));
     let poses = count(&records, |d| matches!(d, Data::TruePose(_)));
@@ -93,7 +93,7 @@ fn each_is_what_its_name_says() {
 }
 
 #[test]
-fn the_store_is_lapped_twice_with_a_view_every_quarter_of_a_metre() {
+fn store_drive_has_two_laps_and_a_view_every_quarter_metre() {
     let scenario = Scenario::named("store_area").expect("there is one");
     let records = run(scenario.name, scenario.seed);
     let views = count(&records, |data| matches!(data, Data::Image(_)));

@@ -45,7 +45,7 @@ fn the_default_noise_is_that_of_the_shared_logs() {
 }
 
 #[test]
-fn heavy_tails_keep_the_standard_deviation_and_have_the_kurtosis_of_their_shape() {
+fn heavy_tails_keep_sigma_and_have_the_stated_kurtosis() {
     // Standard error of σ is σ √((κ − 1) / 4n); κ is 6 for Laplace and 3 + 6/(ν − 4) for Student's t.
     for (tail, kurtosis) in
         [(Tail::Laplace, 6.0), (Tail::StudentT { degrees_of_freedom: 10.0 }, 4.0), (Tail::Gaussian, 3.0)]
@@ -86,7 +86,7 @@ fn bearings_stay_wrapped() {
 }
 
 #[test]
-fn drift_has_its_size_and_its_correlation_time_and_differs_between_targets() {
+fn drift_has_stated_size_and_correlation_time_per_target() {
     let drift = DriftParams {
         range: RangeSigma { constant_m: 0.1, per_metre: 0.0 },
         bearing_sigma_rad: 0.02,

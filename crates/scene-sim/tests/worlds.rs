@@ -35,7 +35,7 @@ fn a_field_fills_its_square_and_keeps_landmarks_apart() {
 }
 
 #[test]
-fn a_corridor_hangs_landmarks_on_its_walls_and_hides_what_is_around_the_corner() {
+fn corridor_landmarks_are_on_walls_and_hidden_behind_corners() {
     let corridor = CorridorLoop { length_m: 20.0, width_m: 10.0, corridor_m: 2.0, spacing_m: 2.0 };
     let plan = corridor.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
     for p in points(&plan) {
@@ -57,7 +57,7 @@ fn a_corridor_hangs_landmarks_on_its_walls_and_hides_what_is_around_the_corner()
 }
 
 #[test]
-fn offices_have_posts_in_the_corners_and_doors_between_the_rooms() {
+fn offices_have_corner_posts_and_doors() {
     let office = Office { n_columns: 3, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.2 };
     let plan = office.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
     assert_eq!(plan.landmarks.len(), 4 * 3);
@@ -129,7 +129,7 @@ fn rocks_lie_on_both_verges_of_the_road() {
 }
 
 #[test]
-fn other_robots_move_along_their_routes_and_targets_keep_their_order() {
+fn other_robots_follow_routes_and_targets_keep_order() {
     let straight = Piece { length_m: 10.0, curvature_per_m: 0.0 };
     let start = wayfix_estimation_traits::Pose2::new(1.0, 0.0, 0.0);
     let route = Route::open(start, vec![straight]).expect("valid");

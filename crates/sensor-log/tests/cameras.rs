@@ -54,7 +54,7 @@ fn read(path: &Path) -> (Vec<Record>, ReadReport) {
 }
 
 #[test]
-fn cameras_come_back_in_their_order_and_the_same_records_give_the_same_bytes() {
+fn cameras_round_trip_in_order_with_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     // More than the reader holds back, so that the order is not merely that of one look.

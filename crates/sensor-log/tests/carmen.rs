@@ -115,7 +115,7 @@ fn a_damaged_line_is_counted_and_the_others_are_read() {
 }
 
 #[test]
-fn where_time_stands_still_or_goes_back_the_lines_give_the_order() {
+fn line_order_decides_where_time_does_not_advance() {
     let folder = tempfile::tempdir().unwrap();
     let times = [5.0, 5.0, 4.0, 9.0];
     let text: String = times.iter().map(|t| scan_line(180, "1", "0 0 0", "0 0 0", *t)).collect();
@@ -128,7 +128,7 @@ fn where_time_stands_still_or_goes_back_the_lines_give_the_order() {
 }
 
 #[test]
-fn a_compressed_log_reads_like_the_plain_one_and_one_cut_short_up_to_the_cut() {
+fn gzip_log_equals_plain_and_truncated_gzip_its_beginning() {
     let folder = tempfile::tempdir().unwrap();
     let text = walk(40);
     let (plain, _) = read(&folder.path().join("walk.log"), text.as_bytes());

@@ -110,7 +110,7 @@ fn a_file_cut_anywhere_gives_a_prefix_and_says_what_is_missing() {
 }
 
 #[test]
-fn an_uncompressed_file_cut_inside_a_chunk_gives_every_whole_message() {
+fn file_cut_inside_a_chunk_gives_every_whole_message() {
     let records = common::drive(50);
     let bytes = whole_file(&records);
     let ends = message_ends(&bytes);
@@ -142,7 +142,7 @@ fn message_ends(bytes: &[u8]) -> Vec<usize> {
 }
 
 #[test]
-fn a_chunk_with_a_wrong_checksum_is_left_out_and_the_next_one_read() {
+fn chunk_with_wrong_checksum_is_skipped_and_the_next_read() {
     let records = common::drive(100);
     for compression in [None, Some(Compression::Lz4), Some(Compression::Zstd)] {
         let options = WriteOptions::new().chunk_size(Some(2000)).compression(compression);
@@ -219,7 +219,7 @@ fn other_topics_and_schemas_are_counted() {
 }
 
 #[test]
-fn messages_a_little_late_are_put_in_order_and_much_too_late_ones_reported() {
+fn late_messages_are_sorted_and_much_later_ones_reported() {
     let records = common::drive(200);
     let mut late = records.clone();
     late.swap(100, 150);

@@ -188,7 +188,7 @@ fn a_log_larger_than_a_chunk_comes_back_whole() {
 }
 
 #[test]
-fn range_bearing_keeps_what_it_has_a_place_for_and_says_what_not() {
+fn range_bearing_writes_its_kinds_and_names_the_rest() {
     let records = common::drive(20);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.txt");
@@ -204,7 +204,7 @@ fn range_bearing_keeps_what_it_has_a_place_for_and_says_what_not() {
 }
 
 #[test]
-fn landmarks_and_walls_in_a_row_share_a_message_and_keep_their_order() {
+fn consecutive_landmarks_share_a_message_in_order() {
     let at = |id: u32| Vector2::new(f64::from(id), 1.0);
     let landmark = |id| Data::TrueLandmark(TrueLandmark { id, x: at(id).x, y: at(id).y });
     let wall = |id| Data::TrueWall(TrueWall { id, start: at(id), end: at(id + 1) });
@@ -255,7 +255,7 @@ fn what_cannot_be_stored_is_refused() {
 }
 
 #[test]
-fn converting_keeps_where_the_records_come_from_even_in_a_file_cut_short() {
+fn conversion_keeps_the_origin_in_a_truncated_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let open_at = |name| open(at(name), &OpenOptions::default()).unwrap();

@@ -43,7 +43,7 @@ fn message(start_angle: f64, end_angle: f64, ranges: &[f64]) -> ScanMessage {
 }
 
 #[test]
-fn without_metadata_the_step_comes_from_the_angles_and_nothing_is_too_far() {
+fn scan_without_metadata_takes_its_step_from_the_angles() {
     let (data, report) = read(|file| {
         add(file, topics::SCAN, &[], &message(-1.0, 1.0, &[1.0, f64::NAN, 90.0, 2.0, 3.0]));
         add(file, topics::SCAN, &[], &message(0.25, 0.25, &[4.0]));

@@ -120,7 +120,7 @@ fn increments(records: &[Record]) -> Vec<Pose2<f64>> {
 }
 
 #[test]
-fn the_odometry_of_a_corrected_carmen_log_is_that_of_the_raw_log() {
+fn corrected_carmen_log_has_the_odometry_of_the_raw_log() {
     let Some(folder) = data_folder() else { return };
     let read = |name: &str| open(folder.join(name), &OpenOptions::default()).unwrap().read_all().0;
     let carmen = increments(&read("carmen/intel-corrected.log.gz"));

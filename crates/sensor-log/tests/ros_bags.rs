@@ -163,7 +163,7 @@ fn odometry_that_only_knows_its_velocity_is_read_as_that() {
 }
 
 #[test]
-fn without_odometry_transforms_move_the_robot_and_without_those_a_bare_velocity() {
+fn motion_falls_back_to_transforms_and_then_to_velocity() {
     let mut bag = Bag::new();
     let mut still = Bag::new();
     for seconds in 1..4 {
@@ -255,7 +255,7 @@ fn time_that_goes_back_is_told_as_in_every_log() {
 }
 
 #[test]
-fn a_bag_cut_anywhere_and_with_flipped_bytes_ends_without_a_panic() {
+fn truncated_and_corrupted_bag_ends_without_a_panic() {
     let options = WriteOptions::new().compression(None).chunk_size(Some(700));
     let mut bag = Bag::with(options);
     for seconds in 1..6 {

@@ -48,7 +48,7 @@ fn a_sensor_should_see_what_is_within_reach_and_view() {
 }
 
 #[test]
-fn a_tentative_landmark_outlives_as_many_misses_as_there_is_patience() {
+fn tentative_landmark_survives_the_allowed_misses() {
     for patience in [0, 1, 5] {
         let mut slam = slam(Confirmation { patience: Some(patience), ..Confirmation::default() });
         look(&mut slam, &[AHEAD]);
@@ -97,7 +97,7 @@ fn a_share_is_not_judged_before_patience_is_out() {
 }
 
 #[test]
-fn without_a_share_or_without_patience_nothing_that_is_confirmed_leaves() {
+fn confirmed_landmark_stays_without_share_or_patience() {
     let share_only = Confirmation { least_share_seen: 1.0, ..Confirmation::default() };
     let patience_only = Confirmation { patience: Some(1), ..Confirmation::default() };
     for confirmation in [share_only, patience_only] {

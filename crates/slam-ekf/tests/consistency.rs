@@ -44,7 +44,7 @@ fn average_nees(belief: f64) -> f64 {
 }
 
 #[test]
-fn nees_over_sixty_runs_lies_in_its_band_and_not_when_the_noise_is_understated() {
+fn nees_is_in_its_band_and_above_for_understated_noise() {
     let band = ChiSquaredBand::for_average(3, N_RUNS as usize, 0.95).unwrap();
     let honest = average_nees(1.0);
     assert!(band.contains(honest), "{honest} outside {} to {}", band.low, band.high);
@@ -106,7 +106,7 @@ fn own_error(
 }
 
 #[test]
-fn on_a_long_loop_the_standard_filter_leaves_the_band_and_the_others_stay() {
+fn long_loop_only_the_standard_filter_leaves_the_nees_band() {
     let standard = share_outside_on_a_long_loop(Linearization::Newest, 0);
     assert!(standard > 0.25, "{standard}"); // five times what the band allows
     // Pointwise bands leave one step in twenty outside by chance; neighbouring steps fall out together, so twice that.

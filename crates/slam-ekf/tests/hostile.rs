@@ -283,6 +283,6 @@ fn an_ill_treated_filter_keeps_a_covariance() {
 }
 
 #[test]
-fn an_ill_treated_filter_with_a_compressed_map_keeps_a_covariance() {
+fn hostile_steps_keep_the_compressed_covariance_valid() {
     is_never_poisoned(MapForm::Compressed, &[OutlierRule::Downweight], 8);
 }

@@ -162,7 +162,7 @@ fn small_looks_are_paired_as_by_trying_everything() {
 /// Landmarks on an arc of 10 m, every 0.1 rad, and a robot whose heading is off by 0.07 rad of a deviation of 0.05: what it sees of each
 /// looks like the next.
 #[test]
-fn a_heading_that_is_off_misleads_nearest_neighbour_and_not_the_joint_rule() {
+fn wrong_heading_misleads_nearest_neighbour_and_not_jcbb() {
     let bearings: Vec<f64> = (0..6).map(|k| 0.1 * f64::from(k)).collect();
     let landmarks: Vec<_> =
         bearings.iter().map(|bearing| RangeBearing::new(10.0, *bearing).point()).collect();
@@ -179,7 +179,7 @@ fn a_heading_that_is_off_misleads_nearest_neighbour_and_not_the_joint_rule() {
 
 /// Three hundred landmarks so close together, for a robot this unsure, that everything may be everything.
 #[test]
-fn a_look_with_hundreds_of_compatible_observations_ends_and_its_pairs_are_compatible() {
+fn jcbb_ends_with_compatible_pairs_for_hundreds_of_observations() {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let place = |rng: &mut ChaCha8Rng| Vector2::new(rng.random_range(9.0..11.0), rng.random_range(-1.0..1.0));
     let landmarks: Vec<_> = (0..300).map(|_| place(&mut rng)).collect();
@@ -237,7 +237,7 @@ fn thresholds_without_meaning_are_refused() {
 }
 
 #[test]
-fn a_pairing_with_a_rival_is_ambiguous_unless_the_rival_is_taken() {
+fn pairing_with_a_free_rival_is_ambiguous() {
     // Two landmarks of 0.1 m deviation, 0.4 m apart across the line of sight; what is seen is half a deviation nearer to the first.
     let landmarks = [Vector2::new(5.0, 0.2), Vector2::new(5.0, -0.2)];
     let slam = map(&landmarks, 0.1, [1e-3; 3]);

@@ -106,7 +106,7 @@ fn what_is_removed_leaves_the_marginal_of_the_rest() {
 }
 
 #[test]
-fn a_false_first_sighting_is_replaced_and_what_is_not_seen_again_is_forgotten() {
+fn false_first_detection_is_replaced_and_unseen_one_removed() {
     let confirmation = Confirmation { n_sightings: 2, patience: Some(3), ..Confirmation::default() };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });
     let mut look = |observations: &[Observation<RangeBearing>]| {
@@ -159,7 +159,7 @@ fn outliers_are_rejected_or_count_little_and_say_so() {
 }
 
 #[test]
-fn nearest_neighbour_gives_a_landmark_one_observation_and_leaves_the_doubtful_alone() {
+fn nearest_neighbour_pairs_once_and_skips_ambiguous() {
     let mut rule = NearestNeighbour::new(NearestNeighbourParams::default()).unwrap();
     let confirmation = Confirmation { n_sightings: 1, ..Confirmation::default() };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });

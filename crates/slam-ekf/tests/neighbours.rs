@@ -73,7 +73,7 @@ fn neighbours_are_told_apart_by_what_a_look_errs_in_common() {
 }
 
 #[test]
-fn beside_a_matched_sighting_stands_another_landmark_where_none_is_told_of_twice() {
+fn second_detection_near_a_match_is_another_landmark() {
     let outcomes = |never_twice: bool, joint: bool| {
         let mut slam = slam(RangeBearingSensor::default(), None);
         slam.insert(LandmarkId(100), Vector2::new(2.0, 0.0), Matrix2::identity() * 1e-6).unwrap();
@@ -94,7 +94,7 @@ fn beside_a_matched_sighting_stands_another_landmark_where_none_is_told_of_twice
 }
 
 #[test]
-fn two_landmarks_nearer_than_any_stand_become_one_and_keep_the_sharper_place() {
+fn landmarks_below_the_least_distance_are_merged() {
     let merging = Some(Merging { separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     for _ in 0..20 {
@@ -127,7 +127,7 @@ fn two_that_may_stand_apart_stay_two() {
 }
 
 #[test]
-fn a_merge_is_the_correction_by_a_measurement_that_both_are_at_one_place() {
+fn merge_equals_an_update_that_both_coincide() {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let landmarks = common::landmarks(6, &mut rng);
     let mut slam =
@@ -147,7 +147,7 @@ fn a_merge_is_the_correction_by_a_measurement_that_both_are_at_one_place() {
 }
 
 #[test]
-fn what_cannot_be_merged_changes_nothing_and_bad_parameters_are_refused() {
+fn impossible_merge_changes_nothing() {
     let mut slam = slam(RangeBearingSensor::default(), None);
     slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIds).unwrap();
     slam.add_anchor(LandmarkId(9), Vector2::new(2.0, 0.0)).unwrap();

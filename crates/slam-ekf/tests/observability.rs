@@ -61,7 +61,7 @@ fn free(recorder: &ObservabilityRecorder) -> Vec<String> {
 }
 
 #[test]
-fn a_plain_map_may_be_moved_and_turned_and_two_anchors_or_a_camera_end_that() {
+fn two_anchors_remove_the_unobservable_directions() {
     let mut names = free(&lap(0, false));
     names.sort_unstable();
     assert_eq!(
@@ -88,7 +88,7 @@ fn about_a_single_anchor_the_map_still_turns() {
 }
 
 #[test]
-fn the_information_of_the_plane_lacks_what_one_linearization_lacks() {
+fn accumulated_information_has_the_rank_of_one_linearization() {
     // A robot that stands still linearizes where it stands: three directions for two landmarks and a pose, exactly.
     let mut slam =
         EkfSlam::new(RelativePositionSensor { sigma: 0.1 }, SlamParams::default(), Pose2::new(1.0, 2.0, 0.5))

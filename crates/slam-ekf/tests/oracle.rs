@@ -179,7 +179,7 @@ fn sequential_updates_equal_the_textbook() {
 }
 
 #[test]
-fn a_joint_update_does_not_depend_on_the_order_of_the_observations() {
+fn joint_update_is_independent_of_observation_order() {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED + 1);
     let landmarks = common::landmarks(12, &mut rng);
     let steps = common::drive(20, &landmarks, &mut rng);

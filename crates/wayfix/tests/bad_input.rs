@@ -26,7 +26,7 @@ fn walk_with(line: &str) -> (String, usize) {
 }
 
 #[test]
-fn rows_with_numbers_that_are_none_are_named_and_the_rest_gives_the_same_figures() {
+fn non_numeric_rows_are_named_and_figures_stay() {
     let scratch = Scratch::new();
     let clean = run_slam(&scratch.file("walk.txt", walk(40)), &[]).figures();
     for line in
@@ -41,7 +41,7 @@ fn rows_with_numbers_that_are_none_are_named_and_the_rest_gives_the_same_figures
 }
 
 #[test]
-fn sightings_and_motions_of_no_use_are_rejected_and_leave_no_trace() {
+fn invalid_detections_and_motions_leave_the_filter_unchanged() {
     let scratch = Scratch::new();
     let clean = run_slam(&scratch.file("walk.txt", walk(40)), &[]).figures();
     for (line, event) in [
@@ -107,7 +107,7 @@ fn rows_that_go_back_in_time_are_sorted_and_named() {
 }
 
 #[test]
-fn logs_in_which_there_is_nothing_to_do_are_refused_with_the_reason() {
+fn log_without_usable_records_is_refused_with_a_reason() {
     let scratch = Scratch::new();
     let walk = walk(20);
     let only = |kinds: &[char]| -> String {

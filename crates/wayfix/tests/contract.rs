@@ -18,7 +18,7 @@ const WITH_TRUTH: [&str; 6] = [
 ];
 
 #[test]
-fn figures_have_the_names_of_the_contract_and_those_of_truth_need_truth() {
+fn metric_names_follow_the_contract_and_truth_is_needed() {
     let scratch = Scratch::new();
     let with = run_slam(&scratch.file("with.txt", walk(40)), &["--seed", "7"]).json();
     let without = run_slam(&scratch.file("without.txt", walk_without_truth(40)), &[]).json();

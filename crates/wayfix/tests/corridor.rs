@@ -48,7 +48,7 @@ fn a_corridor_that_did_not_change_is_found_again() {
 }
 
 #[test]
-fn folders_that_hold_no_two_traverses_are_refused_with_their_reason() {
+fn folder_without_two_traverses_is_refused_with_a_reason() {
     let folder = tempfile::tempdir().unwrap();
     let why = || format!("{:#}", corridor::run(folder.path()).unwrap_err());
     assert!(why().contains("ref"), "{}", why());

@@ -102,7 +102,7 @@ fn fits(system: &str, written: &BTreeSet<String>) {
 }
 
 #[test]
-fn slam_and_lines_show_what_they_write_of_landmarks_and_of_walls() {
+fn slam_and_lines_layouts_show_their_topics() {
     let scratch = Scratch::new();
     let log = OsStr::new("--log");
     let points = beginning(&scratch, "loop_known.mcap", 600);

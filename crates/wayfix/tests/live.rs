@@ -6,7 +6,7 @@ use common::{Scratch, run_slam, walk};
 
 #[cfg(feature = "live")]
 #[test]
-fn a_port_in_use_and_what_is_no_address_or_pace_are_refused_with_a_remedy() {
+fn used_port_and_invalid_address_are_refused_with_a_remedy() {
     let scratch = Scratch::new();
     let log = scratch.file("walk.txt", walk(5));
     let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");

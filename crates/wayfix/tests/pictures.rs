@@ -44,7 +44,7 @@ fn map_with(corner: (f64, f64), covariance: [[f64; 2]; 2]) -> MapPlot {
 }
 
 #[test]
-fn the_ellipse_of_an_isotropic_covariance_is_a_circle_of_two_sigma() {
+fn isotropic_covariance_draws_a_two_sigma_circle() {
     // Wide, square, tall, and far from square on both sides.
     for corner in [(10.0, 7.0), (5.0, 5.0), (6.0, 9.0), (200.0, 3.0), (3.0, 400.0)] {
         let sigma = 0.08 * f64::max(corner.0, corner.1);
@@ -62,7 +62,7 @@ fn the_ellipse_of_an_isotropic_covariance_is_a_circle_of_two_sigma() {
 }
 
 #[test]
-fn an_ellipse_spans_two_sigma_of_each_axis_whatever_the_correlation() {
+fn ellipse_spans_two_sigma_of_each_axis_when_correlated() {
     let (xx, xy, yy) = (0.36, 0.30, 0.49);
     let picture = map_with((8.0, 8.0), [[xx, xy], [xy, yy]]).draw().unwrap();
     let (scale_x, scale_y) = pixels_per_metre(&picture, (8.0, 8.0));

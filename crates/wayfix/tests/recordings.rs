@@ -20,7 +20,7 @@ fn recording(name: &str) -> Option<PathBuf> {
 }
 
 #[test]
-fn utias_with_the_reference_noise_is_within_2_percent_of_the_independent_filter() {
+fn utias_reference_noise_is_within_2_percent_of_a_peer() {
     let Some(set) = recording(UTIAS) else { return };
     // The numpy EKF: unaligned and aligned path error, m.
     for (robot, ate, aligned) in [("1", 0.635, 0.208), ("2", 0.604, 0.128), ("3", 0.294, 0.157)] {
@@ -33,7 +33,7 @@ fn utias_with_the_reference_noise_is_within_2_percent_of_the_independent_filter(
 }
 
 #[test]
-fn utias_with_our_defaults_is_at_least_as_good_as_the_independent_filter_on_average() {
+fn utias_defaults_are_no_worse_than_the_independent_filter() {
     let Some(set) = recording(UTIAS) else { return };
     let mean = |name: &str| {
         ["1", "2", "3"].map(|robot| run_slam(&set, &["--robot", robot]).metric(name)).iter().sum::<f64>()
@@ -45,7 +45,7 @@ fn utias_with_our_defaults_is_at_least_as_good_as_the_independent_filter_on_aver
 }
 
 #[test]
-fn range_bearing_with_known_identities_agrees_with_two_independent_programs() {
+fn range_bearing_known_ids_match_two_independent_programs() {
     // MRPT 2.5.8 and the numpy EKF agree on these to a tenth of a millimetre; NEES of theirs is 2.0 to 3.0.
     for (name, reference, n_landmarks) in
         [("slam_100", 0.0456, 84.0), ("slam_200", 0.035, 156.0), ("slam_400", 0.034, 301.0)]
@@ -60,7 +60,7 @@ fn range_bearing_with_known_identities_agrees_with_two_independent_programs() {
 }
 
 #[test]
-fn unknown_identities_cost_few_false_landmarks_and_little_accuracy() {
+fn unknown_ids_give_few_false_landmarks_and_small_error() {
     let Some(log) = recording("range_bearing/slam_100.txt") else { return };
     let outcome = run_slam(&log, &["--association", "nn"]);
     assert!(outcome.metric("n_landmarks") <= 88.0, "84 true ones and 5 %");

@@ -40,7 +40,7 @@ fn info_names_every_topic_and_what_becomes_of_it() {
 }
 
 #[test]
-fn the_walls_of_a_bag_correct_its_odometry_because_the_laser_is_where_its_transform_says() {
+fn bag_walls_correct_odometry_with_the_mount_of_its_transform() {
     let slam = ["run", "slam", "--json", "--log"];
     let placed = with_bag(&slam, &[]);
     // 5 % of a circle of 1.5 m: some centimetres. The walls are seen without noise, so what is left of it is little.
@@ -96,7 +96,7 @@ fn lines_are_found_in_the_laser_that_is_asked_for() {
 }
 
 #[test]
-fn raw_images_go_through_the_colour_localizer_and_into_its_report() {
+fn raw_bag_images_reach_the_colour_report() {
     let map = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/four-legged-field.toml");
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();

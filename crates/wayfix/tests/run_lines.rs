@@ -29,7 +29,7 @@ fn room(path: &Path, n: usize) {
 }
 
 #[test]
-fn a_room_has_three_walls_in_sight_and_a_blind_scan_is_skipped_with_its_reason() {
+fn room_shows_three_walls_and_a_blind_scan_is_skipped() {
     let folder = tempfile::tempdir().unwrap();
     let (log, out) = (folder.path().join("room.log"), folder.path().join("out"));
     room(&log, 5);

@@ -76,7 +76,7 @@ fn figures_have_the_names_of_the_contract() {
 }
 
 #[test]
-fn the_first_box_comes_from_the_truth_or_from_the_caller_with_four_numbers_or_eight() {
+fn first_box_comes_from_truth_or_option() {
     let shot = Shot::new();
     let truth = shot.scratch.path("truth.txt");
     let from_truth = figures(&shot.run_with_truth());
@@ -99,7 +99,7 @@ fn the_same_call_gives_the_same_figures() {
 }
 
 #[test]
-fn a_frame_that_is_cut_short_keeps_its_place_and_counts_as_not_tracked() {
+fn truncated_frame_keeps_its_number_and_counts_as_lost() {
     for damaged in [7, N_FRAMES - 1] {
         let shot = Shot::new();
         let whole = fs::read(shot.frame(damaged)).unwrap();
@@ -114,7 +114,7 @@ fn a_frame_that_is_cut_short_keeps_its_place_and_counts_as_not_tracked() {
 }
 
 #[test]
-fn when_the_first_frame_cannot_be_read_the_next_true_box_is_the_start() {
+fn unreadable_first_frame_starts_at_the_next_true_box() {
     let shot = Shot::new();
     fs::write(shot.frame(0), "no picture").unwrap();
     let outcome = shot.run_with_truth();
@@ -134,7 +134,7 @@ fn a_frame_of_another_size_is_refused_and_the_run_goes_on() {
 }
 
 #[test]
-fn truth_may_be_shorter_or_longer_and_may_say_that_the_target_is_away() {
+fn truth_of_other_length_and_absent_target_are_accepted() {
     let shot = Shot::new();
     shot.truth_of(&shot.boxes[..10]);
     let outcome = shot.run_with_truth();

@@ -95,7 +95,7 @@ fn the_same_seed_gives_the_same_figures_and_another_one_others() {
 }
 
 #[test]
-fn a_second_picture_is_driven_in_as_it_is_and_a_moved_camera_is_found() {
+fn second_picture_is_used_unchanged_and_a_shift_is_found() {
     let scratch = Scratch::new();
     let scene = scratch.file("learned.png", png(painting()));
     let learned = scene.to_str().expect("a plain path");
@@ -111,7 +111,7 @@ fn a_second_picture_is_driven_in_as_it_is_and_a_moved_camera_is_found() {
 }
 
 #[test]
-fn grey_deep_and_transparent_pictures_are_taken_as_what_they_show_and_that_is_told() {
+fn grey_16_bit_and_transparent_pictures_are_converted_and_named() {
     let scratch = Scratch::new();
     let plain = figures(&run_views(&scratch.file("plain.png", png(painting())), &[]));
     let deep = DynamicImage::ImageRgb8(painting()).into_rgb16();
@@ -145,7 +145,7 @@ fn out_holds_the_page_the_report_the_pictures_and_a_drive() {
 }
 
 #[test]
-fn printed_parameters_given_back_change_nothing_and_a_few_change_what_they_name() {
+fn printed_parameters_round_trip() {
     let scratch = Scratch::new();
     let scene = scratch.file("scene.png", png(painting()));
     let printed = run_views(&scene, &["--print-params", "--informed", "4"]);
@@ -164,7 +164,7 @@ fn printed_parameters_given_back_change_nothing_and_a_few_change_what_they_name(
 }
 
 #[test]
-fn scenes_that_cannot_be_driven_in_are_refused_with_their_reason() {
+fn unusable_scene_is_refused_with_a_reason() {
     let scratch = Scratch::new();
     let scene = scratch.file("scene.png", png(painting()));
     let refused = |outcome: Outcome, reason: &str| {
@@ -197,7 +197,7 @@ fn scenes_that_cannot_be_driven_in_are_refused_with_their_reason() {
 }
 
 #[test]
-fn parameters_and_options_that_make_no_sense_are_refused_by_name() {
+fn invalid_parameters_and_options_are_refused_by_name() {
     let scratch = Scratch::new();
     let scene = scratch.file("scene.png", png(painting()));
     for (text, key) in [

@@ -43,7 +43,7 @@ fn the_robot_comes_home_and_the_walls_are_where_they_are() {
 }
 
 #[test]
-fn printed_parameters_are_those_of_walls_and_given_back_change_nothing() {
+fn printed_wall_parameters_round_trip() {
     let folder = tempfile::tempdir().unwrap();
     let log = office();
     let log = log.to_str().unwrap();

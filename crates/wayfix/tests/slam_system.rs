@@ -24,7 +24,7 @@ fn slam(records: &[Record], robot: RobotParams) -> SlamRun {
 }
 
 #[test]
-fn a_look_with_latency_corrects_the_past_and_the_keyframe_tells_of_its_stamp() {
+fn delayed_detection_corrects_the_past_pose() {
     let robot = RobotParams { sensor_latency: 0.25, ..RobotParams::default() };
     let slam = slam(&[velocity(0.0, 1.0, 0.0), sighting(1.0, 7, 2.0, 0.0)], robot);
     let keyframe = slam.system.keyframes()[0];
@@ -78,7 +78,7 @@ fn a_refused_record_leaves_no_trace() {
 }
 
 #[test]
-fn a_measurement_that_is_no_number_is_counted_and_changes_no_estimate() {
+fn non_finite_measurement_is_counted_and_changes_nothing() {
     let look = |more: &[Sighting]| {
         let first = Sighting { target: Target::Landmark(7), range: 2.0, bearing: 0.3 };
         at(0.5, Data::Sightings([&[first], more].concat()))

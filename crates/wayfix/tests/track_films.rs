@@ -42,7 +42,7 @@ fn a_box_is_judged_by_its_box_and_an_outline_by_its_pixels() {
 }
 
 #[test]
-fn a_lost_target_has_overlap_zero_and_a_hidden_one_is_not_judged() {
+fn lost_target_has_zero_overlap_and_a_hidden_one_no_score() {
     let hidden = Film { incident: Incident::Hidden, ..film(60) };
     let mut score = FilmScore::default();
     let (mut n_visible, mut n_hidden) = (0, 0);
@@ -56,7 +56,7 @@ fn a_lost_target_has_overlap_zero_and_a_hidden_one_is_not_judged() {
 }
 
 #[test]
-fn the_table_is_the_same_for_any_number_of_threads_and_has_every_method() {
+fn film_table_has_all_methods_for_any_thread_count() {
     let methods = [Method::Contour, Method::ContourFixedColors, Method::Box];
     let figures = |n_threads: usize| -> Vec<Metric> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();

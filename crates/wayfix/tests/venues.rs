@@ -65,7 +65,7 @@ fn painted_balls_are_told_from_painted_carpets() {
 }
 
 #[test]
-fn folders_that_hold_no_experiment_are_refused_with_their_reason() {
+fn folder_without_experiment_is_refused_with_a_reason() {
     let folder = tempfile::tempdir().unwrap();
     let why = || format!("{:#}", venues::run(folder.path()).unwrap_err());
     assert!(why().contains("0 venues"), "{}", why());

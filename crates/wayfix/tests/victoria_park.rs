@@ -70,7 +70,7 @@ fn folder(scratch: &Scratch, name: &str, n_looks: u32, with_fixes: bool) -> Path
 }
 
 #[test]
-fn a_car_among_trees_is_followed_from_a_start_that_the_first_fixes_give() {
+fn victoria_park_starts_at_the_pose_that_fits_the_first_fixes() {
     let scratch = Scratch::new();
     let set = folder(&scratch, "set", 200, true);
     for association in ["nn", "jcbb"] {

@@ -11,6 +11,7 @@ mod links;
 mod manifest;
 mod members;
 mod msrv;
+mod names;
 mod purity;
 mod size;
 
@@ -70,6 +71,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     findings.extend(graph::check(&sources, &tree));
     findings.extend(leftovers::check(&sources));
     findings.extend(links::check(&sources, &paths));
+    findings.extend(names::check(&sources));
     findings.extend(size::lengths(&sources));
     findings.extend(size::weights(&files::weights(&paths)));
     let linked = "normal,no-proc-macro";

@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn a_version_below_a_dependency_is_found_and_the_dependency_named() {
+    fn version_below_a_dependency_is_found_by_name() {
         assert!(check(&[workspace("1.89")], METADATA).is_empty());
         let findings = check(&[workspace("1.88")], METADATA);
         assert_eq!(findings.len(), 1);

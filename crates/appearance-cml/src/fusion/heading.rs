@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn the_heading_is_never_known_better_than_the_references_know_it() {
+    fn fused_heading_is_no_sharper_than_the_references() {
         let facing = Facing { heading: 0.0, compared: 0.01, learned: 0.05f64.powi(2) };
         let mut told = belief(0.1, 0.2);
         for _ in 0..1000 {

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_never_grow_and_hardly_shrink_where_the_samples_spread() {
+    fn projection_never_increases_a_distance() {
         let samples = samples();
         let projection = Projection::learn(&samples);
         for (a, b) in samples.iter().zip(&samples[1..]) {
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_samples_and_fewer_numbers_than_directions_are_no_trouble() {
+    fn projection_of_equal_or_few_samples_is_finite() {
         let same = Projection::learn(&vec![vec![0.3; 40]; 5]);
         assert_eq!(same.sketch(&[0.3; 40]), same.sketch(&[0.3; 40]));
         let short = Projection::learn(&[vec![1.0, 2.0], vec![2.0, 1.0]]);

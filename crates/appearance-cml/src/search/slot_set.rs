@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_come_out_in_order_and_those_beyond_the_limit_not_at_all() {
+    fn slots_iterate_in_order_up_to_the_limit() {
         let mut set = SlotSet::new(130);
         for slot in [129, 64, 0, 63, 64, 500] {
             set.insert(slot);

@@ -39,7 +39,7 @@ mod tests {
     use nalgebra::{Matrix2, Matrix3, Vector3};
 
     #[test]
-    fn a_semidefinite_matrix_is_factored_exactly_where_cholesky_refuses() {
+    fn semidefinite_matrix_is_factored_where_cholesky_fails() {
         let a = Vector3::new(1.0, -2.0, 3.0);
         let b = Vector3::new(2.0, -4.0, 5.0);
         let singular: Matrix3<f64> = a * a.transpose() + b * b.transpose();

@@ -74,7 +74,7 @@ fn shared_chroma_is_the_same_for_all_that_share_it() {
 }
 
 #[test]
-fn motion_blurs_and_leaves_fewer_pixels_that_see_one_colour_only() {
+fn motion_blur_leaves_fewer_pixels_of_a_single_colour() {
     let (light, backdrop, paints) =
         (even_light(), Blank(Rgb::zeros()), [0.1, 0.9, 0.5, 0.6, 0.7].map(Rgb::repeat));
     let scene = field_in(&light, &backdrop, &paints);

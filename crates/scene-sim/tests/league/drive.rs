@@ -94,7 +94,7 @@ fn sins_of_the_camera_leave_the_drive_as_it_was() {
 }
 
 #[test]
-fn a_kidnapped_robot_is_elsewhere_and_its_odometry_does_not_know() {
+fn kidnapped_robot_moves_without_odometry() {
     let params = LeagueParams { n_frames: 9, kidnaps: vec![3, 6], ..LeagueParams::default() };
     for seed in 1..6 {
         let frames = frames(&params, seed);

@@ -27,7 +27,7 @@ fn shot_and_read_noise_add_up() {
 }
 
 #[test]
-fn the_quick_deviate_has_mean_0_variance_1_and_nearly_normal_tails() {
+fn fast_normal_deviate_has_unit_variance_and_normal_tails() {
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let n = 200_000;

@@ -30,7 +30,7 @@ fn footprint(middle: Vector2<f64>) -> impl Iterator<Item = Vector2<f64>> {
 }
 
 #[test]
-fn a_pixel_has_a_label_where_the_map_shows_one_color_all_over_it_and_then_that_one() {
+fn pixel_of_a_single_map_colour_has_that_label() {
     let map = field_map().expect("a sound map");
     let (light, backdrop, paints) = (even_light(), Blank(Rgb::zeros()), [Rgb::zeros(); N_COLORS]);
     let scene = field_in(&light, &backdrop, &paints);
@@ -61,7 +61,7 @@ fn a_pixel_has_a_label_where_the_map_shows_one_color_all_over_it_and_then_that_o
 }
 
 #[test]
-fn what_no_map_lists_hides_what_it_stands_before_and_has_no_label() {
+fn unmapped_object_occludes_and_has_no_label() {
     let (light, backdrop, paints) = (even_light(), Blank(Rgb::zeros()), [Rgb::zeros(); N_COLORS]);
     let mut scene = field_in(&light, &backdrop, &paints);
     let pose = looking([0.0, 0.0, 0.25], 0.0, 0.2);

@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_lasers_the_one_with_more_scans_is_read_and_of_equals_the_first() {
+    fn laser_with_most_scans_is_read_and_ties_take_the_first() {
         let laser = |name, n_messages| topic(name, "sensor_msgs/msg/LaserScan", n_messages);
         let topics = [laser("/rear", 9), laser("/front", 10), laser("/top", 10)];
         let choice = choose(&topics, &[], &[]).unwrap();
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_camera_has_the_calibration_beside_it_and_depth_is_no_picture() {
+    fn camera_uses_its_own_calibration_and_depth_is_skipped() {
         let image = |name, n_messages| topic(name, "sensor_msgs/msg/Image", n_messages);
         let info = |name| topic(name, "sensor_msgs/msg/CameraInfo", 90);
         let topics = [

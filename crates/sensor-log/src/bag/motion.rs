@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_that_was_overtaken_is_left_out_and_a_clock_that_was_set_starts_anew() {
+    fn overtaken_message_is_dropped_and_set_clock_restarts() {
         let mut odometer = Odometer::default();
         let pose = |x| Pose2::new(x, 0.0, 0.0);
         odometer.increment(at(5_000_000_000), pose(1.0)).unwrap();

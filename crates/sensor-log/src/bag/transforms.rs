@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_frame_on_the_ground_it_is_the_body_and_without_that_nothing() {
+    fn mount_falls_back_to_the_body_frame_and_then_to_none() {
         let mut transforms = Transforms::default();
         transforms.insert("r1/base_link", "r1/laser", pose(0.5, 0.25, 0.0));
         assert_eq!(transforms.in_body("r1/laser", None), Some(pose(0.5, 0.25, 0.0)));

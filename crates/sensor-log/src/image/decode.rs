@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_header_that_claims_too_much_or_nothing_is_refused_before_anything_is_allocated() {
+    fn oversized_header_is_refused_before_decoding() {
         let png = EncodedImage::png_gray(4, 4, &[7; 16]).unwrap();
         let side = 1 << 13;
         let error = with_claimed_size(&png, side, side + 1).decode_gray().unwrap_err();

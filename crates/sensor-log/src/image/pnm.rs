@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_header_that_claims_too_much_is_refused_before_anything_is_allocated() {
+    fn oversized_header_is_refused_before_allocation() {
         let huge = EncodedImage::new(ImageFormat::Pnm, &b"P6\n4000000000 4000000000\n255\n123"[..]);
         assert!(huge.decode_rgb().is_err());
     }

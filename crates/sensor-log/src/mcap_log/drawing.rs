@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_outline_lies_on_the_ellipse_and_its_first_point_on_the_first_axis() {
+    fn outline_lies_on_the_ellipse_from_the_first_axis() {
         let (center, [a, b], angle) = ([1.0, -2.0], [3.0, 0.5], 2.0_f64);
         let outline = ellipse_outline(center, [a, b], angle);
         for [x, y] in &outline {

@@ -29,7 +29,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_beams_cover_the_half_circle_and_other_numbers_of_beams_are_refused() {
+    fn half_circle_beams_are_spaced_and_other_counts_are_refused() {
         for (n_beams, last_degrees) in [(180, 89.0_f64), (181, 90.0), (360, 89.5), (361, 90.0)] {
             let scan = half_circle(vec![1.0; n_beams]).unwrap();
             assert_eq!(scan.bearing(0), -std::f64::consts::FRAC_PI_2);

@@ -60,7 +60,7 @@ mod tests {
 
     /// Robot and landmarks as uncertain as after a long way: metres, and ten degrees.
     #[test]
-    fn drops_no_landmark_that_has_a_nis_within_the_limit_and_most_of_the_others() {
+    fn preselection_keeps_every_landmark_within_the_nis_limit() {
         let mut rng = ChaCha8Rng::seed_from_u64(SEED);
         let sensor = RangeBearingSensor { range_sigma: 1.0, bearing_sigma: 0.05, ..Default::default() };
         let start = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.03));

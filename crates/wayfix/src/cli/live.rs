@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_port_is_one_of_this_machine_and_an_address_has_the_usual_port() {
+    fn bare_port_is_local_and_bare_address_has_the_default_port() {
         let read = |text: &str| address(text).map(|address| address.to_string());
         assert_eq!(read("8766").as_deref(), Ok("127.0.0.1:8766"));
         assert_eq!(read("0.0.0.0").as_deref(), Ok("0.0.0.0:8765"));

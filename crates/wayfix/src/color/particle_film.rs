@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_up_in_the_plane_is_up_in_the_picture_and_what_is_nowhere_is_not_drawn() {
+    fn plane_up_is_picture_up_and_non_finite_is_not_drawn() {
         let mut sheet = Sheet::around(&[vec![(-2.0, -1.0), (2.0, 1.0)]]);
         sheet.disc([-2.0, 1.0], 1.0, TRUTH);
         sheet.disc([f64::NAN, 0.0], 3.0, ESTIMATE);

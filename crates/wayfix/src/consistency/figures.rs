@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn averages_are_of_each_look_by_itself_and_end_with_the_shortest_run() {
+    fn averages_are_per_scan_and_end_with_the_shortest_run() {
         let look = |nees, position_error| Look { seconds: 1.0, nees, position_error, heading_sigma: 0.1 };
         let runs = [vec![look(1.0, 3.0), look(5.0, 1.0)], vec![look(3.0, 4.0)]];
         let averages = average(&runs);

@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mirror_image_is_turned_as_well_as_can_be_but_never_mirrored() {
+    fn mirror_image_is_rotated_and_never_reflected() {
         let truth = cloud(20);
         let mirrored: Vec<_> = truth.iter().map(|point| Vector2::new(point.x, -point.y)).collect();
         let found = align(mirrored.iter().copied().zip(truth.iter().copied()));

@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn identities_pair_what_they_name_and_leave_out_what_has_no_partner() {
+    fn identities_pair_landmarks_and_skip_unpaired_ones() {
         let truth = map(&[(1, 0.0, 0.0), (2, 10.0, 0.0), (3, 0.0, 10.0)]);
         let estimated = map(&[(1, 0.0, 0.3), (2, 10.0, 0.4), (9, 50.0, 50.0)]);
         let (rmse, aligned) =

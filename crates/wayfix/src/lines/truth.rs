@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_in_its_place_is_within_two_sigma_and_one_beside_it_is_not() {
+    fn wall_in_place_is_within_two_sigma_and_a_shifted_one_not() {
         let score = |off: f64| WallScore::of(&[scan(off)], &[wall(-9.0, 9.0)]).unwrap();
         let right = score(0.0);
         assert_eq!((right.n_true, right.n_within_2_sigma, right.n_in_sight, right.n_missed), (1, 1, 1, 0));

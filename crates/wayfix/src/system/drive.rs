@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn what_goes_back_in_time_never_reaches_the_system_and_every_refusal_names_its_record() {
+    fn record_back_in_time_is_refused_with_its_index() {
         let mut system = OneWay::default();
         let records = [record(10, 1.0), record(20, 1.0), record(15, 1.0), record(20, 1.0), record(30, -1.0)];
         let mut n_observed = 0;

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_target_out_of_the_picture_is_no_error_and_a_box_inside_out_is_one() {
+    fn absent_target_is_valid_and_inverted_box_is_an_error() {
         for text in ["0,0,0,0", "nan nan nan nan", "NaN,1,2,3", "inf,0,1,1", "3,3,3,3,3,3,3,3"] {
             assert_eq!(parse_box(text).unwrap(), None, "{text:?}");
         }
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unusable_line_is_named_and_what_lies_beyond_the_list_is_unknown() {
+    fn unusable_truth_line_is_named_and_later_frames_unknown() {
         let error = TrueBoxes::parse("1,2,3,4\n1,2,3\n").unwrap_err();
         assert!(matches!(error, TrackError::Line { line: 2, .. }), "{error}");
         let truth = TrueBoxes::parse("\u{feff}1,2,3,4\r\n0,0,0,0\r\n\r\n").unwrap();

@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_keep_number_and_sign_through_a_whole_turn_and_through_equal_magnitudes() {
+    fn principal_axes_keep_order_and_sign_through_a_whole_turn() {
         let turn = |angle: f64| Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
         let mut previous =
             PrincipalColors::of(&ellipsoid(&turn(0.0), [0.2, 0.1, 0.05]), &[1.0; 6], None).unwrap();

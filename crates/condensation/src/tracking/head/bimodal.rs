@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn adapting_moves_the_mode_in_sight_by_the_rate_and_leaves_the_other() {
+    fn adaptation_moves_the_visible_mode_and_keeps_the_other() {
         let quantizer = ColorQuantizer::new(ColorSpace::Opponent, [32, 32, 8]).unwrap();
         let mut model =
             BimodalHistogram::new(&quantizer, &histogram(&quantizer, &[SKIN, HAIR]), true).unwrap();

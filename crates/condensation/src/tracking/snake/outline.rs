@@ -201,7 +201,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_ellipse_has_its_area_its_centre_and_normals_that_point_out() {
+    fn ellipse_outline_has_area_centre_and_outward_normals() {
         let bounds = BoundingBox::from_corner(10.0, 20.0, 40.0, 20.0).unwrap();
         let ellipse = Outline::ellipse(&bounds, 200).unwrap();
         assert!((ellipse.area() - std::f64::consts::PI * 200.0).abs() < 1.0);
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn resampling_spaces_points_evenly_and_orientation_does_not_matter() {
+    fn resampled_outline_is_evenly_spaced_in_either_orientation() {
         let l_shape = [[0.0, 0.0], [10.0, 0.0], [10.0, 2.0], [2.0, 2.0], [2.0, 10.0], [0.0, 10.0]];
         let there = Outline::from_points(l_shape.to_vec()).unwrap();
         let back = Outline::from_points(l_shape.iter().rev().copied().collect()).unwrap();
