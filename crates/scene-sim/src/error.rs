@@ -39,9 +39,11 @@ pub enum SimError {
         name: String,
     },
     /// The shapes do not make a map.
+    #[cfg(feature = "league")]
     #[error(transparent)]
     Map(#[from] wayfix_color_map::MapError),
     /// The numbers do not make a camera.
+    #[cfg(feature = "league")]
     #[error(transparent)]
     View(#[from] wayfix_color_map::ViewError),
     /// A picture cannot be encoded.

@@ -1,10 +1,15 @@
-//! Simulated worlds, robots and sensors with the usual sins; knows no estimator.
+//! Simulated worlds, robots and sensors with realistic errors; knows no estimator.
 //!
 //! A [`Simulation`] drives a robot along a [`route`] through a [`world`] and gives the log of its [`sensor`]s as
 //! [`Record`](wayfix_sensor_log::Record)s, truth included. Named, seeded set-ups are [`Scenario`]s; [`monobot`] is the
-//! one-dimensional robot on which filters are taken apart; [`league`] is a field full of colours under changing light, with a camera;
-//! [`scenery`] are flat scenes, seen through a window; [`film`]s show one target each under light that changes, with its silhouette.
-//! [`indoors`] are stores and rooms, seen by a camera that looks all around.
+//! one-dimensional robot on which filters are taken apart. Four worlds serve one system each and are features of their names:
+//!
+//! | feature | world |
+//! | --- | --- |
+//! | `league` | a field full of colours under changing light, with a camera |
+//! | `scenery` | flat scenes, seen through a window |
+//! | `film` | films of one target each under changing light, with its silhouette |
+//! | `indoors` | stores and rooms, seen by a camera that looks all around |
 //!
 //! * **The truth is nobody's model.** Two wheels with motors that lag, slip that hangs together in time and radii that are not as
 //!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
@@ -30,14 +35,18 @@
 mod check;
 pub mod drive;
 mod error;
+#[cfg(feature = "film")]
 pub mod film;
+#[cfg(feature = "indoors")]
 pub mod indoors;
+#[cfg(feature = "league")]
 pub mod league;
 pub mod monobot;
 pub mod plane;
 pub mod random;
 pub mod route;
 mod scenario;
+#[cfg(feature = "scenery")]
 pub mod scenery;
 pub mod sensor;
 mod simulation;
@@ -45,8 +54,9 @@ pub mod space;
 pub mod world;
 
 pub use error::SimError;
+#[cfg(feature = "indoors")]
+pub use scenario::StoreLapsParams;
 pub use scenario::{
     LaserDriveParams, OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams,
-    StoreLapsParams,
 };
 pub use simulation::Simulation;

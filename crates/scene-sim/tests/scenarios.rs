@@ -92,6 +92,7 @@ fn each_is_what_its_name_says() {
     assert!(seen_landmarks(&long) >= 45);
 }
 
+#[cfg(feature = "indoors")]
 #[test]
 fn store_drive_has_two_laps_and_a_view_every_quarter_metre() {
     let scenario = Scenario::named("store_area").expect("there is one");

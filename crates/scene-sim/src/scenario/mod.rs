@@ -2,12 +2,15 @@
 
 mod catalogue;
 mod laser;
+#[cfg(feature = "league")]
 mod league;
 mod named;
 mod planar;
+#[cfg(feature = "indoors")]
 mod store;
 
 pub use laser::LaserDriveParams;
 pub use named::{Scenario, ScenarioParams};
 pub use planar::{OdometryParams, OtherRobotParams, PlanarParams};
+#[cfg(feature = "indoors")]
 pub use store::StoreLapsParams;

@@ -1,8 +1,13 @@
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{Record, Stamp};
 
-use super::{LaserDriveParams, PlanarParams, StoreLapsParams, catalogue, league, store};
+#[cfg(feature = "league")]
+use super::league;
+#[cfg(feature = "indoors")]
+use super::store::{self, StoreLapsParams};
+use super::{LaserDriveParams, PlanarParams, catalogue};
 use crate::SimError;
+#[cfg(feature = "league")]
 use crate::league::LeagueParams;
 use crate::monobot::MonobotParams;
 use crate::random::Streams;
@@ -38,8 +43,10 @@ pub enum ScenarioParams {
     /// A robot on a line, one step every 100 ms.
     Monobot(MonobotParams),
     /// A robot with a camera on the field of the four-legged league.
+    #[cfg(feature = "league")]
     League(Box<LeagueParams>),
     /// A robot in a store, with a camera that looks all around.
+    #[cfg(feature = "indoors")]
     StoreLaps(Box<StoreLapsParams>),
 }
 
@@ -51,11 +58,13 @@ impl Scenario {
 
     /// Those with a camera on the field of the four-legged league: `color_dark` (D1), `color_bright` (D2), `color_switching` (S) and
     /// `color_kidnapped` (K). All four are in one hall, which is none of the training venues.
+    #[cfg(feature = "league")]
     pub fn in_color() -> Vec<Self> {
         league::all()
     }
 
     /// Those with views of a store: `store_area`, two laps in an area of 25 m × 10 m.
+    #[cfg(feature = "indoors")]
     pub fn in_store() -> Vec<Self> {
         store::all()
     }
@@ -65,8 +74,14 @@ impl Scenario {
     /// # Errors
     /// When there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
-        let mut all = Self::all().into_iter().chain(Self::in_color()).chain(Self::in_store());
-        let found = all.find(|scenario| scenario.name == name);
+        let all = [
+            Self::all(),
+            #[cfg(feature = "league")]
+            Self::in_color(),
+            #[cfg(feature = "indoors")]
+            Self::in_store(),
+        ];
+        let found = all.into_iter().flatten().find(|scenario| scenario.name == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
     }
 
@@ -74,17 +89,18 @@ impl Scenario {
     /// light that nobody has seen.
     ///
     /// ```
-    /// use wayfix_scene_sim::{Scenario, ScenarioParams};
-    /// let scenario = Scenario::named("color_dark")?.with_seed(100);
-    /// let ScenarioParams::League(params) = &scenario.params else { panic!("the league") };
-    /// assert_eq!((scenario.seed, params.venue_seed), (100, None));
+    /// use wayfix_scene_sim::Scenario;
+    /// let scenario = Scenario::named("office_velocity")?.with_seed(100);
+    /// assert_eq!(scenario.seed, 100);
     /// # Ok::<(), wayfix_scene_sim::SimError>(())
     /// ```
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
+        #[cfg(feature = "league")]
         if let ScenarioParams::League(params) = &mut self.params {
             params.venue_seed = None;
         }
+        #[cfg(feature = "indoors")]
         if let ScenarioParams::StoreLaps(params) = &mut self.params {
             params.store_seed = seed;
         }
@@ -100,7 +116,9 @@ impl Scenario {
         match &self.params {
             ScenarioParams::Planar(params) => params.simulate(&mut streams),
             ScenarioParams::Laser(params) => params.simulate(&mut streams),
+            #[cfg(feature = "league")]
             ScenarioParams::League(params) => params.simulate(streams),
+            #[cfg(feature = "indoors")]
             ScenarioParams::StoreLaps(params) => params.simulate(streams),
             ScenarioParams::Monobot(params) => {
                 let run = params.simulate(&mut streams)?;

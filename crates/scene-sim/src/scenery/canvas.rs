@@ -19,6 +19,7 @@ impl Window {
     }
 
     /// The square around a centre, as far as it lies in the picture.
+    #[cfg(feature = "film")]
     pub(crate) fn around(centre: (f64, f64), radius: f64, size: (usize, usize)) -> Self {
         let clipped = |middle: f64, n: usize| {
             let end = |at: f64| at.clamp(0.0, n as f64) as usize;
@@ -115,6 +116,7 @@ pub(crate) fn scaled(color: Color, factor: f64) -> Color {
 }
 
 /// A surface of one colour under light of another.
+#[cfg(feature = "film")]
 pub(crate) fn times(albedo: Color, light: Color) -> Color {
     [0, 1, 2].map(|c| albedo[c] * light[c])
 }
