@@ -4,6 +4,7 @@ mod alignment;
 mod interval;
 mod landmarks;
 mod positions;
+mod start;
 mod trajectory;
 mod truth;
 
@@ -11,5 +12,6 @@ pub use alignment::{align, median_distance, rms_distance};
 pub use interval::{MeanInterval, proportion_interval};
 pub use landmarks::{Correspondence, landmark_errors};
 pub use positions::TruePositions;
+pub use start::KnownStart;
 pub use trajectory::{Sample, TrajectoryErrors, trajectory_errors};
 pub use truth::TrueTrack;

@@ -1,10 +1,15 @@
+use nalgebra::Matrix3;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Data, Record, Stamp};
 
-/// True poses over time.
+use super::{Sample, start::truth_noise};
+
+/// True poses over time, or those of another program.
 #[derive(Clone, Debug, Default)]
 pub struct TrueTrack {
     poses: Vec<(Stamp, Pose2<f64>)>,
+    noise: Matrix3<f64>,
+    is_estimate: bool,
 }
 
 /// Motion capture and GPS lose sight of a robot; across a longer gap nobody knows where it was, s.
@@ -22,7 +27,8 @@ impl TrueTrack {
                 }
             }
         }
-        Self { poses }
+        let noise = truth_noise(&poses, records);
+        Self { poses, noise, is_estimate: false }
     }
 
     /// The true poses, or those that another program estimated, where the log has no true ones.
@@ -32,15 +38,47 @@ impl TrueTrack {
             return truth;
         }
         let as_truth = |record: &Record| match record.data {
-            Data::EstimatedPose(pose) => Some(Record { stamp: record.stamp, data: Data::TruePose(pose) }),
-            _ => None,
+            Data::EstimatedPose(pose) => Record { stamp: record.stamp, data: Data::TruePose(pose) },
+            _ => record.clone(),
         };
-        Self::from_records(&records.iter().filter_map(as_truth).collect::<Vec<_>>())
+        let track = Self::from_records(&records.iter().map(as_truth).collect::<Vec<_>>());
+        Self { is_estimate: !track.poses.is_empty(), ..track }
+    }
+
+    /// Covariance of the errors of the truth itself, `(x, y, θ)` in the body frame; zero as far as the log does not show any.
+    pub fn noise(&self) -> &Matrix3<f64> {
+        &self.noise
+    }
+
+    /// Whether the poses are those of another program, whose errors are unknown.
+    pub fn is_estimate(&self) -> bool {
+        self.is_estimate
+    }
+
+    /// Whether there is no pose at all.
+    pub fn is_empty(&self) -> bool {
+        self.poses.is_empty()
+    }
+
+    /// An estimate beside the truth at its stamp. The noise of the truth is part of what they may differ by.
+    pub fn sample(&self, stamp: Stamp, estimate: Pose2<f64>, covariance: &Matrix3<f64>) -> Option<Sample> {
+        let truth = self.at(stamp)?;
+        Some(Sample { estimate, covariance: covariance + self.noise, truth })
     }
 
     /// Last stamp with a true pose.
     pub fn last_stamp(&self) -> Option<Stamp> {
         self.poses.last().map(|(stamp, _)| *stamp)
+    }
+
+    /// The first true pose at or after a stamp.
+    pub fn first_after(&self, stamp: Stamp) -> Option<(Stamp, Pose2<f64>)> {
+        self.poses.get(self.poses.partition_point(|(known, _)| *known < stamp)).copied()
+    }
+
+    /// First and last stamp with a true pose.
+    pub fn span(&self) -> Option<(Stamp, Stamp)> {
+        Some((self.poses.first()?.0, self.poses.last()?.0))
     }
 
     /// The pose at `stamp`: interpolated linearly, headings along the shorter arc, never across more than half a second.

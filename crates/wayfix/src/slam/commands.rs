@@ -9,11 +9,12 @@ use super::RobotParams;
 ///
 /// A command acts `command_delay` after its stamp. Around a change of commands the robot does, for `command_erosion`, whichever
 /// turns less: a base that takes commands in its own rhythm loses a little of every turn. With both zero a command simply
-/// holds until the next.
+/// holds until the next. No command holds longer than `velocity_hold`; after that the motion is unknown.
 #[derive(Clone, Debug)]
 pub(super) struct Commands {
     delay: i128,
     erosion: i128,
+    hold: i128,
     rows: VecDeque<(i128, Velocity)>,
 }
 
@@ -24,6 +25,7 @@ impl Commands {
         Self {
             delay: nanoseconds(robot.command_delay),
             erosion: nanoseconds(robot.command_erosion),
+            hold: nanoseconds(robot.velocity_hold),
             rows: VecDeque::new(),
         }
     }
@@ -42,7 +44,8 @@ impl Commands {
     pub(super) fn between(&self, from: Stamp, to: Stamp) -> Vec<VelocityControl> {
         let (from, to) =
             (i128::from(from.nanoseconds()) - self.delay, i128::from(to.nanoseconds()) - self.delay);
-        let changes = self.rows.iter().flat_map(|(stamp, _)| [*stamp, stamp + self.erosion]);
+        let changes =
+            self.rows.iter().flat_map(|(stamp, _)| [*stamp, stamp + self.erosion, stamp + self.hold]);
         let mut cuts: Vec<i128> = changes.filter(|cut| (from..to).contains(cut)).collect();
         cuts.extend([from, to]);
         cuts.sort_unstable();
@@ -52,6 +55,16 @@ impl Commands {
             VelocityControl { linear, angular, duration: (pair[1] - pair[0]) as f64 * 1e-9 }
         };
         cuts.windows(2).map(piece).collect()
+    }
+
+    /// How much of the time between two times no command holds, s.
+    pub(super) fn unknown_seconds(&self, from: Stamp, to: Stamp) -> f64 {
+        let (from, to) =
+            (i128::from(from.nanoseconds()) - self.delay, i128::from(to.nanoseconds()) - self.delay);
+        let ends = self.rows.iter().skip(1).map(|(stamp, _)| *stamp).chain([i128::MAX]);
+        let gaps = self.rows.iter().zip(ends).map(|((stamp, _), next)| (stamp + self.hold, next));
+        let inside = gaps.map(|(begin, end)| (end.min(to) - begin.max(from)).max(0));
+        inside.sum::<i128>() as f64 * 1e-9
     }
 
     /// Forgets what no longer acts at `time` or later.
@@ -68,6 +81,9 @@ impl Commands {
         let Some(newest) = until.checked_sub(1).map(|last| self.rows[last].1) else {
             return STANDING;
         };
+        if time >= self.rows[until - 1].0 + self.hold {
+            return STANDING;
+        }
         let from = self.rows.partition_point(|(stamp, _)| *stamp <= time - self.erosion).saturating_sub(1);
         let window = || self.rows.range(from..until).map(|(_, velocity)| *velocity);
         if window().any(|row| row.angular > 0.0) && window().any(|row| row.angular < 0.0) {
@@ -118,6 +134,18 @@ mod tests {
             pieces.iter().take_while(|piece| piece.angular == 0.0).map(|piece| piece.duration).sum();
         assert!((before - 0.29).abs() < 1e-12); // 100 ms + delay + erosion
         assert_eq!(pieces[0].linear, 0.0); // stands until the first command acts
+    }
+
+    #[test]
+    fn command_expires_and_the_motion_is_unknown() {
+        let mut commands = Commands::new(&RobotParams::default());
+        commands.push(at(0), Velocity { linear: 1.0, angular: 0.0 });
+        let driven = |pieces: &[VelocityControl]| pieces.iter().map(|p| p.linear * p.duration).sum::<f64>();
+        assert!((driven(&commands.between(at(0), at(5000))) - 1.0).abs() < 1e-12);
+        assert!((commands.unknown_seconds(at(0), at(5000)) - 4.0).abs() < 1e-12);
+        commands.push(at(6000), Velocity { linear: 1.0, angular: 0.0 });
+        assert!((commands.unknown_seconds(at(5000), at(6500)) - 1.0).abs() < 1e-12);
+        assert_eq!(commands.unknown_seconds(at(6000), at(7000)), 0.0);
     }
 
     #[test]

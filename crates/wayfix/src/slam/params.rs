@@ -71,7 +71,7 @@ pub struct MountingParams {
 }
 
 /// Timing and calibration of a robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotParams {
     /// Time from the exposure of the sensor to the stamp of what it saw, s.
@@ -80,10 +80,26 @@ pub struct RobotParams {
     pub command_delay: f64,
     /// By how much a commanded turn is shorter than the log says, s.
     pub command_erosion: f64,
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
+    /// navigation.
+    pub velocity_hold: f64,
     /// Whether the sensor gives depth along its axis instead of distance.
     pub range_is_depth: bool,
     /// Standard deviation of the logarithm of the sensor's range scale, which is estimated; 0 when the scale is exact.
     pub range_scale_sigma: f64,
+}
+
+impl Default for RobotParams {
+    fn default() -> Self {
+        Self {
+            sensor_latency: 0.0,
+            command_delay: 0.0,
+            command_erosion: 0.0,
+            velocity_hold: 1.0,
+            range_is_depth: false,
+            range_scale_sigma: 0.0,
+        }
+    }
 }
 
 /// A kind of robot and its defaults.
@@ -208,6 +224,7 @@ impl SlamSystemParams {
                     sensor_latency: 0.04,
                     command_delay: 0.15,
                     command_erosion: 0.04,
+                    velocity_hold: 1.0,
                     range_is_depth: true,
                     range_scale_sigma: 0.04,
                 },

@@ -48,6 +48,7 @@ impl SlamSystemParams {
             ("robot.sensor_latency", robot.sensor_latency, DELAY),
             ("robot.command_delay", robot.command_delay, DELAY),
             ("robot.command_erosion", robot.command_erosion, DELAY),
+            ("robot.velocity_hold", robot.velocity_hold, NOT_NEGATIVE),
             ("robot.range_scale_sigma", robot.range_scale_sigma, NOT_NEGATIVE),
             ("mounting.sensor_x", mounting.sensor_x, PLACE),
             ("mounting.sensor_y", mounting.sensor_y, PLACE),

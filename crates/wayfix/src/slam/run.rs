@@ -5,10 +5,13 @@ use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Record, Stamp, Target};
 
-use super::{AssociationRule, Keyframe, SavedMap, SlamSystem, SlamSystemParams};
+use super::{
+    AssociationRule, Keyframe, SavedMap, SlamSystem, SlamSystemParams, start_pose, warn_of_no_overlap,
+    warn_of_start,
+};
 use crate::{
-    evaluate::{Correspondence, Sample, TruePositions, TrueTrack, align},
-    system::{Events, System, drive},
+    evaluate::{Correspondence, KnownStart, Sample, TruePositions, TrueTrack, align},
+    system::{Events, ODOMETRY, System, check_overlap, drive},
 };
 
 /// A log that went through EKF-SLAM, beside the truth that the log holds.
@@ -29,7 +32,7 @@ pub struct SlamRun {
 
 /// Runs EKF-SLAM over the records of a log and shows the system to `observe` after each.
 ///
-/// The start pose is the truth where odometry starts. Where the log has positions only, it is the pose from which the first metres of the
+/// The start pose is the truth where odometry starts, or led back to there by odometry from the first true pose after it. Where the log has positions only, it is the pose from which the first metres of the
 /// path fit them best; else the origin. Nothing else ties the run to the truth.
 ///
 /// # Errors
@@ -45,16 +48,21 @@ pub fn run(
         );
     };
     let association = association(records, params.association)?;
+    check_overlap(records, ODOMETRY, ("sightings", |data| matches!(data, Data::Sightings(_))))?;
     let truth = TrueTrack::from_records(records);
     let true_positions = TruePositions::from_records(records);
-    let from = |start| SlamSystem::new(params.clone(), association, start_stamp, start);
-    let origin = Pose2::new(0.0, 0.0, 0.0);
-    let start = match (params.start, truth.at(start_stamp)) {
-        (Some([x, y, heading]), _) => Pose2::new(x, y, heading),
-        (None, Some(pose)) => pose,
-        (None, None) => fitted_start(from(origin)?, records, &true_positions),
+    let from = |start| SlamSystem::new(params.clone(), association, start_stamp, start, truth.noise());
+    let known = KnownStart::at(start_stamp, &truth, records).filter(|_| params.start.is_none());
+    let start = if params.start.is_none() && known.is_none() {
+        fitted_start(from(Pose2::new(0.0, 0.0, 0.0))?, records, &true_positions)
+    } else {
+        start_pose(params.start, known)
     };
-    drive_through(from(start)?, association, truth, records, observe)
+    let mut system = from(start)?;
+    if params.start.is_none() {
+        warn_of_start(system.events(), known, &truth);
+    }
+    drive_through(system, association, truth, records, observe)
 }
 
 /// Goes on from a saved map with the records of a log that are later than it, and shows the system to `observe` after each.
@@ -89,6 +97,9 @@ fn drive_through(
             why(system.events())
         );
     }
+    let keyframes = system.keyframes();
+    let estimated = keyframes.first().zip(keyframes.last()).map(|(first, last)| (first.stamp, last.stamp));
+    warn_of_no_overlap(system.events(), &truth, estimated);
     let true_positions = TruePositions::from_records(records);
     let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or_default();
     let last_truth = truth.last_stamp().or(true_positions.last_stamp());
@@ -107,10 +118,11 @@ impl SlamRun {
     /// Keyframes with their true poses.
     pub fn samples(&self) -> Vec<(Keyframe, Sample)> {
         let sample = |keyframe: &Keyframe| {
-            let truth = self.truth.at(keyframe.stamp).filter(|_| keyframe.stamp <= self.evaluated_until)?;
-            Some((*keyframe, Sample { estimate: keyframe.pose, covariance: keyframe.covariance, truth }))
+            let Keyframe { stamp, pose, covariance, .. } = keyframe;
+            Some((*keyframe, self.truth.sample(*stamp, *pose, covariance)?))
         };
-        self.system.keyframes().iter().filter_map(sample).collect()
+        let evaluated = |keyframe: &&Keyframe| keyframe.stamp <= self.evaluated_until;
+        self.system.keyframes().iter().filter(evaluated).filter_map(sample).collect()
     }
     /// Estimated positions of the antenna with the true ones, for logs whose truth has no headings.
     pub fn positions(&self) -> Vec<(Keyframe, Vector2<f64>, Vector2<f64>)> {
@@ -167,7 +179,8 @@ fn has_used_a_sighting(events: &Events) -> bool {
 fn why(events: &Events) -> String {
     let Some(first) = events.refusals().first() else {
         let counts: Vec<String> = events.counts().iter().map(|(name, n)| format!("{name} {n}")).collect();
-        return format!(" ({})", counts.join(", "));
+        let what = if counts.is_empty() { "all sightings are empty".to_owned() } else { counts.join(", ") };
+        return format!(" ({what})");
     };
     format!("; the first of {} refusals: {first}", events.n_refusals())
 }

@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use nalgebra::{DefaultAllocator, Matrix3, Matrix4, Vector2, Vector4, allocator::Allocator};
+use nalgebra::{DefaultAllocator, Matrix3, Vector2, allocator::Allocator};
 use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2};
 use wayfix_sensor_log::{AckermannDrive, Data, Record, Sighting, Stamp, Target, Velocity};
 use wayfix_slam_ekf::{
@@ -11,9 +11,9 @@ use wayfix_slam_ekf::{
 
 use super::{
     AssociationRule, MountingParams, SlamSystemParams, commands::Commands, event_name,
-    in_sequence::InSequence, saved::Odometry,
+    in_sequence::InSequence, saved::Odometry, unknown_motion::UnknownMotion,
 };
-use crate::system::{Events, Stopwatch, System};
+use crate::system::{Events, MotionStatistics, Stopwatch, System, possible};
 
 /// The estimate at the stamp of one look of the sensor, from everything up to it.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +43,8 @@ pub struct SlamSystem {
     pub(super) filter: EkfSlam<PointSensor>,
     pub(super) association: Rule,
     pub(super) commands: Commands,
+    /// How the robot has moved by its commands.
+    pub(super) motion: MotionStatistics,
     /// Velocities or increments: whichever came first.
     pub(super) odometry: Option<Odometry>,
     /// The time that the filter's state is at.
@@ -54,9 +56,6 @@ pub struct SlamSystem {
     events: Events,
     step: Duration,
 }
-
-/// No robot is faster, m/s and rad/s; a command in force moves the robot until the next, so it must not be nonsense.
-const FASTEST: f64 = 1e3;
 
 /// Which records were taken, in this run and in the one that it goes on from.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,7 +73,7 @@ pub(super) enum Rule {
 }
 
 impl SlamSystem {
-    /// A robot at `start` in an empty map, from `start_stamp` on.
+    /// A robot at `start` in an empty map, from `start_stamp` on; the covariance of the start is in its body frame, `(x, y, θ)`.
     ///
     /// # Errors
     /// When a parameter is out of range.
@@ -83,6 +82,7 @@ impl SlamSystem {
         rule: AssociationRule,
         start_stamp: Stamp,
         start: Pose2<f64>,
+        start_covariance: &Matrix3<f64>,
     ) -> Result<Self, SlamError> {
         let params = params.validated()?;
         let association = match rule {
@@ -104,14 +104,15 @@ impl SlamSystem {
         let mount = Pose2::new(sensor_x, sensor_y, sensor_heading);
         let sensor = ScaledRangeBearingSensor(Mounted { sensor: params.sensor, mount });
         let state = ScaledPose { pose: start, log_range_scale: 0.0 };
-        let variances = Vector4::new(0.0, 0.0, 0.0, params.robot.range_scale_sigma.powi(2));
-        let covariance = Matrix4::from_diagonal(&variances);
+        let mut covariance = start_covariance.to_homogeneous();
+        covariance.m44 = params.robot.range_scale_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
         Ok(Self {
             observability: params.record_observability.then(|| ObservabilityRecorder::new(&filter)),
             filter,
             association,
             commands: Commands::new(&params.robot),
+            motion: MotionStatistics::default(),
             odometry: None,
             params,
             time: start_stamp,
@@ -147,13 +148,7 @@ impl SlamSystem {
     }
 
     fn take_velocity(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
-        let Velocity { linear, angular } = velocity;
-        if !is_possible(velocity) {
-            return Err(format!(
-                "velocity ({linear} m/s, {angular} rad/s) is beyond {FASTEST} or not finite"
-            ));
-        }
-        self.commands.push(stamp, velocity);
+        self.commands.push(stamp, possible(velocity)?);
         self.advance_to(self.exposure(stamp))
     }
 
@@ -232,10 +227,29 @@ impl SlamSystem {
             recorder.moved(&ScaledMotion(motion).jacobian(&before, &controls));
         }
         self.dead_reckoning = motion.propagate(&self.dead_reckoning, &controls);
+        for control in &controls {
+            let moved = self.params.velocity.propagate(&Pose2::identity(), control);
+            self.motion.add(&moved, control.duration);
+        }
+        self.doubt_motion(self.commands.unknown_seconds(self.time, time))?;
         self.step += stopwatch.elapsed();
         self.commands.forget_before(time);
         self.time = time;
         Ok(())
+    }
+
+    /// The robot may have moved as fast as it usually does while nothing told its motion.
+    fn doubt_motion(&mut self, seconds: f64) -> Result<(), String> {
+        if seconds <= 0.0 {
+            return Ok(());
+        }
+        let hold = self.params.robot.velocity_hold;
+        self.events.warn(
+            "motion_unknown",
+            format!("velocities are missing for more than {hold} s: the motion is unknown there (robot.velocity_hold)"),
+        );
+        let unknown = ScaledMotion(UnknownMotion(self.motion.unknown_motion(seconds)));
+        self.filter.predict(&unknown, &()).map_err(|error| error.to_string())
     }
 
     /// The filter is at the exposure of the last look; the keyframe says where the robot is at its stamp.
@@ -311,10 +325,6 @@ where
         _ => None,
     };
     report.outcomes.iter().filter_map(seen).collect()
-}
-
-pub(super) fn is_possible(velocity: Velocity) -> bool {
-    velocity.linear.abs() <= FASTEST && velocity.angular.abs() <= FASTEST
 }
 
 impl System for SlamSystem {

@@ -30,6 +30,9 @@ pub fn stream<S: System, R: Borrow<Record>>(
         }
         observe(system, record);
     }
+    if let Err(reason) = system.finish() {
+        system.events().refuse("record_refused", reason);
+    }
 }
 
 #[cfg(test)]

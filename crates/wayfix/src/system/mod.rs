@@ -3,11 +3,17 @@
 mod drive;
 mod estimate_log;
 mod events;
+mod held_velocity;
+mod motion_statistics;
+mod overlap;
 mod stopwatch;
 
 pub use drive::{drive, stream};
 pub use estimate_log::{Drawing, EstimateLog, EstimateWriter, OTHER_POSES};
 pub use events::{Events, Refusal};
+pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, possible};
+pub use motion_statistics::MotionStatistics;
+pub use overlap::{NamedKind, ODOMETRY, check_overlap};
 pub use stopwatch::Stopwatch;
 
 use wayfix_sensor_log::Record;
@@ -21,6 +27,13 @@ pub trait System {
     /// # Errors
     /// Why the record was refused; the system is as it was before it.
     fn take(&mut self, record: &Record) -> Result<(), String>;
+    /// Uses what waited for a later record; there is none.
+    ///
+    /// # Errors
+    /// Why what waited could not be used.
+    fn finish(&mut self) -> Result<(), String> {
+        Ok(())
+    }
     /// What has happened so far.
     fn events(&mut self) -> &mut Events;
 }

@@ -17,7 +17,8 @@ pub fn summarize(run: &mut WallRun) -> Run {
         metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
         metrics.push(Metric::new("ate_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
         metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
-        metrics.extend(errors.nees_mean.map(|nees| Metric::new("nees_mean", nees, "")));
+        let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
+        metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
     }
     let reckoned =
         |(keyframe, sample): &(Keyframe, Sample)| Sample { estimate: keyframe.dead_reckoning, ..*sample };

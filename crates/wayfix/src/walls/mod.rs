@@ -2,6 +2,7 @@
 
 mod estimates;
 mod figures;
+mod odometry;
 mod params;
 mod pictures;
 mod run;
@@ -12,6 +13,7 @@ mod truth;
 
 pub use estimates::{WallDrawing, WallEstimateLog};
 pub use figures::{relation_metrics, summarize};
+pub use odometry::Odometry;
 pub use params::{Disagreement, Gait, WallSlamParams};
 pub use pictures::pictures;
 pub use run::{WallRun, run, run_on};

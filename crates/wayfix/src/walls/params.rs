@@ -36,7 +36,7 @@ pub struct WallSlamParams {
     pub n_anchors: usize,
     /// Which scans are looked at.
     pub looks: Gait,
-    /// What odometry and scans of a moving robot disagree by.
+    /// What odometry and scans disagree by.
     pub disagreement: Disagreement,
     /// Whether each scan is laid on the one before, to tell the motion between them better than wheels do.
     pub match_scans: bool,
@@ -50,6 +50,9 @@ pub struct WallSlamParams {
     pub sensor: WallSensor,
     /// Standard deviation, before anything is seen, of what odometry turns by without turning, rad/m; it is estimated.
     pub heading_drift_sigma: f64,
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
+    /// navigation.
+    pub velocity_hold: f64,
     /// Noise of odometry increments.
     pub increment: IncrementMotion,
     /// Gate and outliers.
@@ -63,7 +66,7 @@ pub struct WallSlamParams {
     pub record_observability: bool,
 }
 
-/// What odometry and scans of a moving robot disagree by because their stamps do, at every scan: a robot that stands still does not notice.
+/// What odometry and scans disagree by at every scan, since their stamps do and wheels slip.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Disagreement {
@@ -111,6 +114,7 @@ impl Default for WallSlamParams {
             min_wall_length: 1.0,
             sensor: WallSensor::default(),
             heading_drift_sigma: 0.05,
+            velocity_hold: 1.0,
             increment: IncrementMotion {
                 translation_variance_per_meter: 1e-2,
                 heading_variance_per_meter: 5e-3,
@@ -180,6 +184,7 @@ impl WallSlamParams {
             ("disagreement.translation_sigma", self.disagreement.translation_sigma, NOT_NEGATIVE),
             ("disagreement.heading_sigma", self.disagreement.heading_sigma, NOT_NEGATIVE),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
+            ("velocity_hold", self.velocity_hold, NOT_NEGATIVE),
             (
                 "increment.translation_variance_per_meter",
                 increment.translation_variance_per_meter,

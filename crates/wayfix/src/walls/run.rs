@@ -1,13 +1,13 @@
 use anyhow::{Result, bail};
-use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_estimation_traits::Manifold;
 use wayfix_sensor_log::{Data, Record, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
 use super::{WallSlamParams, WallState, WallSystem, truth};
 use crate::{
-    evaluate::{Sample, TrueTrack},
-    slam::{AssociationRule, Keyframe, Saved},
-    system::{Events, System, drive},
+    evaluate::{KnownStart, Sample, TrueTrack},
+    slam::{AssociationRule, Keyframe, Saved, start_pose, warn_of_no_overlap, warn_of_start},
+    system::{Events, ODOMETRY, System, check_overlap, drive},
 };
 
 /// A log of scans that went through EKF-SLAM with walls, beside the poses that the log itself holds.
@@ -22,7 +22,8 @@ pub struct WallRun {
 
 /// Runs EKF-SLAM with walls over the records of a log and shows the system to `observe` after each.
 ///
-/// The start pose is the log's own where its first scan is, else the origin; nothing else ties the run to it.
+/// The start pose is the true pose at the first scan, or led back to it by odometry from the first true pose after it, else the origin.
+/// Nothing else ties the run to the truth.
 ///
 /// # Errors
 /// When there is no odometry, no scan, or a parameter is out of range.
@@ -38,13 +39,16 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
             "the log has neither odometry increments nor velocities, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
         );
     }
+    check_overlap(records, ODOMETRY, ("laser scans", |data| matches!(data, Data::Scan(_))))?;
     let track = TrueTrack::from_records_or_estimates(records);
-    let start = match params.start {
-        Some([x, y, heading]) => Pose2::new(x, y, heading),
-        None => track.at(scan.stamp).unwrap_or(Pose2::new(0.0, 0.0, 0.0)),
-    };
+    let known = KnownStart::at(scan.stamp, &track, records).filter(|_| params.start.is_none());
+    let start = start_pose(params.start, known);
     let laser = params.laser.or_else(|| laser_mount(records));
-    let mut system = WallSystem::new(WallSlamParams { laser, ..params.clone() }, start, moves_by_velocity)?;
+    let placed = WallSlamParams { laser, ..params.clone() };
+    let mut system = WallSystem::new(placed, start, track.noise(), moves_by_velocity)?;
+    if params.start.is_none() {
+        warn_of_start(system.events(), known, &track);
+    }
     let true_walls = truth::true_walls(records);
     for (wall, id) in truth::nearest_to(&start, &true_walls, params.n_anchors).into_iter().zip(FIRST_ANCHOR..)
     {
@@ -84,13 +88,20 @@ fn drive_through(
         let n_before = system.events().get("before_resume");
         bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
     }
+    let keyframes = system.keyframes();
+    let estimated = keyframes.first().zip(keyframes.last()).map(|(first, last)| (first.stamp, last.stamp));
+    warn_of_no_overlap(system.events(), &track, estimated);
     let mut run = WallRun { system, truth: track, true_walls };
     if run
         .samples()
         .iter()
         .all(|(keyframe, sample)| sample.truth.local(&keyframe.dead_reckoning).norm() < SAME)
     {
-        run.truth = TrueTrack::default(); // the log's poses are its odometry
+        run.truth = TrueTrack::default();
+        run.events().warn(
+            "reference_is_odometry",
+            "the poses of the log are its odometry: there are no figures of accuracy",
+        );
     }
     Ok(run)
 }
@@ -113,8 +124,8 @@ impl WallRun {
     /// Keyframes with the poses of the log.
     pub fn samples(&self) -> Vec<(Keyframe, Sample)> {
         let sample = |keyframe: &Keyframe| {
-            let truth = self.truth.at(keyframe.stamp)?;
-            Some((*keyframe, Sample { estimate: keyframe.pose, covariance: keyframe.covariance, truth }))
+            let Keyframe { stamp, pose, covariance, .. } = keyframe;
+            Some((*keyframe, self.truth.sample(*stamp, *pose, covariance)?))
         };
         self.system.keyframes().iter().filter_map(sample).collect()
     }

@@ -1,10 +1,12 @@
+use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{LaserScan, Stamp, Velocity};
+use wayfix_sensor_log::{LaserScan, Stamp};
 use wayfix_slam_ekf::{DriftingPose, EkfSlam, SlamError, Snapshot, Wall};
 
 use super::{
     WallSlamParams, WallSystem,
+    odometry::Odometry,
     system::{Look, Rule, cloud_of},
     travel::Travel,
 };
@@ -27,8 +29,8 @@ pub struct WallState {
     pub laser: Option<[f64; 3]>,
     /// Whether velocities move the robot, and not increments.
     pub moves_by_velocity: bool,
-    /// The velocity that holds: since when in nanoseconds, m/s, rad/s.
-    pub velocity: Option<(u64, f64, f64)>,
+    /// How far odometry is used, and the velocity that holds.
+    pub odometry: Odometry,
     /// The way since the last look.
     pub travel: Travel,
     /// The scan of the last look: first bearing, increment, largest range, ranges.
@@ -47,8 +49,6 @@ impl Save for WallSystem {
             Rule::NearestNeighbour(rule) => (AssociationRule::Nn, rule.next_id()),
             Rule::JointCompatibility(rule) => (AssociationRule::Jcbb, rule.next_id()),
         };
-        let held =
-            |(since, velocity): (Stamp, Velocity)| (since.nanoseconds(), velocity.linear, velocity.angular);
         let scan = |Look { scan, .. }: &Look| {
             (scan.angle_min, scan.angle_increment, scan.range_max, scan.ranges.clone())
         };
@@ -57,11 +57,11 @@ impl Save for WallSystem {
                 filter: self.filter.snapshot(),
                 association,
                 next_id,
-                taken_until: self.taken_until.nanoseconds(),
+                taken_until: self.settled_until().nanoseconds(),
                 dead_reckoning: self.dead_reckoning,
                 laser: self.params.laser,
                 moves_by_velocity: self.moves_by_velocity,
-                velocity: self.velocity.map(held),
+                odometry: self.odometry,
                 travel: self.travel,
                 last_look: self.last_look.as_ref().map(scan),
             },
@@ -70,6 +70,13 @@ impl Save for WallSystem {
 }
 
 impl WallSystem {
+    /// Stamp of the last record that changed the state: scans that wait for their odometry come later.
+    fn settled_until(&self) -> Stamp {
+        let before =
+            |(stamp, _): &(Stamp, LaserScan)| Stamp::from_nanoseconds(stamp.nanoseconds().saturating_sub(1));
+        self.waiting.front().map_or(self.taken_until, before)
+    }
+
     /// The system that a map was saved of, with these parameters; the laser sits where it sat, unless they place it.
     pub(super) fn resume(
         params: WallSlamParams,
@@ -80,7 +87,8 @@ impl WallSystem {
         check_association(asked, association)?;
         let laser = params.laser.or(saved.state.laser);
         let params = WallSlamParams { association, laser, ..params };
-        let mut system = Self::new(params, saved.state.dead_reckoning, saved.state.moves_by_velocity)?;
+        let start = saved.state.dead_reckoning;
+        let mut system = Self::new(params, start, &Matrix3::zeros(), saved.state.moves_by_velocity)?;
         let (sensor, filter_params) = (*system.filter.model(), *system.filter.params());
         system.filter = EkfSlam::resume(sensor, filter_params, filter).map_err(SavedMapError::from)?;
         system.association = match system.association {
@@ -99,8 +107,10 @@ impl WallSystem {
             let cloud = cloud_of(&scan, &system.mount()).map_err(unsound)?;
             system.last_look = Some(Look { scan, cloud });
         }
-        let held = |(since, linear, angular)| (Stamp::from_nanoseconds(since), Velocity { linear, angular });
-        system.velocity = saved.state.velocity.map(held);
+        if !saved.state.odometry.is_finite() {
+            return Err(SavedMapError::from(SlamError::NotFinite { what: "saved odometry" }).into());
+        }
+        system.odometry = saved.state.odometry;
         system.taken_until = Stamp::from_nanoseconds(taken_until);
         system.resumed_at = Some(system.taken_until);
         Ok(system)

@@ -1,10 +1,10 @@
-use std::time::Duration;
+use std::{collections::VecDeque, time::Duration};
 
-use nalgebra::{Matrix1x4, Matrix4, Vector1, Vector3, Vector4};
+use nalgebra::{Matrix1x4, Matrix3, Vector1};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 use wayfix_line_extract::{Extractor, Scan};
 use wayfix_scan_match::{Cloud, Guess, Matcher};
-use wayfix_sensor_log::{Data, LaserScan, Record, Stamp, Velocity};
+use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
 use wayfix_slam_ekf::{
     DriftingPose, EkfSlam, JointCompatibility, LandmarkId, Mounted, NearestNeighbour, Observation,
     OnDrifting, SeenWall, SlamError, StepReport, Wall, WallSensor, observability::ObservabilityRecorder,
@@ -12,11 +12,12 @@ use wayfix_slam_ekf::{
 
 use super::{
     Gait, WallSlamParams,
+    odometry::{Motion, Odometry},
     travel::{DriftSeen, Travel},
 };
 use crate::{
     slam::{AssociationRule, Keyframe, event_name, seen_landmarks},
-    system::{Events, Stopwatch, System},
+    system::{Events, Stopwatch, System, possible},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
@@ -38,8 +39,9 @@ pub struct WallSystem {
     pub(super) taken_until: Stamp,
     /// Records up to this stamp were taken by the run that this one goes on from.
     pub(super) resumed_at: Option<Stamp>,
-    /// The velocity that holds, and since when: only where a log has no increments.
-    pub(super) velocity: Option<(Stamp, Velocity)>,
+    pub(super) odometry: Odometry,
+    /// Scans that wait for the odometry that leads up to them, oldest first.
+    pub(super) waiting: VecDeque<(Stamp, LaserScan)>,
     pub(super) dead_reckoning: Pose2<f64>,
     observability: Option<ObservabilityRecorder>,
     keyframes: Vec<Keyframe>,
@@ -66,11 +68,14 @@ const LEAST_OVERLAP: f64 = 0.15;
 impl WallSystem {
     /// A robot at `start` among walls that it does not know; its motion is told by velocities, else by increments.
     ///
+    /// The covariance of the start is in its body frame, `(x, y, θ)`.
+    ///
     /// # Errors
     /// When a parameter is out of range.
     pub(super) fn new(
         params: WallSlamParams,
         start: Pose2<f64>,
+        start_covariance: &Matrix3<f64>,
         moves_by_velocity: bool,
     ) -> anyhow::Result<Self> {
         let params = params.validated()?;
@@ -82,8 +87,8 @@ impl WallSystem {
         };
         let sensor = OnDrifting(Mounted { sensor: params.sensor, mount: params.mount() });
         let state = DriftingPose { pose: start, heading_drift: 0.0 };
-        let drift_variance = params.heading_drift_sigma.powi(2);
-        let covariance = Matrix4::from_diagonal(&Vector4::new(0.0, 0.0, 0.0, drift_variance));
+        let mut covariance = start_covariance.to_homogeneous();
+        covariance.m44 = params.heading_drift_sigma.powi(2);
         let filter = EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?;
         Ok(Self {
             extractor: Extractor::new(params.lines)?,
@@ -97,7 +102,8 @@ impl WallSystem {
             moves_by_velocity,
             taken_until: Stamp::default(),
             resumed_at: None,
-            velocity: None,
+            odometry: Odometry::default(),
+            waiting: VecDeque::new(),
             dead_reckoning: start,
             keyframes: Vec::new(),
             events: Events::default(),
@@ -126,22 +132,77 @@ impl WallSystem {
         self.observability.as_ref()
     }
 
-    fn take_increment(&mut self, increment: &Pose2<f64>) -> Result<(), String> {
+    /// Takes the scans that waited for this increment, each after its part of it.
+    fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
         if !(increment.is_finite() && increment.translation.norm() <= FARTHEST) {
-            return Err(format!("an increment of {increment:?} is beyond {FARTHEST} m or not finite"));
+            let (x, y) = (increment.x(), increment.y());
+            return Err(format!("an increment of ({x:.3e}, {y:.3e}) m is beyond {FARTHEST} m or not finite"));
         }
-        self.travel = self.travel.then(&self.params.increment, self.filter.robot().heading_drift, increment);
-        self.dead_reckoning = self.dead_reckoning.compose(increment);
+        let n_reached = self.waiting.partition_point(|(waiting, _)| *waiting <= stamp);
+        let reached: Vec<(Stamp, LaserScan)> = self.waiting.drain(..n_reached).collect();
+        if let (Some((first, _)), false) = (reached.first(), self.odometry.has_started()) {
+            self.odometry.start(*first);
+        }
+        let has_started = self.odometry.has_started();
+        let cuts: Vec<Stamp> = reached.iter().map(|(stamp, _)| *stamp).collect();
+        let motions = self.odometry.cut(increment, stamp, &cuts);
+        if !has_started {
+            self.events.count("before_start");
+            return Ok(());
+        }
+        let mut scans = reached.iter();
+        for motion in &motions {
+            self.move_by(motion);
+            if let Some((stamp, scan)) = scans.next() {
+                self.try_scan(*stamp, scan);
+            }
+        }
         Ok(())
     }
 
-    /// Moves the robot on with the velocity that held.
-    fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
-        let Some((since, velocity)) = self.velocity else { return Ok(()) };
-        let seconds = stamp.seconds_since(since);
-        self.velocity = Some((stamp, velocity));
-        let twist = Vector3::new(velocity.linear * seconds, 0.0, velocity.angular * seconds);
-        self.take_increment(&Pose2::exp(&twist))
+    fn move_by(&mut self, motion: &Motion) {
+        let Motion { increment, error, unknown_seconds } = motion;
+        self.travel = self
+            .travel
+            .then(&self.params.increment, self.filter.robot().heading_drift, increment)
+            .less_certain(error);
+        self.dead_reckoning = self.dead_reckoning.compose(increment);
+        if *unknown_seconds > 0.0 {
+            self.events.warn(
+                "motion_unknown",
+                "odometry is missing before some scans: their motion comes from scan matching alone",
+            );
+        }
+    }
+
+    /// Moves the robot on with the velocity that holds.
+    fn advance_to(&mut self, stamp: Stamp) {
+        if let Some(motion) = self.odometry.held_until(stamp, self.params.velocity_hold)
+            && self.odometry.has_started()
+        {
+            self.move_by(&motion);
+        }
+    }
+
+    /// Takes a scan now, when odometry leads up to it or never will, else with the next increment.
+    fn take_or_wait(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
+        if self.moves_by_velocity {
+            self.advance_to(stamp);
+        } else if !(self.waiting.is_empty() && self.odometry.reaches(stamp)) {
+            self.waiting.push_back((stamp, scan.clone()));
+            return Ok(());
+        }
+        if !self.odometry.has_started() {
+            self.odometry.start(stamp);
+        }
+        self.take_scan(stamp, scan)
+    }
+
+    /// Takes a scan that waited.
+    fn try_scan(&mut self, stamp: Stamp, scan: &LaserScan) {
+        if let Err(reason) = self.take_scan(stamp, scan) {
+            self.events.refuse("record_refused", format!("scan of {stamp}: {reason}"));
+        }
     }
 
     fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
@@ -275,18 +336,28 @@ impl System for WallSystem {
         }
         self.taken_until = record.stamp;
         match &record.data {
-            Data::OdometryIncrement(increment) => self.take_increment(increment),
+            Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
             Data::Velocity(velocity) if self.moves_by_velocity => {
-                self.advance_to(record.stamp)?;
-                self.velocity = Some((record.stamp, *velocity));
-                Ok(())
+                possible(*velocity)?;
+                self.advance_to(record.stamp);
+                self.odometry.hold(record.stamp, *velocity)
             }
-            Data::Scan(scan) => {
-                self.advance_to(record.stamp)?;
-                self.take_scan(record.stamp, scan)
-            }
+            Data::Scan(scan) => self.take_or_wait(record.stamp, scan),
             _ => Ok(()),
         }
+    }
+    /// No odometry leads up to the scans that still wait.
+    fn finish(&mut self) -> Result<(), String> {
+        while let Some((stamp, scan)) = self.waiting.pop_front() {
+            if self.odometry.has_started() {
+                let motion = self.odometry.unknown_until(stamp);
+                self.move_by(&motion);
+            } else {
+                self.odometry.start(stamp);
+            }
+            self.try_scan(stamp, &scan);
+        }
+        Ok(())
     }
     fn events(&mut self) -> &mut Events {
         &mut self.events

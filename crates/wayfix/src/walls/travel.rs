@@ -15,8 +15,6 @@ pub struct Travel {
     pub covariance: Matrix3<f64>,
     /// Derivative by the drift.
     pub by_drift: Vector3<f64>,
-    /// Whether odometry has moved since the last scan.
-    pub has_moved: bool,
     /// Where the robot was at the last scan.
     pub at_last_scan: Pose2<f64>,
     /// How it had moved from the scan before that.
@@ -30,7 +28,6 @@ impl Default for Travel {
             motion: Pose2::identity(),
             covariance: Matrix3::zeros(),
             by_drift: Vector3::zeros(),
-            has_moved: false,
             at_last_scan: Pose2::identity(),
             last_step: Pose2::identity(),
         }
@@ -50,7 +47,6 @@ impl Travel {
             motion: noise.propagate(&self.motion, &moved),
             covariance: carry * self.covariance * carry.transpose() + noise.noise(&self.motion, &moved),
             by_drift: carry * self.by_drift + Vector3::z() * distance,
-            has_moved: self.has_moved || distance > 0.0 || increment.heading() != 0.0,
             ..*self
         }
     }
@@ -71,18 +67,17 @@ impl Travel {
         Self { last_step: self.last_step, ..Self::default() }
     }
 
-    /// The same at the time of a scan, with what odometry and scan disagree by.
+    /// The same at the time of a scan, with what odometry and scan disagree by. Odometry that stands still may disagree as well: wheels
+    /// slip, and records are lost.
     pub(super) fn at_a_scan(self, disagreement: &Disagreement) -> Self {
-        if !self.has_moved {
-            return self;
-        }
         let Disagreement { translation_sigma, heading_sigma } = *disagreement;
         let sigmas = Vector3::new(translation_sigma, translation_sigma, heading_sigma);
-        Self {
-            covariance: self.covariance + Matrix3::from_diagonal(&sigmas.map(|sigma| sigma * sigma)),
-            has_moved: false,
-            ..self
-        }
+        self.less_certain(&Matrix3::from_diagonal(&sigmas.map(|sigma| sigma * sigma)))
+    }
+
+    /// The same with an error more.
+    pub(super) fn less_certain(self, covariance: &Matrix3<f64>) -> Self {
+        Self { covariance: self.covariance + covariance, ..self }
     }
 
     /// Whether the robot is still about where it was.
@@ -220,10 +215,10 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_stands_still_stays_where_it_was() {
+    fn standstill_of_odometry_is_no_certain_standstill() {
         let still = Travel::default().then(&IncrementMotion::default(), 0.1, &Pose2::identity());
-        assert_eq!(still.at_a_scan(&Disagreement::default()).covariance, Matrix3::zeros());
-        let moved = still.then(&IncrementMotion::default(), 0.0, &Pose2::new(0.0, 0.0, 0.01));
-        assert!(moved.at_a_scan(&Disagreement::default()).covariance.m11 >= 0.02_f64.powi(2));
+        let Disagreement { translation_sigma, heading_sigma } = Disagreement::default();
+        let covariance = still.at_a_scan(&Disagreement::default()).covariance;
+        assert!(covariance.m11 >= translation_sigma.powi(2) && covariance.m33 >= heading_sigma.powi(2));
     }
 }

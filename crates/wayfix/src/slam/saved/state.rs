@@ -1,4 +1,4 @@
-use nalgebra::Vector2;
+use nalgebra::{Matrix3, Vector2};
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Stamp, Velocity};
@@ -7,8 +7,9 @@ use wayfix_slam_ekf::{EkfSlam, ScaledPose, SlamError, Snapshot};
 use super::{Save, SavedMap, SavedMapError, SavedState};
 use crate::slam::{
     AssociationRule, SlamSystem, SlamSystemParams,
-    system::{Past, Rule, is_possible},
+    system::{Past, Rule},
 };
+use crate::system::{MotionStatistics, possible};
 
 /// All that a [`SlamSystem`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +30,8 @@ pub struct SystemState {
     pub odometry: Option<Odometry>,
     /// Commands that still act: nanoseconds, m/s, rad/s.
     pub commands: Vec<(u64, f64, f64)>,
+    /// How the robot has moved by its commands.
+    pub motion: MotionStatistics,
 }
 
 /// The kind of odometry that moves a robot.
@@ -85,6 +88,7 @@ impl SlamSystem {
             dead_reckoning: self.dead_reckoning,
             odometry: self.odometry,
             commands: self.commands.rows().map(command).collect(),
+            motion: self.motion,
         };
         SavedMap { state }
     }
@@ -100,10 +104,11 @@ impl SlamSystem {
             dead_reckoning,
             odometry,
             commands,
+            motion,
         } = saved.state;
         check_association(params.association, association)?;
         let stamp = Stamp::from_nanoseconds;
-        let mut system = Self::new(params, association, stamp(time), dead_reckoning)?;
+        let mut system = Self::new(params, association, stamp(time), dead_reckoning, &Matrix3::zeros())?;
         let sensor = *system.filter.model();
         system.filter = EkfSlam::resume(sensor, *system.filter.params(), filter)?;
         match (&mut system.association, next_id) {
@@ -113,12 +118,14 @@ impl SlamSystem {
         }
         for (nanoseconds, linear, angular) in commands {
             let velocity = Velocity { linear, angular };
-            if !is_possible(velocity) {
-                return Err(SlamError::NotFinite { what: "saved command" }.into());
-            }
+            let impossible = |_| SlamError::NotFinite { what: "saved command" };
+            let velocity = possible(velocity).map_err(impossible)?;
             system.commands.push(stamp(nanoseconds), velocity);
         }
-        system.odometry = odometry;
+        if !motion.is_finite() {
+            return Err(SlamError::NotFinite { what: "saved motion" }.into());
+        }
+        (system.odometry, system.motion) = (odometry, motion);
         system.past = Past { taken_until: stamp(taken_until), resumed_at: Some(stamp(taken_until)) };
         Ok(system)
     }

@@ -1,0 +1,118 @@
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_sensor_log::{Stamp, Velocity};
+
+/// No robot is faster, m/s and rad/s; a velocity moves the robot until the next one, so it must be possible.
+pub const FASTEST: f64 = 1e3;
+
+/// A velocity that is finite and possible.
+///
+/// # Errors
+/// The velocity in words when it is not.
+pub fn possible(velocity: Velocity) -> Result<Velocity, String> {
+    let Velocity { linear, angular } = velocity;
+    if linear.abs() <= FASTEST && angular.abs() <= FASTEST {
+        return Ok(velocity);
+    }
+    Err(format!("a velocity of {linear:.3e} m/s and {angular:.3e} rad/s is beyond {FASTEST} or not finite"))
+}
+
+/// A velocity that holds until the next one, for a limited time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HeldVelocity {
+    held: Option<Held>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Held {
+    /// Stamp of the velocity, nanoseconds.
+    stamp: u64,
+    /// The motion up to here is used, nanoseconds.
+    used_until: u64,
+    linear: f64,
+    angular: f64,
+}
+
+/// The motion over a stretch of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldMotion {
+    /// The motion while the velocity holds.
+    pub increment: Pose2<f64>,
+    /// How long it holds, s.
+    pub seconds: f64,
+    /// How long the motion is unknown after that, s.
+    pub unknown_seconds: f64,
+}
+
+impl HeldVelocity {
+    /// Holds a velocity from `stamp` on.
+    ///
+    /// # Errors
+    /// When it is not [`possible`]; the one before holds on.
+    pub fn hold(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
+        let Velocity { linear, angular } = possible(velocity)?;
+        let stamp = stamp.nanoseconds();
+        self.held = Some(Held { stamp, used_until: stamp, linear, angular });
+        Ok(())
+    }
+
+    /// The motion since the last call up to `stamp`; `None` when there is no velocity or no time has passed.
+    ///
+    /// The velocity holds for `longest` seconds after its stamp.
+    pub fn until(&mut self, stamp: Stamp, longest: f64) -> Option<HeldMotion> {
+        let Held { stamp: since, used_until, linear, angular } = self.held?;
+        let now = stamp.nanoseconds();
+        if now <= used_until {
+            return None;
+        }
+        let expires = since.saturating_add((longest * 1e9) as u64);
+        let seconds = now.min(expires).saturating_sub(used_until) as f64 * 1e-9;
+        let unknown_seconds = now.saturating_sub(used_until.max(expires)) as f64 * 1e-9;
+        self.held = Some(Held { stamp: since, used_until: now, linear, angular });
+        let increment = Pose2::exp(&Vector3::new(linear * seconds, 0.0, angular * seconds));
+        Some(HeldMotion { increment, seconds, unknown_seconds })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(milliseconds: u64) -> Stamp {
+        Stamp::from_nanoseconds(milliseconds * 1_000_000)
+    }
+
+    const FORWARD: Velocity = Velocity { linear: 2.0, angular: 0.0 };
+
+    #[test]
+    fn velocity_holds_until_the_next() {
+        let mut held = HeldVelocity::default();
+        assert_eq!(held.until(at(5), 1.0), None);
+        held.hold(at(1000), FORWARD).unwrap();
+        assert!((held.until(at(1500), 1.0).unwrap().increment.x() - 1.0).abs() < 1e-12);
+        assert_eq!(held.until(at(1500), 1.0), None);
+        assert!((held.until(at(1600), 1.0).unwrap().increment.x() - 0.2).abs() < 1e-9);
+    }
+
+    #[test]
+    fn velocity_expires_and_the_rest_is_unknown() {
+        let mut held = HeldVelocity::default();
+        held.hold(at(1000), FORWARD).unwrap();
+        let motion = held.until(at(4000), 1.0).unwrap();
+        assert!((motion.increment.x() - 2.0).abs() < 1e-12 && (motion.unknown_seconds - 2.0).abs() < 1e-12);
+        let motion = held.until(at(4500), 1.0).unwrap();
+        assert!(motion.increment.x() == 0.0 && (motion.unknown_seconds - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn impossible_velocity_is_refused_and_the_last_one_holds() {
+        for linear in [1e256, f64::NAN, f64::NEG_INFINITY] {
+            let mut held = HeldVelocity::default();
+            held.hold(at(0), FORWARD).unwrap();
+            let error = held.hold(at(100), Velocity { linear, angular: 0.0 }).unwrap_err();
+            assert!(error.len() < 120, "{error}");
+            assert!((held.until(at(200), 1.0).unwrap().increment.x() - 0.4).abs() < 1e-12);
+        }
+    }
+}

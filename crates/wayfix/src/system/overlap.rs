@@ -1,0 +1,72 @@
+use anyhow::{Result, bail};
+use wayfix_sensor_log::{Data, Record, Stamp};
+
+/// A kind of record, for messages.
+pub type NamedKind<'a> = (&'a str, fn(&Data) -> bool);
+
+/// What moves a robot.
+pub const ODOMETRY: NamedKind<'static> =
+    ("odometry", |data| matches!(data, Data::OdometryIncrement(_) | Data::Velocity(_) | Data::Ackermann(_)));
+
+/// Checks that two kinds of record overlap in time, where a log has both.
+///
+/// # Errors
+/// Both intervals when they have no time in common: the records are of different clocks or different drives.
+pub fn check_overlap(records: &[Record], first: NamedKind<'_>, second: NamedKind<'_>) -> Result<()> {
+    let (Some(a), Some(b)) = (span(records, first.1), span(records, second.1)) else { return Ok(()) };
+    if a.0 <= b.1 && b.0 <= a.1 {
+        return Ok(());
+    }
+    bail!(
+        "{} ({} to {}) and {} ({} to {}) have no time in common: are they of the same clock (use_sim_time)?",
+        first.0,
+        a.0,
+        a.1,
+        second.0,
+        b.0,
+        b.1
+    )
+}
+
+fn span(records: &[Record], is: fn(&Data) -> bool) -> Option<(Stamp, Stamp)> {
+    let mut stamps = records.iter().filter(|record| is(&record.data)).map(|record| record.stamp);
+    let first = stamps.next()?;
+    Some(stamps.fold((first, first), |(low, high), stamp| (low.min(stamp), high.max(stamp))))
+}
+
+#[cfg(test)]
+mod tests {
+    use wayfix_estimation_traits::Pose2;
+    use wayfix_sensor_log::Velocity;
+
+    use super::*;
+
+    const TRUTH: NamedKind<'static> = ("truth", |data| matches!(data, Data::TruePose(_)));
+
+    fn records(odometry: u64, truth: u64) -> Vec<Record> {
+        let velocity = Data::Velocity(Velocity { linear: 0.1, angular: 0.0 });
+        let at = |second: u64, data: &Data| Record {
+            stamp: Stamp::from_nanoseconds(second * 1_000_000_000),
+            data: data.clone(),
+        };
+        let truth_data = Data::TruePose(Pose2::identity());
+        vec![
+            at(odometry, &velocity),
+            at(odometry + 5, &velocity),
+            at(truth, &truth_data),
+            at(truth + 5, &truth_data),
+        ]
+    }
+
+    #[test]
+    fn disjoint_kinds_are_refused_with_both_intervals() {
+        let error = check_overlap(&records(100, 7), ODOMETRY, TRUTH).unwrap_err().to_string();
+        assert!(error.contains("100.0") && error.contains("12.0"), "{error}");
+    }
+
+    #[test]
+    fn overlapping_and_missing_kinds_are_accepted() {
+        assert!(check_overlap(&records(3, 7), ODOMETRY, TRUTH).is_ok());
+        assert!(check_overlap(&records(3, 7)[..2], ODOMETRY, TRUTH).is_ok());
+    }
+}
