@@ -21,6 +21,10 @@ pub(crate) fn warn_of_start(events: &mut Events, known: Option<KnownStart>, trut
         ),
         _ => {}
     }
+}
+
+/// Says when errors are differences from the poses of another program.
+pub(crate) fn warn_of_reference(events: &mut Events, truth: &TrueTrack) {
     if truth.is_estimate() {
         events.warn(
             "reference_is_another_estimate",

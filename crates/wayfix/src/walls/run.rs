@@ -6,7 +6,9 @@ use wayfix_slam_ekf::LandmarkId;
 use super::{WallSlamParams, WallState, WallSystem, truth};
 use crate::{
     evaluate::{KnownStart, Sample, TrueTrack},
-    slam::{AssociationRule, Keyframe, Saved, start_pose, warn_of_no_overlap, warn_of_start},
+    slam::{
+        AssociationRule, Keyframe, Saved, start_pose, warn_of_no_overlap, warn_of_reference, warn_of_start,
+    },
     system::{Events, ODOMETRY, System, check_overlap, drive},
 };
 

@@ -167,10 +167,10 @@ impl WallSystem {
             .then(&self.params.increment, self.filter.robot().heading_drift, increment)
             .less_certain(error);
         self.dead_reckoning = self.dead_reckoning.compose(increment);
-        if *unknown_seconds > 0.0 {
+        if *unknown_seconds > self.params.velocity_hold {
             self.events.warn(
                 "motion_unknown",
-                "odometry is missing before some scans: their motion comes from scan matching alone",
+                "odometry is missing for some time: the motion there comes from scan matching alone",
             );
         }
     }
