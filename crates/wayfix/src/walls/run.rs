@@ -105,6 +105,7 @@ fn drive_through(
             "the poses of the log are its odometry: there are no figures of accuracy",
         );
     }
+    warn_of_reference(run.system.events(), &run.truth);
     Ok(run)
 }
 
