@@ -3,7 +3,7 @@
 #[non_exhaustive]
 pub enum LineError {
     /// A tolerance without meaning.
-    #[error("the tolerance is {value}, must be finite and not negative")]
+    #[error("the tolerance is {value:?}, must be finite and not negative")]
     Epsilon {
         /// What came.
         value: f64,
@@ -21,7 +21,7 @@ pub enum LineError {
         largest: f64,
     },
     /// A parameter without meaning.
-    #[error("parameter {what} is {value}, must be {must}")]
+    #[error("parameter {what} is {value:?}, must be {must}")]
     Param {
         /// Its name, with its unit.
         what: &'static str,
@@ -31,7 +31,7 @@ pub enum LineError {
         must: &'static str,
     },
     /// A number of a scan's geometry without meaning.
-    #[error("scan: {what} is {value}, must be {must}")]
+    #[error("scan: {what} is {value:?}, must be {must}")]
     Scan {
         /// Which number, with its unit.
         what: &'static str,

@@ -3,7 +3,7 @@
 #[non_exhaustive]
 pub enum ScanMatchError {
     /// A parameter or a number of a scan's geometry without meaning.
-    #[error("{what} is {value}, must be {must}")]
+    #[error("{what} is {value:?}, must be {must}")]
     Value {
         /// Which, with its unit.
         what: &'static str,

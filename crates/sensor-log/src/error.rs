@@ -69,7 +69,7 @@ pub enum LogError {
         reason: String,
     },
     /// The content is not of the format that was asked for, or that the name promises.
-    #[error("{}: is not a {format} log: {reason}", path.display())]
+    #[error("{}: is no log of the format {format}: {reason}", path.display())]
     NotThisFormat {
         /// The file or folder.
         path: PathBuf,
@@ -77,6 +77,16 @@ pub enum LogError {
         format: Format,
         /// Why it has not.
         reason: String,
+    },
+    /// A format that other programs turn into one that is read.
+    #[error("{}: is {what}, which is not read; {way_out}", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        what: &'static str,
+        /// What to do.
+        way_out: &'static str,
     },
     /// A set of several robots needs a choice.
     #[error("{}: holds the robots {present:?}; choose one (--robot N)", path.display())]

@@ -8,6 +8,7 @@ use mcap::MAGIC;
 
 use crate::LogError;
 use crate::compressed::{TextReader, open_text};
+use crate::foreign;
 use crate::image_folder::images_in;
 use crate::mcap_log::files_in;
 use crate::text::{Lines, carmen, range_bearing, tum, utias, victoria_park};
@@ -68,11 +69,15 @@ impl Format {
             }
             return match (utias::robots_present(path)?.as_slice(), images_in(path)?.as_slice()) {
                 ([], []) if !files_in(path)?.is_empty() => Ok(Self::Mcap),
-                ([], []) => Err(LogError::IsADirectory { path: path.into() }),
+                ([], []) => {
+                    foreign::check_folder(path)?;
+                    Err(LogError::IsADirectory { path: path.into() })
+                }
                 ([], _) => Ok(Self::Images),
                 _ => Ok(Self::Utias),
             };
         }
+        foreign::check(path)?;
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) {
             return Ok(Self::Mcap);
         }

@@ -38,6 +38,7 @@ mod compressed;
 mod convert;
 mod error;
 mod fault;
+mod foreign;
 mod format;
 mod image;
 mod image_folder;

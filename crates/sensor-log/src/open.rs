@@ -6,7 +6,7 @@ use crate::image_folder::ImageFolder;
 use crate::log::Records;
 use crate::mcap_log::{McapRecords, files_of};
 use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
-use crate::{Data, Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record};
+use crate::{Data, Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record, Warning};
 
 /// How to open a log. The default finds out what it can.
 #[derive(Clone, Debug)]
@@ -73,8 +73,8 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
         Some(format) => format,
         None => Format::detect(path)?,
     };
-    let files = if format == Format::Mcap { files_of(path)? } else { Vec::new() };
-    open_files(path, format, files, options)
+    let (files, warnings) = if format == Format::Mcap { files_of(path)? } else { Default::default() };
+    open_files(path, format, files, warnings, options)
 }
 
 /// Opens a log that was recorded in several MCAP files, in whatever order they are named: all messages come in order of time.
@@ -99,21 +99,24 @@ pub fn open_all(paths: &[impl AsRef<Path>], options: &OpenOptions) -> Result<Log
         return open(path, options);
     }
     let first = paths.first().ok_or(LogError::NoPath)?.as_ref();
-    let mut files = Vec::new();
+    let (mut files, mut warnings) = (Vec::new(), Vec::new());
     for path in paths.iter().map(AsRef::as_ref) {
         let format = options.format.map_or_else(|| Format::detect(path), Ok)?;
         if format != Format::Mcap {
             return Err(LogError::NotAPart { path: path.into(), format });
         }
-        files.extend(files_of(path)?);
+        let (found, doubts) = files_of(path)?;
+        files.extend(found);
+        warnings.extend(doubts);
     }
-    open_files(first, Format::Mcap, files, options)
+    open_files(first, Format::Mcap, files, warnings, options)
 }
 
 fn open_files(
     source: &Path,
     format: Format,
     files: Vec<PathBuf>,
+    warnings: Vec<Warning>,
     options: &OpenOptions,
 ) -> Result<Log, LogError> {
     // A folder with one file is that file.
@@ -124,7 +127,7 @@ fn open_files(
     }
     let mut meta =
         LogMeta { format, origin: None, source: path.into(), files, robot: None, topics: Vec::new() };
-    let mut report = ReadReport::default();
+    let mut report = ReadReport { warnings, ..ReadReport::default() };
     let in_memory = |records: Vec<Record>| Records::Memory(records.into_iter());
     let mut records = match format {
         Format::Utias => {
@@ -137,7 +140,9 @@ fn open_files(
         Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
         Format::Carmen => Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses)?)),
         Format::ScanJson => in_memory(scan_json::read(path, options.poses, &mut report)?),
-        Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path, &meta.files, &options.topics)?)),
+        Format::Mcap => {
+            Records::Mcap(Box::new(McapRecords::open(path, &meta.files, &options.topics, &mut report)?))
+        }
         Format::Images => Records::Images(ImageFolder::open(path, options.frame_rate_hz)?),
     };
     let first = records.next(&mut report).ok_or_else(|| nothing_in(path, format, &report))?;

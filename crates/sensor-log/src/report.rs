@@ -94,6 +94,8 @@ pub enum ProblemKind {
     Undecodable,
     /// A chunk of messages whose checksum or compression is wrong; left out.
     DamagedChunk,
+    /// A file of a recording in several that is empty or of another format; left out.
+    UnreadableFile,
     /// A file that is no image, breaks off or claims too many pixels; left out.
     UnreadableImage,
 }
@@ -184,6 +186,7 @@ impl fmt::Display for ProblemKind {
             Self::TooLate => "too late",
             Self::Undecodable => "undecodable message",
             Self::DamagedChunk => "damaged chunk",
+            Self::UnreadableFile => "unreadable file",
             Self::UnreadableImage => "unreadable image",
         })
     }

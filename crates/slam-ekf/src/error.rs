@@ -52,7 +52,7 @@ pub enum SlamError {
     )]
     MovesTheWholeMap,
     /// A parameter is outside its range.
-    #[error("parameter {name} is {value}, must be {range}")]
+    #[error("parameter {name} is {value:?}, must be {range}")]
     Parameter {
         /// Its name.
         name: &'static str,

@@ -9,38 +9,55 @@ use crate::{ProblemKind, Stamp};
 const FASTEST: f64 = 100.0;
 /// Stamps of drivers are no more exact than this, seconds.
 const JITTER: f64 = 0.01;
-/// A clock that goes back further than this was set, seconds; below, a message overtook another.
-const CLOCK_WAS_SET: f64 = 1.0;
-
 /// Makes increments of poses that follow each other.
 #[derive(Debug, Default)]
 pub(super) struct Odometer {
     last: Option<(Stamp, Pose2<f64>)>,
+    /// A pose that no motion leads to from the last one: wrong, or the first after odometry was set anew.
+    doubtful: Option<(Stamp, Pose2<f64>)>,
 }
 
 impl Odometer {
     /// Motion since the pose before, in the robot's frame there; `None` at the first.
+    ///
+    /// A pose that no motion leads to is left out. Odometry was set anew when the next pose follows that one.
     pub(super) fn increment(&mut self, stamp: Stamp, pose: Pose2<f64>) -> Result<Option<Pose2<f64>>, Fault> {
         let Some((before, from)) = self.last else {
             self.last = Some((stamp, pose));
             return Ok(None);
         };
-        let seconds = stamp.seconds_since(before);
-        if seconds < 0.0 {
-            if seconds < -CLOCK_WAS_SET {
-                self.last = Some((stamp, pose));
-            }
+        if stamp < before {
             return Err((ProblemKind::TooLate, format!("odometry of {stamp} comes after that of {before}")));
         }
-        self.last = Some((stamp, pose));
-        let increment = from.inverse().compose(&pose);
-        let distance = increment.x().hypot(increment.y());
-        if distance > FASTEST * (seconds + JITTER) {
-            let reason = format!("odometry jumps by {distance:.1} m in {seconds} s; the jump is left out");
-            return Err(inconsistent(&reason));
+        let from_doubtful =
+            self.doubtful.take().and_then(|(since, from)| motion(since, &from, stamp, &pose).ok());
+        match motion(before, &from, stamp, &pose).map_err(Some).or_else(|why| from_doubtful.ok_or(why)) {
+            Ok(increment) => {
+                self.last = Some((stamp, pose));
+                Ok(Some(increment))
+            }
+            Err(why) => {
+                self.doubtful = Some((stamp, pose));
+                Err(inconsistent(&why.unwrap_or_default()))
+            }
         }
-        Ok(Some(increment))
     }
+}
+
+/// The motion from one pose to another; why not, where no robot is so fast.
+fn motion(since: Stamp, from: &Pose2<f64>, stamp: Stamp, pose: &Pose2<f64>) -> Result<Pose2<f64>, String> {
+    let seconds = stamp.seconds_since(since);
+    let increment = from.inverse().compose(pose);
+    let distance = increment.x().hypot(increment.y());
+    if distance <= FASTEST * (seconds + JITTER) {
+        return Ok(increment);
+    }
+    Err(format!("odometry jumps by {} m in {seconds:.3} s; the jump is left out", short(distance)))
+}
+
+/// A number without hundreds of digits.
+fn short(number: f64) -> String {
+    if number.abs() < 1e6 { format!("{number:.1}") } else { format!("{number:.1e}") }
 }
 
 /// The pose on the ground: x, y and the heading of the body's x axis.
@@ -71,14 +88,22 @@ mod tests {
     }
 
     #[test]
-    fn overtaken_message_is_dropped_and_set_clock_restarts() {
+    fn overtaken_message_is_dropped() {
         let mut odometer = Odometer::default();
         let pose = |x| Pose2::new(x, 0.0, 0.0);
         odometer.increment(at(5_000_000_000), pose(1.0)).unwrap();
         assert_eq!(odometer.increment(at(4_990_000_000), pose(0.5)).unwrap_err().0, ProblemKind::TooLate);
         assert_eq!(odometer.increment(at(5_010_000_000), pose(1.5)), Ok(Some(pose(0.5))));
-        assert_eq!(odometer.increment(at(1_000_000_000), pose(1.5)).unwrap_err().0, ProblemKind::TooLate);
-        assert_eq!(odometer.increment(at(1_010_000_000), pose(1.75)), Ok(Some(pose(0.25))));
+    }
+
+    #[test]
+    fn one_absurd_pose_is_lost_alone() {
+        let mut odometer = Odometer::default();
+        let pose = |x| Pose2::new(x, 0.0, 0.0);
+        odometer.increment(at(0), pose(1.0)).unwrap();
+        let fault = odometer.increment(at(20_000_000), pose(1e256)).unwrap_err();
+        assert!(fault.1.len() < 90, "{}", fault.1);
+        assert_eq!(odometer.increment(at(40_000_000), pose(1.5)), Ok(Some(pose(0.5))));
     }
 
     #[test]

@@ -1,3 +1,5 @@
+use std::collections::BTreeMap;
+
 use wayfix_estimation_traits::{Pose2, Pose3};
 
 use super::kind::{BagRoute, Kind};
@@ -14,6 +16,8 @@ use crate::{Data, EncodedImage, ImageFormat, ProblemKind, Record, Stamp, Velocit
 
 /// The fixed frame that localization places the robot in. [REP 105]
 const MAP_FRAME: &str = "map";
+const LASER: &str = "laser";
+const CAMERA: &str = "camera";
 
 /// Makes records of the messages of a bag, one after the other: some only mean something together.
 #[derive(Debug, Default)]
@@ -25,6 +29,14 @@ pub(crate) struct BagRecords {
     body: Option<String>,
     camera_mount: Option<Pose3<f64>>,
     laser_mount: Option<Mount>,
+    /// How often the laser's mount has changed.
+    n_laser_mounts: usize,
+    /// Frames of scans and images that no transform places on the robot, as far as known by now.
+    unplaced: BTreeMap<&'static str, String>,
+    /// Whether a scan says no largest range.
+    lacks_range_limit: bool,
+    /// What was wrong with parts of messages since it was taken.
+    faults: Vec<Fault>,
 }
 
 impl BagRecords {
@@ -75,21 +87,62 @@ impl BagRecords {
             RosMessage::Transforms(transforms) => {
                 let mut records = Vec::new();
                 for transform in &transforms {
-                    records.extend(self.transform(at(&transform.header)?, transform)?);
+                    // As in tf2: a transform that cannot be used is ignored, and the others of its message are not.
+                    match self.transform(at(&transform.header), transform) {
+                        Ok(found) => records.extend(found),
+                        Err(fault) => self.faults.push(fault),
+                    }
                 }
                 Ok(records)
             }
         }
     }
 
+    /// What was wrong with parts of messages since the last call.
+    pub(crate) fn take_faults(&mut self) -> Vec<Fault> {
+        std::mem::take(&mut self.faults)
+    }
+
+    /// What was assumed, once all messages are known.
+    pub(crate) fn warnings(&self) -> Vec<(&'static str, String)> {
+        let mut warnings = Vec::new();
+        if let Some(frame) = self.unplaced.get(LASER) {
+            let text = format!(
+                "no transform leads from the robot to the laser's frame {:?}: the laser is taken to be at the robot's centre (the parameter `laser = [x, y, heading]` places it)",
+                shortened(frame)
+            );
+            warnings.push(("laser_mount_unknown", text));
+        }
+        if let Some(frame) = self.unplaced.get(CAMERA) {
+            let text = format!(
+                "no transform leads from the robot to the camera's frame {:?}: images have no camera mount",
+                shortened(frame)
+            );
+            warnings.push(("camera_mount_unknown", text));
+        }
+        if self.lacks_range_limit {
+            let text = "scans state no largest range (range_max): every finite range counts as an echo";
+            warnings.push(("range_limit_unknown", text.to_owned()));
+        }
+        if self.n_laser_mounts > 1 {
+            let text =
+                format!("the laser moves on the robot: its mount changes {} times", self.n_laser_mounts - 1);
+            warnings.push(("laser_mount_moves", text));
+        }
+        warnings
+    }
+
     fn scan(&mut self, stamp: Stamp, message: &ros::LaserScan<'_>) -> Result<Vec<Record>, Fault> {
         let laser = self.transforms.in_body(message.header.frame_id, self.body.as_deref());
+        self.note_place(LASER, message.header.frame_id, laser.is_some());
         let mount = laser.as_ref().map(Mount::of).transpose()?;
         let scan = scan::scan(message, mount.as_ref())?;
+        self.lacks_range_limit |= scan.range_max == f64::INFINITY;
         let mut records = Vec::new();
         if let Some(mount) = mount
             && self.laser_mount.replace(mount) != Some(mount)
         {
+            self.n_laser_mounts += 1;
             records.extend(one(stamp, Data::LaserMount(mount.pose)));
         }
         records.extend(one(stamp, Data::Scan(scan)));
@@ -98,7 +151,9 @@ impl BagRecords {
 
     fn image(&mut self, stamp: Stamp, frame: &str, image: EncodedImage) -> Vec<Record> {
         let mut records = Vec::new();
-        if let Some(frame_in_body) = self.transforms.in_body(frame, self.body.as_deref()) {
+        let placed = self.transforms.in_body(frame, self.body.as_deref());
+        self.note_place(CAMERA, frame, placed.is_some());
+        if let Some(frame_in_body) = placed {
             let mount = camera::mount(frame, &frame_in_body);
             if self.camera_mount.replace(mount) != Some(mount) {
                 records.extend(one(stamp, Data::CameraMount(mount)));
@@ -106,6 +161,15 @@ impl BagRecords {
         }
         records.extend(one(stamp, Data::Image(image)));
         records
+    }
+
+    /// Whether a sensor's frame is placed on the robot; a transform may come later.
+    fn note_place(&mut self, sensor: &'static str, frame: &str, is_placed: bool) {
+        if is_placed {
+            self.unplaced.remove(sensor);
+        } else {
+            self.unplaced.entry(sensor).or_insert_with(|| frame.to_owned());
+        }
     }
 
     fn odometry(
@@ -127,14 +191,24 @@ impl BagRecords {
         Ok(increment.map_or_else(Vec::new, |increment| one(stamp, Data::OdometryIncrement(increment))))
     }
 
-    fn transform(&mut self, stamp: Stamp, message: &ros::TransformStamped<'_>) -> Result<Vec<Record>, Fault> {
+    /// The stamp matters for motions only: a transform that stands still holds at any time.
+    fn transform(
+        &mut self,
+        stamp: Result<Stamp, Fault>,
+        message: &ros::TransformStamped<'_>,
+    ) -> Result<Vec<Record>, Fault> {
         let (parent, child) = (message.header.frame_id, message.child_frame_id);
+        if parent.is_empty() || child.is_empty() || parent == child {
+            let [parent, child] = [parent, child].map(shortened);
+            return Err(inconsistent(&format!("transform from {parent:?} to {child:?}")));
+        }
         let pose = spatial(message.transform.position, message.transform.orientation)?;
         self.transforms.insert(parent, child, pose);
         let mut records = Vec::new();
         if !is_body(child) {
             return Ok(records);
         }
+        let stamp = stamp?;
         let is_odometry = last_part(parent) == ODOMETRY_FRAME;
         if is_odometry && self.choice.moves_by_transforms {
             let increment = self.odometer.increment(stamp, on_the_ground(&pose))?;

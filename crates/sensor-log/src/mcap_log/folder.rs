@@ -1,25 +1,45 @@
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::LogError;
+use crate::{LogError, Warning};
 
 /// What a recorder of ROS 2 writes beside the files of a bag when it ends as it should.
 const METADATA: &str = "metadata.yaml";
 
-/// The files to read: a recorder of ROS 2 makes a folder for each bag, with a file, or several where it splits them.
-pub(crate) fn files_of(path: &Path) -> Result<Vec<PathBuf>, LogError> {
+/// The files to read, and what the user should know of them: a recorder of ROS 2 makes a folder for each bag, with a file, or several
+/// where it splits them.
+pub(crate) fn files_of(path: &Path) -> Result<(Vec<PathBuf>, Vec<Warning>), LogError> {
     if !path.is_dir() {
-        return Ok(vec![path.into()]);
+        return Ok((vec![path.into()], Vec::new()));
     }
     let files = files_in(path)?;
-    let named = named_in_metadata(path, &files);
-    match files.len() {
-        0 => Err(LogError::IsADirectory { path: path.into() }),
-        1 => Ok(files),
-        _ if !named.is_empty() => Ok(named),
-        _ if are_parts(&files) => Ok(files),
-        _ => Err(LogError::SeveralFiles { path: path.into(), files }),
+    let names = names_in_metadata(path);
+    let is_named = |file: &&PathBuf| names.iter().any(|name| file.file_name() == Some(name.as_ref()));
+    let named: Vec<PathBuf> = files.iter().filter(is_named).cloned().collect();
+    let files = match files.len() {
+        0 => return Err(LogError::IsADirectory { path: path.into() }),
+        1 => files,
+        _ if are_parts(&files) => files,
+        _ if !named.is_empty() => named.clone(),
+        _ => return Err(LogError::SeveralFiles { path: path.into(), files }),
+    };
+    let mut warnings = Vec::new();
+    let mut warn = |name, text| warnings.push(Warning { name, text });
+    if !named.is_empty() && named.len() < files.len() {
+        let text = format!("{METADATA} names {} of the {} parts: all are read", named.len(), files.len());
+        warn("metadata_is_stale", text);
     }
+    let is_there = |name: &&String| files.iter().any(|file| file.file_name() == Some(name.as_ref()));
+    let mut missing: Vec<String> = names.iter().filter(|name| !is_there(name)).cloned().collect();
+    missing.extend(missing_numbers(&files));
+    if !missing.is_empty() {
+        warn(
+            "bag_part_missing",
+            format!("the recording lacks {}: transforms and records of it are lost", missing.join(", ")),
+        );
+    }
+    Ok((files, warnings))
 }
 
 /// Everything in the folder that is called MCAP, by name.
@@ -28,7 +48,8 @@ pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(io)? {
         let path = entry.map_err(io)?.path();
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) {
+        let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        if !is_hidden && path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) {
             files.push(path);
         }
     }
@@ -36,13 +57,23 @@ pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
     Ok(files)
 }
 
-/// Those of the files that the folder's metadata lists, each on a line of its own.
-fn named_in_metadata(folder: &Path, files: &[PathBuf]) -> Vec<PathBuf> {
+/// The files that the folder's metadata lists, each on a line of its own.
+fn names_in_metadata(folder: &Path) -> Vec<String> {
     let Ok(text) = fs::read_to_string(folder.join(METADATA)) else { return Vec::new() };
     let items = text.lines().filter_map(|line| line.trim().strip_prefix("- "));
-    let names: Vec<&str> = items.map(|item| item.trim().trim_matches(['"', '\''])).collect();
-    let is_named = |file: &&PathBuf| names.iter().any(|name| file.file_name() == Some(name.as_ref()));
-    files.iter().filter(is_named).cloned().collect()
+    let names = items.map(|item| item.trim().trim_matches(['"', '\'']).to_owned());
+    names.filter(|name| name.ends_with(".mcap")).collect()
+}
+
+/// Parts of a recording that is numbered from 0 which are not there, up to the last that is.
+fn missing_numbers(files: &[PathBuf]) -> Vec<String> {
+    if files.len() < 2 || !are_parts(files) {
+        return Vec::new();
+    }
+    let number = |file: &PathBuf| file.file_stem()?.to_str()?.rsplit_once('_')?.1.parse::<u64>().ok();
+    let present: BTreeSet<u64> = files.iter().filter_map(number).collect();
+    let last = present.last().copied().unwrap_or(0).min(10_000);
+    (0..last).filter(|number| !present.contains(number)).map(|number| format!("part {number}")).collect()
 }
 
 /// Whether all names are one name with numbers behind it.

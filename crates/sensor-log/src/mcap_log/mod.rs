@@ -21,6 +21,7 @@ mod scan;
 mod sink;
 mod stream;
 mod survey;
+mod topic_clock;
 pub mod topics;
 mod vehicle;
 mod writer;

@@ -27,13 +27,20 @@ struct Part {
     stream: RecordStream,
     /// Log time and body of the message that comes next, once it is known.
     next: Option<(u64, Vec<u8>)>,
+    /// Log time of the message before.
+    last_time: Option<u64>,
 }
+
+/// A log time further ahead than this of the message before it in its file is wrong, nanoseconds: no recording pauses for a day.
+const LONGEST_PAUSE: u64 = 86_400 * 1_000_000_000;
+/// So many messages tell when a file begins, where the first may have a wrong log time.
+const FIRST_MESSAGES: usize = 10;
 
 impl Parts {
     /// Files of which those without a message may come last.
     pub(super) fn open(paths: &[PathBuf]) -> Result<Self, LogError> {
         if let [path] = paths {
-            let part = Part { index: 0, stream: RecordStream::open(path)?, next: None };
+            let part = Part { index: 0, stream: RecordStream::open(path)?, next: None, last_time: None };
             return Ok(Self { waiting: VecDeque::new(), open: vec![part] });
         }
         let waiting = |(index, path): (usize, &PathBuf)| {
@@ -48,10 +55,15 @@ impl Parts {
     pub(super) fn step(&mut self, mut take: impl FnMut(usize, u8, &[u8])) -> (usize, Step) {
         if let Some(at) = self.open.iter().position(|part| part.next.is_none()) {
             let is_alone = self.open.len() == 1 && self.waiting.is_empty();
-            let Part { index, stream, next } = &mut self.open[at];
+            let Part { index, stream, next, last_time } = &mut self.open[at];
             let index = *index;
             let step = stream.step(|opcode, body| match log_time(opcode, body) {
-                Some(time) if !is_alone => *next = Some((time, body.to_vec())),
+                Some(time) if !is_alone => {
+                    let expected = last_time.unwrap_or(time);
+                    let time = if time.saturating_sub(expected) > LONGEST_PAUSE { expected } else { time };
+                    *last_time = Some(time);
+                    *next = Some((time, body.to_vec()));
+                }
                 _ => take(index, opcode, body),
             });
             return (index, self.after(at, step));
@@ -73,10 +85,10 @@ impl Parts {
         (part.index, Step::On)
     }
 
-    fn begin(&mut self, Waiting { index, path, .. }: Waiting) -> Step {
+    fn begin(&mut self, Waiting { index, path, first_log_time }: Waiting) -> Step {
         match RecordStream::open(&path) {
             Ok(stream) => {
-                self.open.push(Part { index, stream, next: None });
+                self.open.push(Part { index, stream, next: None, last_time: Some(first_log_time) });
                 // Of messages of equal time, that of the earlier file comes first.
                 self.open.sort_by_key(|part| part.index);
                 Step::On
@@ -100,13 +112,13 @@ impl Parts {
 /// When the first message was logged; `u64::MAX` where there is none.
 fn first_log_time(path: &Path) -> Result<u64, LogError> {
     let mut stream = RecordStream::open(path)?;
-    let mut first = None;
-    while first.is_none() {
-        if let Step::End(_) = stream.step(|opcode, body| first = log_time(opcode, body)) {
+    let mut times = Vec::new();
+    while times.len() < FIRST_MESSAGES {
+        if let Step::End(_) = stream.step(|opcode, body| times.extend(log_time(opcode, body))) {
             break;
         }
     }
-    Ok(first.unwrap_or(u64::MAX))
+    Ok(times.into_iter().min().unwrap_or(u64::MAX))
 }
 
 fn log_time(opcode: u8, body: &[u8]) -> Option<u64> {

@@ -7,7 +7,8 @@ use super::fields::Fields;
 use super::parts::Parts;
 use super::reorder::Reorder;
 use super::routes::Route;
-use super::stream::Step;
+use super::stream::{RecordStream, Step};
+use super::topic_clock::TopicClock;
 use super::{decode, origin, survey};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::format::shortened;
@@ -22,7 +23,15 @@ pub(crate) struct McapRecords {
 
 impl McapRecords {
     /// Opens the files of the log at `source`; of ROS 2 messages those on the topics `wanted` are read, and of kinds of which none is wanted those on one topic each.
-    pub(crate) fn open(source: &Path, files: &[PathBuf], wanted: &[String]) -> Result<Self, LogError> {
+    ///
+    /// A file of several that cannot be read is left out and reported.
+    pub(crate) fn open(
+        source: &Path,
+        files: &[PathBuf],
+        wanted: &[String],
+        report: &mut ReadReport,
+    ) -> Result<Self, LogError> {
+        let files = &readable(files, report)?;
         let parts = Parts::open(files)?;
         let topics = survey::topics(files)?;
         // What is wrong with a file will be told where it is read.
@@ -76,10 +85,40 @@ impl McapRecords {
                 if end != LogEnd::Complete {
                     report.end = end;
                 }
+                self.messages.finish(report);
                 false
             }
         }
     }
+}
+
+/// The files that can be opened; the others are reported, unless there is none.
+fn readable(files: &[PathBuf], report: &mut ReadReport) -> Result<Vec<PathBuf>, LogError> {
+    let mut readable = Vec::new();
+    let mut first_error = None;
+    for path in files {
+        match RecordStream::open(path) {
+            Ok(_) => readable.push(path.clone()),
+            Err(error) => {
+                let reason = format!("left out: {error}");
+                report.add(Problem {
+                    file: file_name(path),
+                    row: 0,
+                    kind: ProblemKind::UnreadableFile,
+                    reason,
+                });
+                first_error = first_error.or(Some(error));
+            }
+        }
+    }
+    match first_error {
+        Some(error) if readable.is_empty() => Err(error),
+        _ => Ok(readable),
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Messages and metadata, wherever in the files they are.
@@ -87,7 +126,17 @@ struct Messages {
     files: Vec<FileState>,
     origin: Option<Format>,
     bag: BagRecords,
+    clocks: BTreeMap<String, TopicClock>,
+    set_back: Option<SetBack>,
     reorder: Reorder,
+}
+
+/// The clock was set back: what comes after that is left out.
+struct SetBack {
+    topic: String,
+    from: Stamp,
+    to: Stamp,
+    n_left_out: u64,
 }
 
 /// What a file has announced so far: numbers of schemas and channels are its own.
@@ -114,10 +163,16 @@ enum AnyRoute {
 
 impl Messages {
     fn new(files: &[PathBuf], bag: BagRecords) -> Self {
-        let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let state = |path| FileState { name: name(path), ..FileState::default() };
+        let state = |path: &PathBuf| FileState { name: file_name(path), ..FileState::default() };
         let files = files.iter().map(state).collect();
-        Self { files, origin: None, bag, reorder: Reorder::default() }
+        Self {
+            files,
+            origin: None,
+            bag,
+            clocks: BTreeMap::new(),
+            set_back: None,
+            reorder: Reorder::default(),
+        }
     }
 
     fn take(&mut self, file: usize, opcode: u8, body: &[u8], report: &mut ReadReport) {
@@ -170,6 +225,11 @@ impl Messages {
             report.ignore(&channel.name);
             return Some(());
         };
+        if let Some(set_back) = &mut self.set_back {
+            set_back.n_left_out += 1;
+            return Some(());
+        }
+        let name = channel.name.clone();
         let records = match route {
             AnyRoute::Foxglove(route) => decode::records(route, fields.0, log_time),
             AnyRoute::Ros(route) => self.bag.take(route, fields.0, log_time),
@@ -177,14 +237,56 @@ impl Messages {
         match records {
             Ok(records) => {
                 report.rows_read += 1;
-                self.release(file, records, report);
+                for record in records {
+                    self.check_clock(file, &name, record, report);
+                }
             }
-            Err((kind, reason)) => {
-                let reason = format!("{}: {reason}", channel.name);
-                self.trouble(file, kind, reason, report);
-            }
+            Err((kind, reason)) => self.trouble(file, kind, format!("{name}: {reason}"), report),
+        }
+        for (kind, reason) in self.bag.take_faults() {
+            self.trouble(file, kind, format!("{name}: {reason}"), report);
         }
         Some(())
+    }
+
+    fn check_clock(&mut self, file: usize, topic: &str, record: Record, report: &mut ReadReport) {
+        let clock = self.clocks.entry(topic.to_owned()).or_default();
+        let checked = clock.check(record);
+        for record in &checked.wrong {
+            self.wrong_stamp(file, topic, record, report);
+        }
+        self.release(file, checked.passed, report);
+        if let Some((from, to)) = checked.set_back {
+            self.set_back = Some(SetBack { topic: topic.to_owned(), from, to, n_left_out: 0 });
+        }
+    }
+
+    fn wrong_stamp(&self, file: usize, topic: &str, record: &Record, report: &mut ReadReport) {
+        let latest = self.clocks.get(topic).and_then(TopicClock::latest);
+        let kind = if Some(record.stamp) < latest { ProblemKind::TooLate } else { ProblemKind::BadStamp };
+        let reason = format!("{topic}: the stamp {} does not follow those before it; left out", record.stamp);
+        self.trouble(file, kind, reason, report);
+    }
+
+    /// Tells what is known at the end only.
+    fn finish(&mut self, report: &mut ReadReport) {
+        let held = self
+            .clocks
+            .iter_mut()
+            .flat_map(|(topic, clock)| clock.finish().into_iter().map(move |record| (topic.clone(), record)));
+        let held: Vec<(String, Record)> = held.collect();
+        for (topic, record) in &held {
+            self.wrong_stamp(self.files.len() - 1, topic, record, report);
+        }
+        if let Some(SetBack { topic, from, to, n_left_out }) = self.set_back.take() {
+            let text = format!(
+                "the clock is set back from {from} to {to} ({topic}): the log is cut there, {n_left_out} messages after it are left out"
+            );
+            report.warn("clock_set_back", text);
+        }
+        for (name, text) in self.bag.warnings() {
+            report.warn(name, text);
+        }
     }
 
     fn release(&mut self, file: usize, records: Vec<Record>, report: &mut ReadReport) {

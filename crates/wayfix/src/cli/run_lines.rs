@@ -77,6 +77,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     bar.finish_and_clear();
     ensure!(system.n_scans() > 0, "{}: no laser scan in the log", name_of(&arguments.log));
     let warnings = account(system.events(), &read);
+    ensure!(!system.scans().is_empty(), "{}: no laser scan could be used", name_of(&arguments.log));
 
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();

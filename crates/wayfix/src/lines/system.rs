@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{Extractor, LineError, Params, Scan, Segment};
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp, TrueWall};
 
-use crate::system::{Events, Stopwatch, System};
+use crate::system::{Events, Stopwatch, System, largest_echo};
 
 /// Finds the walls of every scan of a log.
 pub struct LineSystem {
@@ -71,8 +71,7 @@ impl LineSystem {
         if echoes.is_empty() {
             return Err(format!("none of {} beams came back", scan.ranges.len()));
         }
-        // A range of `range_max` is no echo to the log, and still one to the extractor.
-        let max_range = scan.range_max.next_down();
+        let max_range = largest_echo(scan);
         let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
         let scan = Scan { angle_min: *angle_min, angle_increment: *angle_increment, ranges, max_range };
         let stopwatch = Stopwatch::start();

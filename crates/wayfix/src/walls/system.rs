@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     slam::{AssociationRule, Keyframe, event_name, seen_landmarks},
-    system::{Events, Stopwatch, System, possible},
+    system::{Events, Stopwatch, System, largest_echo, possible},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
@@ -60,7 +60,7 @@ pub(super) enum Rule {
     JointCompatibility(JointCompatibility),
 }
 
-/// No robot goes farther from one record to the next, m; and no echo comes from farther away.
+/// No robot goes farther from one record to the next, m.
 const FARTHEST: f64 = 1e5;
 /// Scans that have less in common are not laid on one another, share of points.
 const LEAST_OVERLAP: f64 = 0.15;
@@ -303,7 +303,7 @@ impl WallSystem {
     fn walls_in(&mut self, scan: &LaserScan) -> Result<Vec<Observation<SeenWall>>, String> {
         let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
         let (angle_min, angle_increment) = (*angle_min, *angle_increment);
-        let scan = Scan { angle_min, angle_increment, ranges, max_range: max_range(scan) };
+        let scan = Scan { angle_min, angle_increment, ranges, max_range: largest_echo(scan) };
         let found = self.extractor.extract(&scan).map_err(|error| error.to_string())?;
         let long = found.segments.iter().filter(|segment| segment.length() >= self.params.min_wall_length);
         Ok(long.map(|segment| Observation { label: None, measurement: SeenWall::from(segment) }).collect())
@@ -316,15 +316,10 @@ impl WallSystem {
     }
 }
 
-/// A range of `range_max` is no echo.
-fn max_range(scan: &LaserScan) -> f64 {
-    scan.range_max.next_down().min(FARTHEST)
-}
-
 /// The points of a scan in the frame of the robot.
 pub(super) fn cloud_of(scan: &LaserScan, mount: &Pose2<f64>) -> Result<Cloud, String> {
     let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
-    let cloud = Cloud::from_ranges(*angle_min, *angle_increment, ranges, max_range(scan));
+    let cloud = Cloud::from_ranges(*angle_min, *angle_increment, ranges, largest_echo(scan));
     cloud.map(|cloud| cloud.carried_at(mount)).map_err(|error| error.to_string())
 }
 

@@ -1,0 +1,22 @@
+use wayfix_sensor_log::LaserScan;
+
+/// No laser on a robot sees farther, m: what a scan without a limit is cut at.
+const FARTHEST_ECHO: f64 = 1e5;
+
+/// The largest range of a scan that is an echo: a range of `range_max` is none.
+pub fn largest_echo(scan: &LaserScan) -> f64 {
+    scan.range_max.next_down().min(FARTHEST_ECHO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scan_without_a_limit_has_a_finite_one() {
+        let scan =
+            |range_max| LaserScan { angle_min: 0.0, angle_increment: 0.1, range_max, ranges: vec![1.0] };
+        assert_eq!(largest_echo(&scan(f64::INFINITY)), FARTHEST_ECHO);
+        assert!(largest_echo(&scan(8.0)) < 8.0);
+    }
+}
