@@ -123,7 +123,8 @@ impl ReadReport {
             self.warnings.push(warning);
         }
     }
-    pub(crate) fn add(&mut self, problem: Problem) {
+    /// Counts a problem, and names it when it is among the first.
+    pub fn add(&mut self, problem: Problem) {
         *self.problems.entry(problem.kind).or_default() += 1;
         if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(problem);

@@ -165,7 +165,7 @@ fn garbage_with_an_mcap_name_is_refused() {
     })
     .take(1 << 20)
     .collect();
-    refused(&run_slam(&scratch.file("noise.mcap", &garbage), &[]), "is not a mcap log");
+    refused(&run_slam(&scratch.file("noise.mcap", &garbage), &[]), "no log of the format mcap");
     garbage.splice(..8, *b"\x89MCAP0\r\n");
     refused(&run_slam(&scratch.file("noise.mcap", &garbage), &[]), "before the first record");
     refused(&run_slam(&scratch.file("empty.mcap", ""), &[]), "holds no record");

@@ -99,7 +99,8 @@ fn every_kind_of_table_gives_the_same_run() {
     let table = |name: &str, text: String| scratch.file(name, text);
     let by_file =
         table("a.csv", drive.table(|i, p| format!("view_{i}.png,{},{},{}", p.x(), p.y(), p.heading())));
-    let outcome = frames_run(&folder, &by_file, &[]);
+    let named = ["--columns", "file,x_m,y_m,heading_rad"];
+    let outcome = frames_run(&folder, &by_file, &named);
     let expected = outcome.figures();
     // Views 0.25 m apart, every fifth withheld: the nearest is mostly 0.25 m away.
     assert!(outcome.metric("error_mean_m") < 0.25, "{expected:?}");
@@ -111,6 +112,7 @@ fn every_kind_of_table_gives_the_same_run() {
     let named =
         drive.table(|i, p| format!("{}\t{i}\t{}\t{}", p.heading().to_degrees(), 100.0 * p.x(), p.y()));
     let rows = drive.table(|_, p| format!("{} {} {}", p.x(), p.y(), p.heading()));
+    let rows = "x y heading\n".to_owned() + &rows;
     for poses in [table("b.csv", header + &named), table("c.csv", rows)] {
         let figures = frames_run(&folder, &poses, &[]).figures();
         for ((name, value), (_, expected)) in figures.iter().zip(&expected) {
@@ -121,6 +123,28 @@ fn every_kind_of_table_gives_the_same_run() {
 }
 
 #[test]
+fn bad_rows_and_images_are_left_out_and_counted() {
+    let (scratch, drive) = (Scratch::new(), Drive::new());
+    let folder = drive.folder(&scratch);
+    let mut rows: Vec<String> = drive
+        .table(|i, p| format!("view_{i}.png,{},{},{}", p.x(), p.y(), p.heading()))
+        .lines()
+        .map(str::to_owned)
+        .collect();
+    rows[3] = "view_3.png,nan,0,0".to_owned();
+    rows[7] = "view_7.png,1".to_owned();
+    fs::write(folder.join("view_9.png"), &fs::read(folder.join("view_9.png")).unwrap()[..20]).unwrap();
+    let poses = scratch.file("poses.csv", "file,x_m,y_m,theta\n".to_owned() + &rows.join("\n"));
+    let outcome = frames_run(&folder, &poses, &[]);
+    assert_eq!(outcome.event("log_problem"), 3, "{}", outcome.stderr);
+    for named in ["poses.csv:5", "poses.csv:9", "view_9.png"] {
+        assert!(outcome.stderr.contains(named), "{named}: {}", outcome.stderr);
+    }
+    assert_eq!((outcome.event("frame_without_pose"), outcome.event("unit_assumed")), (1, 1));
+    assert!(outcome.metric("error_mean_m") < 0.3, "{}", outcome.stdout);
+}
+
+#[test]
 fn without_headings_the_robot_looks_along_its_path() {
     let (scratch, drive) = (Scratch::new(), Drive::new());
     let folder = drive.folder(&scratch);
@@ -128,7 +152,8 @@ fn without_headings_the_robot_looks_along_its_path() {
     let stamps = drive.table(|i, _| format!("{}, somewhere/view_{i}.png", 0.5 * i as f64));
     fs::write(folder.join("times.csv"), format!("Time [s], Filename\n{stamps}")).unwrap();
     let poses = scratch.file("poses.csv", drive.table(|i, p| format!("{},{},{}", 500 * i, p.x(), p.y())));
-    let outcome = frames_run(&folder, &poses, &["--out", scratch.path("out").to_str().unwrap()]);
+    let out = scratch.path("out");
+    let outcome = frames_run(&folder, &poses, &["--columns", "t_ms,x,y", "--out", out.to_str().unwrap()]);
     assert!(outcome.metric("error_mean_m") < 0.3, "{}", outcome.stdout);
     assert!(
         outcome.stderr.contains("along its path") && outcome.stderr.contains("left to right"),
@@ -151,7 +176,7 @@ fn without_headings_the_robot_looks_along_its_path() {
         fs::write(mirrored.join(format!("view_{index}.png")), &flipped.bytes).unwrap();
     }
     fs::copy(folder.join("times.csv"), mirrored.join("times.csv")).unwrap();
-    let other = frames_run(&mirrored, &poses, &[]);
+    let other = frames_run(&mirrored, &poses, &["--columns", "t_ms,x,y"]);
     assert!(other.stderr.contains("columns go counterclockwise"), "{}", other.stderr);
     assert!((other.metric("error_mean_m") - outcome.metric("error_mean_m")).abs() < 0.02);
 }
@@ -245,13 +270,13 @@ fn what_is_no_recording_is_refused_with_its_reason() {
     };
     refused("empty.csv", "", "no rows");
     refused("words.csv", "x,y\n1,two\n", "line 2: \"two\" is not a number");
-    refused("ragged.csv", "1,2\n3\n", "line 2 has 1 columns");
-    refused("nan.csv", "1,2\nNaN,3\n", "line 2");
-    refused("one.csv", "1,2\n", "a row for each frame");
-    refused("times.csv", "0,1,2\n1,2,3\n2,3,4\n", "--stamps");
-    refused("strangers.csv", "a.png,1,2\nb.png,2,3\n", "fewer than two frames");
+    refused("bare.csv", "1,2\n3,4\n", "--columns");
+    refused("one.csv", "x,y\n1,2\n", "a row for each frame");
+    refused("times.csv", "t,x,y\n0,1,2\n1,2,3\n2,3,4\n", "--stamps");
+    refused("strangers.csv", "file,x,y\na.png,1,2\nb.png,2,3\n", "fewer than two frames");
     refused("binary.csv", "\u{0}\u{1}", "");
-    let poses = scratch.file("rows.csv", drive.table(|_, p| format!("{},{}", p.x(), p.y())));
+    let poses =
+        scratch.file("rows.csv", "x,y\n".to_owned() + &drive.table(|_, p| format!("{},{}", p.x(), p.y())));
     let missing = frames_run(&scratch.path("nowhere"), &poses, &[]);
     assert!(missing.code == 1 && missing.stderr.contains("nowhere"), "{}", missing.stderr);
     fs::create_dir_all(scratch.path("bare")).unwrap();
@@ -284,7 +309,7 @@ fn a_real_route_is_within_what_was_asked_for() {
         return;
     }
     for seed in ["1", "2", "3", "4"] {
-        let outcome = frames_run(&frames, &poses, &["--seed", seed]);
+        let outcome = frames_run(&frames, &poses, &["--seed", seed, "--columns", "t_ms,x_cm,y_cm"]);
         // An independent program's nearest view is 3.4 cm off on average; the others are the goals of docs/cml.md.
         assert!(outcome.metric("nearest_view_error_mean_m") <= 0.034, "{}", outcome.stdout);
         let (mean, most) = (outcome.metric("error_mean_m"), outcome.metric("error_max_m"));

@@ -49,7 +49,7 @@ mod tests {
             stamp: Stamp::from_nanoseconds(second * 1_000_000_000),
             data: data.clone(),
         };
-        let truth_data = Data::TruePose(Pose2::identity());
+        let truth_data = Data::TruePose(Pose2::new(0.0, 0.0, 0.0));
         vec![
             at(odometry, &velocity),
             at(odometry + 5, &velocity),

@@ -6,7 +6,10 @@ use super::TrackError;
 
 /// Where the target truly was, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TrueBoxes(Vec<Option<BoundingBox>>);
+pub struct TrueBoxes {
+    frames: Vec<Truth>,
+    problems: Vec<String>,
+}
 
 /// What is known of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +45,10 @@ impl Truth {
 impl TrueBoxes {
     /// One box a line, line k being frame k, each as [`parse_box`] takes it. Empty lines at the end do not count.
     ///
+    /// Nothing is known of a frame whose line is no box; [`problems`](Self::problems) names it.
+    ///
     /// # Errors
-    /// [`TrackError::Read`], and [`TrackError::Line`] for the first line that is no box.
+    /// [`TrackError::Read`], and [`TrackError::Line`] when no line is a box.
     pub fn read(path: &Path) -> Result<Self, TrackError> {
         let read = fs::read(path).map_err(|source| TrackError::Read { path: path.into(), source })?;
         Self::parse(&String::from_utf8_lossy(&read))
@@ -55,29 +60,44 @@ impl TrueBoxes {
     /// [`TrackError::Line`].
     pub fn parse(text: &str) -> Result<Self, TrackError> {
         let text = text.trim_start_matches('\u{feff}').trim_end();
-        let line = |(index, line): (usize, &str)| {
-            parse_box(line).map_err(|source| TrackError::Line { line: index + 1, source: Box::new(source) })
-        };
-        text.lines().enumerate().map(line).collect::<Result<_, _>>().map(Self)
+        let (mut truth, mut first_error) = (Self::default(), None);
+        for (index, line) in text.lines().enumerate() {
+            truth.frames.push(match parse_box(line) {
+                Ok(Some(target)) => Truth::At(target),
+                Ok(None) => Truth::Absent,
+                Err(error) => {
+                    truth.problems.push(format!("line {}: {error}", index + 1));
+                    first_error = first_error.or(Some((index + 1, error)));
+                    Truth::Unknown
+                }
+            });
+        }
+        match first_error {
+            Some((line, source)) if truth.frames.iter().all(|truth| truth.is_unknown()) => {
+                Err(TrackError::Line { line, source: Box::new(source) })
+            }
+            _ => Ok(truth),
+        }
     }
 
     /// What is known of a frame, counted from 0.
     pub fn at(&self, frame: usize) -> Truth {
-        match self.0.get(frame) {
-            Some(Some(target)) => Truth::At(*target),
-            Some(None) => Truth::Absent,
-            None => Truth::Unknown,
-        }
+        self.frames.get(frame).copied().unwrap_or(Truth::Unknown)
+    }
+
+    /// Lines that are no box, and why.
+    pub fn problems(&self) -> &[String] {
+        &self.problems
     }
 
     /// How many frames are spoken of.
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.frames.len()
     }
 
     /// Whether none is.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.frames.is_empty()
     }
 }
 
@@ -143,8 +163,12 @@ mod tests {
 
     #[test]
     fn unusable_truth_line_is_named_and_later_frames_unknown() {
-        let error = TrueBoxes::parse("1,2,3,4\n1,2,3\n").unwrap_err();
-        assert!(matches!(error, TrackError::Line { line: 2, .. }), "{error}");
+        let truth = TrueBoxes::parse("1,2,3,4\n\n1,2,3\n5,6,7,8\n").unwrap();
+        assert!(truth.at(1).is_unknown() && truth.at(2).is_unknown() && truth.at(3).target().is_some());
+        assert_eq!(truth.problems().len(), 2);
+        assert!(truth.problems()[1].starts_with("line 3: "), "{:?}", truth.problems());
+        let error = TrueBoxes::parse("one\n1,2,3\n").unwrap_err();
+        assert!(matches!(error, TrackError::Line { line: 1, .. }), "{error}");
         let truth = TrueBoxes::parse("\u{feff}1,2,3,4\r\n0,0,0,0\r\n\r\n").unwrap();
         assert_eq!(truth.len(), 2);
         assert!(truth.at(0).target().is_some() && truth.at(1).is_absent() && truth.at(2).is_unknown());

@@ -2,7 +2,7 @@
 
 mod arguments;
 
-use std::{path::Path, process::ExitCode};
+use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_appearance_cml::{ArchiveParams, Forgetting, Learning, MapArchive, Start, TurnSense};
@@ -22,7 +22,8 @@ use super::{
 use crate::{
     cml::{
         self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
-        Task, ViewReader, recording::Recording,
+        Task, ViewReader,
+        recording::{Recording, RecordingFiles},
     },
     commented::commented,
     report::Run,
@@ -105,7 +106,7 @@ impl Arguments {
         }
         // A saved map knows which way its columns go.
         let saved_sense = saved.map(|archive| archive.params().views.sense);
-        let told = self.columns.map(|columns| match columns {
+        let told = self.column_order.map(|columns| match columns {
             ColumnsArgument::Clockwise => TurnSense::Clockwise,
             ColumnsArgument::Counterclockwise => TurnSense::Counterclockwise,
         });
@@ -124,11 +125,21 @@ impl Arguments {
         let (Some(frames), Some(poses)) = (&self.frames, &self.poses) else {
             bail!("neither a log nor frames")
         };
-        let recording = read_recording(frames, poses, self.stamps.as_deref())?;
+        let mut read = ReadReport::default();
+        let mut recording_of = |frames, poses, stamps: &Option<PathBuf>| {
+            let columns = self.columns.as_deref();
+            let stamp_columns = self.stamp_columns.as_deref();
+            let files = RecordingFiles { frames, poses, columns, stamps: stamps.as_deref(), stamp_columns };
+            read_recording(&files, &mut read)
+        };
+        let recording = recording_of(frames, poses, &self.stamps)?;
         let taught = match (&self.learn_from, &self.learn_poses) {
-            (Some(frames), Some(poses)) => Some(read_recording(frames, poses, self.learn_stamps.as_deref())?),
+            (Some(frames), Some(poses)) => Some(recording_of(frames, poses, &self.learn_stamps)?),
             _ => None,
         };
+        if !read.is_clean() {
+            tell(&read);
+        }
         let plan = Plan::of_recording(
             &recording,
             taught.as_ref(),
@@ -137,7 +148,6 @@ impl Arguments {
             &camera,
             self.common.seed,
         )?;
-        let read = ReadReport::default();
         Ok(Input { plan, read, origin: Format::Images })
     }
 
@@ -176,14 +186,19 @@ impl Arguments {
     }
 }
 
-fn read_recording(frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<Recording> {
-    let recording = Recording::read(frames, poses, stamps)?;
+/// A recording; what was left out and assumed goes into the report.
+fn read_recording(files: &RecordingFiles<'_>, read: &mut ReadReport) -> Result<Recording> {
+    let recording = Recording::read(files)?;
+    let table = files.poses.display();
+    tell(format!("note: {table}: {}", recording.columns));
+    recording.problems.iter().for_each(|problem| read.add(problem.clone()));
+    if !recording.assumed.is_empty() {
+        let text = format!("{table}: no unit is named, {} is assumed", recording.assumed.join(", "));
+        read.warn("unit_assumed", text);
+    }
     if recording.n_without_pose > 0 {
-        tell(format!(
-            "note: {} frames of {} have no pose and are left out",
-            recording.n_without_pose,
-            frames.display()
-        ));
+        let (n, frames) = (recording.n_without_pose, files.frames.display());
+        read.warn("frame_without_pose", format!("{n} frames of {frames} have no pose and are left out"));
     }
     Ok(recording)
 }

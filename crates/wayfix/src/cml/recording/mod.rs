@@ -10,7 +10,7 @@ mod stamps;
 mod table;
 
 pub use error::RecordingError;
-pub use frames::{Frame, Recording};
+pub use frames::{Frame, Recording, RecordingFiles};
 pub use path::Heading;
 pub use sense::{TurnEvidence, turn_evidence};
 pub use smooth::{smoothed, smoothing_of};

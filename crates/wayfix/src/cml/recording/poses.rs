@@ -2,11 +2,17 @@ use std::path::Path;
 
 use wayfix_estimation_traits::wrap_angle;
 
-use super::{RecordingError, table::Table};
+use super::{
+    RecordingError,
+    stamps::file_name,
+    table::{Column, Table, number},
+};
 
 /// A row of a table of poses, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PoseRow {
+    /// Its place among the rows of the table, those that cannot be used counted.
+    pub(super) ordinal: usize,
     pub(super) file: Option<String>,
     /// s.
     pub(super) time: Option<f64>,
@@ -18,217 +24,153 @@ pub(super) struct PoseRow {
     pub(super) heading: Option<f64>,
 }
 
-/// Which column holds what, and how many of its units make the SI unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Columns {
-    file: Option<usize>,
-    time: Option<(usize, f64)>,
-    x: Option<(usize, f64)>,
-    y: Option<(usize, f64)>,
-    /// Without a unit where none is named.
-    heading: Option<(usize, Option<f64>)>,
+/// The poses of a table, and how it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Poses {
+    pub(super) rows: Vec<PoseRow>,
+    /// Lines that were left out, and why.
+    pub(super) problems: Vec<(usize, String)>,
+    /// What columns were read, in which units.
+    pub(super) columns: String,
+    /// Columns whose names say no unit.
+    pub(super) assumed: Vec<String>,
 }
+
+pub(super) const FILE: [&str; 7] = ["file", "filename", "frame", "name", "image", "img", "path"];
+pub(super) const TIME: [&str; 5] = ["t", "time", "stamp", "timestamp", "seconds"];
+const HEADING: [&str; 6] = ["heading", "theta", "yaw", "phi", "angle", "orientation"];
+
+/// A unit by its name, and how many of the SI unit it is.
+type Unit = (&'static str, f64);
+
+const LENGTHS: [Unit; 3] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001)];
+pub(super) const TIMES: [Unit; 6] =
+    [("s", 1.0), ("sec", 1.0), ("seconds", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+const ANGLES: [Unit; 6] = [
+    ("rad", 1.0),
+    ("radian", 1.0),
+    ("radians", 1.0),
+    ("deg", DEGREE),
+    ("degree", DEGREE),
+    ("degrees", DEGREE),
+];
 
 /// The poses of a table.
 ///
-/// Columns are known by their names (`file frame name image`, `t time stamp`, `x y`, `heading theta yaw phi`; units as `_ms`, `_s`, `_cm`, `_mm`,
-/// `_m`, `_deg`), or, without names, by their number: `x,y`, `x,y,heading`, `file,x,y`, `file,x,y,heading`, `t,x,y`, `t,x,y,heading`. Without names
-/// three numbers are `t,x,y` where the first grows from row to row by the same amount, give or take half, else `x,y,heading`.
-pub(super) fn read(path: &Path, units: Units) -> Result<Vec<PoseRow>, RecordingError> {
-    let table = Table::read(path)?;
-    poses(&table, units).map_err(|reason| RecordingError::Table { path: path.to_owned(), reason })
+/// Columns are known by their names: `file frame name image`, `t time stamp`, `x y`, `heading theta yaw phi`, with units as in `t_ms`, `x_cm`,
+/// `yaw_deg`. Without a unit they are in s, m and rad. `names` are those of a table without a row of names.
+pub(super) fn read(path: &Path, names: Option<&[String]>) -> Result<Poses, RecordingError> {
+    let table = Table::read(path, names)?;
+    poses(&table).map_err(|reason| RecordingError::Table { path: path.to_owned(), reason })
 }
 
-/// What numbers are in where no name says it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Units {
-    /// Of a coordinate, m.
-    pub(super) length: f64,
-    /// Of a time, s; found from the step of the table when not given.
-    pub(super) time: Option<f64>,
+/// The factor of a column's unit, the first of `units` where its name says none; whether it was assumed.
+pub(super) fn unit_of(column: Column<'_>, units: &[Unit]) -> (Unit, bool) {
+    let named = units.iter().find(|(name, _)| *name == column.unit);
+    (named.copied().unwrap_or(units[0]), named.is_none())
 }
 
-impl Units {
-    /// Metres and seconds, but for tables that are known to be otherwise: the Sussex routes, `…_path_scaled.csv`, are in ms and cm.
-    pub(super) fn of(path: &Path) -> Self {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        match name.contains("path_scaled") {
-            true => Self { length: 0.01, time: Some(0.001) },
-            false => Self { length: 1.0, time: None },
-        }
-    }
-}
-
-fn poses(table: &Table, units: Units) -> Result<Vec<PoseRow>, String> {
-    let columns = match &table.names {
-        Some(names) => by_name(table, names, units)?,
-        None => by_number(table, units)?,
+fn poses(table: &Table) -> Result<Poses, String> {
+    let (Some(x), Some(y)) = (table.column(&["x"]), table.column(&["y"])) else {
+        return Err(format!(
+            "no columns x and y among {:?}; needed are x, y and one of file or t",
+            table.names
+        ));
     };
-    let column = |column: Option<(usize, f64)>| -> Result<Option<Vec<f64>>, String> {
-        let Some((index, unit)) = column else { return Ok(None) };
-        Ok(Some(table.numbers(index)?.into_iter().map(|value| value * unit).collect()))
+    let (file, time, heading) = (table.column(&FILE), table.column(&TIME), table.column(&HEADING));
+    let with_unit = |column: Option<Column<'_>>, units: &[Unit]| {
+        column.map(|column| (column.index, unit_of(column, units)))
     };
-    let (Some(x), Some(y)) = (column(columns.x)?, column(columns.y)?) else {
-        return Err("no columns x and y".to_owned());
-    };
-    let times = column(columns.time)?;
-    let headings = match columns.heading {
-        Some((index, unit)) => {
-            let numbers = table.numbers(index)?;
-            let unit = unit.unwrap_or(angle_unit(&numbers));
-            Some(numbers.into_iter().map(|value| wrap_angle(value * unit)).collect::<Vec<f64>>())
-        }
-        None => None,
-    };
-    let row = |index: usize| PoseRow {
-        file: columns.file.map(|column| table.rows[index].1[column].clone()),
-        time: times.as_ref().map(|times| times[index]),
-        x: x[index],
-        y: y[index],
-        heading: headings.as_ref().map(|headings| headings[index]),
-    };
-    Ok((0..table.rows.len()).map(row).collect())
-}
-
-fn by_name(table: &Table, names: &[String], units: Units) -> Result<Columns, String> {
-    let mut columns = Columns::default();
-    for (index, name) in names.iter().enumerate() {
-        let mut words = name.split(' ');
-        let (word, unit) = (words.next().unwrap_or_default(), words.next_back().unwrap_or_default());
-        let length = match unit {
-            "mm" => 0.001,
-            "cm" => 0.01,
-            "m" => 1.0,
-            _ => units.length,
+    let measured = [
+        with_unit(time, &TIMES),
+        with_unit(Some(x), &LENGTHS),
+        with_unit(Some(y), &LENGTHS),
+        with_unit(heading, &ANGLES),
+    ];
+    let factor = |which: usize| measured[which].map_or(1.0, |(_, ((_, factor), _))| factor);
+    let mut lines: Vec<usize> = table.rows.iter().map(|(line, _)| *line).collect();
+    lines.extend(table.problems.iter().map(|(line, _)| *line));
+    lines.sort_unstable();
+    let pose = |line: usize, row: &[String]| -> Result<PoseRow, String> {
+        let optional = |column: Option<Column<'_>>, which: usize| {
+            column.map(|column| Ok::<f64, String>(number(row, column)? * factor(which))).transpose()
         };
-        match word {
-            "file" | "filename" | "frame" | "name" | "image" | "img" | "path" => columns.file = Some(index),
-            "t" | "time" | "stamp" | "timestamp" | "seconds" => {
-                let seconds = match unit {
-                    "ms" => 0.001,
-                    "us" => 1e-6,
-                    "ns" => 1e-9,
-                    "s" | "sec" | "seconds" => 1.0,
-                    _ => match units.time {
-                        Some(unit) => unit,
-                        None => time_unit(&table.numbers(index)?),
-                    },
-                };
-                columns.time = Some((index, seconds));
-            }
-            "x" => columns.x = Some((index, length)),
-            "y" => columns.y = Some((index, length)),
-            "heading" | "theta" | "yaw" | "phi" | "angle" | "orientation" => {
-                let unit = match unit {
-                    "deg" | "degree" | "degrees" => Some(1_f64.to_radians()),
-                    "rad" | "radian" | "radians" => Some(1.0),
-                    _ => None,
-                };
-                columns.heading = Some((index, unit));
-            }
-            _ => {}
-        }
-    }
-    if columns.x.is_none() || columns.y.is_none() {
-        return Err(format!("no columns x and y among {names:?}"));
-    }
-    Ok(columns)
-}
-
-fn by_number(table: &Table, units: Units) -> Result<Columns, String> {
-    let n = table.n_columns();
-    let file = (0..n).find(|column| !table.is_numeric(*column));
-    let numbers: Vec<usize> = (0..n).filter(|column| Some(*column) != file).collect();
-    let length = |column: usize| Some((column, units.length));
-    let time = |column: usize| -> Result<Option<(usize, f64)>, String> {
-        Ok(Some((column, units.time.unwrap_or(time_unit(&table.numbers(column)?)))))
+        Ok(PoseRow {
+            ordinal: lines.partition_point(|other| *other < line),
+            file: file.map(|column| file_name(&row[column.index])),
+            time: optional(time, 0)?,
+            x: number(row, x)? * factor(1),
+            y: number(row, y)? * factor(2),
+            heading: optional(heading, 3)?.map(wrap_angle),
+        })
     };
-    let angle = |column: usize| Some((column, None));
-    let columns = match (file, &numbers[..]) {
-        (file, [x, y]) => Columns { file, x: length(*x), y: length(*y), ..Columns::default() },
-        (None, [t, x, y]) if is_clock(&table.numbers(*t)?) => {
-            Columns { time: time(*t)?, x: length(*x), y: length(*y), ..Columns::default() }
+    let (mut rows, mut problems) = (Vec::new(), table.problems.clone());
+    for (line, row) in &table.rows {
+        match pose(*line, row) {
+            Ok(row) => rows.push(row),
+            Err(reason) => problems.push((*line, reason)),
         }
-        (file, [x, y, heading]) => {
-            Columns { file, x: length(*x), y: length(*y), heading: angle(*heading), ..Columns::default() }
-        }
-        (file, [t, x, y, heading]) => {
-            Columns { file, time: time(*t)?, x: length(*x), y: length(*y), heading: angle(*heading) }
-        }
-        _ => {
-            return Err(format!(
-                "{n} columns without names: name them in a first row, as in `file,x_m,y_m,heading_rad`"
-            ));
-        }
-    };
-    Ok(columns)
-}
-
-/// Whether numbers grow steadily, as stamps do.
-fn is_clock(values: &[f64]) -> bool {
-    let mut steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if steps.len() < 2 || steps.iter().any(|step| *step <= 0.0) {
-        return false;
     }
-    steps.sort_by(f64::total_cmp);
-    let median = steps[steps.len() / 2];
-    let steady = steps.iter().filter(|step| (0.5 * median..=1.5 * median).contains(*step)).count();
-    steady * 10 >= steps.len() * 9
-}
-
-/// Turns of more than one are degrees.
-fn angle_unit(values: &[f64]) -> f64 {
-    if values.iter().any(|value| value.abs() > 7.0) { 1_f64.to_radians() } else { 1.0 }
-}
-
-/// Steps of more than 5 are milliseconds, of more than 5000 microseconds, and so on: nothing records a pose only every 5 s.
-pub(super) fn time_unit(values: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let median = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    let units = [(5e6, 1e-9), (5e3, 1e-6), (5.0, 1e-3)];
-    units.into_iter().find(|(least, _)| median > *least).map_or(1.0, |(_, unit)| unit)
+    problems.sort();
+    if let (true, Some((line, reason))) = (rows.is_empty(), problems.first()) {
+        return Err(format!("no row can be used; line {line}: {reason}"));
+    }
+    let described =
+        |(index, ((unit, _), _)): &(usize, (Unit, bool))| format!("{} in {unit}", table.names[*index]);
+    let assumed =
+        measured.iter().flatten().filter(|(_, (_, is_assumed))| *is_assumed).map(described).collect();
+    let columns = measured.iter().flatten().map(described).collect::<Vec<_>>().join(", ");
+    Ok(Poses { rows, problems, columns, assumed })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const METRES: Units = Units { length: 1.0, time: None };
-
-    fn first(text: &str) -> PoseRow {
-        poses(&Table::parse(text).unwrap(), METRES).unwrap().remove(0)
+    fn parsed(text: &str) -> Poses {
+        poses(&Table::parse(text, None).unwrap()).unwrap()
     }
 
     fn row(file: Option<&str>, time: Option<f64>, heading: Option<f64>) -> PoseRow {
-        PoseRow { file: file.map(str::to_owned), time, x: 1.0, y: 2.0, heading }
+        PoseRow { ordinal: 0, file: file.map(str::to_owned), time, x: 1.0, y: 2.0, heading }
     }
 
     #[test]
-    fn columns_are_known_by_name_or_number() {
+    fn columns_are_known_by_name_and_unit() {
+        let right = Some(std::f64::consts::FRAC_PI_2);
         for (text, expected) in [
-            ("1,2\n3,4", row(None, None, None)),
-            ("1 2 0.5\n3 4 0.1", row(None, None, Some(0.5))),
-            ("1 2 90\n3 4 0.1", row(None, None, Some(std::f64::consts::FRAC_PI_2))),
-            ("a.png,1,2\nb.png,3,4", row(Some("a.png"), None, None)),
-            ("a.png\t1\t2\t0.5\nb.png\t3\t4\t0", row(Some("a.png"), None, Some(0.5))),
-            ("0.1,1,2\n0.2,3,4\n0.3,1,2", row(None, Some(0.1), None)),
-            ("0.1,1,2,0.5\n0.2,3,4,0\n0.3,1,2,0", row(None, Some(0.1), Some(0.5))),
-            ("y_cm;x;yaw_rad;file\n200;1;0.5;a.png", row(Some("a.png"), None, Some(0.5))),
+            ("x,y\n1,2\n3,4", row(None, None, None)),
+            ("file,x,y,theta\na.png,1,2,0.5", row(Some("a.png"), None, Some(0.5))),
+            ("y_cm;x;yaw_rad;file\n200;1;0.5;b/a.png", row(Some("a.png"), None, Some(0.5))),
             ("time [ms],x (m),y (m)\n250,1,2", row(None, Some(0.25), None)),
-            ("# frame x y theta_deg\n7 1 2 90", row(Some("7"), None, Some(std::f64::consts::FRAC_PI_2))),
+            ("# frame x y theta_deg\n7 1 2 90", row(Some("7"), None, right)),
+            ("x,y,heading [degrees]\n1,2,90", row(None, None, right)),
         ] {
-            assert_eq!(first(text), expected, "{text:?}");
+            assert_eq!(parsed(text).rows[0], expected, "{text:?}");
         }
-        let milliseconds = first("33.0,1,2\n66.0,3,4\n99.5,1,2");
-        assert!((milliseconds.time.unwrap() - 0.033).abs() < 1e-12);
     }
 
     #[test]
-    fn what_has_no_place_is_refused() {
-        for text in ["1\n2", "1,2,3,4,5\n1,2,3,4,5", "x,z\n1,2", "a.png,b.png,1\nc.png,d.png,2"] {
-            let refused = Table::parse(text).and_then(|table| poses(&table, METRES));
-            assert!(refused.is_err(), "{text:?}: {refused:?}");
-        }
+    fn heading_without_a_unit_is_in_radians_of_any_size() {
+        let found = parsed("x_m,y_m,theta\n1,2,13.8\n1,2,0.1");
+        let heading = found.rows[0].heading.unwrap();
+        assert!((heading - wrap_angle(13.8)).abs() < 1e-12, "{heading}");
+        assert_eq!(found.assumed, ["theta in rad"]);
+        assert_eq!(found.columns, "x m in m, y m in m, theta in rad");
+    }
+
+    #[test]
+    fn rows_with_no_number_are_left_out_with_their_lines() {
+        let found = parsed("x,y\n1,2\nnan,3\n5\n7,8");
+        assert_eq!(found.rows.iter().map(|row| row.ordinal).collect::<Vec<_>>(), [0, 3]);
+        assert_eq!(found.problems.iter().map(|(line, _)| *line).collect::<Vec<_>>(), [3, 4]);
+    }
+
+    #[test]
+    fn table_of_something_else_names_its_columns() {
+        let text = "Time [s], Best heading [degrees], Lowest difference, Filename\n1,2,3,a.png";
+        let error = poses(&Table::parse(text, None).unwrap()).unwrap_err();
+        assert!(error.contains("best heading degrees") && error.contains("no columns x and y"), "{error}");
     }
 }

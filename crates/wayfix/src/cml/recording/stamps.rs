@@ -4,14 +4,18 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{RecordingError, poses::time_unit, table::Table};
+use super::{
+    RecordingError,
+    poses::{FILE, TIME, TIMES, unit_of},
+    table::{Table, number},
+};
 
 /// When each frame was taken, s, by the name of its file.
 pub(super) type Stamps = BTreeMap<String, f64>;
 
-/// A table of `t, file`, in either order; the first column of numbers is the time.
-pub(super) fn read(path: &Path) -> Result<Stamps, RecordingError> {
-    let table = Table::read(path)?;
+/// A table with the columns `t` and `file`; rows without a time are left out.
+pub(super) fn read(path: &Path, names: Option<&[String]>) -> Result<Stamps, RecordingError> {
+    let table = Table::read(path, names)?;
     parse(&table).map_err(|reason| RecordingError::Table { path: path.to_owned(), reason })
 }
 
@@ -26,22 +30,17 @@ pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf
     let same = |path: &PathBuf| fs::canonicalize(path).ok() == fs::canonicalize(poses).ok();
     candidates.retain(|path| is_text(path) && !same(path));
     candidates.sort();
-    candidates.into_iter().find(|path| read(path).is_ok_and(|stamps| stamps.contains_key(a_frame)))
+    candidates.into_iter().find(|path| read(path, None).is_ok_and(|stamps| stamps.contains_key(a_frame)))
 }
 
 fn parse(table: &Table) -> Result<Stamps, String> {
-    let n = table.n_columns();
-    let file = (0..n).find(|column| !table.is_numeric(*column)).ok_or("no column of file names")?;
-    let time = (0..n).find(|column| table.is_numeric(*column)).ok_or("no column of times")?;
-    let name = table.names.as_ref().map_or("", |names| &names[time]);
-    let numbers = table.numbers(time)?;
-    let unit = match name.rsplit(' ').next() {
-        Some("ms") => 0.001,
-        Some("s") => 1.0,
-        _ => time_unit(&numbers),
+    let (Some(file), Some(time)) = (table.column(&FILE), table.column(&TIME)) else {
+        return Err(format!("no columns t and file among {:?}", table.names));
     };
-    let names = table.rows.iter().map(|(_, row)| file_name(&row[file]));
-    Ok(names.zip(numbers.into_iter().map(|value| value * unit)).collect())
+    let ((_, unit), _) = unit_of(time, &TIMES);
+    let stamp =
+        |(_, row): &(usize, Vec<String>)| Some((file_name(&row[file.index]), number(row, time).ok()? * unit));
+    Ok(table.rows.iter().filter_map(stamp).collect())
 }
 
 /// Without the folders that a table may name.
@@ -54,19 +53,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stamps_come_in_either_order_with_or_without_folders() {
+    fn stamps_are_read_by_name_in_either_order() {
         for text in [
             "Time [s], Filename\n0.5, outdoor/a.png\n1.0, outdoor/b.png",
-            "a.png 0.5\nb.png 1",
             "file,t_ms\nx\\a.png,500\nx\\b.png,1000",
+            "Time [s], Best heading [degrees], Lowest difference, Filename\n0.5,90,7,a.png\n1.0,80,6,b.png",
         ] {
-            let stamps = parse(&Table::parse(text).unwrap()).unwrap();
-            assert_eq!(
-                stamps,
-                Stamps::from([("a.png".to_owned(), 0.5), ("b.png".to_owned(), 1.0)]),
-                "{text:?}"
-            );
+            let stamps = parse(&Table::parse(text, None).unwrap()).unwrap();
+            let expected = Stamps::from([("a.png".to_owned(), 0.5), ("b.png".to_owned(), 1.0)]);
+            assert_eq!(stamps, expected, "{text:?}");
         }
-        assert!(parse(&Table::parse("1,2\n3,4").unwrap()).is_err());
+        let error = parse(&Table::parse("x,y\n3,4", None).unwrap()).unwrap_err();
+        assert!(error.contains("no columns t and file"), "{error}");
     }
 }

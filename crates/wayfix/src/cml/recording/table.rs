@@ -2,32 +2,42 @@ use std::{fs, path::Path};
 
 use super::RecordingError;
 
-/// A text of rows and columns: comma, semicolon, tab or blanks between them, `#` before remarks, a row of names first or none.
+/// A text of rows and columns: comma, semicolon, tab or blanks between them, `#` before remarks, a row of names first.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Table {
-    /// Lower case, without what is in brackets being lost: `Time [s]` is `time s`.
-    pub(super) names: Option<Vec<String>>,
-    /// Each with the number of its line, from 1.
+    /// Lower case, without punctuation: `Time [s]` and `time_s` are `time s`.
+    pub(super) names: Vec<String>,
+    /// Each with the number of its line, from 1, and as many cells as there are names.
     pub(super) rows: Vec<(usize, Vec<String>)>,
+    /// Lines that are no rows, and why.
+    pub(super) problems: Vec<(usize, String)>,
+}
+
+/// A column, and what its name says after the first word: `ms` of `time_ms`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Column<'a> {
+    pub(super) index: usize,
+    pub(super) unit: &'a str,
 }
 
 /// No table of poses is larger; a file that is something else must not fill the memory.
 const MAX_BYTES: u64 = 256 << 20;
 
 impl Table {
-    pub(super) fn read(path: &Path) -> Result<Self, RecordingError> {
+    /// Reads a table whose columns its first row names, or `names` where it has no such row.
+    pub(super) fn read(path: &Path, names: Option<&[String]>) -> Result<Self, RecordingError> {
         let io = |source| RecordingError::Io { path: path.to_owned(), source };
         let refused = |reason: String| RecordingError::Table { path: path.to_owned(), reason };
         if fs::metadata(path).map_err(io)?.len() > MAX_BYTES {
             return Err(refused(format!("more than {MAX_BYTES} bytes")));
         }
         let bytes = fs::read(path).map_err(io)?;
-        let text = String::from_utf8(bytes).map_err(|_| refused("not a text".to_owned()))?;
-        Self::parse(&text).map_err(refused)
+        let text = String::from_utf8(bytes).map_err(|_| refused("not a text in UTF-8".to_owned()))?;
+        Self::parse(&text, names).map_err(refused)
     }
 
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let mut rows: Vec<(usize, Vec<String>)> = Vec::new();
+    pub(super) fn parse(text: &str, given: Option<&[String]>) -> Result<Self, String> {
+        let mut lines: Vec<(usize, Vec<String>)> = Vec::new();
         let mut names = None;
         for (index, line) in text.lines().enumerate() {
             let line = line.trim_start_matches('\u{feff}').trim();
@@ -40,39 +50,47 @@ impl Table {
             }
             let cells = cells(line);
             let is_names = cells.iter().all(|cell| cell.parse::<f64>().is_err()) && cells.len() > 1;
-            if rows.is_empty() && is_names && !has_file_name(&cells) {
+            if lines.is_empty() && is_names && !has_file_name(&cells) {
                 // The last line of names wins: files may begin with remarks.
                 names = Some(cells.iter().map(|cell| plain(cell)).collect());
             } else if !is_remark {
-                rows.push((index + 1, cells));
+                lines.push((index + 1, cells));
             }
         }
-        let Some((_, first)) = rows.first() else { return Err("no rows".to_owned()) };
-        let n = first.len();
-        if let Some((line, row)) = rows.iter().find(|(_, row)| row.len() != n) {
-            return Err(format!("line {line} has {} columns, the others have {n}", row.len()));
-        }
-        let names = names.filter(|names: &Vec<String>| names.len() == n);
-        Ok(Self { names, rows })
-    }
-
-    pub(super) fn n_columns(&self) -> usize {
-        self.rows.first().map_or(0, |(_, row)| row.len())
-    }
-
-    /// The numbers of a column.
-    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, String> {
-        let number = |(line, row): &(usize, Vec<String>)| {
-            let value = row[column].parse::<f64>().ok().filter(|value| value.is_finite());
-            value.ok_or_else(|| format!("line {line}: {:?} is not a number", row[column]))
+        let Some((_, first)) = lines.first() else { return Err("no rows".to_owned()) };
+        let given = given.map(|given| given.iter().map(|name| plain(name)).collect());
+        let Some(names): Option<Vec<String>> = given.or(names) else {
+            return Err(format!(
+                "no row names the columns: name them, as in --columns t_ms,x_cm,y_cm (the first row is {first:?})"
+            ));
         };
-        self.rows.iter().map(number).collect()
+        let n = names.len();
+        let (rows, ragged): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(_, row)| row.len() == n);
+        let ragged = ragged.into_iter();
+        let problems: Vec<(usize, String)> =
+            ragged.map(|(line, row)| (line, format!("{} columns instead of {n}", row.len()))).collect();
+        match problems.first() {
+            Some((line, reason)) if rows.is_empty() => {
+                Err(format!("no row can be used; line {line}: {reason}"))
+            }
+            _ => Ok(Self { names, rows, problems }),
+        }
     }
 
-    /// Whether every cell of a column is a number.
-    pub(super) fn is_numeric(&self, column: usize) -> bool {
-        self.rows.iter().all(|(_, row)| row[column].parse::<f64>().is_ok())
+    /// The column whose name begins with one of these words.
+    pub(super) fn column(&self, words: &[&str]) -> Option<Column<'_>> {
+        self.names.iter().enumerate().find_map(|(index, name)| {
+            let (word, unit) = name.split_once(' ').unwrap_or((name, ""));
+            words.contains(&word).then_some(Column { index, unit: unit.rsplit(' ').next().unwrap_or(unit) })
+        })
     }
+}
+
+/// The finite number in a cell.
+pub(super) fn number(row: &[String], column: Column<'_>) -> Result<f64, String> {
+    let cell = &row[column.index];
+    let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
+    value.ok_or_else(|| format!("{cell:?} is not a number"))
 }
 
 fn cells(line: &str) -> Vec<String> {
@@ -108,24 +126,33 @@ mod tests {
             "x,y\n1,2\n3,4\n",
             "# x y\n1 2\n3 4",
             "# made by hand\n\nX;Y\n1;2\n3;4\n",
-            "x\ty\r\n1\t2\r\n3\t4\r\n",
+            "\u{feff}x\ty\r\n1\t2\r\n3\t4\r\n",
         ] {
-            let table = Table::parse(text).unwrap();
-            assert_eq!(table.names, Some(vec!["x".to_owned(), "y".to_owned()]), "{text:?}");
-            assert_eq!((table.numbers(0), table.numbers(1)), (Ok(vec![1.0, 3.0]), Ok(vec![2.0, 4.0])));
+            let table = Table::parse(text, None).unwrap();
+            assert_eq!(table.names, ["x", "y"], "{text:?}");
+            assert_eq!(table.rows[1].1, ["3", "4"]);
         }
-        assert_eq!(Table::parse("1,2\n3,4").unwrap().names, None);
-        assert_eq!(
-            Table::parse("Time [s], Filename\n0.1, a.png").unwrap().names.unwrap(),
-            ["time s", "filename"]
-        );
+        let table = Table::parse("Time [s], Filename\n0.1, a.png", None).unwrap();
+        assert_eq!(table.names, ["time s", "filename"]);
+        assert_eq!(table.column(&["t", "time"]), Some(Column { index: 0, unit: "s" }));
     }
 
     #[test]
-    fn what_is_no_table_says_where() {
-        assert_eq!(Table::parse(""), Err("no rows".to_owned()));
-        assert_eq!(Table::parse("1,2\n3\n"), Err("line 2 has 1 columns, the others have 2".to_owned()));
-        let table = Table::parse("1,2\n3,nan\n").unwrap();
-        assert_eq!(table.numbers(1), Err("line 2: \"nan\" is not a number".to_owned()));
+    fn table_without_names_needs_given_ones() {
+        let error = Table::parse("1,2\n3,4", None).unwrap_err();
+        assert!(error.contains("--columns"), "{error}");
+        let given = ["x_cm".to_owned(), "y_cm".to_owned()];
+        let table = Table::parse("1,2\n3,4", Some(&given)).unwrap();
+        assert_eq!(table.column(&["y"]), Some(Column { index: 1, unit: "cm" }));
+    }
+
+    #[test]
+    fn short_rows_are_left_out_with_their_lines() {
+        let table = Table::parse("x,y\n1,2\n3\n4,5\n", None).unwrap();
+        assert_eq!(table.rows.len(), 2);
+        assert_eq!(table.problems, [(3, "1 columns instead of 2".to_owned())]);
+        assert_eq!(Table::parse("", None), Err("no rows".to_owned()));
+        let nan = number(&["nan".to_owned()], Column { index: 0, unit: "" });
+        assert_eq!(nan, Err("\"nan\" is not a number".to_owned()));
     }
 }
