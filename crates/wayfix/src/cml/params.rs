@@ -2,10 +2,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaParams};
 
+use crate::system::VELOCITY_HOLD;
+
 /// Everything that `wayfix run cml` is tuned by. What a file of parameters does not name keeps its default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CmlParams {
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
+    /// navigation.
+    pub velocity_hold: f64,
     /// What is known of the poses that a map is taught with.
     pub taught: PoseSigmas,
     /// What is known of the start.
@@ -16,6 +21,19 @@ pub struct CmlParams {
     pub views: PanoramaParams,
     /// The localizer.
     pub localizer: LocalizerParams,
+}
+
+impl Default for CmlParams {
+    fn default() -> Self {
+        Self {
+            velocity_hold: VELOCITY_HOLD,
+            taught: PoseSigmas::default(),
+            start: PoseSigmas::default(),
+            made_odometry: MadeOdometry::default(),
+            views: PanoramaParams::default(),
+            localizer: LocalizerParams::default(),
+        }
+    }
 }
 
 /// Standard deviations of a pose.

@@ -8,6 +8,7 @@ use super::{
     recording::{Frame, Heading, Recording, TurnEvidence, path, turn_evidence},
 };
 use crate::evaluate::TrueTrack;
+use crate::system::{HeldVelocity, PlausibleIncrement, possible};
 
 /// What a run is made of: what the map is taught before it, and the records that it then goes through.
 #[derive(Clone, Debug, Default)]
@@ -122,7 +123,7 @@ impl Plan {
         params: &mut CmlParams,
         camera: &CameraChoice,
     ) -> Result<Self> {
-        let turns = image_headings(&records);
+        let turns = image_headings(&records, params.velocity_hold);
         let evidence = evidence(turns.iter().map(|(image, heading)| (*image, *heading)), params, camera);
         let mut plan = Self { headings_are_measured: true, ..Self::default() };
         plan.notes.push(choose_sense(evidence, Heading::Given, params, camera));
@@ -174,17 +175,28 @@ fn records(
     records
 }
 
-/// The images of a log with the heading that odometry has at them.
-fn image_headings(records: &[Record]) -> Vec<(&EncodedImage, f64)> {
-    let mut held = super::odometry::HeldVelocity::default();
+/// The images of a log with the heading that odometry has at them; impossible odometry is passed over, and the system refuses it.
+fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage, f64)> {
+    let (mut held, mut plausible) = (HeldVelocity::default(), PlausibleIncrement::default());
     let mut pose = Pose2::new(0.0, 0.0, 0.0);
     let mut headings = Vec::new();
     for record in records {
-        pose = held.until(record.stamp).map_or(pose, |increment| pose.compose(&increment));
+        let mut advance = || {
+            let motion = held.until(record.stamp, velocity_hold);
+            pose = motion.map_or(pose, |motion| pose.compose(&motion.increment));
+        };
         match &record.data {
-            Data::OdometryIncrement(increment) => pose = pose.compose(increment),
-            Data::Velocity(velocity) => held.hold(record.stamp, *velocity),
-            Data::Image(image) => headings.push((image, pose.heading())),
+            Data::OdometryIncrement(increment) if plausible.check(record.stamp, increment).is_ok() => {
+                pose = pose.compose(increment);
+            }
+            Data::Velocity(velocity) if possible(*velocity).is_ok() => {
+                advance();
+                let _: Result<(), String> = held.hold(record.stamp, *velocity);
+            }
+            Data::Image(image) => {
+                advance();
+                headings.push((image, pose.heading()));
+            }
             _ => {}
         }
     }

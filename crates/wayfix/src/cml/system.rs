@@ -8,8 +8,8 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
-use super::{CmlParams, PoseSigmas, ViewReader, odometry::HeldVelocity};
-use crate::system::{Events, Stopwatch, System};
+use super::{CmlParams, PoseSigmas, ViewReader};
+use crate::system::{Events, HeldVelocity, PlausibleIncrement, Stopwatch, System, possible};
 
 /// The localizer of panoramas with the index that does not compare with every reference.
 pub type PanoramaLocalizer = AppearanceLocalizer<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
@@ -21,6 +21,8 @@ pub struct CmlSystem {
     reader: ViewReader,
     localizer: PanoramaLocalizer,
     velocity: HeldVelocity,
+    velocity_hold: f64,
+    plausible: PlausibleIncrement,
     odometry: Option<Pose2<f64>>,
     frames: Vec<FrameResult>,
     events: Events,
@@ -57,6 +59,8 @@ impl CmlSystem {
             reader,
             localizer: PanoramaLocalizer::with_map(params.localizer, map, Start::Anywhere)?,
             velocity: HeldVelocity::default(),
+            velocity_hold: params.velocity_hold,
+            plausible: PlausibleIncrement::default(),
             odometry: None,
             frames: Vec::new(),
             events: Events::default(),
@@ -116,6 +120,19 @@ impl CmlSystem {
         Ok(())
     }
 
+    /// Moves the robot on with the velocity that holds.
+    fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
+        let Some(held) = self.velocity.until(stamp, self.velocity_hold) else { return Ok(()) };
+        if held.unknown_seconds > 0.0 {
+            let hold = self.velocity_hold;
+            self.events.warn(
+                "motion_unknown",
+                format!("velocities are missing for more than {hold} s: the motion is unknown there (velocity_hold)"),
+            );
+        }
+        self.move_by(&held.increment)
+    }
+
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
         let panorama_took = Stopwatch::start();
         let view = self.reader.describe(image).map_err(|error| format!("{error:#}"))?;
@@ -164,19 +181,21 @@ pub(super) fn gaussian(pose: &Pose2<f64>, sigmas: &PoseSigmas) -> anyhow::Result
 
 impl System for CmlSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
-        if let Some(increment) = self.velocity.until(record.stamp) {
-            self.move_by(&increment)?;
-        }
         match &record.data {
-            Data::OdometryIncrement(increment) => self.move_by(increment),
-            Data::Velocity(velocity) => {
-                if !(velocity.linear.is_finite() && velocity.angular.is_finite()) {
-                    return Err("a velocity that is not finite".to_owned());
-                }
-                self.velocity.hold(record.stamp, *velocity);
-                Ok(())
+            Data::OdometryIncrement(increment) => {
+                self.plausible.check(record.stamp, increment)?;
+                self.advance_to(record.stamp)?;
+                self.move_by(increment)
             }
-            Data::Image(image) => self.see(record.stamp, image),
+            Data::Velocity(velocity) => {
+                possible(*velocity)?;
+                self.advance_to(record.stamp)?;
+                self.velocity.hold(record.stamp, *velocity)
+            }
+            Data::Image(image) => {
+                self.advance_to(record.stamp)?;
+                self.see(record.stamp, image)
+            }
             _ => Ok(()),
         }
     }

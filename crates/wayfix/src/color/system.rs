@@ -11,7 +11,7 @@ use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{CameraInfo, Data, EncodedImage, Record, Stamp};
 
 use super::{ColorSystemParams, LabelCounts, tally};
-use crate::system::{Events, Stopwatch, System};
+use crate::system::{Events, PlausibleIncrement, Stopwatch, System};
 
 /// What is known of the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +34,7 @@ pub struct ColorSystem {
     labels: Option<(Stamp, EncodedImage)>,
     localizer: Option<ColorLocalizer>,
     pending: Pending,
+    plausible: PlausibleIncrement,
     odometry: Option<Pose2<f64>>,
     frames: Vec<FrameResult>,
     table: Option<LookUpTable>,
@@ -98,6 +99,7 @@ impl ColorSystem {
             labels: None,
             localizer: None,
             pending: Pending::default(),
+            plausible: PlausibleIncrement::default(),
             odometry,
             frames: Vec::new(),
             table: None,
@@ -156,10 +158,12 @@ impl ColorSystem {
         Ok(classified)
     }
 
-    fn move_by(&mut self, increment: &Pose2<f64>) {
+    fn move_by(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
+        self.plausible.check(stamp, increment)?;
         let so_far = self.pending.increment.unwrap_or(Pose2::new(0.0, 0.0, 0.0));
         self.pending.increment = Some(so_far.compose(increment));
         self.odometry = self.odometry.map(|pose| pose.compose(increment));
+        Ok(())
     }
 
     fn see(&mut self, stamp: Stamp, image: &EncodedImage) -> Result<(), String> {
@@ -245,7 +249,7 @@ impl System for ColorSystem {
             Data::CameraInfo(info) => self.camera = Some(*info),
             Data::CameraMount(mount) => self.mount = Some(*mount),
             Data::TrueLabels(labels) => self.labels = Some((record.stamp, labels.clone())),
-            Data::OdometryIncrement(increment) => self.move_by(increment),
+            Data::OdometryIncrement(increment) => self.move_by(record.stamp, increment)?,
             Data::Image(image) => self.see(record.stamp, image)?,
             _ => {}
         }

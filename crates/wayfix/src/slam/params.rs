@@ -7,7 +7,7 @@ use wayfix_slam_ekf::{
     NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
-use crate::settings::over_defaults;
+use crate::{settings::over_defaults, system::VELOCITY_HOLD};
 
 /// Everything that can be set for EKF-SLAM on a log.
 ///
@@ -95,7 +95,7 @@ impl Default for RobotParams {
             sensor_latency: 0.0,
             command_delay: 0.0,
             command_erosion: 0.0,
-            velocity_hold: 1.0,
+            velocity_hold: VELOCITY_HOLD,
             range_is_depth: false,
             range_scale_sigma: 0.0,
         }
@@ -224,7 +224,7 @@ impl SlamSystemParams {
                     sensor_latency: 0.04,
                     command_delay: 0.15,
                     command_erosion: 0.04,
-                    velocity_hold: 1.0,
+                    velocity_hold: VELOCITY_HOLD,
                     range_is_depth: true,
                     range_scale_sigma: 0.04,
                 },

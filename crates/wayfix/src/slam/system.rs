@@ -13,7 +13,7 @@ use super::{
     AssociationRule, MountingParams, SlamSystemParams, commands::Commands, event_name,
     in_sequence::InSequence, saved::Odometry, unknown_motion::UnknownMotion,
 };
-use crate::system::{Events, MotionStatistics, Stopwatch, System, possible};
+use crate::system::{Events, MotionStatistics, PlausibleIncrement, Stopwatch, System, possible};
 
 /// The estimate at the stamp of one look of the sensor, from everything up to it.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +45,7 @@ pub struct SlamSystem {
     pub(super) commands: Commands,
     /// How the robot has moved by its commands.
     pub(super) motion: MotionStatistics,
+    plausible: PlausibleIncrement,
     /// Velocities or increments: whichever came first.
     pub(super) odometry: Option<Odometry>,
     /// The time that the filter's state is at.
@@ -113,6 +114,7 @@ impl SlamSystem {
             association,
             commands: Commands::new(&params.robot),
             motion: MotionStatistics::default(),
+            plausible: PlausibleIncrement::default(),
             odometry: None,
             params,
             time: start_stamp,
@@ -159,6 +161,7 @@ impl SlamSystem {
     }
 
     fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
+        self.plausible.check(stamp, increment)?;
         let stopwatch = Stopwatch::start();
         let motion = ScaledMotion(self.params.increment);
         let before = *self.filter.robot();

@@ -6,6 +6,9 @@ use wayfix_sensor_log::{Stamp, Velocity};
 /// No robot is faster, m/s and rad/s; a velocity moves the robot until the next one, so it must be possible.
 pub const FASTEST: f64 = 1e3;
 
+/// A velocity holds for this long after its stamp unless a parameter says otherwise, s: the command time-out of ROS 2 navigation.
+pub const VELOCITY_HOLD: f64 = 1.0;
+
 /// A velocity that is finite and possible.
 ///
 /// # Errors

@@ -6,16 +6,20 @@ mod events;
 mod held_velocity;
 mod laser;
 mod motion_statistics;
+mod odometry_delay;
 mod overlap;
+mod plausible_increment;
 mod stopwatch;
 
 pub use drive::{drive, stream};
 pub use estimate_log::{Drawing, EstimateLog, EstimateWriter, OTHER_POSES};
 pub use events::{Events, Refusal};
-pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, possible};
+pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, possible};
 pub use laser::largest_echo;
 pub use motion_statistics::MotionStatistics;
+pub use odometry_delay::without_odometry_delay;
 pub use overlap::{NamedKind, ODOMETRY, check_overlap};
+pub use plausible_increment::PlausibleIncrement;
 pub use stopwatch::Stopwatch;
 
 use wayfix_sensor_log::Record;

@@ -3,6 +3,7 @@
 mod estimates;
 mod figures;
 mod odometry;
+mod odometry_lag;
 mod params;
 mod pictures;
 mod run;

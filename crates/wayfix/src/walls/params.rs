@@ -9,7 +9,7 @@ use wayfix_slam_ekf::{
     NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
 };
 
-use crate::{settings::over_defaults, slam::AssociationRule};
+use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOLD};
 
 /// Everything that can be set for EKF-SLAM with walls.
 ///
@@ -53,6 +53,8 @@ pub struct WallSlamParams {
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
     /// navigation.
     pub velocity_hold: f64,
+    /// By how much odometry is stamped later than scans that show the same, s; negative where it is stamped earlier.
+    pub odometry_delay: f64,
     /// Noise of odometry increments.
     pub increment: IncrementMotion,
     /// Gate and outliers.
@@ -114,7 +116,8 @@ impl Default for WallSlamParams {
             min_wall_length: 1.0,
             sensor: WallSensor::default(),
             heading_drift_sigma: 0.05,
-            velocity_hold: 1.0,
+            velocity_hold: VELOCITY_HOLD,
+            odometry_delay: 0.0,
             increment: IncrementMotion {
                 translation_variance_per_meter: 1e-2,
                 heading_variance_per_meter: 5e-3,
@@ -140,6 +143,8 @@ impl Default for WallSlamParams {
 /// Smallest value, and the range in words.
 type Range = (f64, &'static str);
 const POSITIVE: Range = (1e-9, "from 1e-9 to 1e6");
+/// Stamps that are further apart are on different clocks, s.
+const LARGEST_DELAY: f64 = 60.0;
 const NOT_NEGATIVE: Range = (0.0, "from 0 to 1e6");
 
 impl WallSlamParams {
@@ -202,6 +207,10 @@ impl WallSlamParams {
             if !(low..=1e6).contains(&value) {
                 return Err(SlamError::Parameter { name, value, range }.into());
             }
+        }
+        if !(self.odometry_delay.abs() <= LARGEST_DELAY) {
+            let (name, value) = ("odometry_delay", self.odometry_delay);
+            return Err(SlamError::Parameter { name, value, range: "from -60 to 60" }.into());
         }
         if let Some(value) = self.laser.iter().chain(&self.start).flatten().find(|v| !v.is_finite()) {
             return Err(

@@ -3,13 +3,13 @@ use wayfix_estimation_traits::Manifold;
 use wayfix_sensor_log::{Data, Record, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
-use super::{WallSlamParams, WallState, WallSystem, truth};
+use super::{WallSlamParams, WallState, WallSystem, odometry_lag::odometry_lag, truth};
 use crate::{
     evaluate::{KnownStart, Sample, TrueTrack},
     slam::{
         AssociationRule, Keyframe, Saved, start_pose, warn_of_no_overlap, warn_of_reference, warn_of_start,
     },
-    system::{Events, ODOMETRY, System, check_overlap, drive},
+    system::{Events, ODOMETRY, System, check_overlap, drive, without_odometry_delay},
 };
 
 /// A log of scans that went through EKF-SLAM with walls, beside the poses that the log itself holds.
@@ -85,14 +85,23 @@ fn drive_through(
     records: &[Record],
     observe: impl FnMut(&WallSystem),
 ) -> Result<WallRun> {
-    drive(&mut system, records, observe);
+    let records = without_odometry_delay(records, system.params.odometry_delay);
+    drive(&mut system, &records, observe);
     if system.keyframes().is_empty() {
         let n_before = system.events().get("before_resume");
         bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
     }
     let keyframes = system.keyframes();
     let estimated = keyframes.first().zip(keyframes.last()).map(|(first, last)| (first.stamp, last.stamp));
+    let lag = odometry_lag(keyframes);
     warn_of_no_overlap(system.events(), &track, estimated);
+    if let Some(lag) = lag {
+        let delay = system.params.odometry_delay + lag;
+        system.events().warn(
+            "odometry_lags_scans",
+            format!("odometry lags the scans by {lag:.2} s: the turns of both agree best there (the parameter `odometry_delay = {delay:.2}` corrects it)"),
+        );
+    }
     let mut run = WallRun { system, truth: track, true_walls };
     if run
         .samples()

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     slam::{AssociationRule, Keyframe, event_name, seen_landmarks},
-    system::{Events, Stopwatch, System, largest_echo, possible},
+    system::{Events, PlausibleIncrement, Stopwatch, System, largest_echo, possible},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
@@ -40,6 +40,7 @@ pub struct WallSystem {
     /// Records up to this stamp were taken by the run that this one goes on from.
     pub(super) resumed_at: Option<Stamp>,
     pub(super) odometry: Odometry,
+    plausible: PlausibleIncrement,
     /// Scans that wait for the odometry that leads up to them, oldest first.
     pub(super) waiting: VecDeque<(Stamp, LaserScan)>,
     pub(super) dead_reckoning: Pose2<f64>,
@@ -60,8 +61,6 @@ pub(super) enum Rule {
     JointCompatibility(JointCompatibility),
 }
 
-/// No robot goes farther from one record to the next, m.
-const FARTHEST: f64 = 1e5;
 /// Scans that have less in common are not laid on one another, share of points.
 const LEAST_OVERLAP: f64 = 0.15;
 
@@ -103,6 +102,7 @@ impl WallSystem {
             taken_until: Stamp::default(),
             resumed_at: None,
             odometry: Odometry::default(),
+            plausible: PlausibleIncrement::default(),
             waiting: VecDeque::new(),
             dead_reckoning: start,
             keyframes: Vec::new(),
@@ -134,10 +134,7 @@ impl WallSystem {
 
     /// Takes the scans that waited for this increment, each after its part of it.
     fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
-        if !(increment.is_finite() && increment.translation.norm() <= FARTHEST) {
-            let (x, y) = (increment.x(), increment.y());
-            return Err(format!("an increment of ({x:.3e}, {y:.3e}) m is beyond {FARTHEST} m or not finite"));
-        }
+        self.plausible.check(stamp, increment)?;
         let n_reached = self.waiting.partition_point(|(waiting, _)| *waiting <= stamp);
         let reached: Vec<(Stamp, LaserScan)> = self.waiting.drain(..n_reached).collect();
         if let (Some((first, _)), false) = (reached.first(), self.odometry.has_started()) {

@@ -1,0 +1,62 @@
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::Stamp;
+
+use super::FASTEST;
+
+/// No robot goes farther from one record to the next, m, where the time between them is not known.
+const FARTHEST: f64 = 1e5;
+/// Stamps of drivers are no more exact than this, s.
+const JITTER: f64 = 0.01;
+
+/// Tells increments of odometry that a robot can make from those that none can.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PlausibleIncrement {
+    last: Option<Stamp>,
+}
+
+impl PlausibleIncrement {
+    /// Checks an increment that ends at `stamp` and begins at the last one that passed.
+    ///
+    /// # Errors
+    /// The increment in words when it is not finite or faster than [`FASTEST`]; the one before stays the last.
+    pub fn check(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
+        let seconds = self.last.map(|last| stamp.seconds_since(last).max(0.0));
+        let farthest = seconds.map_or(FARTHEST, |seconds| (FASTEST * (seconds + JITTER)).min(FARTHEST));
+        let (x, y, turn) = (increment.x(), increment.y(), increment.heading());
+        if x.hypot(y) <= farthest && turn.is_finite() {
+            self.last = Some(stamp);
+            return Ok(());
+        }
+        Err(format!(
+            "an increment of ({x:.3e} m, {y:.3e} m, {turn:.3e} rad) is farther than {farthest} m or not finite"
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(milliseconds: u64) -> Stamp {
+        Stamp::from_nanoseconds(milliseconds * 1_000_000)
+    }
+
+    #[test]
+    fn absurd_increment_is_refused_and_the_next_one_passes() {
+        for x in [1e256, -1e200, f64::NAN, f64::INFINITY, 1e4] {
+            let mut plausible = PlausibleIncrement::default();
+            plausible.check(at(0), &Pose2::new(0.1, 0.0, 0.0)).unwrap();
+            let error = plausible.check(at(100), &Pose2::new(x, 0.0, 0.0)).unwrap_err();
+            assert!(error.len() < 120, "{error}");
+            plausible.check(at(200), &Pose2::new(0.1, 0.0, 0.0)).unwrap();
+        }
+    }
+
+    #[test]
+    fn increments_of_equal_stamps_pass() {
+        let mut plausible = PlausibleIncrement::default();
+        for _ in 0..3 {
+            plausible.check(at(7), &Pose2::new(1.0, 0.0, 3.0)).unwrap();
+        }
+    }
+}

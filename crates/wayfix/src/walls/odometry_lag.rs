@@ -1,0 +1,121 @@
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_sensor_log::Stamp;
+
+use crate::slam::Keyframe;
+
+/// Lags are looked for up to this, s: a transport delay, and not another clock.
+const LARGEST_LAG: f64 = 1.0;
+/// Steps of the search, s: the exactness of drivers' stamps.
+const STEP: f64 = 0.01;
+/// Steps to either side: first of a tenth of the largest lag, then of [`STEP`].
+const N_STEPS: i32 = 10;
+
+/// By how much odometry lags the scans, s: the shift in time at which the turns of odometry agree best with the turns that scans show.
+///
+/// `None` when the shift explains less than half of the squared disagreement, as where the robot goes straight.
+pub(super) fn odometry_lag(keyframes: &[Keyframe]) -> Option<f64> {
+    let odometry = Turns::of(keyframes);
+    let disagreement = |lag: f64| {
+        let squares = keyframes.windows(2).map(|pair| {
+            let [begin, end] = [&pair[0], &pair[1]];
+            let seen = begin.pose.inverse().compose(&end.pose).heading();
+            let [begin, end] = [begin, end].map(|keyframe| odometry.seconds(keyframe) + lag);
+            // The same stretches count at every lag.
+            let is_inside = begin >= LARGEST_LAG && end <= odometry.last() - LARGEST_LAG;
+            if is_inside { (seen - (odometry.at(end) - odometry.at(begin))).powi(2) } else { 0.0 }
+        });
+        squares.sum::<f64>()
+    };
+    let best = |middle: f64, step: f64| {
+        let lags = (-N_STEPS..=N_STEPS).map(|n| middle + f64::from(n) * step);
+        let least = lags.map(|lag| (disagreement(lag), lag)).min_by(|a, b| a.0.total_cmp(&b.0));
+        least.map_or(middle, |(_, lag)| lag)
+    };
+    let coarse = best(0.0, LARGEST_LAG / f64::from(N_STEPS));
+    let lag = best(coarse, STEP);
+    (disagreement(lag) < 0.5 * disagreement(0.0)).then_some(lag)
+}
+
+/// The heading that odometry has made, at the keyframes and between them.
+struct Turns {
+    start: Stamp,
+    /// Time since the start, s, and heading without wraps.
+    headings: Vec<(f64, f64)>,
+}
+
+impl Turns {
+    fn of(keyframes: &[Keyframe]) -> Self {
+        let start = keyframes.first().map_or_else(Stamp::default, |first| first.stamp);
+        let mut headings = Vec::with_capacity(keyframes.len());
+        let mut last: Option<(Pose2<f64>, f64)> = None;
+        for Keyframe { stamp, dead_reckoning, .. } in keyframes {
+            let heading = last
+                .map_or(0.0, |(pose, heading)| heading + pose.inverse().compose(dead_reckoning).heading());
+            last = Some((*dead_reckoning, heading));
+            headings.push((stamp.seconds_since(start), heading));
+        }
+        Self { start, headings }
+    }
+
+    fn seconds(&self, keyframe: &Keyframe) -> f64 {
+        keyframe.stamp.seconds_since(self.start)
+    }
+
+    fn last(&self) -> f64 {
+        self.headings.last().map_or(0.0, |(seconds, _)| *seconds)
+    }
+
+    /// The heading at a time, interpolated; before the first and after the last it stays.
+    fn at(&self, seconds: f64) -> f64 {
+        let next = self.headings.partition_point(|(at, _)| *at <= seconds);
+        let before = next.checked_sub(1).and_then(|index| self.headings.get(index));
+        match (before, self.headings.get(next)) {
+            (Some((from, a)), Some((to, b))) => a + (b - a) * (seconds - from) / (to - from),
+            (Some((_, heading)), None) | (None, Some((_, heading))) => *heading,
+            (None, None) => 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use nalgebra::Matrix3;
+
+    use super::*;
+
+    /// A robot that turns this way and that, twenty seconds at 10 Hz; its odometry lags by `lag`.
+    fn keyframes(lag: f64, amplitude: f64) -> Vec<Keyframe> {
+        let heading = |seconds: f64| amplitude * (1.3 * seconds).sin();
+        let keyframe = |step: u64| {
+            let seconds = step as f64 * 0.1;
+            let error = if step % 2 == 0 { 1e-3 } else { -1e-3 };
+            Keyframe {
+                stamp: Stamp::from_nanoseconds(step * 100_000_000),
+                pose: Pose2::new(0.0, 0.0, heading(seconds) + error),
+                covariance: Matrix3::identity(),
+                dead_reckoning: Pose2::new(0.0, 0.0, heading(seconds - lag)),
+                n_landmarks: 0,
+                nis: (0.0, 0),
+                step: Duration::ZERO,
+            }
+        };
+        (0..200).map(keyframe).collect()
+    }
+
+    #[test]
+    fn lag_of_odometry_is_found_to_the_step() {
+        for lag in [0.26, -0.15, 0.5] {
+            let found = odometry_lag(&keyframes(lag, 1.0)).unwrap();
+            assert!((found - lag).abs() < 1.5 * STEP, "{found} for {lag}");
+        }
+    }
+
+    #[test]
+    fn no_lag_is_said_without_lag_or_without_turns() {
+        assert_eq!(odometry_lag(&keyframes(0.0, 1.0)), None);
+        assert_eq!(odometry_lag(&keyframes(0.26, 0.0)), None);
+        assert_eq!(odometry_lag(&[]), None);
+    }
+}
