@@ -76,6 +76,18 @@ fn figures_have_the_names_of_the_contract() {
 }
 
 #[test]
+fn a_box_off_the_truth_that_is_called_tracked_is_a_figure() {
+    let shot = Shot::new();
+    let outcome = shot.run_with_truth();
+    assert_eq!((outcome.metric("false_tracked_share"), outcome.metric("false_lost_share")), (0.0, 0.0));
+    // the true box of the last frames is where the head is not: all that is followed there is something else
+    let mut boxes = shot.boxes.clone();
+    boxes[10..].fill("1,1,8,8".to_owned());
+    shot.truth_of(&boxes);
+    assert_eq!(shot.run_with_truth().metric("false_tracked_share"), 1.0);
+}
+
+#[test]
 fn first_box_comes_from_truth_or_option() {
     let shot = Shot::new();
     let truth = shot.scratch.path("truth.txt");

@@ -1,3 +1,5 @@
+use std::f64::consts::TAU;
+
 use super::{Panorama, TurnSense};
 use crate::AppearanceError;
 
@@ -40,11 +42,9 @@ pub struct Donut {
     pub up: RingOrder,
 }
 
-/// Samples across a cell of the panorama, each way: enough where a cell is up to some four pixels wide.
-const SAMPLES: usize = 4;
-
 impl Donut {
-    /// The ring of an image (pixels row by row) as a panorama of `n_columns` × `n_rows`; each of its cells is the mean of what it covers.
+    /// The ring of an image (pixels row by row) as a panorama of `n_columns` × `n_rows`; each of its cells is the mean of the pixels
+    /// whose middles lie in it, whatever its size. A cell without any, which is smaller than a pixel, is the pixel at its middle.
     ///
     /// # Errors
     /// [`AppearanceError::PixelCount`] when the pixels are not `width · height` or the panorama has none, [`AppearanceError::Donut`] when radii
@@ -67,8 +67,17 @@ impl Donut {
             return Err(AppearanceError::PixelCount { size: (n_columns, n_rows), n_bytes: 0 });
         }
         self.check(width, height)?;
-        let cell = |cell: usize| self.cell(width, pixels, n_columns, n_rows, cell);
-        Ok(Panorama::from_pixels(n_columns, (0..n_columns * n_rows).map(cell).collect()))
+        let mut sums = vec![Sum::default(); n_columns * n_rows];
+        for (index, pixel) in pixels.iter().enumerate() {
+            let place = [(index % width) as f64, (index / width) as f64];
+            if let Some(cell) = self.cell_of(place, n_columns, n_rows) {
+                sums[cell].add(pixel);
+            }
+        }
+        let mean = |(cell, sum): (usize, &Sum)| {
+            sum.mean().unwrap_or_else(|| pixels[self.middle(cell, n_columns, n_rows, [width, height])])
+        };
+        Ok(Panorama::from_pixels(n_columns, sums.iter().enumerate().map(mean).collect()))
     }
 
     fn check(&self, width: usize, height: usize) -> Result<(), AppearanceError> {
@@ -82,42 +91,62 @@ impl Donut {
         Err(AppearanceError::Donut { center: self.center, radii: self.radii, image: (width, height) })
     }
 
-    fn cell(
-        &self,
-        width: usize,
-        pixels: &[[u8; 3]],
-        n_columns: usize,
-        n_rows: usize,
-        cell: usize,
-    ) -> [u8; 3] {
-        let (row, column) = (cell / n_columns, cell % n_columns);
-        let middle = |index: usize, sample: usize| index as f64 + (sample as f64 + 0.5) / SAMPLES as f64;
-        let mut sum = [0_u32; 3];
-        for sample in 0..SAMPLES * SAMPLES {
-            let depth = middle(row, sample / SAMPLES) / n_rows as f64;
-            // The first column is centred on the x axis.
-            let turn = (middle(column, sample % SAMPLES) - 0.5) / n_columns as f64;
-            let pixel = pixels[self.place(depth, turn, width, pixels.len() / width)];
-            (0..3).for_each(|channel| sum[channel] += u32::from(pixel[channel]));
+    /// The cell of the panorama that a pixel lies in, if it lies in the ring.
+    fn cell_of(&self, place: [f64; 2], n_columns: usize, n_rows: usize) -> Option<usize> {
+        let [inner, outer] = self.radii;
+        let [x, y] = [place[0] - self.center[0], place[1] - self.center[1]];
+        let radius = x.hypot(y);
+        let above = match self.up {
+            RingOrder::OutermostUp => outer - radius,
+            RingOrder::InnermostUp => radius - inner,
+        };
+        let row = above / (outer - inner) * n_rows as f64;
+        if !(0.0..n_rows as f64).contains(&row) {
+            return None;
         }
-        let n = (SAMPLES * SAMPLES) as u32;
-        sum.map(|sum| ((sum + n / 2) / n) as u8)
+        // The first column is centred on the x axis.
+        let turn = self.sign() * y.atan2(x) / TAU * n_columns as f64 + 0.5;
+        let column = (turn.rem_euclid(n_columns as f64) as usize).min(n_columns - 1);
+        Some(row as usize * n_columns + column)
     }
 
-    /// The pixel at a share of the way from the top to the bottom of the panorama, and of a turn.
-    fn place(&self, depth: f64, turn: f64, width: usize, height: usize) -> usize {
+    /// The pixel at the middle of a cell.
+    fn middle(&self, cell: usize, n_columns: usize, n_rows: usize, [width, height]: [usize; 2]) -> usize {
         let [inner, outer] = self.radii;
+        let depth = ((cell / n_columns) as f64 + 0.5) / n_rows as f64;
         let radius = match self.up {
             RingOrder::OutermostUp => outer + (inner - outer) * depth,
             RingOrder::InnermostUp => inner + (outer - inner) * depth,
         };
-        // Rows go down: what looks clockwise in the image is a growing angle there.
-        let sign = if self.sense == TurnSense::Clockwise { 1.0 } else { -1.0 };
-        let (sin, cos) = (sign * turn * std::f64::consts::TAU).sin_cos();
+        let (sin, cos) = (self.sign() * (cell % n_columns) as f64 / n_columns as f64 * TAU).sin_cos();
         let pixel = |center: f64, offset: f64, extent: usize| {
             ((center + offset).round().max(0.0) as usize).min(extent - 1)
         };
         pixel(self.center[1], radius * sin, height) * width + pixel(self.center[0], radius * cos, width)
+    }
+
+    /// Rows go down: what looks clockwise in the image is a growing angle there.
+    fn sign(&self) -> f64 {
+        if self.sense == TurnSense::Clockwise { 1.0 } else { -1.0 }
+    }
+}
+
+/// Pixels added up.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    channels: [u64; 3],
+    n: u64,
+}
+
+impl Sum {
+    fn add(&mut self, pixel: &[u8; 3]) {
+        self.n += 1;
+        self.channels.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += u64::from(*value));
+    }
+
+    /// Rounded to the nearest; `None` without a pixel.
+    fn mean(&self) -> Option<[u8; 3]> {
+        (self.n > 0).then(|| self.channels.map(|sum| ((sum + self.n / 2) / self.n) as u8))
     }
 }
 
@@ -158,6 +187,54 @@ mod tests {
         assert!(reversed.row(0).all(|pixel| pixel[0] < 5));
         let (there, back) = (row(0)[2], reversed.row(1).nth(6).copied().unwrap());
         assert!(there[1].abs_diff(back[1]) <= 3, "{there:?} {back:?}");
+    }
+
+    /// Every pixel of a checkerboard of single pixels counts: a sample of them would see more of one colour, by chance.
+    #[test]
+    fn a_large_cell_is_the_mean_of_all_its_pixels() {
+        let size = 1001;
+        let checkered: Vec<[u8; 3]> =
+            (0..size * size).map(|i| [if i % 2 == 0 { 40 } else { 200 }; 3]).collect();
+        let donut = Donut {
+            center: [500.0; 2],
+            radii: [100.0, 490.0],
+            ..donut(TurnSense::Clockwise, RingOrder::OutermostUp)
+        };
+        let panorama = donut.unwrap_image(size, size, &checkered, 36, 10).unwrap();
+        // at least 700 pixels a cell; those of either colour differ by no more than lie at its border of some 120 pixels
+        for pixel in panorama.pixels() {
+            assert!(pixel[0].abs_diff(120) <= 14, "{pixel:?}");
+        }
+        // noise, whose mean over a cell is only found by adding up that cell
+        let noise: Vec<[u8; 3]> = (0..size * size).map(|i| [(i * i % 251) as u8; 3]).collect();
+        let panorama = donut.unwrap_image(size, size, &noise, 36, 10).unwrap();
+        let (mut sum, mut n) = (0.0, 0.0);
+        for (i, pixel) in noise.iter().enumerate() {
+            let (x, y) = ((i % size) as f64 - 500.0, (i / size) as f64 - 500.0);
+            let in_row = (451.0..490.0).contains(&x.hypot(y)); // the topmost of ten rings of 39 pixels
+            if in_row && y.atan2(x).abs() < TAU / 72.0 {
+                sum += f64::from(pixel[0]);
+                n += 1.0;
+            }
+        }
+        assert!(
+            (f64::from(panorama.pixels()[0][0]) - sum / n).abs() <= 1.0,
+            "{:?} {}",
+            panorama.pixels()[0],
+            sum / n
+        );
+    }
+
+    #[test]
+    fn cells_smaller_than_a_pixel_show_the_pixel_there() {
+        let fine = donut(TurnSense::Clockwise, RingOrder::OutermostUp)
+            .unwrap_image(SIZE, SIZE, &image(), 720, 80)
+            .unwrap();
+        for column in [90, 180, 450] {
+            let turn = i32::from(fine.row(79).nth(column).unwrap()[1]);
+            // a pixel at radius 10 is 1/63 of a turn wide: 4 of 255
+            assert!((turn - 255 * column as i32 / 720).abs() <= 4, "{column}: {turn}");
+        }
     }
 
     #[test]

@@ -27,7 +27,7 @@ mod simulate;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Probabilistic robot localization on your logs.
 ///
@@ -77,6 +77,23 @@ enum Run {
     Views(run_views::Arguments),
     Track(run_track::Arguments),
     Cml(run_cml::Arguments),
+}
+
+/// Whether a command line, with the name of the program first, is one that the program takes. For tests of what is documented.
+///
+/// # Errors
+/// What is wrong with it.
+#[doc(hidden)]
+pub fn parses<T: Into<std::ffi::OsString> + Clone>(
+    command_line: impl IntoIterator<Item = T>,
+) -> Result<(), clap::Error> {
+    Arguments::command().try_get_matches_from(command_line).map(|_| ())
+}
+
+/// The commands and their options as `clap` knows them. For tests of what is documented.
+#[doc(hidden)]
+pub fn commands() -> clap::Command {
+    Arguments::command()
 }
 
 /// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).

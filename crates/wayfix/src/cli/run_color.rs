@@ -36,19 +36,19 @@ pub(super) struct Arguments {
     /// The log, an MCAP file; it may be a ROS 2 bag with rectified images and the transforms from the robot to its camera.
     ///
     /// Given several times, the files of one recording; of a ROS 2 bag that was split, the folder does.
-    #[arg(long, value_name = "PATH", required = true)]
+    #[arg(long, value_name = "PATH", required_unless_present_any = ["write_priors", "print_params"])]
     log: Vec<PathBuf>,
     #[command(flatten)]
     topics: Topics,
     /// The map: coloured polygons and posts, TOML or JSON.
-    #[arg(long, value_name = "FILE")]
-    map: PathBuf,
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["write_priors", "print_params"])]
+    map: Option<PathBuf>,
     /// What the colours may look like, one Gaussian a kind of light, as JSON [default: dark and bright light on the colours of the
     /// four-legged league].
     #[arg(long, value_name = "FILE")]
     priors: Option<PathBuf>,
     /// Write the built-in priors to a file, and end: the form of one's own.
-    #[arg(long, value_name = "FILE", exclusive = true)]
+    #[arg(long, value_name = "FILE")]
     write_priors: Option<PathBuf>,
     /// Where the robot is at the first image: `anywhere`, or x,y,heading in metres and degrees [default: near the first true pose, else
     /// anywhere].
@@ -62,7 +62,8 @@ const EXAMPLES: &str = "\
 Examples:
   wayfix run color --log fixtures/color_dark.mcap --map fixtures/four-legged-field.toml
   wayfix run color --log my.mcap --map my-field.toml --start anywhere --out results
-  wayfix run color --log my.mcap --map my-field.toml --print-params > my.toml";
+  wayfix run color --print-params > my.toml
+  wayfix run color --write-priors priors.json";
 
 #[derive(Clone, Copy, Debug)]
 struct StartArgument(StartPose);
@@ -101,7 +102,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let map = Arc::new(color::read_map(&arguments.map)?);
+    let map = Arc::new(color::read_map(arguments.map.as_deref().context("give --map")?)?);
     let priors = arguments.priors.as_deref().map_or_else(priors::built_in, priors::read)?;
     ensure!(
         priors.colors() == map.colors(),

@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     /// The log: CARMEN, scans as JSON, or MCAP, which may be a ROS 2 bag; text may be compressed with gzip.
     ///
     /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
-    #[arg(long, value_name = "PATH", required = true)]
+    #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     log: Vec<PathBuf>,
     /// How the log is stored: carmen, scan-json or mcap [default: found out by looking].
     #[arg(long)]

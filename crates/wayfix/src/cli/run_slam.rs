@@ -4,7 +4,7 @@ use std::{
 };
 
 use anyhow::{Context, Result};
-use wayfix_sensor_log::{Format, LogMeta, OpenOptions, Record};
+use wayfix_sensor_log::{Format, OpenOptions, Record};
 
 use super::{
     account::{account, read_all},
@@ -33,7 +33,7 @@ use crate::{
 /// `n_rejected` counts what the filter refused: outside the gate, twice in one look, not usable, back in time. `step_…_us` is computing
 /// time a look of the sensor.
 ///
-/// In logs of laser scans the landmarks are walls; the parameters are others then (`--print-params` shows them). What another program
+/// In logs of laser scans the landmarks are walls; the parameters are others then (`--print-params` with the log shows them). What another program
 /// estimated stands in for the truth there, when the log has no true poses. Where a ROS 2 bag has the transform from the robot to its laser, the laser is
 /// there, unless the parameters place it. `--relations` adds the errors of known relations.
 ///
@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     /// The log: an MCAP file, which may be a ROS 2 bag, the folder of a UTIAS or Victoria Park set, a text file of range-bearing lines, or laser scans of CARMEN or JSON.
     ///
     /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
-    #[arg(long, value_name = "PATH", required = true)]
+    #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     pub(super) log: Vec<PathBuf>,
     /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: found out by looking].
     #[arg(long)]
@@ -104,6 +104,10 @@ A file of parameters names what differs from the defaults, for instance
   bearing_sigma = 0.03    # rad";
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
+    if arguments.log.is_empty() {
+        print(commented(&params(&arguments, Profile::Generic)?)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let options = OpenOptions {
         format: arguments.format,
         robot: arguments.robot,
@@ -116,7 +120,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     if run_walls::is_for(&records) {
         return run_walls::main(&arguments, &records, meta.first_format(), &read);
     }
-    let params = params(&arguments, &meta)?;
+    let params = params(&arguments, Profile::of_log(&meta))?;
     if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
@@ -148,8 +152,9 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn params(arguments: &Arguments, meta: &LogMeta) -> Result<SlamSystemParams> {
-    let profile = arguments.profile.unwrap_or(Profile::of_log(meta));
+/// The parameters; `usual` is the profile unless the command line names one.
+fn params(arguments: &Arguments, usual: Profile) -> Result<SlamSystemParams> {
+    let profile = arguments.profile.unwrap_or(usual);
     let mut params = match &arguments.common.params {
         Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?
             .validated()

@@ -34,7 +34,8 @@ use crate::{
 /// `iou_mean` is the mean overlap (intersection over union) with the true boxes over all frames from the first one on, `success_auc` the
 /// share of frames with more overlap than each of 0, 0.05, …, 1, averaged, `precision_20px` the share of those whose centre is at most 20
 /// pixels off. A frame counts with overlap 0 when the tracker says that the target is lost (`n_lost`), and when it cannot be read or is
-/// refused (`n_without_estimate`). Frames without a true box are not judged. Without --truth these figures are absent. `frame_mean_ms` is
+/// refused (`n_without_estimate`). `false_tracked_share` is the share of the frames with overlap below 0.2 that the tracker calls tracked,
+/// `false_lost_share` that of the frames with overlap 0.5 or more that it calls lost. Frames without a true box are not judged. Without --truth these figures are absent. `frame_mean_ms` is
 /// the time of the tracker, without decoding.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]

@@ -4,7 +4,7 @@ use std::{
     str::FromStr,
 };
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::builder::RangedU64ValueParser;
 use wayfix_condensation::{ActionChoice, Light};
 
@@ -37,8 +37,8 @@ use crate::{
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// The scene that the robot drives in, JPEG or PNG.
-    #[arg(long, value_name = "IMAGE")]
-    scene: PathBuf,
+    #[arg(long, value_name = "IMAGE", required_unless_present = "print_params")]
+    scene: Option<PathBuf>,
     /// The scene as it was learned, of the same size [default: --scene].
     #[arg(long, value_name = "IMAGE")]
     learn_from: Option<PathBuf>,
@@ -117,7 +117,8 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let scene = read(&arguments.scene)?;
+    let scene_path = arguments.scene.as_deref().context("give --scene")?;
+    let scene = read(scene_path)?;
     let learned = arguments.learn_from.as_deref().map(read).transpose()?;
     let mut real = arguments.real_scene().of(&scene)?;
     let learned = learned.as_ref().unwrap_or(&scene);
@@ -143,7 +144,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     bar.finish_and_clear();
     let views = run?;
 
-    let name = arguments.scene.display().to_string();
+    let name = scene_path.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
     let run = Run { name, seconds, ..views::summarize(&views) };
     let sinks = outputs.sinks()?;

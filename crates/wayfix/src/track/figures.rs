@@ -18,7 +18,12 @@ pub fn summarize(run: &mut TrackRun) -> Run {
     let mut metrics: Vec<Metric> =
         judged.into_iter().filter_map(|(name, value, unit)| Some(Metric::new(name, value?, unit))).collect();
     if score.n_frames() > 0 {
-        metrics.push(Metric::new("n_judged", score.n_frames() as f64, ""));
+        let status = run.system.status_score();
+        metrics.extend([
+            Metric::new("false_tracked_share", status.false_tracked_share(), ""),
+            Metric::new("false_lost_share", status.false_lost_share(), ""),
+            Metric::new("n_judged", score.n_frames() as f64, ""),
+        ]);
     }
     metrics.extend([
         Metric::new("n_frames", run.system.n_frames() as f64, ""),

@@ -4,7 +4,9 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_condensation::{Picture, Target, TrackStatus};
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
-use super::{Follower, Method, Score, Start, TargetColors, TrackError, TrackParams, TrueBoxes, Truth};
+use super::{
+    Follower, Method, Score, Start, StatusScore, TargetColors, TrackError, TrackParams, TrueBoxes, Truth,
+};
 use crate::system::{Events, Stopwatch, System};
 
 /// A tracker, fed with the images of a log.
@@ -21,6 +23,7 @@ pub struct TrackSystem {
     last: Option<FrameResult>,
     was_lost: bool,
     score: Score,
+    status_score: StatusScore,
     totals: Totals,
     events: Events,
 }
@@ -83,6 +86,7 @@ impl TrackSystem {
             last: None,
             was_lost: false,
             score: Score::default(),
+            status_score: StatusScore::default(),
             totals: Totals::default(),
             events: Events::default(),
         }
@@ -96,6 +100,11 @@ impl TrackSystem {
     /// How well the target was followed so far.
     pub fn score(&self) -> &Score {
         &self.score
+    }
+
+    /// How often the tracker was wrong about whether it has the target.
+    pub fn status_score(&self) -> &StatusScore {
+        &self.status_score
     }
 
     /// What is known of the target.
@@ -200,6 +209,11 @@ impl TrackSystem {
         let estimate = (!lost).then_some(&target.bounding_box);
         if let Truth::At(truth) = &truth {
             self.score.add(estimate, truth);
+        }
+        match truth {
+            Truth::At(truth) => self.status_score.add(target.bounding_box.iou(&truth), lost),
+            Truth::Absent => self.status_score.add(0.0, lost),
+            Truth::Unknown => {}
         }
         match (lost, truth) {
             (true, Truth::Absent) => self.events.count("absent_and_lost"),

@@ -55,6 +55,7 @@ impl CorrelationTracker {
         self.trusted.clone_from(&self.current);
         self.scales.learn(picture, pose.center, self.recognizer.window.size(pose.scale), 1.0);
         (self.pose, self.n_untrusted) = (pose, 0);
+        self.bias = self.own_shift(sight);
     }
 
     /// The place where a square of the target's area has the most of its colours.

@@ -2,6 +2,8 @@ use anyhow::{Context, Result};
 use wayfix_condensation::{BitMask, BoundingBox, Target, TrackStatus};
 use wayfix_scene_sim::film::{Frame, Silhouette};
 
+use crate::track::StatusScore;
+
 /// Overlap of an outline from which on it is right. [Everingham et al. 2010, for detections]
 const RIGHT: f64 = 0.5;
 /// Distance of the centre of a box in pixels up to which it is right. [Wu, Lim & Yang 2013, "precision"]
@@ -24,6 +26,8 @@ pub struct FilmScore {
     pub right: Vec<bool>,
     /// Share of the neck that is inside the outline, of the frames with enough of a neck.
     pub neck_share: Vec<f64>,
+    /// How often the tracker is wrong about whether it has the target.
+    pub status: StatusScore,
     /// In how many frames with a visible target the tracker says that it is lost.
     pub n_lost: usize,
     /// How many frames show nothing of the target.
@@ -40,11 +44,13 @@ impl FilmScore {
     pub fn add(&mut self, target: &Target, frame: &Frame) -> Result<()> {
         let lost = target.status == TrackStatus::Lost;
         if frame.visible.area() == 0 {
+            self.status.add(0.0, lost);
             self.n_hidden += 1;
             self.n_hidden_and_lost += usize::from(lost);
             return Ok(());
         }
         if lost {
+            self.status.add(target.bounding_box.iou(&bounds(&frame.target)?), lost);
             self.n_lost += 1;
             self.iou.push(0.0);
             self.right.push(false);
@@ -63,6 +69,7 @@ impl FilmScore {
             let centers = estimate.centroid().zip(truth.centroid());
             (estimate.iou(&truth)?, centers.map_or([f64::NAN; 2], |(one, other)| apart(one, other)))
         };
+        self.status.add(iou, lost);
         let off = du.hypot(dv);
         self.right.push(if target.outline.is_empty() { off <= NEAR } else { iou > RIGHT });
         self.iou.push(iou);

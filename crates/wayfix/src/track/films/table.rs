@@ -8,7 +8,7 @@ use super::{FilmScore, follow, score::mean};
 use crate::{
     evaluate::MeanInterval,
     report::{Metric, Run, Spread},
-    track::{Method, Story, TrackParams, pictures},
+    track::{Method, StatusScore, Story, TrackParams, pictures},
 };
 
 /// Frames at the end of a film by which it is judged whether the target was found again.
@@ -59,6 +59,10 @@ fn over_seeds(scores: &[&FilmScore], incident: Incident) -> Vec<Metric> {
         Metric::new("iou_lowest_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
         Metric::new("frames_lost", sum(|score| score.n_lost), ""),
     ];
+    let mut status = StatusScore::default();
+    scores.iter().for_each(|score| status.merge(&score.status));
+    metrics.push(Metric::new("false_tracked_share", status.false_tracked_share(), ""));
+    metrics.push(Metric::new("false_lost_share", status.false_lost_share(), ""));
     // A tracker that loses the target at once has no centre.
     let centers = all(|score| &score.center_error);
     if !centers.is_empty() {
