@@ -135,7 +135,9 @@ fn open_files(
         Format::VictoriaPark => in_memory(victoria_park::read(path, &mut report)?),
         Format::RangeBearing => in_memory(range_bearing::read(path, &mut report)?),
         Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
-        Format::Carmen => Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses)?)),
+        Format::Carmen => {
+            Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses, &mut report)?))
+        }
         Format::ScanJson => in_memory(scan_json::read(path, options.poses, &mut report)?),
         Format::Mcap => Records::Mcap(Box::new(McapRecords::open(path, &meta.files, &options.topics)?)),
         Format::Images => Records::Images(ImageFolder::open(path, options.frame_rate_hz)?),

@@ -9,7 +9,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::Lines;
 use super::row::{RowError, columns, number, stamp};
-use super::time_check::TimeCheck;
+use super::time_order::{Timed, in_time_order};
 use crate::planar::{NORM_TOLERANCE, heading_of, quaternion_of};
 use crate::{Data, LogError, PoseKind, ProblemKind, ReadReport, Record, WriteReport};
 
@@ -19,16 +19,16 @@ pub(crate) fn looks_like(row: &str) -> bool {
 
 /// The records, sorted by time.
 pub(crate) fn read(path: &Path, kind: PoseKind, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
-    let mut records = Vec::new();
-    let mut time = TimeCheck::default();
-    Lines::open(path)?.for_each_row(report, |row| {
-        let record = parse(row, kind)?;
-        let stamp = record.stamp;
-        records.push(record);
-        time.check(stamp)
+    let lines = Lines::open(path)?;
+    let file = lines.file_name();
+    let mut rows = Vec::new();
+    lines.for_each_numbered_row(report, |row, text| {
+        let Record { stamp, data } = parse(text, kind)?;
+        rows.push(Timed { row, stamp, item: data });
+        Ok(())
     })?;
-    records.sort_by_key(|record| record.stamp);
-    Ok(records)
+    let to_record = |(stamp, data)| Record { stamp, data };
+    Ok(in_time_order(&file, rows, report).into_iter().map(to_record).collect())
 }
 
 fn parse(row: &str, kind: PoseKind) -> Result<Record, RowError> {
