@@ -280,3 +280,23 @@ fn poses_after_a_clock_set_back_are_not_sorted_in() {
     assert_eq!((report.rows_read, report.problems[&ProblemKind::TooLate]), (30, 20));
     assert_eq!(report.warnings.iter().map(|warning| warning.name).collect::<Vec<_>>(), ["clock_set_back"]);
 }
+
+#[test]
+fn tum_columns_are_read_by_their_names_and_with_commas() {
+    let folder = tempfile::tempdir().unwrap();
+    let (sin, cos) = 0.65_f64.sin_cos();
+    let texts = [
+        format!("# timestamp tx ty tz qx qy qz qw\n1 2 3 0 0 0 {sin} {cos}\n"),
+        format!("# timestamp tx ty tz qw qx qy qz\n1 2 3 0 {cos} 0 0 {sin}\n"),
+        format!("timestamp,tx,ty,tz,qw,qx,qy,qz\n1,2,3,0,{cos},0,0,{sin}\n"),
+        format!("1, 2, 3, 0, 0, 0, {sin}, {cos}\n"),
+    ];
+    for text in texts {
+        let (format, records, _) = read_text(folder.path(), "poses.txt", text.as_bytes());
+        assert_eq!(format, Format::Tum);
+        let [Record { data: Data::EstimatedPose(pose), .. }] = records[..] else {
+            panic!("{text}: {records:?}")
+        };
+        assert!((pose.heading() - 1.3).abs() < 1e-15 && pose.x() == 2.0, "{text}: {pose:?}");
+    }
+}
