@@ -1,7 +1,7 @@
 //! Text files, gzip or not: what they are, their first bytes say.
 
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
@@ -26,12 +26,29 @@ pub(crate) fn open_text(path: &Path) -> Result<TextReader, LogError> {
     // Damage at the very beginning is told when the text is read.
     let beginning = text.fill_buf().unwrap_or_default();
     if is_utf16(beginning) {
-        let reason = "it is UTF-16 text; `iconv -f UTF-16 -t UTF-8` makes UTF-8 of it".to_owned();
-        return Err(LogError::UnknownFormat { path: path.into(), reason });
+        return Err(LogError::Utf16 { path: path.into() });
     }
     if beginning.starts_with(&BYTE_ORDER_MARK) {
         text.consume(BYTE_ORDER_MARK.len());
     }
+    Ok(text)
+}
+
+/// The whole text of a file without its byte-order mark, unpacked where it is compressed with gzip.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("params.toml");
+/// std::fs::write(&path, "\u{feff}laser = [0.4, 0.0, 0.0]")?;
+/// assert_eq!(wayfix_sensor_log::read_text(&path)?, "laser = [0.4, 0.0, 0.0]");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the file cannot be read, or is no text in UTF-8.
+pub fn read_text(path: &Path) -> Result<String, LogError> {
+    let mut text = String::new();
+    open_text(path)?.read_to_string(&mut text).map_err(|source| LogError::io(path, source))?;
     Ok(text)
 }
 

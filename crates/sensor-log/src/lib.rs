@@ -56,6 +56,7 @@ mod write;
 
 pub use ackermann::AckermannDrive;
 pub use bag::{Topic, TopicUse};
+pub use compressed::read_text;
 pub use convert::convert;
 pub use error::LogError;
 pub use format::Format;
