@@ -55,9 +55,9 @@ mod tests {
     #[test]
     fn a_field_of_view_is_assumed_only_for_other_numbers_of_beams() {
         let mut report = ReadReport::default();
-        [180, 181, 360, 361].map(|n_beams| warn_of_assumed_field(n_beams, &mut report));
+        [180, 181, 360, 361].into_iter().for_each(|n_beams| warn_of_assumed_field(n_beams, &mut report));
         assert!(report.warnings.is_empty());
-        [541, 541].map(|n_beams| warn_of_assumed_field(n_beams, &mut report));
+        [541, 541].into_iter().for_each(|n_beams| warn_of_assumed_field(n_beams, &mut report));
         assert_eq!(report.warnings.len(), 1);
         assert!(report.warnings[0].text.contains("541"));
     }

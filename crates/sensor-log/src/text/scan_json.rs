@@ -38,7 +38,7 @@ pub(crate) fn read(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Res
     // An object has no order.
     scans.sort_by_key(|scan| scan.stamp);
     let mut odometry = ScanOdometry::default();
-    let to_records = |(stamp, (pose, scan)): (Stamp, (Pose2<f64>, LaserScan))| {
+    let to_records = |Timed { stamp, item: (pose, scan), .. }: Timed<(Pose2<f64>, LaserScan)>| {
         let motion = odometry.scan(stamp.seconds(), pose).map(Data::OdometryIncrement);
         let data = [Some(poses.data(pose)), motion, Some(Data::Scan(scan))];
         data.into_iter().flatten().map(move |data| Record { stamp, data })

@@ -10,7 +10,7 @@ pub(super) struct Timed<T> {
 
 /// The rows of a file in the order of time. Rows whose stamp is far from all others are left out; where the clock is set back, the rows
 /// are cut and the longest stretch is read. Rows that are only out of order are sorted. All of that goes into the report.
-pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut ReadReport) -> Vec<(Stamp, T)> {
+pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut ReadReport) -> Vec<Timed<T>> {
     let stamps: Vec<Stamp> = rows.iter().map(|row| row.stamp).collect();
     let mut faults = clock_faults(&stamps).into_iter().peekable();
     let mut stretches = vec![Vec::new()];
@@ -49,7 +49,7 @@ pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut Rea
         }
     }
     rows.sort_by_key(|row| row.stamp);
-    rows.into_iter().map(|row| (row.stamp, row.item)).collect()
+    rows
 }
 
 /// The longest stretch, of several of the same length the first; the others are left out.
@@ -96,7 +96,7 @@ mod tests {
         };
         let mut report = ReadReport { rows_read: seconds.len() as u64, ..Default::default() };
         let rows = in_time_order("rows.txt", seconds.iter().enumerate().map(row).collect(), &mut report);
-        (rows.into_iter().map(|(_, row)| row).collect(), report)
+        (rows.into_iter().map(|row| row.item).collect(), report)
     }
 
     #[test]

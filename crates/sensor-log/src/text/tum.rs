@@ -30,7 +30,7 @@ pub(crate) fn read(path: &Path, kind: PoseKind, report: &mut ReadReport) -> Resu
         rows.push(Timed { row, stamp, item: data });
         Ok(())
     })?;
-    let to_record = |(stamp, data)| Record { stamp, data };
+    let to_record = |Timed { stamp, item: data, .. }| Record { stamp, data };
     Ok(in_time_order(&file, rows, report).into_iter().map(to_record).collect())
 }
 

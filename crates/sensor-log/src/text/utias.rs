@@ -129,7 +129,7 @@ fn read_sightings(
         Ok((stamp, Sighting { target, range: number(range)?, bearing: number(bearing)? }))
     })?;
     let mut looks: BTreeMap<Stamp, Vec<Sighting>> = BTreeMap::new();
-    for (stamp, sighting) in sightings {
+    for Timed { stamp, item: sighting, .. } in sightings {
         looks.entry(stamp).or_default().push(sighting);
     }
     Ok(looks.into_iter().map(|(stamp, look)| Record { stamp, data: Data::Sightings(look) }).collect())
@@ -146,8 +146,8 @@ fn read_landmarks(path: &Path, start: Stamp, report: &mut ReadReport) -> Result<
     Ok(landmarks)
 }
 
-fn to_records(rows: Vec<(Stamp, Data)>) -> Vec<Record> {
-    rows.into_iter().map(|(stamp, data)| Record { stamp, data }).collect()
+fn to_records(rows: Vec<Timed<Data>>) -> Vec<Record> {
+    rows.into_iter().map(|Timed { stamp, item: data, .. }| Record { stamp, data }).collect()
 }
 
 /// The rows of a file in time order.
@@ -155,7 +155,7 @@ fn read_stamped<T, const N: usize>(
     path: &Path,
     report: &mut ReadReport,
     read_row: impl Fn([&str; N]) -> Result<(Stamp, T), RowError>,
-) -> Result<Vec<(Stamp, T)>, LogError> {
+) -> Result<Vec<Timed<T>>, LogError> {
     let lines = Lines::open(path)?;
     let file = lines.file_name();
     let mut rows = Vec::new();

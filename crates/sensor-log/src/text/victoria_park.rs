@@ -51,7 +51,7 @@ fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, Lo
         let drive = AckermannDrive { wheel_speed: number(speed)?, steering: number(steering)? };
         Ok((stamp(t)?, drive))
     })?;
-    let to_record = |(stamp, (_, drive))| Record { stamp, data: Data::Ackermann(drive) };
+    let to_record = |Timed { stamp, item, .. }| Record { stamp, data: Data::Ackermann(item) };
     Ok(rows.into_iter().map(to_record).collect())
 }
 
@@ -74,7 +74,7 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
         read_rows(path, header, report, |row| take(row, Target::Unlabelled))?
     };
     let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Sighting>)> = BTreeMap::new();
-    for (stamp, (_, (width, sighting))) in trees {
+    for Timed { stamp, item: (width, sighting), .. } in trees {
         let (widths, look) = looks.entry(stamp).or_default();
         widths.push(width);
         look.push(sighting);
@@ -98,26 +98,26 @@ fn read_fixes(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
     });
     let fixes = match read {
         Err(LogError::NotFound { .. }) => return Ok(Vec::new()),
-        rows => rows?.into_iter().map(|(stamp, (row, position))| (row, stamp, position)),
+        rows => rows?.into_iter().map(|Timed { row, stamp, item }| (row, stamp, item)),
     };
     let to_record = |(stamp, position)| Record { stamp, data: Data::TruePosition(position) };
     Ok(drop_jumps(GPS, fixes.collect(), report).into_iter().map(to_record).collect())
 }
 
-/// The rows below the header in time order: the stamp, the line, and what `read_row` made of it.
+/// The rows below the header in time order.
 fn read_rows<T, const N: usize>(
     path: &Path,
     header: [&str; N],
     report: &mut ReadReport,
     mut read_row: impl FnMut([&str; N]) -> Result<(Stamp, T), RowError>,
-) -> Result<Vec<(Stamp, (u64, T))>, LogError> {
+) -> Result<Vec<Timed<T>>, LogError> {
     let mut lines = Lines::open(path)?;
     check_header(&mut lines, path, header)?;
     let file = lines.file_name();
     let mut rows = Vec::new();
     lines.for_each_numbered_row(report, |row, text| {
         let (stamp, item) = read_row(comma_columns(text)?)?;
-        rows.push(Timed { row, stamp, item: (row, item) });
+        rows.push(Timed { row, stamp, item });
         Ok(())
     })?;
     Ok(in_time_order(&file, rows, report))
