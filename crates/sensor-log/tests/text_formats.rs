@@ -173,8 +173,8 @@ fn what_cannot_be_opened_says_why() {
 
 /// Opens a text that is written as `name`.
 fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (Format, Vec<Record>, ReadReport) {
-    fs::write(folder.join(name), bytes).unwrap();
-    let log = open(folder.join(name), &OpenOptions::default()).unwrap();
+    fs::write(folder.join(name), bytes).expect("the scratch folder is writable");
+    let log = open(folder.join(name), &OpenOptions::default()).expect("a log of a known format");
     let format = log.meta().format;
     let (records, report) = log.read_all();
     (format, records, report)
