@@ -1,7 +1,7 @@
 //! Text files, gzip or not: what they are, their first bytes say.
 
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
@@ -10,15 +10,55 @@ use crate::{LogEnd, LogError};
 
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 
+/// What editors on Windows put before a text in UTF-8.
+const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+
 /// The text of a file.
 pub(crate) type TextReader = Box<dyn BufRead + Send>;
 
-/// Opens a text file and unpacks it on the way where it is compressed.
+/// Opens a text file without its byte-order mark, and unpacks it on the way where it is compressed. UTF-16 is refused by name.
 pub(crate) fn open_text(path: &Path) -> Result<TextReader, LogError> {
     let io = |source| LogError::io(path, source);
     let mut file = BufReader::new(File::open(path).map_err(io)?);
     let is_gzip = file.fill_buf().map_err(io)?.starts_with(&GZIP_MAGIC);
-    Ok(if is_gzip { Box::new(BufReader::new(MultiGzDecoder::new(file))) } else { Box::new(file) })
+    let mut text: TextReader =
+        if is_gzip { Box::new(BufReader::new(MultiGzDecoder::new(file))) } else { Box::new(file) };
+    // Damage at the very beginning is told when the text is read.
+    let beginning = text.fill_buf().unwrap_or_default();
+    if is_utf16(beginning) {
+        return Err(LogError::Utf16 { path: path.into() });
+    }
+    if beginning.starts_with(&BYTE_ORDER_MARK) {
+        text.consume(BYTE_ORDER_MARK.len());
+    }
+    Ok(text)
+}
+
+/// The whole text of a file without its byte-order mark, unpacked where it is compressed with gzip.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("params.toml");
+/// std::fs::write(&path, "\u{feff}laser = [0.4, 0.0, 0.0]")?;
+/// assert_eq!(wayfix_sensor_log::read_text(&path)?, "laser = [0.4, 0.0, 0.0]");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// When the file cannot be read, or is no text in UTF-8.
+pub fn read_text(path: &Path) -> Result<String, LogError> {
+    let mut text = String::new();
+    open_text(path)?.read_to_string(&mut text).map_err(|source| LogError::io(path, source))?;
+    Ok(text)
+}
+
+/// Whether a text begins like UTF-16: with its byte-order mark, or with two characters of ASCII whose other bytes are zero.
+fn is_utf16(beginning: &[u8]) -> bool {
+    match beginning {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => true,
+        [a, 0, b, 0, ..] | [0, a, 0, b, ..] => [a, b].iter().all(|byte| matches!(byte, b' '..=b'~')),
+        _ => false,
+    }
 }
 
 /// How a compressed log ends that broke off or went bad after `n_bytes` of text; `None` when the trouble is another.

@@ -60,6 +60,12 @@ pub enum LogError {
     /// No path was given.
     #[error("no log was given")]
     NoPath,
+    /// A text in UTF-16, which editors on Windows write; all text formats are UTF-8.
+    #[error("{}: is UTF-16 text; `iconv -f UTF-16 -t UTF-8` makes UTF-8 of it", path.display())]
+    Utf16 {
+        /// The file.
+        path: PathBuf,
+    },
     /// The content looks like no known format.
     #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), Format::NAMES)]
     UnknownFormat {

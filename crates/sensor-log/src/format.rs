@@ -96,19 +96,29 @@ impl Format {
             return Ok(Self::ScanJson);
         }
         let mut lines = Lines::new(text, path);
-        let Some(row) = lines.next_row()? else {
-            return Err(LogError::Empty { path: path.into() });
-        };
-        let unknown = |reason| Err(LogError::UnknownFormat { path: path.into(), reason });
-        match row.text {
-            Ok(text) if range_bearing::looks_like(text) => Ok(Self::RangeBearing),
-            Ok(text) if tum::looks_like(text) => Ok(Self::Tum),
-            Ok(text) if carmen::looks_like(text) => Ok(Self::Carmen),
-            Ok(text) => unknown(format!("line {} is {:?}", row.number, shortened(text))),
-            Err(error) => unknown(format!("line {}: {}", row.number, error.reason)),
+        let mut first = None;
+        for _ in 0..ROWS_TRIED {
+            let Some(row) = lines.next_row()? else { break };
+            match &row.text {
+                Ok(text) if range_bearing::looks_like(text) => return Ok(Self::RangeBearing),
+                Ok(text) if tum::looks_like(text) => return Ok(Self::Tum),
+                Ok(text) if carmen::looks_like(text) => return Ok(Self::Carmen),
+                _ => {}
+            }
+            first.get_or_insert_with(|| match row.text {
+                Ok(text) => format!("line {} is {:?}", row.number, shortened(text)),
+                Err(error) => format!("line {}: {}", row.number, error.reason),
+            });
+        }
+        match first {
+            Some(reason) => Err(LogError::UnknownFormat { path: path.into(), reason }),
+            None => Err(LogError::Empty { path: path.into() }),
         }
     }
 }
+
+/// As many rows are looked at before a text is of no known format: one that is damaged, or a header, does not hide the others.
+const ROWS_TRIED: usize = 16;
 
 /// Enough of a text to recognize it in a message.
 pub(crate) fn shortened(text: &str) -> String {

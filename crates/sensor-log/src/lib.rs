@@ -8,7 +8,7 @@
 //! | [`Format::VictoriaPark`] | a folder of the Victoria Park set as CSV | car odometry, trees, GPS |
 //! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, sightings, truth |
 //! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
-//! | [`Format::Carmen`] | messages of the Carnegie Mellon toolkit, one a line | scans, increments, poses |
+//! | [`Format::Carmen`] | messages of the Carnegie Mellon toolkit, one a line | scans, increments, the laser's mount, poses that are not the odometry |
 //! | [`Format::ScanJson`] | scans with their poses as a JSON object | scans, increments, poses |
 //! | [`Format::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
 //! | | MCAP with ROS 2 messages ([`ros`]), as `ros2 bag` writes it | scans, odometry, images, cameras, poses |
@@ -57,6 +57,7 @@ mod write;
 
 pub use ackermann::AckermannDrive;
 pub use bag::{Topic, TopicUse};
+pub use compressed::read_text;
 pub use convert::convert;
 pub use error::LogError;
 pub use format::Format;

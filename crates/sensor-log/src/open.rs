@@ -57,8 +57,10 @@ impl PoseKind {
 /// Opens the log at `path`.
 ///
 /// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings (MCAP: the order of the file).
-/// Text logs are read whole and sorted where rows go backwards, which is reported. CARMEN logs are read line by line, in whose order they
-/// stay: where time stands still, stamps are made up, which is reported. Text may be compressed with gzip, whatever the file is called. MCAP files are read chunk by chunk;
+/// Text logs are read whole and sorted where rows go backwards, which is reported. A row that is a minute or more from its neighbours is left
+/// out, and where the clock is set back, the longest stretch is read, which is reported, too. CARMEN logs are read line by line, twice, in whose
+/// order they stay: where time stands still, stamps are made up, and where the clock is set back, they are moved on, which is reported.
+/// Text may be compressed with gzip, whatever the file is called, begin with a byte-order mark, and have any line ends. MCAP files are read chunk by chunk;
 /// what comes more than 256 records too late is left out, which is reported. A folder with one MCAP file in it is that file, and one of files that
 /// are called like the parts of a recording, `NAME_0.mcap`, `NAME_1.mcap`, or that its `metadata.yaml` names, is all of them together.
 /// In ROS 2 bags a kind of record comes from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] tells what became of the others.
@@ -138,7 +140,9 @@ fn open_files(
         Format::VictoriaPark => in_memory(victoria_park::read(path, &mut report)?),
         Format::RangeBearing => in_memory(range_bearing::read(path, &mut report)?),
         Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
-        Format::Carmen => Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses)?)),
+        Format::Carmen => {
+            Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses, &mut report)?))
+        }
         Format::ScanJson => in_memory(scan_json::read(path, options.poses, &mut report)?),
         Format::Mcap => {
             Records::Mcap(Box::new(McapRecords::open(path, &meta.files, &options.topics, &mut report)?))

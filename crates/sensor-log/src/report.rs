@@ -78,7 +78,7 @@ pub enum ProblemKind {
     NotANumber,
     /// A number is NaN or infinite; left out.
     NotFinite,
-    /// A time stamp is negative or beyond the year 2540; left out.
+    /// A time stamp is negative, beyond the year 2540 or far from those of the rows around it; left out.
     BadStamp,
     /// Not a row of this format: unknown first word, a line too long or not text; left out.
     Unrecognized,
@@ -88,7 +88,7 @@ pub enum ProblemKind {
     OutOfOrder,
     /// Not later than the row before it, in a log whose clock cannot be trusted. Kept, 0.1 s after the row before.
     NotLater,
-    /// Earlier than what a streamed log has already given out; left out.
+    /// Earlier than what a streamed log has already given out, or after a clock that was set back; left out.
     TooLate,
     /// A message that is not what its schema says; left out.
     Undecodable,
@@ -129,6 +129,12 @@ impl ReadReport {
         if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(problem);
         }
+    }
+    /// Takes back `n_rows` that were read, all for the reason of the first.
+    pub(crate) fn leave_out(&mut self, first: Problem, n_rows: u64) {
+        self.rows_read -= n_rows.min(self.rows_read);
+        *self.problems.entry(first.kind).or_default() += n_rows.saturating_sub(1);
+        self.add(first);
     }
     pub(crate) fn ignore(&mut self, topic: &str) {
         match self.ignored.get_mut(topic) {

@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::Path;
 
 use flate2::{Compression, write::GzEncoder};
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_sensor_log::{Data, Format, LogEnd, OpenOptions, PoseKind, ProblemKind, ReadReport, Record, open};
 
 fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f64) -> String {
@@ -57,6 +57,8 @@ fn a_scan_gives_its_pose_the_motion_and_the_ranges_as_they_came() {
         odom_line("0 0 0", 0.0),
         odom_line("0.5 0 0", 3.0),
         scan_line(180, "81.9", "2 0 0.5", "2 0 0.5", 3.0),
+        odom_line("2.5 0 0.5", 4.0),
+        scan_line(180, "1", "3 0 0.5", "3 0 0.5", 4.0),
     ]
     .concat();
     let (records, report) = read(&folder.path().join("walk.log"), text.as_bytes());
@@ -67,6 +69,9 @@ fn a_scan_gives_its_pose_the_motion_and_the_ranges_as_they_came() {
         (3.0, "estimated pose"),
         (3.0, "odometry increment"),
         (3.0, "laser scan"),
+        (4.0, "estimated pose"),
+        (4.0, "odometry increment"),
+        (4.0, "laser scan"),
     ];
     assert_eq!(kinds, expected);
     assert_eq!(records[2].data, Data::EstimatedPose(Pose2::new(2.0, 0.0, 0.5)));
@@ -78,22 +83,22 @@ fn a_scan_gives_its_pose_the_motion_and_the_ranges_as_they_came() {
     assert_eq!(first.angle_increment, 0.5_f64.to_radians());
     assert_eq!((second.ranges[179], second.range_max), (81.9, 50.0));
     assert_eq!(second.echoes().count(), 0);
-    assert_eq!((report.rows_read, report.n_problems(), report.ignored["NEFF"]), (4, 0, 1));
+    assert_eq!((report.rows_read, report.n_problems(), report.ignored["NEFF"]), (6, 0, 1));
 
     let options = OpenOptions { poses: PoseKind::True, ..Default::default() };
     let log = open(folder.path().join("walk.log"), &options).unwrap();
-    assert_eq!(log.filter(|record| matches!(record.data, Data::TruePose(_))).count(), 2);
+    assert_eq!(log.filter(|record| matches!(record.data, Data::TruePose(_))).count(), 3);
 }
 
 #[test]
 fn a_damaged_line_is_counted_and_the_others_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let good = |seconds| scan_line(180, "1", "0 0 0", "0 0 0", seconds);
-    let long = "FLASER 180 ".to_owned() + &"1 ".repeat(10_000);
+    let long = "FLASER 180 ".to_owned() + &"1 ".repeat(40_000);
     let text = [
         good(1.0),
         scan_line(180, "1", "0 0", "0 0 0", 2.0),
-        scan_line(179, "1", "0 0 0", "0 0 0", 3.0),
+        scan_line(1, "1", "0 0 0", "0 0 0", 3.0),
         scan_line(180, "one", "0 0 0", "0 0 0", 4.0),
         scan_line(180, "1", "0 nan 0", "0 0 0", 5.0),
         good(-6.0),
@@ -127,6 +132,221 @@ fn line_order_decides_where_time_does_not_advance() {
     assert_eq!(report.problems[&ProblemKind::NotLater], 2);
 }
 
+/// The warnings of a log, by name.
+fn warned(report: &ReadReport) -> Vec<&str> {
+    report.warnings.iter().map(|warning| warning.name).collect()
+}
+
+/// A drive of ten scans through an arc: what the laser, which is at `mount`, and the robot's odometry say; `(pose, odometry)` of each line.
+fn arc(mount: Pose2<f64>, pose: impl Fn(u32, &Pose2<f64>) -> Pose2<f64>) -> Vec<(String, String)> {
+    let shown = |pose: &Pose2<f64>| format!("{:.6} {:.6} {:.6}", pose.x(), pose.y(), pose.heading());
+    let line = |k: u32| {
+        let (sin, cos) = (0.2 * f64::from(k)).sin_cos();
+        let robot = Pose2::new(5.0 + 2.0 * sin, 3.0 - 2.0 * cos, 0.2 * f64::from(k));
+        (shown(&pose(k, &robot).compose(&mount)), shown(&robot))
+    };
+    (0..10).map(line).collect()
+}
+
+fn log_of(poses: &[(String, String)]) -> String {
+    let line = |(k, (pose, odometry)): (usize, &(String, String))| {
+        scan_line(181, "1", pose, odometry, 100.0 + 0.1 * k as f64)
+    };
+    poses.iter().enumerate().map(line).collect()
+}
+
+/// Mounts and poses of a log; every increment must be that of the arc.
+fn mounts_and_poses(records: &[Record]) -> (Vec<Pose2<f64>>, Vec<Pose2<f64>>) {
+    let (mut mounts, mut poses) = (Vec::new(), Vec::new());
+    for record in records {
+        match &record.data {
+            Data::LaserMount(mount) => mounts.push(*mount),
+            Data::EstimatedPose(pose) => poses.push(*pose),
+            Data::OdometryIncrement(step) => {
+                assert!((step.heading() - 0.2).abs() < 1e-5, "{step:?}");
+                assert!((step.x().hypot(step.y()) - 4.0 * 0.1_f64.sin()).abs() < 1e-5, "{step:?}");
+            }
+            _ => {}
+        }
+    }
+    (mounts, poses)
+}
+
+fn near(a: &Pose2<f64>, b: &Pose2<f64>) -> bool {
+    a.local(b).norm() < 1e-5
+}
+
+#[test]
+fn the_difference_of_both_poses_is_the_lasers_mount() {
+    let folder = tempfile::tempdir().unwrap();
+    for mount in [Pose2::new(0.4, 0.0, 0.0), Pose2::new(-0.2, 0.1, 3.1)] {
+        let text = log_of(&arc(mount, |_, robot| *robot));
+        let (records, report) = read(&folder.path().join("ahead.log"), text.as_bytes());
+        let (mounts, poses) = mounts_and_poses(&records);
+        assert!(mounts.len() == 1 && near(&mounts[0], &mount), "{mounts:?}");
+        assert!(matches!(records[0].data, Data::LaserMount(_)));
+        assert!(poses.is_empty(), "they are the odometry");
+        assert_eq!(warned(&report), ["laser_mount_from_poses", "poses_are_odometry"]);
+        assert_eq!((n_scans(&records), report.n_problems()), (10, 0));
+    }
+}
+
+#[test]
+fn poses_of_a_mapper_are_the_robots_and_their_drift_no_mount() {
+    let folder = tempfile::tempdir().unwrap();
+    let mount = Pose2::new(0.4, 0.0, 0.0);
+    let corrected = |k: u32, robot: &Pose2<f64>| Pose2::new(0.05 * f64::from(k), 0.0, 0.0).compose(robot);
+    let text = "PARAM robot_frontlaser_offset 0.4 nohost 0\n".to_owned() + &log_of(&arc(mount, corrected));
+    let (records, report) = read(&folder.path().join("corrected.log"), text.as_bytes());
+    let (mounts, poses) = mounts_and_poses(&records);
+    assert_eq!(mounts, [mount]);
+    assert_eq!(warned(&report), ["laser_mount_from_parameters"]);
+    // At the start the mapper and the odometry are one: (5, 1, 0).
+    assert!(poses.len() == 10 && near(&poses[0], &Pose2::new(5.0, 1.0, 0.0)), "{poses:?}");
+
+    let (records, report) =
+        read(&folder.path().join("no-mount.log"), log_of(&arc(mount, corrected)).as_bytes());
+    assert!(mounts_and_poses(&records).0.is_empty() && report.is_clean());
+}
+
+#[test]
+fn poses_that_are_odometry_are_left_out_even_beside_a_bad_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let centre = Pose2::new(0.0, 0.0, 0.0);
+    let other_frame = Pose2::new(-7.0, 2.0, 1.5);
+    for frame in [centre, other_frame] {
+        let mut drive = arc(centre, |_, robot| frame.compose(robot));
+        drive[4].0 = "1e9 0 0".to_owned();
+        let (records, report) = read(&folder.path().join("raw.log"), log_of(&drive).as_bytes());
+        let (mounts, poses) = mounts_and_poses(&records);
+        assert!(mounts.is_empty() && poses.is_empty(), "{mounts:?} {poses:?}");
+        assert_eq!(warned(&report), ["poses_are_odometry"]);
+    }
+}
+
+#[test]
+fn parameters_tell_the_mount_of_a_raw_log_with_equal_poses() {
+    let folder = tempfile::tempdir().unwrap();
+    let drive = log_of(&arc(Pose2::new(0.0, 0.0, 0.0), |_, robot| *robot));
+    let parameters =
+        "PARAM robot_frontlaser_offset 0.3 nohost 0\nPARAM robot_frontlaser_side_offset -0.1 h 0\n";
+    let (records, report) = read(&folder.path().join("raw.log"), (parameters.to_owned() + &drive).as_bytes());
+    assert_eq!(mounts_and_poses(&records).0, [Pose2::new(0.3, -0.1, 0.0)]);
+    assert_eq!(warned(&report), ["laser_mount_from_parameters", "poses_are_odometry"]);
+}
+
+/// The line of another program for the same scan.
+fn robot_laser(line: &str) -> String {
+    let columns: Vec<&str> = line.split_whitespace().collect();
+    let (ranges, rest) = columns[1..].split_at(182);
+    let poses = rest[..6].join(" ");
+    let times = rest[6..].join(" ");
+    let stated = "0 -1.570796 3.141593 0.017453 80.0 0.01 0";
+    format!("ROBOTLASER1 {stated} {} 0 {poses} 0.1 0 0.5 0.3 0 {times}\n", ranges.join(" "))
+}
+
+#[test]
+fn scans_of_either_message_are_read_and_none_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let mount = Pose2::new(0.4, 0.0, 0.0);
+    let front = log_of(&arc(mount, |_, robot| *robot));
+    let (of_front, _) = read(&folder.path().join("front.log"), front.as_bytes());
+    let lines: Vec<&str> = front.lines().collect();
+    let either = |(k, line): (usize, &&str)| {
+        if k % 2 == 0 { robot_laser(line) } else { format!("{line}\n") }
+    };
+    let mixed: String = lines.iter().enumerate().map(either).collect();
+    let both: String = lines.iter().map(|line| format!("{line}\n{}", robot_laser(line))).collect();
+    let second = lines[0].replacen("FLASER", "RLASER", 1)
+        + "\nROBOTLASER2 0\nRAWLASER1 0 -1 2 1 8 0.01 0 3 1 1 1 0 100 h 1\n";
+    for (name, text, n_again) in [("mixed", mixed, 0), ("both", both, 10)] {
+        let (records, report) = read(&folder.path().join(name), (second.clone() + &text).as_bytes());
+        let bare = |records: &[Record]| {
+            let is_scan = |record: &&Record| matches!(record.data, Data::Scan(_));
+            let (scans, others): (Vec<_>, Vec<_>) = records.iter().partition(is_scan);
+            (
+                scans.iter().map(|record| record.stamp).collect::<Vec<_>>(),
+                others.into_iter().cloned().collect::<Vec<_>>(),
+            )
+        };
+        assert_eq!(bare(&records), bare(&of_front), "{name}");
+        assert_eq!((n_scans(&records), report.n_problems()), (10, 0), "{name}");
+        let again: u64 =
+            report.ignored.iter().filter(|(word, _)| word.contains("again")).map(|(_, n)| n).sum();
+        assert_eq!((again, report.ignored["RLASER"], report.ignored["RAWLASER1"]), (n_again, 1, 1), "{name}");
+        assert!(warned(&report).contains(&"other_laser_ignored"), "{name}");
+    }
+}
+
+#[test]
+fn robotlaser_alone_has_the_field_of_view_that_it_states() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = |t: f64| {
+        format!(
+            "ROBOTLASER1 0 -2.094395 4.188790 0.00615094 4.0 0.01 0 682 {}0 0.145 0 0 0 0 0 0 0 0 0 0 {t} host {t}\n",
+            "5.6 ".repeat(682)
+        )
+    };
+    let (records, report) = read(&folder.path().join("robot.log"), (line(0.0) + &line(0.1)).as_bytes());
+    assert_eq!(mounts_of(&records), [Pose2::new(0.145, 0.0, 0.0)]);
+    let Data::Scan(scan) = &records[1].data else { panic!("{records:?}") };
+    assert!((scan.bearing(681) - 2.094395).abs() < 1e-4);
+    assert_eq!((scan.range_max, scan.echoes().count(), report.n_problems()), (4.0, 0, 0));
+}
+
+fn mounts_of(records: &[Record]) -> Vec<Pose2<f64>> {
+    let mount = |record: &Record| match record.data {
+        Data::LaserMount(mount) => Some(mount),
+        _ => None,
+    };
+    records.iter().filter_map(mount).collect()
+}
+
+#[test]
+fn raw_scans_alone_move_with_the_odometry_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = |t: f64| format!("RAWLASER1 0 -1 2 1 8 0.01 0 3 1 1 1 0 {t} h {t}\n");
+    let text = [odom_line("0 0 0", 1.0), scan(1.0), scan(1.5), odom_line("1 0 0", 2.0), scan(2.0)].concat();
+    let (records, report) = read(&folder.path().join("raw.log"), text.as_bytes());
+    let steps: Vec<f64> = records
+        .iter()
+        .filter_map(
+            |record| if let Data::OdometryIncrement(step) = record.data { Some(step.x()) } else { None },
+        )
+        .collect();
+    assert_eq!((n_scans(&records), steps, report.n_problems()), (3, vec![0.5, 0.5], 0));
+}
+
+#[test]
+fn a_scan_beyond_2106_is_left_out_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = walk(6);
+    let mut lines: Vec<String> = good.lines().map(|line| format!("{line}\n")).collect();
+    let (expected, _) = read(&folder.path().join("good.log"), good.as_bytes());
+    lines.insert(5, scan_line(180, "1.5", "9 9 9", "9 9 9", 5e9));
+    let (records, report) = read(&folder.path().join("late.log"), lines.concat().as_bytes());
+    assert_eq!(records, expected);
+    assert_eq!((report.rows_read, report.n_problems()), (6, 1));
+    assert_eq!((report.examples[0].row, report.examples[0].kind), (6, ProblemKind::BadStamp));
+}
+
+#[test]
+fn time_goes_on_where_the_clock_is_set_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = |k: u32| {
+        let t = if k < 30 { f64::from(k) } else { f64::from(k) - 20.0 };
+        scan_line(180, "1", &format!("{k} 0 0"), &format!("{k} 0 0"), 1000.0 + t)
+    };
+    let text: String = (0..60).map(line).collect();
+    let (records, report) = read(&folder.path().join("clock.log"), text.as_bytes());
+    let scans = records.iter().filter(|record| matches!(record.data, Data::Scan(_)));
+    let stamps: Vec<f64> = scans.map(|record| record.stamp.seconds()).collect();
+    assert_eq!((stamps.len(), report.n_problems()), (60, 0));
+    assert!(stamps.windows(2).all(|pair| pair[1] > pair[0]));
+    assert!((stamps[59] - stamps[30] - 29.0).abs() < 1e-6, "the pace stays that of the clock");
+    assert!(warned(&report).contains(&"clock_set_back"));
+}
+
 #[test]
 fn gzip_log_equals_plain_and_truncated_gzip_its_beginning() {
     let folder = tempfile::tempdir().unwrap();
@@ -135,7 +355,7 @@ fn gzip_log_equals_plain_and_truncated_gzip_its_beginning() {
     assert_eq!(n_scans(&plain), 40);
     let packed = gzip(&text);
     let (unpacked, report) = read(&folder.path().join("walk"), &packed);
-    assert!(unpacked == plain && report.is_clean());
+    assert!(unpacked == plain && report.n_problems() == 0 && report.end == LogEnd::Complete);
 
     let half = &packed[..packed.len() - packed.len() / 4];
     let (records, report) = read(&folder.path().join("cut.log.gz"), half);

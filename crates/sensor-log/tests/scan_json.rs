@@ -40,7 +40,7 @@ fn keys_are_sorted_as_numbers_and_poses_give_the_motion() {
 fn a_bad_scan_is_counted_and_the_others_are_read() {
     let text = document(&[
         entry("1", 180, "0"),
-        entry("2", 17, "0"),
+        entry("2", 1, "0"),
         entry("3", 180, "\"far\""),
         entry("soon", 180, "0"),
         "\"5\": null".to_owned(),
@@ -75,4 +75,38 @@ fn what_comes_before_a_damage_is_read() {
     assert!(matches!(read("{\"map\": {}}"), Err(LogError::Empty { .. })));
     assert!(matches!(read("{"), Err(LogError::Damaged { end: LogEnd::Truncated { .. }, .. })));
     assert!(matches!(read(&"{\"map\":".repeat(5000)), Err(LogError::Damaged { .. })));
+}
+
+#[test]
+fn nan_and_infinity_in_json_are_missing_beams() {
+    let one = entry("1.5", 180, "0").replacen("1.5, ", "NaN, ", 1).replacen("1.5, ", "-Infinity, ", 1);
+    let one = one.replacen("1.5, ", "null, ", 1).replacen("1.5, ", "Infinity, ", 1);
+    let text = document(&[one, entry("2", 180, "0.25"), entry("3", 180, "NaN"), entry("4", 180, "0.5")]);
+    let (records, report) = read(&text.replacen("comment", "NaN \\\" NaN", 1)).unwrap();
+    let scans: Vec<_> = records
+        .iter()
+        .filter_map(|record| if let Data::Scan(scan) = &record.data { Some(scan) } else { None })
+        .collect();
+    assert_eq!(scans.len(), 3);
+    assert_eq!(scans.iter().map(|scan| scan.echoes().count()).collect::<Vec<_>>(), [176, 180, 180]);
+    assert_eq!((report.rows_read, report.n_problems()), (3, 1));
+    assert_eq!((report.examples[0].row, report.examples[0].kind), (3, ProblemKind::NotFinite));
+    assert_eq!(report.end, LogEnd::Complete);
+}
+
+#[test]
+fn a_scan_years_off_is_left_out_and_counted() {
+    let text = document(&[entry("1.3e9", 180, "0"), entry("1300000001", 180, "0"), entry("5", 180, "9")]);
+    let (records, report) = read(&text).unwrap();
+    assert_eq!(records[0].stamp.seconds(), 1.3e9);
+    assert_eq!((report.rows_read, report.problems[&ProblemKind::BadStamp]), (2, 1));
+}
+
+#[test]
+fn another_number_of_beams_spans_the_half_circle_and_is_said() {
+    let (records, report) = read(&document(&[entry("1", 541, "0"), entry("2", 541, "0")])).unwrap();
+    let Data::Scan(scan) = &records[1].data else { panic!("{records:?}") };
+    assert!((scan.bearing(540) - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    let names: Vec<_> = report.warnings.iter().map(|warning| warning.name).collect();
+    assert_eq!(names, ["laser_field_of_view_assumed"]);
 }

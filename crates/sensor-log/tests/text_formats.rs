@@ -5,7 +5,7 @@ use std::path::Path;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Data, Format, LogError, OpenOptions, PoseKind, ProblemKind, Record, Sighting, Stamp, Target,
+    Data, Format, LogError, OpenOptions, PoseKind, ProblemKind, ReadReport, Record, Sighting, Stamp, Target,
     TrueLandmark, Velocity, open,
 };
 
@@ -124,7 +124,7 @@ fn tum_headings_come_from_the_quaternion_for_both_signs() {
 #[test]
 fn every_kind_of_bad_row_is_counted_and_none_stops_the_reading() {
     let folder = tempfile::tempdir().unwrap();
-    let long = "Z 1 ".repeat(5000);
+    let long = "Z 1 ".repeat(20_000);
     let mut bytes = format!("O 1 0 0\nO 1 0\nO 1 0 inf\nQ 1 2 3\nZ x 1 1\n{long}\n").into_bytes();
     bytes.extend(b"O \xff\xfe 1 1\nO 2 0 0\n");
     fs::write(folder.path().join("bad.txt"), bytes).unwrap();
@@ -169,4 +169,134 @@ fn what_cannot_be_opened_says_why() {
         LogError::NotThisFormat { format: Format::Tum, .. }
     ));
     assert!(matches!(fails("walk.txt", Some(Format::Utias)), LogError::NotThisFormat { .. }));
+}
+
+/// Opens a text that is written as `name`.
+fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (Format, Vec<Record>, ReadReport) {
+    fs::write(folder.join(name), bytes).expect("the scratch folder is writable");
+    let log = open(folder.join(name), &OpenOptions::default()).expect("a log of a known format");
+    let format = log.meta().format;
+    let (records, report) = log.read_all();
+    (format, records, report)
+}
+
+const TEXTS: [(&str, &str); 4] = [
+    ("walk.txt", "L 7 2.0 0.0\nO 0.5 0.0 0.0\nZ 7 1.5 0.0\n"),
+    ("poses.tum", "1 2 3 0 0 0 0 1\n2 2 3 0 0 0 0 1\n"),
+    ("scan.log", "FLASER 2 1 1 0 0 0 0 0 0 1.5 host 1.5\n"),
+    ("scan.json", "{\"map\": {\"1\": {\"range\": [1, 2], \"theta\": 0, \"x\": 0,\n\"y\": 0}}}"),
+];
+
+#[test]
+fn a_byte_order_mark_or_other_line_ends_change_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in TEXTS {
+        let plain = read_text(folder.path(), name, text.as_bytes());
+        assert_eq!(plain.2.n_problems(), 0, "{name}");
+        let variants = ["\u{feff}".to_owned() + text, text.replace('\n', "\r\n"), text.replace('\n', "\r")];
+        for variant in variants {
+            assert_eq!(read_text(folder.path(), name, variant.as_bytes()), plain, "{variant:?}");
+        }
+    }
+}
+
+#[test]
+fn sets_of_files_with_byte_order_marks_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let mark = "\u{feff}";
+    write(folder.path(), "odometry.csv", &format!("{mark}t_s,speed_mps,steering_rad\r\n1,0.5,0\r\n"));
+    write(folder.path(), "trees.csv", &format!("{mark}t_s,range_m,bearing_rad,diameter_m\r\n1,9,1,0.5\r\n"));
+    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    assert_eq!((records.len(), report.n_problems()), (3, 0));
+
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "Barcodes.dat", &format!("{mark}# Subject Barcode\n6 72\n"));
+    write(folder.path(), "Robot1_Odometry.dat", &format!("{mark}100 0.1 0\n"));
+    write(folder.path(), "Robot1_Measurement.dat", &format!("{mark}100 72 1 0.5\n"));
+    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    assert_eq!((records.len(), report.n_problems()), (2, 0));
+}
+
+#[test]
+fn utf_16_is_named_with_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = TEXTS[0].1;
+    let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+    let marked = |mark: [u8; 2], text: &[u8]| [&mark, text].concat();
+    for bytes in [little.clone(), big.clone(), marked([0xff, 0xfe], &little), marked([0xfe, 0xff], &big)] {
+        fs::write(folder.path().join("walk.txt"), bytes).unwrap();
+        let error = open(folder.path().join("walk.txt"), &OpenOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("UTF-16") && error.contains("iconv"), "{error}");
+    }
+}
+
+#[test]
+fn a_header_or_a_damaged_first_row_does_not_hide_the_format() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in &TEXTS[..3] {
+        let (format, records, _) = read_text(folder.path(), name, text.as_bytes());
+        for first in ["t x y z qx qy qz qw\n", "FLASER 180 1.5 1.", "\u{1}\u{2}"] {
+            let damaged = format!("{first}\n{text}");
+            let (format_again, records_again, report) = read_text(folder.path(), name, damaged.as_bytes());
+            assert_eq!((format_again, records_again), (format, records.clone()));
+            assert_eq!((report.n_problems(), report.examples[0].row), (1, 1));
+        }
+    }
+}
+
+#[test]
+fn a_utias_row_years_off_is_left_out_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    utias_set(folder.path(), &[1]);
+    let rows = |row: fn(f64) -> String| -> Vec<String> {
+        (0..9).map(|k| row(1_288_971_842.0 + f64::from(k))).collect()
+    };
+    let mut odometry = rows(|t| format!("{t} 0.1 0\n"));
+    odometry.insert(4, "5.0 0.3 0.1\n".to_owned());
+    let mut sightings = rows(|t| format!("{t} 72 1 0.5\n"));
+    sightings.push("9e9 72 1 0.5\n".to_owned());
+    write(folder.path(), "Robot1_Groundtruth.dat", &rows(|t| format!("{t} 0 0 0\n")).concat());
+    write(folder.path(), "Robot1_Odometry.dat", &odometry.concat());
+    write(folder.path(), "Robot1_Measurement.dat", &sightings.concat());
+    let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
+    assert_eq!(records.first().map(|record| record.stamp.seconds()), Some(1_288_971_842.0));
+    assert_eq!(records.last().map(|record| record.stamp.seconds()), Some(1_288_971_850.0));
+    assert_eq!(report.problems[&ProblemKind::BadStamp], 2);
+    let rows: Vec<u64> = report.examples.iter().map(|problem| problem.row).collect();
+    assert_eq!(rows, [5, 10]);
+}
+
+#[test]
+fn poses_after_a_clock_set_back_are_not_sorted_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |t: f64, x: u32| format!("{t} {x} 0 0 0 0 0 1\n");
+    let first = (0..30).map(|k| row(1000.0 + f64::from(k), 0));
+    let second = (0..20).map(|k| row(1010.5 + f64::from(k), 9));
+    let text: String = first.chain(second).collect();
+    let (_, records, report) = read_text(folder.path(), "poses.tum", text.as_bytes());
+    assert_eq!(records.len(), 30);
+    assert!(records.iter().all(|record| record.data == Data::EstimatedPose(Pose2::new(0.0, 0.0, 0.0))));
+    assert_eq!((report.rows_read, report.problems[&ProblemKind::TooLate]), (30, 20));
+    assert_eq!(report.warnings.iter().map(|warning| warning.name).collect::<Vec<_>>(), ["clock_set_back"]);
+}
+
+#[test]
+fn tum_columns_are_read_by_their_names_and_with_commas() {
+    let folder = tempfile::tempdir().unwrap();
+    let (sin, cos) = 0.65_f64.sin_cos();
+    let texts = [
+        format!("# timestamp tx ty tz qx qy qz qw\n1 2 3 0 0 0 {sin} {cos}\n"),
+        format!("# timestamp tx ty tz qw qx qy qz\n1 2 3 0 {cos} 0 0 {sin}\n"),
+        format!("timestamp,tx,ty,tz,qw,qx,qy,qz\n1,2,3,0,{cos},0,0,{sin}\n"),
+        format!("1, 2, 3, 0, 0, 0, {sin}, {cos}\n"),
+    ];
+    for text in texts {
+        let (format, records, _) = read_text(folder.path(), "poses.txt", text.as_bytes());
+        assert_eq!(format, Format::Tum);
+        let [Record { data: Data::EstimatedPose(pose), .. }] = records[..] else {
+            panic!("{text}: {records:?}")
+        };
+        assert!((pose.heading() - 1.3).abs() < 1e-15 && pose.x() == 2.0, "{text}: {pose:?}");
+    }
 }

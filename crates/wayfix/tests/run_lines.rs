@@ -20,8 +20,10 @@ fn room(path: &Path, n: usize) {
         let bearing = (beam as f64 - 90.0).to_radians();
         2.0 / bearing.cos().abs().max(bearing.sin().abs())
     };
-    let scan =
-        |seconds: usize, ranges: String| format!("FLASER 181 {ranges}0 0 0 0 0 0 {seconds} host {seconds}\n");
+    // The poses are a mapper's, which moves on while the odometry stands.
+    let scan = |seconds: usize, ranges: String| {
+        format!("FLASER 181 {ranges}{} 0 0 0 0 0 {seconds} host {seconds}\n", 0.1 * seconds as f64)
+    };
     let seen: String = (0..181).map(|beam| format!("{:.6} ", range(beam))).collect();
     let mut text: String = (1..=n).map(|k| scan(k, seen.clone())).collect();
     text += &scan(n + 1, "81.91 ".repeat(181));

@@ -17,15 +17,10 @@ pub(super) fn drop_jumps(
         let before = index.checked_sub(1).and_then(|index| steps.get(index));
         match (before, steps.get(index)) {
             (Some(before), Some(after)) if before.min(*after) > MAX_STEP_M => {
-                report.rows_read -= 1;
-                report.add(Problem {
-                    file: file.to_owned(),
-                    row,
-                    kind: ProblemKind::Inconsistent,
-                    reason: format!(
-                        "fix {before:.0} m from the one before and {after:.0} m from the one after"
-                    ),
-                });
+                let reason =
+                    format!("fix {before:.0} m from the one before and {after:.0} m from the one after");
+                let (file, kind) = (file.to_owned(), ProblemKind::Inconsistent);
+                report.leave_out(Problem { file, row, kind, reason }, 1);
             }
             _ => kept.push((stamp, position)),
         }

@@ -1,27 +1,38 @@
 use super::row::RowError;
-use crate::{LaserScan, ProblemKind};
+use crate::{LaserScan, ProblemKind, ReadReport};
 
 /// SICK scanners give 81.91 m where nothing came back, older ones 51.16 m; nobody measures that far indoors.
 const RANGE_MAX_M: f64 = 50.0;
 
-/// The scan of a laser that looks ahead over half a circle, from the right, in steps of a whole or half degree.
+/// The scan of a laser that looks ahead over half a circle, from the right.
 ///
-/// With 180 or 360 beams the last one of the half circle is missing.
+/// With 180 or 360 beams, in steps of a whole or half degree, the last one of the half circle is missing. Any other number of beams spans it.
 pub(crate) fn half_circle(ranges: Vec<f64>) -> Result<LaserScan, RowError> {
-    let degrees = match ranges.len() {
-        180 | 181 => 1.0_f64,
-        360 | 361 => 0.5,
-        n_beams => {
-            let reason = format!("{n_beams} beams; the angles are known for 180, 181, 360 and 361");
+    let angle_increment = match ranges.len() {
+        180 | 181 => 1.0_f64.to_radians(),
+        360 | 361 => 0.5_f64.to_radians(),
+        n_beams @ 0..=1 => {
+            let reason = format!("{n_beams} beams have no field of view");
             return Err(RowError::new(ProblemKind::Inconsistent, reason));
         }
+        n_beams => std::f64::consts::PI / (n_beams - 1) as f64,
     };
-    Ok(LaserScan {
-        angle_min: -std::f64::consts::FRAC_PI_2,
-        angle_increment: degrees.to_radians(),
-        range_max: RANGE_MAX_M,
-        ranges,
-    })
+    Ok(LaserScan { angle_min: -std::f64::consts::FRAC_PI_2, angle_increment, range_max: RANGE_MAX_M, ranges })
+}
+
+/// Whether a scan of so many beams is surely that of a half circle.
+pub(crate) fn is_half_circle(n_beams: usize) -> bool {
+    matches!(n_beams, 180 | 181 | 360 | 361)
+}
+
+/// Warns of a field of view that is assumed: only the numbers of beams of a SICK scanner tell it.
+pub(crate) fn warn_of_assumed_field(n_beams: usize, report: &mut ReadReport) {
+    if !is_half_circle(n_beams) {
+        let text = format!(
+            "the log does not state the field of view of scans with {n_beams} beams; 180° is assumed (a ROBOTLASER1 line states another)"
+        );
+        report.warn("laser_field_of_view_assumed", text);
+    }
 }
 
 #[cfg(test)]
@@ -29,13 +40,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn half_circle_beams_are_spaced_and_other_counts_are_refused() {
-        for (n_beams, last_degrees) in [(180, 89.0_f64), (181, 90.0), (360, 89.5), (361, 90.0)] {
+    fn the_beams_cover_the_half_circle() {
+        for (n_beams, last_degrees) in
+            [(180, 89.0_f64), (181, 90.0), (360, 89.5), (361, 90.0), (91, 90.0), (541, 90.0)]
+        {
             let scan = half_circle(vec![1.0; n_beams]).unwrap();
             assert_eq!(scan.bearing(0), -std::f64::consts::FRAC_PI_2);
             assert!((scan.bearing(n_beams - 1).to_degrees() - last_degrees).abs() < 1e-9);
         }
-        assert_eq!(half_circle(vec![1.0; 179]).unwrap_err().kind, ProblemKind::Inconsistent);
+        assert_eq!(half_circle(vec![1.0]).unwrap_err().kind, ProblemKind::Inconsistent);
         assert_eq!(half_circle(Vec::new()).unwrap_err().kind, ProblemKind::Inconsistent);
+    }
+
+    #[test]
+    fn a_field_of_view_is_assumed_only_for_other_numbers_of_beams() {
+        let mut report = ReadReport::default();
+        [180, 181, 360, 361].into_iter().for_each(|n_beams| warn_of_assumed_field(n_beams, &mut report));
+        assert!(report.warnings.is_empty());
+        [541, 541].into_iter().for_each(|n_beams| warn_of_assumed_field(n_beams, &mut report));
+        assert_eq!(report.warnings.len(), 1);
+        assert!(report.warnings[0].text.contains("541"));
     }
 }

@@ -1,12 +1,13 @@
-use std::io::{self, BufRead, Read};
+use std::io::{self, BufRead};
 use std::path::{Path, PathBuf};
 
 use super::row::RowError;
 use crate::compressed::{TextReader, end_of_damaged, open_text};
 use crate::{LogEnd, LogError, Problem, ProblemKind, ReadReport};
 
-/// No row of a known format comes near; what is longer is garbage and must not fill the memory.
-const MAX_LINE_BYTES: u64 = 16 << 10;
+/// No row of a known format comes near: scanners of 1,440 beams print some 20 kB with their remissions. What is longer is garbage and must
+/// not fill the memory.
+const MAX_LINE_BYTES: usize = 64 << 10;
 
 /// The rows of a text file: neither blank nor a `#` comment.
 pub(crate) struct Lines<R> {
@@ -15,6 +16,8 @@ pub(crate) struct Lines<R> {
     number: u64,
     n_bytes: u64,
     buffer: Vec<u8>,
+    /// Whether the last line ended in CR.
+    after_cr: bool,
 }
 
 /// A row and its line number, counting from 1.
@@ -31,7 +34,7 @@ impl Lines<TextReader> {
 
 impl<R: BufRead> Lines<R> {
     pub(crate) fn new(reader: R, path: &Path) -> Self {
-        Self { reader, path: path.into(), number: 0, n_bytes: 0, buffer: Vec::new() }
+        Self { reader, path: path.into(), number: 0, n_bytes: 0, buffer: Vec::new(), after_cr: false }
     }
 
     /// Hands every row to `read_row`; what it refuses goes into the report.
@@ -71,7 +74,7 @@ impl<R: BufRead> Lines<R> {
             self.number += 1;
             let too_long = match self.read_line().map_err(|source| LogError::io(&self.path, source))? {
                 0 => return Ok(None),
-                n_bytes => n_bytes > MAX_LINE_BYTES,
+                _ => self.buffer.len() > MAX_LINE_BYTES,
             };
             if too_long {
                 let reason = format!("line is longer than {MAX_LINE_BYTES} bytes");
@@ -108,13 +111,33 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// Fills the buffer with one line, passes over what exceeds the limit; gives the length, 0 at the end.
-    fn read_line(&mut self) -> io::Result<u64> {
+    /// Fills the buffer with one line without its end, passes over what exceeds the limit; gives the length with the end, 0 at the end of the
+    /// file. Lines end in LF, CR LF or, as on old Macs, CR.
+    fn read_line(&mut self) -> io::Result<usize> {
         self.buffer.clear();
-        let n_bytes = (&mut self.reader).take(MAX_LINE_BYTES + 1).read_until(b'\n', &mut self.buffer)? as u64;
-        self.n_bytes += n_bytes;
-        if n_bytes > MAX_LINE_BYTES && self.buffer.last() != Some(&b'\n') {
-            self.n_bytes += self.reader.skip_until(b'\n')? as u64;
+        let mut n_bytes = 0;
+        let mut has_end = false;
+        while !has_end {
+            let chunk = match self.reader.fill_buf() {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                chunk => chunk?,
+            };
+            if chunk.is_empty() {
+                break;
+            }
+            // The LF of a CR LF is not a line of its own.
+            let n_left_over = usize::from(std::mem::take(&mut self.after_cr) && chunk[0] == b'\n');
+            let text = &chunk[n_left_over..];
+            let length = text.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+            has_end = length.is_some();
+            let line = &text[..length.unwrap_or(text.len())];
+            self.after_cr = length.is_some_and(|end| text[end] == b'\r');
+            let n_free = (MAX_LINE_BYTES + 1).saturating_sub(self.buffer.len());
+            self.buffer.extend_from_slice(&line[..line.len().min(n_free)]);
+            let n_line = line.len() + usize::from(has_end);
+            n_bytes += n_line;
+            self.n_bytes += (n_left_over + n_line) as u64;
+            self.reader.consume(n_left_over + n_line);
         }
         Ok(n_bytes)
     }
@@ -128,6 +151,34 @@ impl ReadReport {
             Err(RowError { kind, reason }) => {
                 self.rows_read += u64::from(kind.keeps_the_row());
                 self.add(Problem { file: file.to_owned(), row, kind, reason });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(text: &str, capacity: usize) -> Vec<(u64, String)> {
+        let reader = io::BufReader::with_capacity(capacity, text.as_bytes());
+        let mut lines = Lines::new(reader, Path::new("rows.txt"));
+        let mut rows = Vec::new();
+        while let Some(row) = lines.next_row().unwrap() {
+            rows.push((row.number, row.text.unwrap().to_owned()));
+        }
+        assert_eq!(lines.n_bytes(), text.len() as u64);
+        rows
+    }
+
+    #[test]
+    fn lines_end_in_lf_or_cr_or_both() {
+        for end in ["\n", "\r", "\r\n"] {
+            let text = ["one", "", "# two", " three ", "four"].join(end);
+            let expected = [(1, "one".to_owned()), (4, "three".to_owned()), (5, "four".to_owned())];
+            for capacity in [1, 4, 5, 1000] {
+                assert_eq!(rows(&text, capacity), expected, "{end:?} {capacity}");
+                assert_eq!(rows(&(text.clone() + end), capacity), expected, "{end:?} {capacity}");
             }
         }
     }

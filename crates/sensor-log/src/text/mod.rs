@@ -1,14 +1,13 @@
 //! Line-based formats.
 
-mod carmen_row;
+mod clock_faults;
 mod gps;
 mod half_circle;
-mod line_clock;
 mod lines;
 mod relations;
 mod row;
 mod scan_odometry;
-mod time_check;
+mod time_order;
 
 pub(crate) mod carmen;
 pub(crate) mod range_bearing;

@@ -26,7 +26,10 @@ pub(crate) fn comma_columns<const N: usize>(row: &str) -> Result<[&str; N], RowE
     exactly(row.split(',').map(str::trim_ascii))
 }
 
-fn exactly<'a, const N: usize>(found: impl Iterator<Item = &'a str>) -> Result<[&'a str; N], RowError> {
+/// Exactly `N` columns that were separated before.
+pub(crate) fn exactly<'a, const N: usize>(
+    found: impl Iterator<Item = &'a str>,
+) -> Result<[&'a str; N], RowError> {
     let mut columns = [""; N];
     let mut n_columns = 0;
     for column in found {

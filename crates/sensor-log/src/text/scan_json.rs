@@ -6,15 +6,16 @@
 use std::io::Read;
 use std::path::Path;
 
-use serde::Deserialize;
 use serde::de::{DeserializeSeed, Error as _, IgnoredAny, MapAccess, Visitor};
 use serde_json::{Deserializer, Value};
 use wayfix_estimation_traits::Pose2;
 
-use super::half_circle::half_circle;
+use super::half_circle::{half_circle, warn_of_assumed_field};
 use super::row::{RowError, stamp};
 use super::scan_odometry::ScanOdometry;
+use super::time_order::{Timed, in_time_order};
 use crate::compressed::{end_of_damaged, open_text};
+use crate::format::shortened;
 use crate::{Data, Format, LaserScan, LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record, Stamp};
 
 /// No log in this form is larger; what is must not fill the memory.
@@ -22,20 +23,27 @@ const MAX_BYTES: u64 = 256 << 20;
 
 /// All records, sorted by time.
 pub(crate) fn read(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
-    let text = read_text(path, report)?;
+    let mut text = read_text(path, report)?;
+    replace_non_finite(&mut text);
     let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut scans = Vec::new();
     for (index, (key, value)) in entries(&text, report).into_iter().enumerate() {
-        let read = parse(&key, value).map(|scan| scans.push(scan));
-        report.count_row(&file, index as u64 + 1, read);
+        let row = index as u64 + 1;
+        let read = parse(&key, &value).map(|(stamp, pose, scan)| {
+            warn_of_assumed_field(scan.ranges.len(), report);
+            scans.push(Timed { row, stamp, item: (pose, scan) });
+        });
+        report.count_row(&file, row, read);
     }
-    scans.sort_by_key(|(stamp, ..)| *stamp);
+    // An object has no order.
+    scans.sort_by_key(|scan| scan.stamp);
     let mut odometry = ScanOdometry::default();
-    let to_records = |(stamp, pose, scan): (Stamp, Pose2<f64>, LaserScan)| {
+    let to_records = |Timed { stamp, item: (pose, scan), .. }: Timed<(Pose2<f64>, LaserScan)>| {
         let motion = odometry.scan(stamp.seconds(), pose).map(Data::OdometryIncrement);
         let data = [Some(poses.data(pose)), motion, Some(Data::Scan(scan))];
         data.into_iter().flatten().map(move |data| Record { stamp, data })
     };
+    let scans = in_time_order(&file, scans, report);
     Ok(scans.into_iter().flat_map(to_records).collect())
 }
 
@@ -51,6 +59,37 @@ fn read_text(path: &Path, report: &mut ReadReport) -> Result<Vec<u8>, LogError> 
         return Err(LogError::NotThisFormat { path: path.into(), format: Format::ScanJson, reason });
     }
     Ok(text)
+}
+
+/// What stands in the text for a number that is not finite.
+const NOT_FINITE: &str = "";
+
+/// Python writes `NaN`, `Infinity` and `-Infinity`, which JSON has no words for: an empty string of the same length with its blanks takes their place.
+fn replace_non_finite(text: &mut [u8]) {
+    let mut in_string = false;
+    let mut at = 0;
+    while let Some(byte) = text.get(at) {
+        let length = match byte {
+            b'\\' if in_string => 2,
+            b'"' => {
+                in_string = !in_string;
+                1
+            }
+            b'N' | b'I' | b'-' if !in_string => {
+                let words: [&[u8]; 3] = [b"NaN", b"Infinity", b"-Infinity"];
+                match words.into_iter().find(|word| text[at..].starts_with(word)) {
+                    Some(word) => {
+                        text[at..at + word.len()].fill(b' ');
+                        text[at..at + 2].fill(b'"');
+                        word.len()
+                    }
+                    None => 1,
+                }
+            }
+            _ => 1,
+        };
+        at += length;
+    }
 }
 
 /// Every entry that is whole, in the order of the file.
@@ -74,19 +113,43 @@ fn entries(text: &[u8], report: &mut ReadReport) -> Vec<(String, Value)> {
     entries
 }
 
-#[derive(Deserialize)]
-struct Entry {
-    range: Vec<f64>,
-    theta: f64,
-    x: f64,
-    y: f64,
+fn parse(key: &str, value: &Value) -> Result<(Stamp, Pose2<f64>, LaserScan), RowError> {
+    let stamp = stamp(key)?;
+    let number = |name| pose_number(&value[name]).map_err(|error| error.of(key, name));
+    let pose = Pose2::new(number("x")?, number("y")?, number("theta")?);
+    let ranges =
+        value["range"].as_array().ok_or_else(|| not_a_number("no list of numbers").of(key, "range"))?;
+    let ranges: Result<Vec<f64>, RowError> = ranges.iter().map(beam).collect();
+    Ok((stamp, pose, half_circle(ranges.map_err(|error| error.of(key, "range"))?)?))
 }
 
-fn parse(key: &str, value: Value) -> Result<(Stamp, Pose2<f64>, LaserScan), RowError> {
-    let stamp = stamp(key)?;
-    let entry = Entry::deserialize(value)
-        .map_err(|error| RowError::new(ProblemKind::NotANumber, format!("scan {key}: {error}")))?;
-    Ok((stamp, Pose2::new(entry.x, entry.y, entry.theta), half_circle(entry.range)?))
+fn pose_number(value: &Value) -> Result<f64, RowError> {
+    match value.as_f64() {
+        Some(number) => Ok(number),
+        None if value.as_str() == Some(NOT_FINITE) => {
+            Err(RowError::new(ProblemKind::NotFinite, "not finite"))
+        }
+        None => Err(not_a_number("not a number")),
+    }
+}
+
+/// NaN, infinity and null mean that nothing came back.
+fn beam(value: &Value) -> Result<f64, RowError> {
+    match value {
+        Value::Null => Ok(f64::NAN),
+        Value::String(text) if text == NOT_FINITE => Ok(f64::NAN),
+        value => value.as_f64().ok_or_else(|| not_a_number("not a list of numbers")),
+    }
+}
+
+fn not_a_number(reason: &str) -> RowError {
+    RowError::new(ProblemKind::NotANumber, reason)
+}
+
+impl RowError {
+    fn of(self, key: &str, name: &str) -> Self {
+        Self { reason: format!("scan {}: {name} is {}", shortened(key), self.reason), ..self }
+    }
 }
 
 /// Collects the entries of `map` as they come, so that those before a damage are not lost.

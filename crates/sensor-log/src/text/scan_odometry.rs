@@ -19,12 +19,17 @@ impl ScanOdometry {
 
     /// A scan with its odometry: the motion since the last scan, `None` at the first.
     pub(super) fn scan(&mut self, seconds: f64, odometry: Pose2<f64>) -> Option<Pose2<f64>> {
-        let reached = match self.last_line.take() {
-            Some((at, pose)) if at == seconds => pose,
-            _ => odometry,
-        };
+        let reached = self.reached(seconds, odometry);
         let start = self.at_last_scan.replace(odometry)?;
         Some(start.inverse().compose(&reached))
+    }
+
+    /// Where the odometry leads to at a scan.
+    pub(super) fn reached(&mut self, seconds: f64, odometry: Pose2<f64>) -> Pose2<f64> {
+        match self.last_line.take() {
+            Some((at, pose)) if at == seconds => pose,
+            _ => odometry,
+        }
     }
 }
 

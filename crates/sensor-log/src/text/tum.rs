@@ -1,38 +1,73 @@
 //! Trajectories as the TUM RGB-D benchmark writes them: `t tx ty tz qx qy qz qw`, seconds, metres, quaternion body → world.
 //!
-//! A planar pose keeps x, y and the heading of the body's x axis.
+//! A planar pose keeps x, y and the heading of the body's x axis. Commas may separate the columns. A header or comment that names `qx`, `qy`, `qz` and
+//! `qw` in another order is followed.
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use wayfix_estimation_traits::Pose2;
 
 use super::Lines;
-use super::row::{RowError, columns, number, stamp};
-use super::time_check::TimeCheck;
+use super::row::{RowError, exactly, number, stamp};
+use super::time_order::{Timed, in_time_order};
+use crate::compressed::open_text;
 use crate::planar::{NORM_TOLERANCE, heading_of, quaternion_of};
 use crate::{Data, LogError, PoseKind, ProblemKind, ReadReport, Record, WriteReport};
 
 pub(crate) fn looks_like(row: &str) -> bool {
-    parse(row, PoseKind::default()).is_ok()
+    parse(row, &ORDER, PoseKind::default()).is_ok()
 }
 
 /// The records, sorted by time.
 pub(crate) fn read(path: &Path, kind: PoseKind, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
-    let mut records = Vec::new();
-    let mut time = TimeCheck::default();
-    Lines::open(path)?.for_each_row(report, |row| {
-        let record = parse(row, kind)?;
-        let stamp = record.stamp;
-        records.push(record);
-        time.check(stamp)
+    let order = order_of(path)?;
+    let lines = Lines::open(path)?;
+    let file = lines.file_name();
+    let mut rows = Vec::new();
+    lines.for_each_numbered_row(report, |row, text| {
+        let Record { stamp, data } = parse(text, &order, kind)?;
+        rows.push(Timed { row, stamp, item: data });
+        Ok(())
     })?;
-    records.sort_by_key(|record| record.stamp);
-    Ok(records)
+    let to_record = |Timed { stamp, item: data, .. }| Record { stamp, data };
+    Ok(in_time_order(&file, rows, report).into_iter().map(to_record).collect())
 }
 
-fn parse(row: &str, kind: PoseKind) -> Result<Record, RowError> {
-    let [t, x, y, z, qx, qy, qz, qw] = columns(row)?;
+/// Where the columns t, x, y, z, qx, qy, qz, qw are.
+type Order = [usize; 8];
+
+const ORDER: Order = [0, 1, 2, 3, 4, 5, 6, 7];
+
+/// The columns of a file, as the first line that names them has them.
+fn order_of(path: &Path) -> Result<Order, LogError> {
+    let mut beginning = Vec::new();
+    // A file that cannot be unpacked says so when its rows are read.
+    let _ = open_text(path)?.take(HEADER_BYTES).read_to_end(&mut beginning);
+    let beginning = String::from_utf8_lossy(&beginning).into_owned();
+    Ok(beginning.lines().find_map(order_in).unwrap_or(ORDER))
+}
+
+/// A header is among the first bytes.
+const HEADER_BYTES: u64 = 4096;
+
+fn order_in(line: &str) -> Option<Order> {
+    let names: Vec<&str> = words(line.trim_start_matches('#')).collect();
+    let at = |name| names.iter().position(|known| known.eq_ignore_ascii_case(name));
+    let rotation = [at("qx")?, at("qy")?, at("qz")?, at("qw")?];
+    let mut others = (0..names.len()).filter(|index| !rotation.contains(index));
+    let [t, x, y, z] = [others.next()?, others.next()?, others.next()?, others.next()?];
+    let [qx, qy, qz, qw] = rotation;
+    (names.len() == ORDER.len()).then_some([t, x, y, z, qx, qy, qz, qw])
+}
+
+fn words(row: &str) -> impl Iterator<Item = &str> {
+    row.split(|c: char| c.is_ascii_whitespace() || c == ',').filter(|word| !word.is_empty())
+}
+
+fn parse(row: &str, order: &Order, kind: PoseKind) -> Result<Record, RowError> {
+    let columns: [&str; 8] = exactly(words(row))?;
+    let [t, x, y, z, qx, qy, qz, qw] = order.map(|index| columns[index]);
     let stamp = stamp(t)?;
     let (x, y, _) = (number(x)?, number(y)?, number(z)?);
     let (qx, qy, qz, qw) = (number(qx)?, number(qy)?, number(qz)?, number(qw)?);

@@ -12,7 +12,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::Lines;
 use super::row::{RowError, columns, id, number, stamp};
-use super::time_check::TimeCheck;
+use super::time_order::{Timed, in_time_order};
 use crate::{
     Data, Format, LogError, ProblemKind, ReadReport, Record, Sighting, Stamp, Target, TrueLandmark, Velocity,
 };
@@ -104,15 +104,17 @@ fn read_barcodes(path: &Path, report: &mut ReadReport) -> Result<BTreeMap<u32, T
 fn read_true_poses(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     read_stamped(path, report, |[t, x, y, heading]| {
         let pose = Pose2::new(number(x)?, number(y)?, number(heading)?);
-        Ok(Record { stamp: stamp(t)?, data: Data::TruePose(pose) })
+        Ok((stamp(t)?, Data::TruePose(pose)))
     })
+    .map(to_records)
 }
 
 fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     read_stamped(path, report, |[t, linear, angular]| {
         let velocity = Velocity { linear: number(linear)?, angular: number(angular)? };
-        Ok(Record { stamp: stamp(t)?, data: Data::Velocity(velocity) })
+        Ok((stamp(t)?, Data::Velocity(velocity)))
     })
+    .map(to_records)
 }
 
 /// Rows of the same stamp are one look, in the order of the file.
@@ -121,16 +123,15 @@ fn read_sightings(
     targets: &BTreeMap<u32, Target>,
     report: &mut ReadReport,
 ) -> Result<Vec<Record>, LogError> {
-    let mut looks: BTreeMap<Stamp, Vec<Sighting>> = BTreeMap::new();
-    let mut time = TimeCheck::default();
-    Lines::open(path)?.for_each_row(report, |row| {
-        let [t, barcode, range, bearing] = columns(row)?;
+    let sightings = read_stamped(path, report, |[t, barcode, range, bearing]| {
         let (stamp, barcode) = (stamp(t)?, id(barcode)?);
         let target = targets.get(&barcode).copied().unwrap_or(Target::UnknownCode(barcode));
-        let sighting = Sighting { target, range: number(range)?, bearing: number(bearing)? };
-        looks.entry(stamp).or_default().push(sighting);
-        time.check(stamp)
+        Ok((stamp, Sighting { target, range: number(range)?, bearing: number(bearing)? }))
     })?;
+    let mut looks: BTreeMap<Stamp, Vec<Sighting>> = BTreeMap::new();
+    for Timed { stamp, item: sighting, .. } in sightings {
+        looks.entry(stamp).or_default().push(sighting);
+    }
     Ok(looks.into_iter().map(|(stamp, look)| Record { stamp, data: Data::Sightings(look) }).collect())
 }
 
@@ -145,18 +146,23 @@ fn read_landmarks(path: &Path, start: Stamp, report: &mut ReadReport) -> Result<
     Ok(landmarks)
 }
 
-fn read_stamped<const N: usize>(
+fn to_records(rows: Vec<Timed<Data>>) -> Vec<Record> {
+    rows.into_iter().map(|Timed { stamp, item: data, .. }| Record { stamp, data }).collect()
+}
+
+/// The rows of a file in time order.
+fn read_stamped<T, const N: usize>(
     path: &Path,
     report: &mut ReadReport,
-    to_record: impl Fn([&str; N]) -> Result<Record, RowError>,
-) -> Result<Vec<Record>, LogError> {
-    let mut records = Vec::new();
-    let mut time = TimeCheck::default();
-    Lines::open(path)?.for_each_row(report, |row| {
-        let record = to_record(columns(row)?)?;
-        let stamp = record.stamp;
-        records.push(record);
-        time.check(stamp)
+    read_row: impl Fn([&str; N]) -> Result<(Stamp, T), RowError>,
+) -> Result<Vec<Timed<T>>, LogError> {
+    let lines = Lines::open(path)?;
+    let file = lines.file_name();
+    let mut rows = Vec::new();
+    lines.for_each_numbered_row(report, |row, text| {
+        let (stamp, item) = read_row(columns(text)?)?;
+        rows.push(Timed { row, stamp, item });
+        Ok(())
     })?;
-    Ok(records)
+    Ok(in_time_order(&file, rows, report))
 }

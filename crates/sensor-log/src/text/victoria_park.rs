@@ -16,7 +16,7 @@ use wayfix_estimation_traits::wrap_angle;
 use super::Lines;
 use super::gps::drop_jumps;
 use super::row::{RowError, comma_columns, id, number, stamp};
-use super::time_check::TimeCheck;
+use super::time_order::{Timed, in_time_order};
 use crate::format::shortened;
 use crate::{
     AckermannDrive, Data, Format, LogError, ReadReport, Record, Sighting, Stamp, Target, TruePosition,
@@ -46,37 +46,38 @@ pub(crate) fn read(folder: &Path, report: &mut ReadReport) -> Result<Vec<Record>
 }
 
 fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
-    let mut records = Vec::new();
-    for_each_row(path, ["t_s", "speed_mps", "steering_rad"], report, |_, [t, speed, steering]| {
+    let header = ["t_s", "speed_mps", "steering_rad"];
+    let rows = read_rows(path, header, report, |[t, speed, steering]| {
         let drive = AckermannDrive { wheel_speed: number(speed)?, steering: number(steering)? };
-        let stamp = stamp(t)?;
-        records.push(Record { stamp, data: Data::Ackermann(drive) });
-        Ok(stamp)
+        Ok((stamp(t)?, drive))
     })?;
-    Ok(records)
+    let to_record = |Timed { stamp, item, .. }| Record { stamp, data: Data::Ackermann(item) };
+    Ok(rows.into_iter().map(to_record).collect())
 }
 
 /// Rows of the same stamp are one look, in the order of the file.
 fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
-    let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Sighting>)> = BTreeMap::new();
-    let mut take = |[t, range, bearing, diameter]: [&str; 4], target: Target| {
+    let take = |[t, range, bearing, diameter]: [&str; 4], target: Target| {
         let (stamp, range, width) = (stamp(t)?, number(range)?, number(diameter)?);
         let bearing = wrap_angle(number(bearing)? - std::f64::consts::FRAC_PI_2);
-        let (widths, look) = looks.entry(stamp).or_default();
-        widths.push(width);
-        look.push(Sighting { target, range, bearing });
-        Ok(stamp)
+        Ok((stamp, (width, Sighting { target, range, bearing })))
     };
-    if is_labelled(path)? {
+    let trees = if is_labelled(path)? {
         let header = ["t_s", "range_m", "bearing_rad", "diameter_m", "landmark"];
-        for_each_row(path, header, report, |_, [t, range, bearing, diameter, landmark]| {
+        read_rows(path, header, report, |[t, range, bearing, diameter, landmark]| {
             let target =
                 if landmark.is_empty() { Target::Unlabelled } else { Target::Landmark(id(landmark)?) };
             take([t, range, bearing, diameter], target)
-        })?;
+        })?
     } else {
         let header = ["t_s", "range_m", "bearing_rad", "diameter_m"];
-        for_each_row(path, header, report, |_, row| take(row, Target::Unlabelled))?;
+        read_rows(path, header, report, |row| take(row, Target::Unlabelled))?
+    };
+    let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Sighting>)> = BTreeMap::new();
+    for Timed { stamp, item: (width, sighting), .. } in trees {
+        let (widths, look) = looks.entry(stamp).or_default();
+        widths.push(width);
+        look.push(sighting);
     }
     let to_records = |(stamp, (widths, look))| {
         [Data::SightedWidths(widths), Data::Sightings(look)].map(|data| Record { stamp, data })
@@ -92,32 +93,34 @@ fn is_labelled(path: &Path) -> Result<bool, LogError> {
 }
 
 fn read_fixes(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
-    let mut fixes = Vec::new();
-    let read = for_each_row(path, ["t_s", "x_m", "y_m"], report, |row, [t, x, y]| {
-        let position = TruePosition { x: number(x)?, y: number(y)? };
-        let stamp = stamp(t)?;
-        fixes.push((row, stamp, position));
-        Ok(stamp)
+    let read = read_rows(path, ["t_s", "x_m", "y_m"], report, |[t, x, y]| {
+        Ok((stamp(t)?, TruePosition { x: number(x)?, y: number(y)? }))
     });
-    match read {
+    let fixes = match read {
         Err(LogError::NotFound { .. }) => return Ok(Vec::new()),
-        result => result?,
-    }
+        rows => rows?.into_iter().map(|Timed { row, stamp, item }| (row, stamp, item)),
+    };
     let to_record = |(stamp, position)| Record { stamp, data: Data::TruePosition(position) };
-    Ok(drop_jumps(GPS, fixes, report).into_iter().map(to_record).collect())
+    Ok(drop_jumps(GPS, fixes.collect(), report).into_iter().map(to_record).collect())
 }
 
-/// Hands every row below the header to `take_row`, which gives its stamp.
-fn for_each_row<const N: usize>(
+/// The rows below the header in time order.
+fn read_rows<T, const N: usize>(
     path: &Path,
     header: [&str; N],
     report: &mut ReadReport,
-    mut take_row: impl FnMut(u64, [&str; N]) -> Result<Stamp, RowError>,
-) -> Result<(), LogError> {
+    mut read_row: impl FnMut([&str; N]) -> Result<(Stamp, T), RowError>,
+) -> Result<Vec<Timed<T>>, LogError> {
     let mut lines = Lines::open(path)?;
     check_header(&mut lines, path, header)?;
-    let mut time = TimeCheck::default();
-    lines.for_each_numbered_row(report, |row, text| time.check(take_row(row, comma_columns(text)?)?))
+    let file = lines.file_name();
+    let mut rows = Vec::new();
+    lines.for_each_numbered_row(report, |row, text| {
+        let (stamp, item) = read_row(comma_columns(text)?)?;
+        rows.push(Timed { row, stamp, item });
+        Ok(())
+    })?;
+    Ok(in_time_order(&file, rows, report))
 }
 
 /// Columns that mean something else would give a log that looks right and is not.

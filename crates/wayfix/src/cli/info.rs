@@ -33,7 +33,7 @@ Formats:
                    Z id range bearing    a sighting, m and rad, 0 ahead, counter-clockwise; id ? when unknown
                  L and P are for figures only and may be absent.
   tum            t x y z qx qy qz qw lines: poses only
-  carmen         FLASER lines with n = 180, 181, 360 or 361 ranges, and ODOM lines; the order is that of the lines
+  carmen         FLASER, ROBOTLASER1 or RAWLASER1 scans, ODOM and PARAM lines; the order is that of the lines
   scan-json      an object \"map\" of objects by their seconds, each with the list \"range\", \"theta\", \"x\" and \"y\"
   mcap           Foxglove protobuf messages on /odom/velocity (Odometry) or /odom/increment (PoseInFrame),
                  or /odom/ackermann (JointStates wheel, steering), /sightings (PointCloud with range, bearing, kind, id),

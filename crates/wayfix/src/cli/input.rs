@@ -1,9 +1,7 @@
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use wayfix_sensor_log::read_text;
 
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]
@@ -21,8 +19,7 @@ pub(super) fn name_of(log: &[PathBuf]) -> String {
 
 /// Parameters from a TOML file; the error names the file and the key, or the line where the text is no TOML.
 pub(super) fn read_toml<P>(path: &Path, parse: impl Fn(&str) -> Result<P, toml::de::Error>) -> Result<P> {
-    let text = fs::read_to_string(path)
-        .with_context(|| format!("cannot read parameters from {}", path.display()))?;
+    let text = read_text(path).with_context(|| format!("cannot read parameters from {}", path.display()))?;
     let read = parse(&text).map_err(|error| {
         let hint =
             nearest(error.message()).map(|name| format!("\ndid you mean `{name}`?")).unwrap_or_default();

@@ -1,14 +1,15 @@
-use std::{fs, path::Path};
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use wayfix_color_map::{ColorMap, Shape};
+use wayfix_sensor_log::read_text;
 
 /// Reads a map of coloured surfaces, TOML or (with the ending .json) JSON.
 ///
 /// # Errors
 /// When the file cannot be read, is not of this form, or a surface has no meaning.
 pub fn read_map(path: &Path) -> Result<ColorMap> {
-    let text = fs::read_to_string(path).with_context(|| format!("cannot read the map {}", path.display()))?;
+    let text = read_text(path).with_context(|| format!("cannot read the map {}", path.display()))?;
     let map = if path.extension().is_some_and(|extension| extension == "json") {
         serde_json::from_str(&text).map_err(anyhow::Error::from)
     } else {

@@ -1,6 +1,6 @@
 //! What the colours may look like before anything is seen, learned or read.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use nalgebra::Vector3;
@@ -11,6 +11,7 @@ use wayfix_color_model::{
 };
 use wayfix_kalman::MarkovChain;
 use wayfix_scene_sim::league::{COLOR_NAMES, TrainingParams};
+use wayfix_sensor_log::read_text;
 
 use super::ColorSystemParams;
 
@@ -32,8 +33,7 @@ pub fn built_in() -> Result<LightingPriors> {
 /// # Errors
 /// When the file cannot be read or is not of this form.
 pub fn read(path: &Path) -> Result<LightingPriors> {
-    let text =
-        fs::read_to_string(path).with_context(|| format!("cannot read priors from {}", path.display()))?;
+    let text = read_text(path).with_context(|| format!("cannot read priors from {}", path.display()))?;
     serde_json::from_str(&text).with_context(|| format!("the priors in {} are not usable", path.display()))
 }
 

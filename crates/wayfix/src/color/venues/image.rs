@@ -2,7 +2,7 @@ use std::{fs, path::Path};
 
 use anyhow::{Context, Result};
 use wayfix_color_model::YuvStandard;
-use wayfix_sensor_log::{DecodedImage, EncodedImage, ImageFormat};
+use wayfix_sensor_log::{DecodedImage, EncodedImage, ImageFormat, read_text};
 
 use super::annotation::{BallCore, ObjectBox, read_boxes};
 use super::carpet::Carpet;
@@ -29,7 +29,7 @@ impl VenueImage {
             .decode_rgb()
             .with_context(|| format!("cannot decode {}", path.display()))?;
         let boxes = path.with_extension("txt");
-        let text = fs::read_to_string(&boxes).with_context(|| format!("cannot read {}", boxes.display()))?;
+        let text = read_text(&boxes).with_context(|| format!("cannot read {}", boxes.display()))?;
         let boxes = read_boxes(&text, decoded.width, decoded.height)
             .with_context(|| format!("boxes in {}", boxes.display()))?;
         Ok(Self::of(&decoded, &boxes))

@@ -1,4 +1,4 @@
-use super::row::RowError;
+use crate::text::row::RowError;
 use crate::{ProblemKind, Stamp};
 
 /// Between two rows of which the second is not later, nanoseconds.
@@ -10,11 +10,19 @@ const STEP_NANOSECONDS: u64 = 100_000_000;
 #[derive(Default)]
 pub(super) struct LineClock {
     last: Option<Stamp>,
+    /// By how much the clock was set back so far, nanoseconds.
+    set_back: u64,
 }
 
 impl LineClock {
+    /// The clock was set back before the next row: its stamps are moved so that time goes on.
+    pub(super) fn was_set_back(&mut self, nanoseconds: u64) {
+        self.set_back = self.set_back.saturating_add(nanoseconds).saturating_add(STEP_NANOSECONDS);
+    }
+
     /// The stamp that a row gets: its own where it is later than the row before, else one made up, and a word about that.
     pub(super) fn next(&mut self, own: Stamp) -> (Stamp, Result<(), RowError>) {
+        let own = Stamp::from_nanoseconds(own.nanoseconds().saturating_add(self.set_back));
         let (stamp, verdict) = match self.last {
             Some(last) if own <= last => {
                 let made_up = Stamp::from_nanoseconds(last.nanoseconds().saturating_add(STEP_NANOSECONDS));

@@ -1,0 +1,171 @@
+//! Logs of the Carnegie Mellon Robot Navigation Toolkit (CARMEN), as the Robotics Data Set Repository (Radish) has them: one message a line.
+//!
+//! `FLASER` and `ROBOTLASER1` are scans with the poses of the laser and of the robot's odometry, `ODOM` what the wheels say, and `RAWLASER1` a
+//! scan without poses, which is read where there are no others. The order is that of the lines, for not all logs have stamps to go by. A
+//! scan gives the robot's pose where that is another than the odometry, the motion since the scan before, and what the laser saw. In
+//! corrected logs, the motion is still that of the wheels (`scan_odometry.rs` says how). The log is read twice: what the poses are, where
+//! the laser is, and what is wrong with the clock only the whole log tells (`survey.rs`).
+
+mod agreement;
+mod line_clock;
+mod row;
+mod survey;
+mod trajectory;
+
+use std::collections::VecDeque;
+use std::path::Path;
+
+use wayfix_estimation_traits::LieGroup;
+
+use self::line_clock::LineClock;
+use self::row::{CarmenRow, ScanMessage, ScanPoses, ScanRow, parse};
+use self::survey::Survey;
+use super::Lines;
+use super::clock_faults::ClockFault;
+use super::half_circle::is_half_circle;
+use super::row::{RowError, stamp_of};
+use super::scan_odometry::ScanOdometry;
+use crate::compressed::TextReader;
+use crate::{Data, LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record};
+
+pub(crate) fn looks_like(row: &str) -> bool {
+    parse(row).is_ok()
+}
+
+/// The records of a log, line by line: memory does not grow with its scans.
+pub(crate) struct CarmenLog {
+    lines: Option<Lines<TextReader>>,
+    file: String,
+    poses: PoseKind,
+    survey: Survey,
+    clock: LineClock,
+    odometry: ScanOdometry,
+    last_scan: Option<(ScanMessage, f64)>,
+    ready: VecDeque<Record>,
+}
+
+impl CarmenLog {
+    /// Surveys the log; what it takes from it goes into the report.
+    pub(crate) fn open(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Result<Self, LogError> {
+        let lines = Lines::open(path)?;
+        Ok(Self {
+            file: lines.file_name(),
+            lines: Some(lines),
+            poses,
+            survey: Survey::of(path, report)?,
+            clock: LineClock::default(),
+            odometry: ScanOdometry::default(),
+            last_scan: None,
+            ready: VecDeque::new(),
+        })
+    }
+
+    /// The next record; trouble goes into the report.
+    pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
+        while self.ready.is_empty() {
+            let lines = self.lines.as_mut()?;
+            let (number, row) = match lines.next_row() {
+                Ok(Some(row)) => (row.number, row.text.and_then(parse)),
+                Ok(None) => {
+                    self.lines = None;
+                    return None;
+                }
+                Err(error) => {
+                    report.end = lines.end_after(error).unwrap_or_else(|error| LogEnd::Damaged {
+                        byte: lines.n_bytes(),
+                        reason: error.to_string(),
+                    });
+                    self.lines = None;
+                    return None;
+                }
+            };
+            let read = match row {
+                Ok(CarmenRow::Other(word)) => {
+                    report.ignore(&word);
+                    continue;
+                }
+                Ok(CarmenRow::Parameter { .. }) => {
+                    report.ignore("PARAM");
+                    continue;
+                }
+                Ok(CarmenRow::Odometry { seconds, pose }) => {
+                    self.odometry.line(seconds, pose);
+                    Ok(())
+                }
+                Ok(CarmenRow::Scan(scan)) => match self.why_ignored(&scan) {
+                    Some(why) => {
+                        report.ignore(&why);
+                        continue;
+                    }
+                    None => self.take_scan(number, scan, report),
+                },
+                Err(error) => Err(error),
+            };
+            report.count_row(&self.file, number, read);
+        }
+        self.ready.pop_front()
+    }
+
+    /// A raw scan beside those with poses, and a scan that is logged once more by another message, are no scans of their own.
+    fn why_ignored(&self, scan: &ScanRow) -> Option<String> {
+        let word = scan.message.word();
+        if scan.message == ScanMessage::Raw && self.survey.odometry.is_none() {
+            return Some(word.to_owned());
+        }
+        let (message, seconds) = self.last_scan?;
+        let is_again = message != scan.message && seconds == scan.seconds;
+        is_again.then(|| format!("{word} (the scan of {} again)", message.word()))
+    }
+
+    fn take_scan(&mut self, line: u64, row: ScanRow, report: &mut ReadReport) -> Result<(), RowError> {
+        let own = stamp_of(row.seconds)?;
+        match self.survey.faults.get(&line) {
+            Some(ClockFault::Outlier) => {
+                let reason = format!("{own} is far from the times of the scans around it");
+                return Err(RowError::new(ProblemKind::BadStamp, reason));
+            }
+            Some(ClockFault::SetBack(nanoseconds)) => {
+                self.clock.was_set_back(*nanoseconds);
+                let seconds = *nanoseconds as f64 * 1e-9;
+                let text = format!(
+                    "{}: the clock is set back by {seconds:.3} s at line {line}: the stamps from there on are moved so that the time goes on",
+                    self.file
+                );
+                report.warn("clock_set_back", text);
+            }
+            None => {}
+        }
+        self.last_scan = Some((row.message, row.seconds));
+        let poses = row.poses.or_else(|| {
+            let pose = self.survey.odometry.as_ref()?.at(row.seconds)?;
+            Some(ScanPoses { laser: pose, odometry: pose })
+        });
+        let motion = poses.and_then(|poses| self.odometry.scan(row.seconds, poses.odometry));
+        let (stamp, verdict) = self.clock.next(own);
+        let mut scan = row.scan;
+        if row.message == ScanMessage::Front
+            && !is_half_circle(scan.ranges.len())
+            && let Some((angle_min, angle_increment)) = self.survey.angles.get(&scan.ranges.len())
+        {
+            (scan.angle_min, scan.angle_increment) = (*angle_min, *angle_increment);
+        }
+        let data = [
+            self.survey.mount.take().map(Data::LaserMount),
+            row.poses.and_then(|poses| self.pose(&poses)),
+            motion.map(Data::OdometryIncrement),
+            Some(Data::Scan(scan)),
+        ];
+        self.ready.extend(data.into_iter().flatten().map(|data| Record { stamp, data }));
+        verdict
+    }
+
+    /// The robot's pose, unless it is the odometry; one that the caller says is true always.
+    fn pose(&self, poses: &ScanPoses) -> Option<Data> {
+        let is_told = self.survey.poses_are_estimates || self.poses == PoseKind::True;
+        let robot = match &self.survey.pose_mount {
+            Some(mount) => poses.laser.compose(&mount.inverse()),
+            None => poses.laser,
+        };
+        is_told.then(|| self.poses.data(robot))
+    }
+}
