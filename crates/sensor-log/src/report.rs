@@ -1,6 +1,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use crate::EncodedImage;
+
 /// How many problems a report names; the rest is only counted.
 const MAX_EXAMPLES: usize = 20;
 
@@ -119,6 +121,15 @@ impl ReadReport {
         let warning = Warning { name, text: text.into() };
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
+        }
+    }
+    /// Says once that images are turned.
+    pub(crate) fn warn_of_orientation(&mut self, image: &EncodedImage) {
+        if let Some(orientation) = image.orientation() {
+            self.warn(
+                "image_orientation_applied",
+                format!("EXIF orientation {orientation} turns images upright; boxes and calibration count in the turned image"),
+            );
         }
     }
     pub(crate) fn add(&mut self, problem: Problem) {
