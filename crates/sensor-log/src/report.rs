@@ -124,7 +124,7 @@ impl ReadReport {
         }
     }
     /// Says once that images are turned.
-    pub(crate) fn warn_of_orientation(&mut self, image: &EncodedImage) {
+    pub fn warn_of_orientation(&mut self, image: &EncodedImage) {
         if let Some(orientation) = image.orientation() {
             self.warn(
                 "image_orientation_applied",
@@ -132,11 +132,22 @@ impl ReadReport {
             );
         }
     }
-    pub(crate) fn add(&mut self, problem: Problem) {
+    /// Counts a row that gave trouble, and names it among the first.
+    pub fn add(&mut self, problem: Problem) {
         *self.problems.entry(problem.kind).or_default() += 1;
         if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(problem);
         }
+    }
+    /// Adds problems and warnings of another part of the same recording.
+    pub fn join(&mut self, other: &Self) {
+        self.rows_read += other.rows_read;
+        for (kind, n) in &other.problems {
+            *self.problems.entry(*kind).or_default() += n;
+        }
+        let room = MAX_EXAMPLES.saturating_sub(self.examples.len());
+        self.examples.extend(other.examples.iter().take(room).cloned());
+        other.warnings.iter().for_each(|warning| self.warn(warning.name, warning.text.clone()));
     }
     pub(crate) fn ignore(&mut self, topic: &str) {
         match self.ignored.get_mut(topic) {

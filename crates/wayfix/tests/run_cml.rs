@@ -100,6 +100,8 @@ fn every_kind_of_table_gives_the_same_run() {
     let by_file =
         table("a.csv", drive.table(|i, p| format!("view_{i}.png,{},{},{}", p.x(), p.y(), p.heading())));
     let outcome = frames_run(&folder, &by_file, &[]);
+    assert!(outcome.stderr.contains("--columns"), "{}", outcome.stderr);
+    let outcome = frames_run(&folder, &by_file, &["--columns", "file,x_m,y_m,heading_rad"]);
     let expected = outcome.figures();
     // Views 0.25 m apart, every fifth withheld: the nearest is mostly 0.25 m away.
     assert!(outcome.metric("error_mean_m") < 0.25, "{expected:?}");
@@ -111,8 +113,9 @@ fn every_kind_of_table_gives_the_same_run() {
     let named =
         drive.table(|i, p| format!("{}\t{i}\t{}\t{}", p.heading().to_degrees(), 100.0 * p.x(), p.y()));
     let rows = drive.table(|_, p| format!("{} {} {}", p.x(), p.y(), p.heading()));
-    for poses in [table("b.csv", header + &named), table("c.csv", rows)] {
-        let figures = frames_run(&folder, &poses, &[]).figures();
+    let (by_name, by_row) = (table("b.csv", header + &named), table("c.csv", rows));
+    for (poses, more) in [(by_name, &[][..]), (by_row, &["--columns", "x,y,theta"])] {
+        let figures = frames_run(&folder, &poses, more).figures();
         for ((name, value), (_, expected)) in figures.iter().zip(&expected) {
             // Degrees and centimetres round the last digits.
             assert!((value - expected).abs() <= 1e-6 * (1.0 + expected.abs()), "{name}: {value} {expected}");
@@ -127,7 +130,8 @@ fn without_headings_the_robot_looks_along_its_path() {
     // Poses by time in milliseconds, and a table of stamps beside the frames.
     let stamps = drive.table(|i, _| format!("{}, somewhere/view_{i}.png", 0.5 * i as f64));
     fs::write(folder.join("times.csv"), format!("Time [s], Filename\n{stamps}")).unwrap();
-    let poses = scratch.file("poses.csv", drive.table(|i, p| format!("{},{},{}", 500 * i, p.x(), p.y())));
+    let rows = drive.table(|i, p| format!("{},{},{}", 500 * i, p.x(), p.y()));
+    let poses = scratch.file("poses.csv", format!("t_ms,x_m,y_m\n{rows}"));
     let outcome = frames_run(&folder, &poses, &["--out", scratch.path("out").to_str().unwrap()]);
     assert!(outcome.metric("error_mean_m") < 0.3, "{}", outcome.stdout);
     assert!(
@@ -244,14 +248,15 @@ fn what_is_no_recording_is_refused_with_its_reason() {
         assert!(outcome.code == 1 && outcome.stderr.contains(why), "{name}: {}", outcome.stderr);
     };
     refused("empty.csv", "", "no rows");
-    refused("words.csv", "x,y\n1,two\n", "line 2: \"two\" is not a number");
-    refused("ragged.csv", "1,2\n3\n", "line 2 has 1 columns");
-    refused("nan.csv", "1,2\nNaN,3\n", "line 2");
-    refused("one.csv", "1,2\n", "a row for each frame");
-    refused("times.csv", "0,1,2\n1,2,3\n2,3,4\n", "--stamps");
-    refused("strangers.csv", "a.png,1,2\nb.png,2,3\n", "fewer than two frames");
+    refused("words.csv", "x,y\n1,two\n", "line 2: \"two\" is not a finite number");
+    refused("bare.csv", "1,2\n3,4\n", "--columns");
+    refused("other.csv", "time,heading\n1,2\n", "no column x among time, heading");
+    refused("one.csv", "x,y\n1,2\n", "a row for each frame");
+    refused("times.csv", "t,x,y\n0,1,2\n1,2,3\n2,3,4\n", "--stamps");
+    refused("strangers.csv", "file,x,y\na.png,1,2\nb.png,2,3\n", "fewer than two frames");
     refused("binary.csv", "\u{0}\u{1}", "");
-    let poses = scratch.file("rows.csv", drive.table(|_, p| format!("{},{}", p.x(), p.y())));
+    let rows = drive.table(|_, p| format!("{},{}", p.x(), p.y()));
+    let poses = scratch.file("rows.csv", format!("x_m,y_m\n{rows}"));
     let missing = frames_run(&scratch.path("nowhere"), &poses, &[]);
     assert!(missing.code == 1 && missing.stderr.contains("nowhere"), "{}", missing.stderr);
     fs::create_dir_all(scratch.path("bare")).unwrap();
@@ -260,6 +265,28 @@ fn what_is_no_recording_is_refused_with_its_reason() {
     assert_eq!(run_cml(&[]).code, 2);
     let donut = frames_run(&folder, &poses, &["--center", "60,10", "--radii", "2,50"]);
     assert!(donut.code == 1 && donut.stderr.contains("ring"), "{}", donut.stderr);
+}
+
+#[test]
+fn a_cut_image_and_a_nan_row_leave_the_rest() {
+    let (scratch, drive) = (Scratch::new(), Drive::new());
+    let folder = drive.folder(&scratch);
+    let bytes = &drive.frames[7].0.bytes;
+    fs::write(folder.join("view_7.png"), &bytes[..200]).unwrap();
+    fs::write(folder.join("._view_7.png"), b"AppleDouble").unwrap();
+    let rows = drive.table(|i, p| match i {
+        50 => format!("view_{i}.png,nan,nan,nan"),
+        60 => format!("view_{i}.png,1"),
+        _ => format!("view_{i}.png,{},{},{}", p.x(), p.y(), p.heading()),
+    });
+    let poses = scratch.file("poses.csv", format!("file,x_m,y_m,theta\n{rows}"));
+    let outcome = frames_run(&folder, &poses, &[]);
+    assert_eq!(outcome.code, 0, "{}", outcome.stderr);
+    for said in ["view_7.png:", "poses.csv:52", "poses.csv:62", "\"theta\" in rad", "\"x m\" in m"] {
+        assert!(outcome.stderr.contains(said), "{said}: {}", outcome.stderr);
+    }
+    assert_eq!((outcome.event("log_problem"), outcome.event("unit_assumed")), (3, 1));
+    assert_eq!(outcome.metric("n_views"), ((drive.frames.len() - 3) / 5) as f64);
 }
 
 #[test]
@@ -284,7 +311,7 @@ fn a_real_route_is_within_what_was_asked_for() {
         return;
     }
     for seed in ["1", "2", "3", "4"] {
-        let outcome = frames_run(&frames, &poses, &["--seed", seed]);
+        let outcome = frames_run(&frames, &poses, &["--seed", seed, "--columns", "t_ms,x_cm,y_cm"]);
         // An independent program's nearest view is 3.4 cm off on average; the others are the goals of docs/cml.md.
         assert!(outcome.metric("nearest_view_error_mean_m") <= 0.034, "{}", outcome.stdout);
         let (mean, most) = (outcome.metric("error_mean_m"), outcome.metric("error_max_m"));

@@ -12,4 +12,5 @@ pub use interval::{MeanInterval, proportion_interval};
 pub use landmarks::{Correspondence, landmark_errors};
 pub use positions::TruePositions;
 pub use trajectory::{Sample, TrajectoryErrors, trajectory_errors};
+pub(crate) use truth::LONGEST_GAP;
 pub use truth::TrueTrack;

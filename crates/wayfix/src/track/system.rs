@@ -74,6 +74,10 @@ pub(super) struct Totals {
 impl TrackSystem {
     /// A system that has seen nothing yet.
     pub fn new(setup: TrackSetup, seed: u64) -> Self {
+        let mut events = Events::default();
+        if let Some(doubt) = setup.truth.doubt() {
+            events.warn("truth_line_unusable", doubt);
+        }
         Self {
             setup,
             rng: ChaCha8Rng::seed_from_u64(seed),
@@ -84,7 +88,7 @@ impl TrackSystem {
             was_lost: false,
             score: Score::default(),
             totals: Totals::default(),
-            events: Events::default(),
+            events,
         }
     }
 

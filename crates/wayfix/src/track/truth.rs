@@ -6,7 +6,15 @@ use super::TrackError;
 
 /// Where the target truly was, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TrueBoxes(Vec<Option<BoundingBox>>);
+pub struct TrueBoxes {
+    frames: Vec<Truth>,
+    n_unusable: usize,
+    /// The first lines that are no box.
+    unusable: Vec<String>,
+}
+
+/// So many unusable lines are named.
+const MOST_NAMED: usize = 3;
 
 /// What is known of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,10 +48,11 @@ impl Truth {
 }
 
 impl TrueBoxes {
-    /// One box a line, line k being frame k, each as [`parse_box`] takes it. Empty lines at the end do not count.
+    /// One box a line, line k being frame k, each as [`parse_box`] takes it. Nothing is known of the frame of a line that is blank or no box.
+    /// A first line without a number is a header. Empty lines at the end do not count.
     ///
     /// # Errors
-    /// [`TrackError::Read`], and [`TrackError::Line`] for the first line that is no box.
+    /// [`TrackError::Read`], and [`TrackError::Line`] for the first line when no line is a box.
     pub fn read(path: &Path) -> Result<Self, TrackError> {
         let read = fs::read(path).map_err(|source| TrackError::Read { path: path.into(), source })?;
         Self::parse(&String::from_utf8_lossy(&read))
@@ -55,29 +64,52 @@ impl TrueBoxes {
     /// [`TrackError::Line`].
     pub fn parse(text: &str) -> Result<Self, TrackError> {
         let text = text.trim_start_matches('\u{feff}').trim_end();
-        let line = |(index, line): (usize, &str)| {
-            parse_box(line).map_err(|source| TrackError::Line { line: index + 1, source: Box::new(source) })
-        };
-        text.lines().enumerate().map(line).collect::<Result<_, _>>().map(Self)
+        let mut found = Self::default();
+        let mut first_error = None;
+        let n_header = usize::from(text.lines().next().is_some_and(is_header) && text.lines().count() > 1);
+        for (index, line) in text.lines().enumerate().skip(n_header) {
+            found.frames.push(match parse_box(line) {
+                Ok(Some(target)) => Truth::At(target),
+                Ok(None) => Truth::Absent,
+                Err(source) => {
+                    let error = TrackError::Line { line: index + 1, source: Box::new(source) };
+                    if found.unusable.len() < MOST_NAMED {
+                        let line: String = line.chars().take(80).collect();
+                        found.unusable.push(format!("line {} {line:?}", index + 1));
+                    }
+                    found.n_unusable += 1;
+                    first_error.get_or_insert(error);
+                    Truth::Unknown
+                }
+            });
+        }
+        match first_error {
+            Some(error) if found.n_unusable == found.frames.len() => Err(error),
+            _ => Ok(found),
+        }
+    }
+
+    /// What is wrong with lines that are no box.
+    pub(super) fn doubt(&self) -> Option<String> {
+        (self.n_unusable > 0).then(|| {
+            let (n, named) = (self.n_unusable, self.unusable.join(", "));
+            format!("{n} of {} lines of the truth are no box ({named}): their frames are not judged", self.len())
+        })
     }
 
     /// What is known of a frame, counted from 0.
     pub fn at(&self, frame: usize) -> Truth {
-        match self.0.get(frame) {
-            Some(Some(target)) => Truth::At(*target),
-            Some(None) => Truth::Absent,
-            None => Truth::Unknown,
-        }
+        self.frames.get(frame).copied().unwrap_or(Truth::Unknown)
     }
 
     /// How many frames are spoken of.
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.frames.len()
     }
 
     /// Whether none is.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.frames.is_empty()
     }
 }
 
@@ -108,6 +140,12 @@ pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackError> {
         return Ok(None);
     }
     BoundingBox::from_corner(x, y, width, height).map(Some).map_err(|error| wrong(error.to_string()))
+}
+
+/// A line of words, as `x,y,w,h`.
+fn is_header(line: &str) -> bool {
+    let mut words = line.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty()).peekable();
+    words.peek().is_some() && words.all(|word| word.parse::<f64>().is_err())
 }
 
 /// Left, top, width and height of the upright box around points.
@@ -142,11 +180,22 @@ mod tests {
     }
 
     #[test]
-    fn an_unusable_line_is_named_and_what_lies_beyond_the_list_is_unknown() {
-        let error = TrueBoxes::parse("1,2,3,4\n1,2,3\n").unwrap_err();
-        assert!(matches!(error, TrackError::Line { line: 2, .. }), "{error}");
+    fn a_line_that_is_no_box_leaves_its_frame_unknown() {
+        let truth = TrueBoxes::parse("1,2,3,4\n\n5,6,3,4\n160,1\n").unwrap();
+        assert_eq!(truth.len(), 4);
+        assert!(truth.at(1).is_unknown() && truth.at(3).is_unknown());
+        assert_eq!(truth.at(2).target().unwrap().corner(), [5.0, 6.0]);
+        let doubt = truth.doubt().unwrap();
+        assert!(doubt.contains("2 of 4") && doubt.contains("line 2") && doubt.contains("line 4"), "{doubt}");
+        let error = TrueBoxes::parse("1,2,3\n4,5,6\n").unwrap_err();
+        assert!(matches!(error, TrackError::Line { line: 1, .. }), "{error}");
+        assert!(TrueBoxes::parse("x,y,w,h\n1,2,3,4").unwrap().at(0).target().is_some());
+    }
+
+    #[test]
+    fn what_lies_beyond_the_list_is_unknown() {
         let truth = TrueBoxes::parse("\u{feff}1,2,3,4\r\n0,0,0,0\r\n\r\n").unwrap();
-        assert_eq!(truth.len(), 2);
+        assert_eq!((truth.len(), truth.doubt()), (2, None));
         assert!(truth.at(0).target().is_some() && truth.at(1).is_absent() && truth.at(2).is_unknown());
         assert!(TrueBoxes::parse("").unwrap().is_empty());
     }

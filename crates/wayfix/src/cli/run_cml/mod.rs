@@ -22,7 +22,8 @@ use super::{
 use crate::{
     cml::{
         self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
-        Task, ViewReader, recording::Recording,
+        Task, ViewReader, 
+        recording::{Recording, Tables},
     },
     commented::commented,
     report::Run,
@@ -105,7 +106,7 @@ impl Arguments {
         }
         // A saved map knows which way its columns go.
         let saved_sense = saved.map(|archive| archive.params().views.sense);
-        let told = self.columns.map(|columns| match columns {
+        let told = self.column_order.map(|columns| match columns {
             ColumnsArgument::Clockwise => TurnSense::Clockwise,
             ColumnsArgument::Counterclockwise => TurnSense::Counterclockwise,
         });
@@ -124,9 +125,9 @@ impl Arguments {
         let (Some(frames), Some(poses)) = (&self.frames, &self.poses) else {
             bail!("neither a log nor frames")
         };
-        let recording = read_recording(frames, poses, self.stamps.as_deref())?;
+        let recording = self.recording(frames, poses, self.stamps.as_deref())?;
         let taught = match (&self.learn_from, &self.learn_poses) {
-            (Some(frames), Some(poses)) => Some(read_recording(frames, poses, self.learn_stamps.as_deref())?),
+            (Some(frames), Some(poses)) => Some(self.recording(frames, poses, self.learn_stamps.as_deref())?),
             _ => None,
         };
         let plan = Plan::of_recording(
@@ -137,7 +138,10 @@ impl Arguments {
             &camera,
             self.common.seed,
         )?;
-        let read = ReadReport::default();
+        let mut read = ReadReport::default();
+        for recording in taught.iter().chain([&recording]) {
+            read.join(&recording.read);
+        }
         Ok(Input { plan, read, origin: Format::Images })
     }
 
@@ -174,16 +178,14 @@ impl Arguments {
         };
         Ok((CmlSystem::new(params, reader, map)?, start))
     }
-}
 
-fn read_recording(frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<Recording> {
-    let recording = Recording::read(frames, poses, stamps)?;
-    if recording.n_without_pose > 0 {
-        tell(format!(
-            "note: {} frames of {} have no pose and are left out",
-            recording.n_without_pose,
-            frames.display()
-        ));
+    fn recording(&self, frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<Recording> {
+        let (columns, stamp_columns) = (self.columns.as_ref(), self.stamp_columns.as_ref());
+        let recording = Recording::read(frames, &Tables { poses, columns, stamps, stamp_columns })?;
+        if !recording.read.is_clean() {
+            tell(&recording.read);
+        }
+        recording.notes.iter().for_each(|note| tell(format!("note: {note}")));
+        Ok(recording)
     }
-    Ok(recording)
 }

@@ -1,6 +1,6 @@
 use std::{io, path::PathBuf};
 
-use wayfix_sensor_log::{ImageError, LogError};
+use wayfix_sensor_log::LogError;
 
 /// Why a folder of frames and a table of poses make no recording.
 #[derive(Debug, thiserror::Error)]
@@ -17,20 +17,6 @@ pub enum RecordingError {
     /// The folder cannot be read.
     #[error(transparent)]
     Folder(#[from] LogError),
-    /// A frame is no image.
-    #[error("{}", path.display())]
-    Image {
-        /// The frame.
-        path: PathBuf,
-        /// What is wrong with it.
-        source: ImageError,
-    },
-    /// A file with the name of an image is none.
-    #[error("{}: neither PNG nor JPEG", path.display())]
-    NotAnImage {
-        /// The file.
-        path: PathBuf,
-    },
     /// There is nothing to read.
     #[error("{}: no {what}", path.display())]
     Nothing {

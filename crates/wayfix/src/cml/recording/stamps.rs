@@ -4,18 +4,33 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{RecordingError, poses::time_unit, table::Table};
+use wayfix_sensor_log::{ReadReport, is_hidden};
+
+use super::{
+    RecordingError,
+    columns::{ColumnNames, Columns, Quantity},
+    table::Table,
+};
 
 /// When each frame was taken, s, by the name of its file.
 pub(super) type Stamps = BTreeMap<String, f64>;
 
-/// A table of `t, file`, in either order; the first column of numbers is the time.
-pub(super) fn read(path: &Path) -> Result<Stamps, RecordingError> {
-    let table = Table::read(path)?;
-    parse(&table).map_err(|reason| RecordingError::Table { path: path.to_owned(), reason })
+/// A table with a column of times and one of file names, known by their names.
+pub(super) fn read(
+    path: &Path,
+    names: Option<&ColumnNames>,
+    report: &mut ReadReport,
+    notes: &mut Vec<String>,
+) -> Result<Stamps, RecordingError> {
+    let table = Table::read(path, report)?;
+    let refused = |reason| RecordingError::Table { path: path.to_owned(), reason };
+    let columns = Columns::of(&table, names, "--stamp-columns").map_err(refused)?;
+    let stamps = parse(&table, &columns, report).map_err(refused)?;
+    table.say_units(&columns, "--stamp-columns", report, notes);
+    Ok(stamps)
 }
 
-/// The table of stamps beside the frames: the only file of text there, but `poses`, that names the first frame.
+/// The table of stamps beside the frames: the first file of text there, but `poses`, that names the first frame.
 pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf> {
     let mut candidates: Vec<PathBuf> =
         fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path()).collect();
@@ -24,24 +39,33 @@ pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf
         ["csv", "txt", "tsv", "dat"].contains(&&*extension)
     };
     let same = |path: &PathBuf| fs::canonicalize(path).ok() == fs::canonicalize(poses).ok();
-    candidates.retain(|path| is_text(path) && !same(path));
+    candidates.retain(|path| is_text(path) && !is_hidden(path) && !same(path));
     candidates.sort();
-    candidates.into_iter().find(|path| read(path).is_ok_and(|stamps| stamps.contains_key(a_frame)))
+    let names_it = |path: &PathBuf| {
+        let table = Table::read(path, &mut ReadReport::default());
+        table.is_ok_and(|table| table.rows.iter().any(|(_, row)| row.iter().any(|cell| file_name(cell) == a_frame)))
+    };
+    candidates.into_iter().find(names_it)
 }
 
-fn parse(table: &Table) -> Result<Stamps, String> {
-    let n = table.n_columns();
-    let file = (0..n).find(|column| !table.is_numeric(*column)).ok_or("no column of file names")?;
-    let time = (0..n).find(|column| table.is_numeric(*column)).ok_or("no column of times")?;
-    let name = table.names.as_ref().map_or("", |names| &names[time]);
-    let numbers = table.numbers(time)?;
-    let unit = match name.rsplit(' ').next() {
-        Some("ms") => 0.001,
-        Some("s") => 1.0,
-        _ => time_unit(&numbers),
-    };
-    let names = table.rows.iter().map(|(_, row)| file_name(&row[file]));
-    Ok(names.zip(numbers.into_iter().map(|value| value * unit)).collect())
+fn parse(table: &Table, columns: &Columns, report: &mut ReadReport) -> Result<Stamps, String> {
+    let (file, time) = (columns.need(Quantity::File, "file")?, columns.need(Quantity::Time, "t")?);
+    let mut stamps = Stamps::new();
+    for (line, cells) in &table.rows {
+        let row = || -> Result<(String, f64), String> {
+            table.check_width(cells)?;
+            let name = cells.get(file.index).map(|cell| file_name(cell));
+            Ok((name.ok_or("no file")?, table.number(cells, time)?))
+        };
+        match row() {
+            Ok((name, seconds)) => drop(stamps.insert(name, seconds)),
+            Err(reason) => table.leave_out(*line, reason, report),
+        }
+    }
+    match stamps.is_empty() {
+        true => Err(format!("no row tells a time; {}", table.first_problem(report))),
+        false => Ok(stamps),
+    }
 }
 
 /// Without the folders that a table may name.
@@ -53,20 +77,24 @@ pub(super) fn file_name(path: &str) -> String {
 mod tests {
     use super::*;
 
+    fn stamps(text: &str) -> Result<Stamps, String> {
+        let table = Table::parse(text)?;
+        let columns = Columns::of(&table, None, "--stamp-columns")?;
+        parse(&table, &columns, &mut ReadReport::default())
+    }
+
     #[test]
-    fn stamps_come_in_either_order_with_or_without_folders() {
+    fn stamps_are_read_by_the_names_of_their_columns() {
         for text in [
             "Time [s], Filename\n0.5, outdoor/a.png\n1.0, outdoor/b.png",
-            "a.png 0.5\nb.png 1",
             "file,t_ms\nx\\a.png,500\nx\\b.png,1000",
+            "Best heading [degrees], Time [s], Lowest difference, Filename\n9,0.5,3,a.png\n8,1,4,b.png",
+            "Time [s]; Filename\nnan; c.png\n0.5; a.png\n1; b.png\n2",
         ] {
-            let stamps = parse(&Table::parse(text).unwrap()).unwrap();
-            assert_eq!(
-                stamps,
-                Stamps::from([("a.png".to_owned(), 0.5), ("b.png".to_owned(), 1.0)]),
-                "{text:?}"
-            );
+            let expected = Stamps::from([("a.png".to_owned(), 0.5), ("b.png".to_owned(), 1.0)]);
+            assert_eq!(stamps(text).unwrap(), expected, "{text:?}");
         }
-        assert!(parse(&Table::parse("1,2\n3,4").unwrap()).is_err());
+        assert!(stamps("1,a.png\n3,b.png").unwrap_err().contains("--stamp-columns"));
+        assert!(stamps("t_s,value\n1,2").unwrap_err().contains("no column file among t s, value"));
     }
 }

@@ -1,6 +1,11 @@
 use std::{fs, path::Path};
 
-use super::RecordingError;
+use wayfix_sensor_log::{Problem, ProblemKind, ReadReport};
+
+use super::{
+    RecordingError,
+    columns::{Column, Columns},
+};
 
 /// A text of rows and columns: comma, semicolon, tab or blanks between them, `#` before remarks, a row of names first or none.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,13 +14,17 @@ pub(super) struct Table {
     pub(super) names: Option<Vec<String>>,
     /// Each with the number of its line, from 1.
     pub(super) rows: Vec<(usize, Vec<String>)>,
+    /// The file's name.
+    file: String,
+    /// Of the header, else of most rows.
+    n_columns: usize,
 }
 
 /// No table of poses is larger; a file that is something else must not fill the memory.
 const MAX_BYTES: u64 = 256 << 20;
 
 impl Table {
-    pub(super) fn read(path: &Path) -> Result<Self, RecordingError> {
+    pub(super) fn read(path: &Path, report: &mut ReadReport) -> Result<Self, RecordingError> {
         let io = |source| RecordingError::Io { path: path.to_owned(), source };
         let refused = |reason: String| RecordingError::Table { path: path.to_owned(), reason };
         if fs::metadata(path).map_err(io)?.len() > MAX_BYTES {
@@ -23,7 +32,10 @@ impl Table {
         }
         let bytes = fs::read(path).map_err(io)?;
         let text = String::from_utf8(bytes).map_err(|_| refused("not a text".to_owned()))?;
-        Self::parse(&text).map_err(refused)
+        let mut table = Self::parse(&text).map_err(refused)?;
+        table.file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        report.rows_read += table.rows.len() as u64;
+        Ok(table)
     }
 
     pub(super) fn parse(text: &str) -> Result<Self, String> {
@@ -47,31 +59,65 @@ impl Table {
                 rows.push((index + 1, cells));
             }
         }
-        let Some((_, first)) = rows.first() else { return Err("no rows".to_owned()) };
-        let n = first.len();
-        if let Some((line, row)) = rows.iter().find(|(_, row)| row.len() != n) {
-            return Err(format!("line {line} has {} columns, the others have {n}", row.len()));
+        if rows.is_empty() {
+            return Err("no rows".to_owned());
         }
-        let names = names.filter(|names: &Vec<String>| names.len() == n);
-        Ok(Self { names, rows })
+        let has_width = |n: usize| rows.iter().filter(|(_, row)| row.len() == n).count();
+        let names = names.filter(|names: &Vec<String>| has_width(names.len()) > 0);
+        let most = || rows.iter().map(|(_, row)| row.len()).max_by_key(|n| (has_width(*n), *n)).unwrap_or(0);
+        let n_columns = names.as_ref().map_or_else(most, Vec::len);
+        Ok(Self { names, rows, file: String::new(), n_columns })
     }
 
     pub(super) fn n_columns(&self) -> usize {
-        self.rows.first().map_or(0, |(_, row)| row.len())
+        self.n_columns
     }
 
-    /// The numbers of a column.
-    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, String> {
-        let number = |(line, row): &(usize, Vec<String>)| {
-            let value = row[column].parse::<f64>().ok().filter(|value| value.is_finite());
-            value.ok_or_else(|| format!("line {line}: {:?} is not a number", row[column]))
-        };
-        self.rows.iter().map(number).collect()
+    pub(super) fn check_width(&self, cells: &[String]) -> Result<(), String> {
+        match cells.len() {
+            n if n == self.n_columns => Ok(()),
+            n => Err(format!("{n} columns, not {}", self.n_columns)),
+        }
     }
 
-    /// Whether every cell of a column is a number.
-    pub(super) fn is_numeric(&self, column: usize) -> bool {
-        self.rows.iter().all(|(_, row)| row[column].parse::<f64>().is_ok())
+    /// A cell in SI units.
+    pub(super) fn number(&self, cells: &[String], column: Column) -> Result<f64, String> {
+        let cell = cells.get(column.index).map_or("", String::as_str);
+        let value = cell.parse::<f64>().map(|value| value * column.factor);
+        let value = value.ok().filter(|value| value.is_finite());
+        value.ok_or_else(|| format!("{:?} is not a finite number", cell.chars().take(40).collect::<String>()))
+    }
+
+    /// Counts a row as one that cannot be used.
+    pub(super) fn leave_out(&self, line: usize, reason: String, report: &mut ReadReport) {
+        report.rows_read = report.rows_read.saturating_sub(1);
+        let kind =
+            if reason.contains("columns, not") { ProblemKind::ColumnCount } else { ProblemKind::NotANumber };
+        report.add(Problem { file: self.file.clone(), row: line as u64, kind, reason });
+    }
+
+    /// The first row of this table that was left out.
+    pub(super) fn first_problem(&self, report: &ReadReport) -> String {
+        let first = report.examples.iter().find(|problem| problem.file == self.file);
+        first.map_or_else(String::new, |problem| format!("line {}: {}", problem.row, problem.reason))
+    }
+
+    /// Says in which units the columns are, as stated or as assumed.
+    pub(super) fn say_units(
+        &self,
+        columns: &Columns,
+        option: &str,
+        report: &mut ReadReport,
+        notes: &mut Vec<String>,
+    ) {
+        if let Some(units) = columns.units(false) {
+            notes.push(format!("{}: {units}", self.file));
+        }
+        if let Some(units) = columns.units(true) {
+            let text =
+                format!("{}: no unit is stated, taken are {units}; state it in the names, or by {option}", self.file);
+            report.warn("unit_assumed", text);
+        }
     }
 }
 
@@ -93,7 +139,8 @@ fn has_file_name(cells: &[String]) -> bool {
 }
 
 /// `Time [s]`, `time_s` and `TIME (s)` are the same name.
-fn plain(name: &str) -> String {
+pub(super) fn plain(name: &str) -> String {
+    let name = name.replace('°', " deg");
     let word = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
     name.chars().map(word).collect::<String>().split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -106,26 +153,24 @@ mod tests {
     fn separators_headers_and_remarks_are_recognized() {
         for text in [
             "x,y\n1,2\n3,4\n",
+            "\u{feff}x,y\n1,2\n3,4\n",
             "# x y\n1 2\n3 4",
             "# made by hand\n\nX;Y\n1;2\n3;4\n",
             "x\ty\r\n1\t2\r\n3\t4\r\n",
         ] {
             let table = Table::parse(text).unwrap();
             assert_eq!(table.names, Some(vec!["x".to_owned(), "y".to_owned()]), "{text:?}");
-            assert_eq!((table.numbers(0), table.numbers(1)), (Ok(vec![1.0, 3.0]), Ok(vec![2.0, 4.0])));
+            let rows: Vec<&[String]> = table.rows.iter().map(|(_, row)| &row[..]).collect();
+            assert_eq!(rows, [["1", "2"], ["3", "4"]], "{text:?}");
         }
         assert_eq!(Table::parse("1,2\n3,4").unwrap().names, None);
-        assert_eq!(
-            Table::parse("Time [s], Filename\n0.1, a.png").unwrap().names.unwrap(),
-            ["time s", "filename"]
-        );
+        assert_eq!(plain("Heading [°]"), "heading deg");
+        assert_eq!(Table::parse(""), Err("no rows".to_owned()));
     }
 
     #[test]
-    fn what_is_no_table_says_where() {
-        assert_eq!(Table::parse(""), Err("no rows".to_owned()));
-        assert_eq!(Table::parse("1,2\n3\n"), Err("line 2 has 1 columns, the others have 2".to_owned()));
-        let table = Table::parse("1,2\n3,nan\n").unwrap();
-        assert_eq!(table.numbers(1), Err("line 2: \"nan\" is not a number".to_owned()));
+    fn the_width_is_that_of_the_header_or_of_most_rows() {
+        assert_eq!(Table::parse("1\n1,2\n3,4").unwrap().n_columns(), 2);
+        assert_eq!(Table::parse("x,y\n1\n3,4\n5").unwrap().n_columns(), 2);
     }
 }
