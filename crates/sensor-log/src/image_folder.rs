@@ -18,6 +18,8 @@ const RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 pub(crate) struct ImageFolder {
     files: Enumerate<vec::IntoIter<PathBuf>>,
     rate_hz: f64,
+    /// A doubt about the names, until it is told.
+    doubt: Option<String>,
 }
 
 impl ImageFolder {
@@ -29,15 +31,20 @@ impl ImageFolder {
         if files.is_empty() {
             return Err(LogError::Empty { path: folder.into() });
         }
-        Ok(Self { files: files.into_iter().enumerate(), rate_hz })
+        let doubt = same_numbers(&files);
+        Ok(Self { files: files.into_iter().enumerate(), rate_hz, doubt })
     }
 
     /// The next frame that can be read; the others go into the report and leave a gap in time.
     pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
+        if let Some(doubt) = self.doubt.take() {
+            report.warn("image_number_twice", doubt);
+        }
         for (index, path) in self.files.by_ref() {
             match read(&path) {
                 Ok(image) => {
                     report.rows_read += 1;
+                    report.warn_of_orientation(&image);
                     let nanoseconds = (index as f64 * 1e9 / self.rate_hz).round() as u64;
                     return Some(Record {
                         stamp: Stamp::from_nanoseconds(nanoseconds),
@@ -56,52 +63,23 @@ impl ImageFolder {
     }
 }
 
-/// Everything in a folder that is called a PNG or JPEG image, in the order of the names; hidden files are none.
+/// Everything in a folder that is called a PNG or JPEG image, in the order of the numbers in the names.
 ///
-/// Where all names are one word and a number, with or without a sign and decimals, the order is that of the numbers: stamps. A minus belongs to
-/// the number unless a letter or digit stands before it. Else digits count by value: `frame10` comes after `frame9`.
+/// `frame9` comes before `frame10`. A dot between two digits is a decimal point: `1.05` comes before `1.1`, and `1700000000.123456.png` is a
+/// time. Three numbers with dots between them are three whole numbers. A dash is a minus where it begins the name or follows a sign other than
+/// a letter or digit: `-2`, `t_-2`; in `img-1` it separates. Hidden files, whose names begin with a dot, are no images.
 ///
 /// # Errors
 /// When the folder cannot be read.
 pub fn image_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
     let mut files = images_in(folder)?;
     files.sort_by_cached_key(|path| (natural_key(&file_name(path)), path.clone()));
-    let stems: Vec<String> = files
-        .iter()
-        .map(|path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
-        .collect();
-    if let Some(numbers) = numbers(&stems) {
-        let mut numbered: Vec<(i128, PathBuf)> = numbers.into_iter().zip(files).collect();
-        numbered.sort_by_key(|(number, _)| *number); // of equals the order of the names stays
-        files = numbered.into_iter().map(|(_, path)| path).collect();
-    }
     Ok(files)
 }
 
-/// The numbers behind the word that all names begin with, in units of the 18th decimal.
-fn numbers(stems: &[String]) -> Option<Vec<i128>> {
-    let word = |stem: &String| {
-        let word = stem.find(|c: char| c.is_ascii_digit()).map_or(stem.as_str(), |at| &stem[..at]);
-        let before_minus = word.strip_suffix('-').filter(|before| !before.ends_with(char::is_alphanumeric));
-        before_minus.unwrap_or(word).to_owned()
-    };
-    let first = word(stems.first()?);
-    stems.iter().map(|stem| decimal(stem.strip_prefix(&first)?)).collect()
-}
-
-fn decimal(text: &str) -> Option<i128> {
-    const DECIMALS: usize = 18;
-    let (sign, digits) = text.strip_prefix('-').map_or((1, text), |rest| (-1, rest));
-    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
-    let are_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
-    if whole.is_empty() || whole.len() > DECIMALS || !are_digits(whole) || !are_digits(fraction) {
-        return None;
-    }
-    let fraction: String = fraction.chars().chain(std::iter::repeat('0')).take(DECIMALS).collect();
-    Some(
-        sign * (whole.parse::<i128>().ok()? * 10_i128.pow(DECIMALS as u32)
-            + fraction.parse::<i128>().ok()?),
-    )
+/// Whether a name begins with a dot, as `.DS_Store` and the `._0001.png` of macOS do.
+pub fn is_hidden(path: &Path) -> bool {
+    file_name(path).starts_with('.')
 }
 
 /// Everything in the folder that is called an image.
@@ -111,14 +89,25 @@ pub(crate) fn images_in(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
         fs::read_dir(folder).map_err(io)?.map(|entry| Ok(entry?.path())).collect();
     let mut paths = paths.map_err(io)?;
     paths.retain(|path| {
-        let is_hidden = file_name(path).starts_with('.');
-        !is_hidden
-            && !path.is_dir()
-            && path.extension().is_some_and(|found| {
-                ["png", "jpg", "jpeg"].iter().any(|extension| found.eq_ignore_ascii_case(extension))
-            })
+        let is_named_so = path.extension().is_some_and(|found| {
+            ["png", "jpg", "jpeg"].iter().any(|extension| found.eq_ignore_ascii_case(extension))
+        });
+        is_named_so && !is_hidden(path) && !path.is_dir()
     });
     Ok(paths)
+}
+
+/// What is doubtful about sorted names: images whose names are the same but for zeros or the extension.
+fn same_numbers(files: &[PathBuf]) -> Option<String> {
+    let key = |path: &PathBuf| stem_key(&stem(&file_name(path)));
+    let mut pairs = files.windows(2).filter(|pair| key(&pair[0]) == key(&pair[1]));
+    let first = pairs.next()?;
+    let n_pairs = 1 + pairs.count();
+    let (a, b) = (file_name(&first[0]), file_name(&first[1]));
+    Some(format!(
+        "{n_pairs} of {} images have the number of the one before, the first {a} and {b}; each counts as a frame",
+        files.len()
+    ))
 }
 
 fn read(path: &Path) -> Result<EncodedImage, String> {
@@ -139,62 +128,68 @@ fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// A key by which `frame10` comes after `frame9`: before each number stands how many digits it has.
-fn natural_key(name: &str) -> Vec<u8> {
-    let mut key = Vec::with_capacity(name.len() + 8);
-    let mut rest = name.as_bytes();
-    while let Some(first) = rest.first() {
-        let n_bytes = rest.iter().take_while(|byte| byte.is_ascii_digit() == first.is_ascii_digit()).count();
-        let (run, after) = rest.split_at(n_bytes);
-        if first.is_ascii_digit() {
-            let n_zeros = run.iter().take_while(|digit| **digit == b'0').count();
-            let digits = &run[n_zeros..];
-            key.extend([b'0', digits.len().min(255) as u8]);
-            key.extend(digits);
-        } else {
-            key.extend(run);
+fn stem(name: &str) -> String {
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned()
+}
+
+/// A key by which names sort as [`image_files`] says; the extension counts last.
+fn natural_key(name: &str) -> (Vec<u8>, String) {
+    (stem_key(&stem(name)), name.to_owned())
+}
+
+/// Text as it is. A number as how many digits it has, its digits and its decimals; a negative one with each byte turned round.
+fn stem_key(stem: &str) -> Vec<u8> {
+    let bytes = stem.as_bytes();
+    let n_digits =
+        |from: usize| bytes[from.min(bytes.len())..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let is_dot = |at: usize| bytes.get(at) == Some(&b'.');
+    let mut key = Vec::with_capacity(bytes.len() + 8);
+    let mut at = 0;
+    let mut is_negative = false;
+    while let Some(&byte) = bytes.get(at) {
+        let n_whole = n_digits(at);
+        if n_whole == 0 {
+            let follows_a_word = at > 0 && bytes[at - 1].is_ascii_alphanumeric();
+            is_negative = byte == b'-' && !follows_a_word && n_digits(at + 1) > 0;
+            if !is_negative {
+                key.push(byte);
+            }
+            at += 1;
+            continue;
         }
-        rest = after;
+        let whole = &bytes[at..at + n_whole];
+        let after_dot = at + n_whole + 1;
+        let n_decimals = if is_dot(after_dot - 1) { n_digits(after_dot) } else { 0 };
+        // `1.2.3` is no decimal number.
+        let is_first = at < 2 || !is_dot(at - 1) || !bytes[at - 2].is_ascii_digit();
+        let is_last = !is_dot(after_dot + n_decimals) || n_digits(after_dot + n_decimals + 1) == 0;
+        let decimals =
+            if is_first && is_last { &bytes[after_dot.min(bytes.len())..][..n_decimals] } else { &[] };
+        at += n_whole + if decimals.is_empty() { 0 } else { 1 + n_decimals };
+
+        let n_zeros = whole.iter().take_while(|digit| **digit == b'0').count();
+        let digits = &whole[n_zeros..];
+        let n_kept = decimals.iter().rposition(|digit| *digit != b'0').map_or(0, |last| last + 1);
+        let mut number = vec![digits.len().min(255) as u8];
+        number.extend(digits.iter().chain(&decimals[..n_kept]));
+        number.push(0);
+        if is_negative && number.iter().any(|byte| *byte != 0) {
+            key.push(b'-');
+            key.extend(number.iter().map(|byte| !byte));
+        } else {
+            key.push(b'0');
+            key.extend(number);
+        }
+        is_negative = false;
     }
     key
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{image_files, natural_key};
+    use std::path::PathBuf;
 
-    fn in_order(names: &[&str]) -> Vec<String> {
-        let folder = tempfile::tempdir().unwrap();
-        for name in names.iter().rev() {
-            std::fs::write(folder.path().join(name), "").unwrap();
-        }
-        let files = image_files(folder.path()).unwrap();
-        files.iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect()
-    }
-
-    #[test]
-    fn names_that_are_numbers_are_in_their_order() {
-        for names in [
-            &["-1.5.png", "-0.5.png", "0.png", "1.05.png", "1.1.png", "1.15.png", "2.png", "10.png"][..],
-            &["t_-2.png", "t_-1.png", "t_3.png"],
-            &["img-1.png", "img-2.png", "img-10.png"],
-            &["1700000000.0999999999.png", "1700000000.123456789.png", "1700000000.2.png"],
-            &["frame9.png", "frame010.png", "frame011.png"],
-            &["a1b2.png", "a1b10.png", "c.png"],
-        ] {
-            assert_eq!(in_order(names), names);
-        }
-    }
-
-    #[test]
-    fn hidden_files_and_folders_are_no_images() {
-        let folder = tempfile::tempdir().unwrap();
-        for name in ["1.png", "._1.png", ".DS_Store", "Thumbs.db"] {
-            std::fs::write(folder.path().join(name), "").unwrap();
-        }
-        std::fs::create_dir(folder.path().join("2.png")).unwrap();
-        assert_eq!(image_files(folder.path()).unwrap(), [folder.path().join("1.png")]);
-    }
+    use super::{natural_key, same_numbers};
 
     #[test]
     fn numbers_count_by_value_and_names_by_their_letters() {
@@ -211,5 +206,36 @@ mod tests {
         names.reverse();
         names.sort_by_key(|name| natural_key(name));
         assert_eq!(names, sorted);
+    }
+
+    fn check_order(sorted: &[&str]) {
+        let mut names = sorted.to_vec();
+        names.reverse();
+        names.sort_by_key(|name| natural_key(name));
+        assert_eq!(names, sorted);
+    }
+
+    #[test]
+    fn stamps_as_names_sort_by_their_value() {
+        check_order(&["1.0.png", "1.05.png", "1.1.png", "1.15.png", "2.png", "10.5.png"]);
+        check_order(&["1699999999.9.jpg", "1700000000.05.jpg", "1700000000.123456.jpg", "1700000000.2.jpg"]);
+        check_order(&["rgb_9.95.png", "rgb_10.05.png", "rgb_10.1.png"]);
+        check_order(&["v1.2.9.png", "v1.2.10.png", "v1.10.1.png"]);
+    }
+
+    #[test]
+    fn negative_numbers_come_first_and_a_dash_separates() {
+        check_order(&["-10.png", "-2.png", "-1.1.png", "-1.05.png", "-1.png", "0.png", "1.png"]);
+        check_order(&["t_-2.png", "t_-1.png", "t_0.png"]);
+        check_order(&["img-1.png", "img-2.png", "img-10.png"]);
+        check_order(&["2024-01-02.png", "2024-01-10.png"]);
+    }
+
+    #[test]
+    fn images_with_the_same_number_are_said() {
+        let files = ["1.0.png", "1.00.png", "2.png"].map(PathBuf::from);
+        let doubt = same_numbers(&files).unwrap();
+        assert!(doubt.contains("1 of 3") && doubt.contains("1.00.png"), "{doubt}");
+        assert_eq!(same_numbers(&files[1..]), None);
     }
 }

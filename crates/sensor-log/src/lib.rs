@@ -62,7 +62,7 @@ pub use convert::convert;
 pub use error::LogError;
 pub use format::Format;
 pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummary, PixelLayout};
-pub use image_folder::image_files;
+pub use image_folder::{image_files, is_hidden};
 pub use log::{Log, LogMeta};
 pub use mcap_log::{
     ChannelKey, Drawing, ImageOutline, McapFile, McapWriter, Message, MessageSink, MessageWriter, Shape,

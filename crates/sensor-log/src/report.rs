@@ -1,6 +1,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use crate::EncodedImage;
+
 /// How many problems a report names; the rest is only counted.
 const MAX_EXAMPLES: usize = 20;
 
@@ -123,6 +125,15 @@ impl ReadReport {
             self.warnings.push(warning);
         }
     }
+    /// Says once that images are turned.
+    pub fn warn_of_orientation(&mut self, image: &EncodedImage) {
+        if let Some(orientation) = image.orientation() {
+            self.warn(
+                "image_orientation_applied",
+                format!("EXIF orientation {orientation} turns images upright; boxes and calibration count in the turned image"),
+            );
+        }
+    }
     /// Counts a problem, and names it when it is among the first.
     pub fn add(&mut self, problem: Problem) {
         *self.problems.entry(problem.kind).or_default() += 1;
@@ -135,6 +146,16 @@ impl ReadReport {
         self.rows_read -= n_rows.min(self.rows_read);
         *self.problems.entry(first.kind).or_default() += n_rows.saturating_sub(1);
         self.add(first);
+    }
+    /// Adds problems and warnings of another part of the same recording.
+    pub fn join(&mut self, other: &Self) {
+        self.rows_read += other.rows_read;
+        for (kind, n) in &other.problems {
+            *self.problems.entry(*kind).or_default() += n;
+        }
+        let room = MAX_EXAMPLES.saturating_sub(self.examples.len());
+        self.examples.extend(other.examples.iter().take(room).cloned());
+        other.warnings.iter().for_each(|warning| self.warn(warning.name, warning.text.clone()));
     }
     pub(crate) fn ignore(&mut self, topic: &str) {
         match self.ignored.get_mut(topic) {

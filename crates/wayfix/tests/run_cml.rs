@@ -99,8 +99,9 @@ fn every_kind_of_table_gives_the_same_run() {
     let table = |name: &str, text: String| scratch.file(name, text);
     let by_file =
         table("a.csv", drive.table(|i, p| format!("view_{i}.png,{},{},{}", p.x(), p.y(), p.heading())));
-    let named = ["--columns", "file,x_m,y_m,heading_rad"];
-    let outcome = frames_run(&folder, &by_file, &named);
+    let outcome = frames_run(&folder, &by_file, &[]);
+    assert!(outcome.stderr.contains("--columns"), "{}", outcome.stderr);
+    let outcome = frames_run(&folder, &by_file, &["--columns", "file,x_m,y_m,heading_rad"]);
     let expected = outcome.figures();
     // Views 0.25 m apart, every fifth withheld: the nearest is mostly 0.25 m away.
     assert!(outcome.metric("error_mean_m") < 0.25, "{expected:?}");
@@ -112,36 +113,14 @@ fn every_kind_of_table_gives_the_same_run() {
     let named =
         drive.table(|i, p| format!("{}\t{i}\t{}\t{}", p.heading().to_degrees(), 100.0 * p.x(), p.y()));
     let rows = drive.table(|_, p| format!("{} {} {}", p.x(), p.y(), p.heading()));
-    let rows = "x y heading\n".to_owned() + &rows;
-    for poses in [table("b.csv", header + &named), table("c.csv", rows)] {
-        let figures = frames_run(&folder, &poses, &[]).figures();
+    let (by_name, by_row) = (table("b.csv", header + &named), table("c.csv", rows));
+    for (poses, more) in [(by_name, &[][..]), (by_row, &["--columns", "x,y,theta"])] {
+        let figures = frames_run(&folder, &poses, more).figures();
         for ((name, value), (_, expected)) in figures.iter().zip(&expected) {
             // Degrees and centimetres round the last digits.
             assert!((value - expected).abs() <= 1e-6 * (1.0 + expected.abs()), "{name}: {value} {expected}");
         }
     }
-}
-
-#[test]
-fn bad_rows_and_images_are_left_out_and_counted() {
-    let (scratch, drive) = (Scratch::new(), Drive::new());
-    let folder = drive.folder(&scratch);
-    let mut rows: Vec<String> = drive
-        .table(|i, p| format!("view_{i}.png,{},{},{}", p.x(), p.y(), p.heading()))
-        .lines()
-        .map(str::to_owned)
-        .collect();
-    rows[3] = "view_3.png,nan,0,0".to_owned();
-    rows[7] = "view_7.png,1".to_owned();
-    fs::write(folder.join("view_9.png"), &fs::read(folder.join("view_9.png")).unwrap()[..20]).unwrap();
-    let poses = scratch.file("poses.csv", "file,x_m,y_m,theta\n".to_owned() + &rows.join("\n"));
-    let outcome = frames_run(&folder, &poses, &[]);
-    assert_eq!(outcome.event("log_problem"), 3, "{}", outcome.stderr);
-    for named in ["poses.csv:5", "poses.csv:9", "view_9.png"] {
-        assert!(outcome.stderr.contains(named), "{named}: {}", outcome.stderr);
-    }
-    assert_eq!((outcome.event("frame_without_pose"), outcome.event("unit_assumed")), (1, 1));
-    assert!(outcome.metric("error_mean_m") < 0.3, "{}", outcome.stdout);
 }
 
 #[test]
@@ -151,9 +130,9 @@ fn without_headings_the_robot_looks_along_its_path() {
     // Poses by time in milliseconds, and a table of stamps beside the frames.
     let stamps = drive.table(|i, _| format!("{}, somewhere/view_{i}.png", 0.5 * i as f64));
     fs::write(folder.join("times.csv"), format!("Time [s], Filename\n{stamps}")).unwrap();
-    let poses = scratch.file("poses.csv", drive.table(|i, p| format!("{},{},{}", 500 * i, p.x(), p.y())));
-    let out = scratch.path("out");
-    let outcome = frames_run(&folder, &poses, &["--columns", "t_ms,x,y", "--out", out.to_str().unwrap()]);
+    let rows = drive.table(|i, p| format!("{},{},{}", 500 * i, p.x(), p.y()));
+    let poses = scratch.file("poses.csv", format!("t_ms,x_m,y_m\n{rows}"));
+    let outcome = frames_run(&folder, &poses, &["--out", scratch.path("out").to_str().unwrap()]);
     assert!(outcome.metric("error_mean_m") < 0.3, "{}", outcome.stdout);
     assert!(
         outcome.stderr.contains("along its path") && outcome.stderr.contains("left to right"),
@@ -176,7 +155,7 @@ fn without_headings_the_robot_looks_along_its_path() {
         fs::write(mirrored.join(format!("view_{index}.png")), &flipped.bytes).unwrap();
     }
     fs::copy(folder.join("times.csv"), mirrored.join("times.csv")).unwrap();
-    let other = frames_run(&mirrored, &poses, &["--columns", "t_ms,x,y"]);
+    let other = frames_run(&mirrored, &poses, &[]);
     assert!(other.stderr.contains("columns go counterclockwise"), "{}", other.stderr);
     assert!((other.metric("error_mean_m") - outcome.metric("error_mean_m")).abs() < 0.02);
 }
@@ -269,14 +248,15 @@ fn what_is_no_recording_is_refused_with_its_reason() {
         assert!(outcome.code == 1 && outcome.stderr.contains(why), "{name}: {}", outcome.stderr);
     };
     refused("empty.csv", "", "no rows");
-    refused("words.csv", "x,y\n1,two\n", "line 2: \"two\" is not a number");
+    refused("words.csv", "x,y\n1,two\n", "line 2: \"two\" is not a finite number");
     refused("bare.csv", "1,2\n3,4\n", "--columns");
+    refused("other.csv", "time,heading\n1,2\n", "no column x among time, heading");
     refused("one.csv", "x,y\n1,2\n", "a row for each frame");
     refused("times.csv", "t,x,y\n0,1,2\n1,2,3\n2,3,4\n", "--stamps");
     refused("strangers.csv", "file,x,y\na.png,1,2\nb.png,2,3\n", "fewer than two frames");
     refused("binary.csv", "\u{0}\u{1}", "");
-    let poses =
-        scratch.file("rows.csv", "x,y\n".to_owned() + &drive.table(|_, p| format!("{},{}", p.x(), p.y())));
+    let rows = drive.table(|_, p| format!("{},{}", p.x(), p.y()));
+    let poses = scratch.file("rows.csv", format!("x_m,y_m\n{rows}"));
     let missing = frames_run(&scratch.path("nowhere"), &poses, &[]);
     assert!(missing.code == 1 && missing.stderr.contains("nowhere"), "{}", missing.stderr);
     fs::create_dir_all(scratch.path("bare")).unwrap();
@@ -285,6 +265,28 @@ fn what_is_no_recording_is_refused_with_its_reason() {
     assert_eq!(run_cml(&[]).code, 2);
     let donut = frames_run(&folder, &poses, &["--center", "60,10", "--radii", "2,50"]);
     assert!(donut.code == 1 && donut.stderr.contains("ring"), "{}", donut.stderr);
+}
+
+#[test]
+fn a_cut_image_and_a_nan_row_leave_the_rest() {
+    let (scratch, drive) = (Scratch::new(), Drive::new());
+    let folder = drive.folder(&scratch);
+    let bytes = &drive.frames[7].0.bytes;
+    fs::write(folder.join("view_7.png"), &bytes[..200]).unwrap();
+    fs::write(folder.join("._view_7.png"), b"AppleDouble").unwrap();
+    let rows = drive.table(|i, p| match i {
+        50 => format!("view_{i}.png,nan,nan,nan"),
+        60 => format!("view_{i}.png,1"),
+        _ => format!("view_{i}.png,{},{},{}", p.x(), p.y(), p.heading()),
+    });
+    let poses = scratch.file("poses.csv", format!("file,x_m,y_m,theta\n{rows}"));
+    let outcome = frames_run(&folder, &poses, &[]);
+    assert_eq!(outcome.code, 0, "{}", outcome.stderr);
+    for said in ["view_7.png:", "poses.csv:52", "poses.csv:62", "\"theta\" in rad", "\"x m\" in m"] {
+        assert!(outcome.stderr.contains(said), "{said}: {}", outcome.stderr);
+    }
+    assert_eq!((outcome.event("log_problem"), outcome.event("unit_assumed")), (3, 1));
+    assert_eq!(outcome.metric("n_views"), ((drive.frames.len() - 3) / 5) as f64);
 }
 
 #[test]

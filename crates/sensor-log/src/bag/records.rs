@@ -10,9 +10,10 @@ use super::trial::ODOMETRY_FRAME;
 use super::{Choice, camera, scan};
 use crate::fault::{Fault, finite, inconsistent, spatial};
 use crate::format::shortened;
+use crate::image::picture;
 use crate::planar::heading_of;
 use crate::ros::{self, Header, RosMessage, Twist};
-use crate::{Data, EncodedImage, ImageFormat, ProblemKind, Record, Stamp, Velocity};
+use crate::{Data, EncodedImage, ProblemKind, Record, Stamp, Velocity};
 
 /// The fixed frame that localization places the robot in. [REP 105]
 const MAP_FRAME: &str = "map";
@@ -66,7 +67,7 @@ impl BagRecords {
             }
             RosMessage::CompressedImage(image) => {
                 let stamp = at(&image.header)?;
-                Ok(self.image(stamp, image.header.frame_id, file(&image)?))
+                Ok(self.image(stamp, image.header.frame_id, picture(image.format, image.data)?))
             }
             RosMessage::CameraInfo(message) => {
                 let info = camera::pinhole(&message, self.choice.is_rectified)?;
@@ -250,14 +251,4 @@ fn velocity(twist: &Twist) -> Result<Data, Fault> {
 fn on_the_ground(pose: &Pose3<f64>) -> Pose2<f64> {
     let (t, q) = (pose.translation, pose.rotation);
     Pose2::new(t.x, t.y, heading_of([q.i, q.j, q.k, q.w]))
-}
-
-/// What the file is counts more than what it is called.
-fn file(image: &ros::CompressedImage<'_>) -> Result<EncodedImage, Fault> {
-    let Some(format) = ImageFormat::of_bytes(image.data) else {
-        let (format, n_bytes) = (shortened(image.format), image.data.len());
-        let reason = format!("image called {format:?} is neither JPEG nor PNG ({n_bytes} bytes)");
-        return Err(inconsistent(&reason));
-    };
-    Ok(EncodedImage::new(format, image.data))
 }

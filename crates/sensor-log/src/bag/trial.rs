@@ -3,7 +3,7 @@ use wayfix_estimation_traits::Pose2;
 use super::candidate::Candidate;
 use super::motion::planar;
 use super::transforms::{is_body, last_part};
-use crate::ImageFormat;
+use crate::image::picture;
 use crate::ros::{RosMessage, RosSchema};
 
 /// The frame of wheel odometry. [REP 105]
@@ -60,9 +60,7 @@ impl Trial {
         match (self, schema.decode(bytes)) {
             (Self::Image, message) => Some(match message {
                 Ok(RosMessage::Image(image)) => image.pixels().uncompressed().is_ok(),
-                Ok(RosMessage::CompressedImage(image)) => {
-                    !is_depth(image.format) && ImageFormat::of_bytes(image.data).is_some()
-                }
+                Ok(RosMessage::CompressedImage(image)) => picture(image.format, image.data).is_ok(),
                 _ => false,
             }),
             (Self::Poses { first }, Ok(RosMessage::Odometry(odometry))) => {
@@ -77,9 +75,4 @@ impl Trial {
             _ => None,
         }
     }
-}
-
-/// Whether the name of a compressed image tells of distances, which are no picture even where they are a PNG file.
-fn is_depth(format: &str) -> bool {
-    format.starts_with("16UC1") || format.starts_with("32FC1")
 }

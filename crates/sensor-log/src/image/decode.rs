@@ -1,7 +1,10 @@
+use std::borrow::Cow;
 use std::io::Cursor;
 
+use image::metadata::Orientation;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageReader, Limits};
 
+use super::huffman::with_huffman_tables;
 use super::{DecodedImage, EncodedImage, ImageError, ImageFormat, PixelLayout};
 
 /// Pixels of the largest image that is decoded; a damaged or hostile header must not fill the memory.
@@ -10,14 +13,23 @@ const MAX_PIXELS: u64 = 64 << 20;
 const MAX_BYTES: u64 = 2 * 8 * MAX_PIXELS;
 
 /// Decoding gives the same pixels with AVX2 and without vector instructions (`tests/image_portability.rs`; Neon is not measured yet).
-/// It does not turn images as their EXIF data may ask for.
+/// Images are turned as their EXIF orientation says. A JPEG without Huffman tables, as webcams send, gets those of the standard.
 impl EncodedImage {
-    /// Columns and rows, from the header; no pixel is decoded.
+    /// Columns and rows of the upright image, from the header; no pixel is decoded.
     ///
     /// # Errors
     /// When the file is cut short, its header is damaged or of another format, or it claims no pixel or more than 64 Mi.
     pub fn size(&self) -> Result<(u32, u32), ImageError> {
-        Ok(self.decoder()?.dimensions())
+        let mut decoder = self.decoder()?;
+        let (width, height) = decoder.dimensions();
+        let is_on_its_side = orientation(&mut decoder).to_exif() > 4;
+        Ok(if is_on_its_side { (height, width) } else { (width, height) })
+    }
+
+    /// The EXIF orientation of an image that is not stored upright, 2 to 8: it is turned when it is decoded.
+    pub fn orientation(&self) -> Option<u8> {
+        let orientation = orientation(&mut self.decoder().ok()?);
+        (orientation != Orientation::NoTransforms).then(|| orientation.to_exif())
     }
 
     /// How the file stores its pixels, from the header: what decoding to eight bits of colour will change.
@@ -63,7 +75,11 @@ impl EncodedImage {
     }
 
     fn decode(&self) -> Result<DynamicImage, ImageError> {
-        DynamicImage::from_decoder(self.decoder()?).map_err(ImageError::Codec)
+        let mut decoder = self.decoder()?;
+        let orientation = orientation(&mut decoder);
+        let mut image = DynamicImage::from_decoder(decoder).map_err(ImageError::Codec)?;
+        image.apply_orientation(orientation);
+        Ok(image)
     }
 
     /// A decoder that has read the header.
@@ -75,7 +91,11 @@ impl EncodedImage {
         };
         let mut limits = Limits::default();
         limits.max_alloc = Some(MAX_BYTES);
-        let mut reader = ImageReader::with_format(Cursor::new(&*self.bytes), format);
+        let bytes = match self.format {
+            ImageFormat::Jpeg => with_huffman_tables(&self.bytes),
+            ImageFormat::Png | ImageFormat::Pnm => Cow::Borrowed(&*self.bytes),
+        };
+        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(ImageError::Codec)?;
         let (width, height) = decoder.dimensions();
@@ -88,6 +108,11 @@ impl EncodedImage {
             _ => Ok(decoder),
         }
     }
+}
+
+/// Damaged EXIF data say nothing.
+fn orientation(decoder: &mut impl ImageDecoder) -> Orientation {
+    decoder.orientation().unwrap_or(Orientation::NoTransforms)
 }
 
 #[cfg(test)]
@@ -181,6 +206,31 @@ mod tests {
         let grey = EncodedImage::png_gray(2, 1, &[9, 200]).unwrap();
         assert_eq!(grey.decode_rgb().unwrap().pixels, [9, 9, 9, 200, 200, 200]);
         assert_eq!(grey.layout().unwrap(), PixelLayout { channels: 1, bits_per_channel: 8 });
+    }
+
+    /// An EXIF segment with nothing but an orientation, after the start of the image.
+    fn with_orientation(jpeg: &EncodedImage, orientation: u8) -> EncodedImage {
+        let mut exif = b"Exif\0\0MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0".to_vec();
+        exif.extend([orientation, 0, 0, 0, 0, 0, 0]);
+        let length = (exif.len() as u16 + 2).to_be_bytes();
+        let bytes = [&jpeg.bytes[..2], &[0xFF, 0xE1], &length, &exif, &jpeg.bytes[2..]].concat();
+        EncodedImage::new(ImageFormat::Jpeg, bytes)
+    }
+
+    #[test]
+    fn exif_orientation_turns_size_and_pixels() {
+        // Dark on the left, bright on the right.
+        let rgb: Vec<u8> = (0..16 * 8).flat_map(|k| [if k % 16 < 8 { 0 } else { 240 }; 3]).collect();
+        let upright = EncodedImage::jpeg(16, 8, &rgb, 95).unwrap();
+        assert_eq!(upright.orientation(), None);
+        let turned = with_orientation(&upright, 6);
+        assert_eq!((turned.orientation(), turned.size().unwrap()), (Some(6), (8, 16)));
+        let decoded = turned.decode_gray().unwrap();
+        // A quarter turn clockwise: left becomes top.
+        assert_eq!((decoded.width, decoded.height), (8, 16));
+        assert!(decoded.pixels[0] < 30 && decoded.pixels[7] < 30 && decoded.pixels[15 * 8] > 210);
+        let mirrored = with_orientation(&upright, 2).decode_gray().unwrap();
+        assert!(mirrored.width == 16 && mirrored.pixels[0] > 210 && mirrored.pixels[15] < 30);
     }
 
     #[test]

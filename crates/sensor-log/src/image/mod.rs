@@ -4,6 +4,8 @@ mod decode;
 mod encode;
 mod encoded;
 mod error;
+mod huffman;
+mod message;
 mod pixels;
 mod pnm;
 mod summary;
@@ -11,6 +13,7 @@ mod whole;
 
 pub use encoded::{DecodedImage, EncodedImage, ImageFormat, PixelLayout};
 pub use error::ImageError;
+pub(crate) use message::picture;
 pub(crate) use pixels::Pixels;
 pub(crate) use pnm::Anymap;
 pub use summary::ImageSummary;

@@ -8,7 +8,7 @@ use super::decode::{decode, stamp};
 use super::topics;
 use crate::fault::{Fault, finite, inconsistent, spatial};
 use crate::format::shortened;
-use crate::image::{Anymap, Pixels};
+use crate::image::{Anymap, Pixels, picture};
 use crate::{CameraInfo, Data, EncodedImage, ImageFormat, LogError, Record, Stamp};
 
 /// What would not come back is not written.
@@ -147,13 +147,6 @@ pub(super) fn image(
 ) -> Result<Vec<Record>, Fault> {
     let message: CompressedImage = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;
-    // What the file is counts more than what it is called ("jpg", "bgr8; jpeg compressed bgr8").
-    let Some(format) = ImageFormat::of_bytes(&message.data) else {
-        return Err(inconsistent(&format!(
-            "image called {:?} is neither JPEG nor PNG ({} bytes)",
-            shortened(&message.format),
-            message.data.len()
-        )));
-    };
-    Ok(vec![Record { stamp, data: to_data(EncodedImage::new(format, &message.data[..])) }])
+    let image = picture(&message.format, &message.data)?;
+    Ok(vec![Record { stamp, data: to_data(image) }])
 }

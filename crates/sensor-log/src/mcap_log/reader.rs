@@ -12,7 +12,7 @@ use super::topic_clock::TopicClock;
 use super::{decode, origin, survey};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::format::shortened;
-use crate::{Format, LogEnd, LogError, Problem, ProblemKind, ReadReport, Record, Stamp, Topic};
+use crate::{Data, Format, LogEnd, LogError, Problem, ProblemKind, ReadReport, Record, Stamp, Topic};
 
 /// The records of an MCAP file, or of several of one recording, chunk by chunk: memory does not grow with them.
 pub(crate) struct McapRecords {
@@ -238,6 +238,9 @@ impl Messages {
             Ok(records) => {
                 report.rows_read += 1;
                 for record in records {
+                    if let Data::Image(image) = &record.data {
+                        report.warn_of_orientation(image);
+                    }
                     self.check_clock(file, &name, record, report);
                 }
             }

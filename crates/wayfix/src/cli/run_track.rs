@@ -122,8 +122,6 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         tell(log.report());
     }
     let mut track = track?;
-    let problems = track.system.truth().problems().to_vec();
-    problems.into_iter().for_each(|problem| track.system.events().refuse("truth_line_unusable", problem));
     let warnings = account(track.system.events(), log.report());
 
     let name = log.meta().source.display().to_string();

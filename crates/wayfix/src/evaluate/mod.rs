@@ -14,4 +14,5 @@ pub use landmarks::{Correspondence, landmark_errors};
 pub use positions::TruePositions;
 pub use start::KnownStart;
 pub use trajectory::{Sample, TrajectoryErrors, trajectory_errors};
+pub(crate) use truth::LONGEST_GAP;
 pub use truth::TrueTrack;

@@ -13,7 +13,7 @@ pub struct TrueTrack {
 }
 
 /// Motion capture and GPS lose sight of a robot; across a longer gap nobody knows where it was, s.
-const LONGEST_GAP: f64 = 0.5;
+pub(crate) const LONGEST_GAP: f64 = 0.5;
 
 impl TrueTrack {
     /// The true poses among `records`; those that are not finite or go back in time are left out.

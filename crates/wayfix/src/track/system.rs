@@ -77,6 +77,10 @@ pub(super) struct Totals {
 impl TrackSystem {
     /// A system that has seen nothing yet.
     pub fn new(setup: TrackSetup, seed: u64) -> Self {
+        let mut events = Events::default();
+        if let Some(doubt) = setup.truth.doubt() {
+            events.warn("truth_line_unusable", doubt);
+        }
         Self {
             setup,
             rng: ChaCha8Rng::seed_from_u64(seed),
@@ -88,7 +92,7 @@ impl TrackSystem {
             score: Score::default(),
             status_score: StatusScore::default(),
             totals: Totals::default(),
-            events: Events::default(),
+            events,
         }
     }
 

@@ -8,8 +8,13 @@ use super::TrackError;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrueBoxes {
     frames: Vec<Truth>,
-    problems: Vec<String>,
+    n_unusable: usize,
+    /// The first lines that are no box.
+    unusable: Vec<String>,
 }
+
+/// So many unusable lines are named.
+const MOST_NAMED: usize = 3;
 
 /// What is known of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,12 +48,11 @@ impl Truth {
 }
 
 impl TrueBoxes {
-    /// One box a line, line k being frame k, each as [`parse_box`] takes it. Empty lines at the end do not count.
-    ///
-    /// Nothing is known of a frame whose line is no box; [`problems`](Self::problems) names it.
+    /// One box a line, line k being frame k, each as [`parse_box`] takes it. Nothing is known of the frame of a line that is blank or no box.
+    /// A first line without a number is a header. Empty lines at the end do not count.
     ///
     /// # Errors
-    /// [`TrackError::Read`], and [`TrackError::Line`] when no line is a box.
+    /// [`TrackError::Read`], and [`TrackError::Line`] for the first line when no line is a box.
     pub fn read(path: &Path) -> Result<Self, TrackError> {
         let read = fs::read(path).map_err(|source| TrackError::Read { path: path.into(), source })?;
         Self::parse(&String::from_utf8_lossy(&read))
@@ -60,34 +64,45 @@ impl TrueBoxes {
     /// [`TrackError::Line`].
     pub fn parse(text: &str) -> Result<Self, TrackError> {
         let text = text.trim_start_matches('\u{feff}').trim_end();
-        let (mut truth, mut first_error) = (Self::default(), None);
-        for (index, line) in text.lines().enumerate() {
-            truth.frames.push(match parse_box(line) {
+        let mut found = Self::default();
+        let mut first_error = None;
+        let n_header = usize::from(text.lines().next().is_some_and(is_header) && text.lines().count() > 1);
+        for (index, line) in text.lines().enumerate().skip(n_header) {
+            found.frames.push(match parse_box(line) {
                 Ok(Some(target)) => Truth::At(target),
                 Ok(None) => Truth::Absent,
-                Err(error) => {
-                    truth.problems.push(format!("line {}: {error}", index + 1));
-                    first_error = first_error.or(Some((index + 1, error)));
+                Err(source) => {
+                    let error = TrackError::Line { line: index + 1, source: Box::new(source) };
+                    if found.unusable.len() < MOST_NAMED {
+                        let line: String = line.chars().take(80).collect();
+                        found.unusable.push(format!("line {} {line:?}", index + 1));
+                    }
+                    found.n_unusable += 1;
+                    first_error.get_or_insert(error);
                     Truth::Unknown
                 }
             });
         }
         match first_error {
-            Some((line, source)) if truth.frames.iter().all(|truth| truth.is_unknown()) => {
-                Err(TrackError::Line { line, source: Box::new(source) })
-            }
-            _ => Ok(truth),
+            Some(error) if found.n_unusable == found.frames.len() => Err(error),
+            _ => Ok(found),
         }
+    }
+
+    /// What is wrong with lines that are no box.
+    pub(super) fn doubt(&self) -> Option<String> {
+        (self.n_unusable > 0).then(|| {
+            let (n, named) = (self.n_unusable, self.unusable.join(", "));
+            format!(
+                "{n} of {} lines of the truth are no box ({named}): their frames are not judged",
+                self.len()
+            )
+        })
     }
 
     /// What is known of a frame, counted from 0.
     pub fn at(&self, frame: usize) -> Truth {
         self.frames.get(frame).copied().unwrap_or(Truth::Unknown)
-    }
-
-    /// Lines that are no box, and why.
-    pub fn problems(&self) -> &[String] {
-        &self.problems
     }
 
     /// How many frames are spoken of.
@@ -130,6 +145,13 @@ pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackError> {
     BoundingBox::from_corner(x, y, width, height).map(Some).map_err(|error| wrong(error.to_string()))
 }
 
+/// A line of words, as `x,y,w,h`.
+fn is_header(line: &str) -> bool {
+    let mut words =
+        line.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty()).peekable();
+    words.peek().is_some() && words.all(|word| word.parse::<f64>().is_err())
+}
+
 /// Left, top, width and height of the upright box around points.
 fn around(corners: [[f64; 2]; 4]) -> [f64; 4] {
     let least = |k: usize| corners.iter().map(|corner| corner[k]).fold(f64::INFINITY, f64::min);
@@ -152,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn absent_target_is_valid_and_inverted_box_is_an_error() {
+    fn a_target_out_of_the_picture_is_no_error_and_a_box_inside_out_is_one() {
         for text in ["0,0,0,0", "nan nan nan nan", "NaN,1,2,3", "inf,0,1,1", "3,3,3,3,3,3,3,3"] {
             assert_eq!(parse_box(text).unwrap(), None, "{text:?}");
         }
@@ -162,15 +184,22 @@ mod tests {
     }
 
     #[test]
-    fn unusable_truth_line_is_named_and_later_frames_unknown() {
-        let truth = TrueBoxes::parse("1,2,3,4\n\n1,2,3\n5,6,7,8\n").unwrap();
-        assert!(truth.at(1).is_unknown() && truth.at(2).is_unknown() && truth.at(3).target().is_some());
-        assert_eq!(truth.problems().len(), 2);
-        assert!(truth.problems()[1].starts_with("line 3: "), "{:?}", truth.problems());
-        let error = TrueBoxes::parse("one\n1,2,3\n").unwrap_err();
+    fn a_line_that_is_no_box_leaves_its_frame_unknown() {
+        let truth = TrueBoxes::parse("1,2,3,4\n\n5,6,3,4\n160,1\n").unwrap();
+        assert_eq!(truth.len(), 4);
+        assert!(truth.at(1).is_unknown() && truth.at(3).is_unknown());
+        assert_eq!(truth.at(2).target().unwrap().corner(), [5.0, 6.0]);
+        let doubt = truth.doubt().unwrap();
+        assert!(doubt.contains("2 of 4") && doubt.contains("line 2") && doubt.contains("line 4"), "{doubt}");
+        let error = TrueBoxes::parse("1,2,3\n4,5,6\n").unwrap_err();
         assert!(matches!(error, TrackError::Line { line: 1, .. }), "{error}");
+        assert!(TrueBoxes::parse("x,y,w,h\n1,2,3,4").unwrap().at(0).target().is_some());
+    }
+
+    #[test]
+    fn what_lies_beyond_the_list_is_unknown() {
         let truth = TrueBoxes::parse("\u{feff}1,2,3,4\r\n0,0,0,0\r\n\r\n").unwrap();
-        assert_eq!(truth.len(), 2);
+        assert_eq!((truth.len(), truth.doubt()), (2, None));
         assert!(truth.at(0).target().is_some() && truth.at(1).is_absent() && truth.at(2).is_unknown());
         assert!(TrueBoxes::parse("").unwrap().is_empty());
     }

@@ -8,7 +8,7 @@ use crate::{
         common::Common,
         input::{Topics, name_of},
     },
-    cml::Task,
+    cml::{Task, recording::ColumnNames},
 };
 
 /// Appearance maps: learn what places look like all round, and localize in what was learned.
@@ -24,9 +24,10 @@ use crate::{
 ///
 /// * **Localize in a saved map**: `--map`.
 ///
-/// Poses come as a table, with comma, semicolon, tab or blanks between the columns. Its first row names them: file or frame, t or time, x, y, heading
-/// or theta or yaw, with units as in t_ms, x_cm, yaw_deg (else s, m, rad). A table without such a row needs `--columns`. Where poses are by time,
-/// the table of `t, file` beside the frames says when each was taken (or `--stamps`), and poses are interpolated over at most three steps of the table.
+/// Poses come as a table, with comma, semicolon, tab or blanks between the columns. Its first row names them: file or frame, t or time, x, y,
+/// heading or theta or yaw, with units as in t_ms, x_cm, yaw_deg (else s, m, rad). `--columns` names those of a table without such a row. Poses
+/// belong to frames by file, else by time, else row by row. Where poses are by time, the table of `time, file` beside the frames says when each
+/// was taken (or `--stamps`). Poses are interpolated over at most 0.5 s, or 1.5 periods of a slower table. Other frames have no pose.
 ///
 /// Frames have no wheels: odometry is made of the smoothed path, with noise drawn by `--seed`; its standard deviations are parameters.
 ///
@@ -46,15 +47,15 @@ pub(crate) struct Arguments {
     /// The table of the poses of the frames.
     #[arg(long, value_name = "CSV", requires = "frames")]
     pub(super) poses: Option<PathBuf>,
-    /// The names of the columns of tables of poses that have no row of names, for instance `t_ms,x_cm,y_cm`.
-    #[arg(long, value_name = "NAMES", requires = "frames", value_delimiter = ',')]
-    pub(super) columns: Option<Vec<String>>,
-    /// The table of `t, file` of the frames [default: the one beside them].
+    /// Names of the columns of a table of poses that has none, as in t_ms,x_cm,y_cm.
+    #[arg(long, value_name = "NAMES", requires = "frames")]
+    pub(super) columns: Option<ColumnNames>,
+    /// Names of the columns of a table of times that has none, as in t_s,file.
+    #[arg(long, value_name = "NAMES", requires = "frames")]
+    pub(super) stamp_columns: Option<ColumnNames>,
+    /// The table of `time, file` of the frames [default: the one beside them].
     #[arg(long, value_name = "FILE", requires = "frames")]
     pub(super) stamps: Option<PathBuf>,
-    /// The names of the columns of tables of times that have no row of names, for instance `file,t_ms`.
-    #[arg(long, value_name = "NAMES", requires = "stamps", value_delimiter = ',')]
-    pub(super) stamp_columns: Option<Vec<String>>,
     /// A folder of frames of another traverse, which is taught in place of this one.
     #[arg(
         long,
@@ -112,8 +113,7 @@ Examples:
   wayfix run cml --log store.mcap                                            build a map and localize in it
   wayfix run cml --log monday.mcap --save-map store.map                      and keep it
   wayfix run cml --log tuesday.mcap --map store.map --start anywhere
-  wayfix run cml --frames route --poses poses.csv                            every fifth frame withheld
-  wayfix run cml --frames route --poses path.csv --columns t_ms,x_cm,y_cm    a table without a row of names
+  wayfix run cml --frames route --poses route.csv --columns t_ms,x_cm,y_cm   every fifth frame withheld
   wayfix run cml --frames tuesday --poses tuesday.csv --learn-from monday --learn-poses monday.csv --forgetting none
   wayfix run cml --frames raw --poses raw.csv --center 320,240 --radii 60,230";
 

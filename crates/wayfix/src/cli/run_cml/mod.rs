@@ -2,7 +2,7 @@
 
 mod arguments;
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_appearance_cml::{ArchiveParams, Forgetting, Learning, MapArchive, Start, TurnSense};
@@ -23,7 +23,7 @@ use crate::{
     cml::{
         self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
         Task, ViewReader,
-        recording::{Recording, RecordingFiles},
+        recording::{Recording, Tables},
     },
     commented::commented,
     report::Run,
@@ -125,21 +125,13 @@ impl Arguments {
         let (Some(frames), Some(poses)) = (&self.frames, &self.poses) else {
             bail!("neither a log nor frames")
         };
-        let mut read = ReadReport::default();
-        let mut recording_of = |frames, poses, stamps: &Option<PathBuf>| {
-            let columns = self.columns.as_deref();
-            let stamp_columns = self.stamp_columns.as_deref();
-            let files = RecordingFiles { frames, poses, columns, stamps: stamps.as_deref(), stamp_columns };
-            read_recording(&files, &mut read)
-        };
-        let recording = recording_of(frames, poses, &self.stamps)?;
+        let recording = self.recording(frames, poses, self.stamps.as_deref())?;
         let taught = match (&self.learn_from, &self.learn_poses) {
-            (Some(frames), Some(poses)) => Some(recording_of(frames, poses, &self.learn_stamps)?),
+            (Some(frames), Some(poses)) => {
+                Some(self.recording(frames, poses, self.learn_stamps.as_deref())?)
+            }
             _ => None,
         };
-        if !read.is_clean() {
-            tell(&read);
-        }
         let plan = Plan::of_recording(
             &recording,
             taught.as_ref(),
@@ -148,6 +140,10 @@ impl Arguments {
             &camera,
             self.common.seed,
         )?;
+        let mut read = ReadReport::default();
+        for recording in taught.iter().chain([&recording]) {
+            read.join(&recording.read);
+        }
         Ok(Input { plan, read, origin: Format::Images })
     }
 
@@ -184,21 +180,14 @@ impl Arguments {
         };
         Ok((CmlSystem::new(params, reader, map)?, start))
     }
-}
 
-/// A recording; what was left out and assumed goes into the report.
-fn read_recording(files: &RecordingFiles<'_>, read: &mut ReadReport) -> Result<Recording> {
-    let recording = Recording::read(files)?;
-    let table = files.poses.display();
-    tell(format!("note: {table}: {}", recording.columns));
-    recording.problems.iter().for_each(|problem| read.add(problem.clone()));
-    if !recording.assumed.is_empty() {
-        let text = format!("{table}: no unit is named, {} is assumed", recording.assumed.join(", "));
-        read.warn("unit_assumed", text);
+    fn recording(&self, frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<Recording> {
+        let (columns, stamp_columns) = (self.columns.as_ref(), self.stamp_columns.as_ref());
+        let recording = Recording::read(frames, &Tables { poses, columns, stamps, stamp_columns })?;
+        if !recording.read.is_clean() {
+            tell(&recording.read);
+        }
+        recording.notes.iter().for_each(|note| tell(format!("note: {note}")));
+        Ok(recording)
     }
-    if recording.n_without_pose > 0 {
-        let (n, frames) = (recording.n_without_pose, files.frames.display());
-        read.warn("frame_without_pose", format!("{n} frames of {frames} have no pose and are left out"));
-    }
-    Ok(recording)
 }

@@ -1,10 +1,13 @@
-use std::{cmp::Ordering, collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeMap, fs, path::Path};
 
-use wayfix_sensor_log::{EncodedImage, ImageFormat, Problem, ProblemKind, image_files};
+use wayfix_sensor_log::{EncodedImage, ImageFormat, Problem, ProblemKind, ReadReport, image_files};
+
+use crate::evaluate::LONGEST_GAP;
 
 use super::{
     RecordingError,
-    poses::{self, PoseRow, Poses},
+    columns::ColumnNames,
+    poses::{self, PoseRow},
     stamps::{self, Stamps, file_name},
 };
 
@@ -30,67 +33,59 @@ pub struct Recording {
     pub frames: Vec<Frame>,
     /// How many images of the folder have none.
     pub n_without_pose: usize,
-    /// Rows of the table and images that were left out.
-    pub problems: Vec<Problem>,
-    /// What columns of the table were read, in which units.
-    pub columns: String,
-    /// Columns whose names say no unit, with the one that was assumed.
-    pub assumed: Vec<String>,
+    /// Which rows and images were left out, and what was assumed.
+    pub read: ReadReport,
+    /// What the tables say of their units.
+    pub notes: Vec<String>,
 }
 
-/// The files of a recording.
+/// The tables of a folder of frames.
 #[derive(Clone, Copy, Debug)]
-pub struct RecordingFiles<'a> {
-    /// The folder of the images.
-    pub frames: &'a Path,
-    /// The table of poses.
+pub struct Tables<'a> {
+    /// Poses.
     pub poses: &'a Path,
-    /// The names of its columns, where it has no row of names.
-    pub columns: Option<&'a [String]>,
-    /// The table of times, where the poses are by time; else the one beside the images.
+    /// Names of its columns, where it has none.
+    pub columns: Option<&'a ColumnNames>,
+    /// Times of the frames; `None` is the table beside them.
     pub stamps: Option<&'a Path>,
-    /// The names of its columns, where it has no row of names.
-    pub stamp_columns: Option<&'a [String]>,
+    /// Names of its columns, where it has none.
+    pub stamp_columns: Option<&'a ColumnNames>,
 }
 
 impl Recording {
-    /// Reads the images of a folder and a table of poses. Rows and images that cannot be used are left out and reported.
+    /// Reads the images of a folder and the tables that say when and where they were taken. Rows and images that cannot be used are left out.
     ///
     /// # Errors
-    /// When a file cannot be read, or frames and poses cannot be brought together.
-    pub fn read(from: &RecordingFiles<'_>) -> Result<Self, RecordingError> {
-        let files = image_files(from.frames)?;
+    /// When a table cannot be understood, or fewer than two frames have an image and a pose.
+    pub fn read(folder: &Path, tables: &Tables<'_>) -> Result<Self, RecordingError> {
+        let files = image_files(folder)?;
         let names: Vec<String> = files.iter().map(|path| name_of(path)).collect();
         let Some(first) = names.first() else {
-            return Err(RecordingError::Nothing { path: from.frames.to_owned(), what: "PNG or JPEG images" });
+            return Err(RecordingError::Nothing { path: folder.to_owned(), what: "PNG or JPEG images" });
         };
-        let Poses { rows, problems, columns, assumed } = poses::read(from.poses, from.columns)?;
-        let found = match from.stamps {
+        let (mut read, mut notes) = (ReadReport::default(), Vec::new());
+        let rows = poses::read(tables.poses, tables.columns, &mut read, &mut notes)?;
+        let found = match tables.stamps {
             Some(path) => Some(path.to_owned()),
-            None => stamps::find(from.frames, from.poses, first),
+            None => stamps::find(folder, tables.poses, first),
         };
-        let stamps = found.as_deref().map(|path| stamps::read(path, from.stamp_columns)).transpose()?;
-        let n_rows = rows.len() + problems.len();
-        let placed = place(&names, &rows, n_rows, stamps.as_ref())?;
+        let stamps = match found.map(|path| stamps::read(&path, tables.stamp_columns, &mut read, &mut notes))
+        {
+            // Poses by file need no times.
+            Some(Err(_)) if tables.stamps.is_none() && is_by_file(&rows) => None,
+            stamps => stamps.transpose()?,
+        };
+        let placed = place(&names, &rows, stamps.as_ref())?;
 
-        let table = name_of(from.poses);
-        let row = |(line, reason): (usize, String)| Problem {
-            file: table.clone(),
-            row: line as u64,
-            kind: ProblemKind::NotANumber,
-            reason,
-        };
-        let mut problems: Vec<Problem> = problems.into_iter().map(row).collect();
         let mut frames = Vec::new();
-        let mut n_without_pose = 0;
-        for (index, (path, placed)) in files.iter().zip(placed).enumerate() {
-            let Some(Placed { seconds, position, heading }) = placed else {
-                n_without_pose += 1;
-                continue;
-            };
+        for (index, (path, placed)) in files.iter().zip(&placed).enumerate() {
+            let Some(Placed { seconds, position, heading }) = *placed else { continue };
             match read_image(path) {
-                Ok(image) => frames.push(Frame { name: name_of(path), seconds, position, heading, image }),
-                Err(reason) => problems.push(Problem {
+                Ok(image) => {
+                    read.warn_of_orientation(&image);
+                    frames.push(Frame { name: name_of(path), seconds, position, heading, image });
+                }
+                Err(reason) => read.add(Problem {
                     file: name_of(path),
                     row: index as u64 + 1,
                     kind: ProblemKind::UnreadableImage,
@@ -98,14 +93,22 @@ impl Recording {
                 }),
             }
         }
-        if frames.is_empty() {
-            return Err(RecordingError::Nothing {
-                path: from.frames.to_owned(),
-                what: "image that can be read",
-            });
-        }
         frames.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        Ok(Self { frames, n_without_pose, problems, columns, assumed })
+        let n_without_pose = placed.iter().filter(|placed| placed.is_none()).count();
+        if n_without_pose > 0 {
+            let text = format!(
+                "{n_without_pose} of {} frames in {} have no pose and are left out; poses are interpolated over at most {:.2} s",
+                files.len(),
+                folder.display(),
+                longest_gap(&times(&rows))
+            );
+            read.warn("frame_without_pose", text);
+        }
+        if frames.len() < 2 {
+            let reason = "fewer than two frames have an image and a pose";
+            return Err(RecordingError::Unmatched { n_frames: names.len(), n_poses: rows.len(), reason });
+        }
+        Ok(Self { frames, n_without_pose, read, notes })
     }
 }
 
@@ -119,11 +122,10 @@ struct Placed {
 /// Frames without a clock are taken to be so far apart, s.
 const STEP: f64 = 0.1;
 
-/// The pose of each frame that has one: by the file that its row names, else by time, else row by row, where there are as many rows.
+/// The pose of each frame that has one: by the file that its row names, else by time, else row by row.
 fn place(
     names: &[String],
-    rows: &[PoseRow],
-    n_rows: usize,
+    rows: &[Option<PoseRow>],
     stamps: Option<&Stamps>,
 ) -> Result<Vec<Option<Placed>>, RecordingError> {
     let unmatched = |reason| RecordingError::Unmatched { n_frames: names.len(), n_poses: rows.len(), reason };
@@ -133,20 +135,20 @@ fn place(
         position: [row.x, row.y],
         heading: row.heading,
     };
-    let placed: Vec<Option<Placed>> = if rows.iter().any(|row| row.file.is_some()) {
-        let by_file = by_file(rows);
+    let usable = || rows.iter().flatten();
+    let have_times = usable().all(|row| row.time.is_some());
+    let placed: Vec<Option<Placed>> = if is_by_file(rows) {
+        let by_file = by_file(usable());
         let find = |name: &String| keys(name).into_iter().find_map(|key| by_file.get(&key).copied());
         names.iter().enumerate().map(|(index, name)| Some(at(index, find(name)?))).collect()
-    } else if stamps.is_some() && rows.iter().all(|row| row.time.is_some()) {
-        let mut rows = rows.to_vec();
-        rows.sort_by(|a, b| a.time.partial_cmp(&b.time).unwrap_or(Ordering::Equal));
-        let longest = longest_gap(&rows);
-        names.iter().map(|name| interpolated(&rows, stamp(name)?, longest)).collect()
-    } else if n_rows == names.len() {
-        let mut placed = vec![None; names.len()];
-        rows.iter().for_each(|row| placed[row.ordinal] = Some(at(row.ordinal, row)));
-        placed
-    } else if rows.iter().all(|row| row.time.is_some()) {
+    } else if stamps.is_some() && have_times {
+        let mut rows: Vec<PoseRow> = usable().cloned().collect();
+        rows.sort_by(|a, b| a.time.unwrap_or(0.0).total_cmp(&b.time.unwrap_or(0.0)));
+        let gap = longest_gap(&rows.iter().filter_map(|row| row.time).collect::<Vec<_>>());
+        names.iter().map(|name| interpolated(&rows, stamp(name)?, gap)).collect()
+    } else if rows.len() == names.len() {
+        rows.iter().enumerate().map(|(index, row)| Some(at(index, row.as_ref()?))).collect()
+    } else if have_times {
         return Err(unmatched(
             "the poses are by time, and nothing tells when the frames were taken (--stamps FILE: rows of time, file)",
         ));
@@ -159,14 +161,34 @@ fn place(
     }
 }
 
-fn by_file(rows: &[PoseRow]) -> BTreeMap<String, &PoseRow> {
-    let named = rows.iter().filter_map(|row| Some((file_name(row.file.as_ref()?), row)));
+fn is_by_file(rows: &[Option<PoseRow>]) -> bool {
+    rows.iter().flatten().any(|row| row.file.is_some())
+}
+
+fn times(rows: &[Option<PoseRow>]) -> Vec<f64> {
+    let mut times: Vec<f64> = rows.iter().flatten().filter_map(|row| row.time).collect();
+    times.sort_by(f64::total_cmp);
+    times
+}
+
+/// The longest time between two poses over which they are interpolated, s: as with truth, or where the table is slower, its own period and a half,
+/// so that one missing row is a gap.
+fn longest_gap(times: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).map_or(LONGEST_GAP, |period| LONGEST_GAP.max(1.5 * period))
+}
+
+fn by_file<'a>(rows: impl Iterator<Item = &'a PoseRow>) -> BTreeMap<String, &'a PoseRow> {
+    let named = rows.filter_map(|row| Some((file_name(row.file.as_ref()?), row)));
     named.flat_map(|(name, row)| keys(&name).into_iter().map(move |key| (key, row))).collect()
 }
 
 /// What a file may be called: by its name, without its extension, by the number in it.
 fn keys(name: &str) -> Vec<String> {
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    // In `1.05` the dot is a decimal point.
+    let is_extension = |end: &str| end.bytes().any(|byte| byte.is_ascii_alphabetic());
+    let stem = name.rsplit_once('.').filter(|(_, end)| is_extension(end)).map_or(name, |(stem, _)| stem);
     let digits = stem.trim_start_matches(|c: char| !c.is_ascii_digit());
     let mut keys = vec![name.to_owned(), stem.to_owned()];
     // `view_010` and a row that says `10`.
@@ -174,27 +196,18 @@ fn keys(name: &str) -> Vec<String> {
     keys
 }
 
-/// Poses are interpolated over at most three usual steps of the table, s: two rows in a row may be lost.
-fn longest_gap(rows: &[PoseRow]) -> f64 {
-    let steps = rows.windows(2).filter_map(|pair| Some(pair[1].time? - pair[0].time?));
-    let mut steps: Vec<f64> = steps.collect();
-    steps.sort_by(f64::total_cmp);
-    3.0 * steps.get(steps.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// Along a straight line between the two rows around a time, headings along the shorter arc; not over a gap that is longer.
-fn interpolated(rows: &[PoseRow], seconds: f64, longest: f64) -> Option<Placed> {
+/// Along a straight line between the two rows around a time, headings along the shorter arc.
+fn interpolated(rows: &[PoseRow], seconds: f64, longest_gap: f64) -> Option<Placed> {
     let after = rows.partition_point(|row| row.time < Some(seconds));
     let late = rows.get(after)?;
     if late.time == Some(seconds) {
         return Some(Placed { seconds, position: [late.x, late.y], heading: late.heading });
     }
     let early = rows.get(after.checked_sub(1)?)?;
-    let gap = late.time? - early.time?;
-    if gap > longest {
+    if late.time? - early.time? > longest_gap {
         return None;
     }
-    let share = (seconds - early.time?) / gap;
+    let share = (seconds - early.time?) / (late.time? - early.time?);
     let between = |early: f64, late: f64| early + share * (late - early);
     let heading = match (early.heading, late.heading) {
         (Some(early), Some(late)) => {
@@ -222,8 +235,8 @@ fn name_of(path: &Path) -> String {
 mod tests {
     use super::*;
 
-    fn row(file: Option<&str>, time: Option<f64>, x: f64) -> PoseRow {
-        PoseRow { ordinal: 0, file: file.map(str::to_owned), time, x, y: 0.0, heading: Some(3.0 * x) }
+    fn row(file: Option<&str>, time: Option<f64>, x: f64) -> Option<PoseRow> {
+        Some(PoseRow { file: file.map(str::to_owned), time, x, y: 0.0, heading: Some(3.0 * x) })
     }
 
     fn names() -> Vec<String> {
@@ -237,27 +250,31 @@ mod tests {
     #[test]
     fn frames_are_placed_by_file_by_time_or_by_row() {
         let files = [row(Some("10"), None, 3.0), row(Some("a/view_8.png"), None, 1.0)];
-        assert_eq!(xs(place(&names(), &files, 2, None).unwrap()), [Some(1.0), None, Some(3.0)]);
+        assert_eq!(xs(place(&names(), &files, None).unwrap()), [Some(1.0), None, Some(3.0)]);
         let stamps: Stamps = names().into_iter().zip([0.5, 1.0, 9.0]).collect();
         let times = [row(None, Some(0.0), 0.0), row(None, Some(1.0), 1.0), row(None, Some(2.0), 4.0)];
-        let placed = place(&names(), &times, times.len(), Some(&stamps)).unwrap();
+        let placed = place(&names(), &times, Some(&stamps)).unwrap();
         assert_eq!(placed[0].unwrap().heading, Some(1.5));
         assert_eq!(xs(placed), [Some(0.5), Some(1.0), None]);
-        let mut by_row = times.to_vec();
-        by_row.iter_mut().enumerate().for_each(|(ordinal, row)| row.ordinal = ordinal);
-        assert_eq!(xs(place(&names(), &by_row, 3, None).unwrap()), [Some(0.0), Some(1.0), Some(4.0)]);
-        by_row.remove(1);
-        assert_eq!(xs(place(&names(), &by_row, 3, None).unwrap()), [Some(0.0), None, Some(4.0)]);
-        assert!(place(&names(), &times[..2], 2, None).unwrap_err().to_string().contains("--stamps"));
+        assert_eq!(xs(place(&names(), &times, None).unwrap()), [Some(0.0), Some(1.0), Some(4.0)]);
+        assert!(place(&names(), &times[..2], None).unwrap_err().to_string().contains("--stamps"));
         let untimed = [row(None, None, 0.0), row(None, None, 1.0)];
-        assert!(place(&names(), &untimed, 2, None).is_err());
+        assert!(place(&names(), &untimed, None).is_err());
     }
 
     #[test]
-    fn poses_are_not_interpolated_over_a_gap() {
-        let times = [0.0, 0.1, 0.2, 0.3, 20.3, 20.4].map(|time| row(None, Some(time), time));
-        let stamps: Stamps = names().into_iter().zip([0.15, 10.0, 20.35]).collect();
-        let placed = place(&names(), &times, times.len(), Some(&stamps)).unwrap();
-        assert!(placed[0].is_some() && placed[1].is_none() && placed[2].is_some());
+    fn a_gap_between_poses_gives_no_pose() {
+        let stamps: Stamps = names().into_iter().zip([0.05, 5.0, 20.05]).collect();
+        let rows = [0.0, 0.1, 0.2, 20.0, 20.1].map(|time| row(None, Some(time), time));
+        let placed = xs(place(&names(), &rows, Some(&stamps)).unwrap());
+        assert!(placed[0].is_some() && placed[1].is_none() && placed[2].is_some(), "{placed:?}");
+        assert_eq!(longest_gap(&[0.0, 0.1, 0.2]), 0.5);
+        assert_eq!(longest_gap(&[0.0, 1.0, 2.0]), 1.5);
+    }
+
+    #[test]
+    fn a_bad_row_leaves_its_own_frame_without_pose() {
+        let rows = [row(None, None, 1.0), None, row(None, None, 3.0)];
+        assert_eq!(xs(place(&names(), &rows, None).unwrap()), [Some(1.0), None, Some(3.0)]);
     }
 }

@@ -1,5 +1,6 @@
 //! Recordings that are folders of frames with a table of poses, as many who record panoramas keep them.
 
+mod columns;
 mod error;
 mod frames;
 pub(super) mod path;
@@ -9,8 +10,9 @@ mod smooth;
 mod stamps;
 mod table;
 
+pub use columns::ColumnNames;
 pub use error::RecordingError;
-pub use frames::{Frame, Recording, RecordingFiles};
+pub use frames::{Frame, Recording, Tables};
 pub use path::Heading;
 pub use sense::{TurnEvidence, turn_evidence};
 pub use smooth::{smoothed, smoothing_of};

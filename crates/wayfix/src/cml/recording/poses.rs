@@ -1,18 +1,17 @@
 use std::path::Path;
 
 use wayfix_estimation_traits::wrap_angle;
+use wayfix_sensor_log::ReadReport;
 
 use super::{
     RecordingError,
-    stamps::file_name,
-    table::{Column, Table, number},
+    columns::{Column, ColumnNames, Columns, Quantity},
+    table::Table,
 };
 
 /// A row of a table of poses, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PoseRow {
-    /// Its place among the rows of the table, those that cannot be used counted.
-    pub(super) ordinal: usize,
     pub(super) file: Option<String>,
     /// s.
     pub(super) time: Option<f64>,
@@ -24,153 +23,113 @@ pub(super) struct PoseRow {
     pub(super) heading: Option<f64>,
 }
 
-/// The poses of a table, and how it was read.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Poses {
-    pub(super) rows: Vec<PoseRow>,
-    /// Lines that were left out, and why.
-    pub(super) problems: Vec<(usize, String)>,
-    /// What columns were read, in which units.
-    pub(super) columns: String,
-    /// Columns whose names say no unit.
-    pub(super) assumed: Vec<String>,
-}
-
-pub(super) const FILE: [&str; 7] = ["file", "filename", "frame", "name", "image", "img", "path"];
-pub(super) const TIME: [&str; 5] = ["t", "time", "stamp", "timestamp", "seconds"];
-const HEADING: [&str; 6] = ["heading", "theta", "yaw", "phi", "angle", "orientation"];
-
-/// A unit by its name, and how many of the SI unit it is.
-type Unit = (&'static str, f64);
-
-const LENGTHS: [Unit; 3] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001)];
-pub(super) const TIMES: [Unit; 6] =
-    [("s", 1.0), ("sec", 1.0), ("seconds", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
-const ANGLES: [Unit; 6] = [
-    ("rad", 1.0),
-    ("radian", 1.0),
-    ("radians", 1.0),
-    ("deg", DEGREE),
-    ("degree", DEGREE),
-    ("degrees", DEGREE),
-];
-
-/// The poses of a table.
+/// The poses of a table, `None` for each row that cannot be used; those go into the report, and so do assumed units.
 ///
-/// Columns are known by their names: `file frame name image`, `t time stamp`, `x y`, `heading theta yaw phi`, with units as in `t_ms`, `x_cm`,
-/// `yaw_deg`. Without a unit they are in s, m and rad. `names` are those of a table without a row of names.
-pub(super) fn read(path: &Path, names: Option<&[String]>) -> Result<Poses, RecordingError> {
-    let table = Table::read(path, names)?;
-    poses(&table).map_err(|reason| RecordingError::Table { path: path.to_owned(), reason })
+/// Columns are known by the names in the header, or by `names` where the table has none. A unit is what the name says, else SI.
+pub(super) fn read(
+    path: &Path,
+    names: Option<&ColumnNames>,
+    report: &mut ReadReport,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Option<PoseRow>>, RecordingError> {
+    let table = Table::read(path, report)?;
+    let refused = |reason| RecordingError::Table { path: path.to_owned(), reason };
+    let columns = Columns::of(&table, names, "--columns").map_err(refused)?;
+    let rows = poses(&table, &columns, report).map_err(refused)?;
+    table.say_units(&columns, "--columns", report, notes);
+    Ok(rows)
 }
 
-/// The factor of a column's unit, the first of `units` where its name says none; whether it was assumed.
-pub(super) fn unit_of(column: Column<'_>, units: &[Unit]) -> (Unit, bool) {
-    let named = units.iter().find(|(name, _)| *name == column.unit);
-    (named.copied().unwrap_or(units[0]), named.is_none())
-}
-
-fn poses(table: &Table) -> Result<Poses, String> {
-    let (Some(x), Some(y)) = (table.column(&["x"]), table.column(&["y"])) else {
-        return Err(format!(
-            "no columns x and y among {:?}; needed are x, y and one of file or t",
-            table.names
-        ));
-    };
-    let (file, time, heading) = (table.column(&FILE), table.column(&TIME), table.column(&HEADING));
-    let with_unit = |column: Option<Column<'_>>, units: &[Unit]| {
-        column.map(|column| (column.index, unit_of(column, units)))
-    };
-    let measured = [
-        with_unit(time, &TIMES),
-        with_unit(Some(x), &LENGTHS),
-        with_unit(Some(y), &LENGTHS),
-        with_unit(heading, &ANGLES),
-    ];
-    let factor = |which: usize| measured[which].map_or(1.0, |(_, ((_, factor), _))| factor);
-    let mut lines: Vec<usize> = table.rows.iter().map(|(line, _)| *line).collect();
-    lines.extend(table.problems.iter().map(|(line, _)| *line));
-    lines.sort_unstable();
-    let pose = |line: usize, row: &[String]| -> Result<PoseRow, String> {
-        let optional = |column: Option<Column<'_>>, which: usize| {
-            column.map(|column| Ok::<f64, String>(number(row, column)? * factor(which))).transpose()
+fn poses(table: &Table, columns: &Columns, report: &mut ReadReport) -> Result<Vec<Option<PoseRow>>, String> {
+    let (x, y) = (columns.need(Quantity::X, "x")?, columns.need(Quantity::Y, "y")?);
+    let (time, heading) = (columns.get(Quantity::Time), columns.get(Quantity::Heading));
+    let file = columns.get(Quantity::File);
+    let mut rows = Vec::with_capacity(table.rows.len());
+    for (line, cells) in &table.rows {
+        let optional = |column: Option<Column>| column.map(|column| table.number(cells, column)).transpose();
+        let row = || -> Result<PoseRow, String> {
+            table.check_width(cells)?;
+            Ok(PoseRow {
+                file: file.and_then(|column| cells.get(column.index)).cloned(),
+                time: optional(time)?,
+                x: table.number(cells, x)?,
+                y: table.number(cells, y)?,
+                heading: optional(heading)?.map(wrap_angle),
+            })
         };
-        Ok(PoseRow {
-            ordinal: lines.partition_point(|other| *other < line),
-            file: file.map(|column| file_name(&row[column.index])),
-            time: optional(time, 0)?,
-            x: number(row, x)? * factor(1),
-            y: number(row, y)? * factor(2),
-            heading: optional(heading, 3)?.map(wrap_angle),
-        })
-    };
-    let (mut rows, mut problems) = (Vec::new(), table.problems.clone());
-    for (line, row) in &table.rows {
-        match pose(*line, row) {
-            Ok(row) => rows.push(row),
-            Err(reason) => problems.push((*line, reason)),
-        }
+        rows.push(row().map_err(|reason| table.leave_out(*line, reason, report)).ok());
     }
-    problems.sort();
-    if let (true, Some((line, reason))) = (rows.is_empty(), problems.first()) {
-        return Err(format!("no row can be used; line {line}: {reason}"));
+    match rows.iter().any(Option::is_some) {
+        true => Ok(rows),
+        false => Err(format!("none of {} rows is a pose; {}", rows.len(), table.first_problem(report))),
     }
-    let described =
-        |(index, ((unit, _), _)): &(usize, (Unit, bool))| format!("{} in {unit}", table.names[*index]);
-    let assumed =
-        measured.iter().flatten().filter(|(_, (_, is_assumed))| *is_assumed).map(described).collect();
-    let columns = measured.iter().flatten().map(described).collect::<Vec<_>>().join(", ");
-    Ok(Poses { rows, problems, columns, assumed })
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
 
-    fn parsed(text: &str) -> Poses {
-        poses(&Table::parse(text, None).unwrap()).unwrap()
+    fn read_text(text: &str, names: Option<&str>) -> Result<(Vec<Option<PoseRow>>, Columns), String> {
+        let table = Table::parse(text)?;
+        let names = names.map(|names| names.parse::<ColumnNames>()).transpose()?;
+        let columns = Columns::of(&table, names.as_ref(), "--columns")?;
+        Ok((poses(&table, &columns, &mut ReadReport::default())?, columns))
     }
 
-    fn row(file: Option<&str>, time: Option<f64>, heading: Option<f64>) -> PoseRow {
-        PoseRow { ordinal: 0, file: file.map(str::to_owned), time, x: 1.0, y: 2.0, heading }
+    fn first(text: &str, names: Option<&str>) -> PoseRow {
+        read_text(text, names).unwrap().0.remove(0).unwrap()
     }
 
     #[test]
-    fn columns_are_known_by_name_and_unit() {
-        let right = Some(std::f64::consts::FRAC_PI_2);
-        for (text, expected) in [
-            ("x,y\n1,2\n3,4", row(None, None, None)),
-            ("file,x,y,theta\na.png,1,2,0.5", row(Some("a.png"), None, Some(0.5))),
-            ("y_cm;x;yaw_rad;file\n200;1;0.5;b/a.png", row(Some("a.png"), None, Some(0.5))),
-            ("time [ms],x (m),y (m)\n250,1,2", row(None, Some(0.25), None)),
-            ("# frame x y theta_deg\n7 1 2 90", row(Some("7"), None, right)),
-            ("x,y,heading [degrees]\n1,2,90", row(None, None, right)),
+    fn columns_are_known_by_their_names_and_units() {
+        let row = |file: Option<&str>, time, heading| PoseRow {
+            file: file.map(str::to_owned),
+            time,
+            x: 1.0,
+            y: 2.0,
+            heading,
+        };
+        for (text, names, expected) in [
+            ("1,2\n3,4", Some("x,y"), row(None, None, None)),
+            ("1 2 90\n3 4 0.1", Some("x,y,yaw_deg"), row(None, None, Some(FRAC_PI_2))),
+            ("a.png,1,2\nb.png,3,4", Some("file,x_m,y_m"), row(Some("a.png"), None, None)),
+            ("250,100,200\n500,1,2", Some("t_ms,x_cm,y_cm"), row(None, Some(0.25), None)),
+            ("y_cm;x;yaw_rad;file\n200;1;0.5;a.png", None, row(Some("a.png"), None, Some(0.5))),
+            ("\u{feff}time [ms],x (m),y (m)\n250,1,2", None, row(None, Some(0.25), None)),
+            ("# frame x y theta_deg\n7 1 2 90", None, row(Some("7"), None, Some(FRAC_PI_2))),
+            ("x\ty\theading [degrees]\n1\t2\t90", None, row(None, None, Some(FRAC_PI_2))),
+            ("x_m,lowest difference,y_m\n1,7,2", None, row(None, None, None)),
         ] {
-            assert_eq!(parsed(text).rows[0], expected, "{text:?}");
+            assert_eq!(first(text, names), expected, "{text:?}");
         }
     }
 
     #[test]
-    fn heading_without_a_unit_is_in_radians_of_any_size() {
-        let found = parsed("x_m,y_m,theta\n1,2,13.8\n1,2,0.1");
-        let heading = found.rows[0].heading.unwrap();
-        assert!((heading - wrap_angle(13.8)).abs() < 1e-12, "{heading}");
-        assert_eq!(found.assumed, ["theta in rad"]);
-        assert_eq!(found.columns, "x m in m, y m in m, theta in rad");
+    fn unwrapped_radians_stay_radians_and_are_said() {
+        let (rows, columns) = read_text("x_m,y_m,theta\n1,2,13.8\n3,4,14", None).unwrap();
+        let heading = rows[0].as_ref().unwrap().heading.unwrap();
+        assert!((heading - (13.8 - 2.0 * std::f64::consts::TAU)).abs() < 1e-12, "{heading}");
+        assert_eq!(columns.units(true).unwrap(), "\"theta\" in rad");
+        assert_eq!(columns.units(false).unwrap(), "\"x m\" in m, \"y m\" in m");
     }
 
     #[test]
-    fn rows_with_no_number_are_left_out_with_their_lines() {
-        let found = parsed("x,y\n1,2\nnan,3\n5\n7,8");
-        assert_eq!(found.rows.iter().map(|row| row.ordinal).collect::<Vec<_>>(), [0, 3]);
-        assert_eq!(found.problems.iter().map(|(line, _)| *line).collect::<Vec<_>>(), [3, 4]);
+    fn missing_names_and_unknown_units_are_refused_by_name() {
+        let error = |text: &str| read_text(text, None).unwrap_err();
+        assert!(error("1,2\n3,4").contains("--columns"));
+        let found = error("time [s],best heading [degrees],filename\n1,2,a.png");
+        assert!(found.contains("no column x among") && found.contains("best heading degrees"), "{found}");
+        assert!(error("x_ft,y_ft\n1,2").contains("x ft"));
+        assert!(error("x_m,x_cm,y_m\n1,2,3").contains("hold the same"));
     }
 
     #[test]
-    fn table_of_something_else_names_its_columns() {
-        let text = "Time [s], Best heading [degrees], Lowest difference, Filename\n1,2,3,a.png";
-        let error = poses(&Table::parse(text, None).unwrap()).unwrap_err();
-        assert!(error.contains("best heading degrees") && error.contains("no columns x and y"), "{error}");
+    fn nan_and_short_rows_keep_their_place_empty() {
+        let text = "file,x_m,y_m\na.png,1,2\nb.png,nan,2\nc.png,1\nd.png,1,2";
+        let (rows, _) = read_text(text, None).unwrap();
+        let usable: Vec<bool> = rows.iter().map(Option::is_some).collect();
+        assert_eq!(usable, [true, false, false, true]);
     }
 }

@@ -4,22 +4,33 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use wayfix_sensor_log::{ReadReport, is_hidden};
+
 use super::{
     RecordingError,
-    poses::{FILE, TIME, TIMES, unit_of},
-    table::{Table, number},
+    columns::{ColumnNames, Columns, Quantity},
+    table::Table,
 };
 
 /// When each frame was taken, s, by the name of its file.
 pub(super) type Stamps = BTreeMap<String, f64>;
 
-/// A table with the columns `t` and `file`; rows without a time are left out.
-pub(super) fn read(path: &Path, names: Option<&[String]>) -> Result<Stamps, RecordingError> {
-    let table = Table::read(path, names)?;
-    parse(&table).map_err(|reason| RecordingError::Table { path: path.to_owned(), reason })
+/// A table with a column of times and one of file names, known by their names.
+pub(super) fn read(
+    path: &Path,
+    names: Option<&ColumnNames>,
+    report: &mut ReadReport,
+    notes: &mut Vec<String>,
+) -> Result<Stamps, RecordingError> {
+    let table = Table::read(path, report)?;
+    let refused = |reason| RecordingError::Table { path: path.to_owned(), reason };
+    let columns = Columns::of(&table, names, "--stamp-columns").map_err(refused)?;
+    let stamps = parse(&table, &columns, report).map_err(refused)?;
+    table.say_units(&columns, "--stamp-columns", report, notes);
+    Ok(stamps)
 }
 
-/// The table of stamps beside the frames: the only file of text there, but `poses`, that names the first frame.
+/// The table of stamps beside the frames: the first file of text there, but `poses`, that names the first frame.
 pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf> {
     let mut candidates: Vec<PathBuf> =
         fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path()).collect();
@@ -28,19 +39,35 @@ pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf
         ["csv", "txt", "tsv", "dat"].contains(&&*extension)
     };
     let same = |path: &PathBuf| fs::canonicalize(path).ok() == fs::canonicalize(poses).ok();
-    candidates.retain(|path| is_text(path) && !same(path));
+    candidates.retain(|path| is_text(path) && !is_hidden(path) && !same(path));
     candidates.sort();
-    candidates.into_iter().find(|path| read(path, None).is_ok_and(|stamps| stamps.contains_key(a_frame)))
+    let names_it = |path: &PathBuf| {
+        let table = Table::read(path, &mut ReadReport::default());
+        table.is_ok_and(|table| {
+            table.rows.iter().any(|(_, row)| row.iter().any(|cell| file_name(cell) == a_frame))
+        })
+    };
+    candidates.into_iter().find(names_it)
 }
 
-fn parse(table: &Table) -> Result<Stamps, String> {
-    let (Some(file), Some(time)) = (table.column(&FILE), table.column(&TIME)) else {
-        return Err(format!("no columns t and file among {:?}", table.names));
-    };
-    let ((_, unit), _) = unit_of(time, &TIMES);
-    let stamp =
-        |(_, row): &(usize, Vec<String>)| Some((file_name(&row[file.index]), number(row, time).ok()? * unit));
-    Ok(table.rows.iter().filter_map(stamp).collect())
+fn parse(table: &Table, columns: &Columns, report: &mut ReadReport) -> Result<Stamps, String> {
+    let (file, time) = (columns.need(Quantity::File, "file")?, columns.need(Quantity::Time, "t")?);
+    let mut stamps = Stamps::new();
+    for (line, cells) in &table.rows {
+        let row = || -> Result<(String, f64), String> {
+            table.check_width(cells)?;
+            let name = cells.get(file.index).map(|cell| file_name(cell));
+            Ok((name.ok_or("no file")?, table.number(cells, time)?))
+        };
+        match row() {
+            Ok((name, seconds)) => drop(stamps.insert(name, seconds)),
+            Err(reason) => table.leave_out(*line, reason, report),
+        }
+    }
+    match stamps.is_empty() {
+        true => Err(format!("no row tells a time; {}", table.first_problem(report))),
+        false => Ok(stamps),
+    }
 }
 
 /// Without the folders that a table may name.
@@ -52,18 +79,24 @@ pub(super) fn file_name(path: &str) -> String {
 mod tests {
     use super::*;
 
+    fn stamps(text: &str) -> Result<Stamps, String> {
+        let table = Table::parse(text)?;
+        let columns = Columns::of(&table, None, "--stamp-columns")?;
+        parse(&table, &columns, &mut ReadReport::default())
+    }
+
     #[test]
-    fn stamps_are_read_by_name_in_either_order() {
+    fn stamps_are_read_by_the_names_of_their_columns() {
         for text in [
             "Time [s], Filename\n0.5, outdoor/a.png\n1.0, outdoor/b.png",
             "file,t_ms\nx\\a.png,500\nx\\b.png,1000",
-            "Time [s], Best heading [degrees], Lowest difference, Filename\n0.5,90,7,a.png\n1.0,80,6,b.png",
+            "Best heading [degrees], Time [s], Lowest difference, Filename\n9,0.5,3,a.png\n8,1,4,b.png",
+            "Time [s]; Filename\nnan; c.png\n0.5; a.png\n1; b.png\n2",
         ] {
-            let stamps = parse(&Table::parse(text, None).unwrap()).unwrap();
             let expected = Stamps::from([("a.png".to_owned(), 0.5), ("b.png".to_owned(), 1.0)]);
-            assert_eq!(stamps, expected, "{text:?}");
+            assert_eq!(stamps(text).unwrap(), expected, "{text:?}");
         }
-        let error = parse(&Table::parse("x,y\n3,4", None).unwrap()).unwrap_err();
-        assert!(error.contains("no columns t and file"), "{error}");
+        assert!(stamps("1,a.png\n3,b.png").unwrap_err().contains("--stamp-columns"));
+        assert!(stamps("t_s,value\n1,2").unwrap_err().contains("no column file among t s, value"));
     }
 }

@@ -1,43 +1,45 @@
 use std::{fs, path::Path};
 
-use super::RecordingError;
+use wayfix_sensor_log::{Problem, ProblemKind, ReadReport};
 
-/// A text of rows and columns: comma, semicolon, tab or blanks between them, `#` before remarks, a row of names first.
+use super::{
+    RecordingError,
+    columns::{Column, Columns},
+};
+
+/// A text of rows and columns: comma, semicolon, tab or blanks between them, `#` before remarks, a row of names first or none.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Table {
-    /// Lower case, without punctuation: `Time [s]` and `time_s` are `time s`.
-    pub(super) names: Vec<String>,
-    /// Each with the number of its line, from 1, and as many cells as there are names.
+    /// Lower case, without what is in brackets being lost: `Time [s]` is `time s`.
+    pub(super) names: Option<Vec<String>>,
+    /// Each with the number of its line, from 1.
     pub(super) rows: Vec<(usize, Vec<String>)>,
-    /// Lines that are no rows, and why.
-    pub(super) problems: Vec<(usize, String)>,
-}
-
-/// A column, and what its name says after the first word: `ms` of `time_ms`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Column<'a> {
-    pub(super) index: usize,
-    pub(super) unit: &'a str,
+    /// The file's name.
+    file: String,
+    /// Of the header, else of most rows.
+    n_columns: usize,
 }
 
 /// No table of poses is larger; a file that is something else must not fill the memory.
 const MAX_BYTES: u64 = 256 << 20;
 
 impl Table {
-    /// Reads a table whose columns its first row names, or `names` where it has no such row.
-    pub(super) fn read(path: &Path, names: Option<&[String]>) -> Result<Self, RecordingError> {
+    pub(super) fn read(path: &Path, report: &mut ReadReport) -> Result<Self, RecordingError> {
         let io = |source| RecordingError::Io { path: path.to_owned(), source };
         let refused = |reason: String| RecordingError::Table { path: path.to_owned(), reason };
         if fs::metadata(path).map_err(io)?.len() > MAX_BYTES {
             return Err(refused(format!("more than {MAX_BYTES} bytes")));
         }
         let bytes = fs::read(path).map_err(io)?;
-        let text = String::from_utf8(bytes).map_err(|_| refused("not a text in UTF-8".to_owned()))?;
-        Self::parse(&text, names).map_err(refused)
+        let text = String::from_utf8(bytes).map_err(|_| refused("not a text".to_owned()))?;
+        let mut table = Self::parse(&text).map_err(refused)?;
+        table.file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        report.rows_read += table.rows.len() as u64;
+        Ok(table)
     }
 
-    pub(super) fn parse(text: &str, given: Option<&[String]>) -> Result<Self, String> {
-        let mut lines: Vec<(usize, Vec<String>)> = Vec::new();
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let mut rows: Vec<(usize, Vec<String>)> = Vec::new();
         let mut names = None;
         for (index, line) in text.lines().enumerate() {
             let line = line.trim_start_matches('\u{feff}').trim();
@@ -50,47 +52,75 @@ impl Table {
             }
             let cells = cells(line);
             let is_names = cells.iter().all(|cell| cell.parse::<f64>().is_err()) && cells.len() > 1;
-            if lines.is_empty() && is_names && !has_file_name(&cells) {
+            if rows.is_empty() && is_names && !has_file_name(&cells) {
                 // The last line of names wins: files may begin with remarks.
                 names = Some(cells.iter().map(|cell| plain(cell)).collect());
             } else if !is_remark {
-                lines.push((index + 1, cells));
+                rows.push((index + 1, cells));
             }
         }
-        let Some((_, first)) = lines.first() else { return Err("no rows".to_owned()) };
-        let given = given.map(|given| given.iter().map(|name| plain(name)).collect());
-        let Some(names): Option<Vec<String>> = given.or(names) else {
-            return Err(format!(
-                "no row names the columns: name them, as in --columns t_ms,x_cm,y_cm (the first row is {first:?})"
-            ));
-        };
-        let n = names.len();
-        let (rows, ragged): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(_, row)| row.len() == n);
-        let ragged = ragged.into_iter();
-        let problems: Vec<(usize, String)> =
-            ragged.map(|(line, row)| (line, format!("{} columns instead of {n}", row.len()))).collect();
-        match problems.first() {
-            Some((line, reason)) if rows.is_empty() => {
-                Err(format!("no row can be used; line {line}: {reason}"))
-            }
-            _ => Ok(Self { names, rows, problems }),
+        if rows.is_empty() {
+            return Err("no rows".to_owned());
+        }
+        let has_width = |n: usize| rows.iter().filter(|(_, row)| row.len() == n).count();
+        let names = names.filter(|names: &Vec<String>| has_width(names.len()) > 0);
+        let most = || rows.iter().map(|(_, row)| row.len()).max_by_key(|n| (has_width(*n), *n)).unwrap_or(0);
+        let n_columns = names.as_ref().map_or_else(most, Vec::len);
+        Ok(Self { names, rows, file: String::new(), n_columns })
+    }
+
+    pub(super) fn n_columns(&self) -> usize {
+        self.n_columns
+    }
+
+    pub(super) fn check_width(&self, cells: &[String]) -> Result<(), String> {
+        match cells.len() {
+            n if n == self.n_columns => Ok(()),
+            n => Err(format!("{n} columns, not {}", self.n_columns)),
         }
     }
 
-    /// The column whose name begins with one of these words.
-    pub(super) fn column(&self, words: &[&str]) -> Option<Column<'_>> {
-        self.names.iter().enumerate().find_map(|(index, name)| {
-            let (word, unit) = name.split_once(' ').unwrap_or((name, ""));
-            words.contains(&word).then_some(Column { index, unit: unit.rsplit(' ').next().unwrap_or(unit) })
-        })
+    /// A cell in SI units.
+    pub(super) fn number(&self, cells: &[String], column: Column) -> Result<f64, String> {
+        let cell = cells.get(column.index).map_or("", String::as_str);
+        let value = cell.parse::<f64>().map(|value| value * column.factor);
+        let value = value.ok().filter(|value| value.is_finite());
+        value.ok_or_else(|| format!("{:?} is not a finite number", cell.chars().take(40).collect::<String>()))
     }
-}
 
-/// The finite number in a cell.
-pub(super) fn number(row: &[String], column: Column<'_>) -> Result<f64, String> {
-    let cell = &row[column.index];
-    let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-    value.ok_or_else(|| format!("{cell:?} is not a number"))
+    /// Counts a row as one that cannot be used.
+    pub(super) fn leave_out(&self, line: usize, reason: String, report: &mut ReadReport) {
+        report.rows_read = report.rows_read.saturating_sub(1);
+        let kind =
+            if reason.contains("columns, not") { ProblemKind::ColumnCount } else { ProblemKind::NotANumber };
+        report.add(Problem { file: self.file.clone(), row: line as u64, kind, reason });
+    }
+
+    /// The first row of this table that was left out.
+    pub(super) fn first_problem(&self, report: &ReadReport) -> String {
+        let first = report.examples.iter().find(|problem| problem.file == self.file);
+        first.map_or_else(String::new, |problem| format!("line {}: {}", problem.row, problem.reason))
+    }
+
+    /// Says in which units the columns are, as stated or as assumed.
+    pub(super) fn say_units(
+        &self,
+        columns: &Columns,
+        option: &str,
+        report: &mut ReadReport,
+        notes: &mut Vec<String>,
+    ) {
+        if let Some(units) = columns.units(false) {
+            notes.push(format!("{}: {units}", self.file));
+        }
+        if let Some(units) = columns.units(true) {
+            let text = format!(
+                "{}: no unit is stated, taken are {units}; state it in the names, or by {option}",
+                self.file
+            );
+            report.warn("unit_assumed", text);
+        }
+    }
 }
 
 fn cells(line: &str) -> Vec<String> {
@@ -111,7 +141,8 @@ fn has_file_name(cells: &[String]) -> bool {
 }
 
 /// `Time [s]`, `time_s` and `TIME (s)` are the same name.
-fn plain(name: &str) -> String {
+pub(super) fn plain(name: &str) -> String {
+    let name = name.replace('°', " deg");
     let word = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
     name.chars().map(word).collect::<String>().split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -124,35 +155,24 @@ mod tests {
     fn separators_headers_and_remarks_are_recognized() {
         for text in [
             "x,y\n1,2\n3,4\n",
+            "\u{feff}x,y\n1,2\n3,4\n",
             "# x y\n1 2\n3 4",
             "# made by hand\n\nX;Y\n1;2\n3;4\n",
-            "\u{feff}x\ty\r\n1\t2\r\n3\t4\r\n",
+            "x\ty\r\n1\t2\r\n3\t4\r\n",
         ] {
-            let table = Table::parse(text, None).unwrap();
-            assert_eq!(table.names, ["x", "y"], "{text:?}");
-            assert_eq!(table.rows[1].1, ["3", "4"]);
+            let table = Table::parse(text).unwrap();
+            assert_eq!(table.names, Some(vec!["x".to_owned(), "y".to_owned()]), "{text:?}");
+            let rows: Vec<&[String]> = table.rows.iter().map(|(_, row)| &row[..]).collect();
+            assert_eq!(rows, [["1", "2"], ["3", "4"]], "{text:?}");
         }
-        let table = Table::parse("Time [s], Filename\n0.1, a.png", None).unwrap();
-        assert_eq!(table.names, ["time s", "filename"]);
-        assert_eq!(table.column(&["t", "time"]), Some(Column { index: 0, unit: "s" }));
+        assert_eq!(Table::parse("1,2\n3,4").unwrap().names, None);
+        assert_eq!(plain("Heading [°]"), "heading deg");
+        assert_eq!(Table::parse(""), Err("no rows".to_owned()));
     }
 
     #[test]
-    fn table_without_names_needs_given_ones() {
-        let error = Table::parse("1,2\n3,4", None).unwrap_err();
-        assert!(error.contains("--columns"), "{error}");
-        let given = ["x_cm".to_owned(), "y_cm".to_owned()];
-        let table = Table::parse("1,2\n3,4", Some(&given)).unwrap();
-        assert_eq!(table.column(&["y"]), Some(Column { index: 1, unit: "cm" }));
-    }
-
-    #[test]
-    fn short_rows_are_left_out_with_their_lines() {
-        let table = Table::parse("x,y\n1,2\n3\n4,5\n", None).unwrap();
-        assert_eq!(table.rows.len(), 2);
-        assert_eq!(table.problems, [(3, "1 columns instead of 2".to_owned())]);
-        assert_eq!(Table::parse("", None), Err("no rows".to_owned()));
-        let nan = number(&["nan".to_owned()], Column { index: 0, unit: "" });
-        assert_eq!(nan, Err("\"nan\" is not a number".to_owned()));
+    fn the_width_is_that_of_the_header_or_of_most_rows() {
+        assert_eq!(Table::parse("1\n1,2\n3,4").unwrap().n_columns(), 2);
+        assert_eq!(Table::parse("x,y\n1\n3,4\n5").unwrap().n_columns(), 2);
     }
 }

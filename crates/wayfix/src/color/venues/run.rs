@@ -14,7 +14,12 @@ const MIN_VENUES: usize = 3;
 /// When the folder has fewer than three venues, an image or its boxes cannot be read, or a venue has no usable ball.
 pub fn run(folder: &Path) -> Result<Run> {
     let stopwatch = Stopwatch::start();
-    let venues = Venue::read_all(folder)?;
+    let mut venues = Venue::read_all(folder)?;
+    let unusable: Vec<String> =
+        venues.iter_mut().flat_map(|venue| std::mem::take(&mut venue.unusable)).collect();
+    if !unusable.is_empty() {
+        venues.retain(|venue| !venue.images.is_empty());
+    }
     if venues.len() < MIN_VENUES {
         bail!(
             "{} has {} venues (day/robot), at least {MIN_VENUES} are needed",
@@ -37,9 +42,19 @@ pub fn run(folder: &Path) -> Result<Run> {
         events: BTreeMap::from([
             ("image".to_owned(), n_images),
             ("image_without_carpet".to_owned(), n_skipped),
+            ("image_unusable".to_owned(), unusable.len() as u64),
         ]),
         figures: figures::pictures(&venues, &scores)?,
         notes: vec![figures::note(&scores)],
+        warnings: warning(&unusable).into_iter().collect(),
         ..Run::default()
     })
+}
+
+/// So many images are named.
+const MOST_NAMED: usize = 3;
+
+fn warning(unusable: &[String]) -> Option<String> {
+    let named = unusable.iter().take(MOST_NAMED).map(String::as_str).collect::<Vec<_>>().join("; ");
+    (!unusable.is_empty()).then(|| format!("{} images are left out: {named}", unusable.len()))
 }

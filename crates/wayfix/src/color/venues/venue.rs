@@ -6,6 +6,7 @@ use std::{
 use anyhow::{Context, Result};
 use nalgebra::{Matrix3, Vector3};
 use wayfix_color_model::{ColorDensity, ColorMeans, TrainingVenue};
+use wayfix_sensor_log::is_hidden;
 
 use super::{carpet::density, image::VenueImage};
 
@@ -16,6 +17,8 @@ pub(super) struct Venue {
     pub(super) images: Vec<VenueImage>,
     /// Images without carpet.
     pub(super) n_skipped: u64,
+    /// Images that cannot be read or have no usable boxes, and why.
+    pub(super) unusable: Vec<String>,
 }
 
 impl Venue {
@@ -33,11 +36,12 @@ impl Venue {
 
     fn read(name: String, folder: &Path) -> Result<Self> {
         let is_jpeg = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "jpg");
-        let mut venue = Self { name, images: Vec::new(), n_skipped: 0 };
+        let mut venue = Self { name, images: Vec::new(), n_skipped: 0, unusable: Vec::new() };
         for path in entries(folder)?.into_iter().filter(is_jpeg) {
-            match VenueImage::read(&path)? {
-                Some(image) => venue.images.push(image),
-                None => venue.n_skipped += 1,
+            match VenueImage::read(&path) {
+                Ok(Some(image)) => venue.images.push(image),
+                Ok(None) => venue.n_skipped += 1,
+                Err(error) => venue.unusable.push(format!("{error:#}")),
             }
         }
         Ok(venue)
@@ -79,10 +83,11 @@ impl Venue {
     }
 }
 
-/// What is in a folder, sorted.
+/// What is in a folder but hidden files, sorted.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let read = || fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>();
     let mut paths = read().with_context(|| format!("cannot list {}", folder.display()))?;
+    paths.retain(|path| !is_hidden(path));
     paths.sort();
     Ok(paths)
 }
