@@ -93,7 +93,7 @@ fn drive_through(
     }
     let keyframes = system.keyframes();
     let estimated = keyframes.first().zip(keyframes.last()).map(|(first, last)| (first.stamp, last.stamp));
-    let lag = odometry_lag(keyframes);
+    let lag = odometry_lag(keyframes, system.seen_turns());
     warn_of_no_overlap(system.events(), &track, estimated);
     if let Some(lag) = lag {
         let delay = system.params.odometry_delay + lag;

@@ -1,7 +1,7 @@
 use std::{collections::VecDeque, time::Duration};
 
 use nalgebra::{Matrix1x4, Matrix3, Vector1};
-use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
+use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2, wrap_angle};
 use wayfix_line_extract::{Extractor, Scan};
 use wayfix_scan_match::{Cloud, Guess, Matcher};
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
@@ -46,6 +46,10 @@ pub struct WallSystem {
     pub(super) dead_reckoning: Pose2<f64>,
     observability: Option<ObservabilityRecorder>,
     keyframes: Vec<Keyframe>,
+    /// Heading by the points of the last scan alone, seen from the last look, rad.
+    laser_heading: Option<f64>,
+    /// By how much the robot has turned to each keyframe from the one before, by the scans alone, rad.
+    seen_turns: Vec<Option<f64>>,
     events: Events,
     step: Duration,
 }
@@ -106,6 +110,8 @@ impl WallSystem {
             waiting: VecDeque::new(),
             dead_reckoning: start,
             keyframes: Vec::new(),
+            laser_heading: None,
+            seen_turns: Vec::new(),
             events: Events::default(),
             step: Duration::ZERO,
         })
@@ -122,6 +128,10 @@ impl WallSystem {
     /// One estimate for every scan.
     pub fn keyframes(&self) -> &[Keyframe] {
         &self.keyframes
+    }
+    /// By how much the robot has turned to each keyframe from the one before, by the scans alone, where they tell.
+    pub(super) fn seen_turns(&self) -> &[Option<f64>] {
+        &self.seen_turns
     }
     /// Where the laser sits on the robot.
     pub(super) fn mount(&self) -> Pose2<f64> {
@@ -205,7 +215,9 @@ impl WallSystem {
     fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
         let stopwatch = Stopwatch::start();
         let cloud = cloud_of(scan, &self.mount())?;
-        self.lay_on_the_last_look(&cloud);
+        let laser_heading = self.lay_on_the_last_look(&cloud);
+        let seen_turn = self.laser_heading.zip(laser_heading).map(|(from, to)| wrap_angle(to - from));
+        self.laser_heading = laser_heading;
         let Gait { least_way, least_turn } = self.params.looks;
         let nis = if self.last_look.is_some() && self.travel.is_within(least_way, least_turn) {
             self.events.count("scan_passed_by");
@@ -214,15 +226,19 @@ impl WallSystem {
             let observations = self.walls_in(scan)?;
             self.move_on()?;
             self.last_look = Some(Look { scan: scan.clone(), cloud });
+            self.laser_heading = Some(0.0);
             self.look_at(&observations)?
         };
         self.step += stopwatch.elapsed();
         self.add_keyframe(stamp, nis);
+        self.seen_turns.push(seen_turn);
         Ok(())
     }
 
-    /// Corrects the way since the last look, and the drift, by how a scan lies on that of the last look.
-    fn lay_on_the_last_look(&mut self, cloud: &Cloud) {
+    /// Corrects the way since the last look, and the drift, by how a scan lies on that of the last look. Returns the heading that
+    /// the points alone ask for, seen from there.
+    fn lay_on_the_last_look(&mut self, cloud: &Cloud) -> Option<f64> {
+        let mut laser_heading = None;
         self.travel = self.travel.at_a_scan(&self.params.disagreement);
         if let (Some(look), Some(matcher)) = (&self.last_look, self.matcher) {
             let drift_variance = self.filter.robot_covariance()[(3, 3)];
@@ -232,6 +248,7 @@ impl WallSystem {
             let found = matcher.align(&look.cloud, cloud, &guess);
             if let Some(found) = found.ok().filter(|found| found.overlap >= LEAST_OVERLAP) {
                 self.events.count("scan_matched");
+                laser_heading = self.travel.heading_seen(&found);
                 let travel = self.travel.doubted(found.guess_scale);
                 let drift_change = travel.drift_seen(&found).map_or(0.0, |seen| self.correct_drift(seen));
                 self.travel = travel.corrected_by(&found, drift_change).unwrap_or(travel);
@@ -240,6 +257,7 @@ impl WallSystem {
             }
         }
         self.travel = self.travel.after_scan();
+        laser_heading
     }
 
     /// Corrects the drift by a change and its variance, and says by how much. A look that the filter refuses leaves it as it is.

@@ -104,6 +104,13 @@ impl Travel {
         Self { covariance: self.covariance * scale.max(1.0), ..self }
     }
 
+    /// The heading that the points of a match alone ask for, without odometry; `None` where they leave a direction open.
+    pub(super) fn heading_seen(&self, found: &Alignment) -> Option<f64> {
+        let asked = found.information.try_inverse()? * found.information_vector;
+        let heading = self.motion.retract(&asked).heading();
+        heading.is_finite().then_some(heading)
+    }
+
     /// What a match of two scans says of the drift: its change and the variance of that; `None` where it says nothing.
     ///
     /// The match measures $`δ = b\, κ + w`$ with information $`Λ`$, where $`w`$ is what odometry errs beside the drift, with covariance $`Q`$.
