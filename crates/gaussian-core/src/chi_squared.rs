@@ -1,4 +1,5 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::function::gamma::gamma_lr;
 
 use crate::GaussianError;
 
@@ -78,7 +79,27 @@ fn quantile(dof: usize, probability: f64) -> Result<f64, GaussianError> {
     check_probability(probability)?;
     let out_of_range =
         |_| GaussianError::Parameter { what: "degrees of freedom", value: dof as f64, range: "at least 1" };
-    ChiSquared::new(dof as f64).map(|chi_squared| chi_squared.inverse_cdf(probability)).map_err(out_of_range)
+    let value = ChiSquared::new(dof as f64)
+        .map(|chi_squared| chi_squared.inverse_cdf(probability))
+        .map_err(out_of_range)?;
+    Ok(if value < LOW { lower_tail(dof as f64, probability) } else { value })
+}
+
+/// Below this the search by absolute width of `inverse_cdf` leaves too few digits.
+const LOW: f64 = 1.0;
+
+/// A small quantile to a relative width, by bisection of its logarithm.
+fn lower_tail(dof: f64, probability: f64) -> f64 {
+    let (mut low, mut high) = (f64::MIN_POSITIVE.ln(), (2.0 * LOW).ln());
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if gamma_lr(0.5 * dof, 0.5 * middle.exp()) < probability {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    (0.5 * (low + high)).exp()
 }
 
 pub(crate) fn check_probability(value: f64) -> Result<(), GaussianError> {
@@ -86,4 +107,32 @@ pub(crate) fn check_probability(value: f64) -> Result<(), GaussianError> {
         return Ok(());
     }
     Err(GaussianError::Parameter { what: "probability", value, range: "between 0 and 1, both excluded" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lower_tail_with_two_degrees_is_the_exponential() {
+        for probability in [1e-12, 1e-9, 1e-6, 1e-3, 0.01, 0.05, 0.3] {
+            let expected = -2.0 * f64::ln_1p(-probability);
+            let found = quantile(2, probability).unwrap();
+            assert!((found / expected - 1.0).abs() < 1e-9, "{probability}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn lower_tail_with_one_and_three_degrees_is_that_of_scipy() {
+        // scipy.stats.chi2.ppf
+        for (dof, probability, expected) in [
+            (1, 1e-6, 1.570796326797103e-12),
+            (1, 1e-3, 1.5707971492624921e-6),
+            (3, 1e-6, 2.4181037862424593e-4),
+            (3, 1e-3, 2.4297585815692657e-2),
+        ] {
+            let found = quantile(dof, probability).unwrap();
+            assert!((found / expected - 1.0).abs() < 1e-6, "{dof} {probability}: {found} {expected}");
+        }
+    }
 }

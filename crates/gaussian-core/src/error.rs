@@ -66,6 +66,14 @@ pub enum GaussianError {
         /// Which one.
         coordinate: usize,
     },
+    /// An angle is so uncertain that its sigma points meet on the other side of the circle.
+    #[error(
+        "a sigma point {length:.2} out goes more than half round a circle: the unscented transform needs a smaller covariance or alpha"
+    )]
+    SigmaPointWraps {
+        /// How far out the point lies.
+        length: f64,
+    },
     /// A parameter is outside its range.
     #[error("{what} is {value}, must be {range}")]
     Parameter {

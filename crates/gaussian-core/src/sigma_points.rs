@@ -1,5 +1,5 @@
 use nalgebra::{DefaultAllocator, Dim};
-use wayfix_estimation_traits::{Manifold, StateAlloc};
+use wayfix_estimation_traits::{Manifold, StateAlloc, to_f64};
 
 use crate::{Gaussian, GaussianError, cholesky};
 
@@ -51,7 +51,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When a parameter is out of range or the covariance (unchecked) is not positive definite.
+    /// When a parameter is out of range, the covariance (unchecked) is not positive definite, or a point goes more than half round a circle.
     pub fn new(gaussian: &Gaussian<X>, params: &UnscentedParams) -> Result<Self, GaussianError> {
         let n = gaussian.dim().value();
         let spread = params.spread_squared(n)?;
@@ -61,8 +61,16 @@ where
         points.push(gaussian.mean().clone());
         for column in scaled.column_iter() {
             let offset = column.into_owned();
-            points.push(gaussian.mean().retract(&offset));
-            points.push(gaussian.mean().retract(&-offset));
+            for offset in [offset.clone(), -offset] {
+                let point = gaussian.mean().retract(&offset);
+                // A point that is nearer the other way round the circle would stand for something else.
+                let missed = to_f64((gaussian.mean().local(&point) - &offset).norm());
+                if missed > 1.0 {
+                    let length = to_f64(offset.norm());
+                    return Err(GaussianError::SigmaPointWraps { length });
+                }
+                points.push(point);
+            }
         }
         let outer = 0.5 / spread;
         let centre = (spread - n as f64) / spread;

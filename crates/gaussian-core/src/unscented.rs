@@ -3,6 +3,7 @@ use wayfix_estimation_traits::{Manifold, StateAlloc, Tangent, TangentMatrix, Upd
 
 use crate::{
     Gaussian, GaussianError, IterationError, SigmaPoints, UnscentedParams, symmetrize, weighted_mean,
+    weighted_mean::weighted_mean_near,
 };
 
 /// What becomes of a Gaussian under a function, by sigma points.
@@ -46,7 +47,7 @@ where
     ) -> Result<Self, IterationError<Z>> {
         let sigma = SigmaPoints::new(gaussian, params)?;
         let images: Vec<Z> = sigma.points.iter().map(function).collect();
-        let mean = weighted_mean(&images, &sigma.mean_weights)?;
+        let mean = weighted_mean_near(&images[0], &images, &sigma.mean_weights)?; // the centre's image
         let mut covariance = OMatrix::zeros_generic(mean.dim(), mean.dim());
         let mut cross_covariance = OMatrix::zeros_generic(gaussian.dim(), mean.dim());
         for ((point, image), &weight) in sigma.points.iter().zip(&images).zip(&sigma.covariance_weights) {
@@ -101,4 +102,33 @@ where
     }
     symmetrize(&mut covariance);
     Ok((mean, covariance))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Vector1, Vector3};
+    use wayfix_estimation_traits::{Angle, Pose2};
+
+    use super::*;
+
+    #[test]
+    fn identity_keeps_a_wide_heading() {
+        for sigma in [0.5, 1.0, 1.3, 1.5, 1.8] {
+            let wide =
+                Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.3), &Vector3::new(0.1, 0.1, sigma)).unwrap();
+            let same = UnscentedTransform::new(&wide, Pose2::clone, &UnscentedParams::default()).unwrap();
+            let heading: f64 = same.mean.heading();
+            assert!((heading - 0.3).abs() < 1e-9, "{sigma}: {heading}");
+            let found: f64 = same.covariance.m33;
+            assert!((found.sqrt() - sigma).abs() < 1e-9, "{sigma}: {found}");
+        }
+    }
+
+    #[test]
+    fn sigma_points_beyond_half_a_turn_are_refused() {
+        let lost = Gaussian::from_sigmas(Angle::new(0.0), &Vector1::new(3.5)).unwrap();
+        let transformed = UnscentedTransform::new(&lost, Angle::clone, &UnscentedParams::default());
+        let error = transformed.unwrap_err();
+        assert!(matches!(error, IterationError::Step(GaussianError::SigmaPointWraps { .. })), "{error:?}");
+    }
 }

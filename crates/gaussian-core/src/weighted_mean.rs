@@ -26,7 +26,31 @@ where
     DefaultAllocator: Allocator<X::Dim>,
 {
     let scaled = ScaledWeights::new(points, weights)?;
-    let mut mean = points[scaled.heaviest].clone();
+    let start = points[scaled.heaviest].clone();
+    iterate(start, &scaled, points)
+}
+
+/// The [`weighted_mean`] that is nearest to a start: points that are spread half round a circle have another one opposite.
+///
+/// # Errors
+/// Those of [`weighted_mean`].
+pub(crate) fn weighted_mean_near<X: Manifold>(
+    start: &X,
+    points: &[X],
+    weights: &[f64],
+) -> Result<X, IterationError<X>>
+where
+    DefaultAllocator: Allocator<X::Dim>,
+{
+    let scaled = ScaledWeights::new(points, weights)?;
+    iterate(start.clone(), &scaled, points)
+}
+
+fn iterate<X: Manifold>(start: X, scaled: &ScaledWeights<X>, points: &[X]) -> Result<X, IterationError<X>>
+where
+    DefaultAllocator: Allocator<X::Dim>,
+{
+    let mut mean = start;
     let mut rounding = nalgebra::zero::<X::Scalar>();
     let mut length = rounding;
     for _ in 0..MAX_ITERATIONS {

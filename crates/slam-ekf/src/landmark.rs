@@ -74,6 +74,17 @@ where
         self.noise(measurement)
     }
 
+    /// The noise of a measurement, given in the tangent space of the measurement, in that of what is expected: the same unless one thing
+    /// has two forms, as a line has.
+    fn noise_at_expected(
+        &self,
+        _expected: &Self::Measurement,
+        _measurement: &Self::Measurement,
+        noise: &TangentMatrix<Self::Measurement>,
+    ) -> TangentMatrix<Self::Measurement> {
+        noise.clone()
+    }
+
     /// Covariance of what two measurements of one look err together, a share of their association noise. By default nothing.
     ///
     /// **Law**: the joint covariance of a look, with this off its diagonal blocks, is positive definite.

@@ -4,6 +4,8 @@
 
 mod common;
 
+use std::f64::consts::PI;
+
 use nalgebra::{Matrix2, Vector2};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -38,7 +40,9 @@ fn look(robot: &Pose2<f64>, ends: &[Vector2<f64>; 2], rng: &mut ChaCha8Rng) -> O
     let along = (seen[1] - seen[0]).normalize();
     let across = Vector2::new(along.y, -along.x);
     let noisy = seen.map(|end| end + across * END_SIGMA * common::normal(rng));
+    // Half of the scans give the line in its other form, which is the same line with the other sign of the correlation.
     let line = through(noisy);
+    let line = if common::normal(rng) > 0.0 { line } else { WallLine::new(-line.rho, line.alpha + PI) };
     let [a, b] = noisy.map(|end| line.along(&end));
     // ρ + (s - s_end) dα = error at either end, for the two ends.
     let by_line = Matrix2::new(1.0, a, 1.0, b).try_inverse().unwrap();

@@ -48,6 +48,8 @@ where
                 if !filter.model().may_be(&predicted.expected, &observation.measurement) {
                     continue;
                 }
+                let model = filter.model();
+                let noise = model.noise_at_expected(&predicted.expected, &observation.measurement, &noise);
                 if let Some(innovation) = predicted.innovation_within(limit, &observation.measurement, &noise)
                 {
                     let measurement = observation.measurement.clone();

@@ -39,7 +39,7 @@ where
         self.innovation_within(f64::INFINITY, measurement, noise)
     }
 
-    /// The innovation, when its NIS is at most `limit`.
+    /// The innovation, when its NIS is at most `limit`. The noise is that at what is expected ([`LandmarkModel::noise_at_expected`]).
     ///
     /// Most landmarks are far from most measurements in a single coordinate already, $`ν_i^2 / S_{ii} ≤ ν^T S^{-1} ν`$, and cost no more than that.
     pub fn innovation_within(

@@ -119,8 +119,11 @@ where
             return Outcome::Unusable;
         }
         let sighting = self.predicted_sighting(landmark);
-        let seen = sighting.and_then(|sighting| Some((sighting.innovation(measurement, &noise)?, sighting)));
-        let Some((innovation, sighting)) = seen else {
+        let seen = sighting.and_then(|sighting| {
+            let noise = self.model.noise_at_expected(&sighting.expected, measurement, &noise);
+            Some((sighting.innovation(measurement, &noise)?, sighting, noise))
+        });
+        let Some((innovation, sighting, noise)) = seen else {
             return Outcome::Unusable;
         };
         let threshold = self.gates.threshold(innovation.residual.len());

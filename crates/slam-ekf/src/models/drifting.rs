@@ -101,6 +101,15 @@ where
     fn noise(&self, measurement: &S::Measurement) -> TangentMatrix<S::Measurement> {
         self.0.noise(measurement)
     }
+
+    fn noise_at_expected(
+        &self,
+        expected: &S::Measurement,
+        measurement: &S::Measurement,
+        noise: &TangentMatrix<S::Measurement>,
+    ) -> TangentMatrix<S::Measurement> {
+        self.0.noise_at_expected(expected, measurement, noise)
+    }
     fn is_usable(&self, measurement: &S::Measurement) -> bool {
         self.0.is_usable(measurement)
     }

@@ -59,6 +59,15 @@ where
         self.sensor.association_noise(measurement)
     }
 
+    fn noise_at_expected(
+        &self,
+        expected: &S::Measurement,
+        measurement: &S::Measurement,
+        noise: &TangentMatrix<S::Measurement>,
+    ) -> TangentMatrix<S::Measurement> {
+        self.sensor.noise_at_expected(expected, measurement, noise)
+    }
+
     fn common_noise(&self, a: &S::Measurement, b: &S::Measurement) -> TangentMatrix<S::Measurement> {
         self.sensor.common_noise(a, b)
     }

@@ -94,6 +94,15 @@ where
         self.0.association_noise(measurement)
     }
 
+    fn noise_at_expected(
+        &self,
+        expected: &RangeBearing,
+        measurement: &RangeBearing,
+        noise: &Matrix2<f64>,
+    ) -> Matrix2<f64> {
+        self.0.noise_at_expected(expected, measurement, noise)
+    }
+
     fn common_noise(&self, a: &RangeBearing, b: &RangeBearing) -> Matrix2<f64> {
         self.0.common_noise(a, b)
     }

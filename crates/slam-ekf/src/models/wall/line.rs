@@ -48,6 +48,13 @@ impl WallLine {
     }
 }
 
+impl WallLine {
+    /// Whether the normals of both point to the same side, so that [`local`](Manifold::local) compares both lines as they are.
+    pub fn is_in_the_form_of(&self, other: &Self) -> bool {
+        wrap_angle(other.alpha - self.alpha).abs() <= FRAC_PI_2
+    }
+}
+
 impl Manifold for WallLine {
     type Scalar = f64;
     type Dim = Const<2>;
@@ -59,7 +66,7 @@ impl Manifold for WallLine {
     }
     fn local(&self, other: &Self) -> Vector2<f64> {
         let turn = wrap_angle(other.alpha - self.alpha);
-        if turn.abs() <= FRAC_PI_2 {
+        if self.is_in_the_form_of(other) {
             Vector2::new(other.rho - self.rho, turn)
         } else {
             Vector2::new(-other.rho - self.rho, wrap_angle(turn + PI))

@@ -84,6 +84,17 @@ impl LandmarkModel for WallSensor {
         measurement.covariance + Matrix2::from_diagonal(&own)
     }
 
+    /// A line in its other form, $`(-ρ, α + π)`$, has the noise $`D R D`$ with $`D = \mathrm{diag}(-1, 1)`$.
+    fn noise_at_expected(
+        &self,
+        expected: &SeenWall,
+        measurement: &SeenWall,
+        noise: &Matrix2<f64>,
+    ) -> Matrix2<f64> {
+        let sign = if expected.line.is_in_the_form_of(&measurement.line) { 1.0 } else { -1.0 };
+        Matrix2::new(noise.m11, sign * noise.m12, sign * noise.m21, noise.m22)
+    }
+
     fn is_usable(&self, measurement: &SeenWall) -> bool {
         let SeenWall { line, covariance, ends } = measurement;
         let is_finite = line.rho.is_finite()
