@@ -51,7 +51,7 @@ pub(super) fn scan(message: &ros::LaserScan<'_>, mount: Option<&Mount>) -> Resul
 
 /// The limits of a scan's ranges; those between which no range lies say nothing.
 fn limits(message: &ros::LaserScan<'_>) -> (f32, f64) {
-    let min = if message.range_min.is_finite() { message.range_min } else { 0.0 };
+    let min = if message.range_min.is_nan() { 0.0 } else { message.range_min };
     let max = if message.range_max > 0.0 { f64::from(message.range_max) } else { f64::INFINITY };
     if f64::from(min) < max { (min, max) } else { (0.0, f64::INFINITY) }
 }
