@@ -33,7 +33,7 @@ pub(crate) fn spatial(position: [f64; 3], orientation: [f64; 4]) -> Result<Pose3
     let rotation = if orientation == [0.0; 4] {
         UnitQuaternion::identity() // one that is not there means no rotation to most writers
     } else if (norm - 1.0).abs() > NORM_TOLERANCE {
-        return Err(inconsistent(&format!("quaternion of norm {norm}")));
+        return Err(inconsistent(&format!("quaternion of norm {norm:.3e}")));
     } else if (norm - 1.0).abs() > ROUNDING {
         UnitQuaternion::new_normalize(quaternion)
     } else {

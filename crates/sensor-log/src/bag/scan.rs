@@ -39,15 +39,21 @@ pub(super) fn scan(message: &ros::LaserScan<'_>, mount: Option<&Mount>) -> Resul
         return Err(inconsistent("scan whose beams all have the same direction"));
     }
     let turn = if mount.is_some_and(|mount| mount.is_upside_down) { -1.0 } else { 1.0 };
-    // What is no limit says nothing.
-    let range_max = if message.range_max > 0.0 { f64::from(message.range_max) } else { f64::INFINITY };
-    let in_limits = |range: f32| if range < message.range_min { f64::NAN } else { f64::from(range) };
+    let (range_min, range_max) = limits(message);
+    let in_limits = |range: f32| if range < range_min { f64::NAN } else { f64::from(range) };
     Ok(LaserScan {
         angle_min: turn * angle_min,
         angle_increment: turn * angle_increment,
         range_max,
         ranges: message.ranges.iter().copied().map(in_limits).collect(),
     })
+}
+
+/// The limits of a scan's ranges; those between which no range lies say nothing.
+fn limits(message: &ros::LaserScan<'_>) -> (f32, f64) {
+    let min = if message.range_min.is_nan() { 0.0 } else { message.range_min };
+    let max = if message.range_max > 0.0 { f64::from(message.range_max) } else { f64::INFINITY };
+    if f64::from(min) < max { (min, max) } else { (0.0, f64::INFINITY) }
 }
 
 #[cfg(test)]
