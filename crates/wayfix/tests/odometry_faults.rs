@@ -9,7 +9,7 @@ use wayfix::{
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Data, LaserScan, Record, Sighting, Stamp, Target, Velocity};
 
-/// Of a walk of the estimate by a centimetre of range noise a scan; far above what a sound run errs by, far below the faults.
+/// Well above what walls leave open, and far below what each fault makes of odometry alone.
 const CENTIMETRES: f64 = 0.05;
 /// 95 % of χ² with three degrees of freedom.
 const CONSISTENT: f64 = 7.81;
@@ -66,8 +66,10 @@ fn drive(increments: &[(usize, Pose2<f64>)], delay: f64) -> Vec<Record> {
     records
 }
 
+/// The motion by wheels that are one per cent smaller than they are taken for.
 fn between(from: usize, to: usize) -> (usize, Pose2<f64>) {
-    (to, pose(from).inverse().compose(&pose(to)))
+    let moved = pose(from).inverse().compose(&pose(to));
+    (to, Pose2::new(1.01 * moved.x(), moved.y(), moved.heading()))
 }
 
 fn every_step() -> Vec<(usize, Pose2<f64>)> {
@@ -82,7 +84,7 @@ fn run(records: &[Record], params: &WallSlamParams) -> WallRun {
 /// Largest position error, m, and mean NEES.
 fn error_and_nees(run: &WallRun) -> (f64, f64) {
     let samples = run.samples();
-    assert!(samples.len() > N_STEPS - 2, "{} scans", samples.len());
+    assert!(samples.len() > N_STEPS - 5, "{} scans", samples.len());
     let errors =
         samples.iter().map(|(_, sample)| (sample.estimate.translation - sample.truth.translation).norm());
     let nees = samples.iter().filter_map(|(_, sample)| sample.nees()).sum::<f64>();
@@ -158,11 +160,12 @@ fn late_odometry_is_said_and_its_delay_corrects_it() {
 fn velocity_holds_for_a_limited_time() {
     let look = Data::Sightings(vec![Sighting { target: Target::Landmark(1), range: 2.0, bearing: 0.0 }]);
     let velocity = |linear| Data::Velocity(Velocity { linear, angular: 0.0 });
-    let log = [at(0.0, velocity(1.0)), at(1e8, velocity(0.5)), at(1e8 + 0.5, look)];
+    let log =
+        [at(0.0, velocity(1.0)), at(1e8, velocity(0.5)), at(1e8 + 0.5, look), at(1e8 + 0.6, velocity(0.5))];
     let params = SlamSystemParams::of(Profile::Generic);
     let mut run = slam::run(&log, &params, |_| {}).expect("a usable log");
     let x = run.system.filter().robot().pose.x();
-    assert!((x - params.robot.velocity_hold - 0.25).abs() < 1e-9, "{x} m");
+    assert!((x - params.robot.velocity_hold - 0.3).abs() < 1e-9, "{x} m");
     assert_eq!(run.events().get("motion_unknown"), 1);
     let sigma = run.system.filter().robot_covariance().m11.sqrt();
     assert!(sigma > 1e7, "unknown for 1e8 s at up to 1 m/s: {sigma} m");

@@ -42,6 +42,16 @@ impl Commands {
 
     /// The motion between two times, cut where it changes.
     pub(super) fn between(&self, from: Stamp, to: Stamp) -> Vec<VelocityControl> {
+        self.pieces(from, to).into_iter().map(|(_, control)| control).collect()
+    }
+
+    /// The same where a command holds.
+    pub(super) fn known_between(&self, from: Stamp, to: Stamp) -> Vec<VelocityControl> {
+        self.pieces(from, to).into_iter().filter(|(holds, _)| *holds).map(|(_, control)| control).collect()
+    }
+
+    /// Pieces of motion between two times, and whether a command holds in each.
+    fn pieces(&self, from: Stamp, to: Stamp) -> Vec<(bool, VelocityControl)> {
         let (from, to) =
             (i128::from(from.nanoseconds()) - self.delay, i128::from(to.nanoseconds()) - self.delay);
         let changes =
@@ -51,8 +61,12 @@ impl Commands {
         cuts.sort_unstable();
         cuts.dedup();
         let piece = |pair: &[i128]| {
-            let Velocity { linear, angular } = self.acting_at(pair[0]);
-            VelocityControl { linear, angular, duration: (pair[1] - pair[0]) as f64 * 1e-9 }
+            let acting = self.acting_at(pair[0]);
+            let Velocity { linear, angular } = acting.unwrap_or(STANDING);
+            (
+                acting.is_some(),
+                VelocityControl { linear, angular, duration: (pair[1] - pair[0]) as f64 * 1e-9 },
+            )
         };
         cuts.windows(2).map(piece).collect()
     }
@@ -75,21 +89,21 @@ impl Commands {
         }
     }
 
-    /// What the robot does at a time of the log: of the rows in force within the erosion before it, the one that turns least.
-    fn acting_at(&self, time: i128) -> Velocity {
+    /// What the robot does at a time of the log: of the rows in force within the erosion before it, the one that turns least; `None` when
+    /// no command holds.
+    fn acting_at(&self, time: i128) -> Option<Velocity> {
         let until = self.rows.partition_point(|(stamp, _)| *stamp <= time);
-        let Some(newest) = until.checked_sub(1).map(|last| self.rows[last].1) else {
-            return STANDING;
-        };
-        if time >= self.rows[until - 1].0 + self.hold {
-            return STANDING;
+        let (since, newest) = *self.rows.get(until.checked_sub(1)?)?;
+        if time >= since + self.hold {
+            return None;
         }
         let from = self.rows.partition_point(|(stamp, _)| *stamp <= time - self.erosion).saturating_sub(1);
         let window = || self.rows.range(from..until).map(|(_, velocity)| *velocity);
         if window().any(|row| row.angular > 0.0) && window().any(|row| row.angular < 0.0) {
-            return Velocity { angular: 0.0, ..newest };
+            return Some(Velocity { angular: 0.0, ..newest });
         }
-        window().fold(newest, |least, row| if row.angular.abs() < least.angular.abs() { row } else { least })
+        let least = |a: Velocity, b: Velocity| if b.angular.abs() < a.angular.abs() { b } else { a };
+        Some(window().fold(newest, least))
     }
 }
 

@@ -230,7 +230,7 @@ impl SlamSystem {
             recorder.moved(&ScaledMotion(motion).jacobian(&before, &controls));
         }
         self.dead_reckoning = motion.propagate(&self.dead_reckoning, &controls);
-        for control in &controls {
+        for control in &self.commands.known_between(self.time, time) {
             let moved = self.params.velocity.propagate(&Pose2::identity(), control);
             self.motion.add(&moved, control.duration);
         }

@@ -36,7 +36,7 @@ fn span(records: &[Record], is: fn(&Data) -> bool) -> Option<(Stamp, Stamp)> {
 
 #[cfg(test)]
 mod tests {
-    use wayfix_estimation_traits::Pose2;
+    use wayfix_estimation_traits::{LieGroup, Pose2};
     use wayfix_sensor_log::Velocity;
 
     use super::*;

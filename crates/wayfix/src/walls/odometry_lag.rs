@@ -5,15 +5,15 @@ use crate::slam::Keyframe;
 
 /// Lags are looked for up to this, s: a transport delay, and not another clock.
 const LARGEST_LAG: f64 = 1.0;
-/// Steps of the search, s: the exactness of drivers' stamps.
-const STEP: f64 = 0.01;
-/// Steps to either side: first of a tenth of the largest lag, then of [`STEP`].
-const N_STEPS: i32 = 10;
+/// More lags than this are not compared, to either side.
+const MOST_PERIODS: f64 = 50.0;
+/// χ² with one degree of freedom exceeds this once in a million: what a lag gains in log likelihood, doubled.
+const SURE: f64 = 23.9;
 
-/// By how much odometry lags the scans, s: the shift in time at which the turns of odometry agree best with `seen_turns`, which the scans
-/// alone tell from each keyframe to the next.
+/// By how much odometry lags the scans, s: the shift, in whole scans, at which the turns of odometry agree best with `seen_turns`, which
+/// the scans alone tell from each keyframe to the next.
 ///
-/// `None` when the shift explains less than half of the squared disagreement, as where the robot goes straight.
+/// `None` when no shift does so for sure, as where the robot goes straight.
 pub(super) fn odometry_lag(keyframes: &[Keyframe], seen_turns: &[Option<f64>]) -> Option<f64> {
     let odometry = Turns::of(keyframes);
     let pairs = keyframes.windows(2).zip(seen_turns.iter().skip(1));
@@ -27,14 +27,15 @@ pub(super) fn odometry_lag(keyframes: &[Keyframe], seen_turns: &[Option<f64>]) -
             |(begin, end, seen): &(f64, f64, f64)| seen - (odometry.at(end + lag) - odometry.at(begin + lag));
         stretches.iter().map(|stretch| error(stretch).powi(2)).sum()
     };
-    let best = |middle: f64, step: f64| {
-        let lags = (-N_STEPS..=N_STEPS).map(|n| middle + f64::from(n) * step);
-        let least = lags.map(|lag| (disagreement(lag), lag)).min_by(|a, b| a.0.total_cmp(&b.0));
-        least.map_or(middle, |(_, lag)| lag)
-    };
-    let coarse = best(0.0, LARGEST_LAG / f64::from(N_STEPS));
-    let lag = best(coarse, STEP);
-    (disagreement(lag) < 0.5 * disagreement(0.0)).then_some(lag)
+    let mut periods: Vec<f64> = stretches.iter().map(|(begin, end, _)| end - begin).collect();
+    periods.sort_by(f64::total_cmp);
+    let period = *periods.get(periods.len() / 2).filter(|period| **period > 0.0)?;
+    let n_periods = (LARGEST_LAG / period).min(MOST_PERIODS) as i32;
+    let lags = (-n_periods..=n_periods).map(|n| f64::from(n) * period);
+    let (_, lag) = lags.map(|lag| (disagreement(lag), lag)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let gain = stretches.len() as f64 * (disagreement(0.0) / disagreement(lag)).ln();
+    // A shift that helps in both directions is no lag: it only smooths noise.
+    (gain > SURE && disagreement(-lag) > disagreement(0.0)).then_some(lag)
 }
 
 /// The heading that odometry has made, at the keyframes and between them.
@@ -112,10 +113,10 @@ mod tests {
     }
 
     #[test]
-    fn lag_of_odometry_is_found_to_the_step() {
+    fn lag_of_odometry_is_found_to_the_nearest_scan() {
         for lag in [0.26, -0.15, 0.5] {
             let found = found_lag(&keyframes(lag, 1.0)).unwrap();
-            assert!((found - lag).abs() < 1.5 * STEP, "{found} for {lag}");
+            assert!((found - lag).abs() < 0.5 * 0.1 + 1e-9, "{found} for {lag}");
         }
     }
 

@@ -99,7 +99,7 @@ fn drive_through(
         let delay = system.params.odometry_delay + lag;
         system.events().warn(
             "odometry_lags_scans",
-            format!("odometry lags the scans by {lag:.2} s: the turns of both agree best there (the parameter `odometry_delay = {delay:.2}` corrects it)"),
+            format!("odometry lags the scans by about {lag:.2} s: their turns agree best there (the parameter `odometry_delay = {delay:.2}` corrects it)"),
         );
     }
     let mut run = WallRun { system, truth: track, true_walls };
