@@ -121,8 +121,8 @@ fn a_target_that_leaves_is_lost_and_found_where_it_comes_back() {
 fn a_target_that_comes_back_turned_is_found() {
     let painting = Painting::new();
     let mut tracker = tracker(&painting, [50.0, 50.0], 28.0);
-    for _ in 0..10 {
-        next(&mut tracker, &painting.at([50.0, 50.0], 28.0));
+    for t in 0..10 {
+        next(&mut tracker, &painting.at([50.0 + 0.1 * f64::from(t), 50.0], 28.0));
     }
     for _ in 0..15 {
         next(&mut tracker, &painting.ground);
@@ -204,5 +204,23 @@ fn refuses_targets_that_cannot_be_followed() {
     ] {
         let refused = CorrelationTracker::new(&picture, target, params);
         assert!(matches!(refused, Err(CondensationError::Parameter { .. })));
+    }
+}
+
+#[test]
+fn a_picture_that_does_not_change_leaves_the_box_where_it_is() {
+    for is_grey in [true, false] {
+        let painted = Painting::new().at([70.3, 55.6], 30.0);
+        let bytes = painted.pixels().iter().flat_map(|&[r, g, b]| if is_grey { [g; 3] } else { [r, g, b] });
+        let picture = Picture::from_rgb(WIDTH, HEIGHT, bytes.collect()).unwrap();
+        // beside the middle of the target and a little too small: what is followed is what the box holds
+        let first = BoundingBox::from_center([71.0, 54.0], 27.0, 28.0).unwrap();
+        let mut tracker =
+            CorrelationTracker::new(&picture, first, CorrelationTrackerParams::default()).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(0);
+        let last = (0..100).map(|_| tracker.track(&picture, &mut rng).unwrap()).last().unwrap();
+        assert_eq!(last.status, TrackStatus::Tracked);
+        // nothing moves, so that nothing adds up however often it is looked at
+        assert!(last.bounding_box.iou(&first) > 1.0 - 1e-6, "{is_grey}: {:?}", last.bounding_box);
     }
 }

@@ -154,3 +154,43 @@ fn refuses_what_cannot_be_a_head() {
     let refused = tracker.track(&scene(WIDTH, HEIGHT + 1, 1), &mut rng());
     assert!(matches!(refused, Err(CondensationError::Dimension { .. })));
 }
+
+/// A head of `colors` (upper third and rest) before a plain wall, with a camera's noise; nobody is there without colours.
+fn before_a_wall(colors: Option<[[u8; 3]; 2]>, frame: u64) -> Picture {
+    let noise = |i: u64| ((i + 31_337 * frame).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) % 13;
+    let mut bytes = Vec::new();
+    for i in 0..WIDTH * HEIGHT {
+        let (x, y) = (((i % WIDTH) as f64 + 0.5 - 72.0) / 12.0, ((i / WIDTH) as f64 + 0.5 - 55.0) / 15.0);
+        let color = match colors {
+            Some([upper, _]) if x.hypot(y) < 1.0 && y < -0.4 => upper,
+            Some([_, lower]) if x.hypot(y) < 1.0 => lower,
+            _ => [70, 100, 140],
+        };
+        bytes.extend(color.map(|value| value + noise(i as u64) as u8 - 6));
+    }
+    Picture::from_rgb(WIDTH, HEIGHT, bytes).expect("that many pixels")
+}
+
+#[test]
+fn a_head_that_leaves_is_lost_though_its_first_box_was_too_large() {
+    let (skin, hair) = ([200, 130, 100], [60, 45, 40]);
+    for colors in [[skin, skin], [hair, skin]] {
+        for margin in [0.0, 1.0, 2.0, 3.0] {
+            let first =
+                BoundingBox::from_center([72.0, 55.0], 24.0 + 2.0 * margin, 30.0 + 2.0 * margin).unwrap();
+            let there = |frame| before_a_wall(Some(colors), frame);
+            let mut tracker = HeadTracker::new(&there(0), first, HeadTrackerParams::default()).unwrap();
+            let mut last = |from: u64, to: u64, is_there: bool| {
+                let picture = |frame| if is_there { there(frame) } else { before_a_wall(None, frame) };
+                (from..to).map(|frame| tracker.track(&picture(frame), &mut rng()).unwrap()).last().unwrap()
+            };
+            assert_eq!(last(1, 20, true).status, TrackStatus::Tracked, "{colors:?} {margin}");
+            // eight pictures of patience
+            assert_eq!(last(20, 30, false).status, TrackStatus::Lost, "{colors:?} {margin}");
+            assert_eq!(last(30, 60, false).status, TrackStatus::Lost, "{colors:?} {margin}");
+            let back = last(60, 75, true);
+            assert_eq!(back.status, TrackStatus::Tracked, "{colors:?} {margin}");
+            assert!(back.bounding_box.iou(&first) > 0.5, "{colors:?} {margin}: {:?}", back.bounding_box);
+        }
+    }
+}

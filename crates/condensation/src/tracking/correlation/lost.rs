@@ -60,7 +60,7 @@ impl CorrelationTracker {
         if Peak::of(&response, SIDE).standing_out < self.params.doubt_below {
             return None;
         }
-        let pose = self.shifted(picture, pose, Peak::of(&response, SIDE).shift);
+        let pose = self.shifted(picture, pose, &response);
         let sight = self.recognizer.look(picture, pose);
         let evidence = self.recognizer.evidence(filter, &sight);
         (self.recognized(evidence) && self.is_alike(&sight)).then_some((pose, sight, evidence))

@@ -31,7 +31,7 @@ pub(super) struct Evidence {
 }
 
 /// Shift in cells up to which a peak is in the middle.
-pub(super) const MIDDLE: f64 = 2.0;
+const MIDDLE: f64 = 2.0;
 
 impl Recognizer {
     /// For a target of `size` pixels in pictures like `picture`.

@@ -27,8 +27,6 @@ pub(super) struct ScaleFilter {
     /// Per frequency: $`\sum x \hat y`$ for every feature, and $`\sum |x|^2`$.
     numerator: Vec<Vec<[f32; 2]>>,
     denominator: Vec<f32>,
-    /// The factor that it finds where it learned last, where nothing has grown.
-    bias: f64,
 }
 
 impl ScaleFilter {
@@ -64,7 +62,6 @@ impl ScaleFilter {
             taper: (0..n_scales).map(|s| hann(s) as f32).collect(),
             numerator: Vec::new(),
             denominator: Vec::new(),
-            bias: 1.0,
         }
     }
 
@@ -85,16 +82,11 @@ impl ScaleFilter {
             }
             self.denominator[k] += rate * (energy - self.denominator[k]);
         }
-        self.bias = self.found(&spectrum);
     }
 
     /// The factor by which a target of `target` pixels around `center` has grown.
     pub(super) fn factor(&self, picture: &Picture, center: [f64; 2], target: [f64; 2]) -> f64 {
-        self.found(&self.spectrum(picture, center, target)) / self.bias
-    }
-
-    /// The factor at the peak of the response to a sample.
-    fn found(&self, spectrum: &[Vec<[f32; 2]>]) -> f64 {
+        let spectrum = self.spectrum(picture, center, target);
         let answers: Vec<[f32; 2]> = spectrum.iter().enumerate().map(|(k, x)| self.answer(k, x)).collect();
         let n = self.factors.len();
         let at = |shift: usize| -> f64 {

@@ -3,8 +3,9 @@ use rand::Rng;
 use super::color_ratio::ColorRatio;
 use super::filter::Learning;
 use super::params::CorrelationTrackerParams;
+use super::patch::Patch;
 use super::planes::Spectrum;
-use super::recognizer::{Evidence, MIDDLE, Recognizer, Sight};
+use super::recognizer::{Evidence, Recognizer, Sight};
 use super::response::Peak;
 use super::scale_filter::ScaleFilter;
 use super::window::{Pose, SIDE};
@@ -68,8 +69,8 @@ pub struct CorrelationTracker {
     pub(super) pose: Pose,
     /// The filter as it was learned last.
     pub(super) current: Spectrum,
-    /// The shift in cells that is found where the target was learned last, where nothing has moved.
-    pub(super) bias: [f64; 2],
+    /// What the window showed when the target was learned last.
+    pub(super) learned: Patch,
     /// The filter when the target was last recognized beyond doubt.
     pub(super) trusted: Spectrum,
     /// Pictures since then.
@@ -120,7 +121,7 @@ impl CorrelationTracker {
         let usual_agreement = colors.agreement(&sight.patch, recognizer.window.target_pixels());
         let mut scales = ScaleFilter::new(params.n_scales, params.scale_step, size);
         scales.learn(picture, pose.center, size, 1.0);
-        let mut tracker = Self {
+        Ok(Self {
             params,
             picture_size,
             recognizer,
@@ -129,16 +130,14 @@ impl CorrelationTracker {
             pose,
             trusted: current.clone(),
             current,
-            bias: [0.0; 2],
+            learned: sight.patch,
             n_untrusted: 0,
             usual,
             usual_agreement,
             n_doubts: 0,
             n_lost: 0,
             n_settling: 0,
-        };
-        tracker.bias = tracker.own_shift(&sight);
-        Ok(tracker)
+        })
     }
 
     /// One picture of a target in sight; the quality.
@@ -171,20 +170,11 @@ impl CorrelationTracker {
 
     /// The pose to which the target has moved from `pose`, by shape and colour together.
     ///
-    /// What is found without a movement is no movement. Learned again and again where it was found, it would add up.
+    /// What looks exactly as it was learned has not moved. The fraction of a cell that is found even then would add up.
     fn moved(&self, picture: &Picture, pose: Pose, around: &Sight) -> Pose {
-        let shift = self.shift(around);
-        self.shifted(picture, pose, [0, 1].map(|axis| shift[axis] - self.bias[axis]))
-    }
-
-    /// The shift that is found in what the target was learned from; a peak elsewhere is something else.
-    pub(super) fn own_shift(&self, sight: &Sight) -> [f64; 2] {
-        let shift = self.shift(sight);
-        if shift.iter().all(|shift| shift.abs() < MIDDLE) { shift } else { [0.0; 2] }
-    }
-
-    /// By how many cells the target has moved from the middle, by shape and colour together.
-    fn shift(&self, around: &Sight) -> [f64; 2] {
+        if around.patch == self.learned {
+            return pose;
+        }
         let window = &self.recognizer.window;
         let mut response = self.recognizer.response(&self.current, around);
         let score = window.box_means(&self.colors.of(&around.patch));
@@ -193,13 +183,13 @@ impl CorrelationTracker {
         for ((value, score), prior) in response.iter_mut().zip(&score).zip(&prior) {
             *value = ((1.0 - weight) * *value + weight * score) * prior;
         }
-        Peak::of(&response, SIDE).shift
+        self.shifted(picture, pose, &response)
     }
 
-    /// The pose moved by so many cells, at the scale that fits there.
-    pub(super) fn shifted(&self, picture: &Picture, pose: Pose, shift: [f64; 2]) -> Pose {
+    /// The pose at the peak of a response, at the scale that fits there.
+    pub(super) fn shifted(&self, picture: &Picture, pose: Pose, response: &[f32]) -> Pose {
         let window = &self.recognizer.window;
-        let mut pose = window.moved(pose, shift);
+        let mut pose = window.moved(pose, Peak::of(response, SIDE).shift);
         let (width, height) = (self.picture_size.0 as f64, self.picture_size.1 as f64);
         pose.center = [pose.center[0].clamp(0.0, width), pose.center[1].clamp(0.0, height)];
         let factor = self.scales.factor(picture, pose.center, window.size(pose.scale));
@@ -246,7 +236,7 @@ impl CorrelationTracker {
         }
         let size = window.size(self.pose.scale);
         self.scales.learn(picture, self.pose.center, size, self.params.scale_rate as f32);
-        self.bias = self.own_shift(sight);
+        self.learned.clone_from(&sight.patch);
         if recognized || self.n_untrusted > self.params.forget_after {
             self.trusted.clone_from(&self.current);
             self.n_untrusted = 0;

@@ -54,8 +54,8 @@ impl CorrelationTracker {
         self.current = self.recognizer.filter.learned(None, &sight.spectrum, learning);
         self.trusted.clone_from(&self.current);
         self.scales.learn(picture, pose.center, self.recognizer.window.size(pose.scale), 1.0);
+        self.learned.clone_from(&sight.patch);
         (self.pose, self.n_untrusted) = (pose, 0);
-        self.bias = self.own_shift(sight);
     }
 
     /// The place where a square of the target's area has the most of its colours.

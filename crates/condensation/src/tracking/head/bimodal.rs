@@ -20,21 +20,20 @@ pub(super) struct BimodalHistogram {
 }
 
 impl BimodalHistogram {
-    /// From the histogram of a head; with `bimodal`, parted at the two mean colours that describe it best (2-means).
+    /// From the counts of a head's colours; with `bimodal`, parted at the two mean colours that describe it best (2-means).
     pub(super) fn new(
         quantizer: &ColorQuantizer,
-        head: &ColorHistogram,
+        head: &[f64],
         bimodal: bool,
     ) -> Result<Self, CondensationError> {
-        if head.total() <= 0.0 {
+        if head.iter().sum::<f64>() <= 0.0 {
             return Err(CondensationError::Empty { what: "pixels of the head" });
         }
-        let mode_of_bin =
-            if bimodal { two_means(quantizer, head.counts()) } else { vec![0; quantizer.n_bins()] };
+        let mode_of_bin = if bimodal { two_means(quantizer, head) } else { vec![0; quantizer.n_bins()] };
         let shares = vec![0.0; quantizer.n_bins()];
         let mut model = Self { mode_of_bin, shares, known: Vec::new(), bimodal };
-        let masses = model.masses(head.counts());
-        for ((share, &mode), count) in model.shares.iter_mut().zip(&model.mode_of_bin).zip(head.counts()) {
+        let masses = model.masses(head);
+        for ((share, &mode), count) in model.shares.iter_mut().zip(&model.mode_of_bin).zip(head) {
             let mass = masses[usize::from(mode)];
             *share = if mass > 0.0 { count / mass } else { 0.0 };
         }
@@ -62,10 +61,10 @@ impl BimodalHistogram {
     }
 
     /// $`M_k = (1 − a) M_{k−1} + a C_k`$ [Andrade-Cetto & Sanfeliu 2004, Eq. 29], for each mode that is in sight.
-    pub(super) fn adapt(&mut self, candidate: &ColorHistogram, rate: f64) {
-        let masses = self.masses(candidate.counts());
+    pub(super) fn adapt(&mut self, candidate: &[f64], rate: f64) {
+        let masses = self.masses(candidate);
         let total = masses[0] + masses[1];
-        for ((share, &mode), count) in self.shares.iter_mut().zip(&self.mode_of_bin).zip(candidate.counts()) {
+        for ((share, &mode), count) in self.shares.iter_mut().zip(&self.mode_of_bin).zip(candidate) {
             let mass = masses[usize::from(mode)];
             if mass > IN_SIGHT * total {
                 *share += rate * (count / mass - *share);
@@ -137,11 +136,11 @@ mod tests {
         let front = histogram(&quantizer, &[SKIN, SKIN, SKIN, HAIR]);
         let back = histogram(&quantizer, &[HAIR; 4]);
         let wall = histogram(&quantizer, &[[90, 140, 200]; 4]);
-        let two = BimodalHistogram::new(&quantizer, &front, true).unwrap();
+        let two = BimodalHistogram::new(&quantizer, front.counts(), true).unwrap();
         assert!((two.intersection(&back, 4) - 1.0).abs() < 1e-12);
         assert!(two.intersection(&wall, 4) < 1e-12);
         // one mode has a quarter hair: the minimum with all hair is a quarter
-        let one = BimodalHistogram::new(&quantizer, &front, false).unwrap();
+        let one = BimodalHistogram::new(&quantizer, front.counts(), false).unwrap();
         assert!((one.intersection(&back, 4) - 0.25).abs() < 1e-12);
         assert!((one.intersection(&front, 4) - 1.0).abs() < 1e-12);
     }
@@ -150,9 +149,9 @@ mod tests {
     fn adaptation_moves_the_visible_mode_and_keeps_the_other() {
         let quantizer = ColorQuantizer::new(ColorSpace::Opponent, [32, 32, 8]).unwrap();
         let mut model =
-            BimodalHistogram::new(&quantizer, &histogram(&quantizer, &[SKIN, HAIR]), true).unwrap();
+            BimodalHistogram::new(&quantizer, histogram(&quantizer, &[SKIN, HAIR]).counts(), true).unwrap();
         let paler = [250, 200, 170];
-        model.adapt(&histogram(&quantizer, &[paler; 2]), 0.25);
+        model.adapt(histogram(&quantizer, &[paler; 2]).counts(), 0.25);
         assert!((model.intersection(&histogram(&quantizer, &[paler]), 1) - 0.25).abs() < 1e-12);
         assert!((model.intersection(&histogram(&quantizer, &[SKIN]), 1) - 0.75).abs() < 1e-12);
         assert!((model.intersection(&histogram(&quantizer, &[HAIR]), 1) - 1.0).abs() < 1e-12);

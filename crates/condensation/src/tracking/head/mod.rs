@@ -5,6 +5,7 @@ mod edge;
 mod params;
 mod scale_source;
 mod search;
+mod surroundings;
 mod tracker;
 
 pub use params::HeadTrackerParams;

@@ -6,6 +6,7 @@ use super::edge::GradientField;
 use super::params::HeadTrackerParams;
 use super::scale_source::{LocalScale, ScaleSource};
 use super::search::{Candidate, Search};
+use super::surroundings::own_colors;
 use crate::error::{check_size, checked};
 use crate::tracking::{
     BinImage, BitMask, BoundingBox, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram,
@@ -24,7 +25,7 @@ const N_OUTLINE: usize = 48;
 /// Around the place that a constant velocity predicts, every ellipse is compared by histogram intersection with the colours of the head,
 /// [Eq. 28] counted from one ellipse to the next only where they differ, and by the gradient across it; both scaled to their range, the
 /// highest sum wins. The colours adapt [Eq. 29] where the intersection is high. Skin and hair are two modes: their proportion changes when
-/// the head turns, so it does not count. The size comes from a [`ScaleSource`] or from the search.
+/// the head turns, so it does not count. Colours that are more frequent around the ellipse than in it are not the head's. The size comes from a [`ScaleSource`] or from the search.
 ///
 /// ```
 /// use rand::SeedableRng;
@@ -113,7 +114,8 @@ impl HeadTracker {
         let bins = BinImage::new(&quantizer, &picture.whole())?;
         let center = head.center().map(|c| c.floor() as i64);
         let histogram = histogram(&bins, RowSpans::ellipse(base)?, center)?;
-        let model = BimodalHistogram::new(&quantizer, &histogram, params.bimodal)?;
+        let own = own_colors(&bins, &histogram, center, base)?;
+        let model = BimodalHistogram::new(&quantizer, &own, params.bimodal)?;
         let state = HeadState { center, velocity: [0; 2], scale: 1.0, n_doubts: 0, is_lost: false };
         let picture_size = (picture.width(), picture.height());
         Ok(Self { params, picture_size, quantizer, model, scale_source: LocalScale, base, state })
@@ -185,7 +187,7 @@ impl<S: ScaleSource> HeadTracker<S> {
         if candidate.color >= self.params.adapt_above {
             let spans = RowSpans::ellipse(candidate.semi_axes)?;
             let histogram = SlidingHistogram::new(bins, spans, candidate.center).into_histogram();
-            self.model.adapt(&histogram, self.params.adaptation);
+            self.model.adapt(histogram.counts(), self.params.adaptation);
         }
         Ok(())
     }
