@@ -163,7 +163,8 @@ fn stem_key(stem: &str) -> Vec<u8> {
         // `1.2.3` is no decimal number.
         let is_first = at < 2 || !is_dot(at - 1) || !bytes[at - 2].is_ascii_digit();
         let is_last = !is_dot(after_dot + n_decimals) || n_digits(after_dot + n_decimals + 1) == 0;
-        let decimals = if is_first && is_last { &bytes[after_dot.min(bytes.len())..][..n_decimals] } else { &[] };
+        let decimals =
+            if is_first && is_last { &bytes[after_dot.min(bytes.len())..][..n_decimals] } else { &[] };
         at += n_whole + if decimals.is_empty() { 0 } else { 1 + n_decimals };
 
         let n_zeros = whole.iter().take_while(|digit| **digit == b'0').count();

@@ -60,9 +60,7 @@ impl Trial {
         match (self, schema.decode(bytes)) {
             (Self::Image, message) => Some(match message {
                 Ok(RosMessage::Image(image)) => image.pixels().uncompressed().is_ok(),
-                Ok(RosMessage::CompressedImage(image)) => {
-                    picture(image.format, image.data).is_ok()
-                }
+                Ok(RosMessage::CompressedImage(image)) => picture(image.format, image.data).is_ok(),
                 _ => false,
             }),
             (Self::Poses { first }, Ok(RosMessage::Odometry(odometry))) => {

@@ -93,7 +93,10 @@ impl TrueBoxes {
     pub(super) fn doubt(&self) -> Option<String> {
         (self.n_unusable > 0).then(|| {
             let (n, named) = (self.n_unusable, self.unusable.join(", "));
-            format!("{n} of {} lines of the truth are no box ({named}): their frames are not judged", self.len())
+            format!(
+                "{n} of {} lines of the truth are no box ({named}): their frames are not judged",
+                self.len()
+            )
         })
     }
 
@@ -144,7 +147,8 @@ pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackError> {
 
 /// A line of words, as `x,y,w,h`.
 fn is_header(line: &str) -> bool {
-    let mut words = line.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty()).peekable();
+    let mut words =
+        line.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty()).peekable();
     words.peek().is_some() && words.all(|word| word.parse::<f64>().is_err())
 }
 

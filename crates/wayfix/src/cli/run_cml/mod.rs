@@ -22,7 +22,7 @@ use super::{
 use crate::{
     cml::{
         self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
-        Task, ViewReader, 
+        Task, ViewReader,
         recording::{Recording, Tables},
     },
     commented::commented,
@@ -127,7 +127,9 @@ impl Arguments {
         };
         let recording = self.recording(frames, poses, self.stamps.as_deref())?;
         let taught = match (&self.learn_from, &self.learn_poses) {
-            (Some(frames), Some(poses)) => Some(self.recording(frames, poses, self.learn_stamps.as_deref())?),
+            (Some(frames), Some(poses)) => {
+                Some(self.recording(frames, poses, self.learn_stamps.as_deref())?)
+            }
             _ => None,
         };
         let plan = Plan::of_recording(

@@ -86,10 +86,12 @@ impl Columns {
 
     /// `t in ms, x in cm`, of the columns whose unit is stated, or assumed.
     pub(super) fn units(&self, is_assumed: bool) -> Option<String> {
-        let with_unit = self.found.iter().filter(|(quantity, _, column)| {
-            *quantity != Quantity::File && column.is_assumed == is_assumed
-        });
-        let texts: Vec<String> = with_unit.map(|(_, name, column)| format!("{name:?} in {}", column.unit)).collect();
+        let with_unit = self
+            .found
+            .iter()
+            .filter(|(quantity, _, column)| *quantity != Quantity::File && column.is_assumed == is_assumed);
+        let texts: Vec<String> =
+            with_unit.map(|(_, name, column)| format!("{name:?} in {}", column.unit)).collect();
         (!texts.is_empty()).then(|| texts.join(", "))
     }
 }

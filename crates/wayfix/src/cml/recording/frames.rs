@@ -69,7 +69,8 @@ impl Recording {
             Some(path) => Some(path.to_owned()),
             None => stamps::find(folder, tables.poses, first),
         };
-        let stamps = match found.map(|path| stamps::read(&path, tables.stamp_columns, &mut read, &mut notes)) {
+        let stamps = match found.map(|path| stamps::read(&path, tables.stamp_columns, &mut read, &mut notes))
+        {
             // Poses by file need no times.
             Some(Err(_)) if tables.stamps.is_none() && is_by_file(&rows) => None,
             stamps => stamps.transpose()?,

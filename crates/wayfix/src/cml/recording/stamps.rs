@@ -43,7 +43,9 @@ pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf
     candidates.sort();
     let names_it = |path: &PathBuf| {
         let table = Table::read(path, &mut ReadReport::default());
-        table.is_ok_and(|table| table.rows.iter().any(|(_, row)| row.iter().any(|cell| file_name(cell) == a_frame)))
+        table.is_ok_and(|table| {
+            table.rows.iter().any(|(_, row)| row.iter().any(|cell| file_name(cell) == a_frame))
+        })
     };
     candidates.into_iter().find(names_it)
 }

@@ -114,8 +114,10 @@ impl Table {
             notes.push(format!("{}: {units}", self.file));
         }
         if let Some(units) = columns.units(true) {
-            let text =
-                format!("{}: no unit is stated, taken are {units}; state it in the names, or by {option}", self.file);
+            let text = format!(
+                "{}: no unit is stated, taken are {units}; state it in the names, or by {option}",
+                self.file
+            );
             report.warn("unit_assumed", text);
         }
     }
