@@ -70,20 +70,25 @@ fn folder_without_experiment_is_refused_with_a_reason() {
     let why = || format!("{:#}", venues::run(folder.path()).unwrap_err());
     assert!(why().contains("0 venues"), "{}", why());
     paint_venues(folder.path(), 4);
-    let boxes = folder.path().join("20010102/r1/1.txt");
-    let good = fs::read_to_string(&boxes).unwrap();
-    fs::write(&boxes, "0 0.5 0.75 0.25\n").unwrap();
-    assert!(why().contains("1.txt") && why().contains("line 1"), "{}", why());
-    fs::remove_file(&boxes).unwrap();
-    assert!(why().contains("1.txt"), "{}", why());
-    fs::write(&boxes, good).unwrap();
-    let jpeg = folder.path().join("20010102/r1/1.jpg");
-    let bytes = fs::read(&jpeg).unwrap();
-    fs::write(&jpeg, &bytes[..bytes.len() / 2]).unwrap();
-    assert!(why().contains("1.jpg"), "{}", why());
-    fs::write(&jpeg, &bytes).unwrap();
     for image in 0..2 {
         fs::write(folder.path().join(format!("20010103/r1/{image}.txt")), "").unwrap();
     }
     assert!(why().contains("20010103") && why().contains("ball"), "{}", why());
+}
+
+#[test]
+fn an_image_without_usable_boxes_is_left_out_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    paint_venues(folder.path(), 4);
+    let file = |name: &str| folder.path().join(name);
+    fs::remove_file(file("20010101/r1/1.txt")).unwrap();
+    fs::write(file("20010102/r1/1.txt"), "0 0.5 0.75 0.25\n").unwrap();
+    let bytes = fs::read(file("20010103/r1/1.jpg")).unwrap();
+    fs::write(file("20010103/r1/1.jpg"), &bytes[..bytes.len() / 2]).unwrap();
+    fs::write(file("20010103/r1/._0.jpg"), "AppleDouble").unwrap();
+    let run = venues::run(folder.path()).unwrap();
+    assert_eq!((run.events["image"], run.events["image_unusable"]), (5, 3));
+    for named in ["3 images", "1.txt", "1.jpg"] {
+        assert!(run.warnings[0].contains(named), "{named}: {}", run.warnings[0]);
+    }
 }

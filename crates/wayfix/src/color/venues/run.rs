@@ -11,7 +11,7 @@ const MIN_VENUES: usize = 3;
 /// Leaves each venue below `folder` out in turn; see the [module](super) for what is counted.
 ///
 /// # Errors
-/// When the folder has fewer than three venues, an image or its boxes cannot be read, or a venue has no usable ball.
+/// When the folder has fewer than three venues, or a venue has no usable ball.
 pub fn run(folder: &Path) -> Result<Run> {
     let stopwatch = Stopwatch::start();
     let mut venues = Venue::read_all(folder)?;
