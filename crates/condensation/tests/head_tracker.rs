@@ -172,7 +172,7 @@ fn before_a_wall(colors: Option<[[u8; 3]; 2]>, frame: u64) -> Picture {
 }
 
 #[test]
-fn a_head_that_leaves_is_lost_though_its_first_box_was_too_large() {
+fn head_that_leaves_is_lost_after_a_first_box_too_large() {
     let (skin, hair) = ([200, 130, 100], [60, 45, 40]);
     for colors in [[skin, skin], [hair, skin]] {
         for margin in [0.0, 1.0, 2.0, 3.0] {

@@ -132,6 +132,7 @@ fn invented_run(n: u64, seed: u64) -> Result<Run, PlotError> {
         events: BTreeMap::from([("new landmark".to_owned(), 15), ("rejected".to_owned(), 12 + n)]),
         figures,
         notes: vec!["Every number of this page is invented; the example shows the layout.".to_owned()],
+        warnings: Vec::new(),
         log: Some(format!("slam/invented-hall-{}.mcap", n + 1)),
         layout: None,
         error: None,

@@ -23,6 +23,7 @@ mod run_track;
 mod run_views;
 mod run_walls;
 mod simulate;
+mod truth;
 
 use std::process::ExitCode;
 

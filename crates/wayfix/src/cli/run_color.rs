@@ -11,6 +11,7 @@ use super::{
     output::print,
     outputs::Outputs,
     progress,
+    truth::TruthFile,
 };
 use crate::{
     color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleFilm, StartPose, priors},
@@ -40,6 +41,8 @@ pub(super) struct Arguments {
     log: Vec<PathBuf>,
     #[command(flatten)]
     topics: Topics,
+    #[command(flatten)]
+    truth: TruthFile,
     /// The map: coloured polygons and posts, TOML or JSON.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["write_priors", "print_params"])]
     map: Option<PathBuf>,
@@ -115,6 +118,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let origin = log.meta().first_format();
     let (records, read) = read_all(log);
+    let records = arguments.truth.put_into(records)?;
 
     let mut outputs = Outputs::open("color", &arguments.common)?;
     let mut estimates: Option<ColorEstimateLog> = outputs.estimates(origin)?;

@@ -13,6 +13,7 @@ use super::{
     output::{print, tell},
     outputs::Outputs,
     progress, run_walls,
+    truth::TruthFile,
 };
 use crate::{
     commented::commented,
@@ -55,6 +56,8 @@ pub(super) struct Arguments {
     pub(super) robot: Option<u32>,
     #[command(flatten)]
     pub(super) topics: Topics,
+    #[command(flatten)]
+    pub(super) truth: TruthFile,
     /// How sightings find their landmarks [default: known where the log has identities, else jcbb].
     #[arg(long, value_name = "RULE")]
     pub(super) association: Option<AssociationRule>,
@@ -117,6 +120,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
     let meta = log.meta().clone();
     let (records, read) = read_all(log);
+    let records = arguments.truth.put_into(records)?;
     if run_walls::is_for(&records) {
         return run_walls::main(&arguments, &records, meta.first_format(), &read);
     }

@@ -1,6 +1,8 @@
 use anyhow::{Result, bail};
 use wayfix_sensor_log::{Data, Record, Stamp};
 
+use super::VELOCITY_HOLD;
+
 /// A kind of record, for messages.
 pub type NamedKind<'a> = (&'a str, fn(&Data) -> bool);
 
@@ -14,7 +16,8 @@ pub const ODOMETRY: NamedKind<'static> =
 /// Both intervals when they have no time in common: the records are of different clocks or different drives.
 pub fn check_overlap(records: &[Record], first: NamedKind<'_>, second: NamedKind<'_>) -> Result<()> {
     let (Some(a), Some(b)) = (span(records, first.1), span(records, second.1)) else { return Ok(()) };
-    if a.0 <= b.1 && b.0 <= a.1 {
+    // A velocity tells of the time after it as well.
+    if a.0.seconds_since(b.1) <= VELOCITY_HOLD && b.0.seconds_since(a.1) <= VELOCITY_HOLD {
         return Ok(());
     }
     bail!(
@@ -36,7 +39,7 @@ fn span(records: &[Record], is: fn(&Data) -> bool) -> Option<(Stamp, Stamp)> {
 
 #[cfg(test)]
 mod tests {
-    use wayfix_estimation_traits::{LieGroup, Pose2};
+    use wayfix_estimation_traits::Pose2;
     use wayfix_sensor_log::Velocity;
 
     use super::*;

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_target_out_of_the_picture_is_no_error_and_a_box_inside_out_is_one() {
+    fn absent_target_is_valid_and_inverted_box_is_an_error() {
         for text in ["0,0,0,0", "nan nan nan nan", "NaN,1,2,3", "inf,0,1,1", "3,3,3,3,3,3,3,3"] {
             assert_eq!(parse_box(text).unwrap(), None, "{text:?}");
         }

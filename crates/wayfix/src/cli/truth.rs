@@ -1,0 +1,42 @@
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use wayfix_sensor_log::{Data, Format, OpenOptions, PoseKind, Record};
+
+use super::account::read_all;
+use crate::system::check_overlap;
+
+// No documentation: it would become that of every command that takes these arguments.
+#[derive(clap::Args)]
+pub(super) struct TruthFile {
+    /// True poses in place of those of the log: `t x y z qx qy qz qw` lines (TUM), on the clock of the log.
+    #[arg(long, value_name = "FILE")]
+    pub(super) truth: Option<PathBuf>,
+}
+
+impl TruthFile {
+    /// The records with the true poses of the file, where one is given.
+    pub(super) fn put_into(&self, records: Vec<Record>) -> Result<Vec<Record>> {
+        let Some(path) = &self.truth else { return Ok(records) };
+        with_truth(records, path).with_context(|| format!("cannot use the truth in {}", path.display()))
+    }
+}
+
+/// True poses and positions of the log give way to those of the file.
+fn with_truth(mut records: Vec<Record>, path: &Path) -> Result<Vec<Record>> {
+    let options = OpenOptions { format: Some(Format::Tum), poses: PoseKind::True, ..OpenOptions::default() };
+    let (poses, _) = read_all(wayfix_sensor_log::open(path, &options)?);
+    let is_true = |data: &Data| matches!(data, Data::TruePose(_) | Data::TruePosition(_));
+    if !poses.iter().any(|record| is_true(&record.data)) {
+        bail!("it holds no pose");
+    }
+    records.retain(|record| !is_true(&record.data));
+    records.extend(poses);
+    records.sort_by_key(|record| record.stamp); // at equal stamps the log's order stays, and truth comes last
+    check_overlap(
+        &records,
+        ("the truth", |data| matches!(data, Data::TruePose(_))),
+        ("the log", |data| !matches!(data, Data::TruePose(_) | Data::TrueLandmark(_) | Data::TrueWall(_))),
+    )?;
+    Ok(records)
+}
