@@ -15,7 +15,13 @@ pub(super) struct Bend {
 }
 
 impl Bend {
-    pub(super) fn of(points: &[Vector2<f64>], on: &LineEstimate, noise: &RangeBearingNoise) -> Self {
+    /// A straight wall bulges by `bulge_sigma` between the middle and the ends of a piece, which as a coefficient is $`4 σ / l^2`$.
+    pub(super) fn of(
+        points: &[Vector2<f64>],
+        on: &LineEstimate,
+        noise: &RangeBearingNoise,
+        bulge_sigma: f64,
+    ) -> Self {
         let (normal, direction) = (on.line.normal(), on.line.direction());
         let weight = |p: &Vector2<f64>| noise.weight(p, &normal);
         let mean = |of: &dyn Fn(&Vector2<f64>) -> f64| {
@@ -27,13 +33,17 @@ impl Bend {
         let along = |p: &Vector2<f64>| direction.dot(p) - middle;
         let spread = mean(&|p| along(p).powi(2));
         let skew = mean(&|p| along(p).powi(3)) / spread;
-        points.iter().fold(Self::default(), |bend, p| {
+        let length = points.first().zip(points.last()).map_or(0.0, |(a, b)| direction.dot(&(b - a)).abs());
+        let bulge = 4.0 * bulge_sigma / (length * length);
+        let by_noise = points.iter().fold(Self::default(), |bend, p| {
             let (w, parabola) = (weight(p), along(p) * (along(p) - skew) - spread);
             Self {
                 fitted: bend.fitted + w * parabola * on.line.signed_distance(p),
                 information: bend.information + w * parabola * parabola,
             }
-        })
+        });
+        let share = 1.0 / (1.0 + by_noise.information * bulge * bulge);
+        Self { fitted: by_noise.fitted * share, information: by_noise.information * share }
     }
 
     fn with(self, other: Self) -> Self {

@@ -80,7 +80,7 @@ impl Piece {
         }
         let moments = moments(&range, &normal);
         let estimate = moments.line().ok()?;
-        let bend = Bend::of(&points.at[range.clone()], &estimate, noise);
+        let bend = Bend::of(&points.at[range.clone()], &estimate, noise, params.bulge_sigma_m);
         let (first, last) = (range.start, range.end - 1);
         let ends = outermost(&estimate, [points.at[first], points.at[last]]);
         Some(Self { moments, estimate, ends, bend, beams: (points.beam[first], points.beam[last]) })
