@@ -5,12 +5,15 @@ mod support;
 use rand::{Rng, RngExt};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 use support::{Laser, Wall, room, wall};
+use wayfix_line_extract::nalgebra::Vector2;
 use wayfix_line_extract::{
     Extraction, Extractor, LineError, Params, RangeBearingNoise, Scan, Segment, SplitMethod, extract,
 };
 
 const SEED_ROOM: u64 = 41;
+const SEED_ROUND: u64 = 43;
 const SEED_JUNK: u64 = 42;
 
 const BOTH: [SplitMethod; 2] = [SplitMethod::EndPointFit, SplitMethod::SplitAndMerge];
@@ -36,21 +39,53 @@ fn the_four_walls_of_a_room() {
     let laser = Laser::over(359.0, 360);
     for split in BOTH {
         let params = Params { split, ..Params::default() };
-        let mut whole = 0;
+        let (mut whole, mut complete) = (0, 0);
         for _ in 0..100 {
             let ranges = laser.noisy_ranges(&room(), &params.noise, &mut rng);
             let seen = extract(&scan_of(laser, &ranges), &params).expect("a valid scan");
             whole += usize::from(seen.segments.len() == 4);
-            for wall in &room() {
+            let is_complete = |wall: &Wall| {
                 // 5 cm, what a piece is split at, is the most that a point may be off.
                 let on = seen.segments.iter().filter(|segment| lies_on(segment, wall, 0.05));
                 let length: f64 = on.map(Segment::length).sum();
                 // Two beams at the widest spacing on these walls, 4.5 m · 1° / cos² 63°, on each end.
-                assert!((length - (wall.1 - wall.0).norm()).abs() < 4.0 * 0.38, "{split:?} {length}");
+                (length - (wall.1 - wall.0).norm()).abs() < 4.0 * 0.38
+            };
+            complete += usize::from(room().iter().all(is_complete));
+        }
+        // Each of the 15 runs of 5 pieces is straight at 99.9 %, and the halves of the wall behind are one: 1.6 of 100 scans miss something, 9 or more
+        // are once in 10^4.
+        assert!(complete >= 92, "{split:?}: all lengths in {complete} of 100");
+        assert!(whole >= 92, "{split:?}: four walls in {whole} of 100");
+    }
+}
+
+/// The scan from inside a circle, beam by beam.
+fn round_room(laser: Laser, radius: f64, at: Vector2<f64>, noise: &RangeBearingNoise) -> Vec<f64> {
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED_ROUND);
+    let mut normal = |sigma: f64| sigma * Distribution::<f64>::sample(&StandardNormal, &mut rng);
+    (0..laser.n_beams)
+        .map(|beam| {
+            let bearing = laser.bearing(beam) + normal(noise.sigma_bearing_rad);
+            let ray = Vector2::new(bearing.cos(), bearing.sin());
+            let (along, across) = (ray.dot(&at), ray.perp(&at));
+            (radius * radius - across * across).sqrt() - along + normal(noise.sigma_range_m)
+        })
+        .collect()
+}
+
+#[test]
+fn a_round_room_has_no_walls() {
+    let laser = Laser::over(359.0, 360);
+    for split in BOTH {
+        let params = Params { split, ..Params::default() };
+        for radius in [2.0, 3.0, 5.0] {
+            for at in [Vector2::zeros(), Vector2::new(0.3 * radius, -0.2 * radius)] {
+                let ranges = round_room(laser, radius, at, &params.noise);
+                let seen = extract(&scan_of(laser, &ranges), &params).expect("a valid scan");
+                assert_eq!(seen.segments.len(), 0, "{split:?}, radius {radius} m, seen from {at:?}");
             }
         }
-        // The wall behind is cut by the end of the turn, and its halves are one at 99.9 %: more than 3 of 100 is once in 10^6.
-        assert!(whole >= 97, "{split:?}: four walls in {whole} of 100");
     }
 }
 

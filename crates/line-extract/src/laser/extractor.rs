@@ -1,5 +1,7 @@
+use std::iter;
 use std::ops::Range;
 
+use super::bend::curved;
 use super::breakpoints::surfaces;
 use super::merge::merge;
 use super::pieces::{Piece, split};
@@ -101,12 +103,17 @@ impl Extractor {
             let echoes = &self.points.at[surface.clone()];
             split(echoes, &self.params, &mut self.simplifier, &mut self.corners)?;
             let last = self.corners.len() - 1;
+            let first_piece = self.pieces.len();
             for (k, pair) in self.corners.windows(2).enumerate() {
                 // A corner is counted once: it belongs to the wall after it, the last point to the last wall.
                 let end = pair[1] + usize::from(k + 1 == last);
                 let range = surface.start + pair[0]..surface.start + end;
                 self.pieces.extend(Piece::fit(&self.points, range, &self.params));
             }
+            let bends: Vec<_> = self.pieces[first_piece..].iter().map(|piece| piece.bend).collect();
+            let curved = curved(&bends);
+            let mut of_arcs = iter::repeat_n(false, first_piece).chain(curved);
+            self.pieces.retain(|_| of_arcs.next() != Some(true));
         }
         Ok(())
     }

@@ -27,7 +27,7 @@ fn join(a: &Piece, b: &Piece, params: &Params) -> Option<Piece> {
     let estimate = moments.line().ok()?;
     let ends = outermost(&estimate, [a.ends[0], a.ends[1], b.ends[0], b.ends[1]]);
     let beams = (a.beams.0.min(b.beams.0), a.beams.1.max(b.beams.1));
-    Some(Piece { moments, estimate, ends, beams })
+    Some(Piece { moments, estimate, ends, beams, bend: a.bend })
 }
 
 /// What lies between two pieces along the line of the first; negative where they overlap.

@@ -1,5 +1,6 @@
 //! Range scans to walls.
 
+mod bend;
 mod breakpoints;
 mod extraction;
 mod extractor;

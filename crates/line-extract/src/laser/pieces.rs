@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
+use super::bend::Bend;
 use super::points::Points;
 use super::{Params, SplitMethod};
 use crate::line::Moments;
@@ -18,6 +19,7 @@ pub(super) struct Piece {
     /// The outermost points, in the line's direction.
     pub(super) ends: [Vector2<f64>; 2],
     pub(super) beams: (usize, usize),
+    pub(super) bend: Bend,
 }
 
 /// The indices where a surface is split, its ends included.
@@ -78,9 +80,10 @@ impl Piece {
         }
         let moments = moments(&range, &normal);
         let estimate = moments.line().ok()?;
+        let bend = Bend::of(&points.at[range.clone()], &estimate, noise, params.bulge_sigma_m);
         let (first, last) = (range.start, range.end - 1);
         let ends = outermost(&estimate, [points.at[first], points.at[last]]);
-        Some(Self { moments, estimate, ends, beams: (points.beam[first], points.beam[last]) })
+        Some(Self { moments, estimate, ends, bend, beams: (points.beam[first], points.beam[last]) })
     }
 }
 
