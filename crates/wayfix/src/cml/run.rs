@@ -9,8 +9,8 @@ use wayfix_sensor_log::{Data, Record};
 
 use super::{CmlParams, CmlSystem, FrameResult, Plan, PoseSigmas, system::gaussian};
 use crate::{
-    evaluate::{Sample, TrueTrack},
-    system::{System, drive},
+    evaluate::{KnownStart, Sample, TrueTrack},
+    system::{ODOMETRY, System, check_overlap, drive},
 };
 
 /// What a run does with its views.
@@ -67,6 +67,7 @@ pub fn run(
     if !plan.records.iter().any(|record| matches!(record.data, Data::Image(_))) {
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
     }
+    check_overlap(&plan.records, ODOMETRY, ("images", |data| matches!(data, Data::Image(_))))?;
     for (image, pose) in &plan.lessons {
         system.teach(image, pose, &params.taught)?;
     }
@@ -85,12 +86,16 @@ pub fn run(
     })
 }
 
-/// The first true pose, where there is one.
+/// The true pose where the first motion or view is, or led back to there by odometry from the first true pose after it.
 pub fn first_true_pose(records: &[Record]) -> Option<Pose2<f64>> {
-    records.iter().find_map(|record| match &record.data {
-        Data::TruePose(pose) if pose.is_finite() => Some(*pose),
-        _ => None,
-    })
+    let (_, moves) = ODOMETRY;
+    let first =
+        records.iter().position(|record| moves(&record.data) || matches!(record.data, Data::Image(_)))?;
+    // An increment leads from the record before it.
+    let is_increment = matches!(records[first].data, Data::OdometryIncrement(_));
+    let begin = if is_increment { first.saturating_sub(1) } else { first };
+    let start = KnownStart::at(records[begin].stamp, &TrueTrack::from_records(records), records)?;
+    Some(start.pose)
 }
 
 /// How well a start is known that defines the frame of a map.

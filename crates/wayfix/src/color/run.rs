@@ -11,8 +11,9 @@ use wayfix_sensor_log::{Data, Record, Stamp};
 
 use super::{ColorSystem, ColorSystemParams, FrameResult, StartPose};
 use crate::{
-    evaluate::{Sample, TrueTrack},
-    system::{System, drive},
+    evaluate::{KnownStart, Sample, TrueTrack},
+    slam::{warn_of_no_overlap, warn_of_start},
+    system::{ODOMETRY, System, check_overlap, drive},
 };
 
 /// A log that went through colour localization, beside the truth that the log holds.
@@ -42,17 +43,25 @@ pub fn run(
     let Some(first_image) = records.iter().find(|record| matches!(record.data, Data::Image(_))) else {
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
     };
+    check_overlap(records, ODOMETRY, ("images", |data| matches!(data, Data::Image(_))))?;
     let truth = TrueTrack::from_records(records);
-    let start = start.unwrap_or_else(|| match truth.at(first_image.stamp) {
-        Some(pose) => StartPose::Near(guess(&pose, params, seed)),
+    let known = KnownStart::at(first_image.stamp, &truth, records).filter(|_| start.is_none());
+    let start = start.unwrap_or_else(|| match known {
+        Some(known) => StartPose::Near(guess(&known.pose, params, seed)),
         None => StartPose::Anywhere,
     });
     let mut system = ColorSystem::new(map, bank, params.clone(), start, seed);
+    if known.is_some() {
+        warn_of_start(system.events(), known, &truth);
+    }
     drive(&mut system, records, observe);
     if system.frames().is_empty() {
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");
     }
+    let frames = system.frames();
+    let estimated = frames.first().zip(frames.last()).map(|(first, last)| (first.stamp, last.stamp));
+    warn_of_no_overlap(system.events(), &truth, estimated);
     Ok(ColorRun { system, truth })
 }
 

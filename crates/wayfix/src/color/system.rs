@@ -162,7 +162,9 @@ impl ColorSystem {
         self.plausible.check(stamp, increment)?;
         let so_far = self.pending.increment.unwrap_or(Pose2::new(0.0, 0.0, 0.0));
         self.pending.increment = Some(so_far.compose(increment));
-        self.odometry = self.odometry.map(|pose| pose.compose(increment));
+        if self.pending.since.is_some() {
+            self.odometry = self.odometry.map(|pose| pose.compose(increment)); // the start is where the first image is
+        }
         Ok(())
     }
 

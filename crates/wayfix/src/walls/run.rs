@@ -48,6 +48,7 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
     let laser = params.laser.or_else(|| laser_mount(records));
     let placed = WallSlamParams { laser, ..params.clone() };
     let mut system = WallSystem::new(placed, start, track.noise(), moves_by_velocity)?;
+    system.laser_follows_log = params.laser.is_none();
     if params.start.is_none() {
         warn_of_start(system.events(), known, &track);
     }
@@ -103,11 +104,10 @@ fn drive_through(
         );
     }
     let mut run = WallRun { system, truth: track, true_walls };
-    if run
-        .samples()
-        .iter()
-        .all(|(keyframe, sample)| sample.truth.local(&keyframe.dead_reckoning).norm() < SAME)
-    {
+    let samples = run.samples();
+    let is_odometry =
+        |(keyframe, sample): &(Keyframe, Sample)| sample.truth.local(&keyframe.dead_reckoning).norm() < SAME;
+    if !samples.is_empty() && samples.iter().all(is_odometry) {
         run.truth = TrueTrack::default();
         run.events().warn(
             "reference_is_odometry",
@@ -118,7 +118,7 @@ fn drive_through(
     Ok(run)
 }
 
-/// Where the log says that the laser is; a laser that moves on its robot is where it was first.
+/// Where the log says that the laser is first; the system follows a laser that moves.
 fn laser_mount(records: &[Record]) -> Option<[f64; 3]> {
     records.iter().find_map(|record| match record.data {
         Data::LaserMount(mount) => Some([mount.x(), mount.y(), mount.heading()]),

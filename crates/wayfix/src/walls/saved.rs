@@ -7,7 +7,7 @@ use wayfix_slam_ekf::{DriftingPose, EkfSlam, SlamError, Snapshot, Wall};
 use super::{
     WallSlamParams, WallSystem,
     odometry::Odometry,
-    system::{Look, Rule, cloud_of},
+    system::{Look, Rule, Waiting, cloud_of},
     travel::Travel,
 };
 use crate::slam::{AssociationRule, Save, Saved, SavedMapError, SavedState, check_association};
@@ -27,14 +27,18 @@ pub struct WallState {
     pub dead_reckoning: Pose2<f64>,
     /// Where the laser sits on the robot.
     pub laser: Option<[f64; 3]>,
+    /// Where it was at last, where the log says it and the parameters do not.
+    pub laser_now: Option<Pose2<f64>>,
+    /// Whether the log places it.
+    pub laser_follows_log: bool,
     /// Whether velocities move the robot, and not increments.
     pub moves_by_velocity: bool,
     /// How far odometry is used, and the velocity that holds.
     pub odometry: Odometry,
     /// The way since the last look.
     pub travel: Travel,
-    /// The scan of the last look: first bearing, increment, largest range, ranges.
-    pub last_look: Option<(f64, f64, f64, Vec<f64>)>,
+    /// The scan of the last look: first bearing, increment, largest range, ranges; and where the laser was.
+    pub last_look: Option<(f64, f64, f64, Vec<f64>, Pose2<f64>)>,
 }
 
 impl SavedState for WallState {
@@ -49,8 +53,8 @@ impl Save for WallSystem {
             Rule::NearestNeighbour(rule) => (AssociationRule::Nn, rule.next_id()),
             Rule::JointCompatibility(rule) => (AssociationRule::Jcbb, rule.next_id()),
         };
-        let scan = |Look { scan, .. }: &Look| {
-            (scan.angle_min, scan.angle_increment, scan.range_max, scan.ranges.clone())
+        let scan = |Look { scan, laser, .. }: &Look| {
+            (scan.angle_min, scan.angle_increment, scan.range_max, scan.ranges.clone(), *laser)
         };
         Saved {
             state: WallState {
@@ -60,6 +64,8 @@ impl Save for WallSystem {
                 taken_until: self.settled_until().nanoseconds(),
                 dead_reckoning: self.dead_reckoning,
                 laser: self.params.laser,
+                laser_now: self.laser_now,
+                laser_follows_log: self.laser_follows_log,
                 moves_by_velocity: self.moves_by_velocity,
                 odometry: self.odometry,
                 travel: self.travel,
@@ -73,7 +79,7 @@ impl WallSystem {
     /// Stamp of the last record that changed the state: scans that wait for their odometry come later.
     fn settled_until(&self) -> Stamp {
         let before =
-            |(stamp, _): &(Stamp, LaserScan)| Stamp::from_nanoseconds(stamp.nanoseconds().saturating_sub(1));
+            |waiting: &Waiting| Stamp::from_nanoseconds(waiting.stamp.nanoseconds().saturating_sub(1));
         self.waiting.front().map_or(self.taken_until, before)
     }
 
@@ -85,6 +91,7 @@ impl WallSystem {
     ) -> anyhow::Result<Self> {
         let WallState { filter, association, next_id, taken_until, travel, last_look, .. } = saved.state;
         check_association(asked, association)?;
+        let laser_follows_log = params.laser.is_none() && saved.state.laser_follows_log;
         let laser = params.laser.or(saved.state.laser);
         let params = WallSlamParams { association, laser, ..params };
         let start = saved.state.dead_reckoning;
@@ -101,16 +108,18 @@ impl WallSystem {
             );
         }
         system.travel = travel;
-        if let Some((angle_min, angle_increment, range_max, ranges)) = last_look {
+        if let Some((angle_min, angle_increment, range_max, ranges, laser)) = last_look {
             let scan = LaserScan { angle_min, angle_increment, range_max, ranges };
             let unsound = |_| SavedMapError::from(SlamError::NotFinite { what: "saved scan" });
-            let cloud = cloud_of(&scan, &system.mount()).map_err(unsound)?;
-            system.last_look = Some(Look { scan, cloud });
+            let cloud = cloud_of(&scan, &laser).map_err(unsound)?;
+            system.last_look = Some(Look { scan, laser, cloud });
         }
-        if !saved.state.odometry.is_finite() {
+        if !saved.state.odometry.is_finite() || saved.state.laser_now.is_some_and(|laser| !laser.is_finite())
+        {
             return Err(SavedMapError::from(SlamError::NotFinite { what: "saved odometry" }).into());
         }
         system.odometry = saved.state.odometry;
+        (system.laser_now, system.laser_follows_log) = (saved.state.laser_now, laser_follows_log);
         system.taken_until = Stamp::from_nanoseconds(taken_until);
         system.resumed_at = Some(system.taken_until);
         Ok(system)

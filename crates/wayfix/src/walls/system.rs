@@ -40,9 +40,13 @@ pub struct WallSystem {
     /// Records up to this stamp were taken by the run that this one goes on from.
     pub(super) resumed_at: Option<Stamp>,
     pub(super) odometry: Odometry,
+    /// Where the laser is now, where the log says it and the parameters do not.
+    pub(super) laser_now: Option<Pose2<f64>>,
+    /// Whether the log places the laser, and not the parameters.
+    pub(super) laser_follows_log: bool,
     plausible: PlausibleIncrement,
     /// Scans that wait for the odometry that leads up to them, oldest first.
-    pub(super) waiting: VecDeque<(Stamp, LaserScan)>,
+    pub(super) waiting: VecDeque<Waiting>,
     pub(super) dead_reckoning: Pose2<f64>,
     observability: Option<ObservabilityRecorder>,
     keyframes: Vec<Keyframe>,
@@ -54,9 +58,17 @@ pub struct WallSystem {
     step: Duration,
 }
 
+/// A scan, and where the laser was.
+pub(super) struct Waiting {
+    pub(super) stamp: Stamp,
+    scan: LaserScan,
+    laser: Pose2<f64>,
+}
+
 /// A scan that walls were taken from.
 pub(super) struct Look {
     pub(super) scan: LaserScan,
+    pub(super) laser: Pose2<f64>,
     pub(super) cloud: Cloud,
 }
 
@@ -106,6 +118,8 @@ impl WallSystem {
             taken_until: Stamp::default(),
             resumed_at: None,
             odometry: Odometry::default(),
+            laser_now: None,
+            laser_follows_log: false,
             plausible: PlausibleIncrement::default(),
             waiting: VecDeque::new(),
             dead_reckoning: start,
@@ -145,13 +159,13 @@ impl WallSystem {
     /// Takes the scans that waited for this increment, each after its part of it.
     fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
         self.plausible.check(stamp, increment)?;
-        let n_reached = self.waiting.partition_point(|(waiting, _)| *waiting <= stamp);
-        let reached: Vec<(Stamp, LaserScan)> = self.waiting.drain(..n_reached).collect();
-        if let (Some((first, _)), false) = (reached.first(), self.odometry.has_started()) {
-            self.odometry.start(*first);
+        let n_reached = self.waiting.partition_point(|waiting| waiting.stamp <= stamp);
+        let reached: Vec<Waiting> = self.waiting.drain(..n_reached).collect();
+        if let (Some(first), false) = (reached.first(), self.odometry.has_started()) {
+            self.odometry.start(first.stamp);
         }
         let has_started = self.odometry.has_started();
-        let cuts: Vec<Stamp> = reached.iter().map(|(stamp, _)| *stamp).collect();
+        let cuts: Vec<Stamp> = reached.iter().map(|waiting| waiting.stamp).collect();
         let motions = self.odometry.cut(increment, stamp, &cuts);
         if !has_started {
             self.events.count("before_start");
@@ -160,8 +174,8 @@ impl WallSystem {
         let mut scans = reached.iter();
         for motion in &motions {
             self.move_by(motion);
-            if let Some((stamp, scan)) = scans.next() {
-                self.try_scan(*stamp, scan);
+            if let Some(waiting) = scans.next() {
+                self.try_scan(waiting);
             }
         }
         Ok(())
@@ -193,28 +207,29 @@ impl WallSystem {
 
     /// Takes a scan now, when odometry leads up to it or never will, else with the next increment.
     fn take_or_wait(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
+        let laser = self.laser_now.unwrap_or(self.mount());
         if self.moves_by_velocity {
             self.advance_to(stamp);
         } else if !(self.waiting.is_empty() && self.odometry.reaches(stamp)) {
-            self.waiting.push_back((stamp, scan.clone()));
+            self.waiting.push_back(Waiting { stamp, scan: scan.clone(), laser });
             return Ok(());
         }
         if !self.odometry.has_started() {
             self.odometry.start(stamp);
         }
-        self.take_scan(stamp, scan)
+        self.take_scan(stamp, scan, &laser)
     }
 
     /// Takes a scan that waited.
-    fn try_scan(&mut self, stamp: Stamp, scan: &LaserScan) {
-        if let Err(reason) = self.take_scan(stamp, scan) {
+    fn try_scan(&mut self, Waiting { stamp, scan, laser }: &Waiting) {
+        if let Err(reason) = self.take_scan(*stamp, scan, laser) {
             self.events.refuse("record_refused", format!("scan of {stamp}: {reason}"));
         }
     }
 
-    fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
+    fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan, laser: &Pose2<f64>) -> Result<(), String> {
         let stopwatch = Stopwatch::start();
-        let cloud = cloud_of(scan, &self.mount())?;
+        let cloud = cloud_of(scan, laser)?;
         let laser_heading = self.lay_on_the_last_look(&cloud);
         let seen_turn = self.laser_heading.zip(laser_heading).map(|(from, to)| wrap_angle(to - from));
         self.laser_heading = laser_heading;
@@ -223,9 +238,9 @@ impl WallSystem {
             self.events.count("scan_passed_by");
             (0.0, 0)
         } else {
-            let observations = self.walls_in(scan)?;
+            let observations = self.walls_in(scan, laser)?;
             self.move_on()?;
-            self.last_look = Some(Look { scan: scan.clone(), cloud });
+            self.last_look = Some(Look { scan: scan.clone(), laser: *laser, cloud });
             self.laser_heading = Some(0.0);
             self.look_at(&observations)?
         };
@@ -314,14 +329,21 @@ impl WallSystem {
         });
     }
 
-    /// The walls of a scan that are long enough to be walls.
-    fn walls_in(&mut self, scan: &LaserScan) -> Result<Vec<Observation<SeenWall>>, String> {
+    /// The walls of a scan that are long enough to be walls, as the laser would see them from where the model has it.
+    fn walls_in(
+        &mut self,
+        scan: &LaserScan,
+        laser: &Pose2<f64>,
+    ) -> Result<Vec<Observation<SeenWall>>, String> {
         let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
         let (angle_min, angle_increment) = (*angle_min, *angle_increment);
         let scan = Scan { angle_min, angle_increment, ranges, max_range: largest_echo(scan) };
         let found = self.extractor.extract(&scan).map_err(|error| error.to_string())?;
         let long = found.segments.iter().filter(|segment| segment.length() >= self.params.min_wall_length);
-        Ok(long.map(|segment| Observation { label: None, measurement: SeenWall::from(segment) }).collect())
+        let seen = long.map(SeenWall::from);
+        let moved = self.mount().inverse().compose(laser);
+        let as_seen = |seen: SeenWall| if *laser == self.mount() { seen } else { seen.carried_at(&moved) };
+        Ok(seen.map(|seen| Observation { label: None, measurement: as_seen(seen) }).collect())
     }
 
     fn count(&mut self, report: &StepReport<SeenWall>) {
@@ -353,19 +375,23 @@ impl System for WallSystem {
                 self.odometry.hold(record.stamp, *velocity)
             }
             Data::Scan(scan) => self.take_or_wait(record.stamp, scan),
+            Data::LaserMount(mount) if self.laser_follows_log => {
+                self.laser_now = Some(*mount);
+                Ok(())
+            }
             _ => Ok(()),
         }
     }
     /// No odometry leads up to the scans that still wait.
     fn finish(&mut self) -> Result<(), String> {
-        while let Some((stamp, scan)) = self.waiting.pop_front() {
+        while let Some(waiting) = self.waiting.pop_front() {
             if self.odometry.has_started() {
-                let motion = self.odometry.unknown_until(stamp);
+                let motion = self.odometry.unknown_until(waiting.stamp);
                 self.move_by(&motion);
             } else {
-                self.odometry.start(stamp);
+                self.odometry.start(waiting.stamp);
             }
-            self.try_scan(stamp, &scan);
+            self.try_scan(&waiting);
         }
         Ok(())
     }

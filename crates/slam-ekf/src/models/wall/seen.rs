@@ -1,5 +1,5 @@
 use nalgebra::{Const, Matrix2, Vector2};
-use wayfix_estimation_traits::Manifold;
+use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_line_extract::Segment;
 
 use super::WallLine;
@@ -27,6 +27,18 @@ impl From<&Segment> for SeenWall {
 }
 
 impl SeenWall {
+    /// The same piece in another frame, in which the sensor that saw it is at `sensor`.
+    pub fn carried_at(&self, sensor: &Pose2<f64>) -> Self {
+        let turned = WallLine::new(0.0, self.line.alpha + sensor.heading());
+        let lever = turned.along(&sensor.translation);
+        let carry = Matrix2::new(1.0, lever, 0.0, 1.0);
+        Self {
+            line: WallLine { rho: self.line.rho + turned.normal().dot(&sensor.translation), ..turned },
+            covariance: carry * self.covariance * carry.transpose(),
+            ends: self.ends.map(|end| sensor.transform(&end)),
+        }
+    }
+
     /// How far the two pieces overlap along this one, metres; negative for a gap between them.
     pub fn overlap(&self, other: &Self) -> f64 {
         let stretch = |piece: &Self| {
@@ -49,5 +61,31 @@ impl Manifold for SeenWall {
     }
     fn local(&self, other: &Self) -> Vector2<f64> {
         self.line.local(&other.line)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn carried_wall_has_its_ends_on_its_line_and_the_covariance_of_the_numbers() {
+        let seen = SeenWall {
+            line: WallLine::new(2.0, 0.3),
+            covariance: Matrix2::new(4e-4, 1e-5, 1e-5, 1e-4),
+            ends: [-1.0, 1.0].map(|along| WallLine::new(2.0, 0.3).point_at(along)),
+        };
+        let sensor = Pose2::new(0.4, -1.2, 2.0);
+        let carried = seen.carried_at(&sensor);
+        for end in carried.ends {
+            assert!((carried.line.normal().dot(&end) - carried.line.rho).abs() < 1e-12);
+        }
+        let numbers = |delta: &Vector2<f64>| seen.retract(delta).carried_at(&sensor);
+        let jacobian = wayfix_estimation_traits::numerical_jacobian(
+            |delta: &Vector2<f64>| numbers(delta),
+            &Vector2::zeros(),
+        );
+        let expected = jacobian * seen.covariance * jacobian.transpose();
+        assert!((carried.covariance - expected).norm() < 1e-9, "{}", carried.covariance - expected);
     }
 }
