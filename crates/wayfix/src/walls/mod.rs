@@ -8,6 +8,7 @@ mod params;
 mod pictures;
 mod run;
 mod saved;
+mod scan;
 mod system;
 mod travel;
 mod truth;

@@ -7,7 +7,8 @@ use wayfix_slam_ekf::{DriftingPose, EkfSlam, SlamError, Snapshot, Wall};
 use super::{
     WallSlamParams, WallSystem,
     odometry::Odometry,
-    system::{Look, Rule, Waiting, cloud_of},
+    scan::{Look, WaitingScan, cloud_of},
+    system::Rule,
     travel::Travel,
 };
 use crate::slam::{AssociationRule, Save, Saved, SavedMapError, SavedState, check_association};
@@ -79,7 +80,7 @@ impl WallSystem {
     /// Stamp of the last record that changed the state: scans that wait for their odometry come later.
     fn settled_until(&self) -> Stamp {
         let before =
-            |waiting: &Waiting| Stamp::from_nanoseconds(waiting.stamp.nanoseconds().saturating_sub(1));
+            |waiting: &WaitingScan| Stamp::from_nanoseconds(waiting.stamp.nanoseconds().saturating_sub(1));
         self.waiting.front().map_or(self.taken_until, before)
     }
 

@@ -13,6 +13,7 @@ use wayfix_slam_ekf::{
 use super::{
     Gait, WallSlamParams,
     odometry::{Motion, Odometry},
+    scan::{Look, WaitingScan, cloud_of},
     travel::{DriftSeen, Travel},
 };
 use crate::{
@@ -46,7 +47,7 @@ pub struct WallSystem {
     pub(super) laser_follows_log: bool,
     plausible: PlausibleIncrement,
     /// Scans that wait for the odometry that leads up to them, oldest first.
-    pub(super) waiting: VecDeque<Waiting>,
+    pub(super) waiting: VecDeque<WaitingScan>,
     pub(super) dead_reckoning: Pose2<f64>,
     observability: Option<ObservabilityRecorder>,
     keyframes: Vec<Keyframe>,
@@ -56,20 +57,6 @@ pub struct WallSystem {
     seen_turns: Vec<Option<f64>>,
     events: Events,
     step: Duration,
-}
-
-/// A scan, and where the laser was.
-pub(super) struct Waiting {
-    pub(super) stamp: Stamp,
-    scan: LaserScan,
-    laser: Pose2<f64>,
-}
-
-/// A scan that walls were taken from.
-pub(super) struct Look {
-    pub(super) scan: LaserScan,
-    pub(super) laser: Pose2<f64>,
-    pub(super) cloud: Cloud,
 }
 
 pub(super) enum Rule {
@@ -160,7 +147,7 @@ impl WallSystem {
     fn take_increment(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
         self.plausible.check(stamp, increment)?;
         let n_reached = self.waiting.partition_point(|waiting| waiting.stamp <= stamp);
-        let reached: Vec<Waiting> = self.waiting.drain(..n_reached).collect();
+        let reached: Vec<WaitingScan> = self.waiting.drain(..n_reached).collect();
         if let (Some(first), false) = (reached.first(), self.odometry.has_started()) {
             self.odometry.start(first.stamp);
         }
@@ -211,7 +198,7 @@ impl WallSystem {
         if self.moves_by_velocity {
             self.advance_to(stamp);
         } else if !(self.waiting.is_empty() && self.odometry.reaches(stamp)) {
-            self.waiting.push_back(Waiting { stamp, scan: scan.clone(), laser });
+            self.waiting.push_back(WaitingScan { stamp, scan: scan.clone(), laser });
             return Ok(());
         }
         if !self.odometry.has_started() {
@@ -221,7 +208,7 @@ impl WallSystem {
     }
 
     /// Takes a scan that waited.
-    fn try_scan(&mut self, Waiting { stamp, scan, laser }: &Waiting) {
+    fn try_scan(&mut self, WaitingScan { stamp, scan, laser }: &WaitingScan) {
         if let Err(reason) = self.take_scan(*stamp, scan, laser) {
             self.events.refuse("record_refused", format!("scan of {stamp}: {reason}"));
         }
@@ -351,13 +338,6 @@ impl WallSystem {
             self.events.count(event_name(outcome));
         }
     }
-}
-
-/// The points of a scan in the frame of the robot.
-pub(super) fn cloud_of(scan: &LaserScan, mount: &Pose2<f64>) -> Result<Cloud, String> {
-    let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
-    let cloud = Cloud::from_ranges(*angle_min, *angle_increment, ranges, largest_echo(scan));
-    cloud.map(|cloud| cloud.carried_at(mount)).map_err(|error| error.to_string())
 }
 
 impl System for WallSystem {

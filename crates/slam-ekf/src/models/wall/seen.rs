@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn carried_wall_has_its_ends_on_its_line_and_the_covariance_of_the_numbers() {
+    fn carried_wall_has_the_covariance_of_its_numbers() {
         let seen = SeenWall {
             line: WallLine::new(2.0, 0.3),
             covariance: Matrix2::new(4e-4, 1e-5, 1e-5, 1e-4),
