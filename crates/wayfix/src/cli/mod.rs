@@ -77,7 +77,7 @@ enum Run {
     Color(run_color::Arguments),
     Views(run_views::Arguments),
     Track(run_track::Arguments),
-    Cml(run_cml::Arguments),
+    Cml(Box<run_cml::Arguments>),
 }
 
 /// Whether a command line, with the name of the program first, is one that the program takes. For tests of what is documented.
@@ -126,6 +126,6 @@ fn run(system: Run) -> Result<ExitCode> {
         Run::Color(arguments) => run_color::main(arguments),
         Run::Views(arguments) => run_views::main(arguments),
         Run::Track(arguments) => run_track::main(arguments),
-        Run::Cml(arguments) => run_cml::main(arguments),
+        Run::Cml(arguments) => run_cml::main(*arguments),
     }
 }

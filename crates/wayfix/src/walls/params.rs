@@ -208,7 +208,7 @@ impl WallSlamParams {
                 return Err(SlamError::Parameter { name, value, range }.into());
             }
         }
-        if !(self.odometry_delay.abs() <= LARGEST_DELAY) {
+        if !(-LARGEST_DELAY..=LARGEST_DELAY).contains(&self.odometry_delay) {
             let (name, value) = ("odometry_delay", self.odometry_delay);
             return Err(SlamError::Parameter { name, value, range: "from -60 to 60" }.into());
         }

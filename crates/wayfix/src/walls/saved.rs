@@ -38,8 +38,23 @@ pub struct WallState {
     pub odometry: Odometry,
     /// The way since the last look.
     pub travel: Travel,
-    /// The scan of the last look: first bearing, increment, largest range, ranges; and where the laser was.
-    pub last_look: Option<(f64, f64, f64, Vec<f64>, Pose2<f64>)>,
+    /// The scan of the last look.
+    pub last_look: Option<SavedScan>,
+}
+
+/// A scan and where the laser was.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SavedScan {
+    /// Bearing of the first beam, rad.
+    pub angle_min: f64,
+    /// From a beam to the next, rad.
+    pub angle_increment: f64,
+    /// From here on a range is no echo, m.
+    pub range_max: f64,
+    /// Ranges, m.
+    pub ranges: Vec<f64>,
+    /// Where the laser was on the robot.
+    pub laser: Pose2<f64>,
 }
 
 impl SavedState for WallState {
@@ -54,8 +69,12 @@ impl Save for WallSystem {
             Rule::NearestNeighbour(rule) => (AssociationRule::Nn, rule.next_id()),
             Rule::JointCompatibility(rule) => (AssociationRule::Jcbb, rule.next_id()),
         };
-        let scan = |Look { scan, laser, .. }: &Look| {
-            (scan.angle_min, scan.angle_increment, scan.range_max, scan.ranges.clone(), *laser)
+        let scan = |Look { scan, laser, .. }: &Look| SavedScan {
+            angle_min: scan.angle_min,
+            angle_increment: scan.angle_increment,
+            range_max: scan.range_max,
+            ranges: scan.ranges.clone(),
+            laser: *laser,
         };
         Saved {
             state: WallState {
@@ -109,7 +128,7 @@ impl WallSystem {
             );
         }
         system.travel = travel;
-        if let Some((angle_min, angle_increment, range_max, ranges, laser)) = last_look {
+        if let Some(SavedScan { angle_min, angle_increment, range_max, ranges, laser }) = last_look {
             let scan = LaserScan { angle_min, angle_increment, range_max, ranges };
             let unsound = |_| SavedMapError::from(SlamError::NotFinite { what: "saved scan" });
             let cloud = cloud_of(&scan, &laser).map_err(unsound)?;
