@@ -51,6 +51,13 @@ fn look(robot: &Pose2<f64>, ends: &[Vector2<f64>; 2], rng: &mut ChaCha8Rng) -> O
 }
 
 fn lap(seed: u64, linearization: Linearization) -> (EkfSlam<WallSensor>, Pose2<f64>) {
+    lap_at(&Pose2::new(0.0, 0.0, 0.0), seed, linearization)
+}
+
+/// The lap in a world that is moved by `place`.
+fn lap_at(place: &Pose2<f64>, seed: u64, linearization: Linearization) -> (EkfSlam<WallSensor>, Pose2<f64>) {
+    let walls = walls().into_iter().map(|ends| ends.map(|end| place.transform(&end)));
+    let walls: Vec<[Vector2<f64>; 2]> = walls.collect();
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let motion = IncrementMotion {
         translation_variance_per_meter: 0.0,
@@ -61,7 +68,7 @@ fn lap(seed: u64, linearization: Linearization) -> (EkfSlam<WallSensor>, Pose2<f
     };
     let sensor = WallSensor { rho_sigma: 1e-6, alpha_sigma: 1e-6, ..WallSensor::default() };
     let mut rule = JointCompatibility::new(JointCompatibilityParams::default()).unwrap();
-    let mut truth = Pose2::new(3.0, 0.5, std::f64::consts::FRAC_PI_2);
+    let mut truth = place.compose(&Pose2::new(3.0, 0.5, std::f64::consts::FRAC_PI_2));
     let mut slam =
         EkfSlam::new(sensor, SlamParams { linearization, ..SlamParams::default() }, truth).unwrap();
     let turn = std::f64::consts::TAU / N_STEPS as f64;
@@ -71,7 +78,7 @@ fn lap(seed: u64, linearization: Linearization) -> (EkfSlam<WallSensor>, Pose2<f
         let [x, y] = [0, 1].map(|_| ODOMETRY[0] * common::normal(&mut rng));
         let heading = step.heading() + ODOMETRY[1] * common::normal(&mut rng);
         slam.predict(&motion, &Pose2::new(step.x() + x, step.y() + y, heading)).unwrap();
-        let observations: Vec<_> = walls().iter().map(|ends| look(&truth, ends, &mut rng)).collect();
+        let observations: Vec<_> = walls.iter().map(|ends| look(&truth, ends, &mut rng)).collect();
         slam.update(&observations, &mut rule).unwrap();
     }
     (slam, truth)
@@ -84,7 +91,7 @@ fn every_wall_is_one_landmark_where_it_is_and_as_long_as_it_is() {
     let error = slam.robot().local(&truth);
     assert!(error.xy().norm() < 0.05 && error.z.abs() < 0.02, "{error}"); // five deviations of a look, odometry alone: 0.2 m
     for ends in walls() {
-        let distance = |wall: &Wall| wall.line.local(&through(ends)).norm();
+        let distance = |wall: &Wall| wall.world_line().local(&through(ends)).norm();
         let found =
             slam.landmarks().map(|estimate| estimate.mean).min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let found = found.unwrap();
@@ -106,6 +113,22 @@ fn the_filters_are_as_sure_as_they_should_be() {
         };
         let mean = (0..N_RUNS).map(nees).sum::<f64>() / N_RUNS as f64;
         assert!(band.contains(mean), "{linearization:?}: {mean} outside {} to {}", band.low, band.high);
+    }
+}
+
+#[test]
+fn rigid_motion_of_the_world_changes_no_estimate() {
+    for linearization in [Linearization::Newest, Linearization::FirstEstimates, Linearization::Invariant] {
+        let (here, truth) = lap(1, linearization);
+        for place in [Pose2::new(300.0, -200.0, 0.4), Pose2::new(0.0, 1e4, 2.0)] {
+            let (there, true_there) = lap_at(&place, 1, linearization);
+            assert_eq!(there.n_landmarks(), here.n_landmarks());
+            let [error, moved] = [here.robot().local(&truth), there.robot().local(&true_there)];
+            assert!((error - moved).norm() < 1e-6, "{linearization:?} {place:?}: {error} {moved}");
+            let [covariance, moved] = [here.robot_covariance(), there.robot_covariance()];
+            let change = (covariance - moved).norm() / covariance.norm();
+            assert!(change < 1e-4, "{linearization:?} {place:?}: {change}");
+        }
     }
 }
 

@@ -44,11 +44,12 @@ pub(super) fn nees(estimate: &LandmarkEstimate<Wall>, truth: &[TrueWall]) -> Opt
     let middle = (start + end) * 0.5;
     let errors = truth.iter().map(landmark).filter_map(|wall| {
         let error = estimate.mean.local(&wall);
-        let beside = (wall.line.normal().dot(&middle) - wall.line.rho).abs();
+        let from_origin = middle - wall.origin;
+        let beside = (wall.line.normal().dot(&from_origin) - wall.line.rho).abs();
         let [from, to] = wall.stretch;
         let is_it = beside < LARGEST_OFFSET
             && error.y.abs() < LARGEST_TURN
-            && (from..=to).contains(&wall.line.along(&middle));
+            && (from..=to).contains(&wall.line.along(&from_origin));
         is_it.then_some((beside, error))
     });
     let (_, error) = errors.min_by(|a, b| a.0.total_cmp(&b.0))?;

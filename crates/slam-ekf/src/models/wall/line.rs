@@ -28,6 +28,10 @@ impl WallLine {
     pub fn new(rho: f64, alpha: f64) -> Self {
         Self { rho, alpha: wrap_angle(alpha) }
     }
+    /// The same line about another point, given from the one before.
+    pub fn about(&self, point: &Vector2<f64>) -> Self {
+        Self { rho: self.rho - self.normal().dot(point), ..*self }
+    }
     /// The unit normal.
     pub fn normal(&self) -> Vector2<f64> {
         let (sin, cos) = self.alpha.sin_cos();

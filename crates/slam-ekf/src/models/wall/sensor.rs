@@ -54,7 +54,7 @@ impl LandmarkModel for WallSensor {
     type Measurement = SeenWall;
 
     fn expected(&self, robot: &Pose2<f64>, wall: &Wall) -> SeenWall {
-        let rho = wall.line.rho - wall.line.normal().dot(&robot.translation);
+        let rho = wall.line.about(&(robot.translation - wall.origin)).rho;
         SeenWall {
             line: WallLine::new(rho, wall.line.alpha - robot.heading()),
             covariance: Matrix2::zeros(),
@@ -73,7 +73,7 @@ impl LandmarkModel for WallSensor {
     fn landmark_jacobian(&self, robot: &Pose2<f64>, wall: &Wall) -> Matrix2<f64> {
         Matrix2::new(
             1.0,
-            -wall.line.along(&robot.translation), //
+            -wall.line.along(&(robot.translation - wall.origin)), //
             0.0,
             1.0,
         )
@@ -125,21 +125,22 @@ impl LandmarkModel for WallSensor {
         pose_symmetry(robot)
     }
 
-    /// Turning the world about the origin turns the normal and leaves the distance.
+    /// Turning the world about its origin turns the normal, and moves the line past the point that it is given about.
     fn landmark_symmetry(&self, wall: &Wall) -> DMatrix<f64> {
         let normal = wall.line.normal();
-        DMatrix::from_row_slice(2, 3, &[normal.x, normal.y, 0.0, 0.0, 0.0, 1.0])
+        DMatrix::from_row_slice(2, 3, &[normal.x, normal.y, -wall.line.along(&wall.origin), 0.0, 0.0, 1.0])
     }
 
     fn initialize(&self, robot: &Pose2<f64>, measurement: &SeenWall) -> NewLandmark<Wall, Pose2<f64>> {
-        let alpha = measurement.line.alpha + robot.heading();
-        let line = WallLine::new(0.0, alpha);
-        let line = WallLine { rho: measurement.line.rho + line.normal().dot(&robot.translation), ..line };
-        let lever = line.along(&robot.translation);
+        let ends = measurement.ends.map(|end| robot.transform(&end));
+        let origin = (ends[0] + ends[1]) * 0.5;
+        let from_robot = WallLine::new(measurement.line.rho, measurement.line.alpha + robot.heading());
+        let line = from_robot.about(&(origin - robot.translation));
+        let lever = line.along(&(robot.translation - origin));
         let normal = measurement.line.normal();
         let by_measurement = Matrix2::new(1.0, lever, 0.0, 1.0);
         NewLandmark {
-            landmark: Wall::between(line, measurement.ends.map(|end| robot.transform(&end))),
+            landmark: Wall::about(origin, line, ends),
             robot_jacobian: Matrix2x3::new(
                 normal.x, normal.y, lever, //
                 0.0, 0.0, 1.0,
