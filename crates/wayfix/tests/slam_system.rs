@@ -37,7 +37,8 @@ fn delayed_detection_corrects_the_past_pose() {
 #[test]
 fn a_delayed_command_moves_the_robot_later() {
     let robot = RobotParams { command_delay: 0.5, ..RobotParams::default() };
-    let slam = slam(&[velocity(0.0, 1.0, 0.0), sighting(2.0, 7, 2.0, 0.0)], robot);
+    let records = [velocity(0.0, 1.0, 0.0), velocity(1.0, 1.0, 0.0), sighting(2.0, 7, 2.0, 0.0)];
+    let slam = slam(&records, robot);
     assert!((slam.system.keyframes()[0].pose.x() - 1.5).abs() < 1e-12);
 }
 
