@@ -63,8 +63,8 @@ fn frames_that_cannot_be_read_are_counted_and_leave_their_gap() {
     fs::create_dir(at("5.png")).unwrap();
     let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
     assert_eq!(widths(&records), [2, 6]);
-    assert_eq!(records[1].stamp, Stamp::from_nanoseconds(166_666_667), "the sixth frame");
-    assert_eq!(report.problems[&ProblemKind::UnreadableImage], 4);
+    assert_eq!(records[1].stamp, Stamp::from_nanoseconds(133_333_333), "the fifth file; a folder is none");
+    assert_eq!(report.problems[&ProblemKind::UnreadableImage], 3);
     let reasons: Vec<String> = report.examples.iter().map(ToString::to_string).collect();
     assert_eq!(reasons[0], "1.png:1: neither JPEG nor PNG");
     assert_eq!(reasons[2], format!("4.jpg:4: the image breaks off after {} bytes", whole.bytes.len() - 2));

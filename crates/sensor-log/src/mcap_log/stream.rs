@@ -7,7 +7,7 @@ use mcap::records::op;
 
 use super::chunk::ChunkRecords;
 use super::frames::{Frame, Frames};
-use crate::{Format, LogEnd, LogError};
+use crate::{Format, LogEnd, LogError, foreign};
 
 /// The records of an MCAP file in its order, those inside of chunks too; memory does not grow with the file.
 pub(super) struct RecordStream {
@@ -37,6 +37,7 @@ impl RecordStream {
             return Err(LogError::Empty { path: path.into() });
         }
         if magic != MAGIC {
+            foreign::check(path)?;
             let reason = "it does not begin with the magic bytes of MCAP".to_owned();
             return Err(LogError::NotThisFormat { path: path.into(), format: Format::Mcap, reason });
         }
