@@ -244,7 +244,7 @@ fn cameras_of_other_programs_are_refused_with_a_reason() {
     assert_eq!(kind, ProblemKind::UnreadableImage);
     assert!(reason.ends_with("image called \"webp\" is neither JPEG nor PNG (12 bytes)"), "{reason}");
     let empty = CompressedImage { format: "jpeg".into(), ..Default::default() };
-    assert_eq!(problem_of(topics::TRUE_LABELS, &empty).0, ProblemKind::Inconsistent);
+    assert_eq!(problem_of(topics::TRUE_LABELS, &empty).0, ProblemKind::UnreadableImage);
 }
 
 #[test]
