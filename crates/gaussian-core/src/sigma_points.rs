@@ -64,8 +64,7 @@ where
             for offset in [offset.clone(), -offset] {
                 let point = gaussian.mean().retract(&offset);
                 // A point that is nearer the other way round the circle would stand for something else.
-                let missed = to_f64((gaussian.mean().local(&point) - &offset).norm());
-                if missed > 1.0 {
+                if to_f64(gaussian.mean().local(&point).dot(&offset)) < 0.0 {
                     let length = to_f64(offset.norm());
                     return Err(GaussianError::SigmaPointWraps { length });
                 }
