@@ -1,3 +1,5 @@
+use std::collections::VecDeque;
+
 use crate::{Record, Stamp};
 
 /// A clock that goes back further than this was set, seconds; below, a message overtook another.
@@ -11,7 +13,8 @@ const IN_A_ROW: usize = 10;
 #[derive(Debug, Default)]
 pub(super) struct TopicClock {
     latest: Option<Stamp>,
-    n_passed: usize,
+    /// Stamps of the last records that passed.
+    passed: VecDeque<Stamp>,
     /// Records that do not follow the ones before, in a row.
     held: Vec<Record>,
 }
@@ -46,13 +49,16 @@ impl TopicClock {
             return Checked { wrong, ..Checked::default() };
         }
         let held = std::mem::take(&mut self.held);
-        if ahead < 0.0 && self.n_passed >= IN_A_ROW {
-            let set_back = held.first().map(|first| (latest, first.stamp));
+        // Fewer records ahead of these than there are of these: the few ahead were wrong.
+        let first = held[0].stamp;
+        let are_many_ahead = self.passed.iter().filter(|passed| **passed > first).count() >= IN_A_ROW;
+        if ahead < 0.0 && are_many_ahead {
+            let set_back = Some((latest, first));
             return Checked { wrong: [wrong, held].concat(), set_back, ..Checked::default() };
         }
         // A pause of the recording, or the few stamps before were wrong.
         self.latest = Some(stamp);
-        self.n_passed += held.len();
+        held.iter().for_each(|record| self.note(record.stamp));
         Checked { passed: held, wrong, set_back: None }
     }
 
@@ -66,9 +72,16 @@ impl TopicClock {
         std::mem::take(&mut self.held)
     }
 
+    fn note(&mut self, stamp: Stamp) {
+        self.passed.push_back(stamp);
+        if self.passed.len() > IN_A_ROW {
+            self.passed.pop_front();
+        }
+    }
+
     fn pass(&mut self, record: Record) -> Checked {
         self.latest = self.latest.max(Some(record.stamp));
-        self.n_passed += 1;
+        self.note(record.stamp);
         Checked { passed: vec![record], ..Checked::default() }
     }
 }
@@ -107,6 +120,13 @@ mod tests {
         let (passed, wrong, set_back) = checked(&[first.clone(), (50..62).collect()].concat());
         assert_eq!((passed, set_back), (first, Some((119, 50))));
         assert_eq!(wrong.len(), 12);
+    }
+
+    #[test]
+    fn one_stamp_an_hour_ahead_does_not_cut_the_log() {
+        let (before, after): (Vec<u64>, Vec<u64>) = ((1000..1030).collect(), (1030..1060).collect());
+        let (passed, wrong, set_back) = checked(&[before, vec![4630], after].concat());
+        assert_eq!((passed.len(), wrong.len(), set_back), (61, 0, None));
     }
 
     #[test]
