@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
-use wayfix_estimation_traits::Pose2;
+use wayfix_estimation_traits::{LieGroup, Pose2};
 
 use crate::{
     ScanMatchError,
@@ -36,6 +36,20 @@ impl Cloud {
         ranges: &[f64],
         max_range: f64,
     ) -> Result<Self, ScanMatchError> {
+        Self::from_moving_ranges(angle_min, angle_increment, ranges, max_range, None)
+    }
+
+    /// The same of a laser that moves by `step` from one beam to the next, in its own frame; the cloud is seen from where the first beam was sent.
+    ///
+    /// # Errors
+    /// Those of [`from_ranges`](Self::from_ranges), and for a step that is not finite.
+    pub fn from_moving_ranges(
+        angle_min: f64,
+        angle_increment: f64,
+        ranges: &[f64],
+        max_range: f64,
+        step: Option<&Pose2<f64>>,
+    ) -> Result<Self, ScanMatchError> {
         let refuse = |what, value, must| Err(ScanMatchError::Value { what, value, must });
         if !angle_min.is_finite() {
             return refuse("angle_min (rad)", angle_min, "finite");
@@ -50,9 +64,17 @@ impl Cloud {
         if !(turn <= TAU * 1.001 && angle_increment != 0.0) {
             return refuse("angle_increment (rad)", angle_increment, "not zero, and within one turn");
         }
+        if step.is_some_and(|step| !step.is_finite()) {
+            return refuse("motion from beam to beam", f64::NAN, "finite");
+        }
+        let mut laser = Pose2::identity();
         let point = |(beam, range): (usize, &f64)| {
             let (sin, cos) = (angle_min + beam as f64 * angle_increment).sin_cos();
-            (*range > 0.0 && *range <= max_range).then(|| Vector2::new(cos, sin) * *range)
+            let at = (*range > 0.0 && *range <= max_range).then(|| Vector2::new(cos, sin) * *range);
+            let Some(step) = step else { return at };
+            let seen_from_the_first = at.map(|at| laser.transform(&at));
+            laser = laser.compose(step);
+            seen_from_the_first
         };
         let all: Vec<Option<Vector2<f64>>> = ranges.iter().enumerate().map(point).collect();
         let stride = ((SPACING / angle_increment.abs()).round() as usize).max(1);
@@ -70,6 +92,7 @@ impl Cloud {
         let carry = |surface: &Surface| Surface {
             at: mount.transform(&surface.at),
             normal: rotation * surface.normal,
+            ..*surface
         };
         Self { points, surfaces: Tree::new(self.surfaces.iter().map(carry).collect()), ..self }
     }

@@ -1,4 +1,4 @@
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SymmetricEigen, Vector2, Vector3, linalg::Cholesky};
 use wayfix_estimation_traits::{Manifold, Pose2};
 
 use crate::{Cloud, Params};
@@ -19,6 +19,8 @@ pub(crate) struct Misfit {
 impl Misfit {
     /// Of `cloud` seen from `guess` ⊞ `correction`, with the Geman-McClure kernel $`ρ(e) = \frac{k^2}{2 σ^2} \frac{e^2}{e^2 + k^2}`$ of distances
     /// along the normals. A point without a surface near it costs the most that any point can.
+    ///
+    /// Gradient and information are free of what the noise of the normals seems to tell: see [`without_noise_of_normals`](Self::without_noise_of_normals).
     pub(crate) fn of(
         reference: &Cloud,
         cloud: &Cloud,
@@ -31,6 +33,7 @@ impl Misfit {
         let by_guess = guess.rotation_matrix();
         let share = (cloud.spacing / params.independent_rad).min(1.0) / params.sigma_m.powi(2);
         let mut misfit = Self::default();
+        let mut noise_of_normals = Matrix3::zeros();
         for point in &cloud.points {
             let seen_at = pose.transform(point);
             let Some(surface) = reference.surfaces.nearest(&seen_at, 3.0 * kernel) else {
@@ -41,15 +44,31 @@ impl Misfit {
             let relative = (distance / kernel).powi(2);
             let weight = share / (1.0 + relative).powi(2);
             // The correction moves in the frame of the guess, and turns about where the robot is then.
-            let normal = by_guess.tr_mul(&surface.normal);
             let arm = seen_at - pose.translation;
-            let turning = surface.normal.x * -arm.y + surface.normal.y * arm.x;
-            let jacobian = Vector3::new(normal.x, normal.y, turning);
+            let motion_along = |direction: &Vector2<f64>| {
+                let in_guess = by_guess.tr_mul(direction);
+                Vector3::new(in_guess.x, in_guess.y, direction.y * arm.x - direction.x * arm.y)
+            };
+            let jacobian = motion_along(&surface.normal);
+            let by_normal = motion_along(&Vector2::new(-surface.normal.y, surface.normal.x));
             misfit.cost += share * kernel * kernel / 2.0 * relative / (1.0 + relative);
             misfit.gradient += jacobian * (weight * distance);
             misfit.information += jacobian * jacobian.transpose() * weight;
+            noise_of_normals += by_normal * by_normal.transpose() * (weight * surface.normal_variance);
             misfit.n_on_surface += usize::from(distance.abs() < params.kernel_m);
         }
-        misfit
+        misfit.without_noise_of_normals(&noise_of_normals)
+    }
+
+    /// The misfit without the information $`N`$ that is not there: normals that err by $`ε`$ add $`ε^2`$ times the motion along the surface to
+    /// $`\sum w J^T J`$, so that a corridor seems to tell the place along it and a round room the heading. With $`Λ = L L^T`$ what is left is
+    /// $`L K L^T`$, $`K = (1 - L^{-1} N L^{-T})_+`$, and the gradient is $`L K L^{-1} g`$. [Fuller 1987, Eq. 1.2.3: errors in the regressors]
+    fn without_noise_of_normals(self, noise: &Matrix3<f64>) -> Self {
+        let Some(factor) = Cholesky::new(self.information).map(|factor| factor.l()) else { return self };
+        let Some(inverse) = factor.try_inverse() else { return self };
+        let mut kept = SymmetricEigen::new(Matrix3::identity() - inverse * noise * inverse.transpose());
+        kept.eigenvalues.apply(|share| *share = share.max(0.0));
+        let left = factor * kept.recompose();
+        Self { gradient: left * inverse * self.gradient, information: left * factor.transpose(), ..self }
     }
 }

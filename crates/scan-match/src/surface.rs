@@ -5,6 +5,8 @@ use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 pub(crate) struct Surface {
     pub(crate) at: Vector2<f64>,
     pub(crate) normal: Vector2<f64>,
+    /// How uncertain the direction of the normal is, rad².
+    pub(crate) normal_variance: f64,
 }
 
 /// Neighbours to either side that say which way a surface looks.
@@ -36,6 +38,11 @@ fn surface(points: &[Option<Vector2<f64>>], beam: usize) -> Option<Surface> {
         near.iter().map(|point| (point - mean) * (point - mean).transpose()).sum::<Matrix2<f64>>() / n;
     let spread = SymmetricEigen::new(scatter);
     let across = spread.eigenvalues.imin();
-    let is_straight = spread.eigenvalues[across] <= STRAIGHT.0 * spread.eigenvalues[1 - across] + STRAIGHT.1;
-    is_straight.then(|| Surface { at, normal: spread.eigenvectors.column(across).into_owned() })
+    let (across_variance, along_variance) = (spread.eigenvalues[across], spread.eigenvalues[1 - across]);
+    let is_straight = across_variance <= STRAIGHT.0 * along_variance + STRAIGHT.1;
+    is_straight.then(|| Surface {
+        at,
+        normal: spread.eigenvectors.column(across).into_owned(),
+        normal_variance: across_variance.max(0.0) / ((n - 2.0) * along_variance), // the slope of a line fit
+    })
 }

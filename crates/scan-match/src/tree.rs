@@ -74,7 +74,8 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(41);
         for n in [0, 1, 2, 3, 50, 500] {
             let mut place = || Vector2::new(rng.random_range(-5.0..5.0), rng.random_range(-1.0..1.0));
-            let surfaces: Vec<_> = (0..n).map(|_| Surface { at: place(), normal: Vector2::x() }).collect();
+            let surfaces: Vec<_> =
+                (0..n).map(|_| Surface { at: place(), normal: Vector2::x(), normal_variance: 0.0 }).collect();
             let tree = Tree::new(surfaces.clone());
             for _ in 0..200 {
                 let point = place();

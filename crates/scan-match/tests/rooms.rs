@@ -133,6 +133,27 @@ fn a_corridor_says_nothing_of_the_way_along_it() {
     assert!((found.pose.x() - guess.x()).abs() < 0.2, "within a deviation of the guess: {}", found.pose.x());
 }
 
+/// Points on a circle around (1, 0), seen from the origin: nothing tells a turn about the centre. Of the information that noisy normals pretend, what is
+/// left over is the chance of 180 points of which seven neighbours share their noise: a share of $`\sqrt{2 · 7 / 180}`$, 0.28, in one deviation.
+#[test]
+fn round_room_tells_no_turn_about_its_centre() {
+    let corner = |i: usize| {
+        let (sin, cos) = (i as f64 * std::f64::consts::TAU / 720.0).sin_cos();
+        [1.0 + 3.0 * cos, 3.0 * sin]
+    };
+    let round: Walls = (0..720).map(|i| (corner(i), corner(i + 1))).collect();
+    let about_the_centre = Vector3::new(0.0, -1.0, 1.0); // turning by one radian moves the robot by one metre
+    let told = |seed: u64| {
+        let start = Pose2::new(0.0, 0.0, 0.0);
+        let information = align(&round, &start, &start, &sigmas(0.1, 0.1), seed).information;
+        about_the_centre.dot(&(information * about_the_centre))
+    };
+    let mean = (0..50).map(told).sum::<f64>() / 50.0;
+    // Normals over seven points, 0.05 m apart, of a laser of σ 0.01 m err by 0.01 / (0.05 √28) = 0.038 rad; 3 m of arm, σ 0.03 m, 0.4 rad as one error.
+    let pretended = (3.0 * 0.038_f64).powi(2) / 0.03_f64.powi(2) * std::f64::consts::TAU / 0.4;
+    assert!(mean < 0.28 * pretended, "{mean} of {pretended}");
+}
+
 /// A laser at the side of a robot that turns moves although the robot stays.
 #[test]
 fn a_laser_may_sit_anywhere_on_the_robot() {
