@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use support::{Laser, Wall, room, wall};
-use wayfix_line_extract::nalgebra::Vector2;
+use wayfix_line_extract::nalgebra::{Isometry2, Point2, Vector2};
 use wayfix_line_extract::{
     Extraction, Extractor, LineError, Params, RangeBearingNoise, Scan, Segment, SplitMethod, extract,
 };
@@ -103,6 +103,33 @@ fn beams_that_turn_clockwise_see_the_same() {
         assert!((a.estimate.line.rho() - b.estimate.line.rho()).abs() < 0.03);
         assert!((a.start - b.start).norm() < 0.2 && (a.end - b.end).norm() < 0.2, "ends keep their order");
     }
+}
+
+/// A sensor that moves by 9 cm and turns by 0.1 rad during a scan sees the walls where the first beam left them.
+#[test]
+fn moving_sensor_sees_the_walls_from_the_first_beam() {
+    let laser = Laser::over(180.0, 361);
+    let step = Isometry2::new(Vector2::new(2.5e-4, 0.0), 0.1 / 361.0);
+    let mut sensor = Isometry2::identity();
+    let mut ranges = Vec::new();
+    for beam in 0..laser.n_beams {
+        let seen = |at: Vector2<f64>| sensor.inverse_transform_point(&Point2::from(at)).coords;
+        let walls: Vec<Wall> = room().iter().map(|(from, to)| (seen(*from), seen(*to))).collect();
+        ranges.push(laser.ranges(&walls)[beam]);
+        sensor *= step;
+    }
+    let at_rest = see(laser, &room(), &Params::default());
+    let mut extractor = Extractor::new(Params::default()).expect("the defaults are valid");
+    let moving = extractor.extract_moving(&scan_of(laser, &ranges), Some(&step)).expect("a valid scan");
+    assert_eq!(moving.segments.len(), at_rest.segments.len());
+    for (a, b) in moving.segments.iter().zip(&at_rest.segments) {
+        // Which wall a corner's point belongs to is another matter: that is worth a millimetre.
+        let (a, b) = (a.estimate.line, b.estimate.line);
+        assert!((a.rho() - b.rho()).abs() < 1e-3 && (a.alpha() - b.alpha()).abs() < 1e-3, "{a:?} {b:?}");
+    }
+    let nan = Isometry2::new(Vector2::new(f64::NAN, 0.0), 0.0);
+    let error = extractor.extract_moving(&scan_of(laser, &ranges), Some(&nan)).expect_err("no motion");
+    assert!(matches!(error, LineError::Scan { .. }), "{error}");
 }
 
 #[test]

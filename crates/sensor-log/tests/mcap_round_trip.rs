@@ -48,11 +48,13 @@ fn scan() -> impl Strategy<Value = LaserScan> {
     let angle = || prop_oneof![-7.0..7.0, Just(0.5_f64.to_radians())];
     let range_max = prop_oneof![Just(50.0), Just(f64::INFINITY), 0.0..100.0];
     let range = prop_oneof![number(), Just(f64::NAN), Just(f64::INFINITY), Just(-0.0)];
-    (angle(), angle(), range_max, prop::collection::vec(range, 0..20)).prop_map(
-        |(angle_min, angle_increment, range_max, ranges)| LaserScan {
+    let beam_period = prop_oneof![Just(0.0), Just(2.5e-5)];
+    (angle(), angle(), range_max, beam_period, prop::collection::vec(range, 0..20)).prop_map(
+        |(angle_min, angle_increment, range_max, beam_period, ranges)| LaserScan {
             angle_min: angle_min + 0.0,
             angle_increment,
             range_max,
+            beam_period,
             ranges,
         },
     )
@@ -123,7 +125,8 @@ fn bits(record: &Record) -> (u64, String, Vec<u64>) {
         Data::TrueLandmark(landmark) => vec![landmark.x, landmark.y],
         Data::TrueWall(wall) => vec![wall.start.x, wall.start.y, wall.end.x, wall.end.y],
         Data::Scan(scan) => {
-            [&[scan.angle_min, scan.angle_increment, scan.range_max], scan.ranges.as_slice()].concat()
+            let LaserScan { angle_min, angle_increment, range_max, beam_period, ranges } = scan;
+            [&[*angle_min, *angle_increment, *range_max, *beam_period], ranges.as_slice()].concat()
         }
         Data::Ackermann(drive) => vec![drive.wheel_speed, drive.steering],
         Data::SightedWidths(widths) => widths.clone(),

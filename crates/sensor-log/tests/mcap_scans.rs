@@ -73,6 +73,7 @@ fn metadata_that_are_no_numbers_are_as_good_as_none() {
             angle_min: 0.0,
             angle_increment: 1.0,
             range_max: f64::INFINITY,
+            beam_period: 0.0,
             ranges: vec![1.0, 1.0],
         };
         assert_eq!(data, [Data::Scan(expected)], "{bad:?}");
@@ -102,7 +103,13 @@ fn what_cannot_be_placed_or_is_no_number_is_counted() {
 #[test]
 fn scans_of_two_devices_keep_their_own_angles() {
     let scan = |angle_increment, range_max| {
-        Data::Scan(LaserScan { angle_min: 0.1, angle_increment, range_max, ranges: vec![1.0; 3] })
+        Data::Scan(LaserScan {
+            angle_min: 0.1,
+            angle_increment,
+            range_max,
+            beam_period: 0.0,
+            ranges: vec![1.0; 3],
+        })
     };
     let scans =
         [scan(1.0_f64.to_radians(), 50.0), scan(0.1, f64::INFINITY), scan(1.0_f64.to_radians(), 50.0)];

@@ -1,6 +1,8 @@
 use std::iter;
 use std::ops::Range;
 
+use nalgebra::Isometry2;
+
 use super::bend::curved;
 use super::breakpoints::surfaces;
 use super::merge::merge;
@@ -84,9 +86,27 @@ impl Extractor {
     /// # Errors
     /// [`LineError::Scan`] or [`LineError::MoreThanATurn`] for a geometry without meaning.
     pub fn extract(&mut self, scan: &Scan) -> Result<Extraction, LineError> {
+        self.extract_moving(scan, None)
+    }
+
+    /// The same for a sensor that moves by `step` from one beam to the next, in its own frame; the walls are seen from where the first beam was sent.
+    ///
+    /// # Errors
+    /// Those of [`extract`](Self::extract), and [`LineError::Scan`] for a step that is not finite.
+    pub fn extract_moving(
+        &mut self,
+        scan: &Scan,
+        step: Option<&Isometry2<f64>>,
+    ) -> Result<Extraction, LineError> {
         scan.check()?;
+        if let Some(value) = step.and_then(|step| step.to_matrix().iter().copied().find(|x| !x.is_finite())) {
+            return Err(LineError::Scan { what: "motion from beam to beam", value, must: "finite" });
+        }
         let mut counts = Counts::default();
         self.points.fill(scan, &mut counts);
+        if let Some(step) = step {
+            self.points.seen_from_the_first_beam(step);
+        }
         surfaces(&self.points, scan, &self.params, &mut self.surfaces);
         self.fit_pieces()?;
         merge(&mut self.pieces, &self.params);

@@ -1,4 +1,4 @@
-use nalgebra::Vector2;
+use nalgebra::{Isometry2, Point2, Vector2};
 
 use super::{Counts, Scan};
 
@@ -30,6 +30,19 @@ impl Points {
             }
         }
         counts.valid = self.at.len();
+    }
+
+    /// Moves each echo to where it is seen from the first beam, when the sensor moves by `step` from beam to beam.
+    pub(super) fn seen_from_the_first_beam(&mut self, step: &Isometry2<f64>) {
+        let mut sensor = Isometry2::identity();
+        let mut at_beam = 0;
+        for (at, &beam) in self.at.iter_mut().zip(&self.beam) {
+            while at_beam < beam {
+                sensor *= step;
+                at_beam += 1;
+            }
+            *at = (sensor * Point2::from(*at)).coords;
+        }
     }
 
     /// Sines and cosines take longer than everything else, and the next scan has the same.

@@ -13,7 +13,7 @@ use crate::format::shortened;
 use crate::image::picture;
 use crate::planar::heading_of;
 use crate::ros::{self, Header, RosMessage, Twist};
-use crate::{Data, EncodedImage, ProblemKind, Record, Stamp, Velocity};
+use crate::{Data, EncodedImage, LaserScan, ProblemKind, Record, Stamp, Velocity};
 
 /// The fixed frame that localization places the robot in. [REP 105]
 const MAP_FRAME: &str = "map";
@@ -133,12 +133,16 @@ impl BagRecords {
         warnings
     }
 
+    /// Remembers whether a scan states how far echoes reach.
+    pub(crate) fn note_range_limit(&mut self, scan: &LaserScan) {
+        self.lacks_range_limit |= scan.range_max == f64::INFINITY;
+    }
+
     fn scan(&mut self, stamp: Stamp, message: &ros::LaserScan<'_>) -> Result<Vec<Record>, Fault> {
         let laser = self.transforms.in_body(message.header.frame_id, self.body.as_deref());
         self.note_place(LASER, message.header.frame_id, laser.is_some());
         let mount = laser.as_ref().map(Mount::of).transpose()?;
         let scan = scan::scan(message, mount.as_ref())?;
-        self.lacks_range_limit |= scan.range_max == f64::INFINITY;
         let mut records = Vec::new();
         if let Some(mount) = mount
             && self.laser_mount.replace(mount) != Some(mount)

@@ -45,8 +45,14 @@ pub(super) fn scan(message: &ros::LaserScan<'_>, mount: Option<&Mount>) -> Resul
         angle_min: turn * angle_min,
         angle_increment: turn * angle_increment,
         range_max,
+        beam_period: beam_period(message),
         ranges: message.ranges.iter().copied().map(in_limits).collect(),
     })
+}
+
+/// The time from beam to beam; 0, unknown, where it is no time.
+fn beam_period(message: &ros::LaserScan<'_>) -> f64 {
+    Some(message.time_increment).filter(|period| period.is_finite() && *period > 0.0).map_or(0.0, f64::from)
 }
 
 /// The limits of a scan's ranges; those between which no range lies say nothing.

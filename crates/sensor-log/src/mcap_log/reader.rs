@@ -238,8 +238,10 @@ impl Messages {
             Ok(records) => {
                 report.rows_read += 1;
                 for record in records {
-                    if let Data::Image(image) = &record.data {
-                        report.warn_of_orientation(image);
+                    match &record.data {
+                        Data::Image(image) => report.warn_of_orientation(image),
+                        Data::Scan(scan) => self.bag.note_range_limit(scan),
+                        _ => {}
                     }
                     self.check_clock(file, &name, record, report);
                 }

@@ -14,12 +14,14 @@ use crate::{Data, LaserScan, Record, Stamp};
 
 const INCREMENT: &str = "angle_increment";
 const RANGE_MAX: &str = "range_max";
+const BEAM_PERIOD: &str = "beam_period";
 
 /// What a channel says of all its scans; nothing in the files of other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct ScanChannel {
     increment: Option<f64>,
     range_max: Option<f64>,
+    beam_period: Option<f64>,
 }
 
 impl ScanChannel {
@@ -28,6 +30,9 @@ impl ScanChannel {
         for (key, value) in metadata {
             match key {
                 INCREMENT => channel.increment = value.parse().ok().filter(|value: &f64| value.is_finite()),
+                BEAM_PERIOD => {
+                    channel.beam_period = value.parse().ok().filter(|value: &f64| value.is_finite())
+                }
                 RANGE_MAX => channel.range_max = value.parse().ok().filter(|value: &f64| !value.is_nan()),
                 _ => {}
             }
@@ -38,7 +43,8 @@ impl ScanChannel {
 
 pub(super) fn metadata(scan: &LaserScan) -> BTreeMap<String, String> {
     let pairs = [(INCREMENT, scan.angle_increment), (RANGE_MAX, scan.range_max)];
-    pairs.into_iter().map(|(key, value)| (key.to_owned(), value.to_string())).collect()
+    let beam_period = (scan.beam_period != 0.0).then_some((BEAM_PERIOD, scan.beam_period));
+    pairs.into_iter().chain(beam_period).map(|(key, value)| (key.to_owned(), value.to_string())).collect()
 }
 
 pub(super) fn encode_scan(timestamp: Timestamp, frame: &str, scan: &LaserScan) -> messages::LaserScan {
@@ -94,6 +100,7 @@ pub(super) fn scan(channel: ScanChannel, bytes: &[u8], log_time: Stamp) -> Resul
             .increment
             .unwrap_or((message.end_angle - message.start_angle) / n_steps as f64),
         range_max: channel.range_max.unwrap_or(f64::INFINITY),
+        beam_period: channel.beam_period.unwrap_or(0.0),
         ranges: message.ranges,
     };
     Ok(vec![Record { stamp, data: Data::Scan(scan) }])

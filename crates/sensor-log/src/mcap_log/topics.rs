@@ -7,7 +7,7 @@
 //! | [`ACKERMANN`] | `foxglove.JointStates`, velocity of `wheel`, position of `steering` | | [`Data::Ackermann`](crate::Data::Ackermann) |
 //! | [`SIGHTINGS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Sightings`](crate::Data::Sightings) |
 //! | [`SIGHTED_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`Data::SightedWidths`](crate::Data::SightedWidths) |
-//! | [`SCAN`] | `foxglove.LaserScan`; `angle_increment` and `range_max` in the metadata of the channel | [`BODY_FRAME`] | [`Data::Scan`](crate::Data::Scan) |
+//! | [`SCAN`] | `foxglove.LaserScan`; `angle_increment`, `range_max` and, where it is known, `beam_period` in the metadata of the channel | [`BODY_FRAME`] | [`Data::Scan`](crate::Data::Scan) |
 //! | [`LASER_MOUNT`] | `foxglove.FrameTransform` | [`LASER_FRAME`] in [`BODY_FRAME`] | [`Data::LaserMount`](crate::Data::LaserMount) |
 //! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`Data::TruePosition`](crate::Data::TruePosition) |
 //! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |

@@ -5,7 +5,13 @@
 ///
 /// ```
 /// use wayfix_sensor_log::LaserScan;
-/// let scan = LaserScan { angle_min: -0.1, angle_increment: 0.1, range_max: 50.0, ranges: vec![2.0, f64::NAN, 81.9] };
+/// let scan = LaserScan {
+///     angle_min: -0.1,
+///     angle_increment: 0.1,
+///     range_max: 50.0,
+///     beam_period: 0.0,
+///     ranges: vec![2.0, f64::NAN, 81.9],
+/// };
 /// assert_eq!(scan.echoes().collect::<Vec<_>>(), [(-0.1, 2.0)]);
 /// assert_eq!(scan.bearing(1), 0.0);
 /// ```
@@ -17,6 +23,8 @@ pub struct LaserScan {
     pub angle_increment: f64,
     /// Ranges from here on are no echo, metres; infinite where the log does not say.
     pub range_max: f64,
+    /// Time from one beam to the next, seconds; the stamp is that of the first. 0 where the log does not say.
+    pub beam_period: f64,
     /// Metres, in the order of the beams.
     pub ranges: Vec<f64>,
 }
@@ -36,6 +44,7 @@ impl LaserScan {
 
     /// Whether the numbers that hold for all beams are numbers; ranges may be anything.
     pub(crate) fn has_finite_angles(&self) -> bool {
-        self.angle_min.is_finite() && self.angle_increment.is_finite() && !self.range_max.is_nan()
+        [self.angle_min, self.angle_increment, self.beam_period].iter().all(|number| number.is_finite())
+            && !self.range_max.is_nan()
     }
 }

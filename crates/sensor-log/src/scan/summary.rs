@@ -8,7 +8,8 @@ use super::LaserScan;
 /// ```
 /// use wayfix_sensor_log::{LaserScan, ScanSummary};
 /// let mut summary = ScanSummary::default();
-/// summary.add(&LaserScan { angle_min: 0.0, angle_increment: 0.1, range_max: 8.0, ranges: vec![1.0, 9.0] });
+/// let (angle_min, angle_increment, range_max, beam_period) = (0.0, 0.1, 8.0, 0.0);
+/// summary.add(&LaserScan { angle_min, angle_increment, range_max, beam_period, ranges: vec![1.0, 9.0] });
 /// assert_eq!((summary.n_beams, summary.n_without_echo), (2, 1));
 /// assert_eq!(summary.to_string(), "1 of 2 beams; 50.0 % of the beams without echo");
 /// ```

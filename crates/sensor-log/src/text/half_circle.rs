@@ -17,7 +17,13 @@ pub(crate) fn half_circle(ranges: Vec<f64>) -> Result<LaserScan, RowError> {
         }
         n_beams => std::f64::consts::PI / (n_beams - 1) as f64,
     };
-    Ok(LaserScan { angle_min: -std::f64::consts::FRAC_PI_2, angle_increment, range_max: RANGE_MAX_M, ranges })
+    Ok(LaserScan {
+        angle_min: -std::f64::consts::FRAC_PI_2,
+        angle_increment,
+        range_max: RANGE_MAX_M,
+        beam_period: 0.0,
+        ranges,
+    })
 }
 
 /// Whether a scan of so many beams is surely that of a half circle.

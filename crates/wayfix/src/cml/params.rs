@@ -11,6 +11,8 @@ pub struct CmlParams {
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
     /// navigation.
     pub velocity_hold: f64,
+    /// By how much odometry is stamped later than images that show the same, s; negative where it is stamped earlier.
+    pub odometry_delay: f64,
     /// What is known of the poses that a map is taught with.
     pub taught: PoseSigmas,
     /// What is known of the start.
@@ -27,6 +29,7 @@ impl Default for CmlParams {
     fn default() -> Self {
         Self {
             velocity_hold: VELOCITY_HOLD,
+            odometry_delay: 0.0,
             taught: PoseSigmas::default(),
             start: PoseSigmas::default(),
             made_odometry: MadeOdometry::default(),

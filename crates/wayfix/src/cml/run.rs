@@ -10,7 +10,7 @@ use wayfix_sensor_log::{Data, Record};
 use super::{CmlParams, CmlSystem, FrameResult, Plan, PoseSigmas, system::gaussian};
 use crate::{
     evaluate::{KnownStart, Sample, TrueTrack},
-    system::{ODOMETRY, System, check_overlap, drive},
+    system::{ODOMETRY, System, check_overlap, drive, without_odometry_delay},
 };
 
 /// What a run does with its views.
@@ -72,11 +72,13 @@ pub fn run(
         system.teach(image, pose, &params.taught)?;
     }
     system.start(begin(start, &params.start, seed)?)?;
-    drive(&mut system, &plan.records, observe);
+    let records = without_odometry_delay(&plan.records, params.odometry_delay);
+    drive(&mut system, &records, observe);
     if system.frames().is_empty() {
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");
     }
+    system.warn_of_lag(params.odometry_delay);
     Ok(CmlRun {
         task,
         system,

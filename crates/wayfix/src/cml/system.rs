@@ -2,14 +2,15 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceIndex, AppearanceLocalizer, AppearanceMap, Event, PanoramaDescriptor, ReferenceSearch, Start,
+    AppearanceIndex, AppearanceLocalizer, AppearanceMap, Descriptor, Event, PanoramaDescriptor,
+    ReferenceSearch, Start,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
 use super::{CmlParams, PoseSigmas, ViewReader};
-use crate::system::{Events, HeldVelocity, PlausibleIncrement, Stopwatch, System, possible};
+use crate::system::{Events, HeldVelocity, PlausibleIncrement, Stopwatch, System, possible, warn_of_lag};
 
 /// The localizer of panoramas with the index that does not compare with every reference.
 pub type PanoramaLocalizer = AppearanceLocalizer<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
@@ -24,6 +25,13 @@ pub struct CmlSystem {
     velocity_hold: f64,
     plausible: PlausibleIncrement,
     odometry: Option<Pose2<f64>>,
+    /// Where odometry alone puts the robot at each view, from the first record on.
+    dead_reckoning: Vec<(Stamp, Pose2<f64>)>,
+    /// How far the robot has come by odometry alone.
+    moved: Pose2<f64>,
+    last_view: Option<PanoramaDescriptor>,
+    /// By how much the robot has turned from the view before, by the views alone, rad.
+    seen_turns: Vec<Option<f64>>,
     frames: Vec<FrameResult>,
     events: Events,
 }
@@ -62,6 +70,10 @@ impl CmlSystem {
             velocity_hold: params.velocity_hold,
             plausible: PlausibleIncrement::default(),
             odometry: None,
+            dead_reckoning: Vec::new(),
+            moved: Pose2::identity(),
+            last_view: None,
+            seen_turns: Vec::new(),
             frames: Vec::new(),
             events: Events::default(),
         })
@@ -80,6 +92,11 @@ impl CmlSystem {
     /// How views are described, and the size of the panoramas.
     pub fn reader(&self) -> &ViewReader {
         &self.reader
+    }
+
+    /// Says by how much odometry lags the views, where their turns tell; `delay` is what is corrected already, s.
+    pub(super) fn warn_of_lag(&mut self, delay: f64) {
+        warn_of_lag(&mut self.events, &self.dead_reckoning, &self.seen_turns, delay);
     }
 
     /// Teaches what a place looks like; a view that shows nothing is counted and left out.
@@ -117,6 +134,7 @@ impl CmlSystem {
     fn move_by(&mut self, increment: &Pose2<f64>) -> Result<(), String> {
         self.localizer.predict(increment).map_err(|error| error.to_string())?;
         self.odometry = self.odometry.map(|pose| pose.compose(increment));
+        self.moved = self.moved.compose(increment);
         Ok(())
     }
 
@@ -137,6 +155,8 @@ impl CmlSystem {
         let panorama_took = Stopwatch::start();
         let view = self.reader.describe(image).map_err(|error| format!("{error:#}"))?;
         let describing = panorama_took.elapsed();
+        self.dead_reckoning.push((stamp, self.moved));
+        self.seen_turns.push(self.last_view.replace(view.clone()).map(|last| view.compare(&last).rotation));
         let nearest = self.nearest(&view);
         let stopwatch = Stopwatch::start();
         let outcome = self.localizer.update(view).map_err(|error| error.to_string())?;

@@ -13,7 +13,7 @@ use super::{ColorSystem, ColorSystemParams, FrameResult, StartPose};
 use crate::{
     evaluate::{KnownStart, Sample, TrueTrack},
     slam::{warn_of_no_overlap, warn_of_start},
-    system::{ODOMETRY, System, check_overlap, drive},
+    system::{ODOMETRY, System, check_overlap, drive, without_odometry_delay},
 };
 
 /// A log that went through colour localization, beside the truth that the log holds.
@@ -51,6 +51,7 @@ pub fn run(
         None => StartPose::Anywhere,
     });
     let mut system = ColorSystem::new(map, bank, params.clone(), start, seed);
+    let records = &without_odometry_delay(records, params.odometry_delay);
     if known.is_some() {
         warn_of_start(system.events(), known, &truth);
     }

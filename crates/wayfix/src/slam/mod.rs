@@ -24,6 +24,8 @@ pub use pictures::pictures;
 pub use run::{SlamRun, run, run_on};
 pub(crate) use saved::check_association;
 pub use saved::{Odometry, Save, Saved, SavedMap, SavedMapError, SavedState, Saver, SystemState};
-pub(crate) use start::{start_pose, warn_of_no_overlap, warn_of_reference, warn_of_start};
+pub(crate) use start::{
+    start_pose, warn_of_an_empty_map, warn_of_no_overlap, warn_of_reference, warn_of_start,
+};
 pub(crate) use system::seen_landmarks;
 pub use system::{Keyframe, PointSensor, SlamSystem};

@@ -6,8 +6,8 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Record, Stamp, Target};
 
 use super::{
-    AssociationRule, Keyframe, SavedMap, SlamSystem, SlamSystemParams, start_pose, warn_of_no_overlap,
-    warn_of_start,
+    AssociationRule, Keyframe, SavedMap, SlamSystem, SlamSystemParams, start_pose, warn_of_an_empty_map,
+    warn_of_no_overlap, warn_of_start,
 };
 use crate::{
     evaluate::{Correspondence, KnownStart, Sample, TruePositions, TrueTrack, align},
@@ -100,6 +100,8 @@ fn drive_through(
     let keyframes = system.keyframes();
     let estimated = keyframes.first().zip(keyframes.last()).map(|(first, last)| (first.stamp, last.stamp));
     warn_of_no_overlap(system.events(), &truth, estimated);
+    let n_landmarks = system.filter().n_landmarks();
+    warn_of_an_empty_map(system.events(), n_landmarks);
     let true_positions = TruePositions::from_records(records);
     let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or_default();
     let last_truth = truth.last_stamp().or(true_positions.last_stamp());

@@ -23,6 +23,16 @@ pub(crate) fn warn_of_start(events: &mut Events, known: Option<KnownStart>, trut
     }
 }
 
+/// Says when a run has made no map.
+pub(crate) fn warn_of_an_empty_map(events: &mut Events, n_landmarks: usize) {
+    if n_landmarks == 0 {
+        events.warn(
+            "map_is_empty",
+            "no landmark was seen often enough to be in the map: the path is that of odometry and scan matching alone",
+        );
+    }
+}
+
 /// Says when errors are differences from the poses of another program.
 pub(crate) fn warn_of_reference(events: &mut Events, truth: &TrueTrack) {
     if truth.is_estimate() {

@@ -14,8 +14,13 @@ mod tests {
 
     #[test]
     fn scan_without_a_limit_has_a_finite_one() {
-        let scan =
-            |range_max| LaserScan { angle_min: 0.0, angle_increment: 0.1, range_max, ranges: vec![1.0] };
+        let scan = |range_max| LaserScan {
+            angle_min: 0.0,
+            angle_increment: 0.1,
+            range_max,
+            beam_period: 0.0,
+            ranges: vec![1.0],
+        };
         assert_eq!(largest_echo(&scan(f64::INFINITY)), FARTHEST_ECHO);
         assert!(largest_echo(&scan(8.0)) < 8.0);
     }

@@ -7,6 +7,7 @@ mod held_velocity;
 mod laser;
 mod motion_statistics;
 mod odometry_delay;
+mod odometry_lag;
 mod overlap;
 mod plausible_increment;
 mod stopwatch;
@@ -18,6 +19,7 @@ pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, possib
 pub use laser::largest_echo;
 pub use motion_statistics::MotionStatistics;
 pub use odometry_delay::without_odometry_delay;
+pub use odometry_lag::warn_of_lag;
 pub use overlap::{NamedKind, ODOMETRY, check_overlap};
 pub use plausible_increment::PlausibleIncrement;
 pub use stopwatch::Stopwatch;

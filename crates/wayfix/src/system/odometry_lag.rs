@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::Stamp;
 
-use crate::slam::Keyframe;
+use super::Events;
 
 /// Lags are looked for up to this, s: a transport delay, and not another clock.
 const LARGEST_LAG: f64 = 1.0;
@@ -10,15 +10,33 @@ const MOST_PERIODS: f64 = 50.0;
 /// χ² with one degree of freedom exceeds this once in a million: what a lag gains in log likelihood, doubled.
 const SURE: f64 = 23.9;
 
-/// By how much odometry lags the scans, s: the shift, in whole scans, at which the turns of odometry agree best with `seen_turns`, which
-/// the scans alone tell from each keyframe to the next.
+/// Odometry that is stamped later than what scans or images show is said, with the parameter that corrects it; `delay` is its value so far.
+///
+/// `odometry` is where odometry alone puts the robot at each scan or image, `seen_turns` by how much it has turned there since the one before by the
+/// scans or images alone, rad.
+pub fn warn_of_lag(
+    events: &mut Events,
+    odometry: &[(Stamp, Pose2<f64>)],
+    seen_turns: &[Option<f64>],
+    delay: f64,
+) {
+    if let Some(lag) = odometry_lag(odometry, seen_turns) {
+        let delay = delay + lag;
+        events.warn(
+            "odometry_lags",
+            format!("odometry comes about {lag:.2} s later than what the sensor shows: their turns agree best there (the parameter `odometry_delay = {delay:.2}` corrects it)"),
+        );
+    }
+}
+
+/// By how much odometry lags, s: the shift, in whole scans, at which the turns of odometry agree best with `seen_turns`.
 ///
 /// `None` when no shift does so for sure, as where the robot goes straight.
-pub(super) fn odometry_lag(keyframes: &[Keyframe], seen_turns: &[Option<f64>]) -> Option<f64> {
-    let odometry = Turns::of(keyframes);
-    let pairs = keyframes.windows(2).zip(seen_turns.iter().skip(1));
+fn odometry_lag(track: &[(Stamp, Pose2<f64>)], seen_turns: &[Option<f64>]) -> Option<f64> {
+    let odometry = Turns::of(track);
+    let pairs = track.windows(2).zip(seen_turns.iter().skip(1));
     let stretches: Vec<(f64, f64, f64)> = pairs
-        .filter_map(|(pair, seen)| Some((odometry.seconds(&pair[0]), odometry.seconds(&pair[1]), (*seen)?)))
+        .filter_map(|(pair, seen)| Some((odometry.seconds(pair[0].0), odometry.seconds(pair[1].0), (*seen)?)))
         // The same stretches count at every lag.
         .filter(|(begin, end, _)| *begin >= 2.0 * LARGEST_LAG && *end <= odometry.last() - 2.0 * LARGEST_LAG)
         .collect();
@@ -38,7 +56,7 @@ pub(super) fn odometry_lag(keyframes: &[Keyframe], seen_turns: &[Option<f64>]) -
     (gain > SURE && disagreement(-lag) > disagreement(0.0)).then_some(lag)
 }
 
-/// The heading that odometry has made, at the keyframes and between them.
+/// The heading that odometry has made, at the scans and between them.
 struct Turns {
     start: Stamp,
     /// Time since the start, s, and heading without wraps.
@@ -46,11 +64,11 @@ struct Turns {
 }
 
 impl Turns {
-    fn of(keyframes: &[Keyframe]) -> Self {
-        let start = keyframes.first().map_or_else(Stamp::default, |first| first.stamp);
-        let mut headings = Vec::with_capacity(keyframes.len());
+    fn of(track: &[(Stamp, Pose2<f64>)]) -> Self {
+        let start = track.first().map_or_else(Stamp::default, |(first, _)| *first);
+        let mut headings = Vec::with_capacity(track.len());
         let mut last: Option<(Pose2<f64>, f64)> = None;
-        for Keyframe { stamp, dead_reckoning, .. } in keyframes {
+        for (stamp, dead_reckoning) in track {
             let heading = last
                 .map_or(0.0, |(pose, heading)| heading + pose.inverse().compose(dead_reckoning).heading());
             last = Some((*dead_reckoning, heading));
@@ -59,8 +77,8 @@ impl Turns {
         Self { start, headings }
     }
 
-    fn seconds(&self, keyframe: &Keyframe) -> f64 {
-        keyframe.stamp.seconds_since(self.start)
+    fn seconds(&self, stamp: Stamp) -> f64 {
+        stamp.seconds_since(self.start)
     }
 
     fn last(&self) -> f64 {
@@ -81,49 +99,40 @@ impl Turns {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
-    use nalgebra::Matrix3;
-
     use super::*;
 
-    /// A robot that turns this way and that, twenty seconds at 10 Hz; its odometry lags by `lag`.
-    fn keyframes(lag: f64, amplitude: f64) -> Vec<Keyframe> {
-        let heading = |seconds: f64| amplitude * (1.3 * seconds).sin();
-        let keyframe = |step: u64| {
-            let seconds = step as f64 * 0.1;
-            Keyframe {
-                stamp: Stamp::from_nanoseconds(step * 100_000_000),
-                pose: Pose2::new(0.0, 0.0, heading(seconds)),
-                covariance: Matrix3::identity(),
-                dead_reckoning: Pose2::new(0.0, 0.0, heading(seconds - lag)),
-                n_landmarks: 0,
-                nis: (0.0, 0),
-                step: Duration::ZERO,
-            }
-        };
-        (0..200).map(keyframe).collect()
+    const AMPLITUDE: f64 = 1.0;
+
+    fn heading(seconds: f64, amplitude: f64) -> f64 {
+        amplitude * (1.3 * seconds).sin()
     }
 
-    fn found_lag(keyframes: &[Keyframe]) -> Option<f64> {
-        let turns = keyframes.windows(2).map(|pair| Some(pair[1].pose.heading() - pair[0].pose.heading()));
+    /// The lag that is found for a robot that turns this way and that, twenty seconds at 10 Hz, with odometry that lags by `lag`.
+    fn found_lag(lag: f64, amplitude: f64) -> Option<f64> {
+        let seconds: Vec<f64> = (0..200).map(|step| f64::from(step) * 0.1).collect();
+        let at = |seconds: &f64| {
+            let stamp = Stamp::from_seconds(*seconds).unwrap();
+            (stamp, Pose2::new(0.0, 0.0, heading(seconds - lag, amplitude)))
+        };
+        let track: Vec<_> = seconds.iter().map(at).collect();
+        let turns = seconds.windows(2).map(|pair| heading(pair[1], amplitude) - heading(pair[0], amplitude));
         // The scans err by a milliradian, this way and that.
-        let noisy = turns.zip([1e-3, -1e-3].into_iter().cycle()).map(|(turn, error)| Some(turn? + error));
-        odometry_lag(keyframes, &[None].into_iter().chain(noisy).collect::<Vec<_>>())
+        let noisy = turns.zip([1e-3, -1e-3].into_iter().cycle()).map(|(turn, error)| Some(turn + error));
+        odometry_lag(&track, &[None].into_iter().chain(noisy).collect::<Vec<_>>())
     }
 
     #[test]
     fn lag_of_odometry_is_found_to_the_nearest_scan() {
         for lag in [0.26, -0.15, 0.5] {
-            let found = found_lag(&keyframes(lag, 1.0)).unwrap();
+            let found = found_lag(lag, AMPLITUDE).unwrap();
             assert!((found - lag).abs() < 0.5 * 0.1 + 1e-9, "{found} for {lag}");
         }
     }
 
     #[test]
     fn no_lag_is_said_without_lag_or_without_turns() {
-        assert_eq!(found_lag(&keyframes(0.0, 1.0)), None);
-        assert_eq!(found_lag(&keyframes(0.26, 0.0)), None);
+        assert_eq!(found_lag(0.0, AMPLITUDE), None);
+        assert_eq!(found_lag(0.26, 0.0), None);
         assert_eq!(odometry_lag(&[], &[]), None);
     }
 }

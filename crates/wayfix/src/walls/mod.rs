@@ -3,7 +3,6 @@
 mod estimates;
 mod figures;
 mod odometry;
-mod odometry_lag;
 mod params;
 mod pictures;
 mod run;

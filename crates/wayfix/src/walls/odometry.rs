@@ -1,4 +1,4 @@
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Stamp, Velocity};
@@ -14,6 +14,8 @@ pub struct Odometry {
     used_until: Option<u64>,
     velocity: HeldVelocity,
     statistics: MotionStatistics,
+    /// Motion a second by the last increment or velocity, m/s and rad/s, in the robot's frame.
+    twist: Option<Vector3<f64>>,
 }
 
 /// A motion, and how far it may be wrong beside the noise of odometry.
@@ -76,6 +78,9 @@ impl Odometry {
         let motions = cuts.into_iter().chain([end]).map(motion).collect();
         self.used_until = self.used_until.map(|used| used.max(end));
         self.statistics.add(increment, whole);
+        if whole > 0.0 && !is_first {
+            self.twist = Some(twist / whole);
+        }
         motions
     }
 
@@ -101,12 +106,20 @@ impl Odometry {
     /// # Errors
     /// When no robot is so fast; the one before holds on.
     pub(super) fn hold(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
-        self.velocity.hold(stamp, velocity)
+        self.velocity.hold(stamp, velocity)?;
+        self.twist = Some(Vector3::new(velocity.linear, 0.0, velocity.angular));
+        Ok(())
+    }
+
+    /// Motion a second, m/s and rad/s, in the robot's frame; `None` before odometry tells any.
+    pub(super) fn twist(&self) -> Option<Vector3<f64>> {
+        self.twist
     }
 
     /// Whether every number is one.
     pub(super) fn is_finite(&self) -> bool {
         self.statistics.is_finite()
+            && self.twist.is_none_or(|twist| twist.iter().all(|rate| rate.is_finite()))
     }
 }
 

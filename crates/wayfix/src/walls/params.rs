@@ -55,6 +55,8 @@ pub struct WallSlamParams {
     pub velocity_hold: f64,
     /// By how much odometry is stamped later than scans that show the same, s; negative where it is stamped earlier.
     pub odometry_delay: f64,
+    /// Whether the motion of the laser during a scan is taken out, where the log says the time from beam to beam.
+    pub deskew_scans: bool,
     /// Noise of odometry increments.
     pub increment: IncrementMotion,
     /// Gate and outliers.
@@ -118,6 +120,7 @@ impl Default for WallSlamParams {
             heading_drift_sigma: 0.05,
             velocity_hold: VELOCITY_HOLD,
             odometry_delay: 0.0,
+            deskew_scans: true,
             increment: IncrementMotion {
                 translation_variance_per_meter: 1e-2,
                 heading_variance_per_meter: 5e-3,

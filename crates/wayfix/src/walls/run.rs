@@ -3,13 +3,14 @@ use wayfix_estimation_traits::Manifold;
 use wayfix_sensor_log::{Data, Record, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
-use super::{WallSlamParams, WallState, WallSystem, odometry_lag::odometry_lag, truth};
+use super::{WallSlamParams, WallState, WallSystem, truth};
 use crate::{
     evaluate::{KnownStart, Sample, TrueTrack},
     slam::{
-        AssociationRule, Keyframe, Saved, start_pose, warn_of_no_overlap, warn_of_reference, warn_of_start,
+        AssociationRule, Keyframe, Saved, start_pose, warn_of_an_empty_map, warn_of_no_overlap,
+        warn_of_reference, warn_of_start,
     },
-    system::{Events, ODOMETRY, System, check_overlap, drive, without_odometry_delay},
+    system::{Events, ODOMETRY, System, check_overlap, drive, warn_of_lag, without_odometry_delay},
 };
 
 /// A log of scans that went through EKF-SLAM with walls, beside the poses that the log itself holds.
@@ -94,15 +95,10 @@ fn drive_through(
     }
     let keyframes = system.keyframes();
     let estimated = keyframes.first().zip(keyframes.last()).map(|(first, last)| (first.stamp, last.stamp));
-    let lag = odometry_lag(keyframes, system.seen_turns());
+    let dead_reckoning: Vec<_> = keyframes.iter().map(|at| (at.stamp, at.dead_reckoning)).collect();
     warn_of_no_overlap(system.events(), &track, estimated);
-    if let Some(lag) = lag {
-        let delay = system.params.odometry_delay + lag;
-        system.events().warn(
-            "odometry_lags_scans",
-            format!("odometry lags the scans by about {lag:.2} s: their turns agree best there (the parameter `odometry_delay = {delay:.2}` corrects it)"),
-        );
-    }
+    let (seen_turns, delay) = (system.seen_turns().to_vec(), system.params.odometry_delay);
+    warn_of_lag(system.events(), &dead_reckoning, &seen_turns, delay);
     let mut run = WallRun { system, truth: track, true_walls };
     let samples = run.samples();
     let is_odometry =
@@ -115,6 +111,8 @@ fn drive_through(
         );
     }
     warn_of_reference(run.system.events(), &run.truth);
+    let n_landmarks = run.system.filter().n_landmarks();
+    warn_of_an_empty_map(run.system.events(), n_landmarks);
     Ok(run)
 }
 

@@ -7,7 +7,7 @@ use wayfix_slam_ekf::{DriftingPose, EkfSlam, SlamError, Snapshot, Wall};
 use super::{
     WallSlamParams, WallSystem,
     odometry::Odometry,
-    scan::{Look, WaitingScan, cloud_of},
+    scan::{Look, PlacedScan, WaitingScan},
     system::Rule,
     travel::Travel,
 };
@@ -55,6 +55,8 @@ pub struct SavedScan {
     pub ranges: Vec<f64>,
     /// Where the laser was on the robot.
     pub laser: Pose2<f64>,
+    /// How it moved from beam to beam.
+    pub beam_step: Option<Pose2<f64>>,
 }
 
 impl SavedState for WallState {
@@ -69,12 +71,13 @@ impl Save for WallSystem {
             Rule::NearestNeighbour(rule) => (AssociationRule::Nn, rule.next_id()),
             Rule::JointCompatibility(rule) => (AssociationRule::Jcbb, rule.next_id()),
         };
-        let scan = |Look { scan, laser, .. }: &Look| SavedScan {
+        let scan = |Look { scan: PlacedScan { scan, laser, beam_step }, .. }: &Look| SavedScan {
             angle_min: scan.angle_min,
             angle_increment: scan.angle_increment,
             range_max: scan.range_max,
             ranges: scan.ranges.clone(),
             laser: *laser,
+            beam_step: *beam_step,
         };
         Saved {
             state: WallState {
@@ -128,11 +131,13 @@ impl WallSystem {
             );
         }
         system.travel = travel;
-        if let Some(SavedScan { angle_min, angle_increment, range_max, ranges, laser }) = last_look {
-            let scan = LaserScan { angle_min, angle_increment, range_max, ranges };
+        if let Some(SavedScan { angle_min, angle_increment, range_max, ranges, laser, beam_step }) = last_look
+        {
+            let scan = LaserScan { angle_min, angle_increment, range_max, beam_period: 0.0, ranges };
+            let scan = PlacedScan { scan, laser, beam_step };
             let unsound = |_| SavedMapError::from(SlamError::NotFinite { what: "saved scan" });
-            let cloud = cloud_of(&scan, &laser).map_err(unsound)?;
-            system.last_look = Some(Look { scan, laser, cloud });
+            let cloud = scan.cloud().map_err(unsound)?;
+            system.last_look = Some(Look { scan, cloud });
         }
         if !saved.state.odometry.is_finite() || saved.state.laser_now.is_some_and(|laser| !laser.is_finite())
         {

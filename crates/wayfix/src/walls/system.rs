@@ -2,7 +2,7 @@ use std::{collections::VecDeque, time::Duration};
 
 use nalgebra::{Matrix1x4, Matrix3, Vector1};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2, wrap_angle};
-use wayfix_line_extract::{Extractor, Scan};
+use wayfix_line_extract::Extractor;
 use wayfix_scan_match::{Cloud, Guess, Matcher};
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
 use wayfix_slam_ekf::{
@@ -13,12 +13,12 @@ use wayfix_slam_ekf::{
 use super::{
     Gait, WallSlamParams,
     odometry::{Motion, Odometry},
-    scan::{Look, WaitingScan, cloud_of},
+    scan::{Look, PlacedScan, WaitingScan, beam_step},
     travel::{DriftSeen, Travel},
 };
 use crate::{
     slam::{AssociationRule, Keyframe, event_name, seen_landmarks},
-    system::{Events, PlausibleIncrement, Stopwatch, System, largest_echo, possible},
+    system::{Events, PlausibleIncrement, Stopwatch, System, possible},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
@@ -216,7 +216,8 @@ impl WallSystem {
 
     fn take_scan(&mut self, stamp: Stamp, scan: &LaserScan, laser: &Pose2<f64>) -> Result<(), String> {
         let stopwatch = Stopwatch::start();
-        let cloud = cloud_of(scan, laser)?;
+        let scan = self.placed(scan, laser);
+        let cloud = scan.cloud().map_err(|error| error.to_string())?;
         let laser_heading = self.lay_on_the_last_look(&cloud);
         let seen_turn = self.laser_heading.zip(laser_heading).map(|(from, to)| wrap_angle(to - from));
         self.laser_heading = laser_heading;
@@ -225,9 +226,9 @@ impl WallSystem {
             self.events.count("scan_passed_by");
             (0.0, 0)
         } else {
-            let observations = self.walls_in(scan, laser)?;
+            let observations = self.walls_in(&scan)?;
             self.move_on()?;
-            self.last_look = Some(Look { scan: scan.clone(), laser: *laser, cloud });
+            self.last_look = Some(Look { scan, cloud });
             self.laser_heading = Some(0.0);
             self.look_at(&observations)?
         };
@@ -235,6 +236,21 @@ impl WallSystem {
         self.add_keyframe(stamp, nis);
         self.seen_turns.push(seen_turn);
         Ok(())
+    }
+
+    /// A scan with the motion of the laser while it was taken, by the velocity that odometry tells.
+    fn placed(&mut self, scan: &LaserScan, laser: &Pose2<f64>) -> PlacedScan {
+        let twist = self.odometry.twist().filter(|_| self.params.deskew_scans);
+        let step = twist.map_or(Ok(None), |twist| beam_step(scan, laser, &twist));
+        if step.is_err() {
+            self.events.warn(
+                "time_increment_implausible",
+                "by its time_increment a scan takes longer than a second: its beams are taken as sent at once",
+            );
+        } else if let Ok(Some(_)) = &step {
+            self.events.count("scan_deskewed");
+        }
+        PlacedScan { scan: scan.clone(), laser: *laser, beam_step: step.unwrap_or(None) }
     }
 
     /// Corrects the way since the last look, and the drift, by how a scan lies on that of the last look. Returns the heading that
@@ -317,19 +333,13 @@ impl WallSystem {
     }
 
     /// The walls of a scan that are long enough to be walls, as the laser would see them from where the model has it.
-    fn walls_in(
-        &mut self,
-        scan: &LaserScan,
-        laser: &Pose2<f64>,
-    ) -> Result<Vec<Observation<SeenWall>>, String> {
-        let LaserScan { angle_min, angle_increment, ranges, .. } = scan;
-        let (angle_min, angle_increment) = (*angle_min, *angle_increment);
-        let scan = Scan { angle_min, angle_increment, ranges, max_range: largest_echo(scan) };
-        let found = self.extractor.extract(&scan).map_err(|error| error.to_string())?;
+    fn walls_in(&mut self, scan: &PlacedScan) -> Result<Vec<Observation<SeenWall>>, String> {
+        let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
         let long = found.segments.iter().filter(|segment| segment.length() >= self.params.min_wall_length);
         let seen = long.map(SeenWall::from);
-        let moved = self.mount().inverse().compose(laser);
-        let as_seen = |seen: SeenWall| if *laser == self.mount() { seen } else { seen.carried_at(&moved) };
+        let moved = self.mount().inverse().compose(&scan.laser);
+        let as_seen =
+            |seen: SeenWall| if scan.laser == self.mount() { seen } else { seen.carried_at(&moved) };
         Ok(seen.map(|seen| Observation { label: None, measurement: as_seen(seen) }).collect())
     }
 

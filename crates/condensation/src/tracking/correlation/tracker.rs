@@ -143,6 +143,11 @@ impl CorrelationTracker {
     /// One picture of a target in sight; the quality.
     fn follow(&mut self, picture: &Picture) -> f64 {
         let around = self.recognizer.look(picture, self.pose);
+        // What looks exactly as it was learned has not moved and teaches nothing. The fraction of a cell that a peak is off even then would add up.
+        if around.patch == self.learned {
+            self.n_doubts = 0;
+            return self.recognizer.evidence(&self.current, &around).value / self.usual;
+        }
         let mut pose = self.moved(picture, self.pose, &around);
         let mut sight = self.recognizer.look(picture, pose);
         let mut trust = self.recognizer.evidence(&self.trusted, &sight);
@@ -169,12 +174,7 @@ impl CorrelationTracker {
     }
 
     /// The pose to which the target has moved from `pose`, by shape and colour together.
-    ///
-    /// What looks exactly as it was learned has not moved. The fraction of a cell that is found even then would add up.
     fn moved(&self, picture: &Picture, pose: Pose, around: &Sight) -> Pose {
-        if around.patch == self.learned {
-            return pose;
-        }
         let window = &self.recognizer.window;
         let mut response = self.recognizer.response(&self.current, around);
         let score = window.box_means(&self.colors.of(&around.patch));

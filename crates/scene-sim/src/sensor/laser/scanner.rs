@@ -88,6 +88,7 @@ impl Sensor for Laser {
             angle_min: first_beam_rad,
             angle_increment: beam_step_rad,
             range_max: no_echo_m,
+            beam_period: 0.0,
             ranges: vec![],
         };
         let people = self.params.people.draw(first_beam_rad, scan.bearing(n_beams), streams);

@@ -131,7 +131,7 @@ fn stated_scan(mut rest: SplitAsciiWhitespace<'_>, message: ScanMessage) -> Resu
     }
     let angle_increment = increment(field, resolution, ranges.len())?;
     let range_max = if maximum > 0.0 { maximum } else { f64::INFINITY };
-    let scan = LaserScan { angle_min, angle_increment, range_max, ranges };
+    let scan = LaserScan { angle_min, angle_increment, range_max, beam_period: 0.0, ranges };
     let poses = if message == ScanMessage::Raw { None } else { Some(poses(&mut rest)?) };
     let n_between = if message == ScanMessage::Raw { 0 } else { 5 };
     let seconds = number(rest.nth(n_between).unwrap_or_default())?;
