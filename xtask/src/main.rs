@@ -25,7 +25,8 @@ Usage: cargo xtask TASK [OPTIONS]
   ci                 what CI runs, cheap steps first; --from STEP resumes
   tidy               check the invariants of docs/architecture.md that a machine can check; --write redraws its picture
   spelling           look for misspelled words
-  docs [PACKAGE…]    build one site of the API reference and docs/, with formulas, and follow its links; --open shows it
+  docs [PACKAGE…]    build one site of the API reference and docs/, with formulas, and follow its links; --open shows it;
+                     --figures [REPORT] writes the tables of measured figures in docs/ from a report of regress
   tutorials [NAME…]  type what docs/tutorials tells a reader to type
   bench [FILTER]     run the benchmarks, print one table; --peers adds other programs, --data DIR finds their logs
   campaign           run the recipe for GNU parallel of docs/campaigns

@@ -1,6 +1,7 @@
 //! `cargo xtask docs`: one site of the API reference and the pages of `docs`, with formulas, readable without a network.
 
 mod book;
+mod figures;
 mod katex;
 mod page;
 
@@ -12,6 +13,11 @@ use anyhow::{Result, bail};
 use crate::shell::{self, available};
 
 pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
+    if let [flag, report @ ..] = args
+        && flag == "--figures"
+    {
+        return figures::run(report);
+    }
     let (flags, packages): (Vec<_>, Vec<_>) = args.iter().partition(|arg| arg.starts_with('-'));
     let open = flags.iter().any(|flag| *flag == "--open");
     if flags.len() > usize::from(open) {

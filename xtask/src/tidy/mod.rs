@@ -4,7 +4,9 @@
 
 mod code;
 mod direction;
+mod figures;
 mod files;
+mod folders;
 mod graph;
 mod leftovers;
 mod links;
@@ -12,8 +14,10 @@ mod manifest;
 mod members;
 mod msrv;
 mod names;
+mod pages;
 mod purity;
 mod size;
+mod words;
 
 use std::fmt;
 use std::process::ExitCode;
@@ -72,6 +76,10 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     findings.extend(leftovers::check(&sources));
     findings.extend(links::check(&sources, &paths));
     findings.extend(names::check(&sources));
+    findings.extend(words::check(&sources));
+    findings.extend(pages::check(&sources));
+    findings.extend(figures::check(&sources));
+    findings.extend(folders::check(&sources));
     findings.extend(size::lengths(&sources));
     findings.extend(size::weights(&files::weights(&paths)));
     let linked = "normal,no-proc-macro";

@@ -1,10 +1,9 @@
 //! Names that a reader can take in: functions and tests of at most sixty characters.
 
+use super::words::EXCEPT;
 use super::{Finding, Source};
 
 const TOO_LONG: usize = 60;
-/// Folders whose contents are about to be rewritten.
-const EXCEPT: [&str; 2] = ["crates/appearance-cml/src/localizer/", "crates/color-model/src/localizer/"];
 
 pub(super) fn check(sources: &[Source]) -> Vec<Finding> {
     let is_checked =
