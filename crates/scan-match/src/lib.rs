@@ -25,7 +25,7 @@
 //! ```
 //!
 //! Metres and radians, x forward, y left, everything in the frame of the laser. No filter and no map is known here. What it is worth in a
-//! map of walls is in `docs/slam.md`. [Censi 2008; Chen & Medioni 1992]
+//! map of walls is in `docs/adr/0014-scans-laid-on-one-another.md`. [Censi 2008; Chen & Medioni 1992]
 
 mod cloud;
 mod error;

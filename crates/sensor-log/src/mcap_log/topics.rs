@@ -27,7 +27,7 @@
 //!
 //! A metadata record `wayfix` with the key `origin` names the format that the records come from, when it was another one.
 //!
-//! `docs/adr/0002-mcap-topics.md` gives the reasons.
+//! `docs/topics.md` describes the conventions, `docs/adr/0002-mcap-topics.md` gives the reasons.
 
 /// Body velocities.
 pub const VELOCITY: &str = "/odom/velocity";
