@@ -94,8 +94,9 @@ fn number(value: &Value) -> Option<String> {
 
 fn measured(metric: &Value) -> String {
     let value = number(&metric["value"]).unwrap_or_else(|| "–".to_owned());
-    let missed = if metric["pass"] == Value::Bool(false) { " (missed)" } else { "" };
-    format!("{value} {}{missed}", text(&metric["unit"])).trim_end().to_owned()
+    let missed = (metric["pass"] == Value::Bool(false)).then(|| "(missed)".to_owned());
+    let unit = Some(text(&metric["unit"])).filter(|unit| !unit.is_empty());
+    [Some(value), unit, missed].into_iter().flatten().collect::<Vec<_>>().join(" ")
 }
 
 fn bound(metric: &Value) -> String {

@@ -78,7 +78,7 @@ impl Odometry {
         let motions = cuts.into_iter().chain([end]).map(motion).collect();
         self.used_until = self.used_until.map(|used| used.max(end));
         self.statistics.add(increment, whole);
-        if whole > 0.0 && !is_first {
+        if whole > 0.0 {
             self.twist = Some(twist / whole);
         }
         motions

@@ -197,7 +197,7 @@ impl WallSystem {
         let laser = self.laser_now.unwrap_or(self.mount());
         if self.moves_by_velocity {
             self.advance_to(stamp);
-        } else if !(self.waiting.is_empty() && self.odometry.reaches(stamp)) {
+        } else if !(self.waiting.is_empty() && self.odometry.reaches(stamp)) || self.needs_twist(scan) {
             self.waiting.push_back(WaitingScan { stamp, scan: scan.clone(), laser });
             return Ok(());
         }
@@ -205,6 +205,11 @@ impl WallSystem {
             self.odometry.start(stamp);
         }
         self.take_scan(stamp, scan, &laser)
+    }
+
+    /// Whether the motion during a scan is to be taken out and no odometry has told any yet.
+    fn needs_twist(&self, scan: &LaserScan) -> bool {
+        self.params.deskew_scans && scan.beam_period > 0.0 && self.odometry.twist().is_none()
     }
 
     /// Takes a scan that waited.
