@@ -6,7 +6,7 @@ use wayfix_gaussian_core::GaussianError;
 pub enum AppearanceError {
     /// A reference with this number is in the map already.
     #[error("reference {id} is in the map already")]
-    TwiceTheSame {
+    DuplicateReference {
         /// Its number.
         id: u32,
     },
@@ -95,5 +95,5 @@ pub enum AppearanceError {
     },
     /// All numbers of references have been given out.
     #[error("no number is left for another reference")]
-    Full,
+    ReferenceIdsExhausted,
 }

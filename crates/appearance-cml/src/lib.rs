@@ -15,16 +15,16 @@ mod views;
 
 pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState, MapArchive};
 pub use error::AppearanceError;
-pub(crate) use fusion::told_heading;
+pub(crate) use fusion::update_heading;
 pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
 pub use localizer::{
     AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Proof, RelocationParams,
     Start, UpdateOutcome, smooth,
 };
-pub(crate) use model::Facing;
+pub(crate) use model::HeadingMeasurement;
 pub use model::{
-    AppearanceMap, Forgetting, ForgettingParams, ForgettingUncertainty, LagSample, Learned, MapParams,
-    PlaceComponent, PlaceUpdate, Reference, Sighting, ViewScale, interpolate, similarity, superpose,
+    AppearanceMap, Forgetting, ForgettingParams, ForgettingUncertainty, LagSample, MapParams, MapUpdate,
+    PlaceComponent, PlaceMatch, PlaceUpdate, Reference, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
     AppearanceIndex, BoundTable, Bounded, Comparison, Descriptor, LinearSearch, Match, NoTable, ReferenceId,

@@ -29,7 +29,7 @@ fn view(step: usize) -> PanoramaDescriptor {
 fn learn(map: &mut Map, steps: std::ops::Range<usize>) {
     for step in steps {
         map.teach(view(step), &pose(step)).unwrap();
-        map.scale_mut().add_near(LagSample { way: 0.3, distance: 0.2 + 0.001 * step as f64 });
+        map.scale_mut().add_near(LagSample { lag: 0.3, distance: 0.2 + 0.001 * step as f64 });
         map.scale_mut().add_far(1.0 + 0.001 * step as f64);
     }
 }

@@ -29,14 +29,14 @@ fn printed() -> MapParams {
     MapParams {
         match_limit: Some(1.0),
         learning_rate: 0.5,
-        least_weight: 0.01,
+        min_weight: 0.01,
         active: ForgettingParams {
             rate: 0.4,
             radius: Some(2.0),
             gain: Some(0.1),
-            ..MapParams::printed().active
+            ..MapParams::as_published().active
         },
-        ..MapParams::printed()
+        ..MapParams::as_published()
     }
 }
 
@@ -124,7 +124,7 @@ fn forgotten_references_go_and_the_map_stays_bounded() {
     };
     let map = map_of(&[(0.0, 0.0), (3.0, 0.0)], &params);
     assert_eq!(map.len(), 1, "the old view of this very spot is gone at once");
-    let few = MapParams { most_references: 3, ..printed() };
+    let few = MapParams { max_references: 3, ..printed() };
     let many: Vec<(f64, f64)> = (0..9).map(|k| (2.0 * f64::from(k), 10.0 * f64::from(k))).collect();
     assert_eq!(map_of(&many, &few).len(), 3);
 }

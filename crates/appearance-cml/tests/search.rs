@@ -126,7 +126,10 @@ fn numbers_and_shapes_that_do_not_fit_are_refused() {
     let other = PanoramaDescriptor::from_parts(0.01, 1, vec![1; 3]).unwrap();
     assert!(index.nearest(&view, 3).is_empty() && index.within(&view, f64::INFINITY).is_empty());
     index.insert(ReferenceId(7), view.clone()).unwrap();
-    assert_eq!(index.insert(ReferenceId(7), view.clone()), Err(AppearanceError::TwiceTheSame { id: 7 }));
+    assert_eq!(
+        index.insert(ReferenceId(7), view.clone()),
+        Err(AppearanceError::DuplicateReference { id: 7 })
+    );
     assert_eq!(index.insert(ReferenceId(8), other.clone()), Err(AppearanceError::Incomparable { id: 8 }));
     assert!(index.nearest(&other, 1).is_empty() && index.nearest(&view, 0).is_empty());
     for radius in [f64::NAN, -1.0, 0.0, f64::NEG_INFINITY] {

@@ -19,8 +19,8 @@ pub use lighting::{
     LightingBank, LightingFilter, LightingParams, Unseen,
 };
 pub use likelihood::{
-    FeatureParams, FeatureView, PixelLight, PixelParams, PixelView, SpanView, SumDensity, ViewLikelihood,
-    gather,
+    FeatureLikelihood, FeatureParams, PixelLight, PixelLikelihood, PixelParams, SpanLikelihood, SumDensity,
+    ViewLikelihood, gather,
 };
 pub use localizer::{
     AcquisitionParams, CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome,

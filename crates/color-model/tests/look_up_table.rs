@@ -104,22 +104,25 @@ fn cells_hold_what_is_most_probable_at_their_centres() {
 fn the_table_follows_the_light_and_only_then() {
     let mut light = light(1.0);
     let mut table = LookUpTable::new(densities(&light), None).unwrap();
-    assert!(!table.follow(densities(&light)).unwrap());
+    assert!(!table.rebuild_if_changed(densities(&light)).unwrap());
     // A change far below a quarter of a standard deviation.
     light.update(&means(light.mean(), 0)).unwrap();
-    assert!(!table.follow(densities(&light)).unwrap());
+    assert!(!table.rebuild_if_changed(densities(&light)).unwrap());
     let darker = support::stacked(&BRIGHT) * 0.5;
     let mut n_rebuilt = 0;
     for _ in 0..40 {
         light.predict(1.0).unwrap();
         light.update(&means(&darker, 0)).unwrap();
-        n_rebuilt += usize::from(table.follow(densities(&light)).unwrap());
-        assert!(!table.follow(densities(&light)).unwrap(), "it is as the light is, or near enough");
+        n_rebuilt += usize::from(table.rebuild_if_changed(densities(&light)).unwrap());
+        assert!(
+            !table.rebuild_if_changed(densities(&light)).unwrap(),
+            "it is as the light is, or near enough"
+        );
     }
     assert!((2..20).contains(&n_rebuilt), "{n_rebuilt}"); // it moves fast at first, then settles
     // Compiled anew when it settled: the same table as a fresh one where the light is as it was compiled for.
     table.rebuild_above = 0.0;
-    table.follow(densities(&light)).unwrap();
+    table.rebuild_if_changed(densities(&light)).unwrap();
     let fresh = LookUpTable::new(densities(&light), None).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(443);
     assert!((0..10_000).all(|_| {
@@ -128,7 +131,7 @@ fn the_table_follows_the_light_and_only_then() {
     }));
     table.rebuild_above = f64::NAN;
     assert!(
-        table.follow(densities(&light)).unwrap(),
+        table.rebuild_if_changed(densities(&light)).unwrap(),
         "what cannot be compared is no reason to trust the table"
     );
 }

@@ -8,8 +8,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_color_map::{Band, Camera, ColorId, ColorMap, Projector, Shape};
 use wayfix_color_model::{
-    ColorDensity, ColorModelError, Frame, PixelLight, PixelParams, PixelView, SpanView, ViewLikelihood,
-    YuvImage,
+    ColorDensity, ColorModelError, Frame, PixelLight, PixelLikelihood, PixelParams, SpanLikelihood,
+    ViewLikelihood, YuvImage,
 };
 use wayfix_estimation_traits::Pose3;
 
@@ -88,8 +88,8 @@ fn largest_difference(params: PixelParams, n_poses: usize) -> f64 {
     let image = image(&mut rng);
     let frame = Frame::with_background(&image, nats).expect("valid by construction");
     let projector = || Projector::new(field(), camera());
-    let mut plain = PixelView::new(&image, nats, projector(), params).expect("valid by construction");
-    let mut spans = SpanView::new(&frame, projector(), params).expect("valid by construction");
+    let mut plain = PixelLikelihood::new(&image, nats, projector(), params).expect("valid by construction");
+    let mut spans = SpanLikelihood::new(&frame, projector(), params).expect("valid by construction");
     let (mut largest, mut n_seen) = (0.0_f64, 0);
     for _ in 0..n_poses {
         let (pose, light) = (pose(&mut rng), light(&mut rng));
@@ -135,6 +135,6 @@ fn frames_of_another_size_are_refused() {
     let frame = Frame::new(&small).expect("valid by construction");
     let projector = || Projector::new(field(), camera());
     let expected = ColorModelError::FrameSize { expected: (52, 40), got: (8, 8) };
-    assert_eq!(SpanView::new(&frame, projector(), product()).err(), Some(expected.clone()));
-    assert_eq!(PixelView::new(&small, nats, projector(), product()).err(), Some(expected));
+    assert_eq!(SpanLikelihood::new(&frame, projector(), product()).err(), Some(expected.clone()));
+    assert_eq!(PixelLikelihood::new(&small, nats, projector(), product()).err(), Some(expected));
 }

@@ -13,8 +13,9 @@ use wayfix_condensation::{
 
 fn main() {
     let grid = Grid::new(1000, 1000).expect("a valid size");
-    let move_on =
-        Slip { stays: 0.1, strays: 0.0 }.transition(&grid, Move { dx: 1, dy: 1 }).expect("probabilities");
+    let move_on = Slip { stay_probability: 0.1, other_action_probability: 0.0 }
+        .transition(&grid, Move { dx: 1, dy: 1 })
+        .expect("probabilities");
     let kernel = DiffusionKernel::gaussian(&grid, &[1.0, 1.0]).expect("one sigma an axis");
     let log_likelihoods: Vec<f64> =
         (0..1_000_000).map(|i| -0.5 * ((i % 1009) as f64 / 100.0).powi(2)).collect();

@@ -21,7 +21,7 @@ impl World<Move> for Robot {
         self.at = self.grid.step(self.at, action);
     }
 
-    fn look(&mut self, features: &mut [f64]) {
+    fn observe(&mut self, features: &mut [f64]) {
         features.copy_from_slice(self.views.get(self.at).expect("a state of the grid"));
     }
 }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use wayfix_condensation::{
-    Appearance, AppearanceParams, Grid, Joined, Localizer, LocalizerParams, MeanVar, Move, Picture,
+    Appearance, AppearanceParams, Grid, JoinedFeature, Localizer, LocalizerParams, MeanVar, Move, Picture,
     SceneViews, Slip, StateSpace, View, ViewFeature, ViewGrid,
 };
 
@@ -31,7 +31,7 @@ impl ViewFeature for EdgeEnergy {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = bricks(256, 192)?;
     let views = ViewGrid::new((256, 192), (64, 64), 16)?;
-    let feature = Joined::new(vec![Box::new(MeanVar), Box::new(EdgeEnergy)]);
+    let feature = JoinedFeature::new(vec![Box::new(MeanVar), Box::new(EdgeEnergy)]);
     let source = SceneViews::new(&scene, &views)?;
     let appearance = Arc::new(Appearance::learn(&source, &feature, &AppearanceParams::normalized())?);
 

@@ -29,7 +29,7 @@ impl World<Move> for Drive<'_> {
         self.at = self.grid.step(self.at, action);
     }
 
-    fn look(&mut self, features: &mut [f64]) {
+    fn observe(&mut self, features: &mut [f64]) {
         if let Some(row) = self.seen.get(self.at) {
             features.copy_from_slice(row);
         }

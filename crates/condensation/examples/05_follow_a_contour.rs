@@ -24,7 +24,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("shape only", ContourTrackerParams { cues: TrackingCues::Shape, ..full }),
         ("as published", ContourTrackerParams::as_published()),
     ];
-    println!("{:10} {:14} {:>8} {:>8} {:>8} {:>8}", "film", "method", "overlap", "worst", "lost", "decoy");
+    println!(
+        "{:10} {:14} {:>8} {:>8} {:>8} {:>8}",
+        "film", "method", "overlap", "worst", "lost", "distractor"
+    );
     for film in films {
         for (method, params) in methods {
             let records: Vec<Record> =
@@ -33,8 +36,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 |value: fn(&Record) -> f64| records.iter().map(value).sum::<f64>() / records.len() as f64;
             let worst = records.iter().map(Record::mean_overlap).fold(1.0, f64::min);
             let (overlap, lost) = (mean(Record::mean_overlap), mean(|record| record.n_lost() as f64));
-            let decoy = mean(Record::decoy_inside);
-            println!("{:10} {method:14} {overlap:8.3} {worst:8.3} {lost:8.1} {decoy:8.3}", film.name);
+            let distractor = mean(Record::decoy_inside);
+            println!("{:10} {method:14} {overlap:8.3} {worst:8.3} {lost:8.1} {distractor:8.3}", film.name);
         }
     }
     Ok(())

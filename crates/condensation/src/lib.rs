@@ -3,7 +3,7 @@
 //! | part | what is in it |
 //! | --- | --- |
 //! | discrete filter | [`DiscreteFilter`] over any [`StateSpace`]: [`Grid`], [`HeadingGrid`], [`Graph`]; [`Transition`]s, [`DiffusionKernel`] |
-//! | features | [`ViewFeature`]: [`MeanVar`], [`Fft6`], [`Hist6`], [`Joined`], your own; all views of a scene at once |
+//! | features | [`ViewFeature`]: [`MeanVar`], [`Fft6`], [`Hist6`], [`JoinedFeature`], your own; all views of a scene at once |
 //! | learning | [`Appearance`]: features of every state and how they answer to shift and light; [`Traverse`]; [`MoveLog`]; p-values |
 //! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceParams::online`] |
 //! | navigation | [`Localizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
@@ -23,13 +23,13 @@ mod normalization;
 mod tracking;
 
 pub use discrete::{
-    Axis, BestState, DenseTransition, DiffusionKernel, DiscreteFilter, Evidence, Follow, Graph, Grid,
-    HeadingGrid, KidnapMonitor, Lattice, Maneuver, Move, Outcome, Slip, SparseTransition, StateSpace,
+    Axis, BestState, DenseTransition, DiffusionKernel, DiscreteFilter, Graph, GraphAction, Grid, HeadingGrid,
+    KidnapMonitor, Lattice, Maneuver, MeasurementEvidence, Move, Outcome, Slip, SparseTransition, StateSpace,
     Transition,
 };
 pub use error::CondensationError;
 pub use features::{
-    Dominance, FeatureTable, Fft6, Hist6, Joined, MeanVar, Picture, View, ViewFeature, ViewGrid,
+    Dominance, FeatureTable, Fft6, Hist6, JoinedFeature, MeanVar, Picture, View, ViewFeature, ViewGrid,
 };
 pub use learning::{
     Appearance, AppearanceParams, Disturbance, MoveLog, N_DISTURBANCES, NoiseParams, PValues, PictureViews,

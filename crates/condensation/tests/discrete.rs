@@ -80,15 +80,15 @@ proptest! {
     }
 
     #[test]
-    fn sparse_is_dense(weights in belief(12), stays in 0.0..0.5, strays in 0.0..0.5, action in 0_usize..9) {
+    fn sparse_is_dense(weights in belief(12), stay_probability in 0.0..0.5, other_action_probability in 0.0..0.5, action in 0_usize..9) {
         let grid = Grid::new(4, 3).unwrap();
-        let slip = Slip { stays, strays };
+        let slip = Slip { stay_probability, other_action_probability };
         let action = Move::ALL[action];
         let mut rows = vec![vec![0.0; 12]; 12];
         for (from, row) in rows.iter_mut().enumerate() {
-            row[grid.step(from, action)] += 1.0 - stays - strays;
-            row[from] += stays;
-            Move::ALL.iter().for_each(|&other| row[grid.step(from, other)] += strays / 9.0);
+            row[grid.step(from, action)] += 1.0 - stay_probability - other_action_probability;
+            row[from] += stay_probability;
+            Move::ALL.iter().for_each(|&other| row[grid.step(from, other)] += other_action_probability / 9.0);
         }
         let dense = DenseTransition::from_rows(&rows).unwrap();
         assert_close(&predicted(&slip.transition(&grid, action).unwrap(), &weights), &predicted(&dense, &weights));
@@ -112,7 +112,7 @@ proptest! {
             let sum: f64 = logs.iter().map(|l| (l - best).exp()).sum();
             let expected: Vec<f64> = logs.iter().map(|l| (l - best).exp() / sum).collect();
             assert_close(filter.belief(), &expected);
-            let evidence = outcome.evidence().unwrap().log_expected;
+            let evidence = outcome.evidence().unwrap().log_predicted;
             prop_assert!((evidence - best - sum.ln()).abs() < 1e-9 * (1.0 + evidence.abs()));
         }
     }
@@ -123,7 +123,9 @@ fn belief_over_many_chunks_stays_a_distribution() {
     let grid = Grid::new(300, 200).unwrap(); // several chunks, and none that divides a row
     let kernel = DiffusionKernel::gaussian(&grid, &[1.3, 0.8]).unwrap();
     let mut filter = DiscreteFilter::uniform(60_000).unwrap();
-    let go = Slip { stays: 0.1, strays: 0.1 }.transition(&grid, Move { dx: 1, dy: 0 }).unwrap();
+    let go = Slip { stay_probability: 0.1, other_action_probability: 0.1 }
+        .transition(&grid, Move { dx: 1, dy: 0 })
+        .unwrap();
     let truth = 60_000 - 7;
     for _ in 0..5 {
         filter.predict(&go).unwrap();
@@ -153,7 +155,11 @@ fn bad_input_is_refused_and_changes_nothing() {
     assert!(matches!(Graph::new(2, &[(0, 2)]), Err(CondensationError::State { state: 2, n_states: 2 })));
     assert!(matches!(Grid::new(usize::MAX, 3), Err(CondensationError::Extent { .. })));
     assert!(DiffusionKernel::gaussian(&Grid::new(3, 3).unwrap(), &[f64::NAN, 1.0]).is_err());
-    assert!(Slip { stays: 0.7, strays: 0.7 }.transition(&Grid::new(3, 3).unwrap(), Move::STAY).is_err());
+    assert!(
+        Slip { stay_probability: 0.7, other_action_probability: 0.7 }
+            .transition(&Grid::new(3, 3).unwrap(), Move::STAY)
+            .is_err()
+    );
 
     let mut filter = DiscreteFilter::from_prior(vec![1.0, 2.0, 1.0]).unwrap();
     let before = filter.clone();

@@ -4,8 +4,8 @@
 
 use proptest::prelude::*;
 use wayfix_condensation::{
-    CondensationError, Dominance, FeatureTable, Fft6, Hist6, Joined, MeanVar, Picture, StateSpace, View,
-    ViewFeature, ViewGrid,
+    CondensationError, Dominance, FeatureTable, Fft6, Hist6, JoinedFeature, MeanVar, Picture, StateSpace,
+    View, ViewFeature, ViewGrid,
 };
 
 /// A feature without what it knows of neighbouring views.
@@ -59,7 +59,7 @@ proptest! {
             let plain = Plain(feature.as_ref()).extract_all(&scene, &views).unwrap();
             assert_equal(&feature.extract_all(&scene, &views).unwrap(), &plain);
         }
-        let joined = Joined::new(all_features());
+        let joined = JoinedFeature::new(all_features());
         assert_equal(&joined.extract_all(&scene, &views).unwrap(), &Plain(&joined).extract_all(&scene, &views).unwrap());
     }
 

@@ -146,7 +146,7 @@ fn refuses_what_cannot_be_a_head() {
     assert!(matches!(start(outside), Err(CondensationError::OutsidePicture { .. })));
     let dot = BoundingBox::from_corner(50.0, 60.0, 1.0, 1.0).unwrap();
     assert!(matches!(start(dot), Err(CondensationError::Parameter { .. })));
-    let params = HeadTrackerParams { reach: f64::NAN, ..Default::default() };
+    let params = HeadTrackerParams { search_radius: f64::NAN, ..Default::default() };
     let refused = HeadTracker::new(&shown, head([50.0, 60.0], 1.0), params);
     assert!(matches!(refused, Err(CondensationError::Parameter { .. })));
 

@@ -34,7 +34,9 @@ fn it_is_a_bayes_filter() {
 fn any_number_of_threads_gives_the_same_bits() {
     use wayfix_condensation::DiffusionKernel;
     let grid = Grid::new(401, 307).unwrap();
-    let go = Slip { stays: 0.1, strays: 0.2 }.transition(&grid, Move { dx: 1, dy: -1 }).unwrap();
+    let go = Slip { stay_probability: 0.1, other_action_probability: 0.2 }
+        .transition(&grid, Move { dx: 1, dy: -1 })
+        .unwrap();
     let kernel = DiffusionKernel::gaussian(&grid, &[1.0, 0.7]).unwrap();
     let looks: Vec<f64> = (0..grid.n_states()).map(|s| -((s % 977) as f64).sqrt()).collect();
     let run = |threads: usize| {

@@ -112,7 +112,7 @@ fn what_cannot_be_followed_is_refused_and_changes_nothing() {
         MeanShiftParams { margin: -0.1, ..defaults },
         MeanShiftParams { growth: 0.9, ..defaults },
         MeanShiftParams { lost_below: f64::NAN, ..defaults },
-        MeanShiftParams { found_from: 0.1, ..defaults },
+        MeanShiftParams { found_above: 0.1, ..defaults },
     ];
     for params in wrong {
         let refused = MeanShift::start(&picture, &disc.bounding_box(), params);

@@ -10,8 +10,8 @@ use common::{Drive, scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    ActionChoice, Appearance, AppearanceParams, Arrival, FeatureTable, Fft6, Follow, Graph, Hist6, Light,
-    Localizer, LocalizerParams, MeanVar, Navigator, NavigatorParams, Picture, RunReport, SceneViews,
+    ActionChoice, Appearance, AppearanceParams, Arrival, FeatureTable, Fft6, Graph, GraphAction, Hist6,
+    Light, Localizer, LocalizerParams, MeanVar, Navigator, NavigatorParams, Picture, RunReport, SceneViews,
     StateSpace, ViewFeature, ViewGrid, World, histogram_match,
 };
 
@@ -128,12 +128,12 @@ struct Walk {
     at: usize,
 }
 
-impl World<Follow> for Walk {
-    fn act(&mut self, action: Follow) {
+impl World<GraphAction> for Walk {
+    fn act(&mut self, action: GraphAction) {
         self.at = self.graph.step(self.at, action);
     }
 
-    fn look(&mut self, features: &mut [f64]) {
+    fn observe(&mut self, features: &mut [f64]) {
         features[0] = 10.0 * self.at as f64;
     }
 }

@@ -10,6 +10,8 @@ pub trait SampleMotion {
     type Control: ?Sized;
 
     /// The sampler for one control; apply it to every particle.
-    fn given<R: Rng + ?Sized>(&self, control: &Self::Control)
-    -> impl Fn(&Self::State, &mut R) -> Self::State;
+    fn sampler<R: Rng + ?Sized>(
+        &self,
+        control: &Self::Control,
+    ) -> impl Fn(&Self::State, &mut R) -> Self::State;
 }

@@ -46,5 +46,5 @@ pub trait LikelihoodModel {
     type Measurement: ?Sized;
 
     /// The log-likelihood for one measurement; apply it to every particle.
-    fn given(&self, measurement: &Self::Measurement) -> impl Fn(&Self::State) -> LogWeight;
+    fn log_likelihood(&self, measurement: &Self::Measurement) -> impl Fn(&Self::State) -> LogWeight;
 }

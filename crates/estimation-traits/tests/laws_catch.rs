@@ -151,7 +151,7 @@ struct Draws {
 impl SampleMotion for Draws {
     type State = Pose2<f64>;
     type Control = f64;
-    fn given<R: rand::Rng + ?Sized>(&self, control: &f64) -> impl Fn(&Pose2<f64>, &mut R) -> Pose2<f64> {
+    fn sampler<R: rand::Rng + ?Sized>(&self, control: &f64) -> impl Fn(&Pose2<f64>, &mut R) -> Pose2<f64> {
         move |state, rng| {
             let factor = RIGHT.noise(state, control).cholesky().unwrap().l() * self.scale;
             let normal = Vector3::from_fn(|_, _| StandardNormal.sample(rng));
@@ -205,7 +205,7 @@ struct Likely {
 impl LikelihoodModel for Likely {
     type State = f64;
     type Measurement = f64;
-    fn given(&self, measurement: &f64) -> impl Fn(&f64) -> LogWeight {
+    fn log_likelihood(&self, measurement: &f64) -> impl Fn(&f64) -> LogWeight {
         move |state| if self.nan_at_zero && *state == 0.0 { f64::NAN } else { -(state - measurement).powi(2) }
     }
 }

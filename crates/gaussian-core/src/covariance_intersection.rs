@@ -27,7 +27,7 @@ where
     pub weights: Vec<f64>,
     /// How far the criterion is from its least value: relative for the trace, in nats a dimension for the determinant.
     /// Any weights are consistent, so a gap costs sharpness and nothing else.
-    pub gap: f64,
+    pub optimality_gap: f64,
 }
 
 const MAX_ITERATIONS: usize = 2000;
@@ -78,7 +78,7 @@ where
         symmetrize(&mut covariance);
         Ok((factor.solve(&vector), covariance))
     })?;
-    Ok(Intersection { gaussian, weights, gap })
+    Ok(Intersection { gaussian, weights, optimality_gap: gap })
 }
 
 /// The information matrix of each estimate in the chart at `at`.

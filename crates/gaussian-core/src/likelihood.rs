@@ -24,7 +24,7 @@ use crate::{covariance::check_symmetric, density::NormalTerms};
 /// }
 /// let likelihood = GaussianLikelihood(Range);
 /// let measured = Vector1::new(5.0);
-/// let log_weight = likelihood.given(&measured);
+/// let log_weight = likelihood.log_likelihood(&measured);
 /// assert!(log_weight(&Vector2::new(3.0, 4.0)) > log_weight(&Vector2::new(3.0, 4.1)));
 /// assert_eq!(log_weight(&Vector2::new(f64::NAN, 0.0)), f64::NEG_INFINITY);
 /// ```
@@ -38,7 +38,7 @@ where
     type State = S::State;
     type Measurement = S::Measurement;
 
-    fn given(&self, measurement: &S::Measurement) -> impl Fn(&S::State) -> LogWeight {
+    fn log_likelihood(&self, measurement: &S::Measurement) -> impl Fn(&S::State) -> LogWeight {
         move |state| {
             let noise = self.0.noise(state);
             let innovation = self.0.expected(state).local(measurement);

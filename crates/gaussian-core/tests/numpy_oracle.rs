@@ -60,7 +60,7 @@ fn intersection_weights_are_those_of_a_scalar_minimizer() {
             IntersectionCriterion::Determinant => covariance.determinant().ln(),
         };
         // The gap bounds the criterion (times the dimension for the determinant); the weight follows by its square root.
-        assert!(fused.gap <= 1e-7);
+        assert!(fused.optimality_gap <= 1e-7);
         assert!((got - value).abs() < 3e-7 * value.max(1.0), "{criterion:?}: {got} against {value}");
         assert!((fused.weights[0] - weight).abs() < 1e-3, "{criterion:?}: weight {}", fused.weights[0]);
     }

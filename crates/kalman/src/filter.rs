@@ -68,7 +68,7 @@ where
     /// # Errors
     /// When the prior's covariance is not positive definite beyond rounding.
     pub fn new(motion: M, form: F, prior: Gaussian<M::State>) -> Result<Self, KalmanError> {
-        let belief = form.believe(&prior)?;
+        let belief = form.belief_from(&prior)?;
         Ok(Self { motion, form, belief })
     }
 

@@ -24,7 +24,7 @@ where
     ///
     /// # Errors
     /// When its covariance is not positive definite.
-    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<Self::Belief>;
+    fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Self::Belief>;
 
     /// The Gaussian that says the same as `belief`.
     fn gaussian(&self, belief: &Self::Belief) -> Gaussian<X>;

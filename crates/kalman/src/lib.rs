@@ -6,7 +6,7 @@
 //! | models of your own, on vectors, poses or angles | [`GaussianFilter`] with a [`Form`]: [`Extended`], [`IteratedExtended`], [`Unscented`] |
 //! | sharp sensors, vague priors or single precision | the form [`SquareRoot`] |
 //! | large measurements with little state, or small with much | the forms [`Information`], [`Sequential`] |
-//! | several measurements at once | [`Stacked`] sensors: the batch update |
+//! | several measurements at once | [`StackedSensor`] sensors: the batch update |
 //! | a whole recording | [`RtsSmoother`] |
 //! | a target that switches behaviour | [`Imm`], [`Gpb2`] |
 //! | circumstances that switch, each with its own memory | [`ModelBank`], [`JumpMarkov`] |
@@ -30,12 +30,12 @@
 //! # Ok::<(), wayfix_kalman::KalmanError>(())
 //! ```
 
-mod carry;
 mod certificate;
 mod check;
 mod consistency;
 mod error;
 mod filter;
+mod filter_with_sensor;
 mod form;
 mod forms;
 mod gating;
@@ -43,16 +43,17 @@ mod innovation;
 mod ldl;
 mod linear;
 mod linearize;
-mod observing;
 mod product;
 mod smoother;
 mod stacked;
 mod switching;
+mod transport;
 mod update;
 
 pub use consistency::{Consistency, nees};
 pub use error::KalmanError;
 pub use filter::{ExtendedKalmanFilter, GaussianFilter};
+pub use filter_with_sensor::FilterWithSensor;
 pub use form::Form;
 pub use forms::{
     Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, PlainExtended, Sequential,
@@ -60,9 +61,8 @@ pub use forms::{
 };
 pub use innovation::Innovation;
 pub use linear::{KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate};
-pub use observing::Observing;
 pub use smoother::RtsSmoother;
-pub use stacked::{Stack, Stacked};
+pub use stacked::{StackedMeasurement, StackedSensor};
 pub use switching::{Candidate, Gpb2, Imm, JumpMarkov, JumpMarkovParams, MarkovChain, ModelBank};
 pub use update::Update;
 

@@ -3,8 +3,8 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::{
-    Extended, Form, Innovation, KalmanError, carry::carried, check, error::Checked,
-    linearize::linearize_motion, product::propagated_covariance,
+    Extended, Form, Innovation, KalmanError, check, error::Checked, linearize::linearize_motion,
+    product::propagated_covariance, transport::transported,
 };
 
 /// The Rauch-Tung-Striebel smoother: filters forward in [`Extended`] form, then sends what came later back.
@@ -57,7 +57,7 @@ where
     /// # Errors
     /// When the prior's covariance is not positive definite beyond rounding.
     pub fn new(prior: Gaussian<X>) -> Result<Self, KalmanError> {
-        Ok(Self { transitions: Vec::new(), current: Extended.believe(&prior)? })
+        Ok(Self { transitions: Vec::new(), current: Extended.belief_from(&prior)? })
     }
 
     /// The filtered estimate of the last state.
@@ -140,7 +140,7 @@ where
         symmetrize(&mut covariance);
         check::positive_definite("smoothed", &covariance)?;
         let mean = check::moved("smoothed mean", self.filtered.mean(), &(gain * correction))?;
-        let covariance = carried(covariance, self.filtered.mean(), &mean)?;
+        let covariance = transported(covariance, self.filtered.mean(), &mean)?;
         Ok(Gaussian::from_parts_unchecked(mean, covariance))
     }
 }

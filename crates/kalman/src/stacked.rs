@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, SensorModel, Tangent, TangentMatrix, Up
 
 /// Several points of one manifold side by side, as one point of their product: a batch of measurements.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stack<Z>(pub Vec<Z>);
+pub struct StackedMeasurement<Z>(pub Vec<Z>);
 
 /// Several sensors of one kind with independent noise, as one sensor: the batch update.
 ///
@@ -12,21 +12,21 @@ pub struct Stack<Z>(pub Vec<Z>);
 /// ```
 /// use nalgebra::{Matrix1, Matrix1x2, Matrix2, Vector1, Vector2};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{ExtendedKalmanFilter, LinearMotion, LinearSensor, Stack, Stacked};
+/// use wayfix_kalman::{ExtendedKalmanFilter, LinearMotion, LinearSensor, StackedMeasurement, StackedSensor};
 /// let motion = LinearMotion::stationary(Matrix2::zeros())?;
 /// let prior = Gaussian::new(Vector2::zeros(), Matrix2::identity())?;
 /// let mut filter = ExtendedKalmanFilter::new(motion, Default::default(), prior)?;
 /// let x = LinearSensor::new(Matrix1x2::new(1.0, 0.0), Matrix1::new(1.0))?;
 /// let y = LinearSensor::new(Matrix1x2::new(0.0, 1.0), Matrix1::new(1.0))?;
-/// let innovation = filter.update(&Stacked(vec![x, y]), &Stack(vec![Vector1::new(2.0), Vector1::new(4.0)]))?;
+/// let innovation = filter.update(&StackedSensor(vec![x, y]), &StackedMeasurement(vec![Vector1::new(2.0), Vector1::new(4.0)]))?;
 /// assert_eq!(innovation.dim(), 2);
 /// assert!((filter.estimate().mean() - Vector2::new(1.0, 2.0)).norm() < 1e-15);
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Stacked<S>(pub Vec<S>);
+pub struct StackedSensor<S>(pub Vec<S>);
 
-impl<Z: Manifold> Manifold for Stack<Z>
+impl<Z: Manifold> Manifold for StackedMeasurement<Z>
 where
     DefaultAllocator: Allocator<Z::Dim>,
 {
@@ -64,16 +64,16 @@ where
     }
 }
 
-impl<S: SensorModel> SensorModel for Stacked<S>
+impl<S: SensorModel> SensorModel for StackedSensor<S>
 where
     DefaultAllocator: UpdateAlloc<<S::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>
         + UpdateAlloc<<S::State as Manifold>::Dim, Dyn>,
 {
     type State = S::State;
-    type Measurement = Stack<S::Measurement>;
+    type Measurement = StackedMeasurement<S::Measurement>;
 
-    fn expected(&self, state: &S::State) -> Stack<S::Measurement> {
-        Stack(self.0.iter().map(|sensor| sensor.expected(state)).collect())
+    fn expected(&self, state: &S::State) -> StackedMeasurement<S::Measurement> {
+        StackedMeasurement(self.0.iter().map(|sensor| sensor.expected(state)).collect())
     }
 
     fn jacobian(
@@ -91,7 +91,7 @@ where
         stacked
     }
 
-    fn noise(&self, state: &S::State) -> TangentMatrix<Stack<S::Measurement>> {
+    fn noise(&self, state: &S::State) -> TangentMatrix<StackedMeasurement<S::Measurement>> {
         let blocks: Vec<_> = self.0.iter().map(|sensor| sensor.noise(state)).collect();
         let rows = blocks.iter().map(|block| block.nrows()).sum();
         let mut diagonal = OMatrix::zeros_generic(Dyn(rows), Dyn(rows));

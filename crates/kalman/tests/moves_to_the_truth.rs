@@ -7,8 +7,8 @@ use wayfix_estimation_traits::{
 };
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    Extended, Form, GaussianFilter, Information, IteratedExtended, Observing, PlainExtended, Sequential,
-    SquareRoot, Stack, Stacked, Unscented,
+    Extended, FilterWithSensor, Form, GaussianFilter, Information, IteratedExtended, PlainExtended,
+    Sequential, SquareRoot, StackedMeasurement, StackedSensor, Unscented,
 };
 
 /// Body-frame increments.
@@ -56,8 +56,8 @@ impl SensorModel for Bearing {
     }
 }
 
-fn landmarks() -> Stacked<Bearing> {
-    Stacked(
+fn landmarks() -> StackedSensor<Bearing> {
+    StackedSensor(
         [(4.0, 1.0), (-3.0, 5.0), (1.0, -6.0), (-5.0, -4.0)]
             .map(|(x, y)| Bearing(Vector2::new(x, y)))
             .to_vec(),
@@ -69,7 +69,7 @@ fn error_after<B>(mut filter: B, mut truth: Pose2<f64>) -> f64
 where
     B: BayesFilter<
             Control = Vector3<f64>,
-            Measurement = Option<Stack<Angle<f64>>>,
+            Measurement = Option<StackedMeasurement<Angle<f64>>>,
             Estimate = Gaussian<Pose2<f64>>,
         >,
     B::Error: std::fmt::Debug,
@@ -89,7 +89,7 @@ fn moves<F: Form<Pose2<f64>>>(form: F) {
     let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 2.9), &Vector3::new(0.3, 0.3, 0.2)).unwrap();
     let before = prior.mean().local(&truth).norm();
     let filter = GaussianFilter::new(Odometry, form, prior).unwrap();
-    let after = error_after(Observing::new(filter, landmarks()), truth);
+    let after = error_after(FilterWithSensor::new(filter, landmarks()), truth);
     // Four noise-free bearings pin a pose; a filter that does not move keeps its error of 0.4.
     assert!(before > 0.4 && after < 0.01, "from {before} to {after}");
 }
@@ -109,9 +109,12 @@ fn every_form_moves_to_the_truth() {
 fn obeys<F: Form<Pose2<f64>> + Clone>(form: F) {
     let truth = Pose2::new(0.3, -0.2, 3.1);
     let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 2.9), &Vector3::new(0.3, 0.3, 0.2)).unwrap();
-    let filter = Observing::new(GaussianFilter::new(Odometry, form, prior).unwrap(), landmarks());
+    let filter = FilterWithSensor::new(GaussianFilter::new(Odometry, form, prior).unwrap(), landmarks());
     let good = Some(landmarks().expected(&truth));
-    let bad = [Some(Stack(vec![Angle::new(f64::NAN); 4])), Some(Stack(vec![Angle::new(0.0); 3]))];
+    let bad = [
+        Some(StackedMeasurement(vec![Angle::new(f64::NAN); 4])),
+        Some(StackedMeasurement(vec![Angle::new(0.0); 3])),
+    ];
     let trial = laws::FilterTrial {
         measurements: &[&good; 20],
         error: |estimate: &Gaussian<Pose2<f64>>| estimate.mean().local(&truth).norm(),

@@ -283,7 +283,7 @@ fn active_light_is_selected_and_the_other_is_unchanged() {
         let mut light = lights(n_histories);
         let mut rng = ChaCha8Rng::seed_from_u64(11);
         let noise = Gaussian::new(Vector1::new(0.0), Matrix1::new(25.0)).unwrap();
-        let mut untouched = light.bank().settled(1);
+        let mut untouched = light.bank().last_active_estimate(1);
         for k in 0..120 {
             let dark = (30..60).contains(&k) || k >= 90;
             light.predict(&None).unwrap();
@@ -293,14 +293,18 @@ fn active_light_is_selected_and_the_other_is_unchanged() {
             light.update(&light_sensor(), seen.as_ref()).unwrap();
             assert_eq!(light.selected(), usize::from(dark), "step {k}");
             if !dark && k < 30 {
-                assert_eq!(light.bank().settled(1), untouched, "step {k} touched the filter that was off");
+                assert_eq!(
+                    light.bank().last_active_estimate(1),
+                    untouched,
+                    "step {k} touched the filter that was off"
+                );
             } else {
-                untouched = light.bank().settled(1);
+                untouched = light.bank().last_active_estimate(1);
             }
         }
         // 25 over some 48 measurements of each light, plus drift: sigma below 2.5; four of them.
         assert!((light.estimate().mean()[0] - 52.0).abs() < 10.0);
-        assert!((light.bank().settled(0).unwrap().mean()[0] - 148.0).abs() < 10.0);
+        assert!((light.bank().last_active_estimate(0).unwrap().mean()[0] - 148.0).abs() < 10.0);
         assert_eq!(light.most_probable_history().len(), 40);
         assert!(light.log_evidence()[1] > light.log_evidence()[0]);
     }

@@ -14,7 +14,7 @@ pub(crate) fn run() {
     scan("wayfix split and merge", SplitMethod::SplitAndMerge);
     for case in [Case::walk(1_000_000), Case::circle(1_000_000)] {
         simplify(&case, "wayfix", Simplifier::default());
-        simplify(&case, "wayfix hulls only", Simplifier::impatient());
+        simplify(&case, "wayfix hulls only", Simplifier::hull_tree_only());
         measure(&case.name, "wayfix classic", 1, || {
             douglas_peucker(&case.points, case.epsilon, Distance::Line).expect("a valid chain")
         });
@@ -24,7 +24,7 @@ pub(crate) fn run() {
     }
     for n in [100_000, 1_000_000] {
         simplify(&Case::zigzag(n), "wayfix", Simplifier::default());
-        simplify(&Case::zigzag(n), "wayfix hulls only", Simplifier::impatient());
+        simplify(&Case::zigzag(n), "wayfix hulls only", Simplifier::hull_tree_only());
     }
 }
 

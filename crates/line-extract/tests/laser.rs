@@ -120,7 +120,7 @@ fn moving_sensor_sees_the_walls_from_the_first_beam() {
     }
     let at_rest = see(laser, &room(), &Params::default());
     let mut extractor = Extractor::new(Params::default()).expect("the defaults are valid");
-    let moving = extractor.extract_moving(&scan_of(laser, &ranges), Some(&step)).expect("a valid scan");
+    let moving = extractor.extract_deskewed(&scan_of(laser, &ranges), Some(&step)).expect("a valid scan");
     assert_eq!(moving.segments.len(), at_rest.segments.len());
     for (a, b) in moving.segments.iter().zip(&at_rest.segments) {
         // Which wall a corner's point belongs to is another matter: that is worth a millimetre.
@@ -128,7 +128,7 @@ fn moving_sensor_sees_the_walls_from_the_first_beam() {
         assert!((a.rho() - b.rho()).abs() < 1e-3 && (a.alpha() - b.alpha()).abs() < 1e-3, "{a:?} {b:?}");
     }
     let nan = Isometry2::new(Vector2::new(f64::NAN, 0.0), 0.0);
-    let error = extractor.extract_moving(&scan_of(laser, &ranges), Some(&nan)).expect_err("no motion");
+    let error = extractor.extract_deskewed(&scan_of(laser, &ranges), Some(&nan)).expect_err("no motion");
     assert!(matches!(error, LineError::Scan { .. }), "{error}");
 }
 

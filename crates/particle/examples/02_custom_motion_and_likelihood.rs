@@ -16,7 +16,7 @@ impl SampleMotion for Boat {
     /// Metres ahead and radians to port in this step.
     type Control = (f64, f64);
 
-    fn given<R: Rng + ?Sized>(&self, control: &(f64, f64)) -> impl Fn(&Pose2<f64>, &mut R) -> Pose2<f64> {
+    fn sampler<R: Rng + ?Sized>(&self, control: &(f64, f64)) -> impl Fn(&Pose2<f64>, &mut R) -> Pose2<f64> {
         let (ahead, turn) = *control;
         move |pose, rng| {
             let gust = if rng.random_bool(0.05) { rng.random_range(-0.5..0.5) } else { 0.0 };
@@ -36,7 +36,7 @@ impl LikelihoodModel for Receiver {
     /// Decibels below the strength at 1 m, of each beacon; `None` for one that was not heard.
     type Measurement = [Option<f64>; 2];
 
-    fn given(&self, measurement: &[Option<f64>; 2]) -> impl Fn(&Pose2<f64>) -> f64 {
+    fn log_likelihood(&self, measurement: &[Option<f64>; 2]) -> impl Fn(&Pose2<f64>) -> f64 {
         let heard = *measurement;
         move |pose| {
             let beacons = self.beacons.iter().zip(heard);
@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let measurements: Vec<_> = (0..60)
         .map(|_| {
-            boat = Boat.given(&(3.0, 0.01))(&boat, &mut rng);
+            boat = Boat.sampler(&(3.0, 0.01))(&boat, &mut rng);
             hear(&boat, &mut rng)
         })
         .collect();

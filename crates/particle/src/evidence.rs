@@ -2,7 +2,7 @@ use wayfix_estimation_traits::Policy;
 
 /// What a normalization tells: how well the particles explained what was measured, and how many of them still count.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evidence {
+pub struct NormalizationReport {
     /// $`\log \sum_i w_i e^{l_i}`$ in nats: the filter's estimate of $`\log p(z_k | z_{1:k-1})`$ when the weights were normalized before.
     pub log_likelihood: f64,
     /// $`1 / \sum_i w_i^2`$ of the normalized weights.
@@ -11,7 +11,7 @@ pub struct Evidence {
     pub n_particles: usize,
 }
 
-impl Evidence {
+impl NormalizationReport {
     /// The effective sample size as a share of the particles, in (0, 1].
     pub fn effective_share(&self) -> f64 {
         self.effective_sample_size / self.n_particles as f64
@@ -26,8 +26,8 @@ pub struct EssBelow(f64);
 ///
 /// ```
 /// use wayfix_estimation_traits::{Policy, PolicyExt, every_n};
-/// use wayfix_particle::{Evidence, ess_below};
-/// let evidence = Evidence { log_likelihood: -2.0, effective_sample_size: 40.0, n_particles: 100 };
+/// use wayfix_particle::{NormalizationReport, ess_below};
+/// let evidence = NormalizationReport { log_likelihood: -2.0, effective_sample_size: 40.0, n_particles: 100 };
 /// let mut resample = ess_below(0.5).and(every_n(2));
 /// assert!(!resample.fires(&evidence)); // few enough, but the first step
 /// assert!(resample.fires(&evidence));
@@ -36,8 +36,8 @@ pub fn ess_below(share: f64) -> EssBelow {
     EssBelow(share)
 }
 
-impl Policy<Evidence> for EssBelow {
-    fn fires(&mut self, evidence: &Evidence) -> bool {
+impl Policy<NormalizationReport> for EssBelow {
+    fn fires(&mut self, evidence: &NormalizationReport) -> bool {
         evidence.effective_share() < self.0
     }
 }

@@ -70,7 +70,7 @@ impl InjectionMonitor {
         Ok(Self { params, averages: None })
     }
 
-    /// Takes the mean likelihood of the particles, in nats (say [`Evidence::log_likelihood`](crate::Evidence::log_likelihood));
+    /// Takes the mean likelihood of the particles, in nats (say [`NormalizationReport::log_likelihood`](crate::NormalizationReport::log_likelihood));
     /// the share of particles to replace.
     ///
     /// # Errors

@@ -7,7 +7,7 @@
 //! | draw from the motion model | [`ParticleSet::propagate`] |
 //! | multiply by a likelihood | [`ParticleSet::reweigh`], or [`ParticleSet::correct_with`] to normalize as well |
 //! | both in one, by a proposal of your own | [`ParticleSet::advance_with`] |
-//! | normalize; how well was the measurement explained? | [`ParticleSet::normalize`], [`Evidence`] |
+//! | normalize; how well was the measurement explained? | [`ParticleSet::normalize`], [`NormalizationReport`] |
 //! | is it time to resample? | [`ess_below`], and any [`Policy`](wayfix_estimation_traits::Policy) |
 //! | to how many particles? | [`ParticleSet::kld_size`] with [`KldSampling`] |
 //! | resample | [`ParticleSet::resample`] by [`Systematic`], [`Stratified`], [`Residual`], [`Multinomial`] or your own [`Resampler`] |
@@ -61,8 +61,8 @@ mod weights;
 
 pub use chunks::ChunkRng;
 pub use error::ParticleError;
-pub use evidence::{EssBelow, Evidence, ess_below};
-pub use filters::{AuxiliaryFilter, BootstrapFilter, LikelyMotion, Seeded};
+pub use evidence::{EssBelow, NormalizationReport, ess_below};
+pub use filters::{AuxiliaryFilter, BootstrapFilter, LikelyMotion, SeededFilter};
 pub use injection::{InjectionMonitor, InjectionParams};
 pub use kld::{KldParams, KldSampling, grid_cell};
 pub use rao_blackwell::{RaoBlackwell, map_conditionals};

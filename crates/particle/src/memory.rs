@@ -21,7 +21,7 @@ pub(crate) fn reserve<T>(list: &mut Vec<T>, n: usize) -> Result<(), ParticleErro
 }
 
 /// An empty list with room for `n`.
-pub(crate) fn with_room<T>(n: usize) -> Result<Vec<T>, ParticleError> {
+pub(crate) fn with_capacity<T>(n: usize) -> Result<Vec<T>, ParticleError> {
     let mut list = Vec::new();
     reserve(&mut list, n)?;
     Ok(list)

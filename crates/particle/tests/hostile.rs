@@ -110,7 +110,7 @@ fn impossible_particles_are_legal_until_all_are() {
     assert_eq!(set.moments(|x| Angle::new(*x)), Err(none_left));
     assert_eq!(set.effective_sample_size(), 0.0);
     assert_eq!(set, dead, "nothing resets the weights on its own");
-    set.forget_weights();
+    set.reset_weights();
     assert!((set.effective_sample_size() - 200.0).abs() < 1e-9);
 }
 

@@ -12,7 +12,8 @@ use wayfix_estimation_traits::{Policy as _, laws};
 use wayfix_gaussian_core::{Gaussian, GaussianLikelihood, GaussianMotion};
 use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor};
 use wayfix_particle::{
-    AuxiliaryFilter, BootstrapFilter, Evidence, ParticleError, ParticleSet, Seeded, Systematic, ess_below,
+    AuxiliaryFilter, BootstrapFilter, NormalizationReport, ParticleError, ParticleSet, SeededFilter,
+    Systematic, ess_below,
 };
 
 type State = Vector2<f64>;
@@ -131,7 +132,7 @@ fn a_seeded_filter_keeps_the_laws_of_a_bayes_filter() {
     let particles = problem.particles(1000, &mut rng);
     let (motion, sensor): (Motion, Sensor) =
         (GaussianMotion(problem.motion.clone()), GaussianLikelihood(problem.sensor.clone()));
-    let filter = Seeded::new(BootstrapFilter::new(particles, motion, sensor), rng);
+    let filter = SeededFilter::new(BootstrapFilter::new(particles, motion, sensor), rng);
     let truth = Vector1::new(0.8);
     let trial = laws::FilterTrial {
         measurements: &[&truth; 10],
@@ -158,7 +159,7 @@ fn refusals_say_why() {
     assert_eq!(bootstrap.update(&impossible), Err(ParticleError::NoWeight { count: 10 }));
     assert_eq!(bootstrap.particles(), &particles);
     let mut auxiliary = AuxiliaryFilter::new(particles.clone(), motion, sensor);
-    let refused: Result<Evidence, _> = auxiliary.step(&None, &impossible, &mut rng);
+    let refused: Result<NormalizationReport, _> = auxiliary.step(&None, &impossible, &mut rng);
     assert_eq!(refused, Err(ParticleError::NoWeight { count: 10 }));
     assert_eq!(auxiliary.particles(), &particles);
 }

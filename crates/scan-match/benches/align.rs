@@ -27,7 +27,7 @@ fn main() {
         for (heading_sigma, doubt) in [(0.02, "1 start"), (0.2, "7 starts")] {
             let sigmas = Vector3::new(0.05, 0.05, heading_sigma);
             let covariance = Matrix3::from_diagonal(&sigmas.component_mul(&sigmas));
-            let guess = Guess { pose: Pose2::new(0.27, 0.02, 0.12), covariance, others: &[] };
+            let guess = Guess { pose: Pose2::new(0.27, 0.02, 0.12), covariance, alternative_poses: &[] };
             let align = || {
                 #[allow(clippy::disallowed_methods, reason = "a benchmark measures time")]
                 let start = std::time::Instant::now();

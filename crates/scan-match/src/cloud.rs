@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 
 use crate::{
     ScanMatchError,
-    surface::{Surface, surfaces},
+    surface::{SurfacePoint, surfaces},
     tree::Tree,
 };
 
@@ -36,14 +36,14 @@ impl Cloud {
         ranges: &[f64],
         max_range: f64,
     ) -> Result<Self, ScanMatchError> {
-        Self::from_moving_ranges(angle_min, angle_increment, ranges, max_range, None)
+        Self::from_ranges_deskewed(angle_min, angle_increment, ranges, max_range, None)
     }
 
     /// The same of a laser that moves by `step` from one beam to the next, in its own frame; the cloud is seen from where the first beam was sent.
     ///
     /// # Errors
     /// Those of [`from_ranges`](Self::from_ranges), and for a step that is not finite.
-    pub fn from_moving_ranges(
+    pub fn from_ranges_deskewed(
         angle_min: f64,
         angle_increment: f64,
         ranges: &[f64],
@@ -86,10 +86,10 @@ impl Cloud {
     }
 
     /// The same scan in the frame of a robot that carries the laser at `mount`.
-    pub fn carried_at(self, mount: &Pose2<f64>) -> Self {
+    pub fn transformed(self, mount: &Pose2<f64>) -> Self {
         let rotation = mount.rotation_matrix();
         let points = self.points.iter().map(|point| mount.transform(point)).collect();
-        let carry = |surface: &Surface| Surface {
+        let carry = |surface: &SurfacePoint| SurfacePoint {
             at: mount.transform(&surface.at),
             normal: rotation * surface.normal,
             ..*surface
@@ -98,7 +98,7 @@ impl Cloud {
     }
 
     /// How many points of it lie on something straight.
-    pub fn n_surfaces(&self) -> usize {
+    pub fn n_surface_points(&self) -> usize {
         self.surfaces.len()
     }
 }

@@ -18,7 +18,7 @@
 //! let cloud = |x: f64| Cloud::from_ranges(-3.13, 0.0174, &scan(x), 20.0);
 //!
 //! let covariance = Matrix3::from_diagonal(&Vector3::new(0.01, 0.01, 0.01)); // σ 10 cm and 0.1 rad
-//! let odometry = Guess { pose: Pose2::new(0.15, 0.05, 0.1), covariance, others: &[] };
+//! let odometry = Guess { pose: Pose2::new(0.15, 0.05, 0.1), covariance, alternative_poses: &[] };
 //! let found = Matcher::new(Params::default())?.align(&cloud(0.0)?, &cloud(0.2)?, &odometry)?;
 //! assert!(Pose2::new(0.2, 0.0, 0.0).local(&found.pose).norm() < 0.01);
 //! # Ok::<(), wayfix_scan_match::ScanMatchError>(())

@@ -18,7 +18,7 @@ pub struct Guess<'a> {
     pub covariance: Matrix3<f64>,
     /// Poses to start from where the scans hardly fit near the guess: for wheels that slip, where the robot was, or where it would be if it had gone on
     /// as before.
-    pub others: &'a [Pose2<f64>],
+    pub alternative_poses: &'a [Pose2<f64>],
 }
 
 /// Where a scan was taken, seen from another one.
@@ -41,7 +41,7 @@ pub struct Alignment {
 /// A match needs so many points in either scan.
 const FEWEST_POINTS: usize = 10;
 /// Scans that have this share of points in common fit; below it, a search from elsewhere may find better.
-const WELL: f64 = 0.8;
+const GOOD_OVERLAP: f64 = 0.8;
 /// Degrees of freedom of the guess, $`ν`$.
 const TAIL: f64 = 4.0;
 /// The kernel narrows by this factor a step.
@@ -75,7 +75,7 @@ impl Matcher {
         cloud: &Cloud,
         guess: &Guess,
     ) -> Result<Alignment, ScanMatchError> {
-        let got = reference.n_surfaces().min(cloud.points.len());
+        let got = reference.n_surface_points().min(cloud.points.len());
         if got < FEWEST_POINTS {
             return Err(ScanMatchError::TooFewPoints { got, needed: FEWEST_POINTS });
         }
@@ -84,11 +84,11 @@ impl Matcher {
             prior.filter(|prior| guess.pose.is_finite() && prior.iter().all(|entry| entry.is_finite()));
         let prior = prior.ok_or(ScanMatchError::Guess)?;
         let search =
-            |start| self.search(reference, cloud, &guess.pose, &prior, start, self.params.first_kernel_m);
+            |start| self.search(reference, cloud, &guess.pose, &prior, start, self.params.initial_kernel_m);
         let mut found: Vec<Found> = self.starts(guess.covariance[(2, 2)].sqrt()).filter_map(search).collect();
-        let fits = |found: &Found| found.misfit.n_on_surface as f64 >= WELL * cloud.points.len() as f64;
+        let fits = |found: &Found| found.misfit.n_inliers as f64 >= GOOD_OVERLAP * cloud.points.len() as f64;
         if !found.iter().any(fits) {
-            let others = guess.others.iter().filter(|other| other.is_finite());
+            let others = guess.alternative_poses.iter().filter(|other| other.is_finite());
             found.extend(others.filter_map(|other| {
                 let start = guess.pose.local(other);
                 self.search(reference, cloud, &guess.pose, &prior, start, self.params.kernel_m) // near already
@@ -103,7 +103,7 @@ impl Matcher {
             information: misfit.information,
             information_vector: (misfit.information + prior / guess_scale) * correction,
             guess_scale,
-            overlap: misfit.n_on_surface as f64 / cloud.points.len() as f64,
+            overlap: misfit.n_inliers as f64 / cloud.points.len() as f64,
         })
     }
 

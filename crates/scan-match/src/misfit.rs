@@ -13,7 +13,7 @@ pub(crate) struct Misfit {
     /// $`\sum w J^T J`$: what the points know of the correction.
     pub(crate) information: Matrix3<f64>,
     /// Points that lie on a surface.
-    pub(crate) n_on_surface: usize,
+    pub(crate) n_inliers: usize,
 }
 
 impl Misfit {
@@ -31,7 +31,7 @@ impl Misfit {
     ) -> Self {
         let pose = guess.retract(correction);
         let by_guess = guess.rotation_matrix();
-        let share = (cloud.spacing / params.independent_rad).min(1.0) / params.sigma_m.powi(2);
+        let share = (cloud.spacing / params.correlation_angle_rad).min(1.0) / params.sigma_m.powi(2);
         let mut misfit = Self::default();
         let mut noise_of_normals = Matrix3::zeros();
         for point in &cloud.points {
@@ -55,7 +55,7 @@ impl Misfit {
             misfit.gradient += jacobian * (weight * distance);
             misfit.information += jacobian * jacobian.transpose() * weight;
             noise_of_normals += by_normal * by_normal.transpose() * (weight * surface.normal_variance);
-            misfit.n_on_surface += usize::from(distance.abs() < params.kernel_m);
+            misfit.n_inliers += usize::from(distance.abs() < params.kernel_m);
         }
         misfit.without_noise_of_normals(&noise_of_normals)
     }

@@ -19,11 +19,11 @@ pub struct Params {
     pub sigma_m: f64,
     /// Over this angle the errors of neighbouring points are one error, rad: a wall that bulges, a person's coat, an edge. A denser scan says
     /// no more. Default: 0.4.
-    pub independent_rad: f64,
+    pub correlation_angle_rad: f64,
     /// Misfit beyond which a point is rather something else, m: half its weight is lost at 0.64 of it. Default: 0.1.
     pub kernel_m: f64,
     /// The same at the beginning, m: how far off the guess may be. Default: 0.5.
-    pub first_kernel_m: f64,
+    pub initial_kernel_m: f64,
     /// Headings from which the search starts are this far apart, rad, over three deviations of the guess to either side. Default: 0.2.
     pub start_spacing_rad: f64,
     /// Steps of one search at most. Default: 30.
@@ -34,9 +34,9 @@ impl Default for Params {
     fn default() -> Self {
         Self {
             sigma_m: 0.03,
-            independent_rad: 0.4,
+            correlation_angle_rad: 0.4,
             kernel_m: 0.1,
-            first_kernel_m: 0.5,
+            initial_kernel_m: 0.5,
             start_spacing_rad: 0.2,
             max_steps: 30,
         }
@@ -51,9 +51,9 @@ impl Params {
     pub fn check(&self) -> Result<(), ScanMatchError> {
         for (what, value) in [
             ("sigma_m", self.sigma_m),
-            ("independent_rad", self.independent_rad),
+            ("correlation_angle_rad", self.correlation_angle_rad),
             ("kernel_m", self.kernel_m),
-            ("first_kernel_m", self.first_kernel_m),
+            ("initial_kernel_m", self.initial_kernel_m),
             ("start_spacing_rad", self.start_spacing_rad),
         ] {
             if !(1e-6..=1e3).contains(&value) {

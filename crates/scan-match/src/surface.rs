@@ -2,7 +2,7 @@ use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 
 /// A point of a scan on something that is straight around it, with the unit normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Surface {
+pub(crate) struct SurfacePoint {
     pub(crate) at: Vector2<f64>,
     pub(crate) normal: Vector2<f64>,
     /// How uncertain the direction of the normal is, rad².
@@ -19,11 +19,11 @@ const NEAR: (f64, f64) = (0.3, 0.1);
 const STRAIGHT: (f64, f64) = (0.05, 1e-4);
 
 /// What the points of a scan, in the order of the beams, show of surfaces.
-pub(crate) fn surfaces(points: &[Option<Vector2<f64>>]) -> Vec<Surface> {
+pub(crate) fn surfaces(points: &[Option<Vector2<f64>>]) -> Vec<SurfacePoint> {
     (0..points.len()).filter_map(|beam| surface(points, beam)).collect()
 }
 
-fn surface(points: &[Option<Vector2<f64>>], beam: usize) -> Option<Surface> {
+fn surface(points: &[Option<Vector2<f64>>], beam: usize) -> Option<SurfacePoint> {
     let at = points[beam]?;
     let reach = NEAR.0.max(NEAR.1 * at.norm());
     let window = &points[beam.saturating_sub(N_NEIGHBOURS)..points.len().min(beam + N_NEIGHBOURS + 1)];
@@ -40,7 +40,7 @@ fn surface(points: &[Option<Vector2<f64>>], beam: usize) -> Option<Surface> {
     let across = spread.eigenvalues.imin();
     let (across_variance, along_variance) = (spread.eigenvalues[across], spread.eigenvalues[1 - across]);
     let is_straight = across_variance <= STRAIGHT.0 * along_variance + STRAIGHT.1;
-    is_straight.then(|| Surface {
+    is_straight.then(|| SurfacePoint {
         at,
         normal: spread.eigenvectors.column(across).into_owned(),
         normal_variance: across_variance.max(0.0) / ((n - 2.0) * along_variance), // the slope of a line fit

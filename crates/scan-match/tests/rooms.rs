@@ -63,7 +63,11 @@ fn align(
     let clouds = [Pose2::new(0.0, 0.0, 0.0), *truth].map(|pose| scan(walls, &pose, &mut rng));
     let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
     matcher
-        .align(&clouds[0], &clouds[1], &Guess { pose: *guess, covariance: *covariance, others: &[] })
+        .align(
+            &clouds[0],
+            &clouds[1],
+            &Guess { pose: *guess, covariance: *covariance, alternative_poses: &[] },
+        )
         .expect("enough points")
 }
 
@@ -115,7 +119,7 @@ fn constant_motion_is_matched_despite_wrong_odometry() {
     let clouds = [Pose2::new(0.0, 0.0, 0.0), truth].map(|pose| scan(&hall, &pose, &mut rng));
     let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
     let error = |others: &[Pose2<f64>]| {
-        let guess = Guess { pose: guess, covariance: sigmas(0.1, 0.02), others };
+        let guess = Guess { pose: guess, covariance: sigmas(0.1, 0.02), alternative_poses: others };
         matcher.align(&clouds[0], &clouds[1], &guess).expect("enough points").pose.local(&truth).norm()
     };
     assert!(error(&[]) > 0.5, "{}", error(&[]));
@@ -160,9 +164,10 @@ fn a_laser_may_sit_anywhere_on_the_robot() {
     let mount = Pose2::new(0.4, -0.3, 0.7);
     let (start, end) = (Pose2::new(0.0, 0.0, 0.0), Pose2::new(0.1, 0.0, 0.4));
     let mut rng = ChaCha8Rng::seed_from_u64(21);
-    let mut cloud = |pose: &Pose2<f64>| scan(&room(), &pose.compose(&mount), &mut rng).carried_at(&mount);
+    let mut cloud = |pose: &Pose2<f64>| scan(&room(), &pose.compose(&mount), &mut rng).transformed(&mount);
     let (first, second) = (cloud(&start), cloud(&end));
-    let guess = Guess { pose: Pose2::new(0.05, 0.05, 0.3), covariance: sigmas(0.1, 0.1), others: &[] };
+    let guess =
+        Guess { pose: Pose2::new(0.05, 0.05, 0.3), covariance: sigmas(0.1, 0.1), alternative_poses: &[] };
     let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
     let error = matcher.align(&first, &second, &guess).expect("enough points").pose.local(&end);
     assert!(error.xy().norm() < 0.03 && error.z.abs() < 0.01, "{error}");
@@ -202,7 +207,11 @@ fn what_is_no_scan_is_refused() {
         let empty = cloud(0.0, 0.0174, &ranges, 10.0).expect("sound geometry");
         for pair in [(&sound, &empty), (&empty, &sound)] {
             let error = matcher
-                .align(pair.0, pair.1, &Guess { pose: guess, covariance: sigmas(0.1, 0.1), others: &[] })
+                .align(
+                    pair.0,
+                    pair.1,
+                    &Guess { pose: guess, covariance: sigmas(0.1, 0.1), alternative_poses: &[] },
+                )
                 .expect_err("nothing to match");
             assert!(matches!(error, ScanMatchError::TooFewPoints { needed: 10, .. }), "{error}");
         }
@@ -213,7 +222,7 @@ fn what_is_no_scan_is_refused() {
         (guess, Matrix3::from_element(f64::NAN)),
         (guess, -Matrix3::identity()),
     ] {
-        let guess = Guess { pose: guess, covariance, others: &[guess] };
+        let guess = Guess { pose: guess, covariance, alternative_poses: &[guess] };
         assert_eq!(matcher.align(&sound, &sound, &guess), Err(ScanMatchError::Guess));
     }
 }

@@ -7,10 +7,10 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::nalgebra::Vector2;
 use wayfix_scene_sim::random::{Source, Streams, deviate};
 use wayfix_scene_sim::route::Circle;
-use wayfix_scene_sim::sensor::{Moment, Reading, Sensor};
+use wayfix_scene_sim::sensor::{Reading, Sensor, TrueState};
 use wayfix_scene_sim::world::World;
 use wayfix_scene_sim::{SimError, Simulation, plane};
-use wayfix_sensor_log::{Data, Sighting, Target, TrueLandmark};
+use wayfix_sensor_log::{Data, Detection, Target, TrueLandmark};
 
 /// A beacon that circles the origin once a minute.
 struct WalkingBeacon;
@@ -33,14 +33,14 @@ impl Sensor for Receiver {
         1000
     }
 
-    fn sense(&mut self, moment: &Moment<'_>, streams: &mut Streams) -> Option<Reading> {
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
         let hear = |(target, point): (Target, Vector2<f64>)| {
             let (range, bearing) = plane::range_and_bearing(&moment.pose, &point);
             let noise = 0.5 * deviate::normal(streams.of(Source::Other(0)));
-            Sighting { target, range: range + noise, bearing: FRAC_PI_2.copysign(bearing) }
+            Detection { target, range: range + noise, bearing: FRAC_PI_2.copysign(bearing) }
         };
         let heard = moment.world.targets(moment.seconds()).into_iter().map(hear).collect();
-        Some(Reading { data: Data::Sightings(heard), late_ms: 0 })
+        Some(Reading { data: Data::Detections(heard), stamp_offset_ms: 0 })
     }
 }
 
@@ -48,10 +48,10 @@ fn main() -> Result<(), SimError> {
     let simulation = Simulation::new(&WalkingBeacon, Circle { radius_m: 3.0 }.route()?);
     let mut streams = Streams::new(ChaCha8Rng::seed_from_u64(1));
     let records = simulation.run(&mut [Box::new(Receiver)], &mut streams)?;
-    let heard: Vec<&Sighting> = records
+    let heard: Vec<&Detection> = records
         .iter()
         .filter_map(|record| match &record.data {
-            Data::Sightings(sightings) => sightings.first(),
+            Data::Detections(detections) => detections.first(),
             _ => None,
         })
         .collect();

@@ -3,7 +3,7 @@
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};
 use wayfix_scene_sim::league::{
-    LightField, Lighting, Photographer, Rgb, Scene, Surface, Venue, black_body, field_map,
+    CameraSimulator, LightField, Lighting, Rgb, Scene, Surface, Venue, black_body, field_map,
 };
 use wayfix_scene_sim::{SimError, space};
 use wayfix_sensor_log::EncodedImage;
@@ -30,12 +30,17 @@ fn main() -> Result<(), SimError> {
     let towards_sun = Vector3::new(-1.0, 0.0, 0.5).normalize();
     let sunset = Sunset { lamps: venue.light(Lighting::Dark), towards_sun };
     let camera = Pose3 { translation: Vector3::new(-1.5, 0.0, 0.25), rotation: space::pitch(0.25) };
-    let mut photographer = Photographer::new(venue.camera)?;
+    let mut camera_simulator = CameraSimulator::new(venue.camera)?;
     let mut photograph = |light: &dyn LightField| {
         let surfaces = Surface::of_map(&field_map()?);
         let scene = Scene { surfaces, paints: &venue.paints, light, backdrop: &venue.hall };
         let steady = Rgb::repeat(1.0);
-        Ok::<_, SimError>(photographer.take(&scene, [&camera; 2], &steady, &mut ChaCha8Rng::seed_from_u64(2)))
+        Ok::<_, SimError>(camera_simulator.take(
+            &scene,
+            [&camera; 2],
+            &steady,
+            &mut ChaCha8Rng::seed_from_u64(2),
+        ))
     };
     let (plain, sunny) = (photograph(venue.light(Lighting::Dark))?, photograph(&sunset)?);
     assert_eq!(plain.labels, sunny.labels, "light moves nothing");

@@ -13,7 +13,7 @@
 //!
 //! * **The truth is nobody's model.** Two wheels with motors that lag, slip that hangs together in time and radii that are not as
 //!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
-//!   [`GaussianOdometry`](sensor::GaussianOdometry) and the default [`RangeBearing`](sensor::RangeBearing) match what an extended
+//!   [`GaussianOdometry`](sensor::GaussianOdometry) and the default [`RangeBearingDetector`](sensor::RangeBearingDetector) match what an extended
 //!   Kalman filter assumes, for tests of its consistency.
 //! * **A laser** ([`sensor::Laser`]) casts its beams against the walls of a plan, such as [`world::OfficeFloor`]; it mixes what a beam hits on an edge, loses
 //!   and invents echoes, meets people, and rounds.

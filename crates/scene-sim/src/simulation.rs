@@ -3,7 +3,7 @@ use wayfix_sensor_log::{Data, Record, Stamp, TrueWall};
 use crate::drive::{DifferentialDrive, DriveParams, Pursuit};
 use crate::random::Streams;
 use crate::route::Route;
-use crate::sensor::{Moment, Sensor};
+use crate::sensor::{Sensor, TrueState};
 use crate::world::World;
 use crate::{SimError, check};
 
@@ -72,7 +72,7 @@ impl<'a> Simulation<'a> {
         let mut driver = Pursuit::default();
         let mut records = self.surveyed();
         for milliseconds in 0..=self.duration_ms {
-            let moment = Moment {
+            let moment = TrueState {
                 milliseconds,
                 pose: robot.pose(),
                 wheel_angles: robot.wheel_angles(),
@@ -106,7 +106,7 @@ impl<'a> Simulation<'a> {
     /// Whatever is due at this moment.
     fn log(
         &self,
-        moment: &Moment<'_>,
+        moment: &TrueState<'_>,
         sensors: &mut [Box<dyn Sensor>],
         streams: &mut Streams,
         records: &mut Vec<Record>,
@@ -117,13 +117,14 @@ impl<'a> Simulation<'a> {
         }
         for sensor in sensors.iter_mut().filter(|sensor| is_due(sensor.period_ms())) {
             if let Some(reading) = sensor.sense(moment, streams) {
-                records.push(Record { stamp: self.stamp(moment, reading.late_ms), data: reading.data });
+                records
+                    .push(Record { stamp: self.stamp(moment, reading.stamp_offset_ms), data: reading.data });
             }
         }
     }
 
-    fn stamp(&self, moment: &Moment<'_>, late_ms: i64) -> Stamp {
-        let after_start = moment.milliseconds.saturating_add_signed(late_ms);
+    fn stamp(&self, moment: &TrueState<'_>, stamp_offset_ms: i64) -> Stamp {
+        let after_start = moment.milliseconds.saturating_add_signed(stamp_offset_ms);
         Stamp::from_nanoseconds(
             self.start.nanoseconds().saturating_add(after_start.saturating_mul(1_000_000)),
         )

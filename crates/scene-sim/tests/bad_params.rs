@@ -13,7 +13,7 @@ use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams
 use wayfix_scene_sim::sensor::{
     GaussianOdometryParams, LaserParams, RangeBearingParams, Sensor, WheelOdometryParams,
 };
-use wayfix_scene_sim::sensor::{Moment, Reading};
+use wayfix_scene_sim::sensor::{Reading, TrueState};
 use wayfix_scene_sim::world::{CorridorLoop, Office, OfficeFloor, Roadside, UniformField};
 use wayfix_scene_sim::{Scenario, ScenarioParams, SimError, Simulation};
 
@@ -32,8 +32,8 @@ fn assert_refused(result: Result<(), SimError>, value: f64) {
 fn sensor_parameters() {
     let honest = RangeBearingParams::default();
     for bad in BAD {
-        let sigma = RangeSigma { constant_m: bad, per_metre: 0.0 };
-        let growth = RangeSigma { constant_m: 0.1, per_metre: bad };
+        let sigma = RangeSigma { constant_m: bad, per_meter: 0.0 };
+        let growth = RangeSigma { constant_m: 0.1, per_meter: bad };
         let drift = |correlation_time_s, bearing_sigma_rad| DriftParams {
             correlation_time_s,
             bearing_sigma_rad,
@@ -76,7 +76,7 @@ fn laser_parameters() {
         for params in [
             LaserParams { max_range_m: bad, ..honest },
             LaserParams { no_echo_m: bad, ..honest },
-            LaserParams { range_noise: RangeSigma { constant_m: bad, per_metre: 0.0 }, ..honest },
+            LaserParams { range_noise: RangeSigma { constant_m: bad, per_meter: 0.0 }, ..honest },
             LaserParams { tail: Tail::StudentT { degrees_of_freedom: bad }, ..honest },
             LaserParams { bearing_sigma_rad: bad, ..honest },
             LaserParams { quantum_m: bad, ..honest },
@@ -264,7 +264,7 @@ impl Sensor for Stopped {
     fn period_ms(&self) -> u32 {
         0
     }
-    fn sense(&mut self, _: &Moment<'_>, _: &mut wayfix_scene_sim::random::Streams) -> Option<Reading> {
+    fn sense(&mut self, _: &TrueState<'_>, _: &mut wayfix_scene_sim::random::Streams) -> Option<Reading> {
         None
     }
 }

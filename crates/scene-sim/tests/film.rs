@@ -109,14 +109,14 @@ fn rectangle_is_brighter_beyond_the_lamp() {
 fn the_neck_goes_in_and_out_and_looks_like_the_shell() {
     let (mut least, mut most) = (usize::MAX, 0);
     for frame in shown("snail", Incident::None) {
-        let overlap = frame.target.pixels().iter().zip(frame.decoy.pixels()).filter(|(a, b)| **a && **b);
+        let overlap = frame.target.pixels().iter().zip(frame.distractor.pixels()).filter(|(a, b)| **a && **b);
         assert_eq!(overlap.count(), 0);
-        (least, most) = (least.min(frame.decoy.area()), most.max(frame.decoy.area()));
-        if frame.decoy.area() > 300 {
+        (least, most) = (least.min(frame.distractor.area()), most.max(frame.distractor.area()));
+        if frame.distractor.area() > 300 {
             let pixels = frame.picture.rgb.chunks_exact(3);
             let all =
                 pixels.fold([0.0; 3], |sum, rgb| [0, 1, 2].map(|c| sum[c] + f64::from(rgb[c]) / 76_800.0));
-            let [shell, neck] = [&frame.target, &frame.decoy].map(|part| mean_color(&frame, part));
+            let [shell, neck] = [&frame.target, &frame.distractor].map(|part| mean_color(&frame, part));
             assert!(apart(neck, shell) < apart(all, shell), "{neck:?} {shell:?} {all:?}");
         }
     }

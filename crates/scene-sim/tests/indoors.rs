@@ -4,8 +4,8 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::drive::DriveParams;
 use wayfix_scene_sim::indoors::{
-    AmbienceParams, Building, IndoorDrive, IndoorParams, IndoorStep, Lab, Mirror, OmniCameraParams, Store,
-    StoreParams, calibrated_robot,
+    AmbientLightParams, Building, IndoorDrive, IndoorParams, IndoorStep, Lab, Mirror, OmniCameraParams,
+    Store, StoreParams, calibrated_robot,
 };
 use wayfix_scene_sim::random::Streams;
 use wayfix_scene_sim::scenery::RgbPicture;
@@ -29,7 +29,7 @@ fn tour(building: &Building, params: IndoorParams, length_m: f64, seed: u64) -> 
 
 fn look(building: &Building, pose: Pose2<f64>) -> RgbPicture {
     let camera = OmniCameraParams { noise: 0.0, ..OmniCameraParams::default() };
-    building.look(&pose, camera, &mut rng()).expect("the camera is sound")
+    building.render_view(&pose, camera, &mut rng()).expect("the camera is sound")
 }
 
 /// Root mean square difference, grey values.
@@ -99,9 +99,9 @@ fn people_and_the_light_do_not_disturb_where_the_robot_drives() {
     let poses = |params| {
         tour(&building, params, 20.0, 1).iter().map(|step| (step.pose, step.odometry)).collect::<Vec<_>>()
     };
-    let ambience = AmbienceParams { switching_s: Some(1.0), ..AmbienceParams::default() };
+    let ambient_light = AmbientLightParams { switching_s: Some(1.0), ..AmbientLightParams::default() };
     assert_eq!(
-        poses(IndoorParams { n_people: 9, ambience, ..IndoorParams::default() }),
+        poses(IndoorParams { n_people: 9, ambient_light, ..IndoorParams::default() }),
         poses(IndoorParams::default())
     );
 }
@@ -168,8 +168,9 @@ fn switching_changes_the_lab_and_leaves_the_default_alone() {
     let building = Lab::draw(&mut rng()).building();
     let creeping = DriveParams { speed_mps: 1e-4, ..IndoorParams::default().drive };
     let change = |switching_s| {
-        let ambience = AmbienceParams { switching_s, daylight_sigma: 0.0, ..AmbienceParams::default() };
-        let params = IndoorParams { drive: creeping, ambience, ..IndoorParams::default() };
+        let ambient_light =
+            AmbientLightParams { switching_s, daylight_sigma: 0.0, ..AmbientLightParams::default() };
+        let params = IndoorParams { drive: creeping, ambient_light, ..IndoorParams::default() };
         let route = building.aisles().tour(1.0, &mut rng()).expect("there are aisles");
         let drive = IndoorDrive::new(&building, route, params, Streams::new(rng())).expect("sound");
         let views: Vec<RgbPicture> = drive.take(120).map(|step| step.view).collect();
@@ -233,9 +234,9 @@ fn numbers_without_a_meaning_are_refused() {
         OmniCameraParams { height_m: 9.0, ..camera },
         OmniCameraParams { noise: -1.0, ..camera },
     ] {
-        assert!(building.look(&aisles.station(), bad, &mut rng()).is_err(), "{bad:?}");
+        assert!(building.render_view(&aisles.station(), bad, &mut rng()).is_err(), "{bad:?}");
     }
-    assert!(building.look(&Pose2::new(f64::NAN, 0.0, 0.0), camera, &mut rng()).is_err());
+    assert!(building.render_view(&Pose2::new(f64::NAN, 0.0, 0.0), camera, &mut rng()).is_err());
     let standing = DriveParams { speed_mps: 0.0, ..DriveParams::default() };
     let params = IndoorParams::default();
     for bad in [
@@ -244,7 +245,7 @@ fn numbers_without_a_meaning_are_refused() {
         IndoorParams { view_period_ms: 0, ..params },
         IndoorParams { n_people: 1 << 20, ..params },
         IndoorParams {
-            ambience: AmbienceParams { switching_s: Some(0.0), ..AmbienceParams::default() },
+            ambient_light: AmbientLightParams { switching_s: Some(0.0), ..AmbientLightParams::default() },
             ..params
         },
     ] {

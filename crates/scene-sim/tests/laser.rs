@@ -8,7 +8,7 @@ use support::{assert_near, assert_share, deviation, mean, streams};
 use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_scene_sim::sensor::laser::People;
 use wayfix_scene_sim::sensor::range_bearing::RangeSigma;
-use wayfix_scene_sim::sensor::{Laser, LaserParams, Moment, Sensor};
+use wayfix_scene_sim::sensor::{Laser, LaserParams, Sensor, TrueState};
 use wayfix_scene_sim::world::{Plan, PlanarWorld, Wall};
 use wayfix_sensor_log::{Data, LaserScan};
 
@@ -39,7 +39,7 @@ fn scans(params: LaserParams, walls: Vec<Wall>, n: u64, seed: u64) -> Vec<LaserS
     (0..n)
         .map(|k| {
             let pose = Pose2::new(0.0, 0.0, 0.0);
-            let moment = Moment { milliseconds: k * 200, pose, wheel_angles: [0.0; 2], world: &world };
+            let moment = TrueState { milliseconds: k * 200, pose, wheel_angles: [0.0; 2], world: &world };
             match laser.sense(&moment, &mut streams).map(|reading| reading.data) {
                 Some(Data::Scan(scan)) => scan,
                 other => unreachable!("a laser only makes scans, not {other:?}"),
@@ -66,7 +66,7 @@ fn without_errors_a_beam_ends_on_the_nearest_wall() {
 fn a_turned_and_moved_robot_sees_the_same_wall_from_there() {
     let world = PlanarWorld::new(Plan { landmarks: vec![], walls: vec![wall((-50.0, 3.0), (50.0, 3.0))] });
     let pose = Pose2::new(7.0, 1.0, FRAC_PI_2);
-    let moment = Moment { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
+    let moment = TrueState { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
     let reading = Laser::new(exact()).expect("valid").sense(&moment, &mut streams(1));
     let Some(Data::Scan(scan)) = reading.map(|reading| reading.data) else { panic!("no scan") };
     assert!((scan.ranges[90] - 2.0).abs() < 1e-9 && (scan.ranges[30] - 4.0).abs() < 1e-9);
@@ -76,7 +76,7 @@ fn a_turned_and_moved_robot_sees_the_same_wall_from_there() {
 fn ranges_err_as_stated_and_are_whole_centimetres() {
     let noisy = LaserParams {
         range_bias_m: 0.02,
-        range_noise: RangeSigma { constant_m: 0.03, per_metre: 0.0 },
+        range_noise: RangeSigma { constant_m: 0.03, per_meter: 0.0 },
         ..exact()
     };
     let ahead = |params| -> Vec<f64> {

@@ -59,12 +59,12 @@ fn as_a_log_it_says_the_same() {
     let run = &runs(params, 1)[0];
     let records = run.records(Stamp::from_nanoseconds(0), 100);
     let mut looks = records.iter().filter_map(|r| match &r.data {
-        Data::Sightings(sightings) => Some(sightings),
+        Data::Detections(detections) => Some(detections),
         _ => None,
     });
     for ranges in &run.ranges {
-        for (sighting, range) in looks.next().expect("a look for every position").iter().zip(ranges) {
-            assert!((sighting.range * libm::cos(sighting.bearing) - range).abs() < 1e-12);
+        for (detection, range) in looks.next().expect("a look for every position").iter().zip(ranges) {
+            assert!((detection.range * libm::cos(detection.bearing) - range).abs() < 1e-12);
         }
     }
     let travelled: f64 = records

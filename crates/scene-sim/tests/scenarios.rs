@@ -6,11 +6,11 @@ use std::collections::BTreeSet;
 
 use support::run;
 use wayfix_scene_sim::Scenario;
-use wayfix_sensor_log::{Data, Record, Sighting, Target};
+use wayfix_sensor_log::{Data, Detection, Record, Target};
 
-fn sightings(records: &[Record]) -> Vec<Sighting> {
+fn detections(records: &[Record]) -> Vec<Detection> {
     let of = |record: &Record| match &record.data {
-        Data::Sightings(sightings) => sightings.clone(),
+        Data::Detections(detections) => detections.clone(),
         _ => vec![],
     };
     records.iter().flat_map(of).collect()
@@ -21,23 +21,23 @@ fn count(records: &[Record], is: fn(&Data) -> bool) -> usize {
 }
 
 fn seen_landmarks(records: &[Record]) -> usize {
-    let landmark = |s: &Sighting| match s.target {
+    let landmark = |s: &Detection| match s.target {
         Target::Landmark(id) => Some(id),
         _ => None,
     };
-    sightings(records).iter().filter_map(landmark).collect::<BTreeSet<_>>().len()
+    detections(records).iter().filter_map(landmark).collect::<BTreeSet<_>>().len()
 }
 
 #[test]
 fn all_have_truth_sightings_and_a_bounded_size() {
     for scenario in Scenario::all().into_iter().filter(|scenario| scenario.name != "office_laser") {
         let records = run(scenario.name, scenario.seed);
-        let (n_records, n_sightings) = (records.len(), sightings(&records).len());
-        println!("{}: {n_records} records, {n_sightings} sightings", scenario.name);
+        let (n_records, n_detections) = (records.len(), detections(&records).len());
+        println!("{}: {n_records} records, {n_detections} detections", scenario.name);
         assert!(count(&records, |d| matches!(d, Data::TruePose(_))) > 100, "{}", scenario.name);
         assert!(count(&records, |d| matches!(d, Data::TrueLandmark(_))) > 0, "{}", scenario.name);
-        // Fixtures are to stay below 1 MB each; a record takes about 100 bytes of MCAP and a sighting 60.
-        assert!(n_records * 100 + n_sightings * 60 < 1_000_000, "{}", scenario.name);
+        // Fixtures are to stay below 1 MB each; a record takes about 100 bytes of MCAP and a detection 60.
+        assert!(n_records * 100 + n_detections * 60 < 1_000_000, "{}", scenario.name);
     }
 }
 
@@ -76,17 +76,17 @@ fn each_is_what_its_name_says() {
     assert!(seen_landmarks(&records) >= 30);
     assert_eq!(count(&records, |d| matches!(d, Data::OdometryIncrement(_))), 500);
 
-    let unlabelled = sightings(&run("loop_unlabelled", 2));
+    let unlabelled = detections(&run("loop_unlabelled", 2));
     assert!(!unlabelled.is_empty() && unlabelled.iter().all(|s| s.target == Target::Unlabelled));
 
     let office = run("office_velocity", 3);
     assert!(count(&office, |d| matches!(d, Data::Velocity(_))) == 3000 && seen_landmarks(&office) == 15);
-    let kinds = |is: fn(&Target) -> bool| sightings(&office).iter().filter(|s| is(&s.target)).count();
+    let kinds = |is: fn(&Target) -> bool| detections(&office).iter().filter(|s| is(&s.target)).count();
     assert!(kinds(|t| matches!(t, Target::Robot(2 | 3))) > 20);
     assert!(kinds(|t| matches!(t, Target::UnknownCode(_))) > 20);
 
     let rough = run("rough_known", 4);
-    assert!(count(&rough, |d| matches!(d, Data::Sightings(_))) < 481, "some looks are lost");
+    assert!(count(&rough, |d| matches!(d, Data::Detections(_))) < 481, "some looks are lost");
 
     let long = run("long_loop", 5);
     assert!(seen_landmarks(&long) >= 45);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use wayfix_scene_sim::SimError;
-use wayfix_scene_sim::scenery::{RgbPicture, Scenery, Visit};
+use wayfix_scene_sim::scenery::{ImagingConditions, RgbPicture, Scenery};
 
 fn lab() -> (Scenery, RgbPicture) {
     let lab = Scenery::named("lab").unwrap();
@@ -11,8 +11,14 @@ fn lab() -> (Scenery, RgbPicture) {
 }
 
 /// Nothing but a change of place: every other step of a visit does as little as it can.
-fn aside(shift_px: (f64, f64)) -> Visit {
-    Visit { shift_px, gamma: 1.0, levels: (0.0, 255.0), noise: 0.0, ..Visit::dimmed() }
+fn aside(shift_px: (f64, f64)) -> ImagingConditions {
+    ImagingConditions {
+        shift_px,
+        gamma: 1.0,
+        levels: (0.0, 255.0),
+        noise: 0.0,
+        ..ImagingConditions::dimmed()
+    }
 }
 
 fn grey(picture: &RgbPicture, x: usize, y: usize) -> [u8; 3] {
@@ -38,7 +44,7 @@ fn scenes_have_room_for_the_states_of_the_paper() {
 fn scenes_and_visits_are_the_same_every_time() {
     let (lab, learned) = lab();
     assert_eq!(lab.compose(), learned);
-    let visit = |seed| Visit::default().picture_of(&learned, seed).unwrap();
+    let visit = |seed| ImagingConditions::default().picture_of(&learned, seed).unwrap();
     assert_eq!(visit(3), visit(3));
     assert_ne!(visit(3), visit(4), "noise comes from the seed");
     assert_ne!(Scenery { seed: lab.seed + 1, ..lab }.compose(), learned);
@@ -58,7 +64,8 @@ fn a_shift_alone_moves_the_picture() {
 #[test]
 fn light_is_not_the_same_everywhere() {
     let white = RgbPicture { width: 300, height: 200, rgb: vec![150; 3 * 300 * 200] };
-    let seen = Visit { noise: 0.0, ..Visit::default() }.picture_of(&white, 1).unwrap();
+    let seen =
+        ImagingConditions { noise: 0.0, ..ImagingConditions::default() }.picture_of(&white, 1).unwrap();
     let (middle, corner) = (grey(&seen, 150, 100), grey(&seen, 0, 0));
     assert!((0..3).all(|c| middle[c] >= corner[c] + 3), "{middle:?} {corner:?}");
     assert!(middle[0] > middle[1] && middle[1] > middle[2], "a warm cast");
@@ -69,7 +76,8 @@ fn light_is_not_the_same_everywhere() {
 fn a_dimmed_visit_is_gain_offset_and_gamma() {
     for value in [0_u8, 64, 150, 255] {
         let flat = RgbPicture { width: 4, height: 4, rgb: vec![value; 48] };
-        let seen = Visit { noise: 0.0, ..Visit::dimmed() }.picture_of(&flat, 1).unwrap();
+        let seen =
+            ImagingConditions { noise: 0.0, ..ImagingConditions::dimmed() }.picture_of(&flat, 1).unwrap();
         let expected = 20.0 + 0.7 * 255.0 * (f64::from(value) / 255.0).powf(1.3);
         assert!((f64::from(seen.rgb[0]) - expected).abs() <= 0.51, "{value}: {} {expected}", seen.rgb[0]);
     }
@@ -79,18 +87,18 @@ fn a_dimmed_visit_is_gain_offset_and_gamma() {
 fn meaningless_visits_are_refused() {
     let (_, learned) = lab();
     let bad = [
-        Visit { shift_px: (f64::NAN, 0.0), ..Visit::default() },
-        Visit { cast: [1.0, 0.0, 1.0], ..Visit::default() },
-        Visit { falloff: 1.1, ..Visit::default() },
-        Visit { exposure: -1.0, ..Visit::default() },
-        Visit { gamma: 0.0, ..Visit::default() },
-        Visit { steepness: 0.0, ..Visit::default() },
-        Visit { levels: (100.0, 90.0), ..Visit::default() },
-        Visit { noise: f64::INFINITY, ..Visit::default() },
+        ImagingConditions { shift_px: (f64::NAN, 0.0), ..ImagingConditions::default() },
+        ImagingConditions { cast: [1.0, 0.0, 1.0], ..ImagingConditions::default() },
+        ImagingConditions { falloff: 1.1, ..ImagingConditions::default() },
+        ImagingConditions { exposure: -1.0, ..ImagingConditions::default() },
+        ImagingConditions { gamma: 0.0, ..ImagingConditions::default() },
+        ImagingConditions { steepness: 0.0, ..ImagingConditions::default() },
+        ImagingConditions { levels: (100.0, 90.0), ..ImagingConditions::default() },
+        ImagingConditions { noise: f64::INFINITY, ..ImagingConditions::default() },
     ];
     for visit in bad {
         assert!(matches!(visit.picture_of(&learned, 1), Err(SimError::Parameter { .. })), "{visit:?}");
     }
     let torn = RgbPicture { rgb: vec![0; 5], ..learned };
-    assert!(Visit::default().picture_of(&torn, 1).is_err());
+    assert!(ImagingConditions::default().picture_of(&torn, 1).is_err());
 }

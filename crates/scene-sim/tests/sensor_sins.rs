@@ -4,12 +4,12 @@ mod support;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use support::{assert_near, assert_share, deviation, looks, mean, sightings, streams, world};
+use support::{assert_near, assert_share, detections, deviation, looks, mean, streams, world};
 use wayfix_scene_sim::random::Tail;
 use wayfix_scene_sim::sensor::RangeBearingParams;
 use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
 use wayfix_scene_sim::world::{PlanarWorld, Wall};
-use wayfix_sensor_log::{Sighting, Target};
+use wayfix_sensor_log::{Detection, Target};
 
 const N: u64 = 40_000;
 const SEED: u64 = 20_05;
@@ -26,17 +26,17 @@ fn ahead() -> PlanarWorld {
     world(&[(5.0, 0.0)])
 }
 
-fn ranges(seen: &[Sighting]) -> Vec<f64> {
+fn ranges(seen: &[Detection]) -> Vec<f64> {
     seen.iter().map(|s| s.range).collect()
 }
 
-fn bearings(seen: &[Sighting]) -> Vec<f64> {
+fn bearings(seen: &[Detection]) -> Vec<f64> {
     seen.iter().map(|s| s.bearing).collect()
 }
 
 #[test]
 fn the_default_noise_is_that_of_the_shared_logs() {
-    let seen = sightings(honest(), &ahead(), N, SEED);
+    let seen = detections(honest(), &ahead(), N, SEED);
     let n = (N as f64).sqrt();
     assert_near("mean range", mean(&ranges(&seen)), 5.0, 0.05 / n);
     assert_near("σ of range", deviation(&ranges(&seen)), 0.05, 0.05 / (2.0_f64.sqrt() * n));
@@ -50,7 +50,7 @@ fn heavy_tails_keep_sigma_and_have_the_stated_kurtosis() {
     for (tail, kurtosis) in
         [(Tail::Laplace, 6.0), (Tail::StudentT { degrees_of_freedom: 10.0 }, 4.0), (Tail::Gaussian, 3.0)]
     {
-        let seen = ranges(&sightings(RangeBearingParams { tail, ..honest() }, &ahead(), N, SEED));
+        let seen = ranges(&detections(RangeBearingParams { tail, ..honest() }, &ahead(), N, SEED));
         let standard_error = 0.05 * ((kurtosis - 1.0) / (4.0 * N as f64)).sqrt();
         assert_near("σ", deviation(&seen), 0.05, standard_error);
         let fourth = mean(&seen.iter().map(|r| ((r - 5.0) / 0.05).powi(4)).collect::<Vec<_>>());
@@ -61,10 +61,10 @@ fn heavy_tails_keep_sigma_and_have_the_stated_kurtosis() {
 
 #[test]
 fn noise_grows_with_range() {
-    let growing = RangeSigma { constant_m: 0.01, per_metre: 0.02 };
+    let growing = RangeSigma { constant_m: 0.01, per_meter: 0.02 };
     let params = RangeBearingParams { range_noise: growing, ..honest() };
     for range in [1.0, 7.0] {
-        let seen = ranges(&sightings(params, &world(&[(range, 0.0)]), N, SEED));
+        let seen = ranges(&detections(params, &world(&[(range, 0.0)]), N, SEED));
         let sigma = 0.01 + 0.02 * range;
         assert_near("σ", deviation(&seen), sigma, sigma / (2.0 * N as f64).sqrt());
     }
@@ -74,31 +74,31 @@ fn noise_grows_with_range() {
 fn scale_and_bias_shift_every_reading() {
     let params =
         RangeBearingParams { range_bias_m: 0.2, range_scale: 1.1, bearing_bias_rad: -0.3, ..silent() };
-    let seen = sightings(params, &ahead(), 1, SEED);
+    let seen = detections(params, &ahead(), 1, SEED);
     assert!((seen[0].range - 5.7).abs() < 1e-12 && (seen[0].bearing + 0.3).abs() < 1e-12, "{seen:?}");
 }
 
 #[test]
 fn bearings_stay_wrapped() {
     let params = RangeBearingParams { bearing_bias_rad: 0.1, ..silent() };
-    let seen = sightings(params, &world(&[(-5.0, 0.1)]), 1, SEED);
+    let seen = detections(params, &world(&[(-5.0, 0.1)]), 1, SEED);
     assert!((seen[0].bearing - (0.1 - 0.02 - PI)).abs() < 1e-5, "beyond π comes out near −π: {seen:?}");
 }
 
 #[test]
 fn drift_has_stated_size_and_correlation_time_per_target() {
     let drift = DriftParams {
-        range: RangeSigma { constant_m: 0.1, per_metre: 0.0 },
+        range: RangeSigma { constant_m: 0.1, per_meter: 0.0 },
         bearing_sigma_rad: 0.02,
         correlation_time_s: 2.0,
     };
     let params = RangeBearingParams { drift, ..silent() };
     let two = world(&[(5.0, -1.0), (5.0, 1.0)]);
-    let looks: Vec<Vec<Sighting>> =
+    let looks: Vec<Vec<Detection>> =
         looks(params, &two, N, &mut streams(SEED)).into_iter().flatten().collect();
     let errors = |id: u32| -> Vec<f64> {
         let range = 26.0_f64.sqrt();
-        let of_id = |look: &Vec<Sighting>| look.iter().find(|s| s.target == Target::Landmark(id)).copied();
+        let of_id = |look: &Vec<Detection>| look.iter().find(|s| s.target == Target::Landmark(id)).copied();
         looks.iter().filter_map(of_id).map(|s| s.range - range).collect()
     };
     let (first, second) = (errors(0), errors(1));
@@ -121,21 +121,21 @@ fn drift_has_stated_size_and_correlation_time_per_target() {
 #[test]
 fn outliers_drop_outs_and_misses_come_in_the_shares_asked_for() {
     let n = N as usize;
-    let outliers = sightings(RangeBearingParams { outlier_share: 0.05, ..silent() }, &ahead(), N, SEED);
+    let outliers = detections(RangeBearingParams { outlier_share: 0.05, ..silent() }, &ahead(), N, SEED);
     assert_share("outliers", outliers.iter().filter(|s| (s.range - 5.0).abs() > 1e-9).count(), n, 0.05);
 
     let params = RangeBearingParams { dropout_share: 0.1, ..silent() };
     let lost = looks(params, &ahead(), N, &mut streams(SEED)).iter().filter(|look| look.is_none()).count();
     assert_share("lost looks", lost, n, 0.1);
 
-    let seen = sightings(RangeBearingParams { missed_share: 0.2, ..silent() }, &ahead(), N, SEED);
+    let seen = detections(RangeBearingParams { missed_share: 0.2, ..silent() }, &ahead(), N, SEED);
     assert_share("missed", n - seen.len(), n, 0.2);
 }
 
 #[test]
 fn outliers_are_anywhere_in_view() {
     let params = RangeBearingParams { outlier_share: 1.0, field_of_view_rad: FRAC_PI_2, ..silent() };
-    let seen = sightings(params, &ahead(), N, SEED);
+    let seen = detections(params, &ahead(), N, SEED);
     let (low, high) = (params.min_range_m, params.max_range_m);
     let of_uniform = |width: f64| width / 12.0_f64.sqrt() / (N as f64).sqrt();
     assert_near("mean range", mean(&ranges(&seen)), 0.5 * (low + high), of_uniform(high - low));
@@ -167,20 +167,20 @@ fn clutter_is_poisson_and_passes_for_what_was_asked() {
 fn mislabelled_sightings_bear_another_landmarks_identity() {
     let three = world(&[(5.0, 0.0), (0.0, 5.0), (0.0, -5.0)]);
     let params = RangeBearingParams { mislabelled_share: 0.1, ..silent() };
-    let seen = sightings(params, &three, N, SEED);
+    let seen = detections(params, &three, N, SEED);
     let first: Vec<Target> = seen.iter().filter(|s| s.bearing.abs() < 0.1).map(|s| s.target).collect();
     let count = |id| first.iter().filter(|t| **t == Target::Landmark(id)).count();
     assert_share("right", count(0), first.len(), 0.9);
     assert_share("as the second", count(1), first.len(), 0.05);
     assert_share("as the third", count(2), first.len(), 0.05);
     let alone = RangeBearingParams { mislabelled_share: 1.0, ..silent() };
-    assert_eq!(sightings(alone, &ahead(), 1, SEED)[0].target, Target::Landmark(0), "nobody else to be");
+    assert_eq!(detections(alone, &ahead(), 1, SEED)[0].target, Target::Landmark(0), "nobody else to be");
 }
 
 #[test]
 fn an_unlabelled_sensor_tells_nothing_apart() {
     let params = RangeBearingParams { labelled: false, mislabelled_share: 0.5, ..honest() };
-    let seen = sightings(params, &world(&[(5.0, 0.0), (0.0, 5.0)]), 100, SEED);
+    let seen = detections(params, &world(&[(5.0, 0.0), (0.0, 5.0)]), 100, SEED);
     assert_eq!(seen.len(), 200);
     assert!(seen.iter().all(|s| s.target == Target::Unlabelled));
 }
@@ -191,7 +191,7 @@ fn range_view_and_walls_limit_what_is_seen() {
         RangeBearingParams { min_range_m: 1.0, max_range_m: 6.0, field_of_view_rad: FRAC_PI_2, ..silent() };
     let mut scene = world(&[(0.9, 0.0), (5.9, 0.0), (6.1, 0.0), (3.0, 2.9), (3.0, 3.1), (3.0, -1.0)]);
     let ids = |scene: &PlanarWorld| -> Vec<Target> {
-        sightings(params, scene, 1, SEED).iter().map(|s| s.target).collect()
+        detections(params, scene, 1, SEED).iter().map(|s| s.target).collect()
     };
     assert_eq!(ids(&scene), [Target::Landmark(5), Target::Landmark(1), Target::Landmark(3)]);
     let point = wayfix_estimation_traits::nalgebra::Vector2::new;

@@ -7,7 +7,7 @@ use wayfix_scene_sim::random::Tail;
 use wayfix_scene_sim::sensor::RangeBearingParams;
 use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
 use wayfix_scene_sim::{Scenario, ScenarioParams};
-use wayfix_sensor_log::{Data, Record, Sighting, Target};
+use wayfix_sensor_log::{Data, Detection, Record, Target};
 
 #[test]
 fn the_same_seed_gives_the_same_bits_and_another_seed_does_not() {
@@ -19,10 +19,10 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_does_not() {
     }
 }
 
-/// Sightings of the one landmark, look by look, with whatever sins.
-fn of_the_landmark(params: RangeBearingParams) -> Vec<Option<Sighting>> {
+/// Detections of the one landmark, look by look, with whatever sins.
+fn of_the_landmark(params: RangeBearingParams) -> Vec<Option<Detection>> {
     let two = world(&[(5.0, 0.0), (0.0, 5.0)]);
-    let of_it = |look: Vec<Sighting>| look.into_iter().find(|s| s.target == Target::Landmark(0));
+    let of_it = |look: Vec<Detection>| look.into_iter().find(|s| s.target == Target::Landmark(0));
     looks(params, &two, 500, &mut streams(3)).into_iter().map(|look| look.and_then(of_it)).collect()
 }
 
@@ -42,7 +42,7 @@ fn switching_one_sin_on_leaves_the_draws_of_the_others() {
     ] {
         let pairs: Vec<_> = plain.iter().zip(of_the_landmark(sinful)).collect();
         let same = pairs.iter().filter(|(plain, sinful)| **plain == *sinful).count();
-        // Binomial with share 0.7 (for mislabelling a little less: the other landmark may lend its sighting).
+        // Binomial with share 0.7 (for mislabelling a little less: the other landmark may lend its detection).
         assert!(same >= 280, "{what} disturbed {} of 500 looks", 500 - same);
         assert!(same < 500 || what == "clutter", "{what} did nothing");
     }
@@ -53,7 +53,7 @@ fn drift_and_tails_leave_the_other_draws_too() {
     let honest = RangeBearingParams::default();
     let bearings =
         |params| -> Vec<f64> { of_the_landmark(params).iter().flatten().map(|s| s.bearing).collect() };
-    let range = RangeSigma { constant_m: 0.3, per_metre: 0.0 };
+    let range = RangeSigma { constant_m: 0.3, per_meter: 0.0 };
     let drift = DriftParams { range, ..DriftParams::default() };
     assert_eq!(bearings(honest), bearings(RangeBearingParams { drift, ..honest }));
     let missed = |params| -> Vec<bool> { of_the_landmark(params).iter().map(Option::is_none).collect() };
@@ -69,7 +69,7 @@ fn sensor_sins_leave_the_drive_as_it_was() {
         scenario.simulate(ChaCha8Rng::seed_from_u64(4)).expect("valid parameters")
     };
     let but_sightings = |records: Vec<Record>| -> Vec<Record> {
-        records.into_iter().filter(|r| !matches!(r.data, Data::Sightings(_))).collect()
+        records.into_iter().filter(|r| !matches!(r.data, Data::Detections(_))).collect()
     };
     let sinful = simulate(&scenario);
     let ScenarioParams::Planar(params) = &mut scenario.params else { panic!("planar") };

@@ -7,7 +7,7 @@ use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, nalgebra::Vector3};
 use wayfix_scene_sim::drive::{DriveParams, SlipParams};
 use wayfix_scene_sim::route::{Circle, LawnMower, RoundedRectangle, Route, Waypoints};
 use wayfix_scene_sim::sensor::{
-    GaussianOdometry, GaussianOdometryParams, OdometryKind, RangeBearing, RangeBearingParams, Sensor,
+    GaussianOdometry, GaussianOdometryParams, OdometryKind, RangeBearingDetector, RangeBearingParams, Sensor,
     WheelOdometry, WheelOdometryParams,
 };
 use wayfix_scene_sim::{Scenario, Simulation};
@@ -213,10 +213,10 @@ fn latency_shows_in_the_stamps_alone() {
     let scene = world(&[(3.0, 0.0), (-3.0, 1.0)]);
     let looks = |latency_ms| -> Vec<Record> {
         let params = RangeBearingParams { latency_ms, ..RangeBearingParams::default() };
-        let sensor = Box::new(RangeBearing::new(params).expect("valid"));
+        let sensor = Box::new(RangeBearingDetector::new(params).expect("valid"));
         let route = Circle { radius_m: 2.0 }.route().expect("valid");
         let records = Simulation::new(&scene, route).run(&mut [sensor], &mut streams(5)).expect("valid");
-        records.into_iter().filter(|r| matches!(r.data, Data::Sightings(_))).collect()
+        records.into_iter().filter(|r| matches!(r.data, Data::Detections(_))).collect()
     };
     for (prompt, late) in looks(0).iter().zip(looks(70)) {
         assert_eq!(prompt.data, late.data);

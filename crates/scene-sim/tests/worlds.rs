@@ -47,11 +47,11 @@ fn corridor_landmarks_are_on_walls_and_hidden_behind_corners() {
     assert_eq!(plan.landmarks.len(), 34 + 26);
     let world = PlanarWorld::new(plan);
     let at = Vector2::new;
-    assert!(world.hides(&at(0.0, -5.0), &at(0.0, 5.0)), "across the block");
-    assert!(!world.hides(&at(0.0, -5.0), &at(9.5, -5.0)), "along the corridor");
+    assert!(world.occludes(&at(0.0, -5.0), &at(0.0, 5.0)), "across the block");
+    assert!(!world.occludes(&at(0.0, -5.0), &at(9.5, -5.0)), "along the corridor");
     let own_side = points(&world.plan).into_iter().filter(|p| (p.y + 4.0).abs() < 1e-9 && p.x.abs() < 8.0);
     assert!(
-        own_side.into_iter().all(|p| !world.hides(&at(p.x, -5.0), &p)),
+        own_side.into_iter().all(|p| !world.occludes(&at(p.x, -5.0), &p)),
         "a landmark hides behind its own wall"
     );
 }
@@ -68,9 +68,9 @@ fn offices_have_corner_posts_and_doors() {
     let world = PlanarWorld::new(plan);
     let at = Vector2::new;
     let (left, middle, above) = (at(-4.0, -2.0), at(0.0, -2.0), at(0.0, 2.0));
-    assert!(!world.hides(&left, &middle) && !world.hides(&middle, &above), "doors are open");
-    assert!(world.hides(&at(-4.0, -3.0), &at(0.0, -3.0)), "walls beside doors are not");
-    assert!(world.hides(&middle, &at(0.0, -5.0)), "nor are outer walls");
+    assert!(!world.occludes(&left, &middle) && !world.occludes(&middle, &above), "doors are open");
+    assert!(world.occludes(&at(-4.0, -3.0), &at(0.0, -3.0)), "walls beside doors are not");
+    assert!(world.occludes(&middle, &at(0.0, -5.0)), "nor are outer walls");
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn an_office_floor_is_closed_but_for_its_doors() {
     let open = (0..samples).filter(|k| {
         let x = -10.0 + 20.0 * f64::from(*k) / f64::from(samples);
         let (inside, outside) = (Vector2::new(x, -9.6), Vector2::new(x, -9.71));
-        !plan.walls.iter().any(|wall| wall.hides(&inside, &outside))
+        !plan.walls.iter().any(|wall| wall.occludes(&inside, &outside))
     });
     assert!((open.count() as f64 * 20.0 / f64::from(samples) - 5.0 * 0.9).abs() < 0.04);
 }

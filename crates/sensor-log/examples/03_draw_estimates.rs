@@ -6,7 +6,7 @@ use std::error::Error;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Data, Drawing, McapWriter, Record, Shape, Sighting, Stamp, Target, TrueLandmark, Velocity, topics,
+    Data, Detection, Drawing, McapWriter, Record, Shape, Stamp, Target, TrueLandmark, Velocity, topics,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Data::TruePose(pose),
             Data::Velocity(Velocity { linear: 1.0, angular: 0.2 }),
             Data::OdometryIncrement(Pose2::new(0.1, 0.0, 0.02)),
-            Data::Sightings(vec![Sighting { target: Target::Landmark(7), range, bearing }]),
+            Data::Detections(vec![Detection { target: Target::Landmark(7), range, bearing }]),
             Data::EstimatedPose(pose),
         ];
         for data in records {

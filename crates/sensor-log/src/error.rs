@@ -85,14 +85,14 @@ pub enum LogError {
         reason: String,
     },
     /// A format that other programs turn into one that is read.
-    #[error("{}: is {what}, which is not read; {way_out}", path.display())]
-    Foreign {
+    #[error("{}: is {what}, which is not read; {remedy}", path.display())]
+    UnsupportedFormat {
         /// The file.
         path: PathBuf,
         /// What it is.
         what: &'static str,
         /// What to do.
-        way_out: &'static str,
+        remedy: &'static str,
     },
     /// A set of several robots needs a choice.
     #[error("{}: holds the robots {present:?}; choose one (--robot N)", path.display())]
@@ -138,7 +138,7 @@ pub enum LogError {
     },
     /// Two topics were asked for that are of one kind: their records could not be told apart.
     #[error("{}: {first} and {second} are both {what}; choose one of them", path.display())]
-    TwoTopics {
+    AmbiguousTopics {
         /// The file.
         path: PathBuf,
         /// The kind.

@@ -8,10 +8,10 @@ use mcap::MAGIC;
 
 use crate::LogError;
 use crate::compressed::{TextReader, open_text};
-use crate::foreign;
 use crate::image_folder::images_in;
 use crate::mcap_log::files_in;
 use crate::text::{Lines, carmen, range_bearing, tum, utias, victoria_park};
+use crate::unsupported_format;
 
 /// How a log is stored.
 ///
@@ -70,14 +70,14 @@ impl Format {
             return match (utias::robots_present(path)?.as_slice(), images_in(path)?.as_slice()) {
                 ([], []) if !files_in(path)?.is_empty() => Ok(Self::Mcap),
                 ([], []) => {
-                    foreign::check_folder(path)?;
+                    unsupported_format::check_folder(path)?;
                     Err(LogError::IsADirectory { path: path.into() })
                 }
                 ([], _) => Ok(Self::Images),
                 _ => Ok(Self::Utias),
             };
         }
-        foreign::check(path)?;
+        unsupported_format::check(path)?;
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap")) {
             return Ok(Self::Mcap);
         }

@@ -38,7 +38,7 @@ impl ImageFolder {
     /// The next frame that can be read; the others go into the report and leave a gap in time.
     pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         if let Some(doubt) = self.doubt.take() {
-            report.warn("image_number_twice", doubt);
+            report.warn("duplicate_image_number", doubt);
         }
         for (index, path) in self.files.by_ref() {
             match read(&path) {

@@ -4,9 +4,9 @@
 //!
 //! | format | is | holds |
 //! | --- | --- | --- |
-//! | [`Format::Utias`] | a folder of the UTIAS multi-robot set | velocity, sightings, truth |
+//! | [`Format::Utias`] | a folder of the UTIAS multi-robot set | velocity, detections, truth |
 //! | [`Format::VictoriaPark`] | a folder of the Victoria Park set as CSV | car odometry, trees, GPS |
-//! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, sightings, truth |
+//! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, detections, truth |
 //! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
 //! | [`Format::Carmen`] | messages of the Carnegie Mellon toolkit, one a line | scans, increments, the laser's mount, poses that are not the odometry |
 //! | [`Format::ScanJson`] | scans with their poses as a JSON object | scans, increments, poses |
@@ -25,8 +25,8 @@
 //! # let path = folder.path().join("walk.txt");
 //! std::fs::write(&path, "L 7 2.0 0.0\nO 0.5 0.0 0.0\nZ 7 1.5 0.0\nZ 7 far 0.0\n")?;
 //! let mut log = open(&path, &OpenOptions::default())?;
-//! let sightings = log.by_ref().filter(|record| matches!(record.data, Data::Sightings(_))).count();
-//! assert_eq!(sightings, 1);
+//! let detections = log.by_ref().filter(|record| matches!(record.data, Data::Detections(_))).count();
+//! assert_eq!(detections, 1);
 //! assert_eq!(log.report().n_problems(), 1); // line 4: "far" is not a number
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -38,7 +38,6 @@ mod compressed;
 mod convert;
 mod error;
 mod fault;
-mod foreign;
 mod format;
 mod image;
 mod image_folder;
@@ -53,6 +52,7 @@ mod scan;
 mod stamp;
 mod summary;
 mod text;
+mod unsupported_format;
 mod write;
 
 pub use ackermann::AckermannDrive;
@@ -70,7 +70,7 @@ pub use mcap_log::{
 };
 pub use open::{OpenOptions, PoseKind, open, open_all};
 pub use record::{
-    CameraInfo, Data, Record, Sighting, Target, TrueLandmark, TruePosition, TrueWall, Velocity,
+    CameraInfo, Data, Detection, Record, Target, TrueLandmark, TruePosition, TrueWall, Velocity,
 };
 pub use report::{LogEnd, Problem, ProblemKind, ReadReport, Warning};
 pub use scan::{LaserScan, ScanSummary};

@@ -56,7 +56,7 @@ impl PoseKind {
 
 /// Opens the log at `path`.
 ///
-/// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, sightings (MCAP: the order of the file).
+/// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, detections (MCAP: the order of the file).
 /// Text logs are read whole and sorted where rows go backwards, which is reported. A row that is a minute or more from its neighbours is left
 /// out, and where the clock is set back, the longest stretch is read, which is reported, too. CARMEN logs are read line by line, twice, in whose
 /// order they stay: where time stands still, stamps are made up, and where the clock is set back, they are moved on, which is reported.

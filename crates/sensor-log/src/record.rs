@@ -25,9 +25,9 @@ pub enum Data {
     /// What a car-like vehicle is told to do, or measures of itself; it holds until the next one.
     Ackermann(AckermannDrive),
     /// Everything one look of a range-bearing sensor saw, in the order of the log.
-    Sightings(Vec<Sighting>),
+    Detections(Vec<Detection>),
     /// How wide the things are that the look at the same stamp saw, in its order, metres. It comes before the look.
-    SightedWidths(Vec<f64>),
+    DetectionWidths(Vec<f64>),
     /// What one sweep of a laser saw.
     Scan(LaserScan),
     /// Where the laser is in the robot's frame: 0 of its bearings is along its x axis. It holds until the next one; the centre without any.
@@ -59,8 +59,8 @@ impl Data {
             Self::Velocity(_) => "velocity",
             Self::OdometryIncrement(_) => "odometry increment",
             Self::Ackermann(_) => "ackermann drive",
-            Self::Sightings(_) => "sightings",
-            Self::SightedWidths(_) => "sighted widths",
+            Self::Detections(_) => "detections",
+            Self::DetectionWidths(_) => "detection widths",
             Self::Scan(_) => "laser scan",
             Self::LaserMount(_) => "laser mount",
             Self::TruePose(_) => "true pose",
@@ -84,8 +84,10 @@ impl Data {
             | Self::TruePose(pose)
             | Self::EstimatedPose(pose) => pose.is_finite(),
             Self::Ackermann(drive) => drive.wheel_speed.is_finite() && drive.steering.is_finite(),
-            Self::Sightings(look) => look.iter().all(|s| s.range.is_finite() && s.bearing.is_finite()),
-            Self::SightedWidths(widths) => widths.iter().all(|width| width.is_finite()),
+            Self::Detections(detections) => {
+                detections.iter().all(|s| s.range.is_finite() && s.bearing.is_finite())
+            }
+            Self::DetectionWidths(widths) => widths.iter().all(|width| width.is_finite()),
             Self::Scan(scan) => scan.has_finite_angles(),
             Self::TruePosition(position) => position.x.is_finite() && position.y.is_finite(),
             Self::TrueLandmark(landmark) => landmark.x.is_finite() && landmark.y.is_finite(),
@@ -136,7 +138,7 @@ impl CameraInfo {
 
 /// One range and bearing to one thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sighting {
+pub struct Detection {
     /// What the sensor says it saw.
     pub target: Target,
     /// Distance, metres.
@@ -145,7 +147,7 @@ pub struct Sighting {
     pub bearing: f64,
 }
 
-/// What a sighting is of.
+/// What a detection is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Target {
     /// A landmark whose identity the sensor reads.

@@ -25,8 +25,8 @@ pub struct LogSummary {
     pub span: Option<(Stamp, Stamp)>,
     /// How many records of each kind.
     pub kinds: BTreeMap<&'static str, KindSummary>,
-    /// Single sightings, of anything.
-    pub n_sightings: u64,
+    /// Single detections, of anything.
+    pub n_detections: u64,
     /// Landmarks whose true position is given.
     pub landmarks_surveyed: BTreeSet<u32>,
     /// Landmarks that were sighted.
@@ -35,7 +35,7 @@ pub struct LogSummary {
     pub robots_seen: BTreeSet<u32>,
     /// Codes that the log's own table does not list, and how often each was sighted.
     pub unknown_codes: BTreeMap<u32, u64>,
-    /// Sightings that say nothing of what they are of.
+    /// Detections that say nothing of what they are of.
     pub n_unlabelled: u64,
     /// Images by kind of record.
     pub images: BTreeMap<&'static str, ImageSummary>,
@@ -71,7 +71,7 @@ impl LogSummary {
             meta: log.meta().clone(),
             span: None,
             kinds: BTreeMap::new(),
-            n_sightings: 0,
+            n_detections: 0,
             landmarks_surveyed: BTreeSet::new(),
             landmarks_seen: BTreeSet::new(),
             robots_seen: BTreeSet::new(),
@@ -101,7 +101,9 @@ impl LogSummary {
         kind.last = stamp;
         match data {
             Data::TrueLandmark(landmark) => drop(self.landmarks_surveyed.insert(landmark.id)),
-            Data::Sightings(look) => look.iter().for_each(|sighting| self.add_sighting(sighting.target)),
+            Data::Detections(detections) => {
+                detections.iter().for_each(|detection| self.add_detection(detection.target))
+            }
             Data::Scan(scan) => self.scans.add(scan),
             Data::Image(image) | Data::TrueLabels(image) => {
                 self.images.entry(data.kind()).or_default().add(image);
@@ -110,8 +112,8 @@ impl LogSummary {
         }
     }
 
-    fn add_sighting(&mut self, target: Target) {
-        self.n_sightings += 1;
+    fn add_detection(&mut self, target: Target) {
+        self.n_detections += 1;
         match target {
             Target::Landmark(id) => drop(self.landmarks_seen.insert(id)),
             Target::Robot(id) => drop(self.robots_seen.insert(id)),
@@ -141,8 +143,8 @@ impl fmt::Display for LogSummary {
                 None => writeln!(f)?,
             }
         }
-        if self.n_sightings > 0 {
-            writeln!(f, "  seen {} times: {}", self.n_sightings, self.what_was_seen().join("; "))?;
+        if self.n_detections > 0 {
+            writeln!(f, "  seen {} times: {}", self.n_detections, self.what_was_seen().join("; "))?;
         }
         for (kind, images) in &self.images {
             writeln!(f, "  {kind}: {images}")?;
@@ -170,8 +172,8 @@ impl LogSummary {
             seen.push(robots.join(", "));
         }
         if !self.unknown_codes.is_empty() {
-            let n_sightings: u64 = self.unknown_codes.values().sum();
-            seen.push(format!("{} unknown codes ({n_sightings} times)", self.unknown_codes.len()));
+            let n_detections: u64 = self.unknown_codes.values().sum();
+            seen.push(format!("{} unknown codes ({n_detections} times)", self.unknown_codes.len()));
         }
         seen
     }

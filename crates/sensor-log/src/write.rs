@@ -24,7 +24,7 @@ impl WriteReport {
 
 /// Writes records into the file at `path`, replacing what is there.
 ///
-/// MCAP keeps everything; range-bearing text loses stamps, velocities, car odometry, bare positions, scans, estimates, cameras and sightings of robots and unknown codes;
+/// MCAP keeps everything; range-bearing text loses stamps, velocities, car odometry, bare positions, scans, estimates, cameras and detections of robots and unknown codes;
 /// TUM keeps poses only. The report counts what was left out.
 ///
 /// ```

@@ -244,7 +244,7 @@ fn messages_with_numbers_that_are_none_are_counted() {
     let stamp = wayfix_sensor_log::Stamp::from_nanoseconds(9);
     let pose = wayfix_estimation_traits::Pose2::new(f64::NAN, 0.0, 0.0);
     writer.pose_in_frame("/truth/pose", stamp, "world", &pose).unwrap();
-    writer.record(&Record { stamp, data: Data::Sightings(Vec::new()) }).unwrap();
+    writer.record(&Record { stamp, data: Data::Detections(Vec::new()) }).unwrap();
     writer.finish().unwrap();
     let (back, report) = Scratch::new().read(&out.into_inner()).unwrap();
     assert_eq!(back.len(), 1);

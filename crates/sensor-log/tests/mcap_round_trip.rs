@@ -13,9 +13,9 @@ use std::io::Cursor;
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_sensor_log::{
-    AckermannDrive, Data, Format, LaserScan, LogEnd, LogError, McapWriter, OpenOptions, PoseKind,
-    ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, TruePosition, TrueWall, Velocity, convert,
-    open, topics, write,
+    AckermannDrive, Data, Detection, Format, LaserScan, LogEnd, LogError, McapWriter, OpenOptions, PoseKind,
+    ProblemKind, Record, Stamp, Target, TrueLandmark, TruePosition, TrueWall, Velocity, convert, open,
+    topics, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -61,7 +61,7 @@ fn scan() -> impl Strategy<Value = LaserScan> {
 }
 
 fn data() -> impl Strategy<Value = Data> {
-    let sighting = (target(), number(), number()).prop_map(|(target, range, bearing)| Sighting {
+    let detection = (target(), number(), number()).prop_map(|(target, range, bearing)| Detection {
         target,
         range,
         bearing,
@@ -69,11 +69,11 @@ fn data() -> impl Strategy<Value = Data> {
     prop_oneof![
         (number(), number()).prop_map(|(linear, angular)| Data::Velocity(Velocity { linear, angular })),
         pose().prop_map(Data::OdometryIncrement),
-        prop::collection::vec(sighting, 0..8).prop_map(Data::Sightings),
+        prop::collection::vec(detection, 0..8).prop_map(Data::Detections),
         (number(), number())
             .prop_map(|(wheel_speed, steering)| Data::Ackermann(AckermannDrive { wheel_speed, steering })),
         scan().prop_map(Data::Scan),
-        prop::collection::vec(number(), 0..8).prop_map(Data::SightedWidths),
+        prop::collection::vec(number(), 0..8).prop_map(Data::DetectionWidths),
         (number(), number()).prop_map(|(x, y)| Data::TruePosition(TruePosition { x, y })),
         pose().prop_map(Data::TruePose),
         (any::<u32>(), number(), number()).prop_map(|(id, x, y)| Data::TrueLandmark(TrueLandmark {
@@ -119,8 +119,8 @@ fn bits(record: &Record) -> (u64, String, Vec<u64>) {
         Data::OdometryIncrement(pose) | Data::TruePose(pose) | Data::EstimatedPose(pose) => {
             vec![pose.x(), pose.y(), pose.heading()]
         }
-        Data::Sightings(look) => {
-            look.iter().flat_map(|sighting| [sighting.range, sighting.bearing]).collect()
+        Data::Detections(look) => {
+            look.iter().flat_map(|detection| [detection.range, detection.bearing]).collect()
         }
         Data::TrueLandmark(landmark) => vec![landmark.x, landmark.y],
         Data::TrueWall(wall) => vec![wall.start.x, wall.start.y, wall.end.x, wall.end.y],
@@ -129,7 +129,7 @@ fn bits(record: &Record) -> (u64, String, Vec<u64>) {
             [&[*angle_min, *angle_increment, *range_max, *beam_period], ranges.as_slice()].concat()
         }
         Data::Ackermann(drive) => vec![drive.wheel_speed, drive.steering],
-        Data::SightedWidths(widths) => widths.clone(),
+        Data::DetectionWidths(widths) => widths.clone(),
         Data::TruePosition(position) => vec![position.x, position.y],
         other => panic!("{other:?}"),
     };

@@ -30,7 +30,7 @@ fn in_time_order(records: &[Record]) -> bool {
 fn utias_set_7() {
     let Some(folder) = data_folder() else { return };
     // robot, truth rows, odometry rows, measurement rows, different measurement stamps
-    for (robot, n_true, n_odometry, n_sightings, n_looks) in UTIAS_ROWS {
+    for (robot, n_true, n_odometry, n_detections, n_looks) in UTIAS_ROWS {
         let options = OpenOptions { robot: Some(robot), ..Default::default() };
         let (records, report) =
             open(folder.join("utias_mrclam/MRCLAM_Dataset7"), &options).unwrap().read_all();
@@ -42,18 +42,18 @@ fn utias_set_7() {
         let looks: Vec<_> = records
             .iter()
             .filter_map(|record| match &record.data {
-                Data::Sightings(look) => Some(look),
+                Data::Detections(look) => Some(look),
                 _ => None,
             })
             .collect();
         assert_eq!(looks.len(), n_looks);
-        assert_eq!(looks.iter().map(|look| look.len()).sum::<usize>(), n_sightings);
+        assert_eq!(looks.iter().map(|look| look.len()).sum::<usize>(), n_detections);
         let landmark_ids = looks.iter().flat_map(|look| look.iter()).filter_map(|s| match s.target {
             Target::Landmark(id) => Some(id),
             _ => None,
         });
         assert!(
-            landmark_ids.clone().all(|id| (6..=20).contains(&id)) && landmark_ids.count() > n_sightings / 2
+            landmark_ids.clone().all(|id| (6..=20).contains(&id)) && landmark_ids.count() > n_detections / 2
         );
     }
 }
@@ -70,14 +70,14 @@ fn victoria_park() {
     let looks: Vec<_> = records
         .windows(2)
         .filter_map(|pair| match (&pair[0].data, &pair[1].data) {
-            (Data::SightedWidths(widths), Data::Sightings(look)) => Some((widths, look)),
+            (Data::DetectionWidths(widths), Data::Detections(look)) => Some((widths, look)),
             _ => None,
         })
         .collect();
     assert_eq!(looks.len(), 7230);
     assert!(looks.iter().all(|(widths, look)| widths.len() == look.len()));
     assert_eq!(looks.iter().map(|(_, look)| look.len()).sum::<usize>(), 52974);
-    let bearings = looks.iter().flat_map(|(_, look)| look.iter()).map(|sighting| sighting.bearing);
+    let bearings = looks.iter().flat_map(|(_, look)| look.iter()).map(|detection| detection.bearing);
     assert!(
         bearings.clone().all(|bearing| bearing.abs() < std::f64::consts::FRAC_PI_2),
         "the laser looks ahead"

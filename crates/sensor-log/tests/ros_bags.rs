@@ -124,7 +124,7 @@ fn topics_that_cannot_be_had_are_told_with_those_that_can() {
     );
     assert!(error.to_string().contains("/scan_rear (sensor_msgs/msg/LaserScan)"), "{error}");
     let error = read(&bytes, &["/scan", "/scan_rear"]).unwrap_err();
-    assert!(matches!(error, LogError::TwoTopics { what: "laser scan", .. }), "{error}");
+    assert!(matches!(error, LogError::AmbiguousTopics { what: "laser scan", .. }), "{error}");
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.txt");

@@ -114,7 +114,7 @@ fn a_message_cut_anywhere_is_an_error_that_says_where() {
             let error = schema.decode(&bytes[..n_bytes]).unwrap_err();
             match error {
                 CdrError::NoHeader { n_bytes: told } => assert!(n_bytes < 4 && told == n_bytes),
-                CdrError::CutShort { at, needed, left } => {
+                CdrError::Truncated { at, needed, left } => {
                     assert!(needed > left as u64 && (left == 0 || at + left + 4 == n_bytes), "{error}");
                 }
                 other => panic!("{schema:?} cut after {n_bytes} bytes: {other}"),

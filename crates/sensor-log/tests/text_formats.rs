@@ -5,7 +5,7 @@ use std::path::Path;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Data, Format, LogError, OpenOptions, PoseKind, ProblemKind, ReadReport, Record, Sighting, Stamp, Target,
+    Data, Detection, Format, LogError, OpenOptions, PoseKind, ProblemKind, ReadReport, Record, Stamp, Target,
     TrueLandmark, Velocity, open,
 };
 
@@ -28,8 +28,8 @@ fn at(seconds: f64, data: Data) -> Record {
     Record { stamp: Stamp::from_seconds(seconds).expect("a time of this century"), data }
 }
 
-fn sighting(target: Target, range: f64, bearing: f64) -> Sighting {
-    Sighting { target, range, bearing }
+fn detection(target: Target, range: f64, bearing: f64) -> Detection {
+    Detection { target, range, bearing }
 }
 
 #[test]
@@ -40,9 +40,9 @@ fn utias_files_are_merged_by_time_and_codes_become_subjects() {
     assert_eq!((log.meta().format, log.meta().robot), (Format::Utias, Some(2)));
     let (records, report) = log.read_all();
     let look = vec![
-        sighting(Target::Landmark(6), 1.0, 0.5),
-        sighting(Target::Robot(2), 2.0, -0.5),
-        sighting(Target::UnknownCode(99), 3.0, 0.0),
+        detection(Target::Landmark(6), 1.0, 0.5),
+        detection(Target::Robot(2), 2.0, -0.5),
+        detection(Target::UnknownCode(99), 3.0, 0.0),
     ];
     let expected = [
         at(100.0, Data::TrueLandmark(TrueLandmark { id: 6, x: 1.5, y: -2.0 })),
@@ -50,8 +50,8 @@ fn utias_files_are_merged_by_time_and_codes_become_subjects() {
         at(100.0, Data::TruePose(Pose2::new(0.0, 0.0, 0.0))),
         at(100.0, Data::Velocity(Velocity { linear: 0.1, angular: -0.2 })),
         at(100.5, Data::TruePose(Pose2::new(1.0, 2.0, 3.0))),
-        at(100.5, Data::Sightings(look)),
-        at(100.75, Data::Sightings(vec![sighting(Target::Landmark(7), 4.0, 1.0)])),
+        at(100.5, Data::Detections(look)),
+        at(100.75, Data::Detections(vec![detection(Target::Landmark(7), 4.0, 1.0)])),
     ];
     assert_eq!(records, expected);
     let problems: Vec<String> = report.examples.iter().map(ToString::to_string).collect();
@@ -80,16 +80,16 @@ fn range_bearing_lines_make_steps_of_a_tenth_of_a_second() {
     write(folder.path(), "walk.log", lines);
     let (records, report) = open(folder.path().join("walk.log"), &OpenOptions::default()).unwrap().read_all();
     let step = |x| Data::OdometryIncrement(Pose2::new(x, 0.0, 0.0));
-    let look = vec![sighting(Target::Landmark(4), 2.0, 0.5), sighting(Target::Unlabelled, 3.0, 1.0)];
+    let look = vec![detection(Target::Landmark(4), 2.0, 0.5), detection(Target::Unlabelled, 3.0, 1.0)];
     let expected = [
         at(0.0, Data::TrueLandmark(TrueLandmark { id: 4, x: 1.0, y: 2.0 })),
         at(0.0, Data::TruePose(Pose2::new(0.0, 0.0, 0.0))),
         at(0.0, step(0.0)),
-        at(0.0, Data::Sightings(look)),
+        at(0.0, Data::Detections(look)),
         at(0.1, Data::TruePose(Pose2::new(1.0, 0.0, 0.0))),
         at(0.1, step(1.0)),
         at(0.2, step(1.0)),
-        at(0.2, Data::Sightings(vec![sighting(Target::Unlabelled, 1.0, 1.0)])),
+        at(0.2, Data::Detections(vec![detection(Target::Unlabelled, 1.0, 1.0)])),
     ];
     assert_eq!(records, expected);
     assert_eq!((report.rows_read, report.n_problems()), (9, 0));
@@ -189,11 +189,11 @@ fn a_utias_row_years_off_is_left_out_and_counted() {
     };
     let mut odometry = rows(|t| format!("{t} 0.1 0\n"));
     odometry.insert(4, "5.0 0.3 0.1\n".to_owned());
-    let mut sightings = rows(|t| format!("{t} 72 1 0.5\n"));
-    sightings.push("9e9 72 1 0.5\n".to_owned());
+    let mut detections = rows(|t| format!("{t} 72 1 0.5\n"));
+    detections.push("9e9 72 1 0.5\n".to_owned());
     write(folder.path(), "Robot1_Groundtruth.dat", &rows(|t| format!("{t} 0 0 0\n")).concat());
     write(folder.path(), "Robot1_Odometry.dat", &odometry.concat());
-    write(folder.path(), "Robot1_Measurement.dat", &sightings.concat());
+    write(folder.path(), "Robot1_Measurement.dat", &detections.concat());
     let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
     assert_eq!(records.first().map(|record| record.stamp.seconds()), Some(1_288_971_842.0));
     assert_eq!(records.last().map(|record| record.stamp.seconds()), Some(1_288_971_850.0));

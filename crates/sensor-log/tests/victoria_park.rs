@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_sensor_log::{
-    AckermannDrive, Data, Format, LogError, OpenOptions, ProblemKind, Record, Sighting, Stamp, Target,
+    AckermannDrive, Data, Detection, Format, LogError, OpenOptions, ProblemKind, Record, Stamp, Target,
     TruePosition, open,
 };
 
@@ -30,14 +30,14 @@ fn the_three_files_are_merged_and_bearings_turned_ahead() {
     let log = open(folder.path(), &OpenOptions::default()).unwrap();
     assert_eq!(log.meta().format, Format::VictoriaPark);
     let (records, report) = log.read_all();
-    let tree = |range, bearing| Sighting { target: Target::Unlabelled, range, bearing };
+    let tree = |range, bearing| Detection { target: Target::Unlabelled, range, bearing };
     let drive = |wheel_speed, steering| Data::Ackermann(AckermannDrive { wheel_speed, steering });
     let expected = [
         at(1000, drive(0.5, -0.1)),
         at(1025, Data::TruePosition(TruePosition { x: -67.5, y: -41.75 })),
         at(1025, drive(0.75, 0.2)),
-        at(1025, Data::SightedWidths(vec![0.3, 0.4])),
-        at(1025, Data::Sightings(vec![tree(20.0, 1.0 - FRAC_PI_2), tree(10.0, 2.5 - FRAC_PI_2)])),
+        at(1025, Data::DetectionWidths(vec![0.3, 0.4])),
+        at(1025, Data::Detections(vec![tree(20.0, 1.0 - FRAC_PI_2), tree(10.0, 2.5 - FRAC_PI_2)])),
     ];
     assert_eq!(records, expected);
     assert_eq!((report.rows_read, report.n_problems()), (5, 0));
@@ -94,7 +94,7 @@ fn a_fifth_column_says_which_tree_it_is_where_somebody_knows() {
     write(folder.path(), "trees.csv", labelled);
     let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
     let look = records.iter().find_map(|record| match &record.data {
-        Data::Sightings(look) => Some(look.iter().map(|sighting| sighting.target).collect::<Vec<_>>()),
+        Data::Detections(look) => Some(look.iter().map(|detection| detection.target).collect::<Vec<_>>()),
         _ => None,
     });
     assert_eq!(look.unwrap(), [Target::Landmark(7), Target::Unlabelled]);

@@ -50,7 +50,7 @@ pub enum SlamError {
     #[error(
         "the invariant linearization moves the whole map at every correction: it needs the full form of the map"
     )]
-    MovesTheWholeMap,
+    InvariantNeedsFullMap,
     /// A parameter is outside its range.
     #[error("parameter {name} is {value:?}, must be {range}")]
     Parameter {

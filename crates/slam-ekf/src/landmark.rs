@@ -103,7 +103,7 @@ where
 
     /// Whether the landmark that should look like `expected` can be what was measured, beyond what the estimated coordinates tell: the stretch
     /// of a wall, a colour. Association asks. By default: always.
-    fn may_be(&self, _expected: &Self::Measurement, _measurement: &Self::Measurement) -> bool {
+    fn is_compatible(&self, _expected: &Self::Measurement, _measurement: &Self::Measurement) -> bool {
         true
     }
 
@@ -119,7 +119,7 @@ where
     }
 
     /// Whether a landmark that should look like this is within reach and view, so that not seeing it means something. By default: always.
-    fn should_see(&self, _expected: &Self::Measurement) -> bool {
+    fn expects_detection(&self, _expected: &Self::Measurement) -> bool {
         true
     }
 

@@ -6,11 +6,11 @@
 //! ```text
 //! predict      x_r ← f(x_r, u)                      O(n)      [predict]
 //! associate    which landmark is each sighting of   O(k n)    [DataAssociation]
-//! gate         is it compatible with it             O(k)      [Outcome::Gated]
+//! gate         is it compatible with it             O(k)      [Outcome::Rejected]
 //! correct      all accepted sightings together      O(k n²)   sparse H, lower triangle, never indefinite
 //! augment      certainly new ones enter the map     O(n)      tentative until confirmed
-//! merge        duplicates                           O(n²)     [Merging]
-//! forget       tentative ones not seen again        O(n²)     [Confirmation]
+//! merge        duplicates                           O(n²)     [MergingParams]
+//! forget       tentative ones not seen again        O(n²)     [ConfirmationParams]
 //! ```
 //!
 //! With [`MapForm::Compressed`] the `n` in predict and correct is the number of landmarks around the robot, with the same estimates.
@@ -42,18 +42,18 @@ pub use association::{
 };
 pub use error::SlamError;
 pub use filter::{
-    Confirmation, EkfSlam, LandmarkEstimate, Linearization, MapForm, Merging, OutlierRule, PredictedSighting,
-    SlamParams, UpdateOrder,
+    ConfirmationParams, EkfSlam, LandmarkEstimate, Linearization, MapForm, MergingParams, OutlierRule,
+    PredictedMeasurement, SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
-    AckermannControl, AckermannMotion, AckermannVehicle, DriftingMotion, DriftingPose, IncrementMotion,
-    LookErrors, MonobotMotion, MonobotSensor, Mounted, OnDrifting, PLANAR_SYMMETRIES, RangeBearing,
-    RangeBearingSensor, RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose,
+    AckermannControl, AckermannMotion, AckermannVehicle, CorrelatedNoise, DriftingMotion, DriftingPose,
+    DriftingPoseSensor, IncrementMotion, MonobotMotion, MonobotSensor, MountedSensor, PLANAR_SYMMETRIES,
+    RangeBearing, RangeBearingSensor, RelativePosition, RelativePositionSensor, ScaledMotion, ScaledPose,
     ScaledRangeBearingSensor, VelocityControl, VelocityMotion, point_symmetry, pose_symmetry,
 };
 #[cfg(feature = "lines")]
-pub use models::{SeenWall, Wall, WallLine, WallSensor};
+pub use models::{Wall, WallLine, WallMeasurement, WallSensor};
 pub use outcome::{Merge, Outcome, StepReport};
 pub use snapshot::{SavedLandmark, SavedRetired, Snapshot};
 

@@ -20,7 +20,7 @@ where
         noise_scale: f64,
     },
     /// It was associated, but lies outside the gate: an outlier. The state is untouched.
-    Gated {
+    Rejected {
         /// The landmark it was said to be of.
         landmark: LandmarkId,
         /// What it said.
@@ -70,7 +70,7 @@ pub struct Merge {
     /// The one that stays.
     pub kept: LandmarkId,
     /// The one that left the map.
-    pub gone: LandmarkId,
+    pub removed: LandmarkId,
 }
 
 impl<Z: Manifold<Scalar = f64>> StepReport<Z>
@@ -84,7 +84,7 @@ where
     /// How many observations were refused as outliers, duplicates or unusable.
     pub fn n_rejected(&self) -> usize {
         self.count(|outcome| {
-            matches!(outcome, Outcome::Gated { .. } | Outcome::Duplicate { .. } | Outcome::Unusable)
+            matches!(outcome, Outcome::Rejected { .. } | Outcome::Duplicate { .. } | Outcome::Unusable)
         })
     }
     /// Innovations of the observations that corrected the state.

@@ -8,7 +8,7 @@ use crate::LandmarkId;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Snapshot<R, L> {
     /// How many looks there were.
-    pub look: usize,
+    pub n_updates: usize,
     /// The robot's mean.
     pub robot: R,
     /// The landmarks of the state, in the order of their blocks in the covariance.
@@ -32,7 +32,7 @@ pub struct SavedLandmark<L> {
     /// Where it was when it was placed first, which is where a first-estimates filter linearizes.
     pub first: L,
     /// Looks in which it was seen.
-    pub n_sightings: usize,
+    pub n_detections: usize,
     /// Looks that should have shown it and did not.
     pub n_missed: usize,
     /// Of these, since it was seen last.

@@ -7,8 +7,8 @@ use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_slam_ekf::{
-    Confirmation, EkfSlam, IncrementMotion, KnownIds, LandmarkId, MapForm, Observation, Outcome, OutlierRule,
-    RangeBearing, RangeBearingSensor, SlamParams, UpdateOrder,
+    ConfirmationParams, EkfSlam, IncrementMotion, KnownIds, LandmarkId, MapForm, Observation, Outcome,
+    OutlierRule, RangeBearing, RangeBearingSensor, SlamParams, UpdateOrder,
 };
 
 type Slam = EkfSlam<RangeBearingSensor>;
@@ -56,7 +56,7 @@ fn compare([full, compressed]: &[Slam; 2], when: usize) {
 fn kinds(outcomes: &[Outcome<RangeBearing>]) -> Vec<String> {
     let kind = |outcome: &Outcome<RangeBearing>| match outcome {
         Outcome::Accepted { landmark, noise_scale, .. } => format!("accepted {landmark} {noise_scale:.6}"),
-        Outcome::Gated { landmark, .. } => format!("gated {landmark}"),
+        Outcome::Rejected { landmark, .. } => format!("gated {landmark}"),
         other => format!("{other:?}"),
     };
     outcomes.iter().map(kind).collect()
@@ -124,7 +124,7 @@ fn change_map(slam: &mut Slam, step: usize, landmarks: &[[f64; 2]]) {
 
 #[test]
 fn nobody_can_tell_a_compressed_map_from_a_full_one() {
-    let confirmation = Confirmation { patience: Some(6), ..Confirmation::default() };
+    let confirmation = ConfirmationParams { max_missed: Some(6), ..ConfirmationParams::default() };
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for outliers in [OutlierRule::Downweight, OutlierRule::Reject] {
             let seen = lap(SlamParams { order, outliers, confirmation, ..SlamParams::default() });

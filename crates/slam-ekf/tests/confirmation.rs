@@ -3,16 +3,16 @@
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    Confirmation, EkfSlam, KnownIds, LandmarkId, LandmarkModel, Observation, RangeBearing,
+    ConfirmationParams, EkfSlam, KnownIds, LandmarkId, LandmarkModel, Observation, RangeBearing,
     RangeBearingSensor, SlamError, SlamParams,
 };
 
 /// Sees 5 m far and 1 rad to either side.
 fn sensor() -> RangeBearingSensor {
-    RangeBearingSensor { reach: 5.0, half_field_of_view: 1.0, ..RangeBearingSensor::default() }
+    RangeBearingSensor { sensor_range: 5.0, half_field_of_view: 1.0, ..RangeBearingSensor::default() }
 }
 
-fn slam(confirmation: Confirmation) -> EkfSlam<RangeBearingSensor> {
+fn slam(confirmation: ConfirmationParams) -> EkfSlam<RangeBearingSensor> {
     let params = SlamParams { confirmation, ..SlamParams::default() };
     EkfSlam::new(sensor(), params, Pose2::new(0.0, 0.0, 0.0)).unwrap()
 }
@@ -31,7 +31,7 @@ fn look(slam: &mut EkfSlam<RangeBearingSensor>, seen: &[(u32, f64, f64)]) {
 fn looks_survived(slam: &mut EkfSlam<RangeBearingSensor>, id: u32) -> Option<usize> {
     (1..=100).find(|_| {
         look(slam, &[]);
-        !slam.knows(LandmarkId(id))
+        !slam.contains(LandmarkId(id))
     })
 }
 
@@ -42,24 +42,32 @@ fn a_sensor_should_see_what_is_within_reach_and_view() {
     for (range, bearing, expected) in
         [(5.0, 1.0, true), (5.0, -1.0, true), (5.01, 0.0, false), (1.0, 1.01, false), (1.0, -3.0, false)]
     {
-        assert_eq!(sensor().should_see(&RangeBearing::new(range, bearing)), expected, "{range} {bearing}");
+        assert_eq!(
+            sensor().expects_detection(&RangeBearing::new(range, bearing)),
+            expected,
+            "{range} {bearing}"
+        );
     }
-    assert!(RangeBearingSensor::default().should_see(&RangeBearing::new(1e9, 3.1)), "no limits by default");
+    assert!(
+        RangeBearingSensor::default().expects_detection(&RangeBearing::new(1e9, 3.1)),
+        "no limits by default"
+    );
 }
 
 #[test]
 fn tentative_landmark_survives_the_allowed_misses() {
-    for patience in [0, 1, 5] {
-        let mut slam = slam(Confirmation { patience: Some(patience), ..Confirmation::default() });
+    for max_missed in [0, 1, 5] {
+        let mut slam =
+            slam(ConfirmationParams { max_missed: Some(max_missed), ..ConfirmationParams::default() });
         look(&mut slam, &[AHEAD]);
-        assert_eq!(looks_survived(&mut slam, 1), Some(patience + 1), "patience {patience}");
+        assert_eq!(looks_survived(&mut slam, 1), Some(max_missed + 1), "max_missed {max_missed}");
     }
 }
 
 #[test]
 fn looks_that_could_not_show_a_landmark_do_not_count() {
     for hidden in [(1, 5.5, 0.0), (1, 3.0, 1.2)] {
-        let mut slam = slam(Confirmation { patience: Some(2), ..Confirmation::default() });
+        let mut slam = slam(ConfirmationParams { max_missed: Some(2), ..ConfirmationParams::default() });
         look(&mut slam, &[hidden]);
         assert_eq!(looks_survived(&mut slam, 1), None, "{hidden:?}");
     }
@@ -67,7 +75,8 @@ fn looks_that_could_not_show_a_landmark_do_not_count() {
 
 #[test]
 fn a_sighting_renews_the_patience() {
-    let mut slam = slam(Confirmation { n_sightings: 3, patience: Some(2), ..Confirmation::default() });
+    let mut slam =
+        slam(ConfirmationParams { n_detections: 3, max_missed: Some(2), ..ConfirmationParams::default() });
     look(&mut slam, &[AHEAD]);
     look(&mut slam, &[]);
     look(&mut slam, &[]);
@@ -77,7 +86,8 @@ fn a_sighting_renews_the_patience() {
 
 #[test]
 fn a_confirmed_landmark_leaves_when_it_is_seen_in_too_few_looks() {
-    let confirmation = Confirmation { patience: Some(2), least_share_seen: 0.5, ..Confirmation::default() };
+    let confirmation =
+        ConfirmationParams { max_missed: Some(2), min_detection_rate: 0.5, ..ConfirmationParams::default() };
     let mut slam = slam(confirmation);
     for _ in 0..4 {
         look(&mut slam, &[AHEAD]);
@@ -89,7 +99,8 @@ fn a_confirmed_landmark_leaves_when_it_is_seen_in_too_few_looks() {
 
 #[test]
 fn a_share_is_not_judged_before_patience_is_out() {
-    let confirmation = Confirmation { patience: Some(7), least_share_seen: 1.0, ..Confirmation::default() };
+    let confirmation =
+        ConfirmationParams { max_missed: Some(7), min_detection_rate: 1.0, ..ConfirmationParams::default() };
     let mut slam = slam(confirmation);
     look(&mut slam, &[AHEAD]);
     look(&mut slam, &[AHEAD]);
@@ -98,8 +109,8 @@ fn a_share_is_not_judged_before_patience_is_out() {
 
 #[test]
 fn confirmed_landmark_stays_without_share_or_patience() {
-    let share_only = Confirmation { least_share_seen: 1.0, ..Confirmation::default() };
-    let patience_only = Confirmation { patience: Some(1), ..Confirmation::default() };
+    let share_only = ConfirmationParams { min_detection_rate: 1.0, ..ConfirmationParams::default() };
+    let patience_only = ConfirmationParams { max_missed: Some(1), ..ConfirmationParams::default() };
     for confirmation in [share_only, patience_only] {
         let mut slam = slam(confirmation);
         look(&mut slam, &[AHEAD]);
@@ -110,7 +121,8 @@ fn confirmed_landmark_stays_without_share_or_patience() {
 
 #[test]
 fn an_anchor_stays_whatever_is_seen() {
-    let confirmation = Confirmation { patience: Some(0), least_share_seen: 1.0, ..Confirmation::default() };
+    let confirmation =
+        ConfirmationParams { max_missed: Some(0), min_detection_rate: 1.0, ..ConfirmationParams::default() };
     let mut slam = slam(confirmation);
     slam.add_anchor(LandmarkId(1), [3.0, 0.0].into()).unwrap();
     assert_eq!(looks_survived(&mut slam, 1), None);
@@ -119,11 +131,11 @@ fn an_anchor_stays_whatever_is_seen() {
 #[test]
 fn a_share_is_between_nothing_and_all() {
     for share in [-0.1, 1.1, f64::NAN, f64::INFINITY] {
-        let confirmation = Confirmation { least_share_seen: share, ..Confirmation::default() };
+        let confirmation = ConfirmationParams { min_detection_rate: share, ..ConfirmationParams::default() };
         let params = SlamParams { confirmation, ..SlamParams::default() };
         let built = EkfSlam::new(sensor(), params, Pose2::new(0.0, 0.0, 0.0));
         assert!(
-            matches!(built, Err(SlamError::Parameter { name: "least_share_seen", .. })),
+            matches!(built, Err(SlamError::Parameter { name: "min_detection_rate", .. })),
             "{share}: {built:?}"
         );
     }

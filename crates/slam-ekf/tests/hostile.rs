@@ -8,9 +8,9 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
 use wayfix_slam_ekf::{
-    Confirmation, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel, MapForm,
-    NearestNeighbour, NearestNeighbourParams, NewLandmark, Observation, Outcome, OutlierRule, RangeBearing,
-    RangeBearingSensor, SlamError, SlamParams, UpdateOrder,
+    ConfirmationParams, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel,
+    MapForm, NearestNeighbour, NearestNeighbourParams, NewLandmark, Observation, Outcome, OutlierRule,
+    RangeBearing, RangeBearingSensor, SlamError, SlamParams, UpdateOrder,
 };
 
 /// Eight filters take turns: a million steps together. Four more have a compressed map.
@@ -248,7 +248,7 @@ fn update<A: DataAssociation<Whimsical>>(
 /// Mostly near what is expected, so that corrections happen; otherwise anything.
 fn observation(slam: &EkfSlam<Whimsical>, rng: &mut ChaCha8Rng) -> Observation<RangeBearing> {
     let id = LandmarkId(rng.random_range(0..slam.model().n_ids));
-    let expected = slam.predicted_sighting(id).map(|sighting| sighting.expected);
+    let expected = slam.predicted_measurement(id).map(|sighting| sighting.expected);
     let measurement = match expected {
         Some(expected) if rng.random_bool(0.7) => {
             expected.retract(&Vector2::new(rng.random_range(-0.1..0.1), rng.random_range(-0.1..0.1)))
@@ -262,7 +262,7 @@ fn is_never_poisoned(map: MapForm, rules: &[OutlierRule], mut seed: u64) {
     let mut tallies = Vec::new();
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for &outliers in rules {
-            let confirmation = Confirmation { patience: Some(5), ..Confirmation::default() };
+            let confirmation = ConfirmationParams { max_missed: Some(5), ..ConfirmationParams::default() };
             let params = SlamParams { order, outliers, confirmation, map, ..SlamParams::default() };
             tallies.push(ill_treat(params, || KnownIds, seed));
             let nearest = || NearestNeighbour::new(NearestNeighbourParams::default()).unwrap();

@@ -7,9 +7,9 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Pose2, laws as general};
 use wayfix_slam_ekf::{
-    AckermannControl, AckermannMotion, IncrementMotion, LandmarkModel, Mounted, NewLandmark, RangeBearing,
-    RangeBearingSensor, RelativePositionSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor,
-    VelocityControl, VelocityMotion, laws,
+    AckermannControl, AckermannMotion, IncrementMotion, LandmarkModel, MountedSensor, NewLandmark,
+    RangeBearing, RangeBearingSensor, RelativePositionSensor, ScaledMotion, ScaledPose,
+    ScaledRangeBearingSensor, VelocityControl, VelocityMotion, laws,
 };
 
 fn poses() -> Vec<Pose2<f64>> {
@@ -37,7 +37,7 @@ fn of_every_landmark_model() {
     laws::landmark_model(&sensor, &poses(), &landmarks()).unwrap();
     laws::landmark_model(&RelativePositionSensor { sigma: 0.1 }, &poses(), &landmarks()).unwrap();
     laws::landmark_model(&ScaledRangeBearingSensor(sensor), &scaled(&poses()), &landmarks()).unwrap();
-    let mounted = Mounted { sensor, mount: Pose2::new(0.3, -0.2, 2.0) };
+    let mounted = MountedSensor { sensor, mount: Pose2::new(0.3, -0.2, 2.0) };
     laws::landmark_model(&mounted, &poses(), &landmarks()).unwrap();
     laws::landmark_model(&ScaledRangeBearingSensor(mounted), &scaled(&poses()), &landmarks()).unwrap();
 }
@@ -130,9 +130,9 @@ const GOOD: RangeBearingSensor = RangeBearingSensor {
     range_sigma: 0.1,
     range_sigma_per_meter: 0.02,
     bearing_sigma: 0.01,
-    reach: f64::INFINITY,
+    sensor_range: f64::INFINITY,
     half_field_of_view: PI,
-    look_errors: None,
+    correlated_noise: None,
 };
 
 impl LandmarkModel for Wrong {

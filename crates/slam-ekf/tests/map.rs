@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_slam_ekf::{
-    Association, Confirmation, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId,
+    Association, ConfirmationParams, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId,
     NearestNeighbour, NearestNeighbourParams, Observation, Outcome, OutlierRule, RangeBearing,
     RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams,
 };
@@ -107,7 +107,8 @@ fn what_is_removed_leaves_the_marginal_of_the_rest() {
 
 #[test]
 fn false_first_detection_is_replaced_and_unseen_one_removed() {
-    let confirmation = Confirmation { n_sightings: 2, patience: Some(3), ..Confirmation::default() };
+    let confirmation =
+        ConfirmationParams { n_detections: 2, max_missed: Some(3), ..ConfirmationParams::default() };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });
     let mut look = |observations: &[Observation<RangeBearing>]| {
         slam.update(observations, &mut KnownIds).unwrap().outcomes
@@ -136,7 +137,7 @@ fn an_identity_seen_twice_in_one_look_counts_once() {
 
 #[test]
 fn outliers_are_rejected_or_count_little_and_say_so() {
-    let confirmation = Confirmation { n_sightings: 1, ..Confirmation::default() };
+    let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
     for outliers in [OutlierRule::Reject, OutlierRule::Downweight] {
         let mut slam = slam(SlamParams { outliers, confirmation, ..SlamParams::default() });
         slam.update(&[seen(1, 2.0, 0.0)], &mut KnownIds).unwrap();
@@ -146,7 +147,7 @@ fn outliers_are_rejected_or_count_little_and_say_so() {
             - before.landmark(LandmarkId(1)).unwrap().mean)
             .norm();
         match &report.outcomes[0] {
-            Outcome::Gated { innovation, threshold, .. } => {
+            Outcome::Rejected { innovation, threshold, .. } => {
                 assert!(outliers == OutlierRule::Reject && innovation.nis > *threshold && moved == 0.0);
             }
             Outcome::Accepted { noise_scale, .. } => {
@@ -161,7 +162,7 @@ fn outliers_are_rejected_or_count_little_and_say_so() {
 #[test]
 fn nearest_neighbour_pairs_once_and_skips_ambiguous() {
     let mut rule = NearestNeighbour::new(NearestNeighbourParams::default()).unwrap();
-    let confirmation = Confirmation { n_sightings: 1, ..Confirmation::default() };
+    let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
     let mut slam = slam(SlamParams { confirmation, ..SlamParams::default() });
     let unlabelled =
         |range, bearing| Observation { label: None, measurement: RangeBearing::new(range, bearing) };
@@ -190,10 +191,10 @@ fn bad_parameters_and_landmarks_are_typed_errors() {
             Err(SlamError::Parameter { .. })
         ));
     }
-    for contradiction in [0.0, -1.0, f64::NAN] {
-        let confirmation = Confirmation { contradiction, ..Confirmation::default() };
+    for restart_nis in [0.0, -1.0, f64::NAN] {
+        let confirmation = ConfirmationParams { restart_nis, ..ConfirmationParams::default() };
         let params = SlamParams { confirmation, ..SlamParams::default() };
-        assert!(EkfSlam::new(RangeBearingSensor::default(), params, start).is_err(), "{contradiction}");
+        assert!(EkfSlam::new(RangeBearingSensor::default(), params, start).is_err(), "{restart_nis}");
     }
     assert!(
         NearestNeighbour::new(NearestNeighbourParams {

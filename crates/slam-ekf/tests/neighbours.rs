@@ -8,15 +8,15 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    Confirmation, EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, KnownIds,
-    LandmarkId, LookErrors, Merge, Merging, NearestNeighbour, NearestNeighbourParams, Observation, Outcome,
-    RangeBearing, RangeBearingSensor, SlamError, SlamParams,
+    ConfirmationParams, CorrelatedNoise, EkfSlam, IncrementMotion, JointCompatibility,
+    JointCompatibilityParams, KnownIds, LandmarkId, Merge, MergingParams, NearestNeighbour,
+    NearestNeighbourParams, Observation, Outcome, RangeBearing, RangeBearingSensor, SlamError, SlamParams,
 };
 
 const SEED: u64 = 11;
 
-fn slam(sensor: RangeBearingSensor, merging: Option<Merging>) -> EkfSlam<RangeBearingSensor> {
-    let confirmation = Confirmation { n_sightings: 1, ..Confirmation::default() };
+fn slam(sensor: RangeBearingSensor, merging: Option<MergingParams>) -> EkfSlam<RangeBearingSensor> {
+    let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
     let params = SlamParams { confirmation, merging, ..SlamParams::default() };
     EkfSlam::new(sensor, params, Pose2::new(0.0, 0.0, 0.0)).unwrap()
 }
@@ -30,10 +30,12 @@ fn labelled(id: u32, range: f64, bearing: f64) -> Observation<RangeBearing> {
 }
 
 /// Two neighbours, all of each look turned by one error of a normal distribution; how many landmarks association makes of them.
-fn n_landmarks_of_two(look_errors: Option<LookErrors>) -> usize {
-    let sensor = RangeBearingSensor { bearing_sigma: 0.035, look_errors, ..RangeBearingSensor::default() };
+fn n_landmarks_of_two(correlated_noise: Option<CorrelatedNoise>) -> usize {
+    let sensor =
+        RangeBearingSensor { bearing_sigma: 0.035, correlated_noise, ..RangeBearingSensor::default() };
     let mut slam = slam(sensor, None);
-    let params = JointCompatibilityParams { never_twice: true, ..JointCompatibilityParams::default() };
+    let params =
+        JointCompatibilityParams { one_detection_per_landmark: true, ..JointCompatibilityParams::default() };
     let mut rule = JointCompatibility::new(params).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     for _ in 0..30 {
@@ -47,13 +49,18 @@ fn n_landmarks_of_two(look_errors: Option<LookErrors>) -> usize {
 
 #[test]
 fn neighbours_are_told_apart_by_what_a_look_errs_in_common() {
-    let errors = LookErrors { own_bearing_sigma: 0.005, common_bearing_sigma: 0.02, ..LookErrors::default() };
+    let errors = CorrelatedNoise {
+        independent_bearing_sigma: 0.005,
+        common_bearing_sigma: 0.02,
+        ..CorrelatedNoise::default()
+    };
     assert_eq!(n_landmarks_of_two(Some(errors)), 2);
     // The sightings are 0.057 rad apart as landmarks 0 and 1 are, but shifted by 0.04; landmarks 1 and 2 are nearer and 0.035 apart.
     // Joint NIS with a common error: 0.04² / 0.0004125 = 3.9 against 0.022² / (2 · 0.005²) = 9.7; independent: 7.5 against 0.7.
     let look = [unlabelled(3.5, 0.04), unlabelled(3.5, 0.097)];
-    let pairings = |look_errors: LookErrors| {
-        let sensor = RangeBearingSensor { look_errors: Some(look_errors), ..RangeBearingSensor::default() };
+    let pairings = |correlated_noise: CorrelatedNoise| {
+        let sensor =
+            RangeBearingSensor { correlated_noise: Some(correlated_noise), ..RangeBearingSensor::default() };
         let mut slam = slam(sensor, None);
         for (id, bearing) in [(0, 0.0), (1, 0.057), (2, 0.092)] {
             let (y, x) = f64::sin_cos(bearing);
@@ -67,22 +74,26 @@ fn neighbours_are_told_apart_by_what_a_look_errs_in_common() {
         };
         report.outcomes.iter().map(of).collect::<Vec<_>>()
     };
-    let independent = LookErrors { own_bearing_sigma: 0.0206, ..LookErrors::default() };
+    let independent = CorrelatedNoise { independent_bearing_sigma: 0.0206, ..CorrelatedNoise::default() };
     assert_eq!(pairings(errors), [Some(0), Some(1)]);
     assert_eq!(pairings(independent), [Some(1), Some(2)]);
 }
 
 #[test]
 fn second_detection_near_a_match_is_another_landmark() {
-    let outcomes = |never_twice: bool, joint: bool| {
+    let outcomes = |one_detection_per_landmark: bool, joint: bool| {
         let mut slam = slam(RangeBearingSensor::default(), None);
         slam.insert(LandmarkId(100), Vector2::new(2.0, 0.0), Matrix2::identity() * 1e-6).unwrap();
         let look = [unlabelled(2.0, 0.0), unlabelled(2.1, 0.0)]; // 0.1 m is two standard deviations
         let report = if joint {
-            let params = JointCompatibilityParams { never_twice, ..JointCompatibilityParams::default() };
+            let params = JointCompatibilityParams {
+                one_detection_per_landmark,
+                ..JointCompatibilityParams::default()
+            };
             slam.update(&look, &mut JointCompatibility::new(params).unwrap())
         } else {
-            let params = NearestNeighbourParams { never_twice, ..NearestNeighbourParams::default() };
+            let params =
+                NearestNeighbourParams { one_detection_per_landmark, ..NearestNeighbourParams::default() };
             slam.update(&look, &mut NearestNeighbour::new(params).unwrap())
         };
         report.unwrap().outcomes
@@ -95,7 +106,7 @@ fn second_detection_near_a_match_is_another_landmark() {
 
 #[test]
 fn landmarks_below_the_least_distance_are_merged() {
-    let merging = Some(Merging { separation: 0.2, n_sigmas: 2.0 });
+    let merging = Some(MergingParams { separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     for _ in 0..20 {
         slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIds).unwrap();
@@ -107,7 +118,7 @@ fn landmarks_below_the_least_distance_are_merged() {
             break;
         }
     }
-    assert_eq!(merges, [Merge { kept: LandmarkId(1), gone: LandmarkId(2) }]); // the one that was seen more often stays
+    assert_eq!(merges, [Merge { kept: LandmarkId(1), removed: LandmarkId(2) }]); // the one that was seen more often stays
     assert_eq!((slam.n_landmarks(), slam.covariance().nrows()), (1, 5));
     let x = slam.landmark(LandmarkId(1)).unwrap().mean.x;
     assert!(x > 2.0 && x < 2.05, "{x}"); // between the two places it was taken for
@@ -115,7 +126,7 @@ fn landmarks_below_the_least_distance_are_merged() {
 
 #[test]
 fn two_that_may_stand_apart_stay_two() {
-    let merging = Some(Merging { separation: 0.2, n_sigmas: 2.0 });
+    let merging = Some(MergingParams { separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     // 0.1 m apart, but seen once each: two standard deviations of their difference are 2 · √(2 · (0.05² + 0.02²)) = 0.15 m, and 0.1 m is left.
     let report = slam.update(&[labelled(1, 2.0, 0.0), labelled(2, 2.1, 0.0)], &mut KnownIds).unwrap();
@@ -152,14 +163,15 @@ fn impossible_merge_changes_nothing() {
     slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIds).unwrap();
     slam.add_anchor(LandmarkId(9), Vector2::new(2.0, 0.0)).unwrap();
     let before = format!("{slam:?}");
-    for (kept, gone) in [(1, 1), (1, 2), (2, 1), (1, 9), (9, 1)] {
-        assert!(!slam.merge(LandmarkId(kept), LandmarkId(gone)));
+    for (kept, removed) in [(1, 1), (1, 2), (2, 1), (1, 9), (9, 1)] {
+        assert!(!slam.merge(LandmarkId(kept), LandmarkId(removed)));
     }
     assert_eq!(format!("{slam:?}"), before);
     for bad in [f64::NAN, -1.0, f64::INFINITY] {
-        for merging in
-            [Merging { separation: bad, n_sigmas: 2.0 }, Merging { separation: 0.1, n_sigmas: bad }]
-        {
+        for merging in [
+            MergingParams { separation: bad, n_sigmas: 2.0 },
+            MergingParams { separation: 0.1, n_sigmas: bad },
+        ] {
             let params = SlamParams { merging: Some(merging), ..SlamParams::default() };
             let refused = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0));
             assert!(matches!(refused, Err(SlamError::Parameter { .. })));

@@ -41,7 +41,7 @@ fn lap(n_anchors: usize, camera: bool) -> ObservabilityRecorder {
     let mut recorder = ObservabilityRecorder::new(&slam);
     let motion = IncrementMotion::default();
     for step in common::drive(40, &landmarks, &mut rng) {
-        recorder.moved(&motion.jacobian(slam.robot(), &step.increment));
+        recorder.record_motion(&motion.jacobian(slam.robot(), &step.increment));
         slam.predict(&motion, &step.increment).unwrap();
         if camera {
             let jacobian: Matrix2x3<f64> = Ceiling.jacobian(slam.robot());
@@ -57,7 +57,7 @@ fn lap(n_anchors: usize, camera: bool) -> ObservabilityRecorder {
 }
 
 fn free(recorder: &ObservabilityRecorder) -> Vec<String> {
-    recorder.free_directions().iter().map(ToString::to_string).collect()
+    recorder.unobservable_directions().iter().map(ToString::to_string).collect()
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn about_a_single_anchor_the_map_still_turns() {
     // The world turned about an anchor at (x, y) by ω is the world turned about the origin by ω and moved by ω (y, −x).
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let [x, y] = common::landmarks(10, &mut rng)[0];
-    let directions = lap(1, false).free_directions();
+    let directions = lap(1, false).unobservable_directions();
     assert_eq!(directions.len(), 1);
     let part = |name: &str| {
         directions[0].parts.iter().find(|(found, _)| *found == name).map_or(0.0, |(_, part)| *part)
@@ -113,7 +113,7 @@ fn the_monobot_has_the_information_of_the_paper() {
     let mut recorder = ObservabilityRecorder::new(&slam);
     let mut expected = 0.0;
     for _ in 0..20 {
-        recorder.moved(&motion.jacobian(slam.robot(), &Vector1::zeros()));
+        recorder.record_motion(&motion.jacobian(slam.robot(), &Vector1::zeros()));
         slam.predict(&motion, &Vector1::zeros()).unwrap();
         let p = slam.covariance();
         expected += 1.0 / (p[(0, 0)] - 2.0 * p[(0, 1)] + p[(1, 1)] + 1.0);

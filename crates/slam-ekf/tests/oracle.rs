@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Pose2, wrap_angle};
 use wayfix_slam_ekf::{
-    Confirmation, EkfSlam, IncrementMotion, KnownIds, LandmarkId, OutlierRule, RangeBearingSensor,
+    ConfirmationParams, EkfSlam, IncrementMotion, KnownIds, LandmarkId, OutlierRule, RangeBearingSensor,
     SlamParams, UpdateOrder,
 };
 
@@ -117,7 +117,7 @@ fn filter(order: UpdateOrder) -> (EkfSlam<RangeBearingSensor>, IncrementMotion) 
         outliers: OutlierRule::Reject,
         gate_probability: 1.0 - 1e-15,
         order,
-        confirmation: Confirmation { n_sightings: 1, ..Confirmation::default() },
+        confirmation: ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() },
         ..SlamParams::default()
     };
     (EkfSlam::new(RangeBearingSensor::default(), params, common::start()).unwrap(), motion)

@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    Confirmation, EkfSlam, IncrementMotion, LandmarkId, Linearization, NearestNeighbour,
+    ConfirmationParams, EkfSlam, IncrementMotion, LandmarkId, Linearization, NearestNeighbour,
     NearestNeighbourParams, RangeBearingSensor, SlamError, SlamParams, Snapshot,
 };
 
@@ -18,7 +18,8 @@ type Saved = Snapshot<Pose2<f64>, Vector2<f64>>;
 
 /// Landmarks that nobody told apart, some of which are forgotten again: the filter's whole memory is at work.
 fn params(linearization: Linearization) -> SlamParams {
-    let confirmation = Confirmation { n_sightings: 4, patience: Some(2), ..Confirmation::default() };
+    let confirmation =
+        ConfirmationParams { n_detections: 4, max_missed: Some(2), ..ConfirmationParams::default() };
     SlamParams { confirmation, linearization, ..SlamParams::default() }
 }
 
@@ -83,9 +84,9 @@ fn what_cannot_be_a_filter_is_refused() {
     assert!(matches!(refused(&|s| s.anchors[0].1.x = f64::INFINITY), SlamError::NotFinite { .. }));
     assert!(matches!(refused(&|s| s.landmarks[1].id = s.landmarks[0].id), SlamError::LandmarkExists(_)));
     assert!(matches!(refused(&|s| s.anchors[0].0 = s.landmarks[0].id), SlamError::LandmarkExists(_)));
-    assert!(matches!(refused(&|s| s.landmarks[0].last_seen = s.look + 1), SlamError::Parameter { .. }));
-    assert!(matches!(refused(&|s| s.landmarks[0].n_sightings = usize::MAX), SlamError::Parameter { .. }));
-    assert!(matches!(refused(&|s| s.look = usize::MAX), SlamError::Parameter { .. }));
+    assert!(matches!(refused(&|s| s.landmarks[0].last_seen = s.n_updates + 1), SlamError::Parameter { .. }));
+    assert!(matches!(refused(&|s| s.landmarks[0].n_detections = usize::MAX), SlamError::Parameter { .. }));
+    assert!(matches!(refused(&|s| s.n_updates = usize::MAX), SlamError::Parameter { .. }));
     assert!(matches!(refused(&|s| s.covariance.truncate(9)), SlamError::Dimension { got: 9, .. }));
     assert!(matches!(refused(&|s| s.covariance.push(0.0)), SlamError::Dimension { .. }));
     assert!(matches!(refused(&|s| s.landmarks.clear()), SlamError::Dimension { expected: 6, .. }));

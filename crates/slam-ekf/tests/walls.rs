@@ -13,7 +13,7 @@ use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{
     EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization, Observation,
-    SeenWall, SlamParams, Wall, WallLine, WallSensor,
+    SlamParams, Wall, WallLine, WallMeasurement, WallSensor,
 };
 
 const N_STEPS: usize = 120;
@@ -35,7 +35,7 @@ fn through([a, b]: [Vector2<f64>; 2]) -> WallLine {
 }
 
 /// What the points of a wall give: noise across it at both ends, and the covariance that this means for its line.
-fn look(robot: &Pose2<f64>, ends: &[Vector2<f64>; 2], rng: &mut ChaCha8Rng) -> Observation<SeenWall> {
+fn look(robot: &Pose2<f64>, ends: &[Vector2<f64>; 2], rng: &mut ChaCha8Rng) -> Observation<WallMeasurement> {
     let seen = ends.map(|end| robot.inverse_transform(&end));
     let along = (seen[1] - seen[0]).normalize();
     let across = Vector2::new(along.y, -along.x);
@@ -47,7 +47,7 @@ fn look(robot: &Pose2<f64>, ends: &[Vector2<f64>; 2], rng: &mut ChaCha8Rng) -> O
     // ρ + (s - s_end) dα = error at either end, for the two ends.
     let by_line = Matrix2::new(1.0, a, 1.0, b).try_inverse().unwrap();
     let covariance = by_line * by_line.transpose() * END_SIGMA * END_SIGMA;
-    Observation { label: None, measurement: SeenWall { line, covariance, ends: noisy } }
+    Observation { label: None, measurement: WallMeasurement { line, covariance, ends: noisy } }
 }
 
 fn lap(seed: u64, linearization: Linearization) -> (EkfSlam<WallSensor>, Pose2<f64>) {
@@ -139,11 +139,11 @@ fn looks_that_are_no_walls_are_unusable_and_change_nothing() {
     let mut rule = JointCompatibility::new(JointCompatibilityParams::default()).unwrap();
     let before = slam.snapshot();
     for bad in [
-        SeenWall { line: WallLine { rho: f64::NAN, ..good.line }, ..good },
-        SeenWall { line: WallLine { alpha: f64::INFINITY, ..good.line }, ..good },
-        SeenWall { covariance: -good.covariance, ..good },
-        SeenWall { covariance: good.covariance * f64::NAN, ..good },
-        SeenWall { ends: [Vector2::new(f64::NAN, 0.0), good.ends[1]], ..good },
+        WallMeasurement { line: WallLine { rho: f64::NAN, ..good.line }, ..good },
+        WallMeasurement { line: WallLine { alpha: f64::INFINITY, ..good.line }, ..good },
+        WallMeasurement { covariance: -good.covariance, ..good },
+        WallMeasurement { covariance: good.covariance * f64::NAN, ..good },
+        WallMeasurement { ends: [Vector2::new(f64::NAN, 0.0), good.ends[1]], ..good },
     ] {
         let report = slam.update(&[Observation { label: None, measurement: bad }], &mut rule).unwrap();
         assert!(matches!(report.outcomes[0], wayfix_slam_ekf::Outcome::Unusable), "{bad:?}");

@@ -25,7 +25,11 @@ fn main() -> Result<()> {
         let mut best: Vec<f64> = Vec::new();
         for _ in 0..N_RUNS {
             let run = slam::run(&records, &params, |_| {})?;
-            let steps = run.system.keyframes().iter().map(|keyframe| 1e6 * keyframe.step.as_secs_f64());
+            let steps = run
+                .system
+                .stamped_estimates()
+                .iter()
+                .map(|stamped_estimate| 1e6 * stamped_estimate.step.as_secs_f64());
             if best.is_empty() {
                 best = steps.collect();
             } else {

@@ -82,11 +82,11 @@ fn an_identity_seen_twice_in_one_look_counts_once() {
         .flat_map(|line| [line, "\n"])
         .collect();
     let outcome = run_slam(&scratch.file("doubled.txt", doubled), &[]);
-    let n_sightings = text.lines().filter(|line| line.starts_with('Z')).count();
-    assert_eq!(outcome.event("duplicate"), n_sightings as u64);
-    assert_eq!(outcome.metric("n_rejected"), n_sightings as f64);
+    let n_detections = text.lines().filter(|line| line.starts_with('Z')).count();
+    assert_eq!(outcome.event("duplicate"), n_detections as u64);
+    assert_eq!(outcome.metric("n_rejected"), n_detections as f64);
     assert!(outcome.stderr.contains("a second time in one look"), "{}", outcome.stderr);
-    assert!(outcome.stderr.contains(&format!("and {} more", n_sightings - 20)), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains(&format!("and {} more", n_detections - 20)), "{}", outcome.stderr);
     assert_eq!(outcome.metric("ate_rmse_m"), clean.metric("ate_rmse_m"));
 }
 
@@ -119,7 +119,7 @@ fn log_without_usable_records_is_refused_with_a_reason() {
         ("# nothing\n\n".to_owned(), "holds no record"),
         ("Dear sir,\n".to_owned(), "name the format: utias, range-bearing"),
         (only(&['L', 'P', 'Z']), "no odometry"),
-        (only(&['L', 'P', 'O']), "no range-bearing sightings of landmarks"),
+        (only(&['L', 'P', 'O']), "no range-bearing detections of landmarks"),
         (only(&['L', 'P']), "no odometry"),
         (zero_ranges, "a range of 0 m"),
         ("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n".to_owned(), "no odometry"),
@@ -133,7 +133,7 @@ fn log_without_usable_records_is_refused_with_a_reason() {
     let folder = utias_walk(&scratch, "set", 1, 50);
     let barcodes: String = (1..=5).map(|robot| format!("{robot} {}\n", 59 + robot)).collect();
     scratch.file("set/Barcodes.dat", barcodes);
-    refused(&run_slam(&folder, &[]), "no range-bearing sightings of landmarks");
+    refused(&run_slam(&folder, &[]), "no range-bearing detections of landmarks");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use common::wayfix;
 use wayfix::report::{Metric, Report, Run};
 use wayfix::views::{self, FeatureKind, Normalization, Setup, ViewsParams, ViewsRun};
 use wayfix_condensation::{Picture, StateSpace, ViewGrid};
-use wayfix_scene_sim::scenery::{Scenery, Visit};
+use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 
 fn figure(metrics: &[Metric], name: &str) -> f64 {
     metrics.iter().find(|metric| metric.name == name).expect(name).value
@@ -40,7 +40,9 @@ fn views_of_the_composed_scenes_are_as_many_as_in_the_paper() {
 #[test]
 fn a_visit_that_is_no_camera_is_refused() {
     let lab = Scenery::named("lab").unwrap();
-    assert!(views::composed(&lab, &Visit { gamma: f64::NAN, ..Visit::dimmed() }).is_err());
+    assert!(
+        views::composed(&lab, &ImagingConditions { gamma: f64::NAN, ..ImagingConditions::dimmed() }).is_err()
+    );
 }
 
 /// At distance 0 the tail holds everything; different views are at some distance.

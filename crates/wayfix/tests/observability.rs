@@ -9,7 +9,7 @@ fn the_free_directions_of_a_map_without_anchors_are_named() {
     let scratch = Scratch::new();
     let log = scratch.file("walk.txt", walk(40));
     let outcome = run_slam(&log, &["--observability"]);
-    // A planar map of relative sightings may be moved and turned, and nothing else of it is free.
+    // A planar map of relative detections may be moved and turned, and nothing else of it is free.
     assert_eq!(outcome.metric("n_free_directions"), 3.0);
     assert_eq!(outcome.metric("state_dimension"), 4.0 + 2.0 * outcome.metric("n_landmarks"));
     for name in

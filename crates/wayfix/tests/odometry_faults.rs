@@ -7,7 +7,7 @@ use wayfix::{
     walls::{self, WallRun, WallSlamParams},
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_sensor_log::{Data, LaserScan, Record, Sighting, Stamp, Target, Velocity};
+use wayfix_sensor_log::{Data, Detection, LaserScan, Record, Stamp, Target, Velocity};
 
 /// Well above what walls leave open, and far below what each fault makes of odometry alone.
 const CENTIMETRES: f64 = 0.05;
@@ -183,7 +183,7 @@ fn late_odometry_is_said_and_its_delay_corrects_it() {
 
 #[test]
 fn velocity_holds_for_a_limited_time() {
-    let look = Data::Sightings(vec![Sighting { target: Target::Landmark(1), range: 2.0, bearing: 0.0 }]);
+    let look = Data::Detections(vec![Detection { target: Target::Landmark(1), range: 2.0, bearing: 0.0 }]);
     let velocity = |linear| Data::Velocity(Velocity { linear, angular: 0.0 });
     let log =
         [at(0.0, velocity(1.0)), at(1e8, velocity(0.5)), at(1e8 + 0.5, look), at(1e8 + 0.6, velocity(0.5))];

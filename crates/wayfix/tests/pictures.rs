@@ -29,7 +29,7 @@ fn size(shape: &[(f64, f64)]) -> (f64, f64) {
 }
 
 /// Pixels per metre on both axes, from true landmarks at `(0, 0)` and `(corner.0, corner.1)`: each is a cross of two strokes.
-fn pixels_per_metre(picture: &Picture, corner: (f64, f64)) -> (f64, f64) {
+fn pixels_per_meter(picture: &Picture, corner: (f64, f64)) -> (f64, f64) {
     let strokes = shapes(picture, "polyline", "text");
     let centers: Vec<(f64, f64)> =
         strokes.iter().map(|s| (0.5 * (s[0].0 + s[1].0), 0.5 * (s[0].1 + s[1].1))).collect();
@@ -49,7 +49,7 @@ fn isotropic_covariance_draws_a_two_sigma_circle() {
     for corner in [(10.0, 7.0), (5.0, 5.0), (6.0, 9.0), (200.0, 3.0), (3.0, 400.0)] {
         let sigma = 0.08 * f64::max(corner.0, corner.1);
         let picture = map_with(corner, [[sigma * sigma, 0.0], [0.0, sigma * sigma]]).draw().unwrap();
-        let (scale_x, scale_y) = pixels_per_metre(&picture, corner);
+        let (scale_x, scale_y) = pixels_per_meter(&picture, corner);
         // Positions are rounded to a tenth of a pixel at both ends of each side.
         let rounding = 0.2 / f64::min(corner.0, corner.1);
         assert!((scale_x - scale_y).abs() <= rounding, "{corner:?}: {scale_x} and {scale_y} px per metre");
@@ -65,7 +65,7 @@ fn isotropic_covariance_draws_a_two_sigma_circle() {
 fn ellipse_spans_two_sigma_of_each_axis_when_correlated() {
     let (xx, xy, yy) = (0.36, 0.30, 0.49);
     let picture = map_with((8.0, 8.0), [[xx, xy], [xy, yy]]).draw().unwrap();
-    let (scale_x, scale_y) = pixels_per_metre(&picture, (8.0, 8.0));
+    let (scale_x, scale_y) = pixels_per_meter(&picture, (8.0, 8.0));
     let (width, height) = size(&shapes(&picture, "polygon", "ink-3")[0]);
     // 48 vertices miss the extreme by at most 1 - cos(π/48), 0.2 %.
     assert!((width / (4.0 * xx.sqrt() * scale_x) - 1.0).abs() < 0.005, "{width}");
@@ -76,8 +76,8 @@ fn ellipse_spans_two_sigma_of_each_axis_when_correlated() {
 fn dead_reckoning_that_runs_away_does_not_shrink_the_map() {
     let calm = map_with((8.0, 6.0), [[0.01, 0.0], [0.0, 0.01]]);
     let lost = MapPlot { dead_reckoning: (0..1000).map(|k| (f64::from(k), 0.0)).collect(), ..calm.clone() };
-    let (before, _) = pixels_per_metre(&calm.draw().unwrap(), (8.0, 6.0));
-    let (after, _) = pixels_per_metre(&lost.draw().unwrap(), (8.0, 6.0));
+    let (before, _) = pixels_per_meter(&calm.draw().unwrap(), (8.0, 6.0));
+    let (after, _) = pixels_per_meter(&lost.draw().unwrap(), (8.0, 6.0));
     assert!(after > 0.5 * before, "{before} to {after} px per metre");
 }
 

@@ -188,7 +188,7 @@ fn a_log_builds_its_map_and_a_saved_map_is_gone_on_with() {
 
     let taught = log_run(&log, &["--withhold", "4"]);
     assert!(
-        taught.stderr.contains("learn, then localize") && taught.event("taught") > 100,
+        taught.stderr.contains("learn, then localize") && taught.event("view_taught") > 100,
         "{}",
         taught.stdout
     );

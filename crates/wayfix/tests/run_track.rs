@@ -69,7 +69,7 @@ fn figures_have_the_names_of_the_contract() {
         assert!((0.0..=1.0).contains(&outcome.metric(name)), "{name}");
     }
     assert!(outcome.metric("frame_mean_ms") > 0.0);
-    assert_eq!((outcome.metric("n_frames"), outcome.metric("n_judged")), (16.0, 16.0));
+    assert_eq!((outcome.metric("n_frames"), outcome.metric("n_frames_with_truth")), (16.0, 16.0));
     // What is promised on a real head in changing light; this one has hardly begun to turn.
     assert!(outcome.metric("iou_mean") >= 0.6 && outcome.metric("n_lost") == 0.0);
     assert_eq!(outcome.json()["seed"], 1);
@@ -117,7 +117,7 @@ fn truncated_frame_keeps_its_number_and_counts_as_lost() {
         let whole = fs::read(shot.frame(damaged)).unwrap();
         fs::write(shot.frame(damaged), &whole[..whole.len() / 2]).unwrap();
         let outcome = shot.run_with_truth();
-        assert_eq!((outcome.metric("n_frames"), outcome.metric("n_judged")), (16.0, 16.0));
+        assert_eq!((outcome.metric("n_frames"), outcome.metric("n_frames_with_truth")), (16.0, 16.0));
         assert_eq!((outcome.metric("n_without_estimate"), outcome.event("frame_unreadable")), (1.0, 1));
         assert!(outcome.stderr.contains(&format!("{damaged}.png")), "{}", outcome.stderr);
         // Truth and frames still belong together: 15 of 16 frames at the bound for heads.
@@ -130,7 +130,7 @@ fn unreadable_first_frame_starts_at_the_next_true_box() {
     let shot = Shot::new();
     fs::write(shot.frame(0), "no picture").unwrap();
     let outcome = shot.run_with_truth();
-    assert_eq!((outcome.metric("n_frames"), outcome.metric("n_judged")), (16.0, 15.0));
+    assert_eq!((outcome.metric("n_frames"), outcome.metric("n_frames_with_truth")), (16.0, 15.0));
     assert!(outcome.metric("iou_mean") >= 0.6);
 }
 
@@ -141,7 +141,7 @@ fn a_frame_of_another_size_is_refused_and_the_run_goes_on() {
     fs::write(shot.frame(5), &small.bytes).unwrap();
     let outcome = shot.run_with_truth();
     assert_eq!((outcome.event("record_refused"), outcome.metric("n_without_estimate")), (1, 1.0));
-    assert_eq!(outcome.metric("n_judged"), 16.0);
+    assert_eq!(outcome.metric("n_frames_with_truth"), 16.0);
     assert!(outcome.metric("iou_mean") > 0.6 * 15.0 / 16.0);
 }
 
@@ -150,7 +150,7 @@ fn truth_of_other_length_and_absent_target_are_accepted() {
     let shot = Shot::new();
     shot.truth_of(&shot.boxes[..10]);
     let outcome = shot.run_with_truth();
-    assert_eq!((outcome.metric("n_frames"), outcome.metric("n_judged")), (16.0, 10.0));
+    assert_eq!((outcome.metric("n_frames"), outcome.metric("n_frames_with_truth")), (16.0, 10.0));
     assert!(outcome.stderr.contains("10 of 16 frames"), "{}", outcome.stderr);
 
     let mut lines = shot.boxes.clone();
@@ -158,7 +158,7 @@ fn truth_of_other_length_and_absent_target_are_accepted() {
     (lines[4], lines[5]) = ("NaN NaN NaN NaN".to_owned(), "0\t0\t0\t0".to_owned());
     shot.truth_of(&lines);
     let outcome = shot.run_with_truth();
-    assert_eq!(outcome.metric("n_judged"), 14.0);
+    assert_eq!(outcome.metric("n_frames_with_truth"), 14.0);
     assert_eq!(outcome.event("absent_and_tracked") + outcome.event("absent_and_lost"), 2);
     assert!(outcome.stderr.contains("18 frames"), "{}", outcome.stderr);
 }

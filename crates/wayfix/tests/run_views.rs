@@ -156,7 +156,8 @@ fn printed_parameters_round_trip() {
     let file = scratch.file("few.toml", "[navigator]\nmax_steps = 0");
     let none = run_views(&scene, &["--params", file.to_str().expect("a plain path")]);
     assert_eq!((none.metric("steps_mean"), none.metric("successes")), (0.0, 0.0));
-    let file = scratch.file("slip.toml", "[navigator.slip]\nstays = 0.3\nstrays = 0.1");
+    let file =
+        scratch.file("slip.toml", "[navigator.slip]\nstay_probability = 0.3\nother_action_probability = 0.1");
     let slips = run_views(&scene, &["--params", file.to_str().expect("a plain path")]);
     // A way of n moves takes n / 0.7 and more, and a robot that knows it still arrives.
     let usual = run_views(&scene, &[]).metric("steps_mean");

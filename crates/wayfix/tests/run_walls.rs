@@ -84,13 +84,13 @@ fn what_makes_no_sense_is_refused_by_name() {
         ("[sensor]\nrho_sigma = -1.0", "rho_sigma"),
         ("[lines]\nmin_points = 1", "min_points"),
         ("[sensor]\nrho = 1.0", "rho"),
-        ("[sensor]\nreach = nan", "reach"),
+        ("[sensor]\nsensor_range = nan", "sensor_range"),
         ("association = 'known'", "association"),
         ("[increment]\nheading_variance_per_meter = -1.0", "heading_variance_per_meter"),
         ("laser = [0.0, inf, 0.0]", "laser"),
         ("[scan_match]\nkernel_m = 0.0", "kernel_m"),
-        ("[looks]\nleast_way = -1.0", "looks.least_way"),
-        ("[disagreement]\nheading_sigma = nan", "disagreement.heading_sigma"),
+        ("[keyframes]\nmin_distance = -1.0", "keyframes.min_distance"),
+        ("[odometry_scan_noise]\nheading_sigma = nan", "odometry_scan_noise.heading_sigma"),
     ] {
         let path = folder.path().join("params.toml");
         fs::write(&path, text).unwrap();

@@ -30,7 +30,7 @@ fn a_resumed_run_goes_on_bit_for_bit() {
     assert!(ends.len() >= 4);
     for end in ends {
         let half = Saved::<WallState>::from_bytes(&saved(&records[..end])).unwrap();
-        assert!(half.state.filter.landmarks.len() > 3 && half.state.last_look.is_some());
+        assert!(half.state.filter.landmarks.len() > 3 && half.state.last_keyframe.is_some());
         let resumed = run_on(half, &records, &params, None, |_| {}).unwrap();
         assert_eq!(resumed.system.save().to_bytes().unwrap(), saved(&records), "{end}");
     }

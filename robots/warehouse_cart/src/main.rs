@@ -12,8 +12,8 @@ use cart::Cart;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_line_extract::{Extractor, Params, Scan};
 use wayfix_slam_ekf::{
-    Confirmation, EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
-    Observation, SeenWall, SlamParams, WallSensor,
+    ConfirmationParams, EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
+    Observation, WallMeasurement, SlamParams, WallSensor,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let filter = SlamParams {
         linearization: Linearization::FirstEstimates, // laps: the standard form would grow too sure of its heading
-        confirmation: Confirmation { n_sightings: 3, patience: Some(10), ..Confirmation::default() },
+        confirmation: ConfirmationParams { n_detections: 3, max_missed: Some(10), ..ConfirmationParams::default() },
         ..SlamParams::default()
     };
     let mut association = JointCompatibility::new(JointCompatibilityParams::default())?;
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let walls = extractor.extract(&scan)?;
         let long = walls.segments.iter().filter(|wall| wall.length() > 0.7);
         let seen: Vec<_> =
-            long.map(|wall| Observation { label: None, measurement: SeenWall::from(wall) }).collect();
+            long.map(|wall| Observation { label: None, measurement: WallMeasurement::from(wall) }).collect();
         slam.update(&seen, &mut association)?;
     }
 

@@ -10,7 +10,7 @@ use crate::shell;
 const KATEX: &str = "katex@0.19.1";
 
 /// Puts the style, script and fonts where `docs/katex-header.html` looks for them.
-pub(super) fn bring(doc: &Path) -> Result<()> {
+pub(super) fn install(doc: &Path) -> Result<()> {
     let katex = doc.join("katex");
     let stamp = katex.join("package.txt");
     if std::fs::read_to_string(&stamp).is_ok_and(|package| package == KATEX) {

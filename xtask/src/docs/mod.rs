@@ -25,7 +25,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     }
     let doc = shell::target_dir().join("doc");
     let header = shell::root().join("docs/katex-header.html");
-    let header = match katex::bring(&doc) {
+    let header = match katex::install(&doc) {
         Ok(()) => Some(header.as_path()),
         Err(error) => {
             println!("docs: formulas stay as source text: {error:#}");

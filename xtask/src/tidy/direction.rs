@@ -4,7 +4,7 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const MAY_KNOW: [(&str, &[&str]); 13] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 13] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
@@ -21,10 +21,10 @@ const MAY_KNOW: [(&str, &[&str]); 13] = [
 ];
 
 /// The application and the tasks may know every library.
-const KNOW_ALL: [&str; 2] = ["wayfix", "xtask"];
+const UNRESTRICTED: [&str; 2] = ["wayfix", "xtask"];
 
 /// Crates that must not learn what an image is.
-const BLIND: [&str; 7] =
+const IMAGE_FREE: [&str; 7] =
     ["estimation-traits", "gaussian-core", "kalman", "particle", "line-extract", "scan-match", "slam-ekf"];
 
 const WHY_TABLE: &str = "see the direction table in docs/architecture.md and xtask/src/tidy/direction.rs";
@@ -38,8 +38,8 @@ pub(super) fn check(sources: &[Source]) -> Vec<Finding> {
 }
 
 fn check_member(name: &str, source: &Source) -> Vec<Finding> {
-    let allowed = MAY_KNOW.iter().find(|(known, _)| *known == name).map(|(_, allowed)| *allowed);
-    if allowed.is_none() && !KNOW_ALL.contains(&name) {
+    let allowed = ALLOWED_DEPENDENCIES.iter().find(|(known, _)| *known == name).map(|(_, allowed)| *allowed);
+    if allowed.is_none() && !UNRESTRICTED.contains(&name) {
         return vec![Finding::new(
             &source.path,
             0,
@@ -63,7 +63,7 @@ fn check_member(name: &str, source: &Source) -> Vec<Finding> {
         {
             found(format!("`{name}` depends on `{other}`, may know only {allowed:?}"), WHY_TABLE);
         }
-        if BLIND.contains(&name) && entry.key.starts_with("image") {
+        if IMAGE_FREE.contains(&name) && entry.key.starts_with("image") {
             found(format!("`{name}` depends on `{}`", entry.key), "this crate knows no images");
         }
     }

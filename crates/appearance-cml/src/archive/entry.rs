@@ -14,7 +14,7 @@ pub(super) enum Entry {
     Places(ReferenceId, Reference),
     /// One is gone.
     Forgotten(ReferenceId),
-    /// How views change with the way, and the number of the next reference.
+    /// How views change with the lag, and the number of the next reference.
     Scale(ViewScale, u32),
     /// Where the robot may be; `None` for anywhere.
     State(Option<Mixture<Pose2<f64>>>),
@@ -119,7 +119,7 @@ fn write_scale(scale: &ViewScale, writer: &mut Writer) {
     let ahead: Vec<LagSample> = scale.ahead().collect();
     for samples in [&near, &ahead] {
         writer.u32(samples.len() as u32);
-        samples.iter().for_each(|sample| writer.f64s([sample.way, sample.distance]));
+        samples.iter().for_each(|sample| writer.f64s([sample.lag, sample.distance]));
     }
     let far: Vec<f64> = scale.far().collect();
     writer.u32(far.len() as u32);
@@ -129,7 +129,7 @@ fn write_scale(scale: &ViewScale, writer: &mut Writer) {
 fn read_scale(reader: &mut Reader) -> Option<ViewScale> {
     let samples = |reader: &mut Reader| -> Option<Vec<LagSample>> {
         let n = reader.count(16)?;
-        (0..n).map(|_| reader.f64s().map(|[way, distance]| LagSample { way, distance })).collect()
+        (0..n).map(|_| reader.f64s().map(|[lag, distance]| LagSample { lag, distance })).collect()
     };
     let (near, ahead) = (samples(reader)?, samples(reader)?);
     let n = reader.count(8)?;

@@ -21,7 +21,7 @@ use crate::{AppearanceError, PoseHypothesis, separation_squared};
 /// };
 /// let moved = [at(0.0, 0.5)?, at(10.0, 0.5)?];
 /// let seen = [at(0.1, 0.4)?];
-/// let fused = PoseHypothesis::into_mixture(fuse(&moved, &seen, &FusionParams::printed())?)?;
+/// let fused = PoseHypothesis::into_mixture(fuse(&moved, &seen, &FusionParams::as_published())?)?;
 /// assert!(fused.weight(0) > 0.6 && fused.weight(1) < 0.4); // 0.9 against 0.5
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
@@ -148,7 +148,7 @@ mod tests {
     fn as_printed_what_agrees_leaves_no_copy() {
         let [robot, place] = [at(0.0, 0.3, 1.0), at(0.1, 0.3, 0.5)];
         let printed =
-            fuse(std::slice::from_ref(&robot), std::slice::from_ref(&place), &FusionParams::printed());
+            fuse(std::slice::from_ref(&robot), std::slice::from_ref(&place), &FusionParams::as_published());
         assert_eq!(printed.unwrap().len(), 1);
         assert_eq!(fused(&[robot], &place).len(), 2);
     }

@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{Manifold, Pose2, wrap_angle};
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
-use crate::{AppearanceError, Facing};
+use crate::{AppearanceError, HeadingMeasurement};
 
 /// A belief that is told which way the robot looks.
 ///
@@ -14,13 +14,13 @@ use crate::{AppearanceError, Facing};
 ///
 /// # Errors
 /// When the belief is singular or the result is not finite.
-pub(crate) fn told_heading(
+pub(crate) fn update_heading(
     belief: &Gaussian<Pose2<f64>>,
-    facing: &Facing,
+    facing: &HeadingMeasurement,
 ) -> Result<Gaussian<Pose2<f64>>, AppearanceError> {
     let information = cholesky("belief's", belief.covariance())?.inverse();
-    let common = facing.learned.min(1.0 / information[(2, 2)]);
-    let noise = facing.compared + facing.learned - common;
+    let common = facing.map_variance.min(1.0 / information[(2, 2)]);
+    let noise = facing.comparison_variance + facing.map_variance - common;
     let mut own = *belief.covariance();
     own[(2, 2)] -= common;
     let gain: Vector3<f64> = own.column(2) / (own[(2, 2)] + noise);
@@ -47,8 +47,8 @@ mod tests {
 
     #[test]
     fn what_was_learned_perfectly_is_a_measurement_like_any_other() {
-        let facing = Facing { heading: -3.1, compared: 0.04, learned: 0.0 };
-        let told = told_heading(&belief(3.1, 0.2), &facing).unwrap();
+        let facing = HeadingMeasurement { heading: -3.1, comparison_variance: 0.04, map_variance: 0.0 };
+        let told = update_heading(&belief(3.1, 0.2), &facing).unwrap();
         // Equal variances meet half way, across the wrap.
         let middle = 0.5 * wrap_angle(-3.1 - 3.1);
         assert!((wrap_angle(told.mean().heading() - 3.1) - middle).abs() < 1e-12);
@@ -57,10 +57,11 @@ mod tests {
 
     #[test]
     fn fused_heading_is_no_sharper_than_the_references() {
-        let facing = Facing { heading: 0.0, compared: 0.01, learned: 0.05f64.powi(2) };
+        let facing =
+            HeadingMeasurement { heading: 0.0, comparison_variance: 0.01, map_variance: 0.05f64.powi(2) };
         let mut told = belief(0.1, 0.2);
         for _ in 0..1000 {
-            told = told_heading(&told, &facing).unwrap();
+            told = update_heading(&told, &facing).unwrap();
         }
         assert!((0.05..0.052).contains(&told.sigmas().z), "{}", told.sigmas().z);
         assert!(told.mean().heading().abs() < 0.01, "{}", told.mean().heading());
@@ -71,8 +72,8 @@ mod tests {
         let noise = OdometryNoise::default();
         let start = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.1), &Vector3::new(0.01, 0.01, 0.2)).unwrap();
         let moved = propagate(&start, &Pose2::new(10.0, 0.0, 0.0), &noise).unwrap();
-        let facing = Facing { heading: 0.0, compared: 1e-4, learned: 1e-4 };
-        let told = told_heading(&moved, &facing).unwrap();
+        let facing = HeadingMeasurement { heading: 0.0, comparison_variance: 1e-4, map_variance: 1e-4 };
+        let told = update_heading(&moved, &facing).unwrap();
         // 10 m · sin 0.1; the odometry's own turn after the start is 0.025 rad against 0.2.
         assert!(moved.mean().y() > 0.99 && told.mean().y().abs() < 0.05, "{:?}", told.mean());
     }
@@ -80,6 +81,12 @@ mod tests {
     #[test]
     fn a_singular_belief_is_refused() {
         let flat = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), Matrix3::zeros());
-        assert!(told_heading(&flat, &Facing { heading: 0.0, compared: 0.1, learned: 0.0 }).is_err());
+        assert!(
+            update_heading(
+                &flat,
+                &HeadingMeasurement { heading: 0.0, comparison_variance: 0.1, map_variance: 0.0 }
+            )
+            .is_err()
+        );
     }
 }

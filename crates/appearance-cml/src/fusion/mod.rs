@@ -9,6 +9,6 @@ mod split;
 
 pub use combine::combine;
 pub use fuse::fuse;
-pub(crate) use heading::told_heading;
+pub(crate) use heading::update_heading;
 pub use params::{Combination, FusionParams, Weighting};
 pub use source::{PoseSource, PositionFix};

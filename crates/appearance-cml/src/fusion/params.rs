@@ -62,7 +62,7 @@ impl Default for FusionParams {
 
 impl FusionParams {
     /// As printed: Eqs. 2-8 with the gate at 95 %.
-    pub fn printed() -> Self {
+    pub fn as_published() -> Self {
         Self { gate: 7.8, combination: Combination::WeightedIntersection, weighting: Weighting::Support }
     }
 

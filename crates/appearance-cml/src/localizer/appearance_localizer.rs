@@ -170,7 +170,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// The robot sees `view`.
     ///
     /// # Errors
-    /// When the belief has become singular or something is not finite; state and map are as before. [`AppearanceError::Full`] when a new reference
+    /// When the belief has become singular or something is not finite; state and map are as before. [`AppearanceError::ReferenceIdsExhausted`] when a new reference
     /// finds no number; the map is as before, and the state is updated.
     pub fn update(&mut self, view: D) -> Result<UpdateOutcome, AppearanceError> {
         self.update_with(view, &[])

@@ -22,7 +22,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     pub(super) fn is_break(&self, view: &D) -> bool {
         let scale = self.map.scale();
         let is_near = self.motion.increment.translation.norm() <= MOST_STEPS * scale.step();
-        let strange = |last: &D| view.compare(last).distance > scale.strangeness();
+        let strange = |last: &D| view.compare(last).distance > scale.distinct_view_distance();
         is_near && self.last_seen.as_ref().is_some_and(strange)
     }
 }

@@ -3,7 +3,9 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::fit::{GATE_SIGMAS, HERE_TURN};
 use super::{AppearanceLocalizer, Observation};
-use crate::{AppearanceError, Descriptor, Facing, PoseHypothesis, ReferenceSearch, told_heading};
+use crate::{
+    AppearanceError, Descriptor, HeadingMeasurement, PoseHypothesis, ReferenceSearch, update_heading,
+};
 
 /// Weight from which on a hypothesis is worth the comparisons.
 const LEAST_WEIGHT: f64 = 0.05;
@@ -31,22 +33,26 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
                 continue;
             }
             if let Some(facing) = self.facing(view, &hypothesis.gaussian)? {
-                hypothesis.gaussian = told_heading(&hypothesis.gaussian, &facing)?;
+                hypothesis.gaussian = update_heading(&hypothesis.gaussian, &facing)?;
             }
         }
         Ok(())
     }
 
     /// Which way the robot looks by the references around a belief, those that look more like the view than all of some far places do.
-    fn facing(&self, view: &D, belief: &Gaussian<Pose2<f64>>) -> Result<Option<Facing>, AppearanceError> {
+    fn facing(
+        &self,
+        view: &D,
+        belief: &Gaussian<Pose2<f64>>,
+    ) -> Result<Option<HeadingMeasurement>, AppearanceError> {
         let Some(limit) = self.map.least_distance_to_far(view, belief.mean(), self.views) else {
             return Ok(None);
         };
         let most = HERE_TURN + GATE_SIGMAS * belief.sigmas().z;
         let mut around =
-            self.apart_from_trail(self.map.sightings_near(view, std::slice::from_ref(belief), limit));
+            self.apart_from_trail(self.map.place_matches_near(view, std::slice::from_ref(belief), limit));
         around.retain(|s| wrap_angle(s.gaussian.mean().heading() - belief.mean().heading()).abs() <= most);
-        let facing = Facing::of(&around, self.map.scale())?;
-        Ok(facing.filter(|facing| facing.learned <= MOST_LEARNED_SIGMA * MOST_LEARNED_SIGMA))
+        let facing = HeadingMeasurement::of(&around, self.map.scale())?;
+        Ok(facing.filter(|facing| facing.map_variance <= MOST_LEARNED_SIGMA * MOST_LEARNED_SIGMA))
     }
 }

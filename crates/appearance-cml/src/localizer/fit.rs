@@ -28,17 +28,17 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     pub(super) fn fit(&self, view: &D, belief: &Belief) -> Fit {
         let Some(heaviest) = belief.heaviest() else { return Fit::Unknown };
         let (at, sigmas) = (heaviest.mean(), heaviest.sigmas());
-        let reach = self.map.reach_of_match(&self.params.map);
+        let reach = self.map.match_radius(&self.params.map);
         let Some(limit) = self.map.least_distance_to_far(view, at, self.views) else { return Fit::Unknown };
         let is_here = |place: &Pose2<f64>| {
             (place.translation - at.translation).norm() <= reach + GATE_SIGMAS * sigmas.xy().norm()
                 && wrap_angle(place.heading() - at.heading()).abs() <= HERE_TURN + GATE_SIGMAS * sigmas.z
         };
         let near =
-            self.apart_from_trail(self.map.sightings_near(view, std::slice::from_ref(heaviest), limit));
+            self.apart_from_trail(self.map.place_matches_near(view, std::slice::from_ref(heaviest), limit));
         if near.iter().any(|s| is_here(s.gaussian.mean())) {
             Fit::Recognized
-        } else if self.map.is_well_known(heaviest, reach, |id| !self.trail.holds(id)) {
+        } else if self.map.has_confirmed_place_near(heaviest, reach, |id| !self.trail.holds(id)) {
             Fit::Missed
         } else {
             Fit::Unknown

@@ -19,7 +19,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     pub(super) fn learn(&mut self, view: D, events: &mut Vec<Event>) -> Result<(), AppearanceError> {
         let estimate = self.belief.one_place(&self.params.unimodal).cloned();
         let way = self.motion.increment.translation.norm();
-        self.trail.moved(way, self.map.reach_of_match(&self.params.map));
+        self.trail.moved(way, self.map.match_radius(&self.params.map));
         self.measure(way, &view, estimate.as_ref().map(Gaussian::mean));
         self.journey.push(self.motion, estimate, view);
         if events.contains(&Event::Relocated) {
@@ -54,14 +54,15 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     /// Where the robot is, if the map was surveyed around it and not just made by it on its way.
     fn surveyed_place(&self) -> Option<Pose2<f64>> {
         let at = self.belief.heaviest()?.mean();
-        let is_surveyed = self
-            .map
-            .is_surveyed(at, (self.surveyed_radius(), MOST_LEARNED_SIGMA), |id| !self.trail.holds(id));
+        let is_surveyed =
+            self.map.has_known_heading_near(at, (self.surveyed_radius(), MOST_LEARNED_SIGMA), |id| {
+                !self.trail.holds(id)
+            });
         is_surveyed.then_some(*at)
     }
 
     fn surveyed_radius(&self) -> f64 {
-        SURVEYED_REACHES * self.map.reach_of_match(&self.params.map)
+        SURVEYED_REACHES * self.map.match_radius(&self.params.map)
     }
 
     /// Learns the view that has waited longest; gives it up when it is nowhere, or an outlier.

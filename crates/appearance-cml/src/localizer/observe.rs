@@ -4,8 +4,8 @@ use wayfix_gaussian_core::Gaussian;
 use super::belief::{Belief, Outlook};
 use super::{AppearanceLocalizer, LocalizerParams, Observation};
 use crate::{
-    AppearanceError, Descriptor, FusionParams, MapParams, PoseHypothesis, PoseSource, ReferenceSearch,
-    Sighting, fuse, interpolate, separation_squared, simplify, superpose,
+    AppearanceError, Descriptor, FusionParams, MapParams, PlaceMatch, PoseHypothesis, PoseSource,
+    ReferenceSearch, fuse, interpolate, separation_squared, simplify, superpose,
 };
 
 /// Similarity of a view to a reference of the place where the robot is thought to be, from which on nothing else is looked for.
@@ -61,15 +61,16 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         let params = &self.params;
         match params.observation {
             Observation::Superposition => {
-                let sightings = self.map.all_sightings(view, &params.map);
+                let sightings = self.map.all_place_matches(view, &params.map);
                 Ok((superpose(&sightings), sightings.len()))
             }
             Observation::Interpolation => {
                 let limit = self.match_limit(belief);
                 let components = belief.components();
-                let mut sightings = self.apart_from_trail(self.map.sightings_near(view, components, limit));
+                let mut sightings =
+                    self.apart_from_trail(self.map.place_matches_near(view, components, limit));
                 if belief.outlook != Outlook::Nearby && !self.is_supported_by(belief, &sightings) {
-                    let found = self.map.sightings_anywhere(view, components, params.most_matches, limit);
+                    let found = self.map.place_matches_anywhere(view, components, params.most_matches, limit);
                     sightings = self.apart_from_trail(found);
                 }
                 Ok((interpolate(&sightings, components, self.map.scale())?, sightings.len()))
@@ -110,13 +111,13 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         self.map.match_limit(&MapParams { match_share: share, ..map })
     }
 
-    pub(super) fn apart_from_trail(&self, mut sightings: Vec<Sighting>) -> Vec<Sighting> {
+    pub(super) fn apart_from_trail(&self, mut sightings: Vec<PlaceMatch>) -> Vec<PlaceMatch> {
         sightings.retain(|s| !self.trail.holds(s.matched.id));
         sightings
     }
 
     /// Whether the robot is where it thinks it is beyond doubt, and there is no need to look for it in the whole map.
-    fn is_supported_by(&self, belief: &Belief, sightings: &[Sighting]) -> bool {
+    fn is_supported_by(&self, belief: &Belief, sightings: &[PlaceMatch]) -> bool {
         belief.one_place(&self.params.unimodal).is_some()
             && sightings.iter().any(|s| s.similarity > SURE_SIMILARITY)
     }

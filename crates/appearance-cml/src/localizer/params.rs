@@ -94,9 +94,9 @@ impl LocalizerParams {
     pub fn printed() -> Self {
         Self {
             observation: Observation::Superposition,
-            fusion: FusionParams::printed(),
-            simplify: SimplifyParams { least_weight: 0.005, ..SimplifyParams::default() },
-            map: MapParams::printed(),
+            fusion: FusionParams::as_published(),
+            simplify: SimplifyParams { min_weight: 0.005, ..SimplifyParams::default() },
+            map: MapParams::as_published(),
             relocation: RelocationParams { doubt: 1.0, ..RelocationParams::default() },
             corroboration: None,
             patience: 0,

@@ -28,7 +28,7 @@ impl<D: Descriptor + Clone> ScaleLearner<D> {
         }
         self.odometer += way;
         let lag = |&(odometer, ref earlier): &(f64, D)| LagSample {
-            way: self.odometer - odometer,
+            lag: self.odometer - odometer,
             distance: view.compare(earlier).distance,
         };
         if let Some(sample) = self.recent.back().map(lag) {

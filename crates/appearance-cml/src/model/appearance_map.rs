@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
 use super::grid::Grid;
-use super::{MapParams, PlaceComponent, Reference, Sighting, ViewScale, similarity};
+use super::{MapParams, PlaceComponent, PlaceMatch, Reference, ViewScale, similarity};
 use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
 
 /// What places look like: reference views and where each was seen. [Gross et al. 2005, Eqs. 9-10]
@@ -123,8 +123,8 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// How far apart two views may be taken and still match, m.
-    pub fn reach_of_match(&self, params: &MapParams) -> f64 {
-        self.scale.metres(self.match_limit(params))
+    pub fn match_radius(&self, params: &MapParams) -> f64 {
+        self.scale.to_meters(self.match_limit(params))
     }
 
     /// Makes the view a reference of this place, whatever is there already: for a map that is taught with known poses.
@@ -137,42 +137,47 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// Places near the components of `belief` whose references are nearer to the view than `limit`.
-    pub fn sightings_near(&self, view: &D, belief: &[Gaussian<Pose2<f64>>], limit: f64) -> Vec<Sighting> {
+    pub fn place_matches_near(
+        &self,
+        view: &D,
+        belief: &[Gaussian<Pose2<f64>>],
+        limit: f64,
+    ) -> Vec<PlaceMatch> {
         let near = belief.iter().flat_map(|component| self.compare_near(view, component, limit));
         self.places_of(once_each(near.collect()), limit)
     }
 
     /// Places near the components of `belief`, and those of the `most` references of the whole map that look most like the view, all nearer than `limit`.
-    pub fn sightings_anywhere(
+    pub fn place_matches_anywhere(
         &self,
         view: &D,
         belief: &[Gaussian<Pose2<f64>>],
         most: usize,
         limit: f64,
-    ) -> Vec<Sighting> {
+    ) -> Vec<PlaceMatch> {
         let mut matches = self.search.nearest_within(view, most, limit);
         matches.extend(belief.iter().flat_map(|component| self.compare_near(view, component, limit)));
         self.places_of(once_each(matches), limit)
     }
 
     /// All places of all references that look like the view, as printed.
-    pub fn all_sightings(&self, view: &D, params: &MapParams) -> Vec<Sighting> {
+    pub fn all_place_matches(&self, view: &D, params: &MapParams) -> Vec<PlaceMatch> {
         let limit = self.match_limit(params);
         self.places_of(self.search.within(view, limit), limit)
     }
 
-    fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<Sighting> {
+    fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<PlaceMatch> {
         let places = |m: &Match| {
             let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);
             let similarity = similarity(m.comparison.distance, limit);
-            places.iter().enumerate().map(|place| Sighting::new(*m, place, similarity)).collect::<Vec<_>>()
+            places.iter().enumerate().map(|place| PlaceMatch::new(*m, place, similarity)).collect::<Vec<_>>()
         };
         matches.iter().flat_map(places).collect()
     }
 
     /// How the view compares with the references near a belief, those below the limit.
     fn compare_near(&self, view: &D, near: &Gaussian<Pose2<f64>>, limit: f64) -> Vec<Match> {
-        let mut matches = self.compare_within(view, near, self.reach(near, limit));
+        let mut matches = self.compare_within(view, near, self.search_radius(near, limit));
         matches.retain(|m| m.comparison.distance < limit);
         matches
     }
@@ -186,14 +191,14 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// How far from a belief views may match: as far as the limit reaches, and the belief errs.
-    pub(super) fn reach(&self, near: &Gaussian<Pose2<f64>>, limit: f64) -> f64 {
+    pub(super) fn search_radius(&self, near: &Gaussian<Pose2<f64>>, limit: f64) -> f64 {
         let sigmas = near.sigmas();
-        self.scale.metres(limit) + GATE_SIGMAS * sigmas.x.max(sigmas.y).min(MOST_SIGMA)
+        self.scale.to_meters(limit) + GATE_SIGMAS * sigmas.x.max(sigmas.y).min(MOST_SIGMA)
     }
 
     pub(super) fn insert(&mut self, view: D, reference: Reference) -> Result<ReferenceId, AppearanceError> {
         let id = ReferenceId(self.next);
-        let next = self.next.checked_add(1).ok_or(AppearanceError::Full)?;
+        let next = self.next.checked_add(1).ok_or(AppearanceError::ReferenceIdsExhausted)?;
         self.search.insert(id, view)?;
         self.next = next;
         enter(&mut self.grid, id, &reference);

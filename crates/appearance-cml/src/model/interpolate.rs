@@ -2,7 +2,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 use wayfix_estimation_traits::{Angle, Pose2, wrap_angle};
 use wayfix_gaussian_core::{CircularMoments, Gaussian, symmetrize};
 
-use super::{Sighting, ViewScale};
+use super::{PlaceMatch, ViewScale};
 use crate::{AppearanceError, PoseHypothesis};
 
 /// The observation as one hypothesis for each group of neighbouring places, between which the pose is interpolated.
@@ -13,17 +13,17 @@ use crate::{AppearanceError, PoseHypothesis};
 /// independent of all beliefs ([`PoseHypothesis::independent`]).
 ///
 /// At the border of what is known places lie on one side only, and any mean of them drags the robot back. There the leader merely says that the
-/// robot is as far from it as the views differ ([`ViewScale::metres`]): a component of `belief` that is beyond it, and not further than that, is
+/// robot is as far from it as the views differ ([`ViewScale::to_meters`]): a component of `belief` that is beyond it, and not further than that, is
 /// left in peace.
 ///
 /// # Errors
 /// When a place is not finite.
 pub fn interpolate(
-    sightings: &[Sighting],
+    place_matches: &[PlaceMatch],
     belief: &[Gaussian<Pose2<f64>>],
     scale: &ViewScale,
 ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
-    groups(sightings, scale).iter().map(|group| pose_of(group, belief, scale)).collect()
+    groups(place_matches, scale).iter().map(|group| pose_of(group, belief, scale)).collect()
 }
 
 /// Radius of a group, in steps between views.
@@ -40,17 +40,17 @@ const HEADING_SIGMA: f64 = 0.03;
 /// near things from another side, and the best rotation makes up for that: errors that last as long as the robot is there.
 const PARALLAX_SIGMA: f64 = 0.25;
 
-type Group<'a> = Vec<&'a Sighting>;
+type Group<'a> = Vec<&'a PlaceMatch>;
 
 /// Greedy: the most similar place that is left leads a group and takes its neighbours.
-pub(super) fn groups<'a>(sightings: &'a [Sighting], scale: &ViewScale) -> Vec<Group<'a>> {
+pub(super) fn groups<'a>(place_matches: &'a [PlaceMatch], scale: &ViewScale) -> Vec<Group<'a>> {
     let radius = GROUP_STEPS * scale.step();
-    let mut left: Vec<&Sighting> = sightings.iter().collect();
+    let mut left: Vec<&PlaceMatch> = place_matches.iter().collect();
     left.sort_by(|a, b| a.matched.comparison.distance.total_cmp(&b.matched.comparison.distance));
     let mut groups = Vec::new();
     while let Some(leader) = left.first().copied() {
         let at = leader.gaussian.mean();
-        let belongs = |s: &&Sighting| {
+        let belongs = |s: &&PlaceMatch| {
             let mean = s.gaussian.mean();
             let turn = wrap_angle(mean.heading() - at.heading()).abs();
             // The leader belongs even where its pose is not a number.
@@ -65,7 +65,7 @@ pub(super) fn groups<'a>(sightings: &'a [Sighting], scale: &ViewScale) -> Vec<Gr
 }
 
 /// The places of a group that are interpolated.
-pub(super) fn nearest_of<'a, 'b>(whole: &'b Group<'a>) -> &'b [&'a Sighting] {
+pub(super) fn nearest_of<'a, 'b>(whole: &'b Group<'a>) -> &'b [&'a PlaceMatch] {
     &whole[..whole.len().min(GROUP_SIZE)]
 }
 
@@ -88,7 +88,7 @@ fn pose_of(
         places().map(|(place, share)| outer(&(place.translation - interpolated)) * share).sum();
     let to_body = mean.rotation_matrix().transpose();
     // Interpolation halves what the nearest place alone would err by, about; beyond the border there is none.
-    let gap = if beyond.is_some() { 1.0 } else { 0.5 } * scale.metres(nearest);
+    let gap = if beyond.is_some() { 1.0 } else { 0.5 } * scale.to_meters(nearest);
     let comparison = to_body * spread * to_body.transpose() * 0.5 + Matrix2::identity() * (gap * gap);
     let mut compared = comparison.to_homogeneous();
     compared[(2, 2)] = heading_variance;
@@ -111,7 +111,7 @@ fn pose_of(
 
 /// The heading that a group says, and the variance of the comparison.
 pub(super) fn turn_of(
-    group: &[&Sighting],
+    group: &[&PlaceMatch],
     shares: &[f64],
     scale: &ViewScale,
 ) -> Result<(f64, f64), AppearanceError> {
@@ -136,19 +136,19 @@ fn beyond_border(
     let towards = belief.iter().map(offset).min_by(|a, b| a.norm().total_cmp(&b.norm()))?;
     let direction = towards.try_normalize(0.5 * scale.step())?;
     let inside =
-        |s: &&Sighting| (s.gaussian.mean().translation - leader).dot(&direction) > 0.5 * scale.step();
+        |s: &&PlaceMatch| (s.gaussian.mean().translation - leader).dot(&direction) > 0.5 * scale.step();
     if whole.iter().any(inside) {
         return None;
     }
     let way = leader + towards - interpolated;
-    let most = scale.metres(whole[0].matched.comparison.distance);
+    let most = scale.to_meters(whole[0].matched.comparison.distance);
     Some(way * (most / way.norm()).min(1.0))
 }
 
 /// Kernel weights, adding up to one.
-pub(super) fn shares(group: &[&Sighting], width: f64) -> Vec<f64> {
+pub(super) fn shares(group: &[&PlaceMatch], width: f64) -> Vec<f64> {
     let nearest = group[0].matched.comparison.distance;
-    let kernel = |s: &&Sighting| {
+    let kernel = |s: &&PlaceMatch| {
         let beyond = (s.matched.comparison.distance.powi(2) - nearest.powi(2)) / (2.0 * width * width);
         // Without a width only places as near as the leader count.
         let falling = if beyond.is_nan() { 1.0 } else { (-beyond).exp() };

@@ -10,7 +10,7 @@ const WELL_KNOWN: f64 = 0.5;
 impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Whether it is well known what the robot would see there: whether a reference that counts, seen more than once, has a place within `radius` of
     /// the belief, and neither the place nor the belief is in doubt by more.
-    pub(crate) fn is_well_known(
+    pub(crate) fn has_confirmed_place_near(
         &self,
         belief: &Gaussian<Pose2<f64>>,
         radius: f64,
@@ -24,7 +24,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// Whether a reference that counts has a place within `radius` whose heading is known to `sigma`.
-    pub(crate) fn is_surveyed(
+    pub(crate) fn has_known_heading_near(
         &self,
         at: &Pose2<f64>,
         (radius, sigma): (f64, f64),

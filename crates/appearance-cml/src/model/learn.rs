@@ -4,11 +4,11 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::merge::merge_places;
+use super::place_match::turned;
 use super::residual::Residual;
-use super::sighting::turned;
 use super::weigh::{weight_when_missed, weight_when_seen};
 use super::{
-    AppearanceMap, Forgetting, MapParams, PlaceComponent, PlaceUpdate, Reference, Sighting, interpolate,
+    AppearanceMap, Forgetting, MapParams, PlaceComponent, PlaceMatch, PlaceUpdate, Reference, interpolate,
 };
 use crate::{
     AppearanceError, Descriptor, Match, ReferenceId, ReferenceSearch, separation_squared, similarity,
@@ -19,7 +19,7 @@ const FORGOTTEN_SHARE: f64 = 2.0 / 3.0;
 
 /// What one view changed in the map.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub struct Learned {
+pub struct MapUpdate {
     /// The view is a reference now.
     pub inserted: Option<ReferenceId>,
     /// References that were forgotten.
@@ -41,10 +41,10 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         view: D,
         pose: &Gaussian<Pose2<f64>>,
         params: &MapParams,
-    ) -> Result<Learned, AppearanceError> {
+    ) -> Result<MapUpdate, AppearanceError> {
         let pose = &Gaussian::new(*pose.mean(), *pose.covariance())?;
         let limit = self.match_limit(params);
-        let radius = self.reach(pose, limit).max(params.active.radius.unwrap_or(0.0));
+        let radius = self.search_radius(pose, limit).max(params.active.radius.unwrap_or(0.0));
         let compared = self.compare_within(&view, pose, radius);
         let (here, missed): (Vec<Match>, Vec<Match>) =
             compared.into_iter().partition(|m| m.comparison.distance < limit);
@@ -61,9 +61,9 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         }
         let matched = seen.len();
         let inserted = if novel { Some(self.insert(view, first_seen(pose, params))?) } else { None };
-        let mut forgotten = self.commit(changed, params.least_weight);
-        forgotten.extend(self.shrink(params.most_references, inserted));
-        Ok(Learned { inserted, forgotten, matched })
+        let mut forgotten = self.commit(changed, params.min_weight);
+        forgotten.extend(self.shrink(params.max_references, inserted));
+        Ok(MapUpdate { inserted, forgotten, matched })
     }
 
     /// Step 1: nothing that is known looks like the view.
@@ -120,7 +120,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         pose: &Gaussian<Pose2<f64>>,
         (limit, params): (f64, &MapParams),
     ) -> Result<Option<Residual>, AppearanceError> {
-        let sightings: Vec<Sighting> = seen
+        let place_matches: Vec<PlaceMatch> = seen
             .iter()
             .flat_map(|m| {
                 let places = self.reference(m.id).map_or(&[][..], |reference| &reference.places);
@@ -128,13 +128,13 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
                 places
                     .iter()
                     .enumerate()
-                    .map(|place| Sighting::new(*m, place, similarity))
+                    .map(|place| PlaceMatch::new(*m, place, similarity))
                     .collect::<Vec<_>>()
             })
             .collect();
         let mut nearest = None;
         let mut least = params.place_gate;
-        for hypothesis in interpolate(&sightings, std::slice::from_ref(pose), self.scale())? {
+        for hypothesis in interpolate(&place_matches, std::slice::from_ref(pose), self.scale())? {
             let squared = separation_squared(pose, &hypothesis.gaussian)?;
             if squared < least {
                 least = squared;
@@ -173,7 +173,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         pose: &Gaussian<Pose2<f64>>,
         (limit, params): (f64, &MapParams),
     ) {
-        let radius = params.active.radius.unwrap_or_else(|| FORGOTTEN_SHARE * self.scale().metres(limit));
+        let radius = params.active.radius.unwrap_or_else(|| FORGOTTEN_SHARE * self.scale().to_meters(limit));
         for id in missed {
             let Some(reference) = self.reference(id) else { continue };
             let mut reference = reference.clone();
@@ -215,6 +215,6 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
 
 /// A new place has weight 0 and is then seen at distance 0: Eq. 16 leaves the learning rate.
 fn first_seen(pose: &Gaussian<Pose2<f64>>, params: &MapParams) -> Reference {
-    let weight = params.learning_rate.max(params.least_weight);
+    let weight = params.learning_rate.max(params.min_weight);
     Reference { places: vec![PlaceComponent { weight, count: 1.0, gaussian: pose.clone() }] }
 }

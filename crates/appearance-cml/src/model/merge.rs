@@ -34,7 +34,7 @@ pub(super) fn merged(
         .map_err(GaussianError::from)?;
     Ok(PlaceComponent {
         weight: (a.weight + b.weight).min(1.0),
-        count: (a.count + b.count).min(params.greatest_count),
+        count: (a.count + b.count).min(params.max_count),
         gaussian,
     })
 }

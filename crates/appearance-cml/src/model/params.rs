@@ -96,11 +96,11 @@ pub struct MapParams {
     /// How active forgetting works.
     pub active: ForgettingParams,
     /// Weight below which a place is removed. Default 0.05: what was seen once goes after five misses or so.
-    pub least_weight: f64,
+    pub min_weight: f64,
     /// Observations after which a place no longer gets more rigid. Default 20.
-    pub greatest_count: f64,
+    pub max_count: f64,
     /// Most references; beyond, the least important one near the robot goes. Default 1 000 000.
-    pub most_references: usize,
+    pub max_references: usize,
 }
 
 impl Default for MapParams {
@@ -115,19 +115,19 @@ impl Default for MapParams {
             place_update: PlaceUpdate::default(),
             forgetting: Forgetting::default(),
             active: ForgettingParams::default(),
-            least_weight: 0.05,
-            greatest_count: 20.0,
-            most_references: 1_000_000,
+            min_weight: 0.05,
+            max_count: 20.0,
+            max_references: 1_000_000,
         }
     }
 }
 
 impl MapParams {
     /// The learning rules as printed.
-    pub fn printed() -> Self {
+    pub fn as_published() -> Self {
         Self {
             place_update: PlaceUpdate::Pose,
-            greatest_count: f64::MAX,
+            max_count: f64::MAX,
             active: ForgettingParams {
                 uncertainty: ForgettingUncertainty::Pose,
                 ..ForgettingParams::default()
@@ -150,8 +150,8 @@ impl MapParams {
         check::share("rate of forgetting", self.active.rate)?;
         check::positive("radius of forgetting (m)", self.active.radius.unwrap_or(1.0))?;
         check::positive("gain of forgetting (m)", self.active.gain.unwrap_or(1.0))?;
-        check::share("least weight of a place", self.least_weight)?;
-        check::positive("greatest count of a place", self.greatest_count)?;
-        check::count("references to keep", self.most_references)
+        check::share("least weight of a place", self.min_weight)?;
+        check::positive("greatest count of a place", self.max_count)?;
+        check::count("references to keep", self.max_references)
     }
 }

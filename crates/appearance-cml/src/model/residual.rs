@@ -3,7 +3,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
 use super::merge::merged;
-use super::sighting::turned;
+use super::place_match::turned;
 use super::{MapParams, PlaceComponent};
 use crate::{AppearanceError, Match};
 

@@ -6,7 +6,7 @@ use crate::AppearanceError;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LagSample {
     /// Length of the way between them, m.
-    pub way: f64,
+    pub lag: f64,
     /// Distance of the views.
     pub distance: f64,
 }
@@ -21,13 +21,13 @@ pub struct LagSample {
 /// use wayfix_appearance_cml::{LagSample, ViewScale};
 /// let mut scale = ViewScale::default();
 /// for _ in 0..20 {
-///     scale.add_near(LagSample { way: 0.1, distance: 1.0 });
-///     scale.add_ahead(LagSample { way: 0.5, distance: 1.5 });
+///     scale.add_near(LagSample { lag: 0.1, distance: 1.0 });
+///     scale.add_ahead(LagSample { lag: 0.5, distance: 1.5 });
 ///     scale.add_far(3.0);
 /// }
 /// assert!((scale.step() - 0.1).abs() < 1e-12);
 /// // 1.5² - 1² a 0.4 m: a view that differs by 1.5 is 0.4 m further than one that differs by 1.
-/// assert!((scale.metres(1.5) - scale.metres(1.0) - 0.4).abs() < 1e-9);
+/// assert!((scale.to_meters(1.5) - scale.to_meters(1.0) - 0.4).abs() < 1e-9);
 /// assert!(scale.match_limit(0.8) > 1.5 && scale.match_limit(0.8) < 3.0);
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -64,7 +64,7 @@ impl ViewScale {
         let mut scale = Self::default();
         for (samples, kept) in [(near, &mut scale.near), (ahead, &mut scale.ahead)] {
             for sample in samples {
-                crate::check::not_negative("way between views (m)", sample.way)?;
+                crate::check::not_negative("way between views (m)", sample.lag)?;
                 crate::check::not_negative("distance of views", sample.distance)?;
                 keep(kept, *sample);
             }
@@ -79,7 +79,7 @@ impl ViewScale {
 
     /// Takes in two views one step apart; one that is not finite is passed over.
     pub fn add_near(&mut self, sample: LagSample) {
-        if sample.way.is_finite() && sample.distance.is_finite() {
+        if sample.lag.is_finite() && sample.distance.is_finite() {
             keep(&mut self.near, sample);
             self.fit();
         }
@@ -87,7 +87,7 @@ impl ViewScale {
 
     /// Takes in two views a few steps apart; one that is not finite is passed over.
     pub fn add_ahead(&mut self, sample: LagSample) {
-        if sample.way.is_finite() && sample.distance.is_finite() {
+        if sample.lag.is_finite() && sample.distance.is_finite() {
             keep(&mut self.ahead, sample);
             self.fit();
         }
@@ -133,12 +133,12 @@ impl ViewScale {
     }
 
     /// Distance from which on two views are of places far from one another, but for one in ten of these; infinite before such places are known.
-    pub fn strangeness(&self) -> f64 {
+    pub fn distinct_view_distance(&self) -> f64 {
         if self.far.len() >= ENOUGH_FAR { self.fitted.sill.sqrt() } else { f64::INFINITY }
     }
 
     /// How far away a view of this distance was taken, m: $`(E^2 - n)/s`$, between half a step and forty steps.
-    pub fn metres(&self, distance: f64) -> f64 {
+    pub fn to_meters(&self, distance: f64) -> f64 {
         let Fitted { step, nugget, slope, .. } = self.fitted;
         let metres = (distance * distance - nugget) / slope;
         if metres.is_nan() { step } else { metres.clamp(0.5 * step, 40.0 * step) }
@@ -151,10 +151,10 @@ impl ViewScale {
     }
 
     fn fit(&mut self) {
-        let step = median(self.near.iter().map(|s| s.way));
+        let step = median(self.near.iter().map(|s| s.lag));
         let near = median(self.near.iter().map(|s| s.distance));
         let (ahead_way, ahead) =
-            (median(self.ahead.iter().map(|s| s.way)), median(self.ahead.iter().map(|s| s.distance)));
+            (median(self.ahead.iter().map(|s| s.lag)), median(self.ahead.iter().map(|s| s.distance)));
         let rise = (ahead * ahead - near * near) / (ahead_way - step);
         // Without lags to tell, all of the distance of successive views comes from the way.
         let slope = if rise.is_finite() && rise > 0.0 { rise } else { near * near / step };
@@ -195,17 +195,17 @@ mod tests {
     #[test]
     fn nothing_matches_before_two_views_are_known() {
         let scale = ViewScale::default();
-        assert_eq!((scale.match_limit(0.5), scale.step(), scale.metres(1.0)), (0.0, 0.0, 0.0));
+        assert_eq!((scale.match_limit(0.5), scale.step(), scale.to_meters(1.0)), (0.0, 0.0, 0.0));
     }
 
     #[test]
     fn strange_is_what_one_far_place_of_ten_is_not() {
         let mut scale = ViewScale::default();
-        assert_eq!(scale.strangeness(), f64::INFINITY);
+        assert_eq!(scale.distinct_view_distance(), f64::INFINITY);
         for k in 0..100 {
             scale.add_far(1.0 + 0.002 * f64::from(k));
         }
-        assert!((scale.strangeness() - 1.02).abs() < 0.005, "{}", scale.strangeness());
+        assert!((scale.distinct_view_distance() - 1.02).abs() < 0.005, "{}", scale.distinct_view_distance());
     }
 
     #[test]
@@ -213,8 +213,8 @@ mod tests {
         let mut scale = ViewScale::default();
         for k in 0..100 {
             // Somebody stands before the camera in every fourth view.
-            scale.add_near(LagSample { way: 0.1, distance: if k % 4 == 0 { 9.0 } else { 0.3 } });
-            scale.add_near(LagSample { way: f64::NAN, distance: 0.3 });
+            scale.add_near(LagSample { lag: 0.1, distance: if k % 4 == 0 { 9.0 } else { 0.3 } });
+            scale.add_near(LagSample { lag: f64::NAN, distance: 0.3 });
             scale.add_far(f64::INFINITY);
         }
         assert_eq!((scale.step(), scale.step_distance()), (0.1, 0.3));
@@ -226,8 +226,8 @@ mod tests {
         let mut scale = ViewScale::default();
         for k in 0..300 {
             let x = f64::from(k % 7);
-            scale.add_near(LagSample { way: 0.1, distance: 0.3 + 0.01 * x });
-            scale.add_ahead(LagSample { way: 0.4, distance: 0.6 + 0.01 * x });
+            scale.add_near(LagSample { lag: 0.1, distance: 0.3 + 0.01 * x });
+            scale.add_ahead(LagSample { lag: 0.4, distance: 0.6 + 0.01 * x });
             scale.add_far(1.0 + 0.01 * x);
         }
         let (near, ahead, far): (Vec<_>, Vec<_>, Vec<_>) =

@@ -2,7 +2,7 @@ use nalgebra::Matrix3;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
-use super::sighting::turned;
+use super::place_match::turned;
 use super::{ForgettingParams, ForgettingUncertainty, MapParams, PlaceComponent, PlaceUpdate, ViewScale};
 use crate::{AppearanceError, Match, separation_squared, similarity};
 
@@ -20,7 +20,7 @@ pub(super) fn weight_when_seen(
     let expected = match params.place_update {
         PlaceUpdate::Pose => seen_from,
         // A view that is like its reference is not from the same spot: how far off it may be is known.
-        PlaceUpdate::Residual => widened(&seen_from, scale.metres(matched.comparison.distance)),
+        PlaceUpdate::Residual => widened(&seen_from, scale.to_meters(matched.comparison.distance)),
     };
     let agrees = separation_squared(pose, &expected)? <= params.place_gate;
     Ok((1.0 - gain) * place.weight + if agrees { gain } else { 0.0 })

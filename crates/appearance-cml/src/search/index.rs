@@ -182,7 +182,7 @@ impl<D: Bounded> AppearanceIndex<D> {
 impl<D: Bounded> ReferenceSearch<D> for AppearanceIndex<D> {
     fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError> {
         if self.slot_of.contains_key(&id) {
-            return Err(AppearanceError::TwiceTheSame { id: id.0 });
+            return Err(AppearanceError::DuplicateReference { id: id.0 });
         }
         if self.references().next().is_some_and(|(_, any)| !descriptor.is_comparable(any)) {
             return Err(AppearanceError::Incomparable { id: id.0 });

@@ -29,7 +29,7 @@ impl<D: Descriptor> LinearSearch<D> {
 impl<D: Descriptor> ReferenceSearch<D> for LinearSearch<D> {
     fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError> {
         if self.references.contains_key(&id) {
-            return Err(AppearanceError::TwiceTheSame { id: id.0 });
+            return Err(AppearanceError::DuplicateReference { id: id.0 });
         }
         self.references.insert(id, descriptor);
         Ok(())

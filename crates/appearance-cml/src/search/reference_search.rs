@@ -21,7 +21,7 @@ pub trait ReferenceSearch<D: Descriptor> {
     /// Takes a reference in.
     ///
     /// # Errors
-    /// [`AppearanceError::TwiceTheSame`] when there is one of that number; an index may refuse a descriptor that cannot be compared
+    /// [`AppearanceError::DuplicateReference`] when there is one of that number; an index may refuse a descriptor that cannot be compared
     /// with the others, [`AppearanceError::Incomparable`].
     fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError>;
 

@@ -15,14 +15,14 @@ pub struct SimplifyParams {
     /// Squared Mahalanobis distance below which two components are one. Default 2: they overlap by more than half.
     pub merge_distance: f64,
     /// Share of the whole weight below which a component goes. Default 1e-7: what appears elsewhere starts light.
-    pub least_weight: f64,
+    pub min_weight: f64,
     /// Most components that are kept. Default 30.
-    pub most: usize,
+    pub max_components: usize,
 }
 
 impl Default for SimplifyParams {
     fn default() -> Self {
-        Self { merge_distance: 2.0, least_weight: 1e-7, most: 30 }
+        Self { merge_distance: 2.0, min_weight: 1e-7, max_components: 30 }
     }
 }
 
@@ -33,8 +33,8 @@ impl SimplifyParams {
     /// Names the first that has none.
     pub fn validate(&self) -> Result<(), AppearanceError> {
         check::not_negative("squared distance of components to merge", self.merge_distance)?;
-        check::share("least weight of a component", self.least_weight)?;
-        check::count("components to keep", self.most)
+        check::share("least weight of a component", self.min_weight)?;
+        check::count("components to keep", self.max_components)
     }
 }
 
@@ -63,7 +63,7 @@ pub fn simplify(
     params: &SimplifyParams,
 ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
     let total = total_weight(&hypotheses)?;
-    hypotheses.retain(|h| h.weight >= params.least_weight * total && h.weight > 0.0);
+    hypotheses.retain(|h| h.weight >= params.min_weight * total && h.weight > 0.0);
     hypotheses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let mut kept: Vec<PoseHypothesis> = Vec::new();
     for hypothesis in hypotheses {
@@ -76,7 +76,7 @@ pub fn simplify(
         }
     }
     kept.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    kept.truncate(params.most);
+    kept.truncate(params.max_components);
     Ok(kept)
 }
 

@@ -13,14 +13,14 @@ use crate::{AppearanceError, check};
 )]
 pub struct UnimodalParams {
     /// Least share of the weight in the heaviest component. Default 0.8.
-    pub least_weight: f64,
+    pub min_weight: f64,
     /// Greatest σ of its position, m. Default infinite: how far a robot may drift through unknown ground is for its user to say.
-    pub greatest_sigma: f64,
+    pub max_sigma: f64,
 }
 
 impl Default for UnimodalParams {
     fn default() -> Self {
-        Self { least_weight: 0.8, greatest_sigma: f64::INFINITY }
+        Self { min_weight: 0.8, max_sigma: f64::INFINITY }
     }
 }
 
@@ -30,8 +30,8 @@ impl UnimodalParams {
     /// # Errors
     /// Names the first that has none.
     pub fn validate(&self) -> Result<(), AppearanceError> {
-        check::share("least weight of the one component", self.least_weight)?;
-        check::positive("greatest σ of the one component (m)", self.greatest_sigma.min(f64::MAX))
+        check::share("least weight of the one component", self.min_weight)?;
+        check::positive("greatest σ of the one component (m)", self.max_sigma.min(f64::MAX))
     }
 }
 
@@ -57,6 +57,6 @@ pub fn unimodal<'a>(
     let heaviest = (0..weights.len()).max_by(|&i, &j| weights[i].total_cmp(&weights[j]))?;
     let component = &mixture.components()[heaviest];
     let sigmas = component.sigmas();
-    let narrow = sigmas.x.hypot(sigmas.y) <= params.greatest_sigma;
-    (weights[heaviest] >= params.least_weight && narrow).then_some(component)
+    let narrow = sigmas.x.hypot(sigmas.y) <= params.max_sigma;
+    (weights[heaviest] >= params.min_weight && narrow).then_some(component)
 }

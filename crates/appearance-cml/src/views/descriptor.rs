@@ -1,5 +1,5 @@
 use super::lanes::HARMONICS;
-use super::probe::{SLOW, compare_once};
+use super::probe::{N_LOW_HARMONICS, compare_once};
 use crate::{AppearanceError, Comparison, Descriptor};
 
 /// Harmonics beside the constant one, in groups.
@@ -24,7 +24,7 @@ pub struct PanoramaDescriptor {
     lanes: Box<[i8]>,
     /// Sums of squares of the whole numbers: of all, of what comes after the slow cosines of the first group, and after each group.
     energy: u32,
-    after_slow: u32,
+    energy_above_low_harmonics: u32,
     remaining: [u32; MOST_GROUPS],
 }
 
@@ -66,7 +66,8 @@ impl PanoramaDescriptor {
         }
         let energy = |lanes: &[i8]| lanes.iter().map(|q| u32::from(q.unsigned_abs()).pow(2)).sum();
         let after = |group: usize| lanes.get(n + (group + 1) * n * 2 * HARMONICS..).map_or(0, energy);
-        let after_slow = lanes.get(n + SLOW.min(n) * 2 * HARMONICS..).map_or(0, energy);
+        let energy_above_low_harmonics =
+            lanes.get(n + N_LOW_HARMONICS.min(n) * 2 * HARMONICS..).map_or(0, energy);
         let (energy, remaining) = (energy(&lanes), std::array::from_fn(after));
         Self {
             scale,
@@ -74,7 +75,7 @@ impl PanoramaDescriptor {
             n_harmonics: n_harmonics as u8,
             lanes: lanes.into(),
             energy,
-            after_slow,
+            energy_above_low_harmonics,
             remaining,
         }
     }
@@ -143,8 +144,8 @@ impl PanoramaDescriptor {
     }
 
     /// Sum of squares of what comes after the slow cosines of the first group.
-    pub(super) fn after_slow(&self) -> f64 {
-        f64::from(self.after_slow)
+    pub(super) fn energy_above_low_harmonics(&self) -> f64 {
+        f64::from(self.energy_above_low_harmonics)
     }
 
     /// Sum of squares of the harmonics after a group.

@@ -11,12 +11,12 @@ mod donut;
 mod features;
 mod invariants;
 mod lanes;
+mod low_harmonics;
 mod normalization;
 mod panorama;
 mod params;
 mod probe;
 mod sectors;
-mod slow;
 mod table;
 
 pub use descriptor::PanoramaDescriptor;

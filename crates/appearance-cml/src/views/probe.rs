@@ -2,12 +2,12 @@ use super::{
     correlation::Correlation,
     descriptor::{MOST_GROUPS, PanoramaDescriptor},
     lanes::{HARMONICS, Pairs, Sums},
-    slow::SlowProbe,
+    low_harmonics::LowHarmonicsProbe,
 };
 use crate::Comparison;
 
 /// Cosines of the first group after which a comparison may be given up.
-pub(super) const SLOW: usize = 8;
+pub(super) const N_LOW_HARMONICS: usize = 8;
 
 /// A view that is about to be compared with many references.
 ///
@@ -18,9 +18,9 @@ pub struct PanoramaProbe {
     n_rings: u8,
     n_harmonics: usize,
     energy: f64,
-    after_slow: f64,
+    energy_above_low_harmonics: f64,
     remaining: [f64; MOST_GROUPS],
-    slow: SlowProbe,
+    slow: LowHarmonicsProbe,
     constant: Vec<f32>,
     /// As the lanes of the descriptor.
     groups: Vec<Vec<Pairs>>,
@@ -34,15 +34,15 @@ impl PanoramaProbe {
             n_rings: view.n_rings(),
             n_harmonics: view.n_harmonics(),
             energy: view.energy(),
-            after_slow: view.after_slow(),
+            energy_above_low_harmonics: view.energy_above_low_harmonics(),
             remaining: std::array::from_fn(|group| view.remaining(group)),
-            slow: SlowProbe::new(view),
+            slow: LowHarmonicsProbe::new(view),
             constant: view.constant().iter().map(|q| f32::from(*q)).collect(),
             groups: view.groups().map(group).collect(),
         }
     }
 
-    pub(super) fn slow(&self) -> &SlowProbe {
+    pub(super) fn slow(&self) -> &LowHarmonicsProbe {
         &self.slow
     }
 
@@ -61,13 +61,17 @@ impl PanoramaProbe {
             |overlap: f64, own: f64, other: f64| self.distance(reference, overlap + (own * other).sqrt());
         let mut bound = 0.0;
         for (index, (own, other)) in self.groups.iter().zip(reference.groups()).enumerate() {
-            let slow = if index == 0 { SLOW.min(own.len()) } else { own.len() };
+            let slow = if index == 0 { N_LOW_HARMONICS.min(own.len()) } else { own.len() };
             let (own, own_rest) = own.split_at(slow);
             let (other, other_rest) = other.split_at(slow * 2 * HARMONICS);
             let mut sums = Sums::default();
             sums.add(own, other);
             if index == 0 {
-                bound = least(overlap + magnitude(&sums), self.after_slow, reference.after_slow());
+                bound = least(
+                    overlap + magnitude(&sums),
+                    self.energy_above_low_harmonics,
+                    reference.energy_above_low_harmonics(),
+                );
                 if bound > enough {
                     break;
                 }

@@ -1,16 +1,16 @@
-use super::slow::Slow;
+use super::low_harmonics::LowHarmonics;
 use super::{PanoramaDescriptor, PanoramaProbe};
 use crate::BoundTable;
 
 /// The slow changes of many panoramas from top to bottom, side by side: 156 bytes each.
 #[derive(Clone, Debug, Default)]
 pub struct PanoramaTable {
-    rows: Vec<Slow>,
+    rows: Vec<LowHarmonics>,
 }
 
 impl BoundTable<PanoramaDescriptor> for PanoramaTable {
     fn put(&mut self, slot: usize, reference: &PanoramaDescriptor) {
-        let row = Slow::new(reference);
+        let row = LowHarmonics::new(reference);
         match self.rows.get_mut(slot) {
             Some(old) => *old = row,
             None => self.rows.push(row),

@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use super::{ColorMap, HAIR};
+use super::{ColorMap, PLANE_TOLERANCE_M};
 use crate::ColorId;
 
 /// What a ray meets first.
@@ -42,7 +42,7 @@ impl ColorMap {
             let height = layer.plane.distance(origin);
             let at = -height / layer.plane.normal.dot(direction);
             // Written so that a NaN goes on to the next one.
-            if !(height.abs() > HAIR && at > 0.0 && at < nearest) {
+            if !(height.abs() > PLANE_TOLERANCE_M && at > 0.0 && at < nearest) {
                 continue;
             }
             let point = origin + direction * at;

@@ -14,5 +14,5 @@ pub use cast::Hit;
 pub use color_map::ColorMap;
 pub use extent::Extent;
 pub(crate) use layer::{Decal, Layer};
-pub(crate) use plane::{HAIR, Plane};
+pub(crate) use plane::{PLANE_TOLERANCE_M, Plane};
 pub(crate) use prism::{Prism, SIDES};

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::Pose3;
 use super::{canvas::Canvas, margin::Margin, pose, view::View};
 use crate::{
     Camera, ColorMap, LabelImage, Span, ViewError,
-    map::{HAIR, Prism},
+    map::{PLANE_TOLERANCE_M, Prism},
     tree::{Face, Node, Solid},
 };
 
@@ -116,7 +116,7 @@ impl Projector {
                     let height = plane.distance(&view.eye);
                     let (near, far) = if height > 0.0 { (front, back) } else { (back, front) };
                     todo.push(Step::Tree(*far));
-                    if height.abs() > HAIR {
+                    if height.abs() > PLANE_TOLERANCE_M {
                         todo.push(Step::Facets(index, height > 0.0));
                     }
                     todo.push(Step::Tree(*near));
@@ -203,7 +203,7 @@ fn draw_solid(
         return canvas.prism(&prisms[solid.prism], view, emit);
     };
     // Those of a convex thing that look at the eye do not hide each other.
-    for Face { facet, .. } in faces.iter().filter(|face| face.plane.distance(&view.eye) > HAIR) {
+    for Face { facet, .. } in faces.iter().filter(|face| face.plane.distance(&view.eye) > PLANE_TOLERANCE_M) {
         canvas.facet(facet, true, view, emit);
     }
 }

@@ -4,15 +4,15 @@ use super::{
     outline::Outline,
     view::{ImagePoint, View},
 };
-use crate::map::{HAIR, Prism, SIDES};
+use crate::map::{PLANE_TOLERANCE_M, Prism, SIDES};
 
 /// Puts a prism's silhouette on the outline.
 pub(super) fn trace(prism: &Prism, view: &View, outline: &mut Outline) {
     let lower: [ImagePoint; SIDES] = std::array::from_fn(|k| view.point(&prism.corner(k, prism.from)));
     let upper: [ImagePoint; SIDES] = std::array::from_fn(|k| view.point(&prism.corner(k, prism.to)));
-    let side: [bool; SIDES] = std::array::from_fn(|k| prism.sides[k].distance(&view.eye) > HAIR);
-    let top = prism.top().distance(&view.eye) > HAIR;
-    let bottom = prism.bottom().distance(&view.eye) > HAIR;
+    let side: [bool; SIDES] = std::array::from_fn(|k| prism.sides[k].distance(&view.eye) > PLANE_TOLERANCE_M);
+    let top = prism.top().distance(&view.eye) > PLANE_TOLERANCE_M;
+    let bottom = prism.bottom().distance(&view.eye) > PLANE_TOLERANCE_M;
 
     outline.clear();
     // An edge a → b as a face that is seen goes around it, counter-clockwise.

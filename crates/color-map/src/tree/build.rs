@@ -78,12 +78,12 @@ struct Cut {
 ///
 /// It is that of a layer, unless this would cut a post and a face of a post cuts nothing.
 fn best_cut(heap: &Heap, layers: &[Layer], prisms: &[Prism]) -> Option<Cut> {
-    let n_looks = (LOOKS / (heap.facets.len() + heap.solids.len()).max(1)).max(4);
+    let n_cuts_tried = (LOOKS / (heap.facets.len() + heap.solids.len()).max(1)).max(4);
     let mut on_layers: Vec<usize> = heap.facets.iter().map(|(layer, _)| *layer).collect();
     on_layers.sort_unstable();
     on_layers.dedup();
     let on_layers = on_layers.into_iter().map(|i| Cut { plane: layers[i].plane, layer: Some(i) });
-    let (cost, cut) = cheapest(on_layers.collect(), n_looks, |cut| cut.price(heap, prisms).total())?;
+    let (cost, cut) = cheapest(on_layers.collect(), n_cuts_tried, |cut| cut.price(heap, prisms).total())?;
     if cost < CUT_SOLID {
         return Some(cut);
     }
@@ -96,7 +96,7 @@ fn best_cut(heap: &Heap, layers: &[Layer], prisms: &[Prism]) -> Option<Cut> {
             .chain([prism.top(), prism.bottom()])
             .map(|plane| Cut { plane, layer: None })
     });
-    let clean = cheapest(faces.collect(), n_looks, |cut| {
+    let clean = cheapest(faces.collect(), n_cuts_tried, |cut| {
         let price = cut.price(heap, prisms);
         if price.cuts == 0 && price.front > 0 && price.back > 0 { price.total() } else { usize::MAX }
     });
@@ -107,8 +107,8 @@ fn best_cut(heap: &Heap, layers: &[Layer], prisms: &[Prism]) -> Option<Cut> {
 }
 
 /// The best of some evenly chosen ones.
-fn cheapest(cuts: Vec<Cut>, n_looks: usize, cost: impl Fn(&Cut) -> usize) -> Option<(usize, Cut)> {
-    let stride = cuts.len().div_ceil(n_looks).max(1);
+fn cheapest(cuts: Vec<Cut>, n_cuts_tried: usize, cost: impl Fn(&Cut) -> usize) -> Option<(usize, Cut)> {
+    let stride = cuts.len().div_ceil(n_cuts_tried).max(1);
     cuts.into_iter().step_by(stride).map(|cut| (cost(&cut), cut)).min_by_key(|(cost, _)| *cost)
 }
 

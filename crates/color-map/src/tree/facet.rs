@@ -2,7 +2,7 @@ use nalgebra::Vector3;
 
 use crate::{
     ColorId,
-    map::{HAIR, Plane},
+    map::{PLANE_TOLERANCE_M, Plane},
 };
 
 /// A convex flat piece of one surface.
@@ -97,7 +97,7 @@ pub(super) fn reach(points: impl Iterator<Item = Vector3<f64>>, plane: &Plane) -
 
 /// Nearer than a hair is on the plane.
 fn sign(distance: f64) -> i8 {
-    i8::from(distance > HAIR) - i8::from(distance < -HAIR)
+    i8::from(distance > PLANE_TOLERANCE_M) - i8::from(distance < -PLANE_TOLERANCE_M)
 }
 
 #[cfg(test)]

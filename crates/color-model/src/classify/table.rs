@@ -15,7 +15,7 @@ use wayfix_color_map::ColorId;
 /// let light = vec![density(Vector3::new(80.0, 110.0, 100.0)), density(Vector3::new(140.0, 125.0, 180.0))];
 /// let mut table = LookUpTable::new(light.clone(), None)?;
 /// assert_eq!(table.classify([138, 126, 175]), Some(ColorId(1)));
-/// assert!(!table.follow(light)?); // the light is the same: nothing to do
+/// assert!(!table.rebuild_if_changed(light)?); // the light is the same: nothing to do
 /// # Ok::<(), wayfix_color_model::ColorModelError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ impl LookUpTable {
     ///
     /// # Errors
     /// When a colour's density has no peak; the table is unchanged then.
-    pub fn follow(&mut self, colors: Vec<ColorDensity>) -> Result<bool, ColorModelError> {
+    pub fn rebuild_if_changed(&mut self, colors: Vec<ColorDensity>) -> Result<bool, ColorModelError> {
         let moved = colors.len() != self.compiled_for.len()
             || colors.iter().zip(&self.compiled_for).any(|(now, then)| {
                 // What cannot be compared is no reason to trust the table.

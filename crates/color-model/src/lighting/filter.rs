@@ -55,7 +55,7 @@ impl LightingFilter {
         }
         check_covariance("lighting prior", prior.covariance())?;
         prior.mean().iter().try_for_each(|mean| check_value("prior mean of a colour", *mean))?;
-        if let Some(i) = (0..n).find(|&i| prior.covariance()[(i, i)] > params.widest(i)) {
+        if let Some(i) = (0..n).find(|&i| prior.covariance()[(i, i)] > params.max_variance(i)) {
             let value = prior.covariance()[(i, i)];
             return Err(ColorModelError::OutOfRange { what: "prior variance", value });
         }
@@ -131,7 +131,7 @@ impl LightingFilter {
         check_seconds(seconds)?;
         let LightingParams { drift, .. } = self.params;
         drift.move_mean(seconds, &self.prior, &mut self.mean);
-        drift.widen(seconds, &self.prior, |i| self.params.widest(i), &mut self.covariance);
+        drift.widen(seconds, &self.prior, |i| self.params.max_variance(i), &mut self.covariance);
         Ok(())
     }
 

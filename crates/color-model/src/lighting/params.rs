@@ -63,7 +63,7 @@ impl Default for LightingParams {
 impl LightingParams {
     /// The largest variance that number `i` of the state may have: a billion times that of an image's mean. There a look leaves a billionth of
     /// the covariance, which is seven digits above rounding.
-    pub(super) fn widest(&self, i: usize) -> f64 {
+    pub(super) fn max_variance(&self, i: usize) -> f64 {
         1e9 * self.mean_noise[i % 3]
     }
 

@@ -30,7 +30,7 @@ use crate::{
 /// use std::sync::Arc;
 /// use nalgebra::Vector3;
 /// use wayfix_color_map::{Band, Camera, ColorId, ColorMap, Projector, Shape};
-/// use wayfix_color_model::{FeatureParams, FeatureView, ViewLikelihood};
+/// use wayfix_color_model::{FeatureParams, FeatureLikelihood, ViewLikelihood};
 /// use wayfix_estimation_traits::{LieGroup, Pose3};
 /// let beacon = |y, color| {
 ///     Shape::Post { x: 2.0, y, radius: 0.1, bands: vec![Band { color: ColorId(color), from: 0.0, to: 0.4 }] }
@@ -45,11 +45,11 @@ use crate::{
 ///     .iter()
 ///     .map(|label| label.map_or(255, |color| color.0))
 ///     .collect();
-/// let mut view = FeatureView::new(&labels, projector, FeatureParams::default())?;
+/// let mut view = FeatureLikelihood::new(&labels, projector, FeatureParams::default())?;
 /// assert!(view.log_likelihood(&looking(0.0), &[]) > view.log_likelihood(&looking(0.3), &[]));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct FeatureView {
+pub struct FeatureLikelihood {
     seen: Vec<Feature>,
     projector: Projector,
     params: FeatureParams,
@@ -60,7 +60,7 @@ pub struct FeatureView {
     spans: Vec<Span>,
 }
 
-impl FeatureView {
+impl FeatureLikelihood {
     /// The likelihood of a classified image, 255 being background, as [`Classifier`](crate::Classifier) and [`LookUpTable`](crate::LookUpTable) make it.
     ///
     /// # Errors
@@ -77,24 +77,30 @@ impl FeatureView {
         let seen = features(&find_blobs(labels, width)?, &camera, &params, &is_feature);
         let view =
             4.0 * (0.5 * width as f64 / camera.fx()).atan() * (0.5 * height as f64 / camera.fy()).atan();
-        let log_clutter = (params.clutter / (view * (1.0 + (got as f64).ln()))).ln();
+        let log_clutter = (params.mean_clutter / (view * (1.0 + (got as f64).ln()))).ln();
         Ok(Self { seen, projector, params, is_feature, log_clutter, spans: Vec::new() })
     }
 
     /// What a pair is worth, nats above a missing blob and clutter.
     fn gain(&self, seen: &Feature, expected: &Feature) -> f64 {
-        let FeatureParams { detection, bearing, bearing_per_extent, log_area, .. } = self.params;
+        let FeatureParams {
+            detection_probability,
+            bearing_sigma,
+            bearing_sigma_per_extent,
+            log_area_sigma,
+            ..
+        } = self.params;
         // Of what is seen, so that the peak is as high for every pose.
         let off = (seen.bearing - expected.bearing).norm();
-        let bearing = bearing.hypot(bearing_per_extent * seen.extent);
-        let area = log_area.hypot(2.0 / (0.5 * seen.log_area).exp()); // a square of n pixels has a border of 4 √n
+        let bearing = bearing_sigma.hypot(bearing_sigma_per_extent * seen.extent);
+        let area = log_area_sigma.hypot(2.0 / (0.5 * seen.log_area).exp()); // a square of n pixels has a border of 4 √n
         let direction = log_normal(off, bearing) - (TAU.sqrt() * bearing).ln();
         let size = log_normal(seen.log_area - expected.log_area, area);
-        (detection / (1.0 - detection)).ln() + direction + size - self.log_clutter
+        (detection_probability / (1.0 - detection_probability)).ln() + direction + size - self.log_clutter
     }
 }
 
-impl ViewLikelihood for FeatureView {
+impl ViewLikelihood for FeatureLikelihood {
     fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, _light: &[ColorDensity]) -> LogWeight {
         let Self { projector, spans, is_feature, params, .. } = self;
         spans.clear();
@@ -114,7 +120,7 @@ impl ViewLikelihood for FeatureView {
         }
         pairs.retain(|(gain, ..)| *gain > 0.0);
         pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let missed = expected.len() as f64 * (1.0 - self.params.detection).ln();
+        let missed = expected.len() as f64 * (1.0 - self.params.detection_probability).ln();
         missed + best_pairs(&pairs, self.seen.len(), expected.len())
     }
 }

@@ -12,26 +12,26 @@ pub struct FeatureParams {
     /// Smaller blobs are noise, in the image as in the map's view.
     pub min_pixels: usize,
     /// Probability that a blob which the map should show is there, in (0, 1): missing ones cost $`\ln(1 - p_D)`$ each, no more.
-    pub detection: f64,
+    pub detection_probability: f64,
     /// Blobs of an image that nothing in the map explains, on average and for each colour.
-    pub clutter: f64,
+    pub mean_clutter: f64,
     /// Standard deviation of a small blob's direction, azimuth and elevation alike, radians.
-    pub bearing: f64,
+    pub bearing_sigma: f64,
     /// What a blob's own extent adds to that, as a share of the angle that a square of its area takes: half-hidden blobs have their centre elsewhere.
-    pub bearing_per_extent: f64,
+    pub bearing_sigma_per_extent: f64,
     /// Standard deviation of the logarithm of a large blob's area. Small ones differ more: half a pixel all around.
-    pub log_area: f64,
+    pub log_area_sigma: f64,
 }
 
 impl Default for FeatureParams {
     fn default() -> Self {
         Self {
             min_pixels: 8,
-            detection: 0.9,
-            clutter: 1.0,
-            bearing: 0.02,
-            bearing_per_extent: 0.1,
-            log_area: 0.3,
+            detection_probability: 0.9,
+            mean_clutter: 1.0,
+            bearing_sigma: 0.02,
+            bearing_sigma_per_extent: 0.1,
+            log_area_sigma: 0.3,
         }
     }
 }
@@ -45,12 +45,27 @@ impl FeatureParams {
                 Err(ColorModelError::OutOfRange { what, value })
             }
         };
-        let Self { detection, clutter, bearing, bearing_per_extent, log_area, .. } = *self;
+        let Self {
+            detection_probability,
+            mean_clutter,
+            bearing_sigma,
+            bearing_sigma_per_extent,
+            log_area_sigma,
+            ..
+        } = *self;
         check("fewest pixels of a blob", self.min_pixels as f64, self.min_pixels > 0)?;
-        check("probability of detection", detection, detection > 0.0 && detection < 1.0)?;
-        check("clutter", clutter, clutter > 0.0)?;
-        check("deviation of a bearing (rad)", bearing, bearing > 0.0)?;
-        check("deviation of a bearing per extent", bearing_per_extent, bearing_per_extent >= 0.0)?;
-        check("deviation of a log area", log_area, log_area > 0.0)
+        check(
+            "probability of detection",
+            detection_probability,
+            detection_probability > 0.0 && detection_probability < 1.0,
+        )?;
+        check("clutter", mean_clutter, mean_clutter > 0.0)?;
+        check("deviation of a bearing (rad)", bearing_sigma, bearing_sigma > 0.0)?;
+        check(
+            "deviation of a bearing per extent",
+            bearing_sigma_per_extent,
+            bearing_sigma_per_extent >= 0.0,
+        )?;
+        check("deviation of a log area", log_area_sigma, log_area_sigma > 0.0)
     }
 }

@@ -10,12 +10,12 @@ mod span;
 mod view;
 
 pub use density::SumDensity;
-pub use feature::FeatureView;
+pub use feature::FeatureLikelihood;
 pub(crate) use feature::feature_colors;
 pub use feature_params::FeatureParams;
 pub(crate) use joint::{JointLikelihood, log_within};
 pub use params::{PixelLight, PixelParams};
-pub use pixel::PixelView;
+pub use pixel::PixelLikelihood;
 pub(crate) use span::log_likelihood;
-pub use span::{SpanView, gather};
+pub use span::{SpanLikelihood, gather};
 pub use view::ViewLikelihood;

@@ -8,14 +8,14 @@ use crate::{ColorDensity, ColorModelError, YuvImage, frame};
 ///
 /// Each pixel that the map, seen from the pose, labels with colour `m` counts $`\ln p(c|m) - \ln p_{bg}(c)`$. The paper leaves background pixels
 /// out; without the ratio, poses that label different numbers of pixels would not compare.
-pub struct PixelView<'a> {
+pub struct PixelLikelihood<'a> {
     image: &'a YuvImage,
     background: Vec<Option<f64>>,
     projector: Projector,
     params: PixelParams,
 }
 
-impl<'a> PixelView<'a> {
+impl<'a> PixelLikelihood<'a> {
     /// The likelihood of one image; `nats` gives a pixel's $`-\ln p_{bg}(c)`$, or `None` for an outlier, as for
     /// [`Frame::with_background`](crate::Frame::with_background).
     ///
@@ -35,7 +35,7 @@ impl<'a> PixelView<'a> {
     }
 }
 
-impl ViewLikelihood for PixelView<'_> {
+impl ViewLikelihood for PixelLikelihood<'_> {
     fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, light: &[ColorDensity]) -> LogWeight {
         let Ok(light) = light.iter().map(SumDensity::new).collect::<Result<Vec<_>, _>>() else {
             return f64::NEG_INFINITY;

@@ -29,18 +29,18 @@ pub fn gather<'a>(
     }
 }
 
-/// The pixel likelihood at the cost of spans, equal to that of [`PixelView`](crate::PixelView).
+/// The pixel likelihood at the cost of spans, equal to that of [`PixelLikelihood`](crate::PixelLikelihood).
 ///
 /// $`\sum_m \sum_{c ∈ m} [\ln N(c; μ_m, Σ_{mm} + ν) - \ln p_{bg}(c)]`$ [Schulz & Fox 2004, Eqs. 9, 16]: of the pixels of a colour only count,
 /// $`\sum c`$ and $`\sum c c^T`$ matter, and a row's run of pixels gives them in one subtraction.
-pub struct SpanView<'a> {
+pub struct SpanLikelihood<'a> {
     frame: &'a Frame,
     projector: Projector,
     sums: Vec<PixelSums>,
     params: PixelParams,
 }
 
-impl<'a> SpanView<'a> {
+impl<'a> SpanLikelihood<'a> {
     /// The likelihood of one frame, made by [`Frame::with_background`], in the map of `projector`.
     ///
     /// # Errors
@@ -53,7 +53,7 @@ impl<'a> SpanView<'a> {
     }
 }
 
-impl ViewLikelihood for SpanView<'_> {
+impl ViewLikelihood for SpanLikelihood<'_> {
     fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, light: &[ColorDensity]) -> LogWeight {
         let Ok(light) = light.iter().map(SumDensity::new).collect::<Result<Vec<_>, _>>() else {
             return f64::NEG_INFINITY;

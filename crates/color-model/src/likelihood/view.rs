@@ -7,8 +7,8 @@ use crate::ColorDensity;
 /// **Law**: the value is $`\ln p(z | x, \text{light})`$ in nats up to a constant that depends on neither pose nor light, so that values of different
 /// poses compare however much of the map they see; never NaN for a finite pose and finite densities.
 ///
-/// The reference is [`PixelView`](crate::PixelView), the same numbers at a fraction of the cost [`SpanView`](crate::SpanView), the fast
-/// alternative [`FeatureView`](crate::FeatureView).
+/// The reference is [`PixelLikelihood`](crate::PixelLikelihood), the same numbers at a fraction of the cost [`SpanLikelihood`](crate::SpanLikelihood), the fast
+/// alternative [`FeatureLikelihood`](crate::FeatureLikelihood).
 pub trait ViewLikelihood {
     /// The log-likelihood of the image from `camera_pose` (x forward along the optical axis, in the world), with `light[m]` the density of map
     /// colour `m`.

@@ -129,7 +129,7 @@ impl ColorLocalizer {
         if !(step.seconds >= 0.0 && step.seconds.is_finite()) {
             return Err(ColorModelError::OutOfRange { what: "seconds of a step", value: step.seconds });
         }
-        let moved = self.params.odometry.given(step);
+        let moved = self.params.odometry.sampler(step);
         for particle in self.hypotheses.iter_mut().flat_map(|hypothesis| &mut hypothesis.particles) {
             particle.sampled.body = moved(&particle.sampled.body, rng);
             self.area.clamp(&mut particle.sampled.body);

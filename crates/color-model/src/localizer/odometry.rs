@@ -95,7 +95,7 @@ impl SampleMotion for OdometryNoise {
     type State = Pose2<f64>;
     type Control = OdometryStep;
 
-    fn given<R: Rng + ?Sized>(&self, step: &OdometryStep) -> impl Fn(&Pose2<f64>, &mut R) -> Pose2<f64> {
+    fn sampler<R: Rng + ?Sized>(&self, step: &OdometryStep) -> impl Fn(&Pose2<f64>, &mut R) -> Pose2<f64> {
         let increment = step.increment.unwrap_or_else(Pose2::identity);
         let (translation, rotation) = self.sigmas(step);
         move |pose, rng| {
@@ -117,7 +117,7 @@ mod tests {
     fn samples_follow_the_motion_and_spread_as_stated() {
         let step = OdometryStep { increment: Some(Pose2::new(0.5, 0.1, 0.3)), seconds: 1.0 };
         let (noise, start) = (OdometryNoise::default(), Pose2::new(1.0, 2.0, 3.0));
-        let (sampler, mut rng) = (noise.given(&step), ChaCha8Rng::seed_from_u64(1));
+        let (sampler, mut rng) = (noise.sampler(&step), ChaCha8Rng::seed_from_u64(1));
         let expected = start.compose(&step.increment.unwrap());
         let (n, mut mean, mut variance) = (10_000, Vector3::zeros(), Vector3::zeros());
         for _ in 0..n {

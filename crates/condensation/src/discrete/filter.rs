@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{BayesFilter, LogWeight};
 use crate::discrete::chunks::{CHUNK, fold_chunks, map_chunks};
 use crate::discrete::lattice::n_cells;
 use crate::error::{check_size, check_state, probability};
-use crate::{CondensationError, Evidence, Outcome, Transition};
+use crate::{CondensationError, MeasurementEvidence, Outcome, Transition};
 
 /// Where a sum of weights is so small that terms may have been lost below the smallest double: then the sum is done again in logarithms.
 const UNDERFLOW: f64 = 1e-250;
@@ -109,15 +109,18 @@ impl DiscreteFilter {
             return Ok(Outcome::Impossible);
         }
         let (expected, anywhere) = self.weigh(log_likelihoods, best);
-        let log_anywhere = best + (anywhere / self.belief.len() as f64).ln();
+        let log_uniform = best + (anywhere / self.belief.len() as f64).ln();
         if expected > UNDERFLOW {
             self.accept(1.0 / expected);
-            return Ok(Outcome::Updated(Evidence { log_expected: best + expected.ln(), log_anywhere }));
+            return Ok(Outcome::Updated(MeasurementEvidence {
+                log_predicted: best + expected.ln(),
+                log_uniform,
+            }));
         }
-        let Some(log_expected) = self.weigh_in_logarithms(log_likelihoods) else {
+        let Some(log_predicted) = self.weigh_in_logarithms(log_likelihoods) else {
             return Ok(Outcome::Impossible);
         };
-        Ok(Outcome::Updated(Evidence { log_expected, log_anywhere }))
+        Ok(Outcome::Updated(MeasurementEvidence { log_predicted, log_uniform }))
     }
 
     /// The belief, one probability a state.

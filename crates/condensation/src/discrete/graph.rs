@@ -4,7 +4,7 @@ use crate::{CondensationError, SparseTransition, StateSpace};
 
 /// An action in a graph: take the edge of that number out of the place, or stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Follow {
+pub enum GraphAction {
     /// The k-th edge that leaves the place, counted in the order they were given; where there is none, the robot stays.
     Edge(usize),
     /// Nothing.
@@ -14,16 +14,16 @@ pub enum Follow {
 /// Places joined by directed edges.
 ///
 /// ```
-/// use wayfix_condensation::{Follow, Graph, StateSpace};
+/// use wayfix_condensation::{GraphAction, Graph, StateSpace};
 /// let corridor = Graph::new(3, &[(0, 1), (1, 2), (1, 0)])?;
-/// assert_eq!(corridor.step(1, Follow::Edge(1)), 0);
-/// assert_eq!(corridor.step(2, Follow::Edge(0)), 2); // a dead end
+/// assert_eq!(corridor.step(1, GraphAction::Edge(1)), 0);
+/// assert_eq!(corridor.step(2, GraphAction::Edge(0)), 2); // a dead end
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Graph {
     successors: Vec<Vec<usize>>,
-    actions: Vec<Follow>,
+    actions: Vec<GraphAction>,
 }
 
 impl Graph {
@@ -40,7 +40,7 @@ impl Graph {
             successors[from].push(to);
         }
         let max_degree = successors.iter().map(Vec::len).max().unwrap_or(0);
-        let actions = (0..max_degree).map(Follow::Edge).chain([Follow::Stay]).collect();
+        let actions = (0..max_degree).map(GraphAction::Edge).chain([GraphAction::Stay]).collect();
         Ok(Self { successors, actions })
     }
 
@@ -69,20 +69,20 @@ impl Graph {
 }
 
 impl StateSpace for Graph {
-    type Action = Follow;
+    type Action = GraphAction;
 
     fn n_states(&self) -> usize {
         self.successors.len()
     }
 
-    fn actions(&self) -> &[Follow] {
+    fn actions(&self) -> &[GraphAction] {
         &self.actions
     }
 
-    fn step(&self, state: usize, action: Follow) -> usize {
+    fn step(&self, state: usize, action: GraphAction) -> usize {
         match action {
-            Follow::Edge(edge) => self.successors[state].get(edge).copied().unwrap_or(state),
-            Follow::Stay => state,
+            GraphAction::Edge(edge) => self.successors[state].get(edge).copied().unwrap_or(state),
+            GraphAction::Stay => state,
         }
     }
 }

@@ -11,10 +11,10 @@ use crate::{CondensationError, Outcome};
 /// of measurements that fit raises an alarm with probability at most $`α`$ a start of the sum. [Page 1954; Fox et al. 1999]
 ///
 /// ```
-/// use wayfix_condensation::{Evidence, KidnapMonitor, Outcome};
+/// use wayfix_condensation::{MeasurementEvidence, KidnapMonitor, Outcome};
 /// let mut monitor = KidnapMonitor::from_false_alarm_rate(1e-3)?;
-/// let fits = Outcome::Updated(Evidence { log_expected: -1.0, log_anywhere: -4.0 });
-/// let elsewhere = Outcome::Updated(Evidence { log_expected: -9.0, log_anywhere: -4.0 });
+/// let fits = Outcome::Updated(MeasurementEvidence { log_predicted: -1.0, log_uniform: -4.0 });
+/// let elsewhere = Outcome::Updated(MeasurementEvidence { log_predicted: -9.0, log_uniform: -4.0 });
 /// assert!(!monitor.observe(&fits) && !monitor.observe(&elsewhere));
 /// assert!(monitor.observe(&elsewhere));
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
@@ -37,7 +37,7 @@ impl KidnapMonitor {
 
     /// Whether the measurements so far say that the robot is elsewhere. An alarm clears the sum; an impossible measurement is one.
     pub fn observe(&mut self, outcome: &Outcome) -> bool {
-        let ratio = outcome.evidence().map_or(f64::INFINITY, |e| e.log_anywhere - e.log_expected);
+        let ratio = outcome.evidence().map_or(f64::INFINITY, |e| e.log_uniform - e.log_predicted);
         self.sum = (self.sum + ratio).max(0.0);
         let alarm = self.sum > self.threshold;
         if alarm {

@@ -2,11 +2,11 @@ use wayfix_estimation_traits::LogWeight;
 
 /// How well a measurement fits, in nats.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evidence {
+pub struct MeasurementEvidence {
     /// $`\log \sum_s p(m \mid s)\, \hat b(s)`$: where the robot is believed to be.
-    pub log_expected: LogWeight,
+    pub log_predicted: LogWeight,
     /// $`\log \frac{1}{n} \sum_s p(m \mid s)`$: anywhere.
-    pub log_anywhere: LogWeight,
+    pub log_uniform: LogWeight,
 }
 
 /// What a measurement did to the belief.
@@ -14,14 +14,14 @@ pub struct Evidence {
 #[must_use = "an impossible measurement leaves the belief as it was; somebody has to decide what to do"]
 pub enum Outcome {
     /// The belief is the posterior now.
-    Updated(Evidence),
+    Updated(MeasurementEvidence),
     /// Every state that belief holds possible rules the measurement out. The belief is as it was; it is never reset silently.
     Impossible,
 }
 
 impl Outcome {
     /// The evidence, if the measurement was possible.
-    pub fn evidence(&self) -> Option<Evidence> {
+    pub fn evidence(&self) -> Option<MeasurementEvidence> {
         match self {
             Self::Updated(evidence) => Some(*evidence),
             Self::Impossible => None,

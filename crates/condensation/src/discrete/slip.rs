@@ -7,9 +7,9 @@ use crate::{CondensationError, SparseTransition, StateSpace};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Slip {
     /// That nothing happens.
-    pub stays: f64,
+    pub stay_probability: f64,
     /// That another action happens, each of them equally likely.
-    pub strays: f64,
+    pub other_action_probability: f64,
 }
 
 impl Slip {
@@ -18,7 +18,7 @@ impl Slip {
     /// ```
     /// use wayfix_condensation::{Grid, Move, Slip, Transition};
     /// let grid = Grid::new(3, 1)?;
-    /// let right = Slip { stays: 0.25, strays: 0.0 }.transition(&grid, Move { dx: 1, dy: 0 })?;
+    /// let right = Slip { stay_probability: 0.25, other_action_probability: 0.0 }.transition(&grid, Move { dx: 1, dy: 0 })?;
     /// let mut predicted = [0.0; 3];
     /// right.predict(&[1.0, 0.0, 0.0], &mut predicted);
     /// assert_eq!(predicted, [0.25, 0.75, 0.0]);
@@ -32,16 +32,19 @@ impl Slip {
         space: &S,
         action: S::Action,
     ) -> Result<SparseTransition, CondensationError> {
-        probability("probability to stay", self.stays)?;
-        probability("probability to stray", self.strays)?;
-        let goes = probability("probability of the intended action", 1.0 - self.stays - self.strays)?;
-        let each = self.strays / space.actions().len() as f64;
+        probability("probability to stay", self.stay_probability)?;
+        probability("probability to stray", self.other_action_probability)?;
+        let goes = probability(
+            "probability of the intended action",
+            1.0 - self.stay_probability - self.other_action_probability,
+        )?;
+        let each = self.other_action_probability / space.actions().len() as f64;
         let rows = (0..space.n_states()).map(|state| {
             let mut row = vec![(space.step(state, action), goes)];
-            if self.stays > 0.0 {
-                row.push((state, self.stays));
+            if self.stay_probability > 0.0 {
+                row.push((state, self.stay_probability));
             }
-            if self.strays > 0.0 {
+            if self.other_action_probability > 0.0 {
                 row.extend(space.actions().iter().map(|&other| (space.step(state, other), each)));
             }
             row

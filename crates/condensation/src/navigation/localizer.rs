@@ -6,7 +6,7 @@ use wayfix_estimation_traits::LogWeight;
 use crate::discrete::entropy;
 use crate::error::{check_size, probability};
 use crate::learning::DisturbanceBelief;
-use crate::navigation::carried::Carried;
+use crate::navigation::moment_transition::MomentTransition;
 use crate::{
     Appearance, BestState, CondensationError, DiscreteFilter, Disturbance, Light, Outcome, Transition,
 };
@@ -84,7 +84,7 @@ impl Localizer {
         let mut next = self.filter.belief().to_vec();
         let conditions = next.chunks_mut(n).zip(self.disturbances.chunks_mut(n));
         for (belief, disturbances) in conditions {
-            Carried { transition, leak: self.params.leak }.apply(belief, disturbances);
+            MomentTransition { transition, leak: self.params.leak }.apply(belief, disturbances);
             disturbances.iter_mut().for_each(|d| self.appearance.widen(d, self.params.drift));
         }
         self.filter = DiscreteFilter::from_prior(next)?;
@@ -115,7 +115,7 @@ impl Localizer {
     }
 
     /// Back to nothing known: what to do after a kidnapping is somebody's decision, never the filter's.
-    pub fn forget(&mut self) {
+    pub fn reset(&mut self) {
         let n = self.disturbances.len();
         self.filter = DiscreteFilter::uniform(n).expect("invariant: there were states before");
         self.disturbances.fill(self.appearance.prior_belief());

@@ -1,8 +1,8 @@
 //! From anywhere to a goal, by looking around.
 
 mod action;
-mod carried;
 mod localizer;
+mod moment_transition;
 mod navigator;
 mod report;
 mod routes;

@@ -13,7 +13,7 @@ pub trait World<A> {
     fn act(&mut self, action: A);
 
     /// Writes the features of what is seen now.
-    fn look(&mut self, features: &mut [f64]);
+    fn observe(&mut self, features: &mut [f64]);
 }
 
 /// When a run is over, and how actions are chosen.
@@ -114,7 +114,7 @@ impl<S: StateSpace> Navigator<S> {
         let (mut confirmed, mut steps_to_certainty, mut kidnappings) = (0, None, 0);
         let mut steps = 0;
         loop {
-            world.look(&mut features);
+            world.observe(&mut features);
             let outcome = localizer.update(&features)?;
             kidnappings +=
                 usize::from(start_over_if_elsewhere(&mut monitor, &outcome, localizer, &features)?);
@@ -157,7 +157,7 @@ fn start_over_if_elsewhere(
 ) -> Result<bool, CondensationError> {
     let elsewhere = monitor.observe(outcome);
     if elsewhere {
-        localizer.forget();
+        localizer.reset();
         let _ = localizer.update(features)?; // impossible even from scratch: the next look decides
     }
     Ok(elsewhere)

@@ -19,7 +19,7 @@ struct Step {
     /// Intersection over union of the contour and the whole target.
     overlap: f64,
     decoy_inside: usize,
-    decoy: usize,
+    distractor: usize,
 }
 
 impl Record {
@@ -46,10 +46,10 @@ impl Record {
         self.0.iter().filter(|step| step.n_visible == 0 && step.tracked).count()
     }
 
-    /// Share of the decoy that is inside the contour.
+    /// Share of the distractor that is inside the contour.
     pub(crate) fn decoy_inside(&self) -> f64 {
         let total = |count: fn(&Step) -> usize| self.0.iter().map(count).sum::<usize>();
-        total(|step| step.decoy_inside) as f64 / total(|step| step.decoy).max(1) as f64
+        total(|step| step.decoy_inside) as f64 / total(|step| step.distractor).max(1) as f64
     }
 }
 
@@ -78,8 +78,8 @@ fn step(frame: &Frame, target: &Target) -> Step {
         n_visible: frame.visible.area(),
         tracked,
         overlap: if tracked { overlap } else { 0.0 },
-        decoy_inside: found.overlap(&mask_of(&frame.decoy)).expect("one size"),
-        decoy: frame.decoy.area(),
+        decoy_inside: found.overlap(&mask_of(&frame.distractor)).expect("one size"),
+        distractor: frame.distractor.area(),
     }
 }
 

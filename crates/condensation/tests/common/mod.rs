@@ -43,7 +43,7 @@ impl World<Move> for Drive {
         self.at = self.grid.step(self.at, action);
     }
 
-    fn look(&mut self, features: &mut [f64]) {
+    fn observe(&mut self, features: &mut [f64]) {
         self.looks += 1;
         if let Some((_, to)) = self.kidnapped.filter(|&(after, _)| after == self.looks) {
             self.at = to;

@@ -16,7 +16,7 @@ pub fn likelihood<L: LikelihoodModel>(
     best: &L::State,
     others: &[L::State],
 ) -> Result<(), Violation> {
-    let log_likelihood = model.given(measurement);
+    let log_likelihood = model.log_likelihood(measurement);
     let peak = log_likelihood(best);
     let nan = if peak.is_finite() { 0.0 } else { f64::NAN };
     within("finite where expected", nan, 0.0, || "at the best state".to_owned())?;

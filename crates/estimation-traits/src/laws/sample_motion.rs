@@ -32,7 +32,7 @@ where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
     for (index, (state, control)) in states_and_controls.iter().enumerate() {
-        let draw = sampler.given::<R>(control);
+        let draw = sampler.sampler::<R>(control);
         let centre = model.propagate(state, control);
         let (first, second) = (draw(state, &mut rng.clone()), draw(state, &mut rng.clone()));
         let difference = to_f64((centre.local(&first) - centre.local(&second)).norm());

@@ -34,7 +34,7 @@ where
     /// # Errors
     /// When `most` is 0.
     pub fn cap(self, most: usize) -> Result<Self, GaussianError> {
-        check_most(most)?;
+        check_max_components(most)?;
         let mut ranked: Vec<usize> = (0..self.len()).collect();
         ranked.sort_by(|&i, &j| self.log_weights[j].total_cmp(&self.log_weights[i]).then(i.cmp(&j)));
         ranked.truncate(most);
@@ -46,6 +46,6 @@ where
 }
 
 /// A mixture cannot be reduced to nothing.
-pub(super) fn check_most(most: usize) -> Result<(), GaussianError> {
+pub(super) fn check_max_components(most: usize) -> Result<(), GaussianError> {
     if most > 0 { Ok(()) } else { Err(GaussianError::Empty { what: "components to keep" }) }
 }

@@ -1,7 +1,7 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{LogWeight, Manifold, StateAlloc, to_f64};
 
-use super::{Mixture, log_sum_exp, prune::check_most};
+use super::{Mixture, log_sum_exp, prune::check_max_components};
 use crate::{Gaussian, GaussianError, IterationError, cholesky, moment_matched};
 
 impl<X: Manifold> Mixture<X>
@@ -26,7 +26,7 @@ where
     /// # Errors
     /// When `most` is 0, a covariance (unchecked) is not positive definite or a merge finds no mean.
     pub fn reduce_runnalls(self, most: usize) -> Result<Self, IterationError<X>> {
-        check_most(most)?;
+        check_max_components(most)?;
         let mut hypotheses =
             self.into_log_weighted().into_iter().map(Hypothesis::new).collect::<Result<Vec<_>, _>>()?;
         let mut costs: Vec<Vec<f64>> = Vec::new();

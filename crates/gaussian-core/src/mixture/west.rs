@@ -1,7 +1,7 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, StateAlloc};
 
-use super::{Mixture, prune::check_most, runnalls::merge_pair};
+use super::{Mixture, prune::check_max_components, runnalls::merge_pair};
 use crate::{GaussianError, IterationError};
 
 impl<X: Manifold> Mixture<X>
@@ -26,7 +26,7 @@ where
     /// # Errors
     /// When `most` is 0, a covariance (unchecked) is not positive definite or a merge finds no mean.
     pub fn reduce_west(self, most: usize) -> Result<Self, IterationError<X>> {
-        check_most(most)?;
+        check_max_components(most)?;
         let mut weighted = self.into_log_weighted();
         while weighted.len() > most {
             let lightest =

@@ -25,7 +25,7 @@ use super::{gaussian::sample_tangent, semidefinite_factor::semidefinite_factor};
 /// }
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
 /// let sampler = GaussianMotion(Slide);
-/// let next = sampler.given(&2.0)(&Vector1::new(1.0), &mut rng);
+/// let next = sampler.sampler(&2.0)(&Vector1::new(1.0), &mut rng);
 /// assert!((next[0] - 3.0).abs() < 0.1); // ten sigma
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +39,7 @@ where
     type State = M::State;
     type Control = M::Control;
 
-    fn given<R: Rng + ?Sized>(&self, control: &M::Control) -> impl Fn(&M::State, &mut R) -> M::State {
+    fn sampler<R: Rng + ?Sized>(&self, control: &M::Control) -> impl Fn(&M::State, &mut R) -> M::State {
         move |state, rng| {
             let moved = self.0.propagate(state, control);
             let factor = semidefinite_factor(&self.0.noise(state, control));

@@ -3,12 +3,11 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, U
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Form, Innovation,
-    carry::carried,
-    check,
+    Form, Innovation, check,
     error::Checked,
     linearize::{linearize_motion, linearize_sensor},
     product::{joseph, propagated_covariance},
+    transport::transported,
 };
 
 /// The extended Kalman filter in the form of Joseph, on any manifold.
@@ -24,7 +23,7 @@ where
 {
     type Belief = Gaussian<X>;
 
-    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
+    fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
         check::positive_definite("prior", gaussian.covariance())?;
         Ok(gaussian.clone())
     }
@@ -64,7 +63,7 @@ where
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
         let covariance = joseph(prior, &gain, innovation.cross_covariance(), &linear.jacobian, &linear.noise);
         check::positive_definite("posterior", &covariance)?;
-        let covariance = carried(covariance, belief.mean(), &mean)?;
+        let covariance = transported(covariance, belief.mean(), &mean)?;
         Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
     }
 }

@@ -3,11 +3,10 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::{
-    Form, Innovation,
-    carry::transport,
-    check,
+    Form, Innovation, check,
     error::Checked,
     linearize::{linearize_motion, linearize_sensor},
+    transport::transport,
 };
 
 /// The information form: carries $`Λ = P^{-1}`$, so that measurements add up.
@@ -52,7 +51,7 @@ where
 {
     type Belief = InformationBelief<X>;
 
-    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<InformationBelief<X>> {
+    fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<InformationBelief<X>> {
         let information = inverse("prior", gaussian.mean(), gaussian.covariance())?;
         InformationBelief::checked(gaussian.mean().clone(), information)
     }

@@ -5,8 +5,8 @@ use wayfix_estimation_traits::{
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Extended, Form, Innovation, KalmanError, carry::carried, check, error::Checked,
-    linearize::linearize_sensor, product::joseph,
+    Extended, Form, Innovation, KalmanError, check, error::Checked, linearize::linearize_sensor,
+    product::joseph, transport::transported,
 };
 
 /// The iterated extended filter: the update relinearizes at its own result until it settles, which is Gauss-Newton on
@@ -33,8 +33,8 @@ where
 {
     type Belief = Gaussian<X>;
 
-    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
-        Extended.believe(gaussian)
+    fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
+        Extended.belief_from(gaussian)
     }
 
     fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
@@ -86,7 +86,7 @@ where
                 let covariance =
                     joseph(&prior, &gain, fit.cross_covariance(), &linear.jacobian, &linear.noise);
                 check::positive_definite("posterior", &covariance)?;
-                let covariance = carried(covariance, &point, &next)?;
+                let covariance = transported(covariance, &point, &next)?;
                 return Ok((innovation, Some(Gaussian::from_parts_unchecked(next, covariance))));
             }
             point = next;

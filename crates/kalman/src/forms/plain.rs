@@ -3,8 +3,8 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, U
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Extended, Form, Innovation, carry::carried, check, error::Checked, linearize::linearize_sensor,
-    product::plain_difference,
+    Extended, Form, Innovation, check, error::Checked, linearize::linearize_sensor,
+    product::plain_difference, transport::transported,
 };
 
 /// The faster sibling of [`Extended`]: $`P = P - K C^T`$ instead of the form of Joseph.
@@ -19,8 +19,8 @@ where
 {
     type Belief = Gaussian<X>;
 
-    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
-        Extended.believe(gaussian)
+    fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
+        Extended.belief_from(gaussian)
     }
 
     fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
@@ -55,7 +55,7 @@ where
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
         let covariance = plain_difference(prior, &gain, innovation.cross_covariance());
         check::positive_definite("posterior", &covariance)?;
-        let covariance = carried(covariance, belief.mean(), &mean)?;
+        let covariance = transported(covariance, belief.mean(), &mean)?;
         Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
     }
 }

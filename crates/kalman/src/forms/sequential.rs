@@ -3,11 +3,10 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky};
 
 use crate::{
-    Extended, Form, Innovation,
-    carry::carried,
-    check,
+    Extended, Form, Innovation, check,
     error::Checked,
     linearize::{LinearizedSensor, linearize_sensor},
+    transport::transported,
 };
 
 /// The extended filter that uses a measurement one scalar at a time.
@@ -24,8 +23,8 @@ where
 {
     type Belief = Gaussian<X>;
 
-    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
-        Extended.believe(gaussian)
+    fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
+        Extended.belief_from(gaussian)
     }
 
     fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
@@ -71,7 +70,7 @@ where
         }
         check::positive_definite("posterior", &covariance)?;
         let mean = check::moved("posterior mean", belief.mean(), &offset)?;
-        let covariance = carried(covariance, belief.mean(), &mean)?;
+        let covariance = transported(covariance, belief.mean(), &mean)?;
         Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
     }
 }

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{
 };
 use wayfix_gaussian_core::{Gaussian, SigmaPoints, UnscentedParams, symmetrize, weighted_mean};
 
-use crate::{Extended, Form, Innovation, carry::carried, check, error::Checked};
+use crate::{Extended, Form, Innovation, check, error::Checked, transport::transported};
 
 /// The unscented filter with additive noise, on any manifold: sigma points instead of Jacobians.
 ///
@@ -23,9 +23,9 @@ where
 {
     type Belief = Gaussian<X>;
 
-    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
+    fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
         SigmaPoints::new(gaussian, &self.params)?;
-        Extended.believe(gaussian)
+        Extended.belief_from(gaussian)
     }
 
     fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
@@ -74,7 +74,7 @@ where
         let gain = innovation.gain();
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
         let covariance = spread.remaining(&gain, &noise)?;
-        let covariance = carried(covariance, belief.mean(), &mean)?;
+        let covariance = transported(covariance, belief.mean(), &mean)?;
         Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
     }
 }

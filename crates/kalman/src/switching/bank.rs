@@ -25,8 +25,8 @@ use crate::{Form, Innovation, KalmanError, check, error::Checked};
 /// assert!(candidates[1].innovation.log_likelihood() > candidates[0].innovation.log_likelihood());
 /// let bright = candidates.into_iter().nth(1).expect("two models");
 /// bank.activate(1, bright.belief);
-/// assert_eq!(bank.settled(0), Some(brightness(40.0)?)); // the dark one is as it was
-/// assert!((bank.settled(1).expect("two models").mean()[0] - 152.0).abs() < 0.1);
+/// assert_eq!(bank.last_active_estimate(0), Some(brightness(40.0)?)); // the dark one is as it was
+/// assert!((bank.last_active_estimate(1).expect("two models").mean()[0] - 152.0).abs() < 0.1);
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Debug)]
@@ -77,7 +77,7 @@ where
             return Err(KalmanError::EmptyBank);
         }
         check::dimension("bank of priors", models.len(), priors.len())?;
-        let settled = priors.iter().map(|prior| form.believe(prior)).collect::<Checked<Vec<_>>>()?;
+        let settled = priors.iter().map(|prior| form.belief_from(prior)).collect::<Checked<Vec<_>>>()?;
         Ok(Self { models: models.into(), form, predicted: settled.clone(), settled })
     }
 
@@ -87,7 +87,7 @@ where
     }
 
     /// What filter `model` knew when it was last active; `None` when there is no such filter.
-    pub fn settled(&self, model: usize) -> Option<Gaussian<M::State>> {
+    pub fn last_active_estimate(&self, model: usize) -> Option<Gaussian<M::State>> {
         self.settled.get(model).map(|belief| self.form.gaussian(belief))
     }
 

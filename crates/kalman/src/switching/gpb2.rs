@@ -54,7 +54,7 @@ where
         prior: &Gaussian<M::State>,
     ) -> Result<Self, KalmanError> {
         check::dimension("bank of models", chain.n_models(), models.len())?;
-        let belief = form.believe(prior)?;
+        let belief = form.belief_from(prior)?;
         let hypothesis = |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
         let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
         Ok(Self { models, chain, form, hypotheses })
@@ -118,7 +118,7 @@ where
         let possible = probabilities.into_iter().enumerate().filter(|(_, probability)| *probability > 0.0);
         let merge = |(model, probability)| {
             let same = hypotheses.iter().filter(|h| h.model == model).map(|h| (h.probability, &h.belief));
-            let belief = self.form.believe(&merged(&self.form, same)?)?;
+            let belief = self.form.belief_from(&merged(&self.form, same)?)?;
             Ok(Hypothesis { model, belief, probability })
         };
         possible.map(merge).collect()

@@ -55,7 +55,7 @@ where
         prior: &Gaussian<M::State>,
     ) -> Result<Self, KalmanError> {
         check::dimension("bank of models", chain.n_models(), models.len())?;
-        let belief = form.believe(prior)?;
+        let belief = form.belief_from(prior)?;
         let hypothesis = |(model, &probability)| Hypothesis { model, belief: belief.clone(), probability };
         let hypotheses = chain.initial().iter().enumerate().map(hypothesis).collect();
         Ok(Self { models, chain, form, hypotheses })
@@ -67,7 +67,7 @@ where
     }
 
     /// What is believed if `model` is in force; `None` when there is no such model.
-    pub fn belief_of(&self, model: usize) -> Option<Gaussian<M::State>> {
+    pub fn model_estimate(&self, model: usize) -> Option<Gaussian<M::State>> {
         self.hypotheses.get(model).map(|hypothesis| self.form.gaussian(&hypothesis.belief))
     }
 
@@ -84,7 +84,7 @@ where
     /// # Errors
     /// When a model gives something unusable; the filter is unchanged.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
-        let probabilities = self.chain.after_a_step(&self.model_probabilities());
+        let probabilities = self.chain.predict_probabilities(&self.model_probabilities());
         let predict = |(model, &probability): (usize, &f64)| {
             let mixed = self.mixed_for(model, probability)?;
             let belief = self.form.predict(&mixed, &self.models[model], control)?;
@@ -120,7 +120,7 @@ where
         }
         let weighted =
             self.hypotheses.iter().map(|h| (h.probability * self.chain.probability(h.model, to), &h.belief));
-        self.form.believe(&merged(&self.form, weighted)?)
+        self.form.belief_from(&merged(&self.form, weighted)?)
     }
 }
 

@@ -133,7 +133,7 @@ where
         let mut histories = self.histories.clone();
         for history in &mut histories {
             history.bank.predict(control)?;
-            history.active = self.chain.after_a_step(&history.active);
+            history.active = self.chain.predict_probabilities(&history.active);
         }
         self.histories = histories;
         Ok(())

@@ -6,7 +6,7 @@ use crate::KalmanError;
 /// use wayfix_kalman::MarkovChain;
 /// // A light that stays as it is in 95 of 100 frames.
 /// let chain = MarkovChain::new(&[vec![0.95, 0.05], vec![0.05, 0.95]], &[1.0, 0.0])?;
-/// assert_eq!(chain.after_a_step(chain.initial()), [0.95, 0.05]);
+/// assert_eq!(chain.predict_probabilities(chain.initial()), [0.95, 0.05]);
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +65,7 @@ impl MarkovChain {
         self.transition.get(from).and_then(|row| row.get(to)).copied().unwrap_or(0.0)
     }
     /// Probabilities after a step, from those before: $`\bar μ_j = \sum_i μ_i π_{ij}`$.
-    pub fn after_a_step(&self, probabilities: &[f64]) -> Vec<f64> {
+    pub fn predict_probabilities(&self, probabilities: &[f64]) -> Vec<f64> {
         (0..self.n_models())
             .map(|to| probabilities.iter().enumerate().map(|(from, p)| p * self.probability(from, to)).sum())
             .collect()

@@ -3,8 +3,8 @@ use std::ops::Range;
 
 use nalgebra::Isometry2;
 
-use super::bend::curved;
 use super::breakpoints::surfaces;
+use super::curvature_test::curved;
 use super::merge::merge;
 use super::pieces::{Piece, split};
 use super::points::Points;
@@ -86,14 +86,14 @@ impl Extractor {
     /// # Errors
     /// [`LineError::Scan`] or [`LineError::MoreThanATurn`] for a geometry without meaning.
     pub fn extract(&mut self, scan: &Scan) -> Result<Extraction, LineError> {
-        self.extract_moving(scan, None)
+        self.extract_deskewed(scan, None)
     }
 
     /// The same for a sensor that moves by `step` from one beam to the next, in its own frame; the walls are seen from where the first beam was sent.
     ///
     /// # Errors
     /// Those of [`extract`](Self::extract), and [`LineError::Scan`] for a step that is not finite.
-    pub fn extract_moving(
+    pub fn extract_deskewed(
         &mut self,
         scan: &Scan,
         step: Option<&Isometry2<f64>>,
@@ -105,7 +105,7 @@ impl Extractor {
         let mut counts = Counts::default();
         self.points.fill(scan, &mut counts);
         if let Some(step) = step {
-            self.points.seen_from_the_first_beam(step);
+            self.points.deskew(step);
         }
         surfaces(&self.points, scan, &self.params, &mut self.surfaces);
         self.fit_pieces()?;

@@ -1,7 +1,7 @@
 //! Range scans to walls.
 
-mod bend;
 mod breakpoints;
+mod curvature_test;
 mod extraction;
 mod extractor;
 mod hypothesis;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
-use super::bend::Bend;
+use super::curvature_test::CurvatureTest;
 use super::points::Points;
 use super::{Params, SplitMethod};
 use crate::line::Moments;
@@ -19,7 +19,7 @@ pub(super) struct Piece {
     /// The outermost points, in the line's direction.
     pub(super) ends: [Vector2<f64>; 2],
     pub(super) beams: (usize, usize),
-    pub(super) bend: Bend,
+    pub(super) bend: CurvatureTest,
 }
 
 /// The indices where a surface is split, its ends included.
@@ -80,7 +80,7 @@ impl Piece {
         }
         let moments = moments(&range, &normal);
         let estimate = moments.line().ok()?;
-        let bend = Bend::of(&points.at[range.clone()], &estimate, noise, params.bulge_sigma_m);
+        let bend = CurvatureTest::of(&points.at[range.clone()], &estimate, noise, params.bulge_sigma_m);
         let (first, last) = (range.start, range.end - 1);
         let ends = outermost(&estimate, [points.at[first], points.at[last]]);
         Some(Self { moments, estimate, ends, bend, beams: (points.beam[first], points.beam[last]) })

@@ -33,7 +33,7 @@ impl Points {
     }
 
     /// Moves each echo to where it is seen from the first beam, when the sensor moves by `step` from beam to beam.
-    pub(super) fn seen_from_the_first_beam(&mut self, step: &Isometry2<f64>) {
+    pub(super) fn deskew(&mut self, step: &Isometry2<f64>) {
         let mut sensor = Isometry2::identity();
         let mut at_beam = 0;
         for (at, &beam) in self.at.iter_mut().zip(&self.beam) {

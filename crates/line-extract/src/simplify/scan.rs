@@ -13,7 +13,7 @@ pub(super) struct Scanner {
     /// Room to note the blocks that may hold the farthest point.
     blocks: Vec<usize>,
     /// How many comparisons came so close that they may have been computed exactly.
-    pub(super) close_calls: usize,
+    pub(super) n_exact_comparisons: usize,
 }
 
 impl Scanner {
@@ -36,7 +36,7 @@ impl Scanner {
         for &begin in &self.blocks {
             for k in begin..range.end.min(begin + BLOCK) {
                 if line.cross(&points[k]).abs() >= most - line.margin() {
-                    self.close_calls += usize::from(best.is_some());
+                    self.n_exact_comparisons += usize::from(best.is_some());
                     best = Some(farther(points, line, best, k));
                 }
             }

@@ -8,10 +8,10 @@ use super::split::{split_all, split_loop};
 use crate::LineError;
 
 /// How often each point may be looked at, in units of $`\log_2 n`$, before hulls are built.
-const PATIENCE: usize = 2;
+const SCAN_BUDGET: usize = 2;
 
 /// How many looks an exact comparison takes, in the time of the fast kind: some 100 ns.
-const CLOSE_CALL: usize = 100;
+const EXACT_COMPARISON_COST: usize = 100;
 
 /// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`Distance::Line`](crate::Distance), in $`O(n \log^2 n)`$ whatever the chain.
 ///
@@ -58,21 +58,21 @@ pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, Lin
 /// ```
 #[derive(Clone, Debug)]
 pub struct Simplifier {
-    patience: usize,
+    scan_budget: usize,
     ends: Vec<usize>,
     scanner: Scanner,
 }
 
 impl Default for Simplifier {
     fn default() -> Self {
-        Self { patience: PATIENCE, ends: Vec::new(), scanner: Scanner::default() }
+        Self { scan_budget: SCAN_BUDGET, ends: Vec::new(), scanner: Scanner::default() }
     }
 }
 
 impl Simplifier {
     /// Asks the hulls from the beginning, which is slower on friendly chains and faster on the worst ones.
-    pub fn impatient() -> Self {
-        Self { patience: 0, ..Self::default() }
+    pub fn hull_tree_only() -> Self {
+        Self { scan_budget: 0, ..Self::default() }
     }
 
     /// Replaces `kept` by the indices that [`simplify()`] returns.
@@ -88,18 +88,18 @@ impl Simplifier {
         let chain = Chain::new(points, epsilon)?;
         let n = points.len();
         // Hulls store indices of 32 bits; a chain beyond that (64 GB) is scanned to the end.
-        let looks_each = self.patience * n.max(2).ilog2() as usize;
+        let looks_each = self.scan_budget * n.max(2).ilog2() as usize;
         let mut looks = u32::try_from(n).map_or(usize::MAX, |_| n.saturating_mul(looks_each));
         let mut hulls = None;
         let scanner = &mut self.scanner;
-        scanner.close_calls = 0;
+        scanner.n_exact_comparisons = 0;
         split_all(n, &mut self.ends, kept, |start, end| {
             if points[start] == points[end] {
                 return split_loop(&chain, start, end);
             }
             let line = Baseline::new(&points[start], &points[end], &chain.extent);
             let range = start + 1..end;
-            let split = if looks >= range.len() + CLOSE_CALL * scanner.close_calls {
+            let split = if looks >= range.len() + EXACT_COMPARISON_COST * scanner.n_exact_comparisons {
                 looks -= range.len();
                 scanner.farthest(points, range, &line, epsilon)
             } else {

@@ -2,7 +2,7 @@ use rand::Rng;
 use wayfix_estimation_traits::{LikelihoodModel, SampleMotion};
 
 use super::LikelyMotion;
-use crate::{ChunkRng, Evidence, ParticleError, ParticleSet, Systematic};
+use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet, Systematic};
 
 /// The auxiliary particle filter: ancestors are chosen by how well their likely future explains the new measurement.
 /// [Pitt & Shephard 1999]
@@ -32,7 +32,7 @@ use crate::{ChunkRng, Evidence, ParticleError, ParticleSet, Systematic};
 /// impl LikelihoodModel for Ruler {
 ///     type State = Vector1<f64>;
 ///     type Measurement = f64;
-///     fn given(&self, z: &f64) -> impl Fn(&Vector1<f64>) -> f64 {
+///     fn log_likelihood(&self, z: &f64) -> impl Fn(&Vector1<f64>) -> f64 {
 ///         move |x| -0.5 * ((z - x[0]) / 0.1).powi(2)
 ///     }
 /// }
@@ -85,11 +85,11 @@ where
         control: &M::Control,
         measurement: &L::Measurement,
         rng: &mut R,
-    ) -> Result<Evidence, ParticleError> {
+    ) -> Result<NormalizationReport, ParticleError> {
         let (motion, sensor) = (&self.motion, &self.sensor);
         let mut candidates = self.candidates()?;
         candidates.propagate_with(
-            || (motion.likely(control), sensor.given(measurement)),
+            || (motion.likely(control), sensor.log_likelihood(measurement)),
             |(likely, log_likelihood), candidate, _| {
                 candidate.promise = log_likelihood(&likely(&candidate.state));
             },
@@ -98,19 +98,19 @@ where
         let first_stage = candidates.correct_with(|| (), |(), candidate| candidate.promise)?;
         candidates.resample(&Systematic, self.particles.n_particles(), rng)?;
         candidates.propagate_with(
-            || motion.given::<ChunkRng>(control),
+            || motion.sampler::<ChunkRng>(control),
             |draw, candidate, rng| candidate.state = draw(&candidate.state, rng),
             rng,
         );
         let second_stage = candidates.correct_with(
-            || sensor.given(measurement),
+            || sensor.log_likelihood(measurement),
             |log_likelihood, candidate| log_likelihood(&candidate.state) - candidate.promise,
         )?;
         let ParticleSet { states, log_weights, .. } = candidates;
         let states = states.into_iter().map(|candidate| candidate.state).collect();
         self.particles = ParticleSet::from_parts(states, log_weights);
         let log_likelihood = first_stage.log_likelihood + second_stage.log_likelihood;
-        Ok(Evidence { log_likelihood, ..second_stage })
+        Ok(NormalizationReport { log_likelihood, ..second_stage })
     }
 
     fn candidates(&self) -> Result<ParticleSet<Candidate<M::State>>, ParticleError> {

@@ -2,13 +2,13 @@ use nalgebra::{ComplexField as _, DefaultAllocator};
 use rand::Rng;
 use wayfix_estimation_traits::{LikelihoodModel, Manifold, SampleMotion, StateAlloc};
 
-use crate::{ChunkRng, Evidence, ParticleError, ParticleSet};
+use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet};
 
 /// The bootstrap filter (sampling importance resampling): particles move as the motion says and are weighed by the likelihood.
 /// [Gordon, Salmond & Smith 1993]
 ///
 /// When to resample, how, and to how many particles is said between the steps, on [`particles_mut`](Self::particles_mut).
-/// [`Seeded`](crate::Seeded) makes a [`BayesFilter`](wayfix_estimation_traits::BayesFilter) of it.
+/// [`SeededFilter`](crate::SeededFilter) makes a [`BayesFilter`](wayfix_estimation_traits::BayesFilter) of it.
 ///
 /// ```
 /// use nalgebra::Vector1;
@@ -20,7 +20,7 @@ use crate::{ChunkRng, Evidence, ParticleError, ParticleSet};
 /// impl SampleMotion for Drive {
 ///     type State = Vector1<f64>;
 ///     type Control = f64;
-///     fn given<R: Rng + ?Sized>(&self, metres: &f64) -> impl Fn(&Vector1<f64>, &mut R) -> Vector1<f64> {
+///     fn sampler<R: Rng + ?Sized>(&self, metres: &f64) -> impl Fn(&Vector1<f64>, &mut R) -> Vector1<f64> {
 ///         move |x, rng| x.add_scalar(metres + rng.random_range(-0.1..0.1))
 ///     }
 /// }
@@ -28,7 +28,7 @@ use crate::{ChunkRng, Evidence, ParticleError, ParticleSet};
 /// impl LikelihoodModel for Altimeter {
 ///     type State = Vector1<f64>;
 ///     type Measurement = f64;
-///     fn given(&self, z: &f64) -> impl Fn(&Vector1<f64>) -> f64 {
+///     fn log_likelihood(&self, z: &f64) -> impl Fn(&Vector1<f64>) -> f64 {
 ///         move |x| -0.5 * ((z - x[0]) / 0.1).powi(2)
 ///     }
 /// }
@@ -91,7 +91,7 @@ where
         let mut moved = self.particles.clone();
         let motion = &self.motion;
         moved.propagate_with(
-            || motion.given::<ChunkRng>(control),
+            || motion.sampler::<ChunkRng>(control),
             |draw, state, rng| *state = draw(state, rng),
             rng,
         );
@@ -107,9 +107,10 @@ where
     /// # Errors
     /// [`ParticleError::LogWeight`] when a log-likelihood is NaN or positive infinity, [`ParticleError::NoWeight`] when no particle
     /// explains the measurement; the particles are as they were.
-    pub fn update(&mut self, measurement: &L::Measurement) -> Result<Evidence, ParticleError> {
+    pub fn update(&mut self, measurement: &L::Measurement) -> Result<NormalizationReport, ParticleError> {
         let sensor = &self.sensor;
-        self.particles.correct_with(|| sensor.given(measurement), |likelihood, state| likelihood(state))
+        self.particles
+            .correct_with(|| sensor.log_likelihood(measurement), |likelihood, state| likelihood(state))
     }
 }
 

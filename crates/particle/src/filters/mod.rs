@@ -3,9 +3,9 @@
 mod auxiliary;
 mod bootstrap;
 mod likely_motion;
-mod seeded;
+mod seeded_filter;
 
 pub use auxiliary::AuxiliaryFilter;
 pub use bootstrap::BootstrapFilter;
 pub use likely_motion::LikelyMotion;
-pub use seeded::Seeded;
+pub use seeded_filter::SeededFilter;

@@ -1,20 +1,20 @@
 use wayfix_estimation_traits::LogWeight;
 
 use super::ParticleSet;
-use crate::{Evidence, ParticleError, Weights};
+use crate::{NormalizationReport, ParticleError, Weights};
 
 impl<X> ParticleSet<X> {
     /// Makes the weights add up to one, and tells what their sum was.
     ///
     /// # Errors
     /// [`ParticleError::NoWeight`] when every particle is impossible. The weights stay as they are; whether to forget the measurement
-    /// ([`forget_weights`](Self::forget_weights)) or to start again is the caller's decision.
-    pub fn normalize(&mut self) -> Result<Evidence, ParticleError> {
+    /// ([`reset_weights`](Self::reset_weights)) or to start again is the caller's decision.
+    pub fn normalize(&mut self) -> Result<NormalizationReport, ParticleError> {
         normalize(&mut self.log_weights, &mut self.workspace.weights)
     }
 
     /// Gives every particle the same weight, whatever it was.
-    pub fn forget_weights(&mut self) {
+    pub fn reset_weights(&mut self) {
         let log_share = -(self.n_particles() as f64).ln();
         self.log_weights.fill(log_share);
     }
@@ -24,13 +24,13 @@ impl<X> ParticleSet<X> {
 pub(super) fn normalize(
     log_weights: &mut [LogWeight],
     weights: &mut Weights,
-) -> Result<Evidence, ParticleError> {
+) -> Result<NormalizationReport, ParticleError> {
     let log_sum = weights.assign_log(log_weights)?;
     for log_weight in log_weights {
         *log_weight -= log_sum;
     }
     let n_particles = weights.as_slice().len();
-    Ok(Evidence {
+    Ok(NormalizationReport {
         log_likelihood: log_sum,
         effective_sample_size: weights.effective_sample_size(),
         n_particles,

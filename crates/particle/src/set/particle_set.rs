@@ -4,7 +4,7 @@ use wayfix_estimation_traits::LogWeight;
 use super::workspace::Workspace;
 use crate::{
     ParticleError, Weights,
-    memory::{filled, with_room},
+    memory::{filled, with_capacity},
     weights::check_log_weights,
 };
 
@@ -69,7 +69,7 @@ impl<X> ParticleSet<X> {
         rng: &mut R,
     ) -> Result<Self, ParticleError> {
         let log_weights = equal_log_weights(n)?;
-        let mut states = with_room(n)?;
+        let mut states = with_capacity(n)?;
         states.extend((0..n).map(|_| draw(rng)));
         Ok(Self::from_parts(states, log_weights))
     }

@@ -1,7 +1,9 @@
 use wayfix_estimation_traits::LogWeight;
 
 use super::{ParticleSet, normalize::normalize};
-use crate::{Evidence, ParticleError, chunks::map_chunks, memory::resize, weights::check_log_weights};
+use crate::{
+    NormalizationReport, ParticleError, chunks::map_chunks, memory::resize, weights::check_log_weights,
+};
 
 impl<X: Send> ParticleSet<X> {
     /// Multiplies every weight by a likelihood: $`\log w_i ← \log w_i + \log p(z | x_i)`$.
@@ -53,7 +55,7 @@ impl<X: Send> ParticleSet<X> {
         &mut self,
         prepare: impl Fn() -> S + Sync,
         log_likelihood: impl Fn(&mut S, &X) -> LogWeight + Sync,
-    ) -> Result<Evidence, ParticleError> {
+    ) -> Result<NormalizationReport, ParticleError> {
         self.weigh(prepare, log_likelihood)?;
         let workspace = &mut self.workspace;
         let evidence = normalize(&mut workspace.log_weights, &mut workspace.weights)?;

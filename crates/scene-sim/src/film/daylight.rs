@@ -1,4 +1,4 @@
-use crate::film::swing::Swing;
+use crate::film::sine_sum::SineSum;
 use crate::random::{Source, Streams};
 use crate::scenery::canvas::Color;
 use crate::scenery::noise::Noise;
@@ -13,15 +13,15 @@ const SHADE: f64 = 0.6;
 
 /// The light outdoors: a sun that grows and fades and gets warmer and cooler, patches of shade that pass, and the sky.
 pub(super) struct Daylight {
-    strength: Swing,
-    warmth: Swing,
+    strength: SineSum,
+    warmth: SineSum,
     leaves: Noise,
 }
 
 impl Daylight {
     pub(super) fn new(streams: &mut Streams) -> Self {
         let rng = streams.of(Source::Light);
-        Self { strength: Swing::new(6.0, rng), warmth: Swing::new(9.0, rng), leaves: Noise::new(rng) }
+        Self { strength: SineSum::new(6.0, rng), warmth: SineSum::new(9.0, rng), leaves: Noise::new(rng) }
     }
 
     /// The light everywhere in the picture at one moment.

@@ -11,5 +11,5 @@ pub struct Frame {
     /// The part of the target that nothing hides.
     pub visible: Silhouette,
     /// What belongs to the same creature and not to the target: the neck of the snail. Empty in other films.
-    pub decoy: Silhouette,
+    pub distractor: Silhouette,
 }

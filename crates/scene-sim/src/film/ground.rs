@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use crate::film::Film;
 use crate::film::pose::{Pose, in_ellipse};
-use crate::film::swing::Swing;
+use crate::film::sine_sum::SineSum;
 use crate::random::deviate::{below, uniform, unit};
 use crate::random::{Source, Streams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
@@ -14,7 +14,7 @@ const MARGIN_PX: usize = 8;
 /// What lies behind the target, larger than the picture, before a camera that a hand holds.
 pub(super) struct Ground {
     albedo: Canvas,
-    sway: [Swing; 2],
+    sway: [SineSum; 2],
 }
 
 impl Ground {
@@ -26,7 +26,7 @@ impl Ground {
         let (width, height) = Film::SIZE_PX;
         let albedo = paint((width + 2 * MARGIN_PX, height + 2 * MARGIN_PX), streams);
         let rng = streams.of(Source::Motion);
-        Self { albedo, sway: [Swing::new(5.0, rng), Swing::new(4.0, rng)] }
+        Self { albedo, sway: [SineSum::new(5.0, rng), SineSum::new(4.0, rng)] }
     }
 
     /// What of it the camera sees at one moment.

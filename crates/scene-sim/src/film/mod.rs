@@ -22,17 +22,17 @@
 //! ```
 
 mod board;
+mod camera_sensor;
 mod catalogue;
-mod chip;
 mod daylight;
 mod frame;
 mod frames;
 mod ground;
 mod incident;
-mod plays;
 mod pose;
+mod scene_models;
 mod silhouette;
-mod swing;
+mod sine_sum;
 
 pub use catalogue::Film;
 pub use frame::Frame;

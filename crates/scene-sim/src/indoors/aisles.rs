@@ -20,7 +20,7 @@ pub struct Aisles {
     /// Where the aisles along x cross the y axis, growing, metres.
     pub(super) ys: Vec<f64>,
     /// How far from the middle of an aisle a robot may drive, metres.
-    pub(super) play_m: f64,
+    pub(super) max_lateral_offset_m: f64,
     /// Radius of its turns, metres.
     pub(super) turn_m: f64,
 }
@@ -121,7 +121,7 @@ impl Aisles {
             if along_x == (three[1][1] == three[2][1]) {
                 continue;
             }
-            let next = uniform(-self.play_m, self.play_m, rng);
+            let next = uniform(-self.max_lateral_offset_m, self.max_lateral_offset_m, rng);
             let offset = if along_x { Vector2::new(next, aside) } else { Vector2::new(aside, next) };
             points.push(self.place(three[1]) + offset);
             aside = next;

@@ -4,13 +4,13 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Target, TrueLandmark};
 
 use super::aisles::Aisles;
-use super::ambience::Ambience;
+use super::ambient_light::AmbientLight;
 use super::camera::OmniCameraParams;
 use super::color::Rgb8;
 use super::light::LightField;
-use super::panel::{Panel, Skin};
+use super::panel::{Material, Panel};
 use super::texture::Texture;
-use super::view::Observer;
+use super::view::ViewRenderer;
 use crate::scenery::RgbPicture;
 use crate::world::{Wall, World};
 use crate::{SimError, check};
@@ -54,19 +54,19 @@ impl Building {
     /// use wayfix_scene_sim::indoors::{Lab, OmniCameraParams};
     /// let mut rng = ChaCha8Rng::seed_from_u64(1);
     /// let lab = Lab::draw(&mut rng).building();
-    /// let view = lab.look(&Pose2::new(0.0, -3.7, 0.0), OmniCameraParams::default(), &mut rng)?;
+    /// let view = lab.render_view(&Pose2::new(0.0, -3.7, 0.0), OmniCameraParams::default(), &mut rng)?;
     /// assert_eq!((view.width, view.height), (120, 20));
     /// # Ok::<(), wayfix_scene_sim::SimError>(())
     /// ```
-    pub fn look<R: Rng + ?Sized>(
+    pub fn render_view<R: Rng + ?Sized>(
         &self,
         pose: &Pose2<f64>,
         camera: OmniCameraParams,
         rng: &mut R,
     ) -> Result<RgbPicture, SimError> {
         check::finite("pose of the camera", pose.x() + pose.y() + pose.heading())?;
-        let ambience = Ambience::usual(self.n_lamps, self.n_curtains);
-        Ok(Observer::new(camera)?.look(self, &ambience, &[], pose, rng))
+        let ambient_light = AmbientLight::nominal(self.n_lamps, self.n_curtains);
+        Ok(ViewRenderer::new(camera)?.render_view(self, &ambient_light, &[], pose, rng))
     }
 
     /// Puts up a panel with a texture of its own between two heights.
@@ -77,7 +77,13 @@ impl Building {
         [bottom_m, top_m]: [f64; 2],
         texture: Texture,
     ) {
-        self.panels.push(Panel { left, right, bottom_m, top_m, skin: Skin::Lit(self.textures.len()) });
+        self.panels.push(Panel {
+            left,
+            right,
+            bottom_m,
+            top_m,
+            material: Material::Lit(self.textures.len()),
+        });
         self.textures.push(texture);
     }
 }

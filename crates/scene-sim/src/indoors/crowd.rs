@@ -99,7 +99,7 @@ impl Person {
         let ways = aisles.neighbours(self.to);
         (self.from, self.to) = (self.to, ways[below(ways.len(), rng)]);
         self.along_m = 0.0;
-        self.aside_m = uniform(-2.0, 2.0, rng) * aisles.play_m;
+        self.aside_m = uniform(-2.0, 2.0, rng) * aisles.max_lateral_offset_m;
     }
 
     fn place(&self, aisles: &Aisles) -> Vector2<f64> {

@@ -17,13 +17,13 @@ pub(super) struct Depths {
     /// Angle between neighbouring rays across and down, radians.
     pub(super) steps: [f64; 2],
     eye_m: f64,
-    met: Vec<Met>,
+    met: Vec<PanelHit>,
 }
 
 /// A place on a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Met {
-    /// Number of the panel; [`Met::NOTHING`] for floor and ceiling.
+pub(super) struct PanelHit {
+    /// Number of the panel; [`PanelHit::NOTHING`] for floor and ceiling.
     pub(super) panel: u32,
     /// Horizontal distance, metres.
     pub(super) distance: f64,
@@ -33,7 +33,7 @@ pub(super) struct Met {
     pub(super) spread: f64,
 }
 
-impl Met {
+impl PanelHit {
     pub(super) const NOTHING: u32 = u32::MAX;
     const FAR: Self = Self { panel: Self::NOTHING, distance: f64::INFINITY, along: 0.0, spread: 0.0 };
 }
@@ -49,16 +49,16 @@ impl Depths {
             slopes: (0..n_elevations as u32).map(slope).collect(),
             steps: [across, down],
             eye_m: params.height_m,
-            met: vec![Met::FAR; n_azimuths * n_elevations],
+            met: vec![PanelHit::FAR; n_azimuths * n_elevations],
         }
     }
 
     pub(super) fn clear(&mut self) {
-        self.met.fill(Met::FAR);
+        self.met.fill(PanelHit::FAR);
     }
 
     /// What the rays of one azimuth meet, the lowest first.
-    pub(super) fn column(&self, azimuth: usize) -> &[Met] {
+    pub(super) fn column(&self, azimuth: usize) -> &[PanelHit] {
         let n = self.slopes.len();
         &self.met[azimuth * n..(azimuth + 1) * n]
     }
@@ -90,7 +90,7 @@ impl Depths {
             }
             let along = (left.perp(&ray) / across * length).clamp(0.0, length);
             let spread = distance * self.steps[0] * length / across.abs();
-            let met = Met { panel: number, distance, along, spread };
+            let met = PanelHit { panel: number, distance, along, spread };
             let [low, high] = [panel.bottom_m, panel.top_m].map(|height| (height - self.eye_m) / distance);
             let column = &mut self.met[azimuth * n..(azimuth + 1) * n];
             for (seen, slope) in column.iter_mut().zip(&self.slopes) {

@@ -1,16 +1,16 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::Data;
 
-use super::ambience::Ambience;
+use super::ambient_light::AmbientLight;
 use super::building::Building;
 use super::crowd::Crowd;
 use super::params::IndoorParams;
-use super::view::Observer;
+use super::view::ViewRenderer;
 use crate::drive::{DifferentialDrive, Pursuit};
 use crate::random::{Source, Streams};
 use crate::route::Route;
 use crate::scenery::RgbPicture;
-use crate::sensor::{Moment, Sensor, WheelOdometry};
+use crate::sensor::{Sensor, TrueState, WheelOdometry};
 use crate::{SimError, check};
 
 /// Time between two steps of the integration, milliseconds.
@@ -52,8 +52,8 @@ pub struct IndoorDrive<'a> {
     driver: Pursuit,
     wheels: WheelOdometry,
     crowd: Crowd,
-    ambience: Ambience,
-    observer: Observer,
+    ambient_light: AmbientLight,
+    view_renderer: ViewRenderer,
     milliseconds: u64,
     n_left: usize,
 }
@@ -73,20 +73,21 @@ impl<'a> IndoorDrive<'a> {
         let step_m = params.drive.speed_mps * f64::from(params.view_period_ms) * 1e-3;
         check::positive("way between two views (m)", step_m)?;
         let crowd = Crowd::draw(params.n_people, &building.aisles, streams.of(Source::Crowd));
-        let ambience = Ambience::new(params.ambience, building.n_lamps, building.n_curtains, &mut streams);
+        let ambient_light =
+            AmbientLight::new(params.ambient_light, building.n_lamps, building.n_curtains, &mut streams);
         Ok(Self {
             building,
             robot: DifferentialDrive::new(params.drive, route.at(0.0))?,
             driver: Pursuit::default(),
             wheels: WheelOdometry::new(params.odometry())?,
-            observer: Observer::new(params.camera)?,
+            view_renderer: ViewRenderer::new(params.camera)?,
             n_left: (route.length_m() / step_m) as usize,
             milliseconds: 0,
             route,
             params,
             streams,
             crowd,
-            ambience,
+            ambient_light,
         })
     }
 
@@ -99,7 +100,7 @@ impl<'a> IndoorDrive<'a> {
 
     fn step(&mut self) -> IndoorStep {
         let pose = self.robot.pose();
-        let moment = Moment {
+        let moment = TrueState {
             milliseconds: self.milliseconds,
             pose,
             wheel_angles: self.robot.wheel_angles(),
@@ -111,7 +112,7 @@ impl<'a> IndoorDrive<'a> {
         };
         let people: Vec<_> = self.crowd.standing(&self.building.aisles, pose.translation).collect();
         let rng = self.streams.of(Source::Picture);
-        let view = self.observer.look(self.building, &self.ambience, &people, &pose, rng);
+        let view = self.view_renderer.render_view(self.building, &self.ambient_light, &people, &pose, rng);
         IndoorStep { milliseconds: self.milliseconds, odometry, pose, view }
     }
 }
@@ -128,7 +129,7 @@ impl Iterator for IndoorDrive<'_> {
             self.advance(STEP_MS as f64 * 1e-3);
         }
         self.crowd.advance(seconds, &self.building.aisles, self.streams.of(Source::Crowd));
-        self.ambience.advance(seconds, &mut self.streams);
+        self.ambient_light.advance(seconds, &mut self.streams);
         Some(step)
     }
 }

@@ -7,7 +7,7 @@ use super::building::Building;
 use super::color::grey;
 use super::decor::{curtain, outside, stand, wall};
 use super::light::{LightField, LightGroup, LightKind};
-use super::panel::{Panel, Skin, sides, walls};
+use super::panel::{Material, Panel, sides, walls};
 use crate::random::deviate::{chance, uniform};
 use crate::{SimError, check};
 
@@ -77,7 +77,7 @@ impl Lab {
             light: LightField::new(size, &lights()),
             n_lamps: 3,
             n_curtains: WINDOWS_M.len(),
-            aisles: Aisles { xs: XS_M.into(), ys: YS_M.into(), play_m: 0.25, turn_m: 0.6 },
+            aisles: Aisles { xs: XS_M.into(), ys: YS_M.into(), max_lateral_offset_m: 0.25, turn_m: 0.6 },
         };
         for (k, (left, right)) in walls(-0.5 * size, 0.5 * size).into_iter().enumerate() {
             let texture = wall((right - left).norm(), CEILING_M, 0.1 + 0.2 * k as f64, &mut rng);
@@ -103,8 +103,8 @@ fn put_window<R: Rng + ?Sized>(room: &mut Building, number: usize, [from, to]: [
     let (left, right) = (Vector2::new(from, y), Vector2::new(to, y));
     room.textures.extend([outside(length_m, height_m, rng), curtain(length_m, height_m, rng)]);
     let outside = room.textures.len() - 2;
-    let skin = Skin::Window { outside, curtain: outside + 1, number };
-    room.panels.push(Panel { left, right, bottom_m: SILL_M[0], top_m: SILL_M[1], skin });
+    let material = Material::Window { outside, curtain: outside + 1, number };
+    room.panels.push(Panel { left, right, bottom_m: SILL_M[0], top_m: SILL_M[1], material });
 }
 
 /// A table with screens, boxes and bags on it.

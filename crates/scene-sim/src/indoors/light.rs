@@ -1,6 +1,6 @@
 use nalgebra::Vector2;
 
-use super::ambience::Ambience;
+use super::ambient_light::AmbientLight;
 
 /// Distance between the points for which the light is known, metres.
 const CELL_M: f64 = 2.0;
@@ -52,11 +52,11 @@ impl LightField {
     }
 
     /// The light at this moment.
-    pub(super) fn mix(&self, ambience: &Ambience, mixed: &mut MixedLight) {
+    pub(super) fn mix(&self, ambient_light: &AmbientLight, mixed: &mut MixedLight) {
         mixed.cells.clear();
-        mixed.cells.resize(self.n[0] * self.n[1], ambience.stray);
+        mixed.cells.resize(self.n[0] * self.n[1], ambient_light.stray);
         for (kind, color, cells) in &self.groups {
-            let level = ambience.level(*kind) as f32;
+            let level = ambient_light.level(*kind) as f32;
             let color = color.map(|channel| level * channel);
             for (sum, share) in mixed.cells.iter_mut().zip(cells) {
                 for k in 0..3 {

@@ -7,7 +7,7 @@
 //! that is as coarse as the ray is wide, so that nothing flickers when the robot moves, and 120 × 20 pixels cost less than half a millisecond.
 
 mod aisles;
-mod ambience;
+mod ambient_light;
 mod building;
 mod camera;
 mod canvas;
@@ -15,8 +15,8 @@ mod color;
 mod crowd;
 mod decor;
 mod depths;
-mod develop;
 mod drive;
+mod image_pipeline;
 mod lab;
 mod light;
 mod mirror;
@@ -30,7 +30,7 @@ mod texture;
 mod view;
 
 pub use aisles::{Aisles, Crossing};
-pub use ambience::AmbienceParams;
+pub use ambient_light::AmbientLightParams;
 pub use building::Building;
 pub use camera::OmniCameraParams;
 pub use drive::{IndoorDrive, IndoorStep};

@@ -12,12 +12,12 @@ pub(super) struct Panel {
     /// Height of its upper edge, metres.
     pub(super) top_m: f64,
     /// What it looks like.
-    pub(super) skin: Skin,
+    pub(super) material: Material,
 }
 
 /// What a panel shows: textures by their number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Skin {
+pub(super) enum Material {
     /// Lit by the lamps.
     Lit(usize),
     /// A window on the daylight, as far as its curtain does not hide it.
@@ -58,7 +58,8 @@ mod tests {
     #[test]
     fn a_block_is_seen_from_outside_and_a_room_from_inside() {
         let (low, high) = (Vector2::new(-1.0, -2.0), Vector2::new(1.0, 2.0));
-        let panel = |(left, right)| Panel { left, right, bottom_m: 0.0, top_m: 1.0, skin: Skin::Lit(0) };
+        let panel =
+            |(left, right)| Panel { left, right, bottom_m: 0.0, top_m: 1.0, material: Material::Lit(0) };
         let centre = Vector2::zeros();
         for side in sides(low, high) {
             let panel = panel(side);

@@ -1,6 +1,6 @@
 use rand::Rng;
 
-use super::{AmbienceParams, OmniCameraParams};
+use super::{AmbientLightParams, OmniCameraParams};
 use crate::drive::{DriveParams, SlipParams};
 use crate::random::deviate::normal;
 use crate::sensor::{OdometryKind, WheelOdometryParams};
@@ -16,7 +16,7 @@ pub struct IndoorParams {
     /// The camera.
     pub camera: OmniCameraParams,
     /// The light.
-    pub ambience: AmbienceParams,
+    pub ambient_light: AmbientLightParams,
     /// People who walk about. Default 0.
     pub n_people: usize,
 }
@@ -27,7 +27,7 @@ impl Default for IndoorParams {
             drive: robot([0.0; 2]),
             view_period_ms: 500,
             camera: OmniCameraParams::default(),
-            ambience: AmbienceParams::default(),
+            ambient_light: AmbientLightParams::default(),
             n_people: 0,
         }
     }
@@ -43,7 +43,7 @@ impl IndoorParams {
         check::above("time between views (ms)", f64::from(self.view_period_ms), 9.0, "at least 10")?;
         check::at_most("time between views (ms) modulo 10", f64::from(self.view_period_ms % 10), 0.0, "0")?;
         self.camera.validate()?;
-        self.ambience.validate()?;
+        self.ambient_light.validate()?;
         check::count("people", self.n_people, 1000)
     }
 

@@ -7,7 +7,7 @@ use super::building::Building;
 use super::color::grey;
 use super::decor::{outside, stand, wall};
 use super::light::{LightField, LightGroup, LightKind};
-use super::panel::{Panel, Skin, sides, walls};
+use super::panel::{Material, Panel, sides, walls};
 use super::shelf::{Assortment, Section};
 use super::store_params::StoreParams;
 use crate::SimError;
@@ -149,8 +149,8 @@ impl Store {
             if k == 1 {
                 shop.textures.extend([outside(length_m, CEILING_M, rng), texture]);
                 let outside = shop.textures.len() - 2;
-                let skin = Skin::Window { outside, curtain: outside + 1, number: 0 };
-                shop.panels.push(Panel { left, right, bottom_m: 0.0, top_m: CEILING_M, skin });
+                let material = Material::Window { outside, curtain: outside + 1, number: 0 };
+                shop.panels.push(Panel { left, right, bottom_m: 0.0, top_m: CEILING_M, material });
             } else {
                 shop.put(left, right, [0.0, CEILING_M], texture);
             }
@@ -203,7 +203,7 @@ impl Store {
 
     fn aisles(&self) -> Aisles {
         let (xs, ys) = self.params.aisles();
-        Aisles { xs, ys, play_m: PLAY * self.params.aisle_m, turn_m: 0.8 }
+        Aisles { xs, ys, max_lateral_offset_m: PLAY * self.params.aisle_m, turn_m: 0.8 }
     }
 }
 

@@ -2,25 +2,25 @@ use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
-use super::ambience::Ambience;
+use super::ambient_light::AmbientLight;
 use super::building::Building;
 use super::camera::OmniCameraParams;
 use super::color::Rgb8;
 use super::crowd::{HALF_WIDTH_M, HEIGHTS_M};
-use super::depths::{Depths, Met};
-use super::develop::Developer;
+use super::depths::{Depths, PanelHit};
+use super::image_pipeline::ImagePipeline;
 use super::light::MixedLight;
-use super::panel::{Panel, Skin};
+use super::panel::{Material, Panel};
 use crate::scenery::RgbPicture;
 use crate::{SimError, plane};
 
 /// Looks around in a building.
 #[derive(Clone, Debug)]
-pub(super) struct Observer {
+pub(super) struct ViewRenderer {
     params: OmniCameraParams,
     depths: Depths,
     light: MixedLight,
-    developer: Developer,
+    image_pipeline: ImagePipeline,
     /// Light on each ring of each column, the highest ring first.
     radiance: Vec<[f32; 3]>,
 }
@@ -28,28 +28,28 @@ pub(super) struct Observer {
 /// Where a person stands and in what.
 pub(super) type Standing = (Vector2<f64>, [Rgb8; 3]);
 
-impl Observer {
+impl ViewRenderer {
     pub(super) fn new(params: OmniCameraParams) -> Result<Self, SimError> {
         params.validate()?;
         Ok(Self {
             depths: Depths::new(&params),
             light: MixedLight::default(),
-            developer: Developer::new(&params),
+            image_pipeline: ImagePipeline::new(&params),
             radiance: vec![[0.0; 3]; params.columns * params.rings],
             params,
         })
     }
 
     /// The view from `pose`.
-    pub(super) fn look<R: Rng + ?Sized>(
+    pub(super) fn render_view<R: Rng + ?Sized>(
         &mut self,
         building: &Building,
-        ambience: &Ambience,
+        ambient_light: &AmbientLight,
         people: &[Standing],
         pose: &Pose2<f64>,
         rng: &mut R,
     ) -> RgbPicture {
-        building.light.mix(ambience, &mut self.light);
+        building.light.mix(ambient_light, &mut self.light);
         self.depths.clear();
         for (panel, number) in building.panels.iter().zip(0..) {
             self.depths.put(number, panel, pose);
@@ -59,12 +59,12 @@ impl Observer {
             let panel = upright(*place, &pose.translation, k);
             self.depths.put((n_panels + k) as u32, &panel, pose);
         }
-        let shading = Shading { building, ambience, people, pose: *pose, eye_m: self.params.height_m };
+        let shading = Shading { building, ambient_light, people, pose: *pose, eye_m: self.params.height_m };
         self.radiance.fill([0.0; 3]);
         for azimuth in 0..self.depths.n_azimuths() {
             shading.expose(azimuth, &self.depths, &self.light, &self.params, &mut self.radiance);
         }
-        let rgb = self.developer.develop(&self.radiance, rng);
+        let rgb = self.image_pipeline.process(&self.radiance, rng);
         RgbPicture { width: self.params.columns, height: self.params.rings, rgb }
     }
 }
@@ -74,13 +74,19 @@ fn upright(place: Vector2<f64>, eye: &Vector2<f64>, number: usize) -> Panel {
     let sight = (place - eye).normalize();
     let aside = Vector2::new(-sight.y, sight.x) * HALF_WIDTH_M;
     let top_m = HEIGHTS_M[2];
-    Panel { left: place + aside, right: place - aside, bottom_m: 0.0, top_m, skin: Skin::Person(number) }
+    Panel {
+        left: place + aside,
+        right: place - aside,
+        bottom_m: 0.0,
+        top_m,
+        material: Material::Person(number),
+    }
 }
 
 /// What is needed to tell the light from a place.
 struct Shading<'a> {
     building: &'a Building,
-    ambience: &'a Ambience,
+    ambient_light: &'a AmbientLight,
     people: &'a [Standing],
     pose: Pose2<f64>,
     eye_m: f64,
@@ -101,9 +107,9 @@ impl Shading<'_> {
         let ray = depths.ray(azimuth);
         let ray = ahead * ray.x + Vector2::new(-ahead.y, ahead.x) * ray.y;
         let share = 1.0 / (across * down) as f32;
-        let mut last = (Met::NOTHING, [0.0; 3]);
+        let mut last = (PanelHit::NOTHING, [0.0; 3]);
         for (elevation, (met, slope)) in depths.column(azimuth).iter().zip(&depths.slopes).enumerate() {
-            let arriving = if met.panel == Met::NOTHING {
+            let arriving = if met.panel == PanelHit::NOTHING {
                 self.flat(&ray, *slope, light)
             } else {
                 if last.0 != met.panel {
@@ -132,7 +138,7 @@ impl Shading<'_> {
         lit(color.map(f32::from), arriving)
     }
 
-    fn upright(&self, met: &Met, slope: f64, down: f64, arriving: [f32; 3]) -> [f32; 3] {
+    fn upright(&self, met: &PanelHit, slope: f64, down: f64, arriving: [f32; 3]) -> [f32; 3] {
         let height = self.eye_m + met.distance * slope;
         let panels = &self.building.panels;
         let Some(panel) = panels.get(met.panel as usize) else {
@@ -143,17 +149,17 @@ impl Shading<'_> {
         let up = height - panel.bottom_m;
         let size = [met.spread, met.distance * down];
         let look = |texture: usize| self.building.textures[texture].sample(met.along, up, size);
-        match panel.skin {
-            Skin::Lit(texture) => lit(look(texture), arriving),
-            Skin::Window { outside, curtain, number } => {
+        match panel.material {
+            Material::Lit(texture) => lit(look(texture), arriving),
+            Material::Window { outside, curtain, number } => {
                 let length = (panel.right - panel.left).norm();
-                if met.along < length * (1.0 - self.ambience.curtains[number]) {
+                if met.along < length * (1.0 - self.ambient_light.curtains[number]) {
                     lit(look(curtain), arriving)
                 } else {
-                    lit(look(outside), [2.0 * self.ambience.daylight as f32; 3])
+                    lit(look(outside), [2.0 * self.ambient_light.daylight as f32; 3])
                 }
             }
-            Skin::Person(_) => [0.0; 3],
+            Material::Person(_) => [0.0; 3],
         }
     }
 }

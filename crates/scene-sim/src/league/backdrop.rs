@@ -7,12 +7,12 @@ use super::Rgb;
 /// **Laws**: reflectances are finite and nowhere negative, normals are unit vectors, and nothing depends on anything but the arguments.
 pub trait Backdrop {
     /// What a ray that meets nothing on the field meets; `direction` is not a unit vector.
-    fn seen(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> Seen;
+    fn surface_hit(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> SurfaceHit;
 }
 
 /// A point of the backdrop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct SurfaceHit {
     /// Where it is, metres.
     pub point: Vector3<f64>,
     /// Unit normal, on the side of the eye.
@@ -52,7 +52,7 @@ impl Default for Hall {
 const PLACE_M: f64 = 0.45;
 
 impl Backdrop for Hall {
-    fn seen(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> Seen {
+    fn surface_hit(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> SurfaceHit {
         let reach = |half: f64, from: f64, along: f64| {
             if along == 0.0 { f64::INFINITY } else { ((half.copysign(along) - from) / along).max(0.0) }
         };
@@ -62,7 +62,7 @@ impl Backdrop for Hall {
         let distance = to_end.min(to_side).min(to_floor).min(100.0);
         let mut point = eye + direction * distance;
         if distance == to_floor {
-            return Seen { point, normal: Vector3::z(), reflectance: self.floor(&point) };
+            return SurfaceHit { point, normal: Vector3::z(), reflectance: self.floor(&point) };
         }
         let (normal, along, wall) = if to_end < to_side {
             point.x = self.half_length_m.copysign(direction.x);
@@ -72,7 +72,7 @@ impl Backdrop for Hall {
             (-Vector3::y().scale(1.0_f64.copysign(direction.y)), point.x, direction.y > 0.0)
         };
         let number = 2 * u64::from(to_end < to_side) + u64::from(wall);
-        Seen { point, normal, reflectance: self.wall(number, along, point.z) }
+        SurfaceHit { point, normal, reflectance: self.wall(number, along, point.z) }
     }
 }
 

@@ -4,8 +4,8 @@ use rand_chacha::rand_core::SeedableRng;
 use wayfix_estimation_traits::{Pose2, Pose3};
 
 use super::{
-    LeagueParams, Legged, Lighting, Photographer, Picture, Rgb, Scene, Surface, Things, Venue, field_map,
-    landmarks,
+    CameraSimulator, LeagueParams, Legged, Lighting, Picture, Rgb, Scene, Surface, UnmappedObjects, Venue,
+    field_map, landmarks,
 };
 use crate::SimError;
 use crate::random::deviate::uniform;
@@ -47,9 +47,9 @@ pub struct LeagueDrive {
     streams: Streams,
     venue: Venue,
     map: Vec<Surface>,
-    things: Things,
+    things: UnmappedObjects,
     robot: Legged,
-    photographer: Photographer,
+    camera_simulator: CameraSimulator,
     /// Of red and of blue.
     balance: [GaussMarkov; 2],
     milliseconds: u64,
@@ -79,13 +79,13 @@ impl LeagueDrive {
     pub fn in_venue(params: &LeagueParams, venue: Venue, mut streams: Streams) -> Result<Self, SimError> {
         params.validate(&venue.camera)?;
         let robot = Legged::new(params.robot, params.start, landmarks(), &mut streams)?;
-        let photographer = Photographer::new(venue.camera)?;
+        let camera_simulator = CameraSimulator::new(venue.camera)?;
         let drift = GaussMarkov::new(venue.camera.white_balance_correlation_s);
         Ok(Self {
             map: Surface::of_map(&field_map()?),
-            things: Things::draw(streams.of(Source::Things)),
+            things: UnmappedObjects::draw(streams.of(Source::UnmappedObjects)),
             robot,
-            photographer,
+            camera_simulator,
             balance: [drift.clone(), drift],
             milliseconds: 0,
             n_taken: 0,
@@ -165,7 +165,7 @@ impl LeagueDrive {
 
     fn picture(&mut self, pose: &Pose2<f64>, camera: [&Pose3<f64>; 2]) -> Picture {
         let mut surfaces = self.map.clone();
-        if self.params.with_things {
+        if self.params.with_unmapped_objects {
             surfaces.extend(self.things.surfaces(self.milliseconds as f64 * 1e-3, pose));
         }
         let balance = self.balance();
@@ -175,7 +175,7 @@ impl LeagueDrive {
             light: self.venue.light(self.lighting()),
             backdrop: &self.venue.hall,
         };
-        self.photographer.take(&scene, camera, &balance, self.streams.of(Source::Picture))
+        self.camera_simulator.take(&scene, camera, &balance, self.streams.of(Source::Picture))
     }
 }
 

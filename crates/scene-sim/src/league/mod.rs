@@ -1,7 +1,7 @@
 //! The field of the four-legged league, a robot that walks on it, and what its camera sees in good light and in bad.
 //!
 //! The truth about shapes is [`field_map`], which an estimator may have. The truth about colours is nobody's model: [`Lamps`] with
-//! colour temperatures and fall-off shine on [`Venue`]-own paints, and a [`Photographer`] turns that into bytes with a soft lens, motion blur,
+//! colour temperatures and fall-off shine on [`Venue`]-own paints, and a [`CameraSimulator`] turns that into bytes with a soft lens, motion blur,
 //! vignetting, crosstalk, drifting white balance, shot noise, saturation, gamma and shared chroma, in front of a [`Hall`] full of people.
 
 mod backdrop;
@@ -18,14 +18,14 @@ mod training;
 mod venue;
 mod yuv;
 
-pub use backdrop::{Backdrop, Hall, Seen};
+pub use backdrop::{Backdrop, Hall, SurfaceHit};
 pub use drive::{Frame, LeagueDrive};
 pub use field::{COLOR_NAMES, N_COLORS, field_map, landmarks};
 pub use illuminant::black_body;
 pub use light::{Lamp, Lamps, LightField, Rgb};
 pub use params::LeagueParams;
-pub use picture::{CameraParams, Chroma, Form, Photographer, Picture, Scene, Skin, Surface};
+pub use picture::{CameraParams, CameraSimulator, Chroma, Form, Material, Picture, Scene, Surface};
 pub use robot::{GaitOdometryParams, HeadParams, Legged, RobotParams, SwayParams, WalkParams};
-pub use things::Things;
+pub use things::UnmappedObjects;
 pub use training::{ColorMeans, TrainingParams, TrainingVenue};
 pub use venue::{Lighting, Venue};

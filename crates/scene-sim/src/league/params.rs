@@ -21,7 +21,7 @@ pub struct LeagueParams {
     /// The robot.
     pub robot: RobotParams,
     /// Whether there are robots, a ball and a referee that no map lists. Default true.
-    pub with_things: bool,
+    pub with_unmapped_objects: bool,
     /// How many frames of the log get labels. Default 12.
     pub n_labelled: usize,
 }
@@ -36,7 +36,7 @@ impl Default for LeagueParams {
             start: None,
             kidnaps: Vec::new(),
             robot: RobotParams::default(),
-            with_things: true,
+            with_unmapped_objects: true,
             n_labelled: 12,
         }
     }

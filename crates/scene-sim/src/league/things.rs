@@ -6,7 +6,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::Rgb;
 use super::field::{HALF_LENGTH_M, HALF_WIDTH_M};
-use super::picture::{Form, Skin, Surface};
+use super::picture::{Form, Material, Surface};
 use crate::random::deviate::uniform;
 
 const RED: [f64; 3] = [0.55, 0.05, 0.04];
@@ -19,7 +19,7 @@ const BALL_RADIUS_M: f64 = 0.04;
 /// What is on the field and in no map: a robot in red and one in blue, an orange ball, a referee's legs. They move about slowly and
 /// make way.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Things {
+pub struct UnmappedObjects {
     red: Round,
     blue: Round,
     ball: Round,
@@ -36,7 +36,7 @@ struct Round {
     rate: f64,
 }
 
-impl Things {
+impl UnmappedObjects {
     /// Somewhere.
     pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Self {
         let mut round = |half_x: f64, half_y: f64, reach: f64, rate: f64| Round {
@@ -59,7 +59,8 @@ impl Things {
         surfaces.extend(robot(&self.blue.pose(seconds, watcher, 0.4), BLUE));
         let ball = self.ball.pose(seconds, watcher, 0.25).translation;
         let centre = Vector3::new(ball.x, ball.y, BALL_RADIUS_M);
-        surfaces.push(Surface { form: Form::Ball { centre, radius: BALL_RADIUS_M }, skin: skin(ORANGE) });
+        surfaces
+            .push(Surface { form: Form::Ball { centre, radius: BALL_RADIUS_M }, material: material(ORANGE) });
         surfaces.extend(self.legs(seconds));
         surfaces
     }
@@ -75,7 +76,7 @@ impl Things {
                 from: 0.0,
                 to: 0.9,
             },
-            skin: skin(TROUSERS),
+            material: material(TROUSERS),
         })
     }
 }
@@ -95,13 +96,13 @@ impl Round {
     }
 }
 
-fn skin(paint: [f64; 3]) -> Skin {
-    Skin::Unmapped(Rgb::from(paint))
+fn material(paint: [f64; 3]) -> Material {
+    Material::Unmapped(Rgb::from(paint))
 }
 
 /// Four legs, a body with its team's patches, a head.
 fn robot(place: &Pose2<f64>, team: [f64; 3]) -> Vec<Surface> {
-    let cuboid = |low, high, paint| Surface::cuboid(place, low, high, skin(paint));
+    let cuboid = |low, high, paint| Surface::cuboid(place, low, high, material(paint));
     let mut parts: Vec<Surface> = Vec::new();
     for (x, y) in [(-0.09, -0.06), (-0.09, 0.04), (0.07, -0.06), (0.07, 0.04)] {
         parts.extend(cuboid([x, y, 0.0], [x + 0.03, y + 0.02, 0.11], SHELL));

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Record, Sighting, Stamp, Target, TrueLandmark};
+use wayfix_sensor_log::{Data, Detection, Record, Stamp, Target, TrueLandmark};
 
 use super::MonobotRun;
 
@@ -31,18 +31,18 @@ impl MonobotRun {
             [Data::TruePose(on_line(*x))]
                 .into_iter()
                 .chain(increment)
-                .chain([Data::Sightings(sightings(ranges))])
+                .chain([Data::Detections(detections(ranges))])
                 .map(move |data| Record { stamp, data })
         });
         landmarks.chain(steps).collect()
     }
 }
 
-fn sightings(ranges: &[f64]) -> Vec<Sighting> {
-    let sighting = |(range, id): (&f64, u32)| Sighting {
+fn detections(ranges: &[f64]) -> Vec<Detection> {
+    let detection = |(range, id): (&f64, u32)| Detection {
         target: Target::Landmark(id),
         range: range.abs(),
         bearing: if *range < 0.0 { PI } else { 0.0 },
     };
-    ranges.iter().zip(0..).map(sighting).collect()
+    ranges.iter().zip(0..).map(detection).collect()
 }

@@ -53,7 +53,7 @@ pub enum Source {
     /// Noise of a camera.
     Picture,
     /// Robots, ball and referee on the field.
-    Things,
+    UnmappedObjects,
     /// Where a kidnapped robot is put.
     Kidnap,
     /// Smooth textures of a flat scene.
@@ -109,7 +109,7 @@ impl Source {
             Self::Gait => 21,
             Self::WhiteBalance => 22,
             Self::Picture => 23,
-            Self::Things => 24,
+            Self::UnmappedObjects => 24,
             Self::Kidnap => 25,
             Self::Texture => 26,
             Self::Objects => 27,

@@ -5,8 +5,8 @@ use crate::drive::DriveParams;
 use crate::random::{Source, Streams, deviate};
 use crate::route::RouteParams;
 use crate::sensor::{
-    GaussianOdometry, GaussianOdometryParams, RangeBearing, RangeBearingParams, Sensor, WheelOdometry,
-    WheelOdometryParams,
+    GaussianOdometry, GaussianOdometryParams, RangeBearingDetector, RangeBearingParams, Sensor,
+    WheelOdometry, WheelOdometryParams,
 };
 use crate::world::{Layout, OtherRobot, Plan, PlanarWorld};
 use crate::{SimError, Simulation, check};
@@ -73,7 +73,7 @@ impl PlanarParams {
             truth_period_ms: self.truth_period_ms,
             ..Simulation::new(&world, route)
         };
-        let looks: Box<dyn Sensor> = Box::new(RangeBearing::new(self.sensor)?);
+        let looks: Box<dyn Sensor> = Box::new(RangeBearingDetector::new(self.sensor)?);
         simulation.run(&mut [self.odometry.instrument()?, looks], streams)
     }
 

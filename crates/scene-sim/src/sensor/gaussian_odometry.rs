@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::Data;
 
-use super::{Moment, Reading, Sensor};
+use super::{Reading, Sensor, TrueState};
 use crate::random::{Source, Streams, deviate};
 use crate::{SimError, check, plane};
 
@@ -59,7 +59,7 @@ impl Sensor for GaussianOdometry {
         self.params.period_ms
     }
 
-    fn sense(&mut self, moment: &Moment<'_>, streams: &mut Streams) -> Option<Reading> {
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
         let last = self.last.replace(moment.pose)?;
         let step = plane::relative(&last, &moment.pose);
         let mut noise = |sigma: f64| sigma * deviate::normal(streams.of(Source::OdometryNoise));
@@ -68,6 +68,6 @@ impl Sensor for GaussianOdometry {
             step.y() + noise(self.params.sigma_m),
             step.heading() + noise(self.params.sigma_rad),
         );
-        Some(Reading { data: Data::OdometryIncrement(noisy), late_ms: 0 })
+        Some(Reading { data: Data::OdometryIncrement(noisy), stamp_offset_ms: 0 })
     }
 }

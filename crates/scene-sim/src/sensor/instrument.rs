@@ -6,7 +6,7 @@ use crate::world::World;
 
 /// The truth at one millisecond.
 #[derive(Clone, Copy)]
-pub struct Moment<'a> {
+pub struct TrueState<'a> {
     /// Since the start.
     pub milliseconds: u64,
     /// Where the robot is.
@@ -17,7 +17,7 @@ pub struct Moment<'a> {
     pub world: &'a dyn World,
 }
 
-impl Moment<'_> {
+impl TrueState<'_> {
     /// Seconds since the start.
     pub fn seconds(&self) -> f64 {
         self.milliseconds as f64 * 1e-3
@@ -30,7 +30,7 @@ pub struct Reading {
     /// The measurement.
     pub data: Data,
     /// How much later than the moment it describes it is stamped, milliseconds; negative when stamped before.
-    pub late_ms: i64,
+    pub stamp_offset_ms: i64,
 }
 
 /// An instrument on the robot. Implement it to log something of your own: the driver calls it, stamps what it says and sorts it in.
@@ -42,5 +42,5 @@ pub trait Sensor {
     fn period_ms(&self) -> u32;
 
     /// What it says now; `None` when it says nothing.
-    fn sense(&mut self, moment: &Moment<'_>, streams: &mut Streams) -> Option<Reading>;
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading>;
 }

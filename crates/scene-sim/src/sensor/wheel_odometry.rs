@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Velocity};
 
-use super::{Moment, Reading, Sensor};
+use super::{Reading, Sensor, TrueState};
 use crate::random::{Source, Streams, deviate};
 use crate::{SimError, check, plane};
 
@@ -94,7 +94,7 @@ impl Sensor for WheelOdometry {
         self.params.period_ms
     }
 
-    fn sense(&mut self, moment: &Moment<'_>, streams: &mut Streams) -> Option<Reading> {
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
         let now = moment.wheel_angles.map(|angle| self.counted(angle));
         let last = self.last.replace(now)?;
         let [left, right] = [0, 1].map(|k| {
@@ -106,11 +106,11 @@ impl Sensor for WheelOdometry {
         Some(match self.params.kind {
             OdometryKind::Velocity => Reading {
                 data: Data::Velocity(Velocity { linear: travel / seconds, angular: turn / seconds }),
-                late_ms: -i64::from(self.params.period_ms),
+                stamp_offset_ms: -i64::from(self.params.period_ms),
             },
             OdometryKind::Increment => {
                 let step = plane::advance(&Pose2::new(0.0, 0.0, 0.0), travel, turn);
-                Reading { data: Data::OdometryIncrement(step), late_ms: 0 }
+                Reading { data: Data::OdometryIncrement(step), stamp_offset_ms: 0 }
             }
         })
     }

@@ -21,7 +21,7 @@ pub trait World {
     fn targets(&self, seconds: f64) -> Vec<(Target, Vector2<f64>)>;
 
     /// Whether something stands between `eye` and `point`. By default nothing does.
-    fn hides(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
+    fn occludes(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
         let _ = (eye, point);
         false
     }
@@ -83,7 +83,7 @@ impl World for PlanarWorld {
         landmarks.chain(codes).chain(robots).collect()
     }
 
-    fn hides(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
-        self.plan.walls.iter().any(|wall: &Wall| wall.hides(eye, point))
+    fn occludes(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
+        self.plan.walls.iter().any(|wall: &Wall| wall.occludes(eye, point))
     }
 }

@@ -20,10 +20,10 @@ impl Wall {
     /// use wayfix_scene_sim::world::Wall;
     /// let wall = Wall { from: Vector2::new(1.0, -1.0), to: Vector2::new(1.0, 1.0) };
     /// let eye = Vector2::new(0.0, 0.0);
-    /// assert!(wall.hides(&eye, &Vector2::new(2.0, 0.5)));
-    /// assert!(!wall.hides(&eye, &Vector2::new(1.0, 0.5)) && !wall.hides(&eye, &Vector2::new(2.0, 3.0)));
+    /// assert!(wall.occludes(&eye, &Vector2::new(2.0, 0.5)));
+    /// assert!(!wall.occludes(&eye, &Vector2::new(1.0, 0.5)) && !wall.occludes(&eye, &Vector2::new(2.0, 3.0)));
     /// ```
-    pub fn hides(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
+    pub fn occludes(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
         self.crossing(eye, &(point - eye)).is_some_and(|along| (0.0..1.0 - SURFACE).contains(&along))
     }
 

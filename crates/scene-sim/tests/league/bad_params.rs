@@ -5,8 +5,8 @@ use wayfix_color_map::Camera;
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::SimError;
 use wayfix_scene_sim::league::{
-    CameraParams, GaitOdometryParams, HeadParams, LeagueDrive, LeagueParams, Photographer, Rgb, RobotParams,
-    SwayParams, TrainingParams, WalkParams,
+    CameraParams, CameraSimulator, GaitOdometryParams, HeadParams, LeagueDrive, LeagueParams, Rgb,
+    RobotParams, SwayParams, TrainingParams, WalkParams,
 };
 use wayfix_scene_sim::random::Tail;
 
@@ -38,7 +38,7 @@ fn cameras() {
             CameraParams { read_noise: bad, ..honest() },
             CameraParams { gamma: bad, ..honest() },
         ] {
-            assert_refused(Photographer::new(params), bad);
+            assert_refused(CameraSimulator::new(params), bad);
         }
     }
     assert_refused(CameraParams { jpeg_quality: 0, ..honest() }.validate(), 0.0);
@@ -46,7 +46,7 @@ fn cameras() {
     assert_refused(CameraParams { exposure_ms: 5000, ..honest() }.validate(), 5000.0);
     let huge = Camera::new(16_384, 16_384, 1e3, 1e3, 0.0, 0.0).expect("allowed there");
     assert!(matches!(
-        Photographer::new(CameraParams { camera: huge, ..honest() }),
+        CameraSimulator::new(CameraParams { camera: huge, ..honest() }),
         Err(SimError::TooMany { .. })
     ));
 }

@@ -3,8 +3,8 @@
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};
 use wayfix_scene_sim::league::{
-    Backdrop, CameraParams, Chroma, Lamps, LightField, N_COLORS, Photographer, Picture, Rgb, Scene, Seen,
-    Surface,
+    Backdrop, CameraParams, CameraSimulator, Chroma, Lamps, LightField, N_COLORS, Picture, Rgb, Scene,
+    Surface, SurfaceHit,
 };
 use wayfix_scene_sim::random::Streams;
 use wayfix_scene_sim::space;
@@ -32,8 +32,8 @@ pub(crate) fn honest() -> CameraParams {
 pub(crate) struct Blank(pub(crate) Rgb);
 
 impl Backdrop for Blank {
-    fn seen(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> Seen {
-        Seen { point: eye + direction, normal: Vector3::z(), reflectance: self.0 }
+    fn surface_hit(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> SurfaceHit {
+        SurfaceHit { point: eye + direction, normal: Vector3::z(), reflectance: self.0 }
     }
 }
 
@@ -51,8 +51,8 @@ pub(crate) fn of_blank(camera: CameraParams, reflectance: Rgb) -> Picture {
 }
 
 pub(crate) fn take(camera: CameraParams, scene: &Scene<'_>, poses: [&Pose3<f64>; 2]) -> Picture {
-    let mut photographer = Photographer::new(camera).expect("a sound camera");
-    photographer.take(scene, poses, &Rgb::repeat(1.0), &mut ChaCha8Rng::seed_from_u64(5))
+    let mut camera_simulator = CameraSimulator::new(camera).expect("a sound camera");
+    camera_simulator.take(scene, poses, &Rgb::repeat(1.0), &mut ChaCha8Rng::seed_from_u64(5))
 }
 
 /// The field in even light, every colour painted its own grey.

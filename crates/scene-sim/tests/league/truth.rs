@@ -4,7 +4,7 @@ use wayfix_color_map::Camera;
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector2};
 use wayfix_scene_sim::league::{
-    Form, LeagueDrive, LeagueParams, N_COLORS, Picture, Rgb, Skin, Surface, field_map,
+    Form, LeagueDrive, LeagueParams, Material, N_COLORS, Picture, Rgb, Surface, field_map,
 };
 
 use crate::support::{Blank, even_light, field_in, honest, looking, streams, take};
@@ -69,9 +69,10 @@ fn unmapped_object_occludes_and_has_no_label() {
     assert_eq!(label(&take(honest(), &scene, [&pose, &pose])), 1, "carpet");
     // The ray of that pixel falls by tan(0.2 + 0.21) a metre.
     let centre = Vector3::new(0.4, 0.0, 0.08);
-    scene
-        .surfaces
-        .push(Surface { form: Form::Ball { centre, radius: 0.06 }, skin: Skin::Unmapped(Rgb::repeat(0.5)) });
+    scene.surfaces.push(Surface {
+        form: Form::Ball { centre, radius: 0.06 },
+        material: Material::Unmapped(Rgb::repeat(0.5)),
+    });
     let hidden = take(honest(), &scene, [&pose, &pose]);
     assert_eq!(label(&hidden), 0);
     assert_eq!(hidden.rgb[3 * (120 * 208 + 104)], 127, "and its own looks");

@@ -5,9 +5,9 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::Scenario;
 use wayfix_scene_sim::random::Streams;
-use wayfix_scene_sim::sensor::{Moment, RangeBearing, RangeBearingParams, Sensor};
+use wayfix_scene_sim::sensor::{RangeBearingDetector, RangeBearingParams, Sensor, TrueState};
 use wayfix_scene_sim::world::{Plan, PlanarWorld};
-use wayfix_sensor_log::{Data, Record, Sighting, TrueLandmark};
+use wayfix_sensor_log::{Data, Detection, Record, TrueLandmark};
 
 pub(crate) fn streams(seed: u64) -> Streams {
     Streams::new(ChaCha8Rng::seed_from_u64(seed))
@@ -29,32 +29,32 @@ pub(crate) fn looks(
     world: &PlanarWorld,
     n_looks: u64,
     streams: &mut Streams,
-) -> Vec<Option<Vec<Sighting>>> {
-    let mut sensor = RangeBearing::new(params).expect("valid parameters");
+) -> Vec<Option<Vec<Detection>>> {
+    let mut sensor = RangeBearingDetector::new(params).expect("valid parameters");
     (0..n_looks)
         .map(|k| {
-            let moment = Moment {
+            let moment = TrueState {
                 milliseconds: k * u64::from(params.period_ms),
                 pose: Pose2::new(0.0, 0.0, 0.0),
                 wheel_angles: [0.0; 2],
                 world,
             };
             let reading = sensor.sense(&moment, streams)?;
-            let Data::Sightings(sightings) = reading.data else {
-                unreachable!("the sensor only makes sightings")
+            let Data::Detections(detections) = reading.data else {
+                unreachable!("the sensor only makes detections")
             };
-            Some(sightings)
+            Some(detections)
         })
         .collect()
 }
 
-/// All sightings of all looks.
-pub(crate) fn sightings(
+/// All detections of all looks.
+pub(crate) fn detections(
     params: RangeBearingParams,
     world: &PlanarWorld,
     n_looks: u64,
     seed: u64,
-) -> Vec<Sighting> {
+) -> Vec<Detection> {
     looks(params, world, n_looks, &mut streams(seed)).into_iter().flatten().flatten().collect()
 }
 

@@ -1,4 +1,4 @@
-use super::SurveyedTopic;
+use super::TopicInfo;
 use super::kind::Kind;
 use crate::ros::RosSchema;
 
@@ -7,13 +7,13 @@ use crate::ros::RosSchema;
 pub(super) struct Candidate<'a> {
     /// Which of the file's topics it is.
     pub(super) index: usize,
-    pub(super) topic: &'a SurveyedTopic,
+    pub(super) topic: &'a TopicInfo,
     pub(super) schema: RosSchema,
     pub(super) kind: Kind,
 }
 
 impl<'a> Candidate<'a> {
-    pub(super) fn of((index, topic): (usize, &'a SurveyedTopic)) -> Option<Self> {
+    pub(super) fn of((index, topic): (usize, &'a TopicInfo)) -> Option<Self> {
         if !topic.is_cdr() || topic.n_messages == 0 {
             return None;
         }

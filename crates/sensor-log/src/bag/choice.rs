@@ -4,8 +4,8 @@ use std::path::Path;
 use super::camera::{info_topic, is_rectified};
 use super::candidate::{Candidate, best};
 use super::kind::{BagRoute, Kind};
-use super::trial::{Question, questions};
-use super::{SurveyedTopic, Topic, TopicUse};
+use super::probe::{TopicProbe, topic_probes};
+use super::{Topic, TopicInfo, TopicUse};
 use crate::LogError;
 
 /// Which topics of a bag are read, and as what.
@@ -29,17 +29,17 @@ pub(crate) enum ChoiceError {
     /// It is not there, or nothing that is read.
     NotReadable { topic: String },
     /// Two of one kind.
-    Two { what: &'static str, first: String, second: String },
+    Ambiguous { what: &'static str, first: String, second: String },
 }
 
 impl Choice {
     /// Chooses among the topics of a file: those that are wanted, else of each kind the one with the most messages.
     ///
-    /// `passed` puts topics to a trial each and tells the indices of those that passed.
+    /// `passed` puts topics to a probe each and tells the indices of those that passed.
     pub(crate) fn among(
-        topics: &[SurveyedTopic],
+        topics: &[TopicInfo],
         wanted: &[String],
-        passed: impl FnOnce(Vec<Question>) -> Vec<usize>,
+        passed: impl FnOnce(Vec<TopicProbe>) -> Vec<usize>,
     ) -> Result<Self, ChoiceError> {
         let candidates: Vec<Candidate<'_>> = topics.iter().enumerate().filter_map(Candidate::of).collect();
         let wanted = wanted_of(&candidates, wanted)?;
@@ -50,8 +50,8 @@ impl Choice {
         };
         let (motion, images, transforms) = (best(of(Kind::Motion)), of(Kind::Image), of(Kind::Transforms));
         let is_given = wanted.contains_key(&Kind::Motion);
-        let questions = questions(motion, &images, if is_given { &[] } else { &transforms });
-        let passed = if questions.is_empty() { Vec::new() } else { passed(questions) };
+        let topic_probes = topic_probes(motion, &images, if is_given { &[] } else { &transforms });
+        let passed = if topic_probes.is_empty() { Vec::new() } else { passed(topic_probes) };
         let has_passed = |topic: &Candidate<'_>| passed.contains(&topic.index);
 
         let n_cameras = images.len();
@@ -83,8 +83,8 @@ impl Choice {
     }
 
     /// What becomes of every topic of ROS 2 messages, for people.
-    pub(crate) fn uses(&self, topics: &[SurveyedTopic]) -> Vec<Topic> {
-        let describe = |(index, topic): (usize, &SurveyedTopic)| {
+    pub(crate) fn uses(&self, topics: &[TopicInfo]) -> Vec<Topic> {
+        let describe = |(index, topic): (usize, &TopicInfo)| {
             let r#use = match Candidate::of((index, topic)) {
                 None if topic.n_messages == 0 => TopicUse::Empty,
                 None => TopicUse::NotUnderstood,
@@ -93,7 +93,7 @@ impl Choice {
                 }
                 Some(Candidate { kind, .. }) => TopicUse::NotChosen(kind.name()),
             };
-            let SurveyedTopic { name, schema, n_messages, .. } = topic.clone();
+            let TopicInfo { name, schema, n_messages, .. } = topic.clone();
             Topic { name, schema, n_messages, r#use }
         };
         topics.iter().enumerate().filter(|(_, topic)| topic.is_cdr()).map(describe).collect()
@@ -102,14 +102,16 @@ impl Choice {
 
 impl ChoiceError {
     /// The error of opening a file of these topics.
-    pub(crate) fn of(self, path: &Path, topics: &[SurveyedTopic]) -> LogError {
+    pub(crate) fn of(self, path: &Path, topics: &[TopicInfo]) -> LogError {
         let path = path.into();
         match self {
             Self::NotReadable { topic } => {
-                let name = |topic: &SurveyedTopic| format!("{} ({})", topic.name, topic.schema);
+                let name = |topic: &TopicInfo| format!("{} ({})", topic.name, topic.schema);
                 LogError::NoSuchTopic { path, topic, present: topics.iter().map(name).collect() }
             }
-            Self::Two { what, first, second } => LogError::TwoTopics { path, what, first, second },
+            Self::Ambiguous { what, first, second } => {
+                LogError::AmbiguousTopics { path, what, first, second }
+            }
         }
     }
 }
@@ -138,7 +140,7 @@ fn wanted_of(candidates: &[Candidate<'_>], wanted: &[String]) -> Result<BTreeMap
                 && first.index != topic.index
             {
                 let [first, second] = [first, topic].map(|topic| topic.topic.name.clone());
-                return Err(ChoiceError::Two { what: topic.kind.name(), first, second });
+                return Err(ChoiceError::Ambiguous { what: topic.kind.name(), first, second });
             }
         }
     }
@@ -147,11 +149,11 @@ fn wanted_of(candidates: &[Candidate<'_>], wanted: &[String]) -> Result<BTreeMap
 
 #[cfg(test)]
 mod tests {
-    use super::super::trial::Trial;
+    use super::super::probe::Probe;
     use super::*;
 
-    fn topic(name: &str, schema: &str, n_messages: u64) -> SurveyedTopic {
-        SurveyedTopic { name: name.into(), schema: schema.into(), encoding: "cdr".into(), n_messages }
+    fn topic(name: &str, schema: &str, n_messages: u64) -> TopicInfo {
+        TopicInfo { name: name.into(), schema: schema.into(), encoding: "cdr".into(), n_messages }
     }
 
     /// Names of the topics that are read.
@@ -159,7 +161,7 @@ mod tests {
         choice.routes.keys().map(|(name, _)| name.as_str()).collect()
     }
 
-    fn choose(topics: &[SurveyedTopic], wanted: &[&str], passed: &[usize]) -> Result<Choice, ChoiceError> {
+    fn choose(topics: &[TopicInfo], wanted: &[&str], passed: &[usize]) -> Result<Choice, ChoiceError> {
         let wanted: Vec<String> = wanted.iter().map(|&name| name.to_owned()).collect();
         Choice::among(topics, &wanted, |_| passed.to_vec())
     }
@@ -186,7 +188,7 @@ mod tests {
         }
         let error = choose(&topics, &["/front", "/rear"], &[]).unwrap_err();
         let (first, second) = ("/front".to_owned(), "/rear".to_owned());
-        assert_eq!(error, ChoiceError::Two { what: "laser scan", first, second });
+        assert_eq!(error, ChoiceError::Ambiguous { what: "laser scan", first, second });
     }
 
     #[test]
@@ -218,9 +220,9 @@ mod tests {
             image("/left/image_rect", 80),
             info("/left/camera_info"),
         ];
-        let tried = |questions: Vec<Question>| {
-            assert!(questions.iter().all(|question| matches!(question.trial, Trial::Image)));
-            assert_eq!(questions.iter().map(|question| question.index).collect::<Vec<_>>(), [0, 2]);
+        let tried = |topic_probes: Vec<TopicProbe>| {
+            assert!(topic_probes.iter().all(|question| matches!(question.probe, Probe::Image)));
+            assert_eq!(topic_probes.iter().map(|question| question.index).collect::<Vec<_>>(), [0, 2]);
             vec![2]
         };
         let choice = Choice::among(&topics, &[], tried).unwrap();
@@ -230,7 +232,7 @@ mod tests {
 
     #[test]
     fn messages_of_ros_1_and_other_encodings_are_none_of_ours() {
-        let ros1 = SurveyedTopic { encoding: "ros1".into(), ..topic("/scan", "sensor_msgs/LaserScan", 9) };
+        let ros1 = TopicInfo { encoding: "ros1".into(), ..topic("/scan", "sensor_msgs/LaserScan", 9) };
         assert!(read(&choose(&[ros1], &[], &[]).unwrap()).is_empty());
     }
 }

@@ -25,11 +25,11 @@ impl Kind {
     pub(super) fn of(schema: RosSchema, topic: &str) -> Option<Self> {
         match schema {
             RosSchema::LaserScan => Some(Self::Scan),
-            RosSchema::Odometry if tells_truth(topic) => Some(Self::TruePose),
+            RosSchema::Odometry if is_ground_truth(topic) => Some(Self::TruePose),
             RosSchema::Odometry | RosSchema::TwistStamped | RosSchema::Twist => Some(Self::Motion),
             RosSchema::Image | RosSchema::CompressedImage => Some(Self::Image),
             RosSchema::CameraInfo => Some(Self::CameraInfo),
-            RosSchema::PoseStamped | RosSchema::PoseWithCovarianceStamped if tells_truth(topic) => {
+            RosSchema::PoseStamped | RosSchema::PoseWithCovarianceStamped if is_ground_truth(topic) => {
                 Some(Self::TruePose)
             }
             RosSchema::PoseStamped | RosSchema::PoseWithCovarianceStamped => {
@@ -54,7 +54,7 @@ impl Kind {
     }
 }
 
-fn tells_truth(topic: &str) -> bool {
+fn is_ground_truth(topic: &str) -> bool {
     let topic = topic.to_ascii_lowercase();
     TRUTH.iter().any(|word| topic.contains(word))
         || topic.split(|c: char| !c.is_ascii_alphanumeric()).any(|part| part == "gt")

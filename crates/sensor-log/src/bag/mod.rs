@@ -5,15 +5,15 @@ mod candidate;
 mod choice;
 mod kind;
 mod motion;
+mod probe;
 mod records;
 mod scan;
 mod topic;
 mod transforms;
-mod trial;
 
 pub(crate) use choice::Choice;
 pub(crate) use kind::BagRoute;
+pub(crate) use probe::TopicProbe;
 pub(crate) use records::BagRecords;
-pub(crate) use topic::SurveyedTopic;
+pub(crate) use topic::TopicInfo;
 pub use topic::{Topic, TopicUse};
-pub(crate) use trial::Question;

@@ -4,9 +4,9 @@ use wayfix_estimation_traits::{Pose2, Pose3};
 
 use super::kind::{BagRoute, Kind};
 use super::motion::{Odometer, planar};
+use super::probe::ODOMETRY_FRAME;
 use super::scan::Mount;
 use super::transforms::{Transforms, is_body, last_part};
-use super::trial::ODOMETRY_FRAME;
 use super::{Choice, camera, scan};
 use crate::fault::{Fault, finite, inconsistent, spatial};
 use crate::format::shortened;

@@ -30,14 +30,14 @@ pub enum TopicUse {
 
 /// A topic as a file announces it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct SurveyedTopic {
+pub(crate) struct TopicInfo {
     pub(crate) name: String,
     pub(crate) schema: String,
     pub(crate) encoding: String,
     pub(crate) n_messages: u64,
 }
 
-impl SurveyedTopic {
+impl TopicInfo {
     /// Whether two channels are one topic: publishers of one may have a channel each.
     pub(crate) fn is_same_as(&self, other: &Self) -> bool {
         self.name == other.name && self.schema == other.schema

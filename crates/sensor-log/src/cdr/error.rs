@@ -16,7 +16,7 @@ pub enum CdrError {
     },
     /// The message ends, or a length claims more than is there.
     #[error("{needed} bytes needed at byte {at}, {left} left")]
-    CutShort {
+    Truncated {
         /// Where, counted from the byte after the header.
         at: usize,
         /// Bytes that should be there.

@@ -124,7 +124,7 @@ impl<'a> CdrReader<'a> {
         let rest = self.body.get(self.at..).unwrap_or_default();
         let n_bytes = usize::try_from(needed).ok().filter(|n_bytes| *n_bytes <= rest.len());
         let Some(n_bytes) = n_bytes else {
-            return Err(CdrError::CutShort { at: self.at, needed, left: rest.len() });
+            return Err(CdrError::Truncated { at: self.at, needed, left: rest.len() });
         };
         self.at += n_bytes;
         Ok(&rest[..n_bytes])
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn a_sequence_that_claims_more_than_there_is_allocates_nothing() {
         let mut cdr = CdrReader::new(&[0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 0]).unwrap();
-        assert_eq!(cdr.f64s(), Err(CdrError::CutShort { at: 8, needed: 8 * u64::from(u32::MAX), left: 1 }));
+        assert_eq!(cdr.f64s(), Err(CdrError::Truncated { at: 8, needed: 8 * u64::from(u32::MAX), left: 1 }));
     }
 
     #[test]

@@ -102,8 +102,8 @@ impl EncodedImage {
         match u64::from(width) * u64::from(height) {
             0 => Err(ImageError::Empty { width, height }),
             n_pixels if n_pixels > MAX_PIXELS => Err(ImageError::TooLarge { width, height, max: MAX_PIXELS }),
-            _ if !self.format.is_whole(&self.bytes) => {
-                Err(ImageError::CutShort { n_bytes: self.bytes.len() })
+            _ if !self.format.is_complete(&self.bytes) => {
+                Err(ImageError::Truncated { n_bytes: self.bytes.len() })
             }
             _ => Ok(decoder),
         }

@@ -29,7 +29,7 @@ impl EncodedImage {
     ///
     /// # Errors
     /// When an uncompressed image cannot be decoded.
-    pub fn for_the_web(&self) -> Result<Self, ImageError> {
+    pub fn to_browser_format(&self) -> Result<Self, ImageError> {
         match (self.format, Anymap::of(&self.bytes)) {
             (ImageFormat::Pnm, Some(Anymap { channels: 1, .. })) => {
                 let gray = self.decode_gray()?;

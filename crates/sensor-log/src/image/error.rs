@@ -40,7 +40,7 @@ pub enum ImageError {
     },
     /// The file breaks off before its end mark.
     #[error("the image breaks off after {n_bytes} bytes")]
-    CutShort {
+    Truncated {
         /// Bytes that are there.
         n_bytes: usize,
     },

@@ -1,5 +1,6 @@
 //! Camera images as logs hold them: files, compressed or not, decoded when somebody wants to see them.
 
+mod complete;
 mod decode;
 mod encode;
 mod encoded;
@@ -9,7 +10,6 @@ mod message;
 mod pixels;
 mod pnm;
 mod summary;
-mod whole;
 
 pub use encoded::{DecodedImage, EncodedImage, ImageFormat, PixelLayout};
 pub use error::ImageError;

@@ -56,7 +56,7 @@ impl<'a> Anymap<'a> {
     }
 
     /// Whether all pixels are there.
-    pub(crate) fn is_whole(&self) -> bool {
+    pub(crate) fn is_complete(&self) -> bool {
         let n_bytes = u64::from(self.width) * u64::from(self.height) * u64::from(self.channels);
         u64::try_from(self.pixels.len()).is_ok_and(|n_there| n_there >= n_bytes)
     }

@@ -29,10 +29,10 @@ pub(super) fn check(record: &Record) -> Result<(), LogError> {
 }
 
 fn is_image(image: &EncodedImage) -> bool {
-    let has_pixels = |anymap: Anymap<'_>| anymap.width > 0 && anymap.height > 0 && anymap.is_whole();
-    let is_whole = || Anymap::of(&image.bytes).is_some_and(has_pixels);
+    let has_pixels = |anymap: Anymap<'_>| anymap.width > 0 && anymap.height > 0 && anymap.is_complete();
+    let is_complete = || Anymap::of(&image.bytes).is_some_and(has_pixels);
     ImageFormat::of_bytes(&image.bytes) == Some(image.format)
-        && (image.format != ImageFormat::Pnm || is_whole())
+        && (image.format != ImageFormat::Pnm || is_complete())
 }
 
 fn no_image(record: &Record, image: &EncodedImage) -> LogError {

@@ -10,7 +10,7 @@ use super::frames::MAX_RECORD_BYTES;
 pub(super) struct ChunkRecords {
     reader: LinearReader,
     bytes: Cursor<Vec<u8>>,
-    is_cut: bool,
+    is_truncated: bool,
 }
 
 impl ChunkRecords {
@@ -24,23 +24,23 @@ impl ChunkRecords {
         Self::new(body, true)
     }
 
-    fn new(body: &[u8], is_cut: bool) -> Self {
+    fn new(body: &[u8], is_truncated: bool) -> Self {
         let options = LinearReaderOptions::default()
             .with_skip_start_magic(true)
             .with_skip_end_magic(true)
-            .with_prevalidate_chunk_crcs(!is_cut)
+            .with_prevalidate_chunk_crcs(!is_truncated)
             .with_record_length_limit(MAX_RECORD_BYTES);
         // The library reads chunks from a file, so the chunk becomes one again. A cut one claims more than there is.
-        let claimed = if is_cut { MAX_RECORD_BYTES as u64 } else { body.len() as u64 };
+        let claimed = if is_truncated { MAX_RECORD_BYTES as u64 } else { body.len() as u64 };
         let mut bytes = vec![op::CHUNK];
         bytes.extend(claimed.to_le_bytes());
         bytes.extend_from_slice(body);
-        Self { reader: LinearReader::new_with_options(options), bytes: Cursor::new(bytes), is_cut }
+        Self { reader: LinearReader::new_with_options(options), bytes: Cursor::new(bytes), is_truncated }
     }
 
     /// Whether the chunk ends too early, so that an error is expected.
-    pub(super) fn is_cut(&self) -> bool {
-        self.is_cut
+    pub(super) fn is_truncated(&self) -> bool {
+        self.is_truncated
     }
 
     /// Hands the next record, its opcode and body, to `take`; `None` at the end.

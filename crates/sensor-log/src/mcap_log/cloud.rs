@@ -46,12 +46,12 @@ pub(super) fn points(cloud: &PointCloud) -> Option<impl Iterator<Item = &[u8]>> 
 
 /// Where a column lies in each point.
 #[derive(Clone, Copy)]
-pub(super) struct Slot {
+pub(super) struct PointField {
     offset: usize,
     numeric_type: NumericType,
 }
 
-impl Slot {
+impl PointField {
     /// The column `name`; `None` when the cloud has none or it does not fit into a point.
     pub(super) fn of(cloud: &PointCloud, name: &str) -> Option<Self> {
         let field = cloud.fields.iter().find(|field| field.name == name)?;

@@ -5,12 +5,12 @@ use nalgebra::Vector2;
 use prost::Message;
 use wayfix_estimation_traits::Pose2;
 
-use super::cloud::{self, Slot};
+use super::cloud::{self, PointField};
 use super::routes::Route;
 use super::{camera, scan, vehicle};
 use crate::fault::{Fault, finite, inconsistent};
 use crate::planar::heading_of;
-use crate::{Data, ProblemKind, Record, Sighting, Stamp, Target, TrueLandmark, TrueWall, Velocity};
+use crate::{Data, Detection, ProblemKind, Record, Stamp, Target, TrueLandmark, TrueWall, Velocity};
 
 /// The records in one message; a message without a stamp of its own takes the time at which it was logged.
 pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
@@ -21,7 +21,7 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
         }
         Route::Increment => pose_record(bytes, log_time, Data::OdometryIncrement),
         Route::Ackermann => vehicle::drive(bytes, log_time),
-        Route::SightedWidths => vehicle::widths(bytes, log_time),
+        Route::DetectionWidths => vehicle::widths(bytes, log_time),
         Route::TruePosition => vehicle::position(bytes, log_time),
         Route::TruePose => pose_record(bytes, log_time, Data::TruePose),
         Route::EstimatedPose => pose_record(bytes, log_time, Data::EstimatedPose),
@@ -33,11 +33,11 @@ pub(super) fn records(route: Route, bytes: &[u8], log_time: Stamp) -> Result<Vec
         Route::RawImage => camera::raw_image(bytes, log_time),
         Route::Image => camera::image(bytes, log_time, Data::Image),
         Route::TrueLabels => camera::image(bytes, log_time, Data::TrueLabels),
-        Route::Sightings => {
+        Route::Detections => {
             let cloud: PointCloud = decode(bytes)?;
             Ok(vec![Record {
                 stamp: stamp(cloud.timestamp, log_time)?,
-                data: Data::Sightings(sightings(&cloud)?),
+                data: Data::Detections(detections(&cloud)?),
             }])
         }
         Route::TrueLandmarks => {
@@ -94,15 +94,15 @@ pub(super) fn planar(pose: &messages::Pose) -> Result<Pose2<f64>, Fault> {
     Ok(Pose2::new(position.x, position.y, heading))
 }
 
-fn sightings(cloud: &PointCloud) -> Result<Vec<Sighting>, Fault> {
-    let [range, bearing, kind, id] = slots(cloud, ["range", "bearing", "kind", "id"])?;
+fn detections(cloud: &PointCloud) -> Result<Vec<Detection>, Fault> {
+    let [range, bearing, kind, id] = point_fields(cloud, ["range", "bearing", "kind", "id"])?;
     let read = |point: &[u8]| {
         let target = target(kind.whole(point)?, id.whole(point)?)?;
-        Some(Sighting { target, range: range.float(point)?, bearing: bearing.float(point)? })
+        Some(Detection { target, range: range.float(point)?, bearing: bearing.float(point)? })
     };
-    let look = read_points(cloud, read)?;
-    finite(look.iter().flat_map(|sighting| [sighting.range, sighting.bearing]))?;
-    Ok(look)
+    let detections = read_points(cloud, read)?;
+    finite(detections.iter().flat_map(|detection| [detection.range, detection.bearing]))?;
+    Ok(detections)
 }
 
 fn target(kind: u32, id: u32) -> Option<Target> {
@@ -116,7 +116,7 @@ fn target(kind: u32, id: u32) -> Option<Target> {
 }
 
 fn landmarks(cloud: &PointCloud) -> Result<Vec<TrueLandmark>, Fault> {
-    let [x, y, id] = slots(cloud, ["x", "y", "id"])?;
+    let [x, y, id] = point_fields(cloud, ["x", "y", "id"])?;
     let read =
         |point: &[u8]| Some(TrueLandmark { id: id.whole(point)?, x: x.float(point)?, y: y.float(point)? });
     let landmarks = read_points(cloud, read)?;
@@ -125,7 +125,7 @@ fn landmarks(cloud: &PointCloud) -> Result<Vec<TrueLandmark>, Fault> {
 }
 
 fn walls(cloud: &PointCloud) -> Result<Vec<TrueWall>, Fault> {
-    let [x, y, end_x, end_y, id] = slots(cloud, ["x", "y", "end_x", "end_y", "id"])?;
+    let [x, y, end_x, end_y, id] = point_fields(cloud, ["x", "y", "end_x", "end_y", "id"])?;
     let read = |point: &[u8]| {
         let start = Vector2::new(x.float(point)?, y.float(point)?);
         let end = Vector2::new(end_x.float(point)?, end_y.float(point)?);
@@ -136,10 +136,14 @@ fn walls(cloud: &PointCloud) -> Result<Vec<TrueWall>, Fault> {
     Ok(walls)
 }
 
-pub(super) fn slots<const N: usize>(cloud: &PointCloud, names: [&str; N]) -> Result<[Slot; N], Fault> {
-    let slots: Option<Vec<Slot>> = names.iter().map(|name| Slot::of(cloud, name)).collect();
-    slots
-        .and_then(|slots| slots.try_into().ok())
+pub(super) fn point_fields<const N: usize>(
+    cloud: &PointCloud,
+    names: [&str; N],
+) -> Result<[PointField; N], Fault> {
+    let point_fields: Option<Vec<PointField>> =
+        names.iter().map(|name| PointField::of(cloud, name)).collect();
+    point_fields
+        .and_then(|point_fields| point_fields.try_into().ok())
         .ok_or_else(|| inconsistent(&format!("point cloud without the fields {names:?}")))
 }
 

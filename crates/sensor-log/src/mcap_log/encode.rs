@@ -7,10 +7,10 @@ use wayfix_estimation_traits::Pose2;
 use super::cloud::{self, Column};
 use super::topics;
 use crate::planar::quaternion_of;
-use crate::{LogError, Sighting, Stamp, Target, TrueLandmark, TrueWall, Velocity};
+use crate::{Detection, LogError, Stamp, Target, TrueLandmark, TrueWall, Velocity};
 
 /// Bytes 0-15 hold what is read back, the rest lets viewers draw it.
-const SIGHTING_COLUMNS: [Column; 7] = [
+const DETECTION_COLUMNS: [Column; 7] = [
     ("range", Float64),
     ("bearing", Float64),
     ("x", Float32),
@@ -68,14 +68,14 @@ pub(super) fn orientation(planar: &Pose2<f64>) -> messages::Quaternion {
     messages::Quaternion { x, y, z, w }
 }
 
-pub(super) fn sightings(timestamp: Timestamp, look: &[Sighting]) -> PointCloud {
-    cloud::pack(timestamp, topics::BODY_FRAME, &SIGHTING_COLUMNS, look, |sighting, data| {
-        let (sin, cos) = libm::sincos(sighting.bearing);
-        let (kind, id) = target_code(sighting.target);
-        data.extend(sighting.range.to_le_bytes());
-        data.extend(sighting.bearing.to_le_bytes());
-        data.extend(((sighting.range * cos) as f32).to_le_bytes());
-        data.extend(((sighting.range * sin) as f32).to_le_bytes());
+pub(super) fn detections(timestamp: Timestamp, detections: &[Detection]) -> PointCloud {
+    cloud::pack(timestamp, topics::BODY_FRAME, &DETECTION_COLUMNS, detections, |detection, data| {
+        let (sin, cos) = libm::sincos(detection.bearing);
+        let (kind, id) = target_code(detection.target);
+        data.extend(detection.range.to_le_bytes());
+        data.extend(detection.bearing.to_le_bytes());
+        data.extend(((detection.range * cos) as f32).to_le_bytes());
+        data.extend(((detection.range * sin) as f32).to_le_bytes());
         data.extend(0.0_f32.to_le_bytes());
         data.extend(kind.to_le_bytes());
         data.extend(id.to_le_bytes());

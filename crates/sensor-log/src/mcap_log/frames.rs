@@ -33,7 +33,7 @@ pub(super) enum Frame {
     /// A chunk, schema, channel, message or metadata, whole.
     Record { opcode: u8, body: Vec<u8> },
     /// The beginning of a chunk after which the file breaks off.
-    CutChunk { body: Vec<u8>, end: LogEnd },
+    TruncatedChunk { body: Vec<u8>, end: LogEnd },
     /// No more records.
     End(LogEnd),
 }
@@ -92,7 +92,7 @@ impl<R: Read> Frames<R> {
         let n_bytes = self.read_up_to(length, &mut body)?;
         Ok(Some(match (n_bytes == length, opcode) {
             (true, _) => Frame::Record { opcode, body },
-            (false, op::CHUNK) => Frame::CutChunk { body, end: self.truncated(length - n_bytes) },
+            (false, op::CHUNK) => Frame::TruncatedChunk { body, end: self.truncated(length - n_bytes) },
             (false, _) => Frame::End(self.truncated(length - n_bytes)),
         }))
     }

@@ -9,7 +9,7 @@ use super::reorder::Reorder;
 use super::routes::Route;
 use super::stream::{RecordStream, Step};
 use super::topic_clock::TopicClock;
-use super::{decode, origin, survey};
+use super::{decode, origin, topic_listing};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::format::shortened;
 use crate::{Data, Format, LogEnd, LogError, Problem, ProblemKind, ReadReport, Record, Stamp, Topic};
@@ -33,9 +33,9 @@ impl McapRecords {
     ) -> Result<Self, LogError> {
         let files = &readable(files, report)?;
         let parts = Parts::open(files)?;
-        let topics = survey::topics(files)?;
+        let topics = topic_listing::topics(files)?;
         // What is wrong with a file will be told where it is read.
-        let tried = |questions| survey::passed(files, &topics, questions).unwrap_or_default();
+        let tried = |topic_probes| topic_listing::passed(files, &topics, topic_probes).unwrap_or_default();
         let choice = Choice::among(&topics, wanted, tried).map_err(|error| error.of(source, &topics))?;
         Ok(Self {
             parts,

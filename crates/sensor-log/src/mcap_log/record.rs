@@ -14,7 +14,7 @@ impl<S: MessageSink> MessageWriter<S> {
         if let Data::TrueLandmark(_) | Data::TrueWall(_) = record.data {
             return self.hold(record);
         }
-        self.flush_held()?;
+        self.flush_pending_cloud()?;
         let timestamp = encode::timestamp(stamp)?;
         match &record.data {
             Data::Velocity(velocity) => {
@@ -26,8 +26,8 @@ impl<S: MessageSink> MessageWriter<S> {
             Data::Ackermann(drive) => {
                 self.message(topics::ACKERMANN, stamp, &vehicle::encode_drive(timestamp, drive))
             }
-            Data::SightedWidths(widths) => {
-                self.message(topics::SIGHTED_WIDTHS, stamp, &vehicle::encode_widths(timestamp, widths))
+            Data::DetectionWidths(widths) => {
+                self.message(topics::DETECTION_WIDTHS, stamp, &vehicle::encode_widths(timestamp, widths))
             }
             Data::Scan(scan) => {
                 let frame = self.scan_frame;
@@ -42,8 +42,8 @@ impl<S: MessageSink> MessageWriter<S> {
             Data::TruePosition(position) => {
                 self.message(topics::TRUE_POSITION, stamp, &vehicle::encode_position(timestamp, position))
             }
-            Data::Sightings(look) => {
-                self.message(topics::SIGHTINGS, stamp, &encode::sightings(timestamp, look))
+            Data::Detections(detections) => {
+                self.message(topics::DETECTIONS, stamp, &encode::detections(timestamp, detections))
             }
             Data::TruePose(pose) => self.pose_in_frame(topics::TRUE_POSE, stamp, topics::WORLD_FRAME, pose),
             Data::EstimatedPose(pose) => {

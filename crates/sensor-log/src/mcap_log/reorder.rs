@@ -4,7 +4,7 @@ use crate::{Data, Record, Stamp};
 
 /// Records held back so that one that comes late still finds its place.
 const WINDOW_RECORDS: usize = 256;
-/// Bytes of sightings and images held back at most, so that large messages do not fill the memory.
+/// Bytes of detections and images held back at most, so that large messages do not fill the memory.
 const WINDOW_BYTES: usize = 32 << 20;
 
 /// Puts records that come slightly out of order back into it, with bounded memory.
@@ -54,8 +54,8 @@ impl Reorder {
 /// What a record holds besides itself.
 fn n_bytes(record: &Record) -> usize {
     match &record.data {
-        Data::Sightings(look) => size_of_val(look.as_slice()),
-        Data::SightedWidths(widths) => size_of_val(widths.as_slice()),
+        Data::Detections(detections) => size_of_val(detections.as_slice()),
+        Data::DetectionWidths(widths) => size_of_val(widths.as_slice()),
         Data::Scan(scan) => size_of_val(scan.ranges.as_slice()),
         Data::Image(image) | Data::TrueLabels(image) => image.bytes.len(),
         _ => 0,

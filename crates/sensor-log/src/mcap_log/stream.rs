@@ -7,7 +7,7 @@ use mcap::records::op;
 
 use super::chunk::ChunkRecords;
 use super::frames::{Frame, Frames};
-use crate::{Format, LogEnd, LogError, foreign};
+use crate::{Format, LogEnd, LogError, unsupported_format};
 
 /// The records of an MCAP file in its order, those inside of chunks too; memory does not grow with the file.
 pub(super) struct RecordStream {
@@ -37,7 +37,7 @@ impl RecordStream {
             return Err(LogError::Empty { path: path.into() });
         }
         if magic != MAGIC {
-            foreign::check(path)?;
+            unsupported_format::check(path)?;
             let reason = "it does not begin with the magic bytes of MCAP".to_owned();
             return Err(LogError::NotThisFormat { path: path.into(), format: Format::Mcap, reason });
         }
@@ -47,10 +47,10 @@ impl RecordStream {
     /// Goes on to the next record and hands it, opcode and body, to `take`.
     pub(super) fn step(&mut self, take: impl FnOnce(u8, &[u8])) -> Step {
         if let Some(chunk) = &mut self.chunk {
-            let (outcome, is_cut) = (chunk.with_next(take), chunk.is_cut());
+            let (outcome, is_truncated) = (chunk.with_next(take), chunk.is_truncated());
             match outcome {
                 Some(Ok(())) => return Step::On,
-                Some(Err(error)) if !is_cut => {
+                Some(Err(error)) if !is_truncated => {
                     self.chunk = None;
                     return Step::DamagedChunk(error.to_string());
                 }
@@ -67,7 +67,7 @@ impl RecordStream {
                 take(opcode, &body);
                 Step::On
             }
-            Frame::CutChunk { body, end } => {
+            Frame::TruncatedChunk { body, end } => {
                 self.chunk = Some(ChunkRecords::cut(&body));
                 Step::Cut(end)
             }

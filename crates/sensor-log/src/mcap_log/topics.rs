@@ -5,8 +5,8 @@
 //! | [`VELOCITY`] | `foxglove.Odometry`, the two velocities | [`BODY_FRAME`] in [`ODOMETRY_FRAME`] | [`Data::Velocity`](crate::Data::Velocity) |
 //! | [`INCREMENT`] | `foxglove.PoseInFrame`, new pose in the old body frame | [`BODY_FRAME`] | [`Data::OdometryIncrement`](crate::Data::OdometryIncrement) |
 //! | [`ACKERMANN`] | `foxglove.JointStates`, velocity of `wheel`, position of `steering` | | [`Data::Ackermann`](crate::Data::Ackermann) |
-//! | [`SIGHTINGS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Sightings`](crate::Data::Sightings) |
-//! | [`SIGHTED_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`Data::SightedWidths`](crate::Data::SightedWidths) |
+//! | [`DETECTIONS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Detections`](crate::Data::Detections) |
+//! | [`DETECTION_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`Data::DetectionWidths`](crate::Data::DetectionWidths) |
 //! | [`SCAN`] | `foxglove.LaserScan`; `angle_increment`, `range_max` and, where it is known, `beam_period` in the metadata of the channel | [`BODY_FRAME`] | [`Data::Scan`](crate::Data::Scan) |
 //! | [`LASER_MOUNT`] | `foxglove.FrameTransform` | [`LASER_FRAME`] in [`BODY_FRAME`] | [`Data::LaserMount`](crate::Data::LaserMount) |
 //! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`Data::TruePosition`](crate::Data::TruePosition) |
@@ -36,9 +36,9 @@ pub const INCREMENT: &str = "/odom/increment";
 /// Wheel speed and steering of a car-like vehicle.
 pub const ACKERMANN: &str = "/odom/ackermann";
 /// Ranges and bearings.
-pub const SIGHTINGS: &str = "/sightings";
+pub const DETECTIONS: &str = "/sightings";
 /// How wide the sighted things are.
-pub const SIGHTED_WIDTHS: &str = "/sightings/widths";
+pub const DETECTION_WIDTHS: &str = "/sightings/widths";
 /// What a laser saw.
 pub const SCAN: &str = "/scan";
 /// Where the laser is on the robot.

@@ -4,7 +4,7 @@ use foxglove::messages::packed_element_field::NumericType::{Float32, Float64};
 use foxglove::messages::{JointState, JointStates, PointCloud, Timestamp};
 
 use super::cloud::{self, Column};
-use super::decode::{decode, read_points, slots, stamp};
+use super::decode::{decode, point_fields, read_points, stamp};
 use super::{encode, topics};
 use crate::fault::{Fault, finite, inconsistent};
 use crate::{AckermannDrive, Data, Record, Stamp, TruePosition};
@@ -42,7 +42,7 @@ pub(super) fn encode_position(timestamp: Timestamp, position: &TruePosition) -> 
 pub(super) fn position(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
     let cloud: PointCloud = decode(bytes)?;
     let stamp = stamp(cloud.timestamp, log_time)?;
-    let [x, y] = slots(&cloud, ["x", "y"])?;
+    let [x, y] = point_fields(&cloud, ["x", "y"])?;
     let positions =
         read_points(&cloud, |point| Some(TruePosition { x: x.float(point)?, y: y.float(point)? }))?;
     finite(positions.iter().flat_map(|position| [position.x, position.y]))?;
@@ -59,8 +59,8 @@ pub(super) fn encode_widths(timestamp: Timestamp, widths: &[f64]) -> PointCloud 
 
 pub(super) fn widths(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
     let cloud: PointCloud = decode(bytes)?;
-    let [width] = slots(&cloud, ["width"])?;
+    let [width] = point_fields(&cloud, ["width"])?;
     let widths = read_points(&cloud, |point| width.float(point))?;
     finite(widths.iter().copied())?;
-    Ok(vec![Record { stamp: stamp(cloud.timestamp, log_time)?, data: Data::SightedWidths(widths) }])
+    Ok(vec![Record { stamp: stamp(cloud.timestamp, log_time)?, data: Data::DetectionWidths(widths) }])
 }

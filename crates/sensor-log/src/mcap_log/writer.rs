@@ -9,7 +9,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::drawing::{image_annotations, scene_update};
 use super::file::McapFile;
-use super::held::Held;
+use super::pending_cloud::PendingCloud;
 use super::sink::{Message, MessageSink};
 use super::{Drawing, ImageOutline, camera, encode, topics};
 use crate::{EncodedImage, Format, ImageFormat, LogError, Record, Stamp};
@@ -17,7 +17,7 @@ use crate::{EncodedImage, Format, ImageFormat, LogError, Record, Stamp};
 /// Writes records and things to draw as Foxglove messages, into a file ([`McapWriter`]) or wherever else messages can go ([`MessageSink`]).
 pub struct MessageWriter<S: MessageSink> {
     sink: S,
-    held: Held,
+    pending_cloud: PendingCloud,
     /// The laser's own once it is known where that is.
     pub(super) scan_frame: &'static str,
 }
@@ -63,7 +63,7 @@ impl<W: Write + Seek> McapWriter<W> {
 impl<S: MessageSink> MessageWriter<S> {
     /// Writes into `sink`.
     pub fn into_sink(sink: S) -> Self {
-        Self { sink, held: Held::default(), scan_frame: topics::BODY_FRAME }
+        Self { sink, pending_cloud: PendingCloud::default(), scan_frame: topics::BODY_FRAME }
     }
 
     /// Where the messages go.
@@ -199,21 +199,21 @@ impl<S: MessageSink> MessageWriter<S> {
     /// # Errors
     /// When the output fails.
     pub fn finish(mut self) -> Result<(), LogError> {
-        self.flush_held()?;
+        self.flush_pending_cloud()?;
         Box::new(self.sink).finish()
     }
 
     /// Keeps a landmark or a wall until another kind of record or stamp comes.
     pub(super) fn hold(&mut self, record: &Record) -> Result<(), LogError> {
-        if !self.held.goes_with(record) {
-            self.flush_held()?;
+        if !self.pending_cloud.is_of_same_cloud(record) {
+            self.flush_pending_cloud()?;
         }
-        self.held.push(record);
+        self.pending_cloud.push(record);
         Ok(())
     }
 
-    pub(super) fn flush_held(&mut self) -> Result<(), LogError> {
-        match std::mem::take(&mut self.held).into_cloud()? {
+    pub(super) fn flush_pending_cloud(&mut self) -> Result<(), LogError> {
+        match std::mem::take(&mut self.pending_cloud).into_cloud()? {
             Some((topic, stamp, cloud)) => self.message(topic, stamp, &cloud),
             None => Ok(()),
         }

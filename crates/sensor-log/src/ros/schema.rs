@@ -16,7 +16,7 @@ use crate::cdr::{CdrError, CdrReader, FromCdr};
 /// bytes.extend([0.5_f64, 0.0, 0.0, 0.0, 0.0, -0.25].iter().flat_map(|number| number.to_le_bytes()));
 /// let Ok(RosMessage::Twist(message)) = schema.decode(&bytes) else { unreachable!() };
 /// assert_eq!((message.twist.linear[0], message.twist.angular[2]), (0.5, -0.25));
-/// assert_eq!(schema.decode(&bytes[..51]), Err(CdrError::CutShort { at: 40, needed: 8, left: 7 }));
+/// assert_eq!(schema.decode(&bytes[..51]), Err(CdrError::Truncated { at: 40, needed: 8, left: 7 }));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]

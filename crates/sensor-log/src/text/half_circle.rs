@@ -32,7 +32,7 @@ pub(crate) fn is_half_circle(n_beams: usize) -> bool {
 }
 
 /// Warns of a field of view that is assumed: only the numbers of beams of a SICK scanner tell it.
-pub(crate) fn warn_of_assumed_field(n_beams: usize, report: &mut ReadReport) {
+pub(crate) fn warn_of_assumed_field_of_view(n_beams: usize, report: &mut ReadReport) {
     if !is_half_circle(n_beams) {
         let text = format!(
             "the log does not state the field of view of scans with {n_beams} beams; 180° is assumed (a ROBOTLASER1 line states another)"
@@ -61,9 +61,11 @@ mod tests {
     #[test]
     fn a_field_of_view_is_assumed_only_for_other_numbers_of_beams() {
         let mut report = ReadReport::default();
-        [180, 181, 360, 361].into_iter().for_each(|n_beams| warn_of_assumed_field(n_beams, &mut report));
+        [180, 181, 360, 361]
+            .into_iter()
+            .for_each(|n_beams| warn_of_assumed_field_of_view(n_beams, &mut report));
         assert!(report.warnings.is_empty());
-        [541, 541].into_iter().for_each(|n_beams| warn_of_assumed_field(n_beams, &mut report));
+        [541, 541].into_iter().for_each(|n_beams| warn_of_assumed_field_of_view(n_beams, &mut report));
         assert_eq!(report.warnings.len(), 1);
         assert!(report.warnings[0].text.contains("541"));
     }

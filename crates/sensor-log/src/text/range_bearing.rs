@@ -1,5 +1,5 @@
 //! Plain range-bearing logs: `L id x y` landmark, `P x y heading` true pose, `O dx dy dheading` increment in the robot frame,
-//! `Z id range bearing` sighting; `Z -1 …` or `Z ? …` when the sensor does not tell things apart.
+//! `Z id range bearing` detection; `Z -1 …` or `Z ? …` when the sensor does not tell things apart.
 //!
 //! There are no stamps. Within a step the order is `P`, `O`, `Z…`; a line that cannot follow in that order begins the next step, and
 //! step `k` (from 0) gets the stamp `k × 0.1 s`.
@@ -11,7 +11,7 @@ use wayfix_estimation_traits::Pose2;
 use super::Lines;
 use super::row::{RowError, columns, id, number};
 use crate::format::shortened;
-use crate::{Data, LogError, ProblemKind, ReadReport, Record, Sighting, Stamp, Target, TrueLandmark};
+use crate::{Data, Detection, LogError, ProblemKind, ReadReport, Record, Stamp, Target, TrueLandmark};
 
 /// Time between two steps, nanoseconds.
 const STEP_NANOSECONDS: u64 = 100_000_000;
@@ -33,7 +33,7 @@ enum Line {
     Landmark(TrueLandmark),
     Pose(Pose2<f64>),
     Odometry(Pose2<f64>),
-    Sighting(Sighting),
+    Detection(Detection),
 }
 
 fn parse(row: &str) -> Result<Line, RowError> {
@@ -51,7 +51,7 @@ fn parse(row: &str) -> Result<Line, RowError> {
         _ => {
             let target =
                 if matches!(first, "-1" | "?") { Target::Unlabelled } else { Target::Landmark(id(first)?) };
-            Line::Sighting(Sighting { target, range: b, bearing: c })
+            Line::Detection(Detection { target, range: b, bearing: c })
         }
     })
 }
@@ -62,7 +62,7 @@ struct Steps {
     landmarks: Vec<Record>,
     records: Vec<Record>,
     step: u64,
-    look: Vec<Sighting>,
+    detections: Vec<Detection>,
     has_pose: bool,
     has_odometry: bool,
 }
@@ -75,31 +75,31 @@ impl Steps {
                 self.landmarks.push(Record { stamp, data: Data::TrueLandmark(landmark) });
             }
             Line::Pose(pose) => {
-                self.next_step_if(self.has_pose || self.has_odometry || !self.look.is_empty());
+                self.next_step_if(self.has_pose || self.has_odometry || !self.detections.is_empty());
                 self.has_pose = true;
                 self.record(Data::TruePose(pose));
             }
             Line::Odometry(increment) => {
-                self.next_step_if(self.has_odometry || !self.look.is_empty());
+                self.next_step_if(self.has_odometry || !self.detections.is_empty());
                 self.has_odometry = true;
                 self.record(Data::OdometryIncrement(increment));
             }
-            Line::Sighting(sighting) => self.look.push(sighting),
+            Line::Detection(detection) => self.detections.push(detection),
         }
     }
 
     fn next_step_if(&mut self, begins: bool) {
         if begins {
-            self.finish_look();
+            self.finish_detections();
             self.step += 1;
             (self.has_pose, self.has_odometry) = (false, false);
         }
     }
 
-    fn finish_look(&mut self) {
-        if !self.look.is_empty() {
-            let look = std::mem::take(&mut self.look);
-            self.record(Data::Sightings(look));
+    fn finish_detections(&mut self) {
+        if !self.detections.is_empty() {
+            let detections = std::mem::take(&mut self.detections);
+            self.record(Data::Detections(detections));
         }
     }
 
@@ -109,7 +109,7 @@ impl Steps {
     }
 
     fn into_records(mut self) -> Vec<Record> {
-        self.finish_look();
+        self.finish_detections();
         self.landmarks.append(&mut self.records);
         self.landmarks
     }

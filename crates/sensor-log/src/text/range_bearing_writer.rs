@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
-use crate::{Data, Record, Sighting, Stamp, Target, WriteReport};
+use crate::{Data, Detection, Record, Stamp, Target, WriteReport};
 
 /// Writes the records of one stamp as one step. The stamps themselves are lost: the format has none.
 ///
@@ -26,8 +26,8 @@ pub(crate) fn write(
         match &record.data {
             Data::TruePose(pose) => step.pose = Some(*pose),
             Data::OdometryIncrement(increment) => step.add_motion(increment),
-            Data::Sightings(look) => {
-                step.look.extend(look.iter().filter(|sighting| report.can_write(sighting)));
+            Data::Detections(detections) => {
+                step.detections.extend(detections.iter().filter(|detection| report.can_write(detection)));
             }
             other => {
                 report.leave_out(other.kind());
@@ -47,7 +47,7 @@ pub(crate) fn write(
 struct Step {
     pose: Option<Pose2<f64>>,
     motion: Option<Pose2<f64>>,
-    look: Vec<Sighting>,
+    detections: Vec<Detection>,
 }
 
 impl Step {
@@ -61,7 +61,7 @@ impl Step {
         }
         let motion = self.motion.unwrap_or_else(Pose2::identity);
         writeln!(out, "O {} {} {}", motion.x(), motion.y(), motion.heading())?;
-        for Sighting { target, range, bearing } in self.look {
+        for Detection { target, range, bearing } in self.detections {
             match target {
                 Target::Landmark(id) => writeln!(out, "Z {id} {range} {bearing}")?,
                 _ => writeln!(out, "Z ? {range} {bearing}")?,
@@ -73,11 +73,11 @@ impl Step {
 
 impl WriteReport {
     /// The format has no place for other robots and unknown codes.
-    fn can_write(&mut self, sighting: &Sighting) -> bool {
-        let what = match sighting.target {
+    fn can_write(&mut self, detection: &Detection) -> bool {
+        let what = match detection.target {
             Target::Landmark(_) | Target::Unlabelled => return true,
-            Target::Robot(_) => "sighting of a robot",
-            Target::UnknownCode(_) => "sighting of an unknown code",
+            Target::Robot(_) => "detection of a robot",
+            Target::UnknownCode(_) => "detection of an unknown code",
         };
         self.leave_out(what);
         false

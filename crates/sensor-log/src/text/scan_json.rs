@@ -10,7 +10,7 @@ use serde::de::{DeserializeSeed, Error as _, IgnoredAny, MapAccess, Visitor};
 use serde_json::{Deserializer, Value};
 use wayfix_estimation_traits::Pose2;
 
-use super::half_circle::{half_circle, warn_of_assumed_field};
+use super::half_circle::{half_circle, warn_of_assumed_field_of_view};
 use super::row::{RowError, stamp};
 use super::scan_odometry::ScanOdometry;
 use super::time_order::{Timed, in_time_order};
@@ -30,7 +30,7 @@ pub(crate) fn read(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Res
     for (index, (key, value)) in entries(&text, report).into_iter().enumerate() {
         let row = index as u64 + 1;
         let read = parse(&key, &value).map(|(stamp, pose, scan)| {
-            warn_of_assumed_field(scan.ranges.len(), report);
+            warn_of_assumed_field_of_view(scan.ranges.len(), report);
             scans.push(Timed { row, stamp, item: (pose, scan) });
         });
         report.count_row(&file, row, read);

@@ -14,7 +14,7 @@ use super::Lines;
 use super::row::{RowError, columns, id, number, stamp};
 use super::time_order::{Timed, in_time_order};
 use crate::{
-    Data, Format, LogError, ProblemKind, ReadReport, Record, Sighting, Stamp, Target, TrueLandmark, Velocity,
+    Data, Detection, Format, LogError, ProblemKind, ReadReport, Record, Stamp, Target, TrueLandmark, Velocity,
 };
 
 /// The set's numbering: subjects up to here are robots, the others landmarks.
@@ -60,10 +60,10 @@ pub(crate) fn read(folder: &Path, robot: u32, report: &mut ReadReport) -> Result
     let targets = read_barcodes(&folder.join("Barcodes.dat"), report)?;
     let file = |kind| folder.join(format!("Robot{robot}_{kind}.dat"));
 
-    // The stable sort keeps this order at equal stamps: truth, odometry, sightings.
+    // The stable sort keeps this order at equal stamps: truth, odometry, detections.
     let mut records = optional(read_true_poses(&file("Groundtruth"), report))?;
     records.extend(read_odometry(&file("Odometry"), report)?);
-    records.extend(read_sightings(&file("Measurement"), &targets, report)?);
+    records.extend(read_detections(&file("Measurement"), &targets, report)?);
     records.sort_by_key(|record| record.stamp);
 
     let Some(start) = records.first().map(|record| record.stamp) else {
@@ -118,21 +118,24 @@ fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, Lo
 }
 
 /// Rows of the same stamp are one look, in the order of the file.
-fn read_sightings(
+fn read_detections(
     path: &Path,
     targets: &BTreeMap<u32, Target>,
     report: &mut ReadReport,
 ) -> Result<Vec<Record>, LogError> {
-    let sightings = read_stamped(path, report, |[t, barcode, range, bearing]| {
+    let detections = read_stamped(path, report, |[t, barcode, range, bearing]| {
         let (stamp, barcode) = (stamp(t)?, id(barcode)?);
         let target = targets.get(&barcode).copied().unwrap_or(Target::UnknownCode(barcode));
-        Ok((stamp, Sighting { target, range: number(range)?, bearing: number(bearing)? }))
+        Ok((stamp, Detection { target, range: number(range)?, bearing: number(bearing)? }))
     })?;
-    let mut looks: BTreeMap<Stamp, Vec<Sighting>> = BTreeMap::new();
-    for Timed { stamp, item: sighting, .. } in sightings {
-        looks.entry(stamp).or_default().push(sighting);
+    let mut looks: BTreeMap<Stamp, Vec<Detection>> = BTreeMap::new();
+    for Timed { stamp, item: detection, .. } in detections {
+        looks.entry(stamp).or_default().push(detection);
     }
-    Ok(looks.into_iter().map(|(stamp, look)| Record { stamp, data: Data::Sightings(look) }).collect())
+    Ok(looks
+        .into_iter()
+        .map(|(stamp, detections)| Record { stamp, data: Data::Detections(detections) })
+        .collect())
 }
 
 fn read_landmarks(path: &Path, start: Stamp, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {

@@ -19,7 +19,7 @@ use super::row::{RowError, comma_columns, id, number, stamp};
 use super::time_order::{Timed, in_time_order};
 use crate::format::shortened;
 use crate::{
-    AckermannDrive, Data, Format, LogError, ReadReport, Record, Sighting, Stamp, Target, TruePosition,
+    AckermannDrive, Data, Detection, Format, LogError, ReadReport, Record, Stamp, Target, TruePosition,
 };
 
 const ODOMETRY: &str = "odometry.csv";
@@ -37,7 +37,7 @@ pub(crate) fn read(folder: &Path, report: &mut ReadReport) -> Result<Vec<Record>
         let reason = format!("the set is a folder; give the one that holds {ODOMETRY} and {TREES}");
         return Err(LogError::NotThisFormat { path: folder.into(), format: Format::VictoriaPark, reason });
     }
-    // The stable sort keeps this order at equal stamps: truth, odometry, sightings.
+    // The stable sort keeps this order at equal stamps: truth, odometry, detections.
     let mut records = read_fixes(&folder.join(GPS), report)?;
     records.extend(read_odometry(&folder.join(ODOMETRY), report)?);
     records.extend(read_trees(&folder.join(TREES), report)?);
@@ -60,7 +60,7 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
     let take = |[t, range, bearing, diameter]: [&str; 4], target: Target| {
         let (stamp, range, width) = (stamp(t)?, number(range)?, number(diameter)?);
         let bearing = wrap_angle(number(bearing)? - std::f64::consts::FRAC_PI_2);
-        Ok((stamp, (width, Sighting { target, range, bearing })))
+        Ok((stamp, (width, Detection { target, range, bearing })))
     };
     let trees = if is_labelled(path)? {
         let header = ["t_s", "range_m", "bearing_rad", "diameter_m", "landmark"];
@@ -73,14 +73,14 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
         let header = ["t_s", "range_m", "bearing_rad", "diameter_m"];
         read_rows(path, header, report, |row| take(row, Target::Unlabelled))?
     };
-    let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Sighting>)> = BTreeMap::new();
-    for Timed { stamp, item: (width, sighting), .. } in trees {
-        let (widths, look) = looks.entry(stamp).or_default();
+    let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Detection>)> = BTreeMap::new();
+    for Timed { stamp, item: (width, detection), .. } in trees {
+        let (widths, detections) = looks.entry(stamp).or_default();
         widths.push(width);
-        look.push(sighting);
+        detections.push(detection);
     }
-    let to_records = |(stamp, (widths, look))| {
-        [Data::SightedWidths(widths), Data::Sightings(look)].map(|data| Record { stamp, data })
+    let to_records = |(stamp, (widths, detections))| {
+        [Data::DetectionWidths(widths), Data::Detections(detections)].map(|data| Record { stamp, data })
     };
     Ok(looks.into_iter().flat_map(to_records).collect())
 }

@@ -6,7 +6,7 @@ pub(crate) mod bag;
 pub(crate) mod cdr;
 
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Record, Sighting, Stamp, Target, TrueLandmark, Velocity};
+use wayfix_sensor_log::{Data, Detection, Record, Stamp, Target, TrueLandmark, Velocity};
 
 /// A log of `n_steps` steps of a robot that sees landmarks.
 pub(crate) fn drive(n_steps: u64) -> Vec<Record> {
@@ -14,13 +14,13 @@ pub(crate) fn drive(n_steps: u64) -> Vec<Record> {
     for step in 0..n_steps {
         let x = 0.1 * step as f64;
         let look = vec![
-            Sighting { target: Target::Landmark(3), range: 5.0, bearing: 0.01 * x },
-            Sighting { target: Target::Unlabelled, range: 1.0 + x, bearing: -1.0 },
+            Detection { target: Target::Landmark(3), range: 5.0, bearing: 0.01 * x },
+            Detection { target: Target::Unlabelled, range: 1.0 + x, bearing: -1.0 },
         ];
         records.push(record(step, Data::TruePose(Pose2::new(x, 0.0, 0.3 * x))));
         records.push(record(step, Data::Velocity(Velocity { linear: 1.0, angular: 0.3 })));
         records.push(record(step, Data::OdometryIncrement(Pose2::new(0.1, 0.0, 0.03))));
-        records.push(record(step, Data::Sightings(look)));
+        records.push(record(step, Data::Detections(look)));
         records.push(record(step, Data::EstimatedPose(Pose2::new(x + 0.01, 0.02, 0.3 * x))));
     }
     records

@@ -3,7 +3,7 @@ use nalgebra::DefaultAllocator;
 use super::Association;
 use crate::{
     EkfSlam, Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation,
-    PredictedSighting, RobotDim, SlamAlloc,
+    PredictedMeasurement, RobotDim, SlamAlloc,
 };
 
 /// A landmark that an observation may be of.
@@ -12,8 +12,8 @@ pub(super) struct Candidate<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Which of the predicted sightings.
-    pub(super) sighting: usize,
+    /// Which of the predicted predictions.
+    pub(super) prediction: usize,
     pub(super) measurement: M::Measurement,
     pub(super) innovation: Innovation<M::Measurement>,
 }
@@ -23,7 +23,7 @@ pub(super) struct Candidates<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    pub(super) sightings: Vec<PredictedSighting<M>>,
+    pub(super) predictions: Vec<PredictedMeasurement<M>>,
     /// The candidates of each observation, nearest first.
     pub(super) of_observation: Vec<Vec<Candidate<M>>>,
 }
@@ -38,14 +38,16 @@ where
         filter: &EkfSlam<M>,
         observations: &[Observation<M::Measurement>],
     ) -> Self {
-        let within_reach: Vec<_> =
-            observations.iter().map(|observation| filter.reach(limit, &observation.measurement)).collect();
-        let sightings: Vec<_> = filter.sightings_within(Some(&within_reach)).collect();
+        let within_reach: Vec<_> = observations
+            .iter()
+            .map(|observation| filter.search_region(limit, &observation.measurement))
+            .collect();
+        let predictions: Vec<_> = filter.predicted_measurements_within(Some(&within_reach)).collect();
         let of_one = |observation: &Observation<M::Measurement>| {
             let noise = filter.model().association_noise(&observation.measurement);
             let mut candidates: Vec<Candidate<M>> = Vec::new();
-            for (sighting, predicted) in sightings.iter().enumerate() {
-                if !filter.model().may_be(&predicted.expected, &observation.measurement) {
+            for (prediction, predicted) in predictions.iter().enumerate() {
+                if !filter.model().is_compatible(&predicted.expected, &observation.measurement) {
                     continue;
                 }
                 let model = filter.model();
@@ -53,27 +55,29 @@ where
                 if let Some(innovation) = predicted.innovation_within(limit, &observation.measurement, &noise)
                 {
                     let measurement = observation.measurement.clone();
-                    candidates.push(Candidate { sighting, measurement, innovation });
+                    candidates.push(Candidate { prediction, measurement, innovation });
                 }
             }
             candidates.sort_by(|a, b| a.innovation.nis.total_cmp(&b.innovation.nis));
             candidates
         };
         let of_observation = observations.iter().map(of_one).collect();
-        Self { sightings, of_observation }
+        Self { predictions, of_observation }
     }
 
-    /// What every observation is of, given the sighting that it is paired with: what has no pairing and no candidate left is new.
+    /// What every observation is of, given the prediction that it is paired with: what has no pairing and no candidate left is new.
     pub(super) fn settle(
         &self,
         pairings: &[Option<usize>],
-        never_twice: bool,
+        one_detection_per_landmark: bool,
         mut new_id: impl FnMut() -> LandmarkId,
     ) -> Vec<Association> {
-        let is_taken = |sighting: usize| never_twice && pairings.contains(&Some(sighting));
+        let is_taken = |prediction: usize| one_detection_per_landmark && pairings.contains(&Some(prediction));
         let settle_one = |(of_one, pairing): (&Vec<Candidate<M>>, &Option<usize>)| match *pairing {
-            Some(sighting) => Association::Matched(self.sightings[sighting].landmark),
-            None if of_one.iter().all(|candidate| is_taken(candidate.sighting)) => Association::New(new_id()),
+            Some(prediction) => Association::Matched(self.predictions[prediction].landmark),
+            None if of_one.iter().all(|candidate| is_taken(candidate.prediction)) => {
+                Association::New(new_id())
+            }
             None => Association::Ambiguous,
         };
         self.of_observation.iter().zip(pairings).map(settle_one).collect()

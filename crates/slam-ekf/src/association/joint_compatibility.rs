@@ -33,7 +33,7 @@ pub struct JointCompatibilityParams {
     pub n_trials: usize,
     /// Whether the sensor never tells of one landmark twice in a look, as with bar codes: what lies beside a sighting that found its landmark is
     /// then of another one. Detectors that break a trunk in two must say no.
-    pub never_twice: bool,
+    pub one_detection_per_landmark: bool,
 }
 
 impl Default for JointCompatibilityParams {
@@ -43,7 +43,7 @@ impl Default for JointCompatibilityParams {
             certainly_new: 40.0,
             ambiguity_margin: 0.0,
             n_trials: 2000,
-            never_twice: false,
+            one_detection_per_landmark: false,
         }
     }
 }
@@ -143,19 +143,20 @@ where
         let margin = self.params.ambiguity_margin;
         let is_contested = |(observation, pairing): (usize, &Option<usize>)| {
             margin > 0.0
-                && pairing.is_some_and(|sighting| {
-                    has_rival(&candidates.of_observation[observation], sighting, &taken, margin)
+                && pairing.is_some_and(|prediction| {
+                    has_alternative(&candidates.of_observation[observation], prediction, &taken, margin)
                 })
         };
         let contested: Vec<bool> = pairings.iter().enumerate().map(is_contested).collect();
-        let settled = candidates.settle(&pairings, self.params.never_twice, || self.ids.next_free(filter));
+        let settled = candidates
+            .settle(&pairings, self.params.one_detection_per_landmark, || self.ids.next_free(filter));
         let judge = |(association, contested)| if contested { Association::Ambiguous } else { association };
         settled.into_iter().zip(contested).map(judge).collect()
     }
 }
 
 /// Whether a landmark that no other observation takes fits almost as well.
-fn has_rival<M: LandmarkModel>(
+fn has_alternative<M: LandmarkModel>(
     candidates: &[Candidate<M>],
     chosen: usize,
     taken: &BTreeSet<usize>,
@@ -165,7 +166,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     let nis_of = |candidate: &&Candidate<M>| candidate.innovation.nis;
-    let own = candidates.iter().find(|candidate| candidate.sighting == chosen).as_ref().map_or(0.0, nis_of);
-    let mut others = candidates.iter().filter(|other| !taken.contains(&other.sighting));
+    let own = candidates.iter().find(|candidate| candidate.prediction == chosen).as_ref().map_or(0.0, nis_of);
+    let mut others = candidates.iter().filter(|other| !taken.contains(&other.prediction));
     others.any(|other| other.innovation.nis < own + margin)
 }

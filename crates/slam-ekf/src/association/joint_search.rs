@@ -4,7 +4,7 @@ use super::{
     candidates::{Candidate, Candidates},
     joint_innovation::JointInnovation,
 };
-use crate::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, PredictedSighting, RobotDim, SlamAlloc};
+use crate::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, PredictedMeasurement, RobotDim, SlamAlloc};
 
 /// Depth-first over the observations that have candidates, each paired with one of them or with none.
 pub(super) struct Search<'a, M: LandmarkModel>
@@ -12,7 +12,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     filter: &'a EkfSlam<M>,
-    sightings: &'a [PredictedSighting<M>],
+    predictions: &'a [PredictedMeasurement<M>],
     /// Observations that may be of something, and what they may be of.
     open: Vec<(usize, Vec<&'a Candidate<M>>)>,
     gates: &'a [f64],
@@ -21,7 +21,7 @@ where
     /// For every open observation so far: which of its candidates it is paired with.
     chosen: Vec<Option<&'a Candidate<M>>>,
     n_paired: usize,
-    /// For every observation, the sighting that it is paired with in the best set so far.
+    /// For every observation, the prediction that it is paired with in the best set so far.
     pub(super) best: Vec<Option<usize>>,
     best_score: (usize, f64),
 }
@@ -45,7 +45,7 @@ where
         open.sort_by_key(|(_, near)| near.len()); // the least doubtful first: their pairings prune the others
         Self {
             filter,
-            sightings: &candidates.sightings,
+            predictions: &candidates.predictions,
             open,
             gates,
             trials_left: n_trials.max(1),
@@ -95,7 +95,7 @@ where
             self.best_score = (self.n_paired, nis);
             self.best.fill(None);
             for ((observation, _), chosen) in self.open.iter().zip(&self.chosen) {
-                self.best[*observation] = chosen.map(|candidate| candidate.sighting);
+                self.best[*observation] = chosen.map(|candidate| candidate.prediction);
             }
         }
     }
@@ -104,7 +104,7 @@ where
     fn step_down(&mut self, candidate: Option<&'a Candidate<M>>) -> bool {
         if let Some(candidate) = candidate {
             self.trials_left -= 1;
-            let is_free = self.chosen.iter().flatten().all(|other| other.sighting != candidate.sighting);
+            let is_free = self.chosen.iter().flatten().all(|other| other.prediction != candidate.prediction);
             if !is_free || !self.join(candidate) {
                 return false;
             }
@@ -124,12 +124,12 @@ where
     /// Adds a pairing to the joint innovation, if they are jointly compatible.
     fn join(&mut self, candidate: &Candidate<M>) -> bool {
         let before = self.joint.dimension();
-        let own = &self.sightings[candidate.sighting];
+        let own = &self.predictions[candidate.prediction];
         let paired = self.chosen.iter().flatten();
         let blocks: Vec<_> = paired
             .map(|other| {
                 let common = self.filter.model().common_noise(&candidate.measurement, &other.measurement);
-                self.filter.predicted_cross_covariance(own, &self.sightings[other.sighting]) + common
+                self.filter.predicted_cross_covariance(own, &self.predictions[other.prediction]) + common
             })
             .collect();
         let size = MeasurementDim::<M>::DIM;

@@ -17,7 +17,7 @@ where
         observations: &[Observation<M::Measurement>],
     ) -> Vec<Association> {
         let associate_one = |observation: &Observation<M::Measurement>| match observation.label {
-            Some(id) if filter.knows(id) => Association::Matched(id),
+            Some(id) if filter.contains(id) => Association::Matched(id),
             Some(id) => Association::New(id),
             None => Association::Unlabelled,
         };

@@ -23,12 +23,12 @@ pub struct NearestNeighbourParams {
     pub certainly_new: f64,
     /// Whether the sensor never tells of one landmark twice in a look, as with bar codes: what lies beside a sighting that found its landmark is
     /// then of another one. Detectors that break a trunk in two must say no.
-    pub never_twice: bool,
+    pub one_detection_per_landmark: bool,
 }
 
 impl Default for NearestNeighbourParams {
     fn default() -> Self {
-        Self { accept: 13.8155, certainly_new: 40.0, never_twice: false }
+        Self { accept: 13.8155, certainly_new: 40.0, one_detection_per_landmark: false }
     }
 }
 
@@ -91,15 +91,15 @@ where
             .map(|of_one| nearest_within(self.params.accept, of_one))
             .collect();
         let keeps_its_own = |(own, candidate): (usize, &Option<(usize, f64)>)| {
-            let (sighting, nis) = (*candidate)?;
+            let (prediction, nis) = (*candidate)?;
             let is_taken = nearest
                 .iter()
                 .enumerate()
-                .any(|(other, rival)| is_closer(*rival, other, sighting, (nis, own)));
-            (!is_taken).then_some(sighting)
+                .any(|(other, rival)| is_closer(*rival, other, prediction, (nis, own)));
+            (!is_taken).then_some(prediction)
         };
         let pairings: Vec<Option<usize>> = nearest.iter().enumerate().map(keeps_its_own).collect();
-        candidates.settle(&pairings, self.params.never_twice, || self.ids.next_free(filter))
+        candidates.settle(&pairings, self.params.one_detection_per_landmark, || self.ids.next_free(filter))
     }
 }
 
@@ -109,15 +109,17 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     let nearest = of_one.first().filter(|candidate| candidate.innovation.nis <= accept)?;
-    Some((nearest.sighting, nearest.innovation.nis))
+    Some((nearest.prediction, nearest.innovation.nis))
 }
 
 /// Whether a rival observation is nearer to the same landmark; the earlier one wins a draw.
 fn is_closer(
     rival: Option<(usize, f64)>,
     rival_idx: usize,
-    sighting: usize,
+    prediction: usize,
     (nis, own_idx): (f64, usize),
 ) -> bool {
-    rival.is_some_and(|(of_rival, rival_nis)| of_rival == sighting && (rival_nis, rival_idx) < (nis, own_idx))
+    rival.is_some_and(|(of_rival, rival_nis)| {
+        of_rival == prediction && (rival_nis, rival_idx) < (nis, own_idx)
+    })
 }

@@ -23,7 +23,7 @@ impl NewIds {
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
-        while filter.knows(LandmarkId(self.next)) {
+        while filter.contains(LandmarkId(self.next)) {
             self.next = self.next.wrapping_add(1);
         }
         let free = LandmarkId(self.next);

@@ -144,9 +144,9 @@ impl MapCovariance {
     }
 
     /// Says that a look of the sensor is done with: time for what was deferred. No value changes.
-    pub(crate) fn end_look(&mut self) {
+    pub(crate) fn end_update(&mut self) {
         if let Self::Compressed(compressed) = self {
-            compressed.end_look();
+            compressed.end_update();
         }
     }
 }

@@ -15,25 +15,25 @@ use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, 
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct Confirmation {
+pub struct ConfirmationParams {
     /// Looks in which it must be seen, the first included; 1 takes every landmark at first sight.
-    pub n_sightings: usize,
+    pub n_detections: usize,
     /// Looks in a row that should have shown a tentative landmark and did not after which it is forgotten; never, when not given.
     /// Identities that are read need no such end, landmarks that association made up do.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub patience: Option<usize>,
+    pub max_missed: Option<usize>,
     /// NIS above which a sighting contradicts a tentative landmark, which then starts anew. 13.8 is the 0.999 quantile for range and
     /// bearing.
-    pub contradiction: f64,
+    pub restart_nis: f64,
     /// Share of the looks that should show it in which a confirmed landmark must be seen, or it leaves the map; 0 keeps all. Judged when
-    /// it was missed more than `patience` times.
-    pub least_share_seen: f64,
+    /// it was missed more than `max_missed` times.
+    pub min_detection_rate: f64,
 }
 
-impl Default for Confirmation {
+impl Default for ConfirmationParams {
     /// Two sightings that agree.
     fn default() -> Self {
-        Self { n_sightings: 2, patience: None, contradiction: 13.8155, least_share_seen: 0.0 }
+        Self { n_detections: 2, max_missed: None, restart_nis: 13.8155, min_detection_rate: 0.0 }
     }
 }
 
@@ -42,26 +42,26 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     pub(super) fn is_confirmed(&self, slot: &Slot<M::Landmark>) -> bool {
-        slot.n_sightings >= self.params.confirmation.n_sightings
+        slot.n_detections >= self.params.confirmation.n_detections
     }
 
     pub(super) fn is_tentative(&self, id: LandmarkId) -> bool {
         self.landmarks.get(&id).is_some_and(|slot| !self.is_confirmed(slot))
     }
 
-    pub(super) fn contradicts_its_start(
+    pub(super) fn exceeds_restart_nis(
         &self,
         id: LandmarkId,
         innovation: &Innovation<M::Measurement>,
     ) -> bool {
-        self.is_tentative(id) && innovation.nis > self.params.confirmation.contradiction
+        self.is_tentative(id) && innovation.nis > self.params.confirmation.restart_nis
     }
 
-    pub(super) fn note_sighting(&mut self, id: LandmarkId) {
+    pub(super) fn count_detection(&mut self, id: LandmarkId) {
         if let Some(slot) = self.landmarks.get_mut(&id) {
-            slot.n_sightings += 1;
+            slot.n_detections += 1;
             slot.n_missed_in_a_row = 0;
-            slot.last_seen = self.look;
+            slot.last_seen = self.n_updates;
         }
     }
 
@@ -73,26 +73,26 @@ where
     }
 
     /// Forgets what should have been seen and was not: tentative landmarks in time, confirmed ones that are seen too seldom.
-    pub(super) fn forget_missed(&mut self) {
-        let Confirmation { n_sightings, patience: Some(patience), least_share_seen, .. } =
+    pub(super) fn remove_undetected(&mut self) {
+        let ConfirmationParams { n_detections, max_missed: Some(max_missed), min_detection_rate, .. } =
             self.params.confirmation
         else {
             return;
         };
         let mut forgotten = Vec::new();
         let is_missed = |slot: &Slot<M::Landmark>| {
-            slot.last_seen < self.look
-                && self.model.should_see(&self.model.expected(&self.robot, &self.mean(slot)))
+            slot.last_seen < self.n_updates
+                && self.model.expects_detection(&self.model.expected(&self.robot, &self.mean(slot)))
         };
         let missed: Vec<bool> = self.landmarks.values().map(is_missed).collect();
         for ((id, slot), is_missed) in self.landmarks.iter_mut().zip(missed) {
             slot.n_missed_in_a_row += usize::from(is_missed);
             slot.n_missed += usize::from(is_missed);
-            let share = slot.n_sightings as f64 / (slot.n_sightings + slot.n_missed) as f64;
-            let is_overdue = if slot.n_sightings < n_sightings {
-                slot.n_missed_in_a_row > patience
+            let share = slot.n_detections as f64 / (slot.n_detections + slot.n_missed) as f64;
+            let is_overdue = if slot.n_detections < n_detections {
+                slot.n_missed_in_a_row > max_missed
             } else {
-                slot.n_missed > patience && share < least_share_seen
+                slot.n_missed > max_missed && share < min_detection_rate
             };
             if is_overdue {
                 forgotten.push(*id);

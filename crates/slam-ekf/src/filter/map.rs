@@ -28,7 +28,7 @@ where
         let known = NewLandmark { landmark, robot_jacobian, covariance };
         self.check_free(id)?;
         self.check_start(&known)?;
-        self.append(id, known, self.params.confirmation.n_sightings);
+        self.append(id, known, self.params.confirmation.n_detections);
         Ok(())
     }
 
@@ -72,16 +72,16 @@ where
         Ok(())
     }
 
-    fn append(&mut self, id: LandmarkId, new: NewLandmark<M::Landmark, M::Robot>, n_sightings: usize) {
+    fn append(&mut self, id: LandmarkId, new: NewLandmark<M::Landmark, M::Robot>, n_detections: usize) {
         let offset = self.covariance.append(&new.robot_jacobian, &new.covariance);
         let (mean, first) = (new.landmark.clone(), new.landmark);
-        let last_seen = self.look;
-        let slot = Slot { mean, first, offset, n_sightings, n_missed: 0, n_missed_in_a_row: 0, last_seen };
+        let last_seen = self.n_updates;
+        let slot = Slot { mean, first, offset, n_detections, n_missed: 0, n_missed_in_a_row: 0, last_seen };
         self.landmarks.insert(id, slot);
     }
 
     pub(super) fn check_free(&self, id: LandmarkId) -> Result<(), SlamError> {
-        if self.knows(id) { Err(SlamError::LandmarkExists(id)) } else { Ok(()) }
+        if self.contains(id) { Err(SlamError::LandmarkExists(id)) } else { Ok(()) }
     }
 
     /// A landmark may start where nothing is certain, but must be somewhere, and its covariance must be one.

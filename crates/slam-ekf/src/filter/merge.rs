@@ -18,21 +18,21 @@ use crate::{
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct Merging {
+pub struct MergingParams {
     /// Distance below which no two landmarks of this world stand, in units of the landmark's tangent space (m for points).
     pub separation: f64,
     /// How many standard deviations of their difference must lie within that distance too.
     pub n_sigmas: f64,
 }
 
-impl Default for Merging {
+impl Default for MergingParams {
     /// Points at least 0.1 m apart, doubted at two standard deviations.
     fn default() -> Self {
         Self { separation: 0.1, n_sigmas: 2.0 }
     }
 }
 
-impl Merging {
+impl MergingParams {
     pub(super) fn validated(self) -> Result<Self, SlamError> {
         for (name, value) in [("separation", self.separation), ("n_sigmas", self.n_sigmas)] {
             if !(value >= 0.0 && value.is_finite()) {
@@ -50,8 +50,8 @@ where
     /// Fuses two landmarks that are one: the map learns that they are at the same place, then `gone` leaves it. `false`, and nothing changed,
     /// when either is not in the state or their difference has no finite covariance.
     ///
-    /// A measurement $`0 = m_{gone} ⊟ m_{kept} + v`$. The filter's covariance of the difference is often too small where errors hang together in time, so `v`
-    /// is as large as what the two differ by, $`σ_v^2 = ‖m_{gone} ⊟ m_{kept}‖^2`$: the map bends towards the truth and does not tear.
+    /// A measurement $`0 = m_{removed} ⊟ m_{kept} + v`$. The filter's covariance of the difference is often too small where errors hang together in time, so `v`
+    /// is as large as what the two differ by, $`σ_v^2 = ‖m_{removed} ⊟ m_{kept}‖^2`$: the map bends towards the truth and does not tear.
     ///
     /// ```
     /// use nalgebra::{Matrix2, Vector2};
@@ -65,12 +65,12 @@ where
     /// assert!((slam.landmark(LandmarkId(1)).unwrap().mean.x - (2.0 + 0.1 / 3.0)).abs() < 1e-9);
     /// # Ok::<(), wayfix_slam_ekf::SlamError>(())
     /// ```
-    pub fn merge(&mut self, kept: LandmarkId, gone: LandmarkId) -> bool {
-        let (Some(kept_slot), Some(gone_slot)) = (self.landmarks.get(&kept), self.landmarks.get(&gone))
+    pub fn merge(&mut self, kept: LandmarkId, removed: LandmarkId) -> bool {
+        let (Some(kept_slot), Some(gone_slot)) = (self.landmarks.get(&kept), self.landmarks.get(&removed))
         else {
             return false;
         };
-        if kept == gone {
+        if kept == removed {
             return false;
         }
         let difference = self.mean(kept_slot).local(&self.mean(gone_slot));
@@ -81,16 +81,16 @@ where
             rows.push_blocks((kept_slot.offset, unit(-1.0)), (gone_slot.offset, unit(1.0)));
         }
         let softness = difference.norm_squared().max(SMALLEST_SOFTNESS);
-        let n_sightings = gone_slot.n_sightings;
+        let n_detections = gone_slot.n_detections;
         let noise = DMatrix::from_diagonal_element(size, size, softness);
         let residual = DVector::from_fn(size, |row, _| -difference[row]);
         let Some(step) = self.covariance.correct(&rows, &noise, &residual) else {
             return false;
         };
         self.step(&step);
-        self.remove(gone);
+        self.remove(removed);
         if let Some(slot) = self.landmarks.get_mut(&kept) {
-            slot.n_sightings += n_sightings;
+            slot.n_detections += n_detections;
         }
         true
     }
@@ -101,32 +101,32 @@ where
         let seen: Vec<LandmarkId> = self
             .landmarks
             .iter()
-            .filter(|(_, slot)| slot.last_seen == self.look)
+            .filter(|(_, slot)| slot.last_seen == self.n_updates)
             .map(|(id, _)| *id)
             .collect();
         let mut merges = Vec::new();
         for id in seen {
-            let Some((kept, gone)) = self.duplicate_of(id, &merging) else { continue };
-            if self.merge(kept, gone) {
-                merges.push(Merge { kept, gone });
+            let Some((kept, removed)) = self.duplicate_of(id, &merging) else { continue };
+            if self.merge(kept, removed) {
+                merges.push(Merge { kept, removed });
             }
         }
         merges
     }
 
     /// The landmark that is certainly nearer to this one than two can stand, the one of more sightings first.
-    fn duplicate_of(&self, id: LandmarkId, merging: &Merging) -> Option<(LandmarkId, LandmarkId)> {
+    fn duplicate_of(&self, id: LandmarkId, merging: &MergingParams) -> Option<(LandmarkId, LandmarkId)> {
         let own = self.landmarks.get(&id).filter(|slot| self.is_confirmed(slot))?;
         let is_one = |(other_id, other): &(&LandmarkId, &Slot<M::Landmark>)| {
             **other_id != id && self.is_confirmed(other) && self.are_nearer_than(merging, own, other)
         };
         let (other_id, other) = self.landmarks.iter().find(is_one)?;
-        let own_is_kept = (own.n_sightings, *other_id) > (other.n_sightings, id);
+        let own_is_kept = (own.n_detections, *other_id) > (other.n_detections, id);
         Some(if own_is_kept { (id, *other_id) } else { (*other_id, id) })
     }
 
     /// The trace bounds the largest variance of the difference in any direction.
-    fn are_nearer_than(&self, merging: &Merging, a: &Slot<M::Landmark>, b: &Slot<M::Landmark>) -> bool {
+    fn are_nearer_than(&self, merging: &MergingParams, a: &Slot<M::Landmark>, b: &Slot<M::Landmark>) -> bool {
         let difference: Tangent<M::Landmark> = self.mean(a).local(&self.mean(b));
         let left = merging.separation - difference.norm();
         left >= 0.0 && {

@@ -1,4 +1,4 @@
-use super::{Confirmation, Linearization, Merging};
+use super::{ConfirmationParams, Linearization, MergingParams};
 use crate::SlamError;
 
 /// Parameters of the filter, the same for every kind of landmark.
@@ -29,10 +29,10 @@ pub struct SlamParams {
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub retire_after: Option<usize>,
     /// What a landmark must show before it counts.
-    pub confirmation: Confirmation,
+    pub confirmation: ConfirmationParams,
     /// When two landmarks of the map are taken for one; never, when not given.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub merging: Option<Merging>,
+    pub merging: Option<MergingParams>,
 }
 
 /// What happens to observations that fit badly.
@@ -109,7 +109,7 @@ impl Default for SlamParams {
             map: MapForm::default(),
             linearization: Linearization::default(),
             retire_after: None,
-            confirmation: Confirmation::default(),
+            confirmation: ConfirmationParams::default(),
             merging: None,
         }
     }
@@ -122,20 +122,20 @@ impl SlamParams {
             let range = "positive";
             return Err(SlamError::Parameter { name: "student_t_degrees_of_freedom", value: degrees, range });
         }
-        let contradiction = self.confirmation.contradiction;
-        if contradiction.is_nan() || contradiction <= 0.0 {
+        let restart_nis = self.confirmation.restart_nis;
+        if restart_nis.is_nan() || restart_nis <= 0.0 {
             let range = "positive";
-            return Err(SlamError::Parameter { name: "contradiction", value: contradiction, range });
+            return Err(SlamError::Parameter { name: "restart_nis", value: restart_nis, range });
         }
-        let share = self.confirmation.least_share_seen;
+        let share = self.confirmation.min_detection_rate;
         if !(0.0..=1.0).contains(&share) {
             return Err(SlamError::Parameter {
-                name: "least_share_seen",
+                name: "min_detection_rate",
                 value: share,
                 range: "from 0 to 1",
             });
         }
-        self.merging.map(Merging::validated).transpose()?;
+        self.merging.map(MergingParams::validated).transpose()?;
         Ok(self)
     }
 

@@ -25,13 +25,13 @@ where
             id: *id,
             mean: self.mean(slot),
             first: slot.first.clone(),
-            n_sightings: slot.n_sightings,
+            n_detections: slot.n_detections,
             n_missed: slot.n_missed,
             n_missed_in_a_row: slot.n_missed_in_a_row,
             last_seen: slot.last_seen,
         };
         Snapshot {
-            look: self.look,
+            n_updates: self.n_updates,
             robot: self.robot.clone(),
             landmarks: slots.into_iter().map(saved).collect(),
             anchors: self.anchors.iter().map(|(id, landmark)| (*id, landmark.clone())).collect(),
@@ -72,10 +72,10 @@ where
         params: SlamParams,
         snapshot: Snapshot<M::Robot, M::Landmark>,
     ) -> Result<Self, SlamError> {
-        let Snapshot { look, robot, landmarks, anchors, retired, covariance } = snapshot;
+        let Snapshot { n_updates, robot, landmarks, anchors, retired, covariance } = snapshot;
         let mut slam = Self::new(model, params, robot)?;
-        check_count("look", look, usize::MAX / 2)?;
-        slam.look = look;
+        check_count("n_updates", n_updates, usize::MAX / 2)?;
+        slam.n_updates = n_updates;
         for (id, landmark) in anchors {
             slam.add_anchor(id, landmark)?;
         }
@@ -87,16 +87,16 @@ where
         }
         let mut offset = RobotDim::<M>::DIM;
         for saved in landmarks {
-            let SavedLandmark { id, mean, first, n_sightings, n_missed, n_missed_in_a_row, last_seen } =
+            let SavedLandmark { id, mean, first, n_detections, n_missed, n_missed_in_a_row, last_seen } =
                 saved;
             slam.check_free(id)?;
             check_finite(&mean)?;
             check_finite(&first)?;
-            check_count("last_seen", last_seen, look)?;
-            check_count("n_sightings", n_sightings, usize::MAX / 2)?;
+            check_count("last_seen", last_seen, n_updates)?;
+            check_count("n_detections", n_detections, usize::MAX / 2)?;
             check_count("n_missed", n_missed, usize::MAX / 2)?;
             check_count("n_missed_in_a_row", n_missed_in_a_row, n_missed)?;
-            let slot = Slot { mean, first, offset, n_sightings, n_missed, n_missed_in_a_row, last_seen };
+            let slot = Slot { mean, first, offset, n_detections, n_missed, n_missed_in_a_row, last_seen };
             slam.landmarks.insert(id, slot);
             offset += LandmarkDim::<M>::DIM;
         }

@@ -55,11 +55,11 @@ where
     /// Retires what was revised often enough.
     pub(super) fn retire_revised(&mut self) {
         let Some(most) = self.params.retire_after else { return };
-        let is_done = |n_sightings: usize| n_sightings > most; // the first sighting starts it and revises nothing
+        let is_done = |n_detections: usize| n_detections > most; // the first sighting starts it and revises nothing
         let done: Vec<LandmarkId> = self
             .landmarks
             .iter()
-            .filter(|(_, slot)| self.is_confirmed(slot) && is_done(slot.n_sightings))
+            .filter(|(_, slot)| self.is_confirmed(slot) && is_done(slot.n_detections))
             .map(|(id, _)| *id)
             .collect();
         for id in done {

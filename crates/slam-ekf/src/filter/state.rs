@@ -44,7 +44,7 @@ where
     pub(super) retired: BTreeMap<LandmarkId, Retired<M::Landmark>>,
     pub(super) covariance: MapCovariance,
     /// How many looks there were.
-    pub(super) look: usize,
+    pub(super) n_updates: usize,
 }
 
 /// A landmark and where its block starts in the covariance.
@@ -54,7 +54,7 @@ pub(super) struct Slot<L> {
     /// Where it was when it was placed first.
     pub(super) first: L,
     pub(super) offset: usize,
-    pub(super) n_sightings: usize,
+    pub(super) n_detections: usize,
     /// Looks that should have shown it and did not.
     pub(super) n_missed: usize,
     /// Of these, since it was seen last.
@@ -107,7 +107,7 @@ where
             return Err(SlamError::NoSymmetry);
         }
         if params.linearization == Linearization::Invariant && params.map == MapForm::Compressed {
-            return Err(SlamError::MovesTheWholeMap);
+            return Err(SlamError::InvariantNeedsFullMap);
         }
         Ok(Self {
             model,
@@ -118,7 +118,7 @@ where
             anchors: BTreeMap::new(),
             retired: BTreeMap::new(),
             covariance: MapCovariance::from_robot(params.map, &covariance),
-            look: 0,
+            n_updates: 0,
         })
     }
 
@@ -144,7 +144,7 @@ where
         self.landmarks.len() + self.retired.len() - self.n_landmarks()
     }
     /// Whether a landmark or an anchor with this identity is in the map.
-    pub fn knows(&self, id: LandmarkId) -> bool {
+    pub fn contains(&self, id: LandmarkId) -> bool {
         self.landmarks.contains_key(&id) || self.anchors.contains_key(&id) || self.retired.contains_key(&id)
     }
     /// The landmark model.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, DefaultAllocator};
 use wayfix_estimation_traits::TangentMatrix;
 
 use super::{
-    EkfSlam, PredictedSighting,
+    EkfSlam, PredictedMeasurement,
     predict::{LARGEST_VARIANCE, check_covariance},
 };
 use crate::{
@@ -20,7 +20,7 @@ where
 {
     /// Which of the look's observations.
     index: usize,
-    sighting: PredictedSighting<M>,
+    predicted: PredictedMeasurement<M>,
     innovation: Innovation<M::Measurement>,
     noise: TangentMatrix<M::Measurement>,
 }
@@ -53,16 +53,16 @@ where
         }
         let associated: Vec<_> = usable.into_iter().zip(associations).collect();
 
-        self.look += 1;
+        self.n_updates += 1;
         let mut outcomes = vec![Outcome::Unusable; observations.len()];
         let mut taken = BTreeSet::new();
         for batch in associated.chunks(self.params.order.batch_size(associated.len())) {
             self.update_batch(observations, batch, &mut taken, &mut outcomes);
         }
         let merges = self.merge_duplicates();
-        self.forget_missed();
+        self.remove_undetected();
         self.retire_revised();
-        self.covariance.end_look();
+        self.covariance.end_update();
         Ok(StepReport { outcomes, merges })
     }
 
@@ -91,10 +91,10 @@ where
             }
         }
         let corrected = self.correct(&accepted).is_some();
-        for Accepted { index, sighting, .. } in &accepted {
+        for Accepted { index, predicted, .. } in &accepted {
             if corrected {
-                self.note_sighting(sighting.landmark);
-                self.extend(sighting.landmark, &observations[*index].measurement);
+                self.count_detection(predicted.landmark);
+                self.extend(predicted.landmark, &observations[*index].measurement);
             } else {
                 outcomes[*index] = Outcome::Unusable;
             }
@@ -118,27 +118,27 @@ where
         if check_covariance("measurement noise", &noise).is_err() {
             return Outcome::Unusable;
         }
-        let sighting = self.predicted_sighting(landmark);
-        let seen = sighting.and_then(|sighting| {
-            let noise = self.model.noise_at_expected(&sighting.expected, measurement, &noise);
-            Some((sighting.innovation(measurement, &noise)?, sighting, noise))
+        let predicted = self.predicted_measurement(landmark);
+        let seen = predicted.and_then(|predicted| {
+            let noise = self.model.noise_at_expected(&predicted.expected, measurement, &noise);
+            Some((predicted.innovation(measurement, &noise)?, predicted, noise))
         });
-        let Some((innovation, sighting, noise)) = seen else {
+        let Some((innovation, predicted, noise)) = seen else {
             return Outcome::Unusable;
         };
         let threshold = self.gates.threshold(innovation.residual.len());
-        if self.contradicts_its_start(landmark, &innovation) {
+        if self.exceeds_restart_nis(landmark, &innovation) {
             return Outcome::Restarted { landmark };
         }
         if innovation.nis > threshold && self.params.outliers == OutlierRule::Reject {
-            return Outcome::Gated { landmark, innovation, threshold };
+            return Outcome::Rejected { landmark, innovation, threshold };
         }
         let noise_scale = self.params.noise_scale(innovation.nis, threshold);
-        let noise = noise * noise_scale + &sighting.own_noise;
+        let noise = noise * noise_scale + &predicted.landmark_noise;
         if noise.amax() >= LARGEST_VARIANCE {
-            return Outcome::Gated { landmark, innovation, threshold }; // so far out that it would weigh nothing
+            return Outcome::Rejected { landmark, innovation, threshold }; // so far out that it would weigh nothing
         }
-        accepted.push(Accepted { index, sighting, innovation: innovation.clone(), noise });
+        accepted.push(Accepted { index, predicted, innovation: innovation.clone(), noise });
         Outcome::Accepted { landmark, innovation, noise_scale }
     }
 
@@ -163,12 +163,12 @@ where
     let n_rows = accepted.iter().map(|accepted| accepted.innovation.residual.len()).sum();
     let mut jacobian = SparseJacobian::default();
     let (mut noise, mut residual) = (DMatrix::zeros(n_rows, n_rows), DVector::zeros(n_rows));
-    for Accepted { sighting, innovation, noise: own_noise, .. } in accepted {
+    for Accepted { predicted, innovation, noise: own_noise, .. } in accepted {
         let start = jacobian.nrows();
         let size = innovation.residual.len();
         for row in 0..size {
-            let robot = sighting.robot_jacobian.row(row);
-            match &sighting.landmark_jacobian {
+            let robot = predicted.robot_jacobian.row(row);
+            match &predicted.landmark_jacobian {
                 Some((offset, landmark)) => {
                     jacobian.push_row(robot.iter().copied(), *offset, landmark.row(row).iter().copied());
                 }

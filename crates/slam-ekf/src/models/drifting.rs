@@ -69,9 +69,9 @@ impl MotionModel for DriftingMotion {
 
 /// Any sensor of a pose on a robot whose odometry drifts: what it sees does not depend on the drift.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct OnDrifting<S>(pub S);
+pub struct DriftingPoseSensor<S>(pub S);
 
-impl<S> LandmarkModel for OnDrifting<S>
+impl<S> LandmarkModel for DriftingPoseSensor<S>
 where
     S: LandmarkModel<Robot = Pose2<f64>>,
     DefaultAllocator: SlamAlloc<RobotDim<S>, LandmarkDim<S>, MeasurementDim<S>>
@@ -113,8 +113,8 @@ where
     fn is_usable(&self, measurement: &S::Measurement) -> bool {
         self.0.is_usable(measurement)
     }
-    fn may_be(&self, expected: &S::Measurement, measurement: &S::Measurement) -> bool {
-        self.0.may_be(expected, measurement)
+    fn is_compatible(&self, expected: &S::Measurement, measurement: &S::Measurement) -> bool {
+        self.0.is_compatible(expected, measurement)
     }
     fn extended(
         &self,
@@ -124,8 +124,8 @@ where
     ) -> S::Landmark {
         self.0.extended(&robot.pose, landmark, measurement)
     }
-    fn should_see(&self, expected: &S::Measurement) -> bool {
-        self.0.should_see(expected)
+    fn expects_detection(&self, expected: &S::Measurement) -> bool {
+        self.0.expects_detection(expected)
     }
     fn symmetries(&self) -> &'static [&'static str] {
         self.0.symmetries()

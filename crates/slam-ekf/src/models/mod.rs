@@ -1,9 +1,9 @@
 //! Motions and sensors of planar robots, and of one on a line.
 
 mod ackermann;
+mod correlated_noise;
 mod drifting;
 mod increment;
-mod look_errors;
 mod monobot;
 mod mounted;
 mod planar;
@@ -15,15 +15,15 @@ mod velocity;
 mod wall;
 
 pub use ackermann::{AckermannControl, AckermannMotion, AckermannVehicle};
-pub use drifting::{DriftingMotion, DriftingPose, OnDrifting};
+pub use correlated_noise::CorrelatedNoise;
+pub use drifting::{DriftingMotion, DriftingPose, DriftingPoseSensor};
 pub use increment::IncrementMotion;
-pub use look_errors::LookErrors;
 pub use monobot::{MonobotMotion, MonobotSensor};
-pub use mounted::Mounted;
+pub use mounted::MountedSensor;
 pub use planar::{PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 pub use range_bearing::{RangeBearing, RangeBearingSensor};
 pub use relative_position::{RelativePosition, RelativePositionSensor};
 pub use scaled::{ScaledMotion, ScaledPose, ScaledRangeBearingSensor};
 pub use velocity::{VelocityControl, VelocityMotion};
 #[cfg(feature = "lines")]
-pub use wall::{SeenWall, Wall, WallLine, WallSensor};
+pub use wall::{Wall, WallLine, WallMeasurement, WallSensor};

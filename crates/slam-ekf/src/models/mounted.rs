@@ -8,20 +8,20 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, S
 /// ```
 /// use nalgebra::Vector2;
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_slam_ekf::{LandmarkModel, Mounted, RangeBearingSensor};
-/// let laser = Mounted { sensor: RangeBearingSensor::default(), mount: Pose2::new(3.78, 0.5, 0.0) };
+/// use wayfix_slam_ekf::{LandmarkModel, MountedSensor, RangeBearingSensor};
+/// let laser = MountedSensor { sensor: RangeBearingSensor::default(), mount: Pose2::new(3.78, 0.5, 0.0) };
 /// let seen = laser.expected(&Pose2::new(0.0, 0.0, 0.0), &Vector2::new(5.78, 0.5));
 /// assert!((seen.range - 2.0).abs() < 1e-12 && seen.bearing.radians() == 0.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mounted<S> {
+pub struct MountedSensor<S> {
     /// How the sensor sees, from where it is.
     pub sensor: S,
     /// Where it is in the robot frame: x forward, y left, metres and radians.
     pub mount: Pose2<f64>,
 }
 
-impl<S> LandmarkModel for Mounted<S>
+impl<S> LandmarkModel for MountedSensor<S>
 where
     S: LandmarkModel<Robot = Pose2<f64>>,
     DefaultAllocator: SlamAlloc<RobotDim<S>, LandmarkDim<S>, MeasurementDim<S>>,
@@ -76,8 +76,8 @@ where
         self.sensor.is_usable(measurement)
     }
 
-    fn may_be(&self, expected: &S::Measurement, measurement: &S::Measurement) -> bool {
-        self.sensor.may_be(expected, measurement)
+    fn is_compatible(&self, expected: &S::Measurement, measurement: &S::Measurement) -> bool {
+        self.sensor.is_compatible(expected, measurement)
     }
 
     fn extended(
@@ -89,8 +89,8 @@ where
         self.sensor.extended(&robot.compose(&self.mount), landmark, measurement)
     }
 
-    fn should_see(&self, expected: &S::Measurement) -> bool {
-        self.sensor.should_see(expected)
+    fn expects_detection(&self, expected: &S::Measurement) -> bool {
+        self.sensor.expects_detection(expected)
     }
 
     fn symmetries(&self) -> &'static [&'static str] {

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use nalgebra::{Const, DMatrix, Matrix2, Matrix2x3, Vector2};
 use wayfix_estimation_traits::{Angle, Manifold, Pose2, wrap_angle};
 
-use super::{LookErrors, PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
+use super::{CorrelatedNoise, PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 use crate::{LandmarkModel, NewLandmark};
 
 /// Distance and direction of a point, seen from the robot.
@@ -70,12 +70,12 @@ pub struct RangeBearingSensor {
     /// Standard deviation of the bearing, rad.
     pub bearing_sigma: f64,
     /// Range up to which a landmark in view is seen as a rule, m. It refuses no measurement: it tells which landmarks are missed.
-    pub reach: f64,
+    pub sensor_range: f64,
     /// The same for the bearing to either side, rad.
     pub half_field_of_view: f64,
     /// What tells landmarks apart, where that is less than the noise that corrects; when not given, the noise that corrects.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
-    pub look_errors: Option<LookErrors>,
+    pub correlated_noise: Option<CorrelatedNoise>,
 }
 
 impl Default for RangeBearingSensor {
@@ -85,9 +85,9 @@ impl Default for RangeBearingSensor {
             range_sigma: 0.05,
             range_sigma_per_meter: 0.0,
             bearing_sigma: 0.01,
-            reach: f64::INFINITY,
+            sensor_range: f64::INFINITY,
             half_field_of_view: PI,
-            look_errors: None,
+            correlated_noise: None,
         }
     }
 }
@@ -122,11 +122,11 @@ impl LandmarkModel for RangeBearingSensor {
     }
 
     fn association_noise(&self, measurement: &RangeBearing) -> Matrix2<f64> {
-        self.look_errors.map_or_else(|| self.noise(measurement), |errors| errors.noise(measurement))
+        self.correlated_noise.map_or_else(|| self.noise(measurement), |errors| errors.noise(measurement))
     }
 
     fn common_noise(&self, a: &RangeBearing, b: &RangeBearing) -> Matrix2<f64> {
-        self.look_errors.map_or_else(Matrix2::zeros, |errors| errors.common_noise(a, b))
+        self.correlated_noise.map_or_else(Matrix2::zeros, |errors| errors.common_noise(a, b))
     }
 
     /// A range must be positive: a bearing alone does not place a point.
@@ -134,8 +134,8 @@ impl LandmarkModel for RangeBearingSensor {
         measurement.range > 0.0 && measurement.range.is_finite() && measurement.bearing.radians().is_finite()
     }
 
-    fn should_see(&self, expected: &RangeBearing) -> bool {
-        expected.range <= self.reach && expected.bearing.radians().abs() <= self.half_field_of_view
+    fn expects_detection(&self, expected: &RangeBearing) -> bool {
+        expected.range <= self.sensor_range && expected.bearing.radians().abs() <= self.half_field_of_view
     }
 
     fn symmetries(&self) -> &'static [&'static str] {

@@ -111,8 +111,8 @@ where
         self.0.is_usable(measurement)
     }
 
-    fn should_see(&self, expected: &RangeBearing) -> bool {
-        self.0.should_see(expected)
+    fn expects_detection(&self, expected: &RangeBearing) -> bool {
+        self.0.expects_detection(expected)
     }
 
     fn symmetries(&self) -> &'static [&'static str] {

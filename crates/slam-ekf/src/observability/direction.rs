@@ -2,12 +2,12 @@ use std::fmt;
 
 /// A motion of the whole world that no measurement has noticed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FreeDirection {
+pub struct UnobservableDirection {
     /// Named motions and how much of each, the largest first and 1; per metre and per radian.
     pub parts: Vec<(&'static str, f64)>,
 }
 
-impl FreeDirection {
+impl UnobservableDirection {
     pub(super) fn new(names: &[&'static str], coefficients: impl IntoIterator<Item = f64>) -> Self {
         let mut parts: Vec<_> =
             names.iter().copied().zip(coefficients).filter(|(_, part)| part.abs() > SMALLEST).collect();
@@ -19,7 +19,7 @@ impl FreeDirection {
 /// A share of a motion that is not worth telling.
 const SMALLEST: f64 = 1e-6;
 
-impl fmt::Display for FreeDirection {
+impl fmt::Display for UnobservableDirection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, (name, part)) in self.parts.iter().enumerate() {
             match index {

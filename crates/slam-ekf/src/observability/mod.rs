@@ -5,9 +5,9 @@
 //! [Andrade-Cetto 2005, Sec. 2.2]
 
 mod direction;
-mod look;
+mod linearized_update;
 mod null_space;
 mod recorder;
 
-pub use direction::FreeDirection;
+pub use direction::UnobservableDirection;
 pub use recorder::ObservabilityRecorder;

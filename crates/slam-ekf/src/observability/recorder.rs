@@ -3,8 +3,8 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DMatrixView, DVector, DefaultAllocator, DimName, linalg::Cholesky};
 
 use super::{
-    FreeDirection,
-    look::Look,
+    UnobservableDirection,
+    linearized_update::LinearizedUpdate,
     null_space::{null_space, readable},
 };
 use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
@@ -16,7 +16,7 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Rob
 /// [Andrade-Cetto 2005, Eqs. 14-17]. Its rank is that of the observability matrix.
 ///
 /// An EKF linearizes each look somewhere else, and in the plane that alone makes `J` look as if the heading of the map were observed.
-/// [`free_directions`](Self::free_directions) is not deceived: it asks of every look, at its own linearization, whether it would notice that the world moved.
+/// [`unobservable_directions`](Self::unobservable_directions) is not deceived: it asks of every look, at its own linearization, whether it would notice that the world moved.
 ///
 /// ```
 /// use nalgebra::Vector1;
@@ -29,13 +29,13 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Rob
 /// slam.update(&[seen(0, 2.0)], &mut KnownIds)?;
 /// recorder.record(&slam, &[LandmarkId(0)]);
 /// assert_eq!((recorder.dimension(), recorder.rank()), (2, 1));
-/// assert_eq!(recorder.free_directions()[0].to_string(), "translation of everything");
+/// assert_eq!(recorder.unobservable_directions()[0].to_string(), "translation of everything");
 ///
 /// slam.add_anchor(LandmarkId(1), Vector1::new(0.0))?; // a landmark whose place is known
 /// slam.update(&[seen(1, 1.0)], &mut KnownIds)?;
 /// recorder.record(&slam, &[LandmarkId(1)]);
 /// assert_eq!(recorder.rank(), 2);
-/// assert!(recorder.free_directions().is_empty());
+/// assert!(recorder.unobservable_directions().is_empty());
 /// # Ok::<(), SlamError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -75,7 +75,7 @@ impl ObservabilityRecorder {
     }
 
     /// The robot moved, with this Jacobian of the motion. What is not finite or of another size is left out.
-    pub fn moved<'a>(&mut self, jacobian: impl Into<DMatrixView<'a, f64>>) {
+    pub fn record_motion<'a>(&mut self, jacobian: impl Into<DMatrixView<'a, f64>>) {
         let jacobian = jacobian.into();
         if jacobian.shape() == self.transition.shape() && jacobian.iter().all(|entry| entry.is_finite()) {
             self.transition = jacobian * &self.transition;
@@ -88,7 +88,7 @@ impl ObservabilityRecorder {
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
     {
-        let look = Look::of(slam, seen);
+        let look = LinearizedUpdate::of(slam, seen);
         look.jacobian.nrows() > 0 && self.add(&look, LandmarkDim::<M>::DIM)
     }
 
@@ -107,7 +107,8 @@ impl ObservabilityRecorder {
         let fits = jacobian.ncols() == RobotDim::<M>::DIM
             && covariance.shape() == (jacobian.nrows(), jacobian.nrows());
         let motion = slam.model().robot_symmetry(slam.robot());
-        let look = Look { jacobian, landmarks: Vec::new(), innovation_covariance: covariance, motion };
+        let look =
+            LinearizedUpdate { jacobian, landmarks: Vec::new(), innovation_covariance: covariance, motion };
         fits && self.add(&look, LandmarkDim::<M>::DIM)
     }
 
@@ -128,13 +129,14 @@ impl ObservabilityRecorder {
         null_space(&self.information, &self.information.diagonal(), SINGULAR)
     }
     /// Motions of the whole world that no measurement has ever noticed, among those that the model names ([`LandmarkModel::symmetries`]).
-    pub fn free_directions(&self) -> Vec<FreeDirection> {
+    pub fn unobservable_directions(&self) -> Vec<UnobservableDirection> {
         let basis = null_space(&self.constraint, &self.uncancelled, NOTHING);
-        let named = |vector: DVector<f64>| FreeDirection::new(self.directions, vector.iter().copied());
+        let named =
+            |vector: DVector<f64>| UnobservableDirection::new(self.directions, vector.iter().copied());
         readable(basis).into_iter().map(named).collect()
     }
 
-    fn add(&mut self, look: &Look, landmark_size: usize) -> bool {
+    fn add(&mut self, look: &LinearizedUpdate, landmark_size: usize) -> bool {
         let Some(factor) = Cholesky::new(look.innovation_covariance.clone()) else { return false };
         let robot_size = self.transition.nrows();
         let weighed = |matrix: &DMatrix<f64>| factor.l().solve_lower_triangular(matrix);

@@ -5,7 +5,7 @@ use wayfix_sensor_log::{Format, OpenOptions};
 
 use super::{
     input::Topics,
-    output::{print, tell},
+    output::{print, print_message},
 };
 
 /// Write a log in another format.
@@ -62,7 +62,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let log = wayfix_sensor_log::open(&arguments.input, &options)?;
     let (read, written) = wayfix_sensor_log::convert(log, &arguments.output, format)?;
     if !read.is_clean() {
-        tell(read);
+        print_message(read);
     }
     print(written)?;
     Ok(ExitCode::SUCCESS)

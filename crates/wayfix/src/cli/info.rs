@@ -30,7 +30,7 @@ Formats:
                    L id x y              a true landmark, m
                    P x y heading         the true pose, m and rad
                    O dx dy dheading      motion since the last step, in the robot frame before it
-                   Z id range bearing    a sighting, m and rad, 0 ahead, counter-clockwise; id ? when unknown
+                   Z id range bearing    a detection, m and rad, 0 ahead, counter-clockwise; id ? when unknown
                  L and P are for figures only and may be absent.
   tum            t x y z qx qy qz qw lines: poses only
   carmen         FLASER, ROBOTLASER1 or RAWLASER1 scans, ODOM and PARAM lines; the order is that of the lines
@@ -91,7 +91,7 @@ fn usable_for(summary: &LogSummary) -> Vec<String> {
     }
     if lines.is_empty() {
         lines.push(
-            "usable for no `wayfix run`: neither sightings of landmarks nor laser scans nor images"
+            "usable for no `wayfix run`: neither detections of landmarks nor laser scans nor images"
                 .to_owned(),
         );
     }

@@ -3,7 +3,7 @@ use std::net::{IpAddr, SocketAddr};
 use anyhow::Result;
 use wayfix_sensor_log::MessageSink;
 
-use super::output::tell;
+use super::output::print_message;
 use crate::live::{LiveServer, Pace};
 
 // No documentation: it would become that of every command that takes these arguments.
@@ -37,7 +37,7 @@ impl LiveArguments {
     pub(super) fn start(&self) -> Result<Option<Live>> {
         let Some(address) = self.live else { return Ok(None) };
         let live = Live { pace: Pace::new(self.pace)?, server: LiveServer::start(address)? };
-        tell(format!(
+        print_message(format!(
             "live: open {} in Foxglove (Open connection, Foxglove WebSocket); the run begins then",
             live.server.url()
         ));
@@ -54,7 +54,7 @@ impl Live {
 
     /// Keeps the end of the run in view until all viewers have gone.
     pub(super) fn stay(&self) {
-        tell("live: the end of the run stays in view until you close it there, or Ctrl-C");
+        print_message("live: the end of the run stays in view until you close it there, or Ctrl-C");
         self.server.wait_until_all_left();
     }
 }

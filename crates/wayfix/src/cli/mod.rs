@@ -1,6 +1,5 @@
 //! The command line: one command a file.
 
-mod account;
 mod common;
 mod completions;
 mod convert;
@@ -14,6 +13,7 @@ mod output;
 mod outputs;
 mod params;
 mod progress;
+mod read_problems;
 mod regress;
 mod run_cml;
 mod run_color;
@@ -113,7 +113,7 @@ pub fn main() -> ExitCode {
     match result {
         Ok(code) => code,
         Err(error) => {
-            output::tell(format!("error: {error:#}"));
+            output::print_message(format!("error: {error:#}"));
             ExitCode::FAILURE
         }
     }

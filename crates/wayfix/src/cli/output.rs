@@ -15,6 +15,6 @@ pub(super) fn print(text: impl Display) -> Result<()> {
 }
 
 /// Tells people something on standard error, which may be closed.
-pub(super) fn tell(text: impl Display) {
+pub(super) fn print_message(text: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", text.to_string().trim_end());
 }

@@ -9,7 +9,7 @@ use wayfix_sensor_log::{Format, McapFile, Sinks};
 use super::{
     common::Common,
     live::Live,
-    output::{print, tell},
+    output::{print, print_message},
 };
 use crate::{
     plot::Picture,
@@ -102,6 +102,6 @@ fn write_report(out: &Path, suite: &str, run: Run, seed: u64) -> Result<()> {
     let log = run.log.as_ref().map(|log| format!(", {log}")).unwrap_or_default();
     let suites = vec![Suite { name: suite.to_owned(), runs: vec![run] }];
     Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
-    tell(format!("wrote index.html, report.json{log} and the figures as SVG to {}", out.display()));
+    print_message(format!("wrote index.html, report.json{log} and the figures as SVG to {}", out.display()));
     Ok(())
 }

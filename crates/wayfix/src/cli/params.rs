@@ -40,7 +40,7 @@ Examples:
 
 #[derive(Clone, Copy, ValueEnum)]
 enum SystemName {
-    /// EKF-SLAM with points: `run slam` on sightings.
+    /// EKF-SLAM with points: `run slam` on detections.
     Slam,
     /// EKF-SLAM with walls: `run slam` on laser scans.
     Walls,

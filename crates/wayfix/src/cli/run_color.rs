@@ -5,12 +5,12 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{OpenOptions, Record};
 
 use super::{
-    account::{account, read_all},
     common::Common,
     input::{Topics, name_of, read_toml},
     output::print,
     outputs::Outputs,
     progress,
+    read_problems::{add_read_problems, read_all},
     truth::TruthFile,
 };
 use crate::{
@@ -136,7 +136,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let mut color = color?;
-    let warnings = account(color.system.events(), &read);
+    let warnings = add_read_problems(color.system.events(), &read);
 
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();

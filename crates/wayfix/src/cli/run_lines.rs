@@ -5,12 +5,12 @@ use wayfix_line_extract::Params;
 use wayfix_sensor_log::{Format, OpenOptions};
 
 use super::{
-    account::{account, read_all},
     common::Common,
     input::{Topics, name_of, read_toml},
     output::print,
     outputs::Outputs,
     progress,
+    read_problems::{add_read_problems, read_all},
 };
 use crate::{
     commented::commented,
@@ -76,7 +76,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     ensure!(system.n_scans() > 0, "{}: no laser scan in the log", name_of(&arguments.log));
-    let warnings = account(system.events(), &read);
+    let warnings = add_read_problems(system.events(), &read);
     ensure!(!system.scans().is_empty(), "{}: no laser scan could be used", name_of(&arguments.log));
 
     let name = name_of(&arguments.log);

@@ -7,12 +7,13 @@ use anyhow::{Context, Result};
 use wayfix_sensor_log::{Format, OpenOptions, Record};
 
 use super::{
-    account::{account, read_all},
     common::Common,
     input::{Topics, name_of, read_toml},
-    output::{print, tell},
+    output::{print, print_message},
     outputs::Outputs,
-    progress, run_walls,
+    progress,
+    read_problems::{add_read_problems, read_all},
+    run_walls,
     truth::TruthFile,
 };
 use crate::{
@@ -25,7 +26,7 @@ use crate::{
     system::Stopwatch,
 };
 
-/// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing sightings or laser scans.
+/// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing detections or laser scans.
 ///
 /// Where the log holds true poses, the run starts at the true pose where odometry starts, and the figures tell how far it strays:
 /// `ate_rmse_m` as it is, `ate_aligned_rmse_m` after the best rigid fit of the path, `landmark_…` the same for the map, `nees_mean`
@@ -58,7 +59,7 @@ pub(super) struct Arguments {
     pub(super) topics: Topics,
     #[command(flatten)]
     pub(super) truth: TruthFile,
-    /// How sightings find their landmarks [default: known where the log has identities, else jcbb].
+    /// How detections find their landmarks [default: known where the log has identities, else jcbb].
     #[arg(long, value_name = "RULE")]
     pub(super) association: Option<AssociationRule>,
     /// The kind of robot whose noise and timing are the defaults [default: by the format of the log, else generic].
@@ -83,7 +84,7 @@ pub(super) struct Arguments {
     pub(super) resume: Option<PathBuf>,
     /// Tell which directions of the map nothing has ever constrained.
     ///
-    /// Sightings never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
+    /// Detections never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
     #[arg(long)]
     pub(super) observability: bool,
     #[command(flatten)]
@@ -140,7 +141,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     if let Some(saver) = saver {
         saver.finish(&slam.system).context("cannot save the map")?;
     }
-    let warnings = account(slam.events(), &read);
+    let warnings = add_read_problems(slam.events(), &read);
 
     let run = Run {
         name: name_of(&arguments.log),
@@ -148,7 +149,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         warnings,
         ..slam::summarize(&mut slam)
     };
-    run.notes.iter().for_each(tell);
+    run.notes.iter().for_each(print_message);
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }

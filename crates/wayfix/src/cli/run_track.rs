@@ -11,12 +11,12 @@ use wayfix_condensation::BoundingBox;
 use wayfix_sensor_log::{Format, Log, OpenOptions};
 
 use super::{
-    account::account,
     common::Common,
     input::read_toml,
-    output::{print, tell},
+    output::{print, print_message},
     outputs::Outputs,
     progress,
+    read_problems::add_read_problems,
 };
 use crate::{
     commented::commented,
@@ -119,19 +119,19 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     if !log.report().is_clean() {
-        tell(log.report());
+        print_message(log.report());
     }
     let mut track = track?;
-    let warnings = account(track.system.events(), log.report());
+    let warnings = add_read_problems(track.system.events(), log.report());
 
     let name = log.meta().source.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
     let run = Run { name, seconds, warnings, ..track::summarize(&mut track) };
-    run.notes.iter().for_each(|note| tell(format!("note: {note}")));
+    run.notes.iter().for_each(|note| print_message(format!("note: {note}")));
     if let Some(estimates) = estimates {
         estimates.finish(track.system.n_frames())?;
     }
-    outputs.show(run, || Ok(track::pictures(&track.story)?))?;
+    outputs.show(run, || Ok(track::pictures(&track.run_history)?))?;
     Ok(ExitCode::SUCCESS)
 }
 

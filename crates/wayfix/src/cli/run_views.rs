@@ -11,7 +11,7 @@ use wayfix_condensation::{ActionChoice, Light};
 use super::{
     common::Common,
     input::read_toml,
-    output::{print, tell},
+    output::{print, print_message},
     outputs::Outputs,
     progress,
 };
@@ -124,7 +124,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let learned = learned.as_ref().unwrap_or(&scene);
     if let Some(reach) = arguments.register {
         let (dx, dy) = views::mean_shift(learned, &real, reach as usize);
-        tell(format!(
+        print_message(format!(
             "note: the real camera stood {dx} pixels to the right and {dy} down of the learned one"
         ));
         real = real.shifted(-dx, -dy);
@@ -157,7 +157,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 
 impl Arguments {
     fn real_scene(&self) -> RealScene {
-        let default = if self.learn_from.is_some() { RealScene::AS_IT_IS } else { RealScene::default() };
+        let default = if self.learn_from.is_some() { RealScene::UNCHANGED } else { RealScene::default() };
         let light = Light {
             gain: self.gain.unwrap_or(default.light.gain),
             offset: self.offset.unwrap_or(default.light.offset),
@@ -171,7 +171,7 @@ impl Arguments {
 fn read(path: &Path) -> Result<wayfix_condensation::Picture> {
     let scene = views::read_scene(path)?;
     for remark in scene.remarks {
-        tell(format!("note: {} {remark}", path.display()));
+        print_message(format!("note: {} {remark}", path.display()));
     }
     Ok(scene.picture)
 }

@@ -4,11 +4,12 @@ use anyhow::{Context, Result, bail, ensure};
 use wayfix_sensor_log::{Data, Format, ReadReport, Record, read_relations};
 
 use super::{
-    account::account,
     input::{name_of, read_toml},
-    output::{print, tell},
+    output::{print, print_message},
     outputs::Outputs,
-    progress, run_slam,
+    progress,
+    read_problems::add_read_problems,
+    run_slam,
 };
 use crate::{
     commented::commented,
@@ -21,7 +22,7 @@ use crate::{
 /// Whether a log is one of scans: walls are its landmarks then.
 pub(super) fn is_for(records: &[Record]) -> bool {
     let has = |is: fn(&Data) -> bool| records.iter().any(|record| is(&record.data));
-    has(|data| matches!(data, Data::Scan(_))) && !has(|data| matches!(data, Data::Sightings(_)))
+    has(|data| matches!(data, Data::Scan(_))) && !has(|data| matches!(data, Data::Detections(_)))
 }
 
 /// `wayfix run slam` on a log of scans.
@@ -33,7 +34,7 @@ pub(super) fn main(
 ) -> Result<ExitCode> {
     ensure!(
         arguments.profile.is_none(),
-        "--profile is for logs of range-bearing sightings; this one has laser scans"
+        "--profile is for logs of range-bearing detections; this one has laser scans"
     );
     let params = params(arguments)?;
     if arguments.common.print_params {
@@ -68,7 +69,7 @@ pub(super) fn main(
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
-    let warnings = account(slam.events(), read);
+    let warnings = add_read_problems(slam.events(), read);
     let mut run = Run {
         name: name_of(&arguments.log),
         seconds: stopwatch.elapsed().as_secs_f64(),
@@ -78,11 +79,11 @@ pub(super) fn main(
     if let Some(path) = &arguments.relations {
         let (relations, read) = read_relations(path)?;
         if !read.is_clean() {
-            tell(&read);
+            print_message(&read);
         }
         run.metrics.extend(walls::relation_metrics(&slam, &relations));
     }
-    run.notes.iter().for_each(tell);
+    run.notes.iter().for_each(print_message);
     outputs.show(run, || Ok(walls::pictures(&slam)?))?;
     Ok(ExitCode::SUCCESS)
 }

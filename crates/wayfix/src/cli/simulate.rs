@@ -8,7 +8,7 @@ use anyhow::{Context, Result, anyhow};
 use clap::builder::PossibleValuesParser;
 use wayfix_scene_sim::{
     film::{Film, Frame, Incident, Silhouette},
-    scenery::{RgbPicture, Scenery, Visit},
+    scenery::{ImagingConditions, RgbPicture, Scenery},
 };
 
 use super::{output::print, progress};
@@ -107,7 +107,7 @@ fn true_box(frame: &Frame) -> String {
 fn compose(scenery: &Scenery, out: &Path) -> Result<()> {
     create(out)?;
     let learned = scenery.compose();
-    let real = Visit::dimmed().picture_of(&learned, scenery.seed)?;
+    let real = ImagingConditions::dimmed().picture_of(&learned, scenery.seed)?;
     save(&out.join("learned.png"), learned)?;
     save(&out.join("real.png"), real)
 }

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use wayfix_sensor_log::{Data, Format, OpenOptions, PoseKind, Record};
 
-use super::account::read_all;
+use super::read_problems::read_all;
 use crate::system::check_overlap;
 
 // No documentation: it would become that of every command that takes these arguments.

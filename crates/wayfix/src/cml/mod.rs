@@ -19,8 +19,8 @@ mod system;
 
 pub use estimates::{CmlDrawing, CmlEstimateLog};
 pub use figures::{summarize, task};
-pub use odometry::made_odometry;
-pub use params::{CmlParams, MadeOdometry, PoseSigmas};
+pub use odometry::synthetic_odometry;
+pub use params::{CmlParams, PoseSigmas, SyntheticOdometry};
 pub use pictures::pictures;
 pub use plan::{CameraChoice, Plan};
 pub use reader::ViewReader;

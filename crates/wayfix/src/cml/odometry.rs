@@ -9,7 +9,7 @@ use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 const STREAM: u64 = 3;
 
 /// The increments of a path, each in the body frame before it, with noise that grows with the way and with the turn.
-pub fn made_odometry(path: &[Pose2<f64>], noise: &OdometryNoise, seed: u64) -> Vec<Pose2<f64>> {
+pub fn synthetic_odometry(path: &[Pose2<f64>], noise: &OdometryNoise, seed: u64) -> Vec<Pose2<f64>> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(STREAM);
     let mut noisy = |pair: &[Pose2<f64>]| {
@@ -35,9 +35,11 @@ mod tests {
             })
             .collect();
         let none =
-            OdometryNoise { forward: 0.0, sideways: 0.0, heading_per_metre: 0.0, heading_per_radian: 0.0 };
+            OdometryNoise { forward: 0.0, sideways: 0.0, heading_per_meter: 0.0, heading_per_radian: 0.0 };
         let end = |noise: &OdometryNoise| {
-            made_odometry(&path, noise, 1).iter().fold(path[0], |pose, increment| pose.compose(increment))
+            synthetic_odometry(&path, noise, 1)
+                .iter()
+                .fold(path[0], |pose, increment| pose.compose(increment))
         };
         let error = |noise: &OdometryNoise| (end(noise).translation - path[49].translation).norm();
         // The filter's floor of 1e-6 a step remains.

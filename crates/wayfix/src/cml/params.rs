@@ -14,11 +14,11 @@ pub struct CmlParams {
     /// By how much odometry is stamped later than images that show the same, s; negative where it is stamped earlier.
     pub odometry_delay: f64,
     /// What is known of the poses that a map is taught with.
-    pub taught: PoseSigmas,
+    pub taught_pose: PoseSigmas,
     /// What is known of the start.
     pub start: PoseSigmas,
     /// How a folder of frames, which has no odometry, comes by one.
-    pub made_odometry: MadeOdometry,
+    pub synthetic_odometry: SyntheticOdometry,
     /// How panoramas are described.
     pub views: PanoramaParams,
     /// The localizer.
@@ -30,9 +30,9 @@ impl Default for CmlParams {
         Self {
             velocity_hold: VELOCITY_HOLD,
             odometry_delay: 0.0,
-            taught: PoseSigmas::default(),
+            taught_pose: PoseSigmas::default(),
             start: PoseSigmas::default(),
-            made_odometry: MadeOdometry::default(),
+            synthetic_odometry: SyntheticOdometry::default(),
             views: PanoramaParams::default(),
             localizer: LocalizerParams::default(),
         }
@@ -58,7 +58,7 @@ impl Default for PoseSigmas {
 /// Odometry made of a path: its increments, smoothed, with noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct MadeOdometry {
+pub struct SyntheticOdometry {
     /// Standard deviation of the Gaussian that smooths the path, in frames: what measures a path trembles, wheels do not. As much as the path
     /// trembles, when not given.
     pub smoothing_frames: Option<f64>,

@@ -4,17 +4,18 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
 use super::{
-    CmlParams, ViewReader, made_odometry,
+    CmlParams, ViewReader,
     recording::{Frame, Heading, Recording, TurnEvidence, path, turn_evidence},
+    synthetic_odometry,
 };
 use crate::evaluate::TrueTrack;
-use crate::system::{HeldVelocity, PlausibleIncrement, possible};
+use crate::system::{HeldVelocity, PlausibleIncrement, check_velocity};
 
 /// What a run is made of: what the map is taught before it, and the records that it then goes through.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     /// Views with their poses.
-    pub lessons: Vec<(EncodedImage, Pose2<f64>)>,
+    pub training_views: Vec<(EncodedImage, Pose2<f64>)>,
     /// In time order.
     pub records: Vec<Record>,
     /// Remarks for the user.
@@ -61,7 +62,7 @@ impl Plan {
                 "only one of the two tables has headings: those of the paths are taken for both".to_owned(),
             );
         }
-        let smoothing = params.made_odometry.smoothing_frames;
+        let smoothing = params.synthetic_odometry.smoothing_frames;
         let (_, along) = path::poses(&taught.frames, heading, smoothing);
         let images = taught.frames.iter().map(|frame| &frame.image);
         let evidence = evidence(images.zip(along.iter().map(Pose2::heading)), params, camera);
@@ -73,7 +74,7 @@ impl Plan {
             };
         }
         if heading == Heading::Unknown {
-            params.taught.heading = ANY_HEADING;
+            params.taught_pose.heading = ANY_HEADING;
             // A map that grows on the way has nothing else to learn from.
             if learn_from.is_some() || withhold > 0 {
                 params.localizer.learning = Learning::Static;
@@ -83,10 +84,10 @@ impl Plan {
         notes.push(choose_sense(evidence, heading, params, camera));
 
         let (measured, smooth) = path::poses(&recording.frames, heading, smoothing);
-        let increments = made_odometry(&smooth, &params.made_odometry.noise, seed);
+        let increments = synthetic_odometry(&smooth, &params.synthetic_odometry.noise, seed);
         let is_taught =
             |index: usize| learn_from.is_none() && withhold > 0 && index % withhold != withhold - 1;
-        let lessons = match learn_from {
+        let training_views = match learn_from {
             Some(other) => {
                 let (poses, _) = path::poses(&other.frames, heading, smoothing);
                 other.frames.iter().map(|frame| frame.image.clone()).zip(poses).collect()
@@ -97,7 +98,7 @@ impl Plan {
             }
         };
         let records = records(&recording.frames, &measured, &increments, |index| !is_taught(index));
-        Ok(Self { lessons, records, notes, headings_are_measured: heading == Heading::Given })
+        Ok(Self { training_views, records, notes, headings_are_measured: heading == Heading::Given })
     }
 
     /// Columns and rows of the first view that shows something, as a reader makes panoramas.
@@ -142,7 +143,7 @@ impl Plan {
                 n_images += 1;
                 if n_images % withhold != 0 {
                     if let Some(pose) = truth.at(record.stamp) {
-                        plan.lessons.push((image.clone(), pose));
+                        plan.training_views.push((image.clone(), pose));
                     }
                     continue;
                 }
@@ -189,7 +190,7 @@ fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage,
             Data::OdometryIncrement(increment) if plausible.check(record.stamp, increment).is_ok() => {
                 pose = pose.compose(increment);
             }
-            Data::Velocity(velocity) if possible(*velocity).is_ok() => {
+            Data::Velocity(velocity) if check_velocity(*velocity).is_ok() => {
                 advance();
                 let _: Result<(), String> = held.hold(record.stamp, *velocity);
             }

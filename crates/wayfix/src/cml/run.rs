@@ -51,7 +51,7 @@ pub struct CmlRun {
     pub notes: Vec<String>,
 }
 
-/// Teaches the lessons of a plan, puts the robot at its start and takes the records through, showing the system to `observe` after each.
+/// Teaches the training_views of a plan, puts the robot at its start and takes the records through, showing the system to `observe` after each.
 ///
 /// # Errors
 /// When there is no image, or none that could be used.
@@ -68,8 +68,8 @@ pub fn run(
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
     }
     check_overlap(&plan.records, ODOMETRY, ("images", |data| matches!(data, Data::Image(_))))?;
-    for (image, pose) in &plan.lessons {
-        system.teach(image, pose, &params.taught)?;
+    for (image, pose) in &plan.training_views {
+        system.teach(image, pose, &params.taught_pose)?;
     }
     system.start(begin(start, &params.start, seed)?)?;
     let records = without_odometry_delay(&plan.records, params.odometry_delay);

@@ -10,7 +10,9 @@ use wayfix_gaussian_core::Gaussian;
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
 use super::{CmlParams, PoseSigmas, ViewReader};
-use crate::system::{Events, HeldVelocity, PlausibleIncrement, Stopwatch, System, possible, warn_of_lag};
+use crate::system::{
+    Events, HeldVelocity, PlausibleIncrement, Stopwatch, System, check_velocity, warn_of_lag,
+};
 
 /// The localizer of panoramas with the index that does not compare with every reference.
 pub type PanoramaLocalizer = AppearanceLocalizer<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
@@ -112,7 +114,7 @@ impl CmlSystem {
         match self.reader.describe(image) {
             Ok(view) => {
                 self.localizer.teach(view, &gaussian(pose, sigmas)?)?;
-                self.events.count("taught");
+                self.events.count("view_taught");
             }
             Err(error) => self.events.refuse("view_refused", format!("{error:#}")),
         }
@@ -208,7 +210,7 @@ impl System for CmlSystem {
                 self.move_by(increment)
             }
             Data::Velocity(velocity) => {
-                possible(*velocity)?;
+                check_velocity(*velocity)?;
                 self.advance_to(record.stamp)?;
                 self.velocity.hold(record.stamp, *velocity)
             }

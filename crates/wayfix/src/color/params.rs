@@ -17,7 +17,7 @@ pub struct ColorSystemParams {
     /// What becomes of colours that an image does not show.
     pub unseen: Unseen,
     /// Probability that the light is not switched from one frame to the next.
-    pub light_stays: f64,
+    pub light_persistence: f64,
     /// By how much odometry is stamped later than images that show the same, s; negative where it is stamped earlier.
     pub odometry_delay: f64,
     /// What is known of the start where the log has true poses.
@@ -53,7 +53,7 @@ impl Default for ColorSystemParams {
             mean_noise: None,
             drift: Drift::TowardsPrior(120.0),
             unseen: Unseen::Marginalize,
-            light_stays: 0.98,
+            light_persistence: 0.98,
             odometry_delay: 0.0,
             start: StartParams::default(),
             localizer: LocalizerParams::default(),

@@ -91,7 +91,7 @@ fn part_of(frame: usize, n_camera_frames: usize) -> usize {
 struct Sheet {
     left: f64,
     top: f64,
-    pixels_a_metre: f64,
+    pixels_per_meter: f64,
     height: usize,
     pixels: Vec<[u8; 3]>,
 }
@@ -105,15 +105,15 @@ impl Sheet {
             (low - MARGIN, high + MARGIN)
         };
         let ((left, right), (bottom, top)) = (range(|point| point.0), range(|point| point.1));
-        let pixels_a_metre = WIDTH as f64 / (right - left);
-        let height = ((top - bottom) * pixels_a_metre).ceil().clamp(1.0, 2.0 * WIDTH as f64) as usize;
-        Self { left, top, pixels_a_metre, height, pixels: vec![PAPER; WIDTH * height] }
+        let pixels_per_meter = WIDTH as f64 / (right - left);
+        let height = ((top - bottom) * pixels_per_meter).ceil().clamp(1.0, 2.0 * WIDTH as f64) as usize;
+        Self { left, top, pixels_per_meter, height, pixels: vec![PAPER; WIDTH * height] }
     }
 
     /// A pose as a disc with a line ahead.
     fn pose(&mut self, pose: &Pose2<f64>, ink: [u8; 3]) {
         let (sin, cos) = pose.heading().sin_cos();
-        let ahead = 20.0 / self.pixels_a_metre;
+        let ahead = 20.0 / self.pixels_per_meter;
         self.disc([pose.x(), pose.y()], 6.0, ink);
         self.line(&[(pose.x(), pose.y()), (pose.x() + ahead * cos, pose.y() + ahead * sin)], ink);
     }
@@ -121,7 +121,7 @@ impl Sheet {
     fn line(&mut self, points: &[(f64, f64)], ink: [u8; 3]) {
         for pair in points.windows(2) {
             let &[(x0, y0), (x1, y1)] = pair else { continue };
-            let length = (x1 - x0).hypot(y1 - y0) * self.pixels_a_metre;
+            let length = (x1 - x0).hypot(y1 - y0) * self.pixels_per_meter;
             // What is longer than any field can be is not drawn pixel by pixel.
             let n_steps = length.ceil().clamp(1.0, 10_000.0);
             for k in 0..=n_steps as usize {
@@ -133,7 +133,7 @@ impl Sheet {
 
     /// A disc of a radius in pixels; what is outside of the sheet, or nowhere, is not drawn.
     fn disc(&mut self, [x, y]: [f64; 2], radius: f64, ink: [u8; 3]) {
-        let (column, row) = ((x - self.left) * self.pixels_a_metre, (self.top - y) * self.pixels_a_metre);
+        let (column, row) = ((x - self.left) * self.pixels_per_meter, (self.top - y) * self.pixels_per_meter);
         let reach = radius.ceil() as i64;
         for dy in -reach..=reach {
             for dx in -reach..=reach {
@@ -168,7 +168,7 @@ mod tests {
         sheet.disc([1e300, f64::INFINITY], 3.0, ESTIMATE);
         let at = sheet.pixels.iter().position(|pixel| *pixel == TRUTH).expect("drawn");
         let (column, row) = ((at % WIDTH) as f64, (at / WIDTH) as f64);
-        let margin = MARGIN * sheet.pixels_a_metre;
+        let margin = MARGIN * sheet.pixels_per_meter;
         assert!((column - margin).abs() < 3.0 && (row - margin).abs() < 3.0, "{column} {row}");
         assert!(!sheet.pixels.contains(&ESTIMATE));
     }

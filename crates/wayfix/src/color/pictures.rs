@@ -76,7 +76,7 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<P
         let labels = run.system.classified(&yuv).map_err(anyhow::Error::msg)?;
         let pixels: Vec<u8> = labels.iter().flat_map(|label| paint(*label)).collect();
         let caption = format!("{seconds:.1} s");
-        seen.push(FilmFrame { image: image.for_the_web()?, caption: caption.clone() });
+        seen.push(FilmFrame { image: image.to_browser_format()?, caption: caption.clone() });
         let painted = EncodedImage::png_rgb(decoded.width, decoded.height, &pixels)?;
         classified.push(FilmFrame { image: painted, caption });
     }

@@ -79,6 +79,6 @@ pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<Light
         unseen: params.unseen,
     };
     let filters = priors.members().iter().map(|prior| LightingFilter::new(prior.clone(), lighting));
-    let chain = MarkovChain::sticky(priors.members().len(), params.light_stays)?;
+    let chain = MarkovChain::sticky(priors.members().len(), params.light_persistence)?;
     Ok(LightingBank::new(filters.collect::<Result<_, _>>()?, chain)?)
 }

@@ -146,7 +146,7 @@ impl ColorSystem {
         let colors = self.colors();
         let table = match self.table.take() {
             Some(mut table) => {
-                table.follow(colors).map_err(|error| error.to_string())?;
+                table.rebuild_if_changed(colors).map_err(|error| error.to_string())?;
                 table
             }
             None => {

@@ -1,6 +1,6 @@
 use anyhow::{Context, Result};
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Record, Sighting, Target};
+use wayfix_sensor_log::{Data, Detection, Record, Target};
 use wayfix_slam_ekf::{
     EkfSlam, KnownIds, LandmarkId, Observation, RangeBearing, RangeBearingSensor, SlamParams,
 };
@@ -10,7 +10,7 @@ use crate::{evaluate::Sample, monobot::plain_filter};
 
 /// What the filter says after one look, beside the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct ConsistencySample {
     /// Since the first record, s.
     pub seconds: f64,
     /// Normalized estimation error squared of the pose, in the filter's own coordinates.
@@ -25,11 +25,11 @@ pub struct Look {
 ///
 /// # Errors
 /// When the log has no true start, or the filter refuses what was simulated.
-pub fn drive(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<Vec<Look>> {
+pub fn drive(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<Vec<ConsistencySample>> {
     let mut slam = filter(laps, records, kind)?;
     let start_stamp = records.first().context("an empty log")?.stamp;
     let motion = laps.motion();
-    let (mut truth, mut has_moved, mut looks) = (*slam.robot(), false, Vec::new());
+    let (mut truth, mut has_moved, mut samples) = (*slam.robot(), false, Vec::new());
     for record in records {
         match &record.data {
             Data::TruePose(pose) => truth = *pose,
@@ -37,16 +37,21 @@ pub fn drive(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<Vec<Lo
                 slam.predict(&motion, increment)?;
                 has_moved = true;
             }
-            Data::Sightings(sightings) => {
-                slam.update(&observations(sightings), &mut KnownIds)?;
+            Data::Detections(detections) => {
+                slam.update(&observations(detections), &mut KnownIds)?;
                 if has_moved {
-                    looks.push(look(&slam, kind, truth, record.stamp.seconds_since(start_stamp)));
+                    samples.push(consistency_sample(
+                        &slam,
+                        kind,
+                        truth,
+                        record.stamp.seconds_since(start_stamp),
+                    ));
                 }
             }
             _ => {}
         }
     }
-    Ok(looks)
+    Ok(samples)
 }
 
 fn filter(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<EkfSlam<RangeBearingSensor>> {
@@ -69,20 +74,25 @@ fn filter(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<EkfSlam<R
     Ok(slam)
 }
 
-fn observations(sightings: &[Sighting]) -> Vec<Observation<RangeBearing>> {
-    let observation = |sighting: &Sighting| match sighting.target {
+fn observations(detections: &[Detection]) -> Vec<Observation<RangeBearing>> {
+    let observation = |detection: &Detection| match detection.target {
         Target::Landmark(id) => {
-            let measurement = RangeBearing::new(sighting.range, sighting.bearing);
+            let measurement = RangeBearing::new(detection.range, detection.bearing);
             Some(Observation { label: Some(LandmarkId(id)), measurement })
         }
         _ => None,
     };
-    sightings.iter().filter_map(observation).collect()
+    detections.iter().filter_map(observation).collect()
 }
 
-fn look(slam: &EkfSlam<RangeBearingSensor>, kind: FilterKind, truth: Pose2<f64>, seconds: f64) -> Look {
+fn consistency_sample(
+    slam: &EkfSlam<RangeBearingSensor>,
+    kind: FilterKind,
+    truth: Pose2<f64>,
+    seconds: f64,
+) -> ConsistencySample {
     let sample = Sample { estimate: *slam.robot(), covariance: slam.robot_covariance(), truth };
-    Look {
+    ConsistencySample {
         seconds,
         nees: sample.nees_of(&kind.error(&sample)).unwrap_or(f64::NAN),
         position_error: sample.position_error(),

@@ -40,7 +40,7 @@ pub struct Laps {
     /// The anchored filter is told the place of every so many-th landmark; of the first alone when this is 0.
     pub anchor_every: u32,
     /// How far the sensor sees, all around, m.
-    pub reach_m: f64,
+    pub max_range_m: f64,
     /// Standard deviation of x and of y of every increment of two metres, m.
     pub odometry_sigma_m: f64,
     /// Standard deviation of its turn, rad.
@@ -67,7 +67,7 @@ impl Default for Laps {
             spacing_m: 4.0,
             n_laps: 3,
             anchor_every: 12,
-            reach_m: 8.0,
+            max_range_m: 8.0,
             odometry_sigma_m: 0.06,
             odometry_sigma_rad: 0.02,
             range_sigma_m: 0.1,
@@ -97,7 +97,7 @@ impl Laps {
         }
     }
 
-    /// What it may assume of sightings.
+    /// What it may assume of detections.
     pub fn sensor(&self) -> RangeBearingSensor {
         RangeBearingSensor {
             range_sigma: self.range_sigma_m,
@@ -137,8 +137,8 @@ impl Laps {
             odometry: OdometryParams::Gaussian(odometry),
             sensor: RangeBearingParams {
                 period_ms: PERIOD_MS,
-                max_range_m: self.reach_m,
-                range_noise: RangeSigma { constant_m: self.range_sigma_m, per_metre: 0.0 },
+                max_range_m: self.max_range_m,
+                range_noise: RangeSigma { constant_m: self.range_sigma_m, per_meter: 0.0 },
                 bearing_sigma_rad: self.bearing_sigma_rad,
                 ..RangeBearingParams::default()
             },
@@ -160,7 +160,7 @@ mod tests {
             Laps { width_m: f64::INFINITY, ..good },
             Laps { width_m: 1.0, ..good }, // no block inside the corridor
             Laps { spacing_m: 0.0, ..good },
-            Laps { reach_m: -1.0, ..good },
+            Laps { max_range_m: -1.0, ..good },
             Laps { odometry_sigma_m: -0.1, ..good },
             Laps { bearing_sigma_rad: f64::NAN, ..good },
             Laps { n_laps: u32::MAX, ..good },

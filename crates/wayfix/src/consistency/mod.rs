@@ -9,8 +9,8 @@ mod filter_kind;
 mod laps;
 mod pictures;
 
-pub use drive::{Look, drive};
-pub use figures::{Course, MonteCarlo, monte_carlo};
+pub use drive::{ConsistencySample, drive};
+pub use figures::{FilterHistory, MonteCarlo, monte_carlo};
 pub use filter_kind::FilterKind;
 pub use laps::Laps;
 pub use pictures::picture;

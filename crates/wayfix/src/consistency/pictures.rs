@@ -7,7 +7,7 @@ use crate::plot::{LinesPlot, NamedBand, Picture, PlotError, Scale, Series};
 /// When the picture cannot be drawn.
 pub fn picture(runs: &MonteCarlo) -> Result<Picture, PlotError> {
     let series = runs.courses.iter().map(|course| {
-        let points = course.looks.iter().map(|look| (look.seconds, look.nees)).collect();
+        let points = course.samples.iter().map(|look| (look.seconds, look.nees)).collect();
         Series::new(course.kind.name().replace('_', " "), points)
     });
     let (low, high) = (runs.band.low, runs.band.high);

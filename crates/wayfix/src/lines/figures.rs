@@ -27,13 +27,13 @@ pub fn summarize(system: &mut LineSystem) -> Run {
 }
 
 fn beside_truth(score: WallScore) -> Vec<Metric> {
-    let WallScore { n_true, n_false, n_within_2_sigma, squared_sum, n_in_sight, n_missed } = score;
+    let WallScore { n_true, n_false, n_within_2_sigma, squared_sum, n_visible, n_missed } = score;
     let share = |n: usize, of: usize| if of > 0 { n as f64 / of as f64 } else { f64::NAN };
     vec![
         Metric::new("within_2_sigma_share", share(n_within_2_sigma, n_true), ""),
         Metric::new("nees_mean", squared_sum / n_true as f64, ""),
         Metric::new("false_share", share(n_false, n_true + n_false), ""),
-        Metric::new("found_share", share(n_in_sight - n_missed, n_in_sight), ""),
+        Metric::new("found_share", share(n_visible - n_missed, n_visible), ""),
     ]
 }
 

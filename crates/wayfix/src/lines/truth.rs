@@ -22,8 +22,8 @@ pub struct WallScore {
     /// Sum of $`d^2`$ over `n_true`; its mean is 2, were every covariance right.
     pub squared_sum: f64,
     /// True walls in sight, scan by scan: with at least 10 echoes within 3 cm that are nearest to this wall and span at least 0.6 m.
-    pub n_in_sight: usize,
-    /// Those of `n_in_sight` that no segment of the scan is of.
+    pub n_visible: usize,
+    /// Those of `n_visible` that no segment of the scan is of.
     pub n_missed: usize,
 }
 
@@ -41,7 +41,7 @@ impl WallScore {
                 score.add(scan, &truth.iter().map(|wall| Wall::seen_from(pose, wall)).collect::<Vec<_>>());
             }
         }
-        (score.n_true + score.n_false + score.n_in_sight > 0 && !truth.is_empty()).then_some(score)
+        (score.n_true + score.n_false + score.n_visible > 0 && !truth.is_empty()).then_some(score)
     }
 
     fn add(&mut self, scan: &ScanWalls, truth: &[Wall]) {
@@ -56,9 +56,9 @@ impl WallScore {
                 None => self.n_false += 1,
             }
         }
-        let in_sight = in_sight(scan, truth);
-        self.n_in_sight += in_sight.len();
-        self.n_missed += in_sight.iter().filter(|wall| !found.contains(wall)).count();
+        let visible_walls = visible_walls(scan, truth);
+        self.n_visible += visible_walls.len();
+        self.n_missed += visible_walls.iter().filter(|wall| !found.contains(wall)).count();
     }
 
     fn compare(&mut self, segment: &Segment, wall: &Wall) {
@@ -71,7 +71,7 @@ impl WallScore {
 }
 
 /// Walls with enough echoes on them, by what the laser truly saw.
-fn in_sight(scan: &ScanWalls, truth: &[Wall]) -> Vec<usize> {
+fn visible_walls(scan: &ScanWalls, truth: &[Wall]) -> Vec<usize> {
     let mut places: Vec<Vec<f64>> = vec![Vec::new(); truth.len()];
     for (bearing, range) in &scan.echoes {
         let echo = Vector2::new(bearing.cos(), bearing.sin()) * *range;
@@ -158,20 +158,20 @@ mod tests {
     fn wall_in_place_is_within_two_sigma_and_a_shifted_one_not() {
         let score = |off: f64| WallScore::of(&[scan(off)], &[wall(-9.0, 9.0)]).unwrap();
         let right = score(0.0);
-        assert_eq!((right.n_true, right.n_within_2_sigma, right.n_in_sight, right.n_missed), (1, 1, 1, 0));
+        assert_eq!((right.n_true, right.n_within_2_sigma, right.n_visible, right.n_missed), (1, 1, 1, 0));
         assert!(right.squared_sum < 1e-12);
         // 61 echoes of 1 cm: 10 mm are some 7σ, and still the same wall.
         let beside = score(0.01);
         assert_eq!((beside.n_true, beside.n_within_2_sigma, beside.n_false), (1, 0, 0));
         let elsewhere = score(0.3);
-        assert_eq!((elsewhere.n_true, elsewhere.n_false, elsewhere.n_in_sight), (0, 1, 0));
+        assert_eq!((elsewhere.n_true, elsewhere.n_false, elsewhere.n_visible), (0, 1, 0));
     }
 
     #[test]
     fn a_wall_that_is_not_found_is_missed() {
         let blind = ScanWalls { segments: Vec::new(), ..scan(0.0) };
         let score = WallScore::of(std::slice::from_ref(&blind), &[wall(-9.0, 9.0)]).unwrap();
-        assert_eq!((score.n_in_sight, score.n_missed), (1, 1));
+        assert_eq!((score.n_visible, score.n_missed), (1, 1));
         let nowhere = ScanWalls { pose: None, ..blind };
         assert_eq!(WallScore::of(&[nowhere], &[wall(-9.0, 9.0)]), None);
         assert_eq!(WallScore::of(&[scan(0.0)], &[]), None);

@@ -2,7 +2,7 @@ use anyhow::Result;
 use nalgebra::{Matrix1, Vector1};
 use wayfix_scene_sim::monobot::{MonobotParams, MonobotRun};
 use wayfix_slam_ekf::{
-    Confirmation, EkfSlam, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, SlamParams,
+    ConfirmationParams, EkfSlam, KnownIds, LandmarkId, MonobotMotion, MonobotSensor, Observation, SlamParams,
     observability::ObservabilityRecorder,
 };
 
@@ -45,7 +45,7 @@ const SMALLEST_SIGMA: f64 = 1e-6;
 
 /// The plain Kalman filter: every landmark counts at once, and no look is doubted.
 pub(crate) fn plain_filter() -> SlamParams {
-    let confirmation = Confirmation { n_sightings: 1, ..Confirmation::default() };
+    let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
     SlamParams { gate_probability: 1.0 - 1e-12, confirmation, ..SlamParams::default() }
 }
 
@@ -72,7 +72,7 @@ pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> 
             observability.record_robot(&slam, &Matrix1::identity(), &innovation.covariance);
         }
         let gains = gains(&slam, run.ranges[k].first().copied());
-        let seen = look(run, k, reference);
+        let seen = observations(run, k, reference);
         slam.update(&seen, &mut KnownIds)?;
         observability.record(&slam, &seen.iter().filter_map(|seen| seen.label).collect::<Vec<_>>());
         steps.extend(step(&slam, *true_position, params.landmark_m, gains));
@@ -80,7 +80,7 @@ pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> 
     Ok(Drive { steps, true_landmark: params.landmark_m, observability })
 }
 
-fn look(run: &MonobotRun, k: usize, reference: Reference) -> Vec<Observation<Vector1<f64>>> {
+fn observations(run: &MonobotRun, k: usize, reference: Reference) -> Vec<Observation<Vector1<f64>>> {
     let ids = (0..).map(LandmarkId);
     let anchor = (reference == Reference::Anchor).then_some((ANCHOR, run.anchor_ranges[k]));
     let all = anchor.into_iter().chain(ids.zip(run.ranges[k].iter().copied()));
@@ -90,7 +90,7 @@ fn look(run: &MonobotRun, k: usize, reference: Reference) -> Vec<Observation<Vec
 /// $`K = P H^T s^{-1}`$ with $`H = (-1, 1)`$ for a look at the first landmark alone; none before it is in the map.
 fn gains(slam: &EkfSlam<MonobotSensor>, distance: Option<f64>) -> [f64; 2] {
     use wayfix_slam_ekf::LandmarkModel;
-    let (Some(distance), true) = (distance, slam.knows(LandmarkId(0))) else { return [f64::NAN; 2] };
+    let (Some(distance), true) = (distance, slam.contains(LandmarkId(0))) else { return [f64::NAN; 2] };
     let p = slam.covariance();
     let noise = slam.model().noise(&Vector1::new(distance)).x;
     let s = p[(0, 0)] - 2.0 * p[(0, 1)] + p[(1, 1)] + noise;

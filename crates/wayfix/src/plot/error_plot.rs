@@ -71,7 +71,7 @@ impl ErrorPlot {
     fn plate(&self, x: Axis, k: usize) -> Option<Plate> {
         let (name, unit) = COMPONENTS[k];
         let errors = || self.samples.iter().map(|sample| (unit * sample.error[k]).abs());
-        // Every error is seen; a band that is wide for a moment, as before the first sighting, may be cut off.
+        // Every error is seen; a band that is wide for a moment, as before the first detection, may be cut off.
         let largest_error = quantile(errors(), 1.0)?;
         let usual_band =
             quantile(self.samples.iter().map(|sample| 3.0 * unit * sample.sigma[k]), 0.95).unwrap_or(0.0);

@@ -145,10 +145,10 @@ impl MapPlot {
         let least = if length > 0.0 { 1e-6 * length } else { 1.0 };
         let (x, y) = (x.padded(0.04 * length, least), y.padded(0.04 * length, least));
         let shape = (y.length() / x.length()).clamp(SHAPE.0, SHAPE.1);
-        let metres_wide = x.length().max(y.length() / shape);
+        let meters_wide = x.length().max(y.length() / shape);
         // To the pixel, then the axes follow it: rounding the other way round would stretch one of them.
         let height = (PANEL_WIDTH * shape).round();
-        Some((x.widened(metres_wide), y.widened(metres_wide * height / PANEL_WIDTH), height))
+        Some((x.widened(meters_wide), y.widened(meters_wide * height / PANEL_WIDTH), height))
             .map(|(x, y, height)| (Axis::linear(x.low, x.high), Axis::linear(y.low, y.high), height))
     }
 }

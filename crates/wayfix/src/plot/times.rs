@@ -68,7 +68,7 @@ impl TimesPlot {
             .with(Mark::Line(Ink::Data(1)), "median");
         let plate = Plate { heading, x, y, height: PANEL_HEIGHT };
         Frame { title: &self.title, alt, legend, x_label: &self.x_label }.draw(&[plate], |_, panel| {
-            for point in self.thinned(x, y) {
+            for point in self.decimated(x, y) {
                 panel.dot(point, 1.5, Ink::ESTIMATE, 0.55)?;
             }
             panel.path(&self.medians(x), Ink::Data(1), 1.8)
@@ -76,7 +76,7 @@ impl TimesPlot {
     }
 
     /// The longest time of each small cell of the panel: sparse points, and with them the extremes, all stay.
-    fn thinned(&self, x: Axis, y: Axis) -> Vec<(f64, f64)> {
+    fn decimated(&self, x: Axis, y: Axis) -> Vec<(f64, f64)> {
         let mut cells = CELLS;
         loop {
             let mut longest: BTreeMap<(i64, i64), (f64, f64)> = BTreeMap::new();

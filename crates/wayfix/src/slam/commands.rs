@@ -7,13 +7,13 @@ use super::RobotParams;
 
 /// Velocity commands of the log, and the motion they make: later, and in shorter turns.
 ///
-/// A command acts `command_delay` after its stamp. Around a change of commands the robot does, for `command_erosion`, whichever
+/// A command acts `command_delay` after its stamp. Around a change of commands the robot does, for `turn_command_shortening`, whichever
 /// turns less: a base that takes commands in its own rhythm loses a little of every turn. With both zero a command simply
 /// holds until the next. No command holds longer than `velocity_hold`; after that the motion is unknown.
 #[derive(Clone, Debug)]
 pub(super) struct Commands {
     delay: i128,
-    erosion: i128,
+    shortening: i128,
     hold: i128,
     rows: VecDeque<(i128, Velocity)>,
 }
@@ -24,7 +24,7 @@ impl Commands {
     pub(super) fn new(robot: &RobotParams) -> Self {
         Self {
             delay: nanoseconds(robot.command_delay),
-            erosion: nanoseconds(robot.command_erosion),
+            shortening: nanoseconds(robot.turn_command_shortening),
             hold: nanoseconds(robot.velocity_hold),
             rows: VecDeque::new(),
         }
@@ -55,7 +55,7 @@ impl Commands {
         let (from, to) =
             (i128::from(from.nanoseconds()) - self.delay, i128::from(to.nanoseconds()) - self.delay);
         let changes =
-            self.rows.iter().flat_map(|(stamp, _)| [*stamp, stamp + self.erosion, stamp + self.hold]);
+            self.rows.iter().flat_map(|(stamp, _)| [*stamp, stamp + self.shortening, stamp + self.hold]);
         let mut cuts: Vec<i128> = changes.filter(|cut| (from..to).contains(cut)).collect();
         cuts.extend([from, to]);
         cuts.sort_unstable();
@@ -83,13 +83,13 @@ impl Commands {
 
     /// Forgets what no longer acts at `time` or later.
     pub(super) fn forget_before(&mut self, time: Stamp) {
-        let horizon = i128::from(time.nanoseconds()) - self.delay - self.erosion;
+        let horizon = i128::from(time.nanoseconds()) - self.delay - self.shortening;
         while self.rows.get(1).is_some_and(|(successor, _)| *successor <= horizon) {
             self.rows.pop_front();
         }
     }
 
-    /// What the robot does at a time of the log: of the rows in force within the erosion before it, the one that turns least; `None` when
+    /// What the robot does at a time of the log: of the rows in force within the shortening before it, the one that turns least; `None` when
     /// no command holds.
     fn acting_at(&self, time: i128) -> Option<Velocity> {
         let until = self.rows.partition_point(|(stamp, _)| *stamp <= time);
@@ -97,7 +97,7 @@ impl Commands {
         if time >= since + self.hold {
             return None;
         }
-        let from = self.rows.partition_point(|(stamp, _)| *stamp <= time - self.erosion).saturating_sub(1);
+        let from = self.rows.partition_point(|(stamp, _)| *stamp <= time - self.shortening).saturating_sub(1);
         let window = || self.rows.range(from..until).map(|(_, velocity)| *velocity);
         if window().any(|row| row.angular > 0.0) && window().any(|row| row.angular < 0.0) {
             return Some(Velocity { angular: 0.0, ..newest });
@@ -141,12 +141,13 @@ mod tests {
 
     #[test]
     fn a_delayed_command_acts_later_and_an_eroded_turn_is_shorter() {
-        let robot = RobotParams { command_delay: 0.15, command_erosion: 0.04, ..RobotParams::default() };
+        let robot =
+            RobotParams { command_delay: 0.15, turn_command_shortening: 0.04, ..RobotParams::default() };
         let pieces = turn_of_100_ms(robot);
         assert!((turned(&pieces) - 0.5 * 0.06).abs() < 1e-12); // 40 ms of the 100 are lost
         let before: f64 =
             pieces.iter().take_while(|piece| piece.angular == 0.0).map(|piece| piece.duration).sum();
-        assert!((before - 0.29).abs() < 1e-12); // 100 ms + delay + erosion
+        assert!((before - 0.29).abs() < 1e-12); // 100 ms + delay + shortening
         assert_eq!(pieces[0].linear, 0.0); // stands until the first command acts
     }
 
@@ -164,7 +165,8 @@ mod tests {
 
     #[test]
     fn forgets_only_what_no_longer_acts() {
-        let robot = RobotParams { command_delay: 0.15, command_erosion: 0.04, ..RobotParams::default() };
+        let robot =
+            RobotParams { command_delay: 0.15, turn_command_shortening: 0.04, ..RobotParams::default() };
         let mut commands = Commands::new(&robot);
         for step in 0..100 {
             commands.push(at(10 * step), Velocity { linear: 0.1, angular: step as f64 });

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::CovarianceEllipse;
 use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
 
-use super::{Keyframe, SlamSystem};
+use super::{SlamSystem, StampedEstimate};
 use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// The map as it is built beside the records, for viewers.
@@ -16,7 +16,7 @@ pub struct SlamDrawing {
     path: Vec<Pose2<f64>>,
 }
 
-/// The map and the whole path are written with every so many keyframes: they change slowly and are long.
+/// The map and the whole path are written with every so many stamped_estimates: they change slowly and are long.
 const MAP_PERIOD: usize = 20;
 /// Ellipses are drawn at two standard deviations.
 const SIGMAS: f64 = 2.0;
@@ -27,33 +27,51 @@ impl system::Drawing for SlamDrawing {
     type System = SlamSystem;
 
     fn draw(&mut self, _: &Record, system: &SlamSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {
-        for keyframe in &system.keyframes()[self.n_written..] {
-            self.path.push(keyframe.pose);
-            draw_keyframe(keyframe, writer)?;
+        for stamped_estimate in &system.stamped_estimates()[self.n_written..] {
+            self.path.push(stamped_estimate.pose);
+            draw_stamped_estimate(stamped_estimate, writer)?;
             if self.path.len() % MAP_PERIOD == 1 {
                 let (points, drawings) = map(system);
-                writer.poses_in_frame("/estimate/path", keyframe.stamp, topics::WORLD_FRAME, &self.path)?;
-                writer.point_cloud("/estimate/landmarks", keyframe.stamp, topics::WORLD_FRAME, &points)?;
-                writer.scene_update("/estimate/map", keyframe.stamp, topics::WORLD_FRAME, &drawings)?;
+                writer.poses_in_frame(
+                    "/estimate/path",
+                    stamped_estimate.stamp,
+                    topics::WORLD_FRAME,
+                    &self.path,
+                )?;
+                writer.point_cloud(
+                    "/estimate/landmarks",
+                    stamped_estimate.stamp,
+                    topics::WORLD_FRAME,
+                    &points,
+                )?;
+                writer.scene_update(
+                    "/estimate/map",
+                    stamped_estimate.stamp,
+                    topics::WORLD_FRAME,
+                    &drawings,
+                )?;
             }
         }
-        self.n_written = system.keyframes().len();
+        self.n_written = system.stamped_estimates().len();
         Ok(())
     }
 }
 
 /// The robot and how sure it is of its place.
-pub(crate) fn draw_keyframe(keyframe: &Keyframe, writer: &mut EstimateWriter) -> Result<(), LogError> {
-    let (stamp, pose, world) = (keyframe.stamp, &keyframe.pose, topics::WORLD_FRAME);
+pub(crate) fn draw_stamped_estimate(
+    stamped_estimate: &StampedEstimate,
+    writer: &mut EstimateWriter,
+) -> Result<(), LogError> {
+    let (stamp, pose, world) = (stamped_estimate.stamp, &stamped_estimate.pose, topics::WORLD_FRAME);
     writer.pose_in_frame(topics::ESTIMATED_POSE, stamp, world, pose)?;
     writer.frame_transform("/tf", stamp, world, topics::BODY_FRAME, pose)?;
-    writer.scene_update("/estimate/robot", stamp, world, &robot(keyframe))
+    writer.scene_update("/estimate/robot", stamp, world, &robot(stamped_estimate))
 }
 
-fn robot(keyframe: &Keyframe) -> Vec<Drawing> {
-    let rotation = keyframe.pose.rotation_matrix();
-    let covariance = rotation * keyframe.covariance.fixed_view::<2, 2>(0, 0) * rotation.transpose();
-    let center = [keyframe.pose.x(), keyframe.pose.y()];
+fn robot(stamped_estimate: &StampedEstimate) -> Vec<Drawing> {
+    let rotation = stamped_estimate.pose.rotation_matrix();
+    let covariance = rotation * stamped_estimate.covariance.fixed_view::<2, 2>(0, 0) * rotation.transpose();
+    let center = [stamped_estimate.pose.x(), stamped_estimate.pose.y()];
     ellipse("robot".to_owned(), ROBOT_COLOR, center, covariance).into_iter().collect()
 }
 

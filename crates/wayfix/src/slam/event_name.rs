@@ -8,9 +8,9 @@ where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
     match outcome {
-        Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_with_less_weight",
+        Outcome::Accepted { noise_scale, .. } if *noise_scale > 1.0 => "accepted_downweighted",
         Outcome::Accepted { .. } => "accepted",
-        Outcome::Gated { .. } => "gated",
+        Outcome::Rejected { .. } => "gated",
         Outcome::Initialized { .. } => "new_landmark",
         Outcome::Restarted { .. } => "restarted_landmark",
         Outcome::Ambiguous => "ambiguous",

@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::observability::ObservabilityRecorder;
 
-use super::{Keyframe, SlamRun};
+use super::{SlamRun, StampedEstimate};
 use crate::{
     evaluate::{Sample, align, landmark_errors, median_distance, rms_distance, trajectory_errors},
     report::{Metric, Run},
@@ -11,14 +11,14 @@ use crate::{
 pub fn summarize(run: &mut SlamRun) -> Run {
     let (metrics, timings) = metrics(run);
     let mut summary = Run { metrics, timings, events: run.events().counts(), ..Run::default() };
-    free_directions(run.system.observability(), &mut summary);
+    unobservable_directions(run.system.observability(), &mut summary);
     summary
 }
 
 /// Adds which motions of the whole map nothing has ever constrained, where that was recorded.
-pub(crate) fn free_directions(recorder: Option<&ObservabilityRecorder>, summary: &mut Run) {
+pub(crate) fn unobservable_directions(recorder: Option<&ObservabilityRecorder>, summary: &mut Run) {
     let Some(recorder) = recorder else { return };
-    let free = recorder.free_directions();
+    let free = recorder.unobservable_directions();
     summary.metrics.push(Metric::new("state_dimension", recorder.dimension() as f64, ""));
     summary.metrics.push(Metric::new("n_free_directions", free.len() as f64, ""));
     summary.notes.push(match free.as_slice() {
@@ -43,7 +43,7 @@ fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
     let dead_reckoning: Vec<Sample> = run
         .samples()
         .into_iter()
-        .map(|(keyframe, sample)| Sample { estimate: keyframe.dead_reckoning, ..sample })
+        .map(|(stamped_estimate, sample)| Sample { estimate: stamped_estimate.dead_reckoning, ..sample })
         .collect();
     if let Some(errors) = trajectory_errors(&dead_reckoning) {
         metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
@@ -61,7 +61,7 @@ fn metrics(run: &mut SlamRun) -> (Vec<Metric>, Vec<Metric>) {
         ["gated", "duplicate", "unusable", "record_refused"].map(|name| events.get(name)).iter().sum::<u64>();
     metrics.push(Metric::new("n_landmarks", run.system.filter().n_landmarks() as f64, ""));
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
-    (metrics, timings(run.system.keyframes()))
+    (metrics, timings(run.system.stamped_estimates()))
 }
 
 /// Where the log has true positions of an antenna and no true poses.
@@ -71,8 +71,9 @@ fn position_metrics(run: &SlamRun) -> Vec<Metric> {
         return Vec::new();
     }
     let estimated = positions.iter().map(|(_, estimate, truth)| (*estimate, *truth));
-    let reckoned =
-        positions.iter().map(|(keyframe, _, truth)| (run.system.antenna(&keyframe.dead_reckoning), *truth));
+    let reckoned = positions
+        .iter()
+        .map(|(stamped_estimate, _, truth)| (run.system.antenna(&stamped_estimate.dead_reckoning), *truth));
     let motion = align(estimated.clone());
     let mut metrics = Vec::new();
     let mut add = |name, value: Option<f64>| metrics.extend(value.map(|value| Metric::new(name, value, "m")));
@@ -85,8 +86,9 @@ fn position_metrics(run: &SlamRun) -> Vec<Metric> {
 }
 
 /// Mean, median and largest computing time of a step.
-pub(crate) fn timings(keyframes: &[Keyframe]) -> Vec<Metric> {
-    let mut steps: Vec<f64> = keyframes.iter().map(|keyframe| keyframe.step.as_secs_f64() * 1e6).collect();
+pub(crate) fn timings(stamped_estimates: &[StampedEstimate]) -> Vec<Metric> {
+    let mut steps: Vec<f64> =
+        stamped_estimates.iter().map(|stamped_estimate| stamped_estimate.step.as_secs_f64() * 1e6).collect();
     steps.sort_unstable_by(f64::total_cmp);
     let mean = steps.iter().sum::<f64>() / steps.len() as f64;
     let of_rank = |rank: usize| steps.get(rank).copied().unwrap_or(f64::NAN);

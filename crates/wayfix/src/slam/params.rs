@@ -3,8 +3,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_sensor_log::{Format, LogMeta};
 use wayfix_slam_ekf::{
-    AckermannVehicle, Confirmation, IncrementMotion, JointCompatibilityParams, LookErrors, Merging,
-    NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
+    AckermannVehicle, ConfirmationParams, CorrelatedNoise, IncrementMotion, JointCompatibilityParams,
+    MergingParams, NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
 use crate::{settings::over_defaults, system::VELOCITY_HOLD};
@@ -23,7 +23,7 @@ use crate::{settings::over_defaults, system::VELOCITY_HOLD};
 pub struct SlamSystemParams {
     /// The robot whose defaults these are.
     pub profile: Profile,
-    /// How sightings find their landmarks; when not given, by identity where the log has identities, else joint compatibility.
+    /// How detections find their landmarks; when not given, by identity where the log has identities, else joint compatibility.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub association: Option<AssociationRule>,
     /// Start pose, m and rad; when not given, the truth where odometry starts, a fit to the first true positions, or the origin.
@@ -48,7 +48,7 @@ pub struct SlamSystemParams {
     /// Thresholds of joint compatibility.
     pub joint_compatibility: JointCompatibilityParams,
     /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
-    pub unlabelled_confirmation: Confirmation,
+    pub unlabelled_confirmation: ConfirmationParams,
     /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
     #[serde(skip)]
     pub record_observability: bool,
@@ -79,7 +79,7 @@ pub struct RobotParams {
     /// Time from the stamp of a velocity command to the motion it makes, s.
     pub command_delay: f64,
     /// By how much a commanded turn is shorter than the log says, s.
-    pub command_erosion: f64,
+    pub turn_command_shortening: f64,
     /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
     /// navigation.
     pub velocity_hold: f64,
@@ -94,7 +94,7 @@ impl Default for RobotParams {
         Self {
             sensor_latency: 0.0,
             command_delay: 0.0,
-            command_erosion: 0.0,
+            turn_command_shortening: 0.0,
             velocity_hold: VELOCITY_HOLD,
             range_is_depth: false,
             range_scale_sigma: 0.0,
@@ -109,7 +109,7 @@ pub enum Profile {
     /// Nothing is known of the robot: a good sensor (5 cm, 0.01 rad), odometry as it comes.
     Generic,
     /// The simulated range-bearing logs for comparing programs: 0.02 m and 0.005 rad for every increment, 0.05 m and 0.01 rad
-    /// for every sighting.
+    /// for every detection.
     RangeBearing,
     /// The truck of the Victoria Park set: a car with a laser that finds tree trunks.
     VictoriaPark,
@@ -129,7 +129,7 @@ impl Profile {
     }
 }
 
-/// How sightings find their landmarks.
+/// How detections find their landmarks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum AssociationRule {
@@ -158,10 +158,10 @@ impl SlamSystemParams {
                 filter: SlamParams::default(),
                 nearest_neighbour: NearestNeighbourParams::default(),
                 joint_compatibility: JointCompatibilityParams::default(),
-                unlabelled_confirmation: Confirmation {
-                    n_sightings: 3,
-                    patience: Some(20),
-                    ..Confirmation::default()
+                unlabelled_confirmation: ConfirmationParams {
+                    n_detections: 3,
+                    max_missed: Some(20),
+                    ..ConfirmationParams::default()
                 },
                 record_observability: false,
             },
@@ -188,9 +188,9 @@ impl SlamSystemParams {
                     range_sigma: 1.0,
                     range_sigma_per_meter: 0.0,
                     bearing_sigma: 0.05,
-                    reach: 30.0,
+                    sensor_range: 30.0,
                     half_field_of_view: 1.3,
-                    look_errors: None,
+                    correlated_noise: None,
                 },
                 velocity: VelocityMotion {
                     linear_sigma: 0.0,
@@ -209,11 +209,11 @@ impl SlamSystemParams {
                     certainly_new: 60.0,
                     ..JointCompatibilityParams::default()
                 },
-                unlabelled_confirmation: Confirmation {
-                    n_sightings: 8,
-                    patience: Some(5),
-                    least_share_seen: 0.4,
-                    ..Confirmation::default()
+                unlabelled_confirmation: ConfirmationParams {
+                    n_detections: 8,
+                    max_missed: Some(5),
+                    min_detection_rate: 0.4,
+                    ..ConfirmationParams::default()
                 },
                 ..Self::of(Profile::Generic)
             }
@@ -223,7 +223,7 @@ impl SlamSystemParams {
                 robot: RobotParams {
                     sensor_latency: 0.04,
                     command_delay: 0.15,
-                    command_erosion: 0.04,
+                    turn_command_shortening: 0.04,
                     velocity_hold: VELOCITY_HOLD,
                     range_is_depth: true,
                     range_scale_sigma: 0.04,
@@ -232,14 +232,14 @@ impl SlamSystemParams {
                     range_sigma: 0.01,
                     range_sigma_per_meter: 0.03,
                     bearing_sigma: 0.035,
-                    reach: 5.0,
+                    sensor_range: 5.0,
                     half_field_of_view: 0.45,
-                    // By the differences of sightings in one frame and the next, set 7: 0.004-0.006 rad and 0.02-0.04 m within a frame;
+                    // By the differences of detections in one frame and the next, set 7: 0.004-0.006 rad and 0.02-0.04 m within a frame;
                     // in common what is left against the truth, 0.006-0.018 rad, and 0.8 % once the scale is estimated.
-                    look_errors: Some(LookErrors {
-                        own_range_sigma: 0.02,
-                        own_range_sigma_per_meter: 0.0,
-                        own_bearing_sigma: 0.006,
+                    correlated_noise: Some(CorrelatedNoise {
+                        independent_range_sigma: 0.02,
+                        independent_range_sigma_per_meter: 0.0,
+                        independent_bearing_sigma: 0.006,
                         common_range_sigma_per_meter: 0.01,
                         common_bearing_sigma: 0.018,
                     }),
@@ -250,18 +250,18 @@ impl SlamSystemParams {
                     outliers: OutlierRule::Downweight,
                     gate_probability: 0.632,
                     // The tubes of a group stand 0.18-0.3 m apart.
-                    merging: Some(Merging { separation: 0.13, n_sigmas: 2.0 }),
+                    merging: Some(MergingParams { separation: 0.13, n_sigmas: 2.0 }),
                     ..SlamParams::default()
                 },
                 joint_compatibility: JointCompatibilityParams {
                     certainly_new: 20.0,
-                    never_twice: true,
+                    one_detection_per_landmark: true,
                     ..JointCompatibilityParams::default()
                 },
-                unlabelled_confirmation: Confirmation {
-                    n_sightings: 8,
-                    patience: Some(20),
-                    ..Confirmation::default()
+                unlabelled_confirmation: ConfirmationParams {
+                    n_detections: 8,
+                    max_missed: Some(20),
+                    ..ConfirmationParams::default()
                 },
                 ..Self::of(Profile::Generic)
             }
@@ -295,12 +295,12 @@ mod tests {
 
     #[test]
     fn a_file_changes_what_it_names_and_nothing_else() {
-        let text = "association = 'nn'\n[robot]\ncommand_delay = 0.2\n[filter.confirmation]\npatience = 7";
+        let text = "association = 'nn'\n[robot]\ncommand_delay = 0.2\n[filter.confirmation]\nmax_missed = 7";
         let params = SlamSystemParams::from_toml(text, Profile::Utias).unwrap();
         let mut expected = SlamSystemParams::of(Profile::Utias);
         expected.association = Some(AssociationRule::Nn);
         expected.robot.command_delay = 0.2;
-        expected.filter.confirmation.patience = Some(7);
+        expected.filter.confirmation.max_missed = Some(7);
         assert_eq!(params, expected);
     }
 
@@ -318,7 +318,7 @@ mod tests {
             ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
             ("sensor = 3", "`sensor`"),
             ("[filter]\noutliers = 'ignore'", "`filter.outliers`"),
-            ("[filter.confirmation]\nn_sightings = -1", "`filter.confirmation.n_sightings`"),
+            ("[filter.confirmation]\nn_detections = -1", "`filter.confirmation.n_detections`"),
             ("[sensor", "line 1"),
         ] {
             assert!(error(text).contains(named), "{text}: {}", error(text));

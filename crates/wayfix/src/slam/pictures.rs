@@ -2,7 +2,7 @@ use nalgebra::Matrix2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::ChiSquaredBand;
 
-use super::{Keyframe, SlamRun};
+use super::{SlamRun, StampedEstimate};
 use crate::{
     evaluate::Sample,
     plot::{
@@ -27,13 +27,13 @@ pub fn pictures(run: &SlamRun) -> Result<Vec<Picture>, PlotError> {
         pictures.push(errors(&samples).draw()?);
         pictures.extend(consistency(&samples).map(|plot| plot.draw()).transpose()?);
     }
-    pictures.push(times(run.system.keyframes()).draw()?);
+    pictures.push(times(run.system.stamped_estimates()).draw()?);
     Ok(pictures)
 }
 
-fn map(run: &SlamRun, samples: &[(Keyframe, Sample)]) -> MapPlot {
+fn map(run: &SlamRun, samples: &[(StampedEstimate, Sample)]) -> MapPlot {
     let point = |pose: &Pose2<f64>| (pose.x(), pose.y());
-    let keyframes = run.system.keyframes();
+    let stamped_estimates = run.system.stamped_estimates();
     let landmark =
         |covariance: Matrix2<f64>| [[covariance.m11, covariance.m12], [covariance.m21, covariance.m22]];
     let landmarks = run.system.filter().landmarks();
@@ -41,8 +41,11 @@ fn map(run: &SlamRun, samples: &[(Keyframe, Sample)]) -> MapPlot {
     MapPlot {
         title: "Path and map with 2σ ellipses".to_owned(),
         truth: samples.iter().map(|(_, sample)| point(&sample.truth)).chain(fixes).collect(),
-        estimate: keyframes.iter().map(|keyframe| point(&keyframe.pose)).collect(),
-        dead_reckoning: keyframes.iter().map(|keyframe| point(&keyframe.dead_reckoning)).collect(),
+        estimate: stamped_estimates.iter().map(|stamped_estimate| point(&stamped_estimate.pose)).collect(),
+        dead_reckoning: stamped_estimates
+            .iter()
+            .map(|stamped_estimate| point(&stamped_estimate.dead_reckoning))
+            .collect(),
         landmarks: landmarks
             .map(|estimate| EstimatedLandmark {
                 position: (estimate.mean.x, estimate.mean.y),
@@ -54,10 +57,14 @@ fn map(run: &SlamRun, samples: &[(Keyframe, Sample)]) -> MapPlot {
     }
 }
 
-fn errors(samples: &[(Keyframe, Sample)]) -> ErrorPlot {
-    let error_sample = |(keyframe, sample): &(Keyframe, Sample)| {
-        let sigma = keyframe.covariance.diagonal().map(f64::sqrt);
-        ErrorSample { t: seconds(samples, keyframe), error: sample.error().into(), sigma: sigma.into() }
+fn errors(samples: &[(StampedEstimate, Sample)]) -> ErrorPlot {
+    let error_sample = |(stamped_estimate, sample): &(StampedEstimate, Sample)| {
+        let sigma = stamped_estimate.covariance.diagonal().map(f64::sqrt);
+        ErrorSample {
+            t: seconds(samples, stamped_estimate),
+            error: sample.error().into(),
+            sigma: sigma.into(),
+        }
     };
     ErrorPlot {
         title: "Pose error in the robot frame".to_owned(),
@@ -65,8 +72,10 @@ fn errors(samples: &[(Keyframe, Sample)]) -> ErrorPlot {
     }
 }
 
-fn consistency(samples: &[(Keyframe, Sample)]) -> Option<ConsistencyPlot> {
-    let nees = |(keyframe, sample): &(Keyframe, Sample)| Some((seconds(samples, keyframe), sample.nees()?));
+fn consistency(samples: &[(StampedEstimate, Sample)]) -> Option<ConsistencyPlot> {
+    let nees = |(stamped_estimate, sample): &(StampedEstimate, Sample)| {
+        Some((seconds(samples, stamped_estimate), sample.nees()?))
+    };
     let samples: Vec<_> = samples.iter().filter_map(nees).collect();
     let band = ChiSquaredBand::for_average(POSE_DIMENSION, 1, 0.95).ok()?;
     Some(ConsistencyPlot {
@@ -80,18 +89,20 @@ fn consistency(samples: &[(Keyframe, Sample)]) -> Option<ConsistencyPlot> {
     })
 }
 
-fn times(keyframes: &[Keyframe]) -> TimesPlot {
-    let point = |keyframe: &Keyframe| (keyframe.n_landmarks as f64, keyframe.step.as_secs_f64() * 1e6);
+fn times(stamped_estimates: &[StampedEstimate]) -> TimesPlot {
+    let point = |stamped_estimate: &StampedEstimate| {
+        (stamped_estimate.n_landmarks as f64, stamped_estimate.step.as_secs_f64() * 1e6)
+    };
     TimesPlot {
         title: "Computing time of a step".to_owned(),
         x_label: "landmarks in the map".to_owned(),
-        points: keyframes.iter().map(point).collect(),
+        points: stamped_estimates.iter().map(point).collect(),
         x_scale: Scale::Linear,
         y_scale: Scale::Log10,
     }
 }
 
 /// Time since the first sample.
-fn seconds(samples: &[(Keyframe, Sample)], keyframe: &Keyframe) -> f64 {
-    samples.first().map_or(0.0, |(first, _)| keyframe.stamp.seconds_since(first.stamp))
+fn seconds(samples: &[(StampedEstimate, Sample)], stamped_estimate: &StampedEstimate) -> f64 {
+    samples.first().map_or(0.0, |(first, _)| stamped_estimate.stamp.seconds_since(first.stamp))
 }

@@ -1,6 +1,6 @@
 use std::ops::RangeInclusive;
 
-use wayfix_slam_ekf::{Confirmation, JointCompatibility, NearestNeighbour, SlamError};
+use wayfix_slam_ekf::{ConfirmationParams, JointCompatibility, NearestNeighbour, SlamError};
 
 use super::SlamSystemParams;
 
@@ -39,15 +39,16 @@ impl SlamSystemParams {
         let unlabelled_confirmation = &self.unlabelled_confirmation;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
-        let look_errors = sensor.look_errors.unwrap_or_default();
+        let correlated_noise = sensor.correlated_noise.unwrap_or_default();
         let merging = filter.merging.unwrap_or_default();
-        let nearest_own_range_sigma = look_errors.own_range_sigma + look_errors.own_range_sigma_per_meter;
+        let nearest_own_range_sigma =
+            correlated_noise.independent_range_sigma + correlated_noise.independent_range_sigma_per_meter;
         let nearest_range_sigma = sensor.range_sigma + sensor.range_sigma_per_meter;
-        let times_seen = |confirmation: &Confirmation| confirmation.n_sightings as f64;
+        let times_seen = |confirmation: &ConfirmationParams| confirmation.n_detections as f64;
         for (name, value, (range, words)) in [
             ("robot.sensor_latency", robot.sensor_latency, DELAY),
             ("robot.command_delay", robot.command_delay, DELAY),
-            ("robot.command_erosion", robot.command_erosion, DELAY),
+            ("robot.turn_command_shortening", robot.turn_command_shortening, DELAY),
             ("robot.velocity_hold", robot.velocity_hold, NOT_NEGATIVE),
             ("robot.range_scale_sigma", robot.range_scale_sigma, NOT_NEGATIVE),
             ("mounting.sensor_x", mounting.sensor_x, PLACE),
@@ -61,23 +62,39 @@ impl SlamSystemParams {
             ("sensor.range_sigma_per_meter", sensor.range_sigma_per_meter, NOT_NEGATIVE),
             ("sensor.range_sigma at one metre", nearest_range_sigma, SENSOR_NOISE),
             ("sensor.bearing_sigma", sensor.bearing_sigma, SENSOR_NOISE),
-            ("sensor.look_errors.own_range_sigma", look_errors.own_range_sigma, NOT_NEGATIVE),
             (
-                "sensor.look_errors.own_range_sigma_per_meter",
-                look_errors.own_range_sigma_per_meter,
+                "sensor.correlated_noise.independent_range_sigma",
+                correlated_noise.independent_range_sigma,
                 NOT_NEGATIVE,
             ),
-            ("sensor.look_errors.own_range_sigma at one metre", nearest_own_range_sigma, SENSOR_NOISE),
-            ("sensor.look_errors.own_bearing_sigma", look_errors.own_bearing_sigma, SENSOR_NOISE),
             (
-                "sensor.look_errors.common_range_sigma_per_meter",
-                look_errors.common_range_sigma_per_meter,
+                "sensor.correlated_noise.independent_range_sigma_per_meter",
+                correlated_noise.independent_range_sigma_per_meter,
                 NOT_NEGATIVE,
             ),
-            ("sensor.look_errors.common_bearing_sigma", look_errors.common_bearing_sigma, NOT_NEGATIVE),
+            (
+                "sensor.correlated_noise.independent_range_sigma at one metre",
+                nearest_own_range_sigma,
+                SENSOR_NOISE,
+            ),
+            (
+                "sensor.correlated_noise.independent_bearing_sigma",
+                correlated_noise.independent_bearing_sigma,
+                SENSOR_NOISE,
+            ),
+            (
+                "sensor.correlated_noise.common_range_sigma_per_meter",
+                correlated_noise.common_range_sigma_per_meter,
+                NOT_NEGATIVE,
+            ),
+            (
+                "sensor.correlated_noise.common_bearing_sigma",
+                correlated_noise.common_bearing_sigma,
+                NOT_NEGATIVE,
+            ),
             ("filter.merging.separation", merging.separation, NOT_NEGATIVE),
             ("filter.merging.n_sigmas", merging.n_sigmas, NOT_NEGATIVE),
-            ("sensor.reach", sensor.reach, THRESHOLD),
+            ("sensor.sensor_range", sensor.sensor_range, THRESHOLD),
             ("sensor.half_field_of_view", sensor.half_field_of_view, THRESHOLD),
             ("velocity.linear_sigma", velocity.linear_sigma, NOT_NEGATIVE),
             ("velocity.angular_sigma", velocity.angular_sigma, NOT_NEGATIVE),
@@ -99,12 +116,12 @@ impl SlamSystemParams {
                 NOT_NEGATIVE,
             ),
             ("increment.heading_variance_per_step", increment.heading_variance_per_step, NOT_NEGATIVE),
-            ("filter.confirmation.least_share_seen", filter.confirmation.least_share_seen, SHARE),
-            ("unlabelled_confirmation.least_share_seen", unlabelled_confirmation.least_share_seen, SHARE),
-            ("filter.confirmation.n_sightings", times_seen(&filter.confirmation), TIMES_SEEN),
-            ("filter.confirmation.contradiction", filter.confirmation.contradiction, THRESHOLD),
-            ("unlabelled_confirmation.n_sightings", times_seen(unlabelled_confirmation), TIMES_SEEN),
-            ("unlabelled_confirmation.contradiction", unlabelled_confirmation.contradiction, THRESHOLD),
+            ("filter.confirmation.min_detection_rate", filter.confirmation.min_detection_rate, SHARE),
+            ("unlabelled_confirmation.min_detection_rate", unlabelled_confirmation.min_detection_rate, SHARE),
+            ("filter.confirmation.n_detections", times_seen(&filter.confirmation), TIMES_SEEN),
+            ("filter.confirmation.restart_nis", filter.confirmation.restart_nis, THRESHOLD),
+            ("unlabelled_confirmation.n_detections", times_seen(unlabelled_confirmation), TIMES_SEEN),
+            ("unlabelled_confirmation.restart_nis", unlabelled_confirmation.restart_nis, THRESHOLD),
         ] {
             if !range.contains(&value) {
                 return Err(SlamError::Parameter { name, value, range: words });

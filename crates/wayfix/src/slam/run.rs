@@ -6,8 +6,8 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Data, Record, Stamp, Target};
 
 use super::{
-    AssociationRule, Keyframe, SavedMap, SlamSystem, SlamSystemParams, start_pose, warn_of_an_empty_map,
-    warn_of_no_overlap, warn_of_start,
+    AssociationRule, SavedMap, SlamSystem, SlamSystemParams, StampedEstimate, start_pose,
+    warn_of_an_empty_map, warn_of_no_overlap, warn_of_start,
 };
 use crate::{
     evaluate::{Correspondence, KnownStart, Sample, TruePositions, TrueTrack, align},
@@ -18,7 +18,7 @@ use crate::{
 pub struct SlamRun {
     /// The system in its last state.
     pub system: SlamSystem,
-    /// How sightings found their landmarks.
+    /// How detections found their landmarks.
     pub association: AssociationRule,
     /// True poses, where the log has them.
     pub truth: TrueTrack,
@@ -36,7 +36,7 @@ pub struct SlamRun {
 /// path fit them best; else the origin. Nothing else ties the run to the truth.
 ///
 /// # Errors
-/// When there is no odometry, no sighting, or none that can be used, or a parameter is out of range.
+/// When there is no odometry, no detection, or none that can be used, or a parameter is out of range.
 pub fn run(
     records: &[Record],
     params: &SlamSystemParams,
@@ -48,7 +48,7 @@ pub fn run(
         );
     };
     let association = association(records, params.association)?;
-    check_overlap(records, ODOMETRY, ("sightings", |data| matches!(data, Data::Sightings(_))))?;
+    check_overlap(records, ODOMETRY, ("detections", |data| matches!(data, Data::Detections(_))))?;
     let truth = TrueTrack::from_records(records);
     let true_positions = TruePositions::from_records(records);
     let from = |start| SlamSystem::new(params.clone(), association, start_stamp, start, truth.noise());
@@ -70,7 +70,7 @@ pub fn run(
 /// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
 ///
 /// # Errors
-/// When the map is of another kind or is no state of the filter, when no later sighting can be used, or a parameter is out of range.
+/// When the map is of another kind or is no state of the filter, when no later detection can be used, or a parameter is out of range.
 pub fn run_on(
     saved: SavedMap,
     records: &[Record],
@@ -91,14 +91,17 @@ fn drive_through(
     observe: impl FnMut(&SlamSystem),
 ) -> Result<SlamRun> {
     drive(&mut system, records, observe);
-    if !has_used_a_sighting(system.events()) {
+    if !has_used_a_detection(system.events()) {
         bail!(
-            "nothing could be estimated: no sighting since the start of odometry was of use{}",
+            "nothing could be estimated: no detection since the start of odometry was of use{}",
             why(system.events())
         );
     }
-    let keyframes = system.keyframes();
-    let estimated = keyframes.first().zip(keyframes.last()).map(|(first, last)| (first.stamp, last.stamp));
+    let stamped_estimates = system.stamped_estimates();
+    let estimated = stamped_estimates
+        .first()
+        .zip(stamped_estimates.last())
+        .map(|(first, last)| (first.stamp, last.stamp));
     warn_of_no_overlap(system.events(), &truth, estimated);
     let n_landmarks = system.filter().n_landmarks();
     warn_of_an_empty_map(system.events(), n_landmarks);
@@ -118,22 +121,22 @@ fn drive_through(
 
 impl SlamRun {
     /// Keyframes with their true poses.
-    pub fn samples(&self) -> Vec<(Keyframe, Sample)> {
-        let sample = |keyframe: &Keyframe| {
-            let Keyframe { stamp, pose, covariance, .. } = keyframe;
-            Some((*keyframe, self.truth.sample(*stamp, *pose, covariance)?))
+    pub fn samples(&self) -> Vec<(StampedEstimate, Sample)> {
+        let sample = |stamped_estimate: &StampedEstimate| {
+            let StampedEstimate { stamp, pose, covariance, .. } = stamped_estimate;
+            Some((*stamped_estimate, self.truth.sample(*stamp, *pose, covariance)?))
         };
-        let evaluated = |keyframe: &&Keyframe| keyframe.stamp <= self.evaluated_until;
-        self.system.keyframes().iter().filter(evaluated).filter_map(sample).collect()
+        let evaluated = |stamped_estimate: &&StampedEstimate| stamped_estimate.stamp <= self.evaluated_until;
+        self.system.stamped_estimates().iter().filter(evaluated).filter_map(sample).collect()
     }
     /// Estimated positions of the antenna with the true ones, for logs whose truth has no headings.
-    pub fn positions(&self) -> Vec<(Keyframe, Vector2<f64>, Vector2<f64>)> {
-        let pair = |keyframe: &Keyframe| {
-            let truth = self.true_positions.near(keyframe.stamp)?;
-            let until = keyframe.stamp <= self.evaluated_until;
-            until.then(|| (*keyframe, self.system.antenna(&keyframe.pose), truth))
+    pub fn positions(&self) -> Vec<(StampedEstimate, Vector2<f64>, Vector2<f64>)> {
+        let pair = |stamped_estimate: &StampedEstimate| {
+            let truth = self.true_positions.near(stamped_estimate.stamp)?;
+            let until = stamped_estimate.stamp <= self.evaluated_until;
+            until.then(|| (*stamped_estimate, self.system.antenna(&stamped_estimate.pose), truth))
         };
-        self.system.keyframes().iter().filter_map(pair).collect()
+        self.system.stamped_estimates().iter().filter_map(pair).collect()
     }
     /// Estimated landmark positions.
     pub fn landmarks(&self) -> BTreeMap<u32, Vector2<f64>> {
@@ -168,20 +171,22 @@ fn fitted_start(mut pilot: SlamSystem, records: &[Record], positions: &TruePosit
         travelled < START_LENGTH
     };
     records.iter().take_while(is_short).for_each(drop);
-    let pair = |keyframe: &Keyframe| Some((pilot.antenna(&keyframe.pose), positions.near(keyframe.stamp)?));
-    let pairs: Vec<_> = pilot.keyframes().iter().filter_map(pair).collect();
+    let pair = |stamped_estimate: &StampedEstimate| {
+        Some((pilot.antenna(&stamped_estimate.pose), positions.near(stamped_estimate.stamp)?))
+    };
+    let pairs: Vec<_> = pilot.stamped_estimates().iter().filter_map(pair).collect();
     align(pairs.into_iter())
 }
 
-fn has_used_a_sighting(events: &Events) -> bool {
-    ["new_landmark", "accepted", "accepted_with_less_weight"].iter().any(|name| events.get(name) > 0)
+fn has_used_a_detection(events: &Events) -> bool {
+    ["new_landmark", "accepted", "accepted_downweighted"].iter().any(|name| events.get(name) > 0)
 }
 
-/// The first refusal and how many there were, or else what happened to the sightings.
+/// The first refusal and how many there were, or else what happened to the detections.
 fn why(events: &Events) -> String {
     let Some(first) = events.refusals().first() else {
         let counts: Vec<String> = events.counts().iter().map(|(name, n)| format!("{name} {n}")).collect();
-        let what = if counts.is_empty() { "all sightings are empty".to_owned() } else { counts.join(", ") };
+        let what = if counts.is_empty() { "all detections are empty".to_owned() } else { counts.join(", ") };
         return format!(" ({what})");
     };
     format!("; the first of {} refusals: {first}", events.n_refusals())
@@ -210,22 +215,22 @@ fn association(records: &[Record], asked: Option<AssociationRule>) -> Result<Ass
         (None, Some(true)) => AssociationRule::Known,
         (None, Some(false)) => AssociationRule::Jcbb,
         (None, None) => bail!(
-            "the log has no range-bearing sightings of landmarks (`wayfix info` shows what a log holds)"
+            "the log has no range-bearing detections of landmarks (`wayfix info` shows what a log holds)"
         ),
     };
     if association == AssociationRule::Known && has_identities(records) == Some(false) {
-        bail!("no sighting carries an identity: use nearest neighbour (--association nn)");
+        bail!("no detection carries an identity: use nearest neighbour (--association nn)");
     }
     Ok(association)
 }
 
-/// Whether any sighting of a landmark carries an identity; `None` when there are no such sightings.
+/// Whether any detection of a landmark carries an identity; `None` when there are no such detections.
 fn has_identities(records: &[Record]) -> Option<bool> {
-    let sightings = records.iter().flat_map(|record| match &record.data {
-        Data::Sightings(sightings) => sightings.as_slice(),
+    let detections = records.iter().flat_map(|record| match &record.data {
+        Data::Detections(detections) => detections.as_slice(),
         _ => &[],
     });
-    sightings.fold(None, |found, sighting| match sighting.target {
+    detections.fold(None, |found, detection| match detection.target {
         Target::Landmark(_) => Some(true),
         Target::Unlabelled => found.or(Some(false)),
         _ => found,

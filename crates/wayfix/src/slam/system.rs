@@ -2,22 +2,22 @@ use std::time::Duration;
 
 use nalgebra::{DefaultAllocator, Matrix3, Vector2, allocator::Allocator};
 use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2};
-use wayfix_sensor_log::{AckermannDrive, Data, Record, Sighting, Stamp, Target, Velocity};
+use wayfix_sensor_log::{AckermannDrive, Data, Detection, Record, Stamp, Target, Velocity};
 use wayfix_slam_ekf::{
-    EkfSlam, JointCompatibility, KnownIds, LandmarkId, Mounted, NearestNeighbour, Observation, Outcome,
+    EkfSlam, JointCompatibility, KnownIds, LandmarkId, MountedSensor, NearestNeighbour, Observation, Outcome,
     RangeBearing, RangeBearingSensor, ScaledMotion, ScaledPose, ScaledRangeBearingSensor, SlamError,
     SlamParams, StepReport, observability::ObservabilityRecorder,
 };
 
 use super::{
-    AssociationRule, MountingParams, SlamSystemParams, commands::Commands, event_name,
-    in_sequence::InSequence, saved::Odometry, unknown_motion::UnknownMotion,
+    AssociationRule, MountingParams, SlamSystemParams, commands::Commands, event_name, saved::Odometry,
+    sequential_motion::SequentialMotion, unknown_motion::UnknownMotion,
 };
-use crate::system::{Events, MotionStatistics, PlausibleIncrement, Stopwatch, System, possible};
+use crate::system::{Events, MotionStatistics, PlausibleIncrement, Stopwatch, System, check_velocity};
 
 /// The estimate at the stamp of one look of the sensor, from everything up to it.
 #[derive(Clone, Copy, Debug)]
-pub struct Keyframe {
+pub struct StampedEstimate {
     /// When.
     pub stamp: Stamp,
     /// Estimated pose.
@@ -30,12 +30,12 @@ pub struct Keyframe {
     pub n_landmarks: usize,
     /// Sum and number of the NIS of what corrected.
     pub nis: (f64, usize),
-    /// Computing time since the last keyframe.
+    /// Computing time since the last stamped_estimate.
     pub step: Duration,
 }
 
 /// Points seen by a range-bearing sensor that may sit anywhere on the robot and whose scale is estimated.
-pub type PointSensor = ScaledRangeBearingSensor<Mounted<RangeBearingSensor>>;
+pub type PointSensor = ScaledRangeBearingSensor<MountedSensor<RangeBearingSensor>>;
 
 /// EKF-SLAM that takes records.
 pub struct SlamSystem {
@@ -53,7 +53,7 @@ pub struct SlamSystem {
     pub(super) past: Past,
     observability: Option<ObservabilityRecorder>,
     pub(super) dead_reckoning: Pose2<f64>,
-    keyframes: Vec<Keyframe>,
+    stamped_estimates: Vec<StampedEstimate>,
     events: Events,
     step: Duration,
 }
@@ -103,7 +103,7 @@ impl SlamSystem {
         let filter_params = SlamParams { confirmation, merging, ..params.filter };
         let MountingParams { sensor_x, sensor_y, sensor_heading, .. } = params.mounting;
         let mount = Pose2::new(sensor_x, sensor_y, sensor_heading);
-        let sensor = ScaledRangeBearingSensor(Mounted { sensor: params.sensor, mount });
+        let sensor = ScaledRangeBearingSensor(MountedSensor { sensor: params.sensor, mount });
         let state = ScaledPose { pose: start, log_range_scale: 0.0 };
         let mut covariance = start_covariance.to_homogeneous();
         covariance.m44 = params.robot.range_scale_sigma.powi(2);
@@ -120,7 +120,7 @@ impl SlamSystem {
             time: start_stamp,
             past: Past::default(),
             dead_reckoning: start,
-            keyframes: Vec::new(),
+            stamped_estimates: Vec::new(),
             events: Events::default(),
             step: Duration::ZERO,
         })
@@ -140,8 +140,8 @@ impl SlamSystem {
         pose.transform(&Vector2::new(antenna_x, antenna_y))
     }
     /// One estimate for every look of the sensor at landmarks.
-    pub fn keyframes(&self) -> &[Keyframe] {
-        &self.keyframes
+    pub fn stamped_estimates(&self) -> &[StampedEstimate] {
+        &self.stamped_estimates
     }
 
     /// What the run observed, when that was to be recorded.
@@ -150,7 +150,7 @@ impl SlamSystem {
     }
 
     fn take_velocity(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
-        self.commands.push(stamp, possible(velocity)?);
+        self.commands.push(stamp, check_velocity(velocity)?);
         self.advance_to(self.exposure(stamp))
     }
 
@@ -168,20 +168,20 @@ impl SlamSystem {
         self.filter.predict(&motion, increment).map_err(|error| error.to_string())?;
         self.step += stopwatch.elapsed();
         if let Some(recorder) = &mut self.observability {
-            recorder.moved(&motion.jacobian(&before, increment));
+            recorder.record_motion(&motion.jacobian(&before, increment));
         }
         self.dead_reckoning = self.dead_reckoning.compose(increment);
         self.time = stamp;
         Ok(())
     }
 
-    fn take_sightings(&mut self, stamp: Stamp, sightings: &[Sighting]) -> Result<(), String> {
+    fn take_detections(&mut self, stamp: Stamp, detections: &[Detection]) -> Result<(), String> {
         if stamp < self.time {
             self.events.count("before_start");
             return Ok(());
         }
-        let observations = self.observations(sightings);
-        if observations.is_empty() && !sightings.is_empty() {
+        let observations = self.observations(detections);
+        if observations.is_empty() && !detections.is_empty() {
             return Ok(()); // a look at other robots only says nothing about landmarks
         }
         self.advance_to(self.exposure(stamp))?;
@@ -200,7 +200,7 @@ impl SlamSystem {
         for _ in &report.merges {
             self.events.count("merged_landmark");
         }
-        self.add_keyframe(stamp, &report);
+        self.add_stamped_estimate(stamp, &report);
         Ok(())
     }
 
@@ -222,19 +222,19 @@ impl SlamSystem {
         }
         let stopwatch = Stopwatch::start();
         let controls = self.commands.between(self.time, time);
-        let motion = InSequence(self.params.velocity);
+        let motion = SequentialMotion(self.params.velocity);
         let before = *self.filter.robot();
         let moved = self.filter.predict(&ScaledMotion(motion), controls.as_slice());
         moved.map_err(|error| error.to_string())?;
         if let Some(recorder) = &mut self.observability {
-            recorder.moved(&ScaledMotion(motion).jacobian(&before, &controls));
+            recorder.record_motion(&ScaledMotion(motion).jacobian(&before, &controls));
         }
         self.dead_reckoning = motion.propagate(&self.dead_reckoning, &controls);
         for control in &self.commands.known_between(self.time, time) {
             let moved = self.params.velocity.propagate(&Pose2::identity(), control);
             self.motion.add(&moved, control.duration);
         }
-        self.doubt_motion(self.commands.unknown_seconds(self.time, time))?;
+        self.predict_unknown_motion(self.commands.unknown_seconds(self.time, time))?;
         self.step += stopwatch.elapsed();
         self.commands.forget_before(time);
         self.time = time;
@@ -242,7 +242,7 @@ impl SlamSystem {
     }
 
     /// The robot may have moved as fast as it usually does while nothing told its motion.
-    fn doubt_motion(&mut self, seconds: f64) -> Result<(), String> {
+    fn predict_unknown_motion(&mut self, seconds: f64) -> Result<(), String> {
         if seconds <= 0.0 {
             return Ok(());
         }
@@ -255,15 +255,15 @@ impl SlamSystem {
         self.filter.predict(&unknown, &()).map_err(|error| error.to_string())
     }
 
-    /// The filter is at the exposure of the last look; the keyframe says where the robot is at its stamp.
-    fn add_keyframe(&mut self, stamp: Stamp, report: &StepReport<RangeBearing>) {
+    /// The filter is at the exposure of the last look; the stamped_estimate says where the robot is at its stamp.
+    fn add_stamped_estimate(&mut self, stamp: Stamp, report: &StepReport<RangeBearing>) {
         let state = self.filter.robot();
-        let motion = ScaledMotion(InSequence(self.params.velocity));
+        let motion = ScaledMotion(SequentialMotion(self.params.velocity));
         let controls = self.commands.between(self.time, stamp);
         let jacobian = motion.jacobian(state, &controls);
         let covariance =
             jacobian * self.filter.robot_covariance() * jacobian.transpose() + motion.noise(state, &controls);
-        self.keyframes.push(Keyframe {
+        self.stamped_estimates.push(StampedEstimate {
             stamp,
             pose: motion.propagate(state, &controls).pose,
             covariance: covariance.fixed_view::<3, 3>(0, 0).into_owned(),
@@ -275,14 +275,14 @@ impl SlamSystem {
     }
 
     /// What the sensor saw that can be a landmark; the rest is counted.
-    fn observations(&mut self, sightings: &[Sighting]) -> Vec<Observation<RangeBearing>> {
-        let mut observations = Vec::with_capacity(sightings.len());
-        for sighting in sightings {
-            let label = match sighting.target {
+    fn observations(&mut self, detections: &[Detection]) -> Vec<Observation<RangeBearing>> {
+        let mut observations = Vec::with_capacity(detections.len());
+        for detection in detections {
+            let label = match detection.target {
                 Target::Landmark(id) => Some(LandmarkId(id)),
                 Target::Unlabelled => None,
                 Target::Robot(_) => {
-                    self.events.count("robot_sighting");
+                    self.events.count("robot_detection");
                     continue;
                 }
                 Target::UnknownCode(_) => {
@@ -290,8 +290,8 @@ impl SlamSystem {
                     continue;
                 }
             };
-            let depth_factor = if self.params.robot.range_is_depth { sighting.bearing.cos() } else { 1.0 };
-            let measurement = RangeBearing::new(sighting.range / depth_factor, sighting.bearing);
+            let depth_factor = if self.params.robot.range_is_depth { detection.bearing.cos() } else { 1.0 };
+            let measurement = RangeBearing::new(detection.range / depth_factor, detection.bearing);
             observations.push(Observation { label, measurement });
         }
         observations
@@ -345,7 +345,7 @@ impl System for SlamSystem {
             Data::Velocity(velocity) => self.take_velocity(record.stamp, *velocity),
             Data::Ackermann(drive) => self.take_drive(record.stamp, *drive),
             Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
-            Data::Sightings(sightings) => self.take_sightings(record.stamp, sightings),
+            Data::Detections(detections) => self.take_detections(record.stamp, detections),
             _ => Ok(()),
         }
     }

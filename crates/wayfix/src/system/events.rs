@@ -23,7 +23,7 @@ pub struct Events {
     record: (usize, Stamp),
 }
 
-/// A record, or one of its sightings, that the system could not use.
+/// A record, or one of its detections, that the system could not use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
     /// Its place among the log's records, from 0.

@@ -13,7 +13,7 @@ pub const VELOCITY_HOLD: f64 = 1.0;
 ///
 /// # Errors
 /// The velocity in words when it is not.
-pub fn possible(velocity: Velocity) -> Result<Velocity, String> {
+pub fn check_velocity(velocity: Velocity) -> Result<Velocity, String> {
     let Velocity { linear, angular } = velocity;
     if linear.abs() <= FASTEST && angular.abs() <= FASTEST {
         return Ok(velocity);
@@ -52,9 +52,9 @@ impl HeldVelocity {
     /// Holds a velocity from `stamp` on.
     ///
     /// # Errors
-    /// When it is not [`possible`]; the one before holds on.
+    /// When it is not [`check_velocity`]; the one before holds on.
     pub fn hold(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
-        let Velocity { linear, angular } = possible(velocity)?;
+        let Velocity { linear, angular } = check_velocity(velocity)?;
         let stamp = stamp.nanoseconds();
         self.held = Some(Held { stamp, used_until: stamp, linear, angular });
         Ok(())

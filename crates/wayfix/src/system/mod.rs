@@ -15,7 +15,7 @@ mod stopwatch;
 pub use drive::{drive, stream};
 pub use estimate_log::{Drawing, EstimateLog, EstimateWriter, OTHER_POSES};
 pub use events::{Events, Refusal};
-pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, possible};
+pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, check_velocity};
 pub use laser::largest_echo;
 pub use motion_statistics::MotionStatistics;
 pub use odometry_delay::without_odometry_delay;

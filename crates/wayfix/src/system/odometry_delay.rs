@@ -40,7 +40,7 @@ mod tests {
     #[test]
     fn late_odometry_moves_before_the_records_of_its_time() {
         let odometry = |milliseconds| at(milliseconds, Data::OdometryIncrement(Pose2::new(1.0, 0.0, 0.0)));
-        let look = at(800, Data::Sightings(Vec::new()));
+        let look = at(800, Data::Detections(Vec::new()));
         let log = [odometry(100), look.clone(), odometry(1000)];
         assert!(matches!(without_odometry_delay(&log, 0.0), Cow::Borrowed(_)));
         assert_eq!(without_odometry_delay(&log, 0.25).as_ref(), [odometry(0), odometry(750), look.clone()]);

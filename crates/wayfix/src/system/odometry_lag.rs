@@ -8,7 +8,7 @@ const LARGEST_LAG: f64 = 1.0;
 /// More lags than this are not compared, to either side.
 const MOST_PERIODS: f64 = 50.0;
 /// χ² with one degree of freedom exceeds this once in a million: what a lag gains in log likelihood, doubled.
-const SURE: f64 = 23.9;
+const LIKELIHOOD_RATIO_THRESHOLD: f64 = 23.9;
 
 /// Odometry that is stamped later than what scans or images show is said, with the parameter that corrects it; `delay` is its value so far.
 ///
@@ -53,7 +53,7 @@ fn odometry_lag(track: &[(Stamp, Pose2<f64>)], seen_turns: &[Option<f64>]) -> Op
     let (_, lag) = lags.map(|lag| (disagreement(lag), lag)).min_by(|a, b| a.0.total_cmp(&b.0))?;
     let gain = stretches.len() as f64 * (disagreement(0.0) / disagreement(lag)).ln();
     // A shift that helps in both directions is no lag: it only smooths noise.
-    (gain > SURE && disagreement(-lag) > disagreement(0.0)).then_some(lag)
+    (gain > LIKELIHOOD_RATIO_THRESHOLD && disagreement(-lag) > disagreement(0.0)).then_some(lag)
 }
 
 /// The heading that odometry has made, at the scans and between them.

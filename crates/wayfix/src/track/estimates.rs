@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use wayfix_condensation::TrackStatus;
 use wayfix_sensor_log::{Data, Format, ImageOutline, McapFile, MessageWriter, Record, Sinks, topics};
 
-use super::{FrameResult, TrackSystem, Truth, overlay, story::outline};
+use super::{FrameResult, TrackSystem, Truth, overlay, run_history::outline};
 use crate::system::EstimateWriter;
 
 /// Writes the images and the outlines in them to an MCAP file or to viewers, and the boxes to a text of the form that truth has.

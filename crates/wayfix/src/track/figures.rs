@@ -22,7 +22,7 @@ pub fn summarize(run: &mut TrackRun) -> Run {
         metrics.extend([
             Metric::new("false_tracked_share", status.false_tracked_share(), ""),
             Metric::new("false_lost_share", status.false_lost_share(), ""),
-            Metric::new("n_judged", score.n_frames() as f64, ""),
+            Metric::new("n_frames_with_truth", score.n_frames() as f64, ""),
         ]);
     }
     metrics.extend([

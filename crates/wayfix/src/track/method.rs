@@ -4,7 +4,7 @@ use wayfix_condensation::{
     CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture, TrackingCues,
 };
 
-use super::{Follower, Start, TrackParams, follower::ContourFollower};
+use super::{FrameTracker, Start, TrackParams, frame_tracker::ContourFrameTracker};
 
 /// Which tracker follows the target.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -47,7 +47,7 @@ impl Method {
         params: &TrackParams,
         picture: &Picture,
         start: &Start,
-    ) -> Result<Box<dyn Follower>, CondensationError> {
+    ) -> Result<Box<dyn FrameTracker>, CondensationError> {
         let mut contour = params.contour;
         match self {
             Self::Box => {
@@ -68,6 +68,6 @@ impl Method {
             Start::Box(bounds) => ContourTracker::from_box(picture, bounds, contour)?,
             Start::Mask(mask) => ContourTracker::from_mask(picture, mask, contour)?,
         };
-        Ok(Box::new(ContourFollower { tracker, space: contour.color_space }))
+        Ok(Box::new(ContourFrameTracker { tracker, space: contour.color_space }))
     }
 }

@@ -16,35 +16,35 @@
 //! # Ok::<(), wayfix::track::TrackError>(())
 //! ```
 
+mod decimated;
 mod error;
 mod estimates;
 mod figures;
 pub mod films;
-mod follower;
+mod frame_tracker;
 mod method;
 mod overlay;
 mod params;
 mod pictures;
 mod run;
+mod run_history;
 mod score;
 mod start;
 mod status_score;
-mod story;
 mod system;
-mod thinned;
 mod truth;
 
 pub use error::TrackError;
 pub use estimates::TrackLog;
 pub use figures::summarize;
-pub use follower::{Follower, TargetColors};
+pub use frame_tracker::{FrameTracker, TargetColors};
 pub use method::Method;
 pub use params::TrackParams;
 pub use pictures::pictures;
 pub use run::{TrackRun, run};
+pub use run_history::RunHistory;
 pub use score::Score;
 pub use start::Start;
 pub use status_score::StatusScore;
-pub use story::Story;
 pub use system::{FrameResult, TrackSetup, TrackSystem};
 pub use truth::{TrueBoxes, Truth, parse_box};

@@ -1,6 +1,6 @@
 use wayfix_sensor_log::{Data, Log, ProblemKind, Record};
 
-use super::{Story, TrackError, TrackSystem};
+use super::{RunHistory, TrackError, TrackSystem};
 use crate::system::{System, stream};
 
 /// A log that went through a tracker.
@@ -8,7 +8,7 @@ pub struct TrackRun {
     /// The system in its last state.
     pub system: TrackSystem,
     /// What can be drawn of it.
-    pub story: Story,
+    pub run_history: RunHistory,
 }
 
 /// Takes the images of a log through a tracker, one at a time, and shows it with each record to `observe`.
@@ -20,12 +20,12 @@ pub fn run(
     log: &mut Log,
     mut observe: impl FnMut(&TrackSystem, &Record),
 ) -> Result<TrackRun, TrackError> {
-    let mut story = Story::default();
+    let mut run_history = RunHistory::default();
     let mut kept = Ok(());
     stream(&mut system, log.by_ref(), |system, record| {
         // Other records leave the frame as it was.
         if let (Ok(()), Data::Image(_), Some(frame)) = (&kept, &record.data, system.frame()) {
-            kept = story.observe(frame);
+            kept = run_history.observe(frame);
         }
         observe(system, record);
     });
@@ -44,5 +44,5 @@ pub fn run(
             because => TrackError::NoFrame { because: because.unwrap_or_default() },
         });
     }
-    Ok(TrackRun { system, story })
+    Ok(TrackRun { system, run_history })
 }

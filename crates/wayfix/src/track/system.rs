@@ -5,7 +5,7 @@ use wayfix_condensation::{Picture, Target, TrackStatus};
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
 
 use super::{
-    Follower, Method, Score, Start, StatusScore, TargetColors, TrackError, TrackParams, TrueBoxes, Truth,
+    FrameTracker, Method, Score, Start, StatusScore, TargetColors, TrackError, TrackParams, TrueBoxes, Truth,
 };
 use crate::system::{Events, Stopwatch, System};
 
@@ -17,7 +17,7 @@ use crate::system::{Events, Stopwatch, System};
 pub struct TrackSystem {
     setup: TrackSetup,
     rng: ChaCha8Rng,
-    tracker: Option<Box<dyn Follower>>,
+    tracker: Option<Box<dyn FrameTracker>>,
     failure: Option<TrackError>,
     next_index: usize,
     last: Option<FrameResult>,
@@ -78,7 +78,7 @@ impl TrackSystem {
     /// A system that has seen nothing yet.
     pub fn new(setup: TrackSetup, seed: u64) -> Self {
         let mut events = Events::default();
-        if let Some(doubt) = setup.truth.doubt() {
+        if let Some(doubt) = setup.truth.unusable_lines_message() {
             events.warn("truth_line_unusable", doubt);
         }
         Self {
@@ -163,7 +163,7 @@ impl TrackSystem {
             }
             Ok(None) => {
                 self.without_estimate();
-                self.events.count("before_the_start");
+                self.events.count("before_start");
                 Ok(())
             }
             Err(reason) => {
@@ -184,7 +184,7 @@ impl TrackSystem {
         let picture = Picture::from_rgb(width, height, decoded.pixels).map_err(|error| error.to_string())?;
         if let Some(tracker) = &mut self.tracker {
             let stopwatch = Stopwatch::start();
-            let target = tracker.follow(&picture, &mut self.rng).map_err(|error| error.to_string())?;
+            let target = tracker.track_frame(&picture, &mut self.rng).map_err(|error| error.to_string())?;
             return Ok(Some((picture, target, stopwatch.elapsed())));
         }
         let first_true_box = || self.setup.truth.at(self.next_index).target().map(Start::Box);

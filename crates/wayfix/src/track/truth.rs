@@ -90,7 +90,7 @@ impl TrueBoxes {
     }
 
     /// What is wrong with lines that are no box.
-    pub(super) fn doubt(&self) -> Option<String> {
+    pub(super) fn unusable_lines_message(&self) -> Option<String> {
         (self.n_unusable > 0).then(|| {
             let (n, named) = (self.n_unusable, self.unusable.join(", "));
             format!(
@@ -189,7 +189,7 @@ mod tests {
         assert_eq!(truth.len(), 4);
         assert!(truth.at(1).is_unknown() && truth.at(3).is_unknown());
         assert_eq!(truth.at(2).target().unwrap().corner(), [5.0, 6.0]);
-        let doubt = truth.doubt().unwrap();
+        let doubt = truth.unusable_lines_message().unwrap();
         assert!(doubt.contains("2 of 4") && doubt.contains("line 2") && doubt.contains("line 4"), "{doubt}");
         let error = TrueBoxes::parse("1,2,3\n4,5,6\n").unwrap_err();
         assert!(matches!(error, TrackError::Line { line: 1, .. }), "{error}");
@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn what_lies_beyond_the_list_is_unknown() {
         let truth = TrueBoxes::parse("\u{feff}1,2,3,4\r\n0,0,0,0\r\n\r\n").unwrap();
-        assert_eq!((truth.len(), truth.doubt()), (2, None));
+        assert_eq!((truth.len(), truth.unusable_lines_message()), (2, None));
         assert!(truth.at(0).target().is_some() && truth.at(1).is_absent() && truth.at(2).is_unknown());
         assert!(TrueBoxes::parse("").unwrap().is_empty());
     }

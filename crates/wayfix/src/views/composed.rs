@@ -1,5 +1,5 @@
 use wayfix_condensation::Picture;
-use wayfix_scene_sim::scenery::{RgbPicture, Scenery, Visit};
+use wayfix_scene_sim::scenery::{ImagingConditions, RgbPicture, Scenery};
 
 use super::ViewsError;
 
@@ -7,9 +7,12 @@ use super::ViewsError;
 ///
 /// # Errors
 /// [`ViewsError::Scenery`] when the visit is no camera.
-pub fn composed(scenery: &Scenery, visit: &Visit) -> Result<(Picture, Picture), ViewsError> {
+pub fn composed(
+    scenery: &Scenery,
+    imaging_conditions: &ImagingConditions,
+) -> Result<(Picture, Picture), ViewsError> {
     let learned = scenery.compose();
-    let real = visit.picture_of(&learned, scenery.seed)?;
+    let real = imaging_conditions.picture_of(&learned, scenery.seed)?;
     let picture = |RgbPicture { width, height, rgb }| Picture::from_rgb(width, height, rgb);
     Ok((picture(learned)?, picture(real)?))
 }

@@ -1,6 +1,6 @@
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::{Dominance, Fft6, Hist6, Joined, MeanVar, ViewFeature};
+use wayfix_condensation::{Dominance, Fft6, Hist6, JoinedFeature, MeanVar, ViewFeature};
 
 /// What is measured of a view. [Kasprzak & Szynkiewicz, Sec. 3]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
@@ -48,7 +48,7 @@ impl FeatureKind {
             Self::MeanVar => Box::new(MeanVar),
             Self::Fft6 => Box::new(Fft6),
             Self::Hist6 => Box::new(Hist6 { dominance }),
-            Self::Joined => Box::new(Joined::new(
+            Self::Joined => Box::new(JoinedFeature::new(
                 Self::OF_THE_PAPER.into_iter().map(|part| part.feature(dominance)).collect(),
             )),
         }

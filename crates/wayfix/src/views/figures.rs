@@ -33,18 +33,18 @@ pub fn summarize(run: &ViewsRun) -> Run {
         Metric::new("n_certain", certain.len() as f64, ""),
         Metric::new("n_states", run.system.views().grid().n_states() as f64, ""),
     ]);
-    let n_looks: usize = trials.iter().map(|trial| trial.belief_in_truth.len()).sum();
+    let n_updates: usize = trials.iter().map(|trial| trial.belief_in_truth.len()).sum();
     let timings = vec![
         Metric::new("learning_ms", 1e3 * run.learning.as_secs_f64(), "ms"),
-        Metric::new("look_mean_ms", 1e3 * run.driving.as_secs_f64() / n_looks.max(1) as f64, "ms"),
+        Metric::new("update_mean_ms", 1e3 * run.driving.as_secs_f64() / n_updates.max(1) as f64, "ms"),
     ];
     let kidnappings: usize = trials.iter().map(|trial| trial.report.kidnappings).sum();
     let events = [
         ("arrived", successes),
-        ("arrived_elsewhere", count(&Trial::is_deceived)),
-        ("arrived_next_to_goal", count(&|trial| trial.is_deceived() && is_beside(run, trial))),
+        ("arrived_elsewhere", count(&Trial::is_false_arrival)),
+        ("arrived_next_to_goal", count(&|trial| trial.is_false_arrival() && is_beside(run, trial))),
         ("unsure", count(&|trial| trial.report.arrival == Arrival::Unsure)),
-        ("started_over", kidnappings),
+        ("kidnapping_detected", kidnappings),
     ];
     let events: BTreeMap<String, u64> =
         events.into_iter().map(|(name, n)| (name.to_owned(), n as u64)).collect();

@@ -20,7 +20,7 @@ impl Default for RealScene {
 
 impl RealScene {
     /// The picture as it is: a real scene that somebody photographed.
-    pub const AS_IT_IS: Self = Self { light: Light::SAME, shift: (0, 0) };
+    pub const UNCHANGED: Self = Self { light: Light::SAME, shift: (0, 0) };
 
     /// The real scene.
     ///

@@ -150,7 +150,7 @@ impl Trial {
     }
 
     /// Whether the robot says that it is at the goal, and is not.
-    pub fn is_deceived(&self) -> bool {
+    pub fn is_false_arrival(&self) -> bool {
         self.report.arrival == Arrival::Reached && self.end != self.goal
     }
 }
@@ -169,8 +169,8 @@ impl World<Move> for Drive<'_> {
     fn act(&mut self, action: Move) {
         let u: f64 = self.rng.random();
         let done = match u {
-            u if u < self.slip.stays => Move::STAY,
-            u if u < self.slip.stays + self.slip.strays => {
+            u if u < self.slip.stay_probability => Move::STAY,
+            u if u < self.slip.stay_probability + self.slip.other_action_probability => {
                 Move::ALL[self.rng.random_range(0..Move::ALL.len())]
             }
             _ => action,
@@ -178,7 +178,7 @@ impl World<Move> for Drive<'_> {
         self.at.set(self.grid.step(self.at.get(), done));
     }
 
-    fn look(&mut self, features: &mut [f64]) {
+    fn observe(&mut self, features: &mut [f64]) {
         if let Some(row) = self.seen.get(self.at.get()) {
             features.copy_from_slice(row);
         }

@@ -3,7 +3,7 @@ use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
 
 use super::WallSystem;
 use crate::{
-    slam::draw_keyframe,
+    slam::draw_stamped_estimate,
     system::{self, EstimateLog, EstimateWriter},
 };
 
@@ -17,7 +17,7 @@ pub struct WallDrawing {
     path: Vec<Pose2<f64>>,
 }
 
-/// The map and the whole path are written with every so many keyframes: they change slowly and are long.
+/// The map and the whole path are written with every so many stamped_estimates: they change slowly and are long.
 const MAP_PERIOD: usize = 20;
 const WALL_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 
@@ -26,15 +26,15 @@ impl system::Drawing for WallDrawing {
 
     fn draw(&mut self, _: &Record, system: &WallSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {
         let world = topics::WORLD_FRAME;
-        for keyframe in &system.keyframes()[self.n_written..] {
-            self.path.push(keyframe.pose);
-            draw_keyframe(keyframe, writer)?;
+        for stamped_estimate in &system.stamped_estimates()[self.n_written..] {
+            self.path.push(stamped_estimate.pose);
+            draw_stamped_estimate(stamped_estimate, writer)?;
             if self.path.len() % MAP_PERIOD == 1 {
-                writer.poses_in_frame("/estimate/path", keyframe.stamp, world, &self.path)?;
-                writer.scene_update("/estimate/walls", keyframe.stamp, world, &map(system))?;
+                writer.poses_in_frame("/estimate/path", stamped_estimate.stamp, world, &self.path)?;
+                writer.scene_update("/estimate/walls", stamped_estimate.stamp, world, &map(system))?;
             }
         }
-        self.n_written = system.keyframes().len();
+        self.n_written = system.stamped_estimates().len();
         Ok(())
     }
 }

@@ -5,12 +5,12 @@ use super::WallRun;
 use crate::{
     evaluate::{Sample, trajectory_errors},
     report::{Metric, Run},
-    slam::{Keyframe, free_directions, timings},
+    slam::{StampedEstimate, timings, unobservable_directions},
 };
 
 /// The figures and events of a run, ready for the report.
 pub fn summarize(run: &mut WallRun) -> Run {
-    let samples: Vec<(Keyframe, Sample)> = run.samples();
+    let samples: Vec<(StampedEstimate, Sample)> = run.samples();
     let errors_of = |samples: Vec<Sample>| trajectory_errors(&samples);
     let mut metrics = Vec::new();
     if let Some(errors) = errors_of(samples.iter().map(|(_, sample)| *sample).collect()) {
@@ -20,8 +20,10 @@ pub fn summarize(run: &mut WallRun) -> Run {
         let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
         metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
     }
-    let reckoned =
-        |(keyframe, sample): &(Keyframe, Sample)| Sample { estimate: keyframe.dead_reckoning, ..*sample };
+    let reckoned = |(stamped_estimate, sample): &(StampedEstimate, Sample)| Sample {
+        estimate: stamped_estimate.dead_reckoning,
+        ..*sample
+    };
     if let Some(errors) = errors_of(samples.iter().map(reckoned).collect()) {
         metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
     }
@@ -35,9 +37,9 @@ pub fn summarize(run: &mut WallRun) -> Run {
     metrics.push(Metric::new("n_landmarks", run.system.filter().n_landmarks() as f64, ""));
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
     let events = run.events().counts();
-    let timings = timings(run.system.keyframes());
+    let timings = timings(run.system.stamped_estimates());
     let mut summary = Run { metrics, timings, events, ..Run::default() };
-    free_directions(run.system.observability(), &mut summary);
+    unobservable_directions(run.system.observability(), &mut summary);
     summary
 }
 
@@ -58,19 +60,19 @@ fn wall_metrics(nees: &[f64]) -> Vec<Metric> {
 /// How well the path keeps relations between poses that are known from elsewhere: the mean translational and rotational error, and the
 /// same of dead reckoning. [Kümmerle et al. 2009, Eq. 2]
 ///
-/// Relations count whose stamps both have a keyframe within 10 ms.
+/// Relations count whose stamps both have a stamped_estimate within 10 ms.
 pub fn relation_metrics(run: &WallRun, relations: &[Relation]) -> Vec<Metric> {
-    let keyframes = run.system.keyframes();
-    let pairs: Vec<(&Relation, &Keyframe, &Keyframe)> = relations
+    let stamped_estimates = run.system.stamped_estimates();
+    let pairs: Vec<(&Relation, &StampedEstimate, &StampedEstimate)> = relations
         .iter()
         .filter_map(|relation| {
-            Some((relation, near(keyframes, relation.from)?, near(keyframes, relation.to)?))
+            Some((relation, near(stamped_estimates, relation.from)?, near(stamped_estimates, relation.to)?))
         })
         .collect();
     if pairs.is_empty() {
         return Vec::new();
     }
-    let mean = |error: &dyn Fn(&(&Relation, &Keyframe, &Keyframe)) -> f64| {
+    let mean = |error: &dyn Fn(&(&Relation, &StampedEstimate, &StampedEstimate)) -> f64| {
         pairs.iter().map(error).sum::<f64>() / pairs.len() as f64
     };
     let translation = mean(&|(relation, from, to)| {
@@ -91,13 +93,14 @@ pub fn relation_metrics(run: &WallRun, relations: &[Relation]) -> Vec<Metric> {
     ]
 }
 
-/// The keyframe nearest in time, when it is within 10 ms.
-fn near(keyframes: &[Keyframe], stamp: Stamp) -> Option<&Keyframe> {
+/// The stamped_estimate nearest in time, when it is within 10 ms.
+fn near(stamped_estimates: &[StampedEstimate], stamp: Stamp) -> Option<&StampedEstimate> {
     const LONGEST_WAIT: f64 = 0.01;
-    let distance = |keyframe: &Keyframe| keyframe.stamp.seconds_since(stamp).abs();
-    let after = keyframes.partition_point(|keyframe| keyframe.stamp < stamp);
-    let neighbours = keyframes[after.saturating_sub(1)..keyframes.len().min(after + 1)].iter();
+    let distance = |stamped_estimate: &StampedEstimate| stamped_estimate.stamp.seconds_since(stamp).abs();
+    let after = stamped_estimates.partition_point(|stamped_estimate| stamped_estimate.stamp < stamp);
+    let neighbours =
+        stamped_estimates[after.saturating_sub(1)..stamped_estimates.len().min(after + 1)].iter();
     neighbours
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .filter(|keyframe| distance(keyframe) <= LONGEST_WAIT)
+        .filter(|stamped_estimate| distance(stamped_estimate) <= LONGEST_WAIT)
 }

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_line_extract::Params as LineParams;
 use wayfix_scan_match::Params as ScanMatchParams;
 use wayfix_slam_ekf::{
-    Confirmation, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
+    ConfirmationParams, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
     NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
 };
 
@@ -35,9 +35,9 @@ pub struct WallSlamParams {
     /// experiments with logs that have true walls.
     pub n_anchors: usize,
     /// Which scans are looked at.
-    pub looks: Gait,
+    pub keyframes: KeyframeThreshold,
     /// What odometry and scans disagree by.
-    pub disagreement: Disagreement,
+    pub odometry_scan_noise: OdometryScanNoise,
     /// Whether each scan is laid on the one before, to tell the motion between them better than wheels do.
     pub match_scans: bool,
     /// How that is done.
@@ -73,14 +73,14 @@ pub struct WallSlamParams {
 /// What odometry and scans disagree by at every scan, since their stamps do and wheels slip.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct Disagreement {
+pub struct OdometryScanNoise {
     /// Along either axis, m.
     pub translation_sigma: f64,
     /// Of the heading, rad.
     pub heading_sigma: f64,
 }
 
-impl Default for Disagreement {
+impl Default for OdometryScanNoise {
     /// A tenth of a second at walking pace, less what odometry at the scan's own stamp saves.
     fn default() -> Self {
         Self { translation_sigma: 0.02, heading_sigma: 0.01 }
@@ -90,16 +90,16 @@ impl Default for Disagreement {
 /// How far a robot moves between two looks: a scan before that shows the same walls with the same errors once more, and is passed by.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct Gait {
+pub struct KeyframeThreshold {
     /// Way after which a scan is looked at, m.
-    pub least_way: f64,
+    pub min_distance: f64,
     /// Turn after which a scan is looked at, rad.
-    pub least_turn: f64,
+    pub min_rotation: f64,
 }
 
-impl Default for Gait {
+impl Default for KeyframeThreshold {
     fn default() -> Self {
-        Self { least_way: 0.25, least_turn: 0.2 }
+        Self { min_distance: 0.25, min_rotation: 0.2 }
     }
 }
 
@@ -110,8 +110,8 @@ impl Default for WallSlamParams {
             start: None,
             laser: None,
             n_anchors: 0,
-            looks: Gait::default(),
-            disagreement: Disagreement::default(),
+            keyframes: KeyframeThreshold::default(),
+            odometry_scan_noise: OdometryScanNoise::default(),
             match_scans: true,
             scan_match: ScanMatchParams::default(),
             lines: LineParams::default(),
@@ -129,7 +129,11 @@ impl Default for WallSlamParams {
             },
             filter: SlamParams {
                 linearization: Linearization::FirstEstimates,
-                confirmation: Confirmation { n_sightings: 3, patience: Some(10), ..Confirmation::default() },
+                confirmation: ConfirmationParams {
+                    n_detections: 3,
+                    max_missed: Some(10),
+                    ..ConfirmationParams::default()
+                },
                 ..SlamParams::default()
             },
             nearest_neighbour: NearestNeighbourParams::default(),
@@ -178,19 +182,24 @@ impl WallSlamParams {
             self.association != AssociationRule::Known,
             "parameter association is known, but walls have no identities: use nn or jcbb"
         );
-        let WallSensor { rho_sigma, alpha_sigma, largest_gap, reach, half_field_of_view } = self.sensor;
+        let WallSensor { rho_sigma, alpha_sigma, largest_gap, sensor_range, half_field_of_view } =
+            self.sensor;
         let increment = &self.increment;
         for (name, value, (low, range)) in [
             ("sensor.rho_sigma", rho_sigma, POSITIVE),
             ("sensor.alpha_sigma", alpha_sigma, POSITIVE),
             ("sensor.largest_gap", largest_gap, NOT_NEGATIVE),
-            ("sensor.reach", reach, POSITIVE),
+            ("sensor.sensor_range", sensor_range, POSITIVE),
             ("sensor.half_field_of_view", half_field_of_view, POSITIVE),
             ("min_wall_length", self.min_wall_length, NOT_NEGATIVE),
-            ("looks.least_way", self.looks.least_way, NOT_NEGATIVE),
-            ("looks.least_turn", self.looks.least_turn, NOT_NEGATIVE),
-            ("disagreement.translation_sigma", self.disagreement.translation_sigma, NOT_NEGATIVE),
-            ("disagreement.heading_sigma", self.disagreement.heading_sigma, NOT_NEGATIVE),
+            ("keyframes.min_distance", self.keyframes.min_distance, NOT_NEGATIVE),
+            ("keyframes.min_rotation", self.keyframes.min_rotation, NOT_NEGATIVE),
+            (
+                "odometry_scan_noise.translation_sigma",
+                self.odometry_scan_noise.translation_sigma,
+                NOT_NEGATIVE,
+            ),
+            ("odometry_scan_noise.heading_sigma", self.odometry_scan_noise.heading_sigma, NOT_NEGATIVE),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
             ("velocity_hold", self.velocity_hold, NOT_NEGATIVE),
             (

@@ -7,7 +7,7 @@ use super::{WallSlamParams, WallState, WallSystem, truth};
 use crate::{
     evaluate::{KnownStart, Sample, TrueTrack},
     slam::{
-        AssociationRule, Keyframe, Saved, start_pose, warn_of_an_empty_map, warn_of_no_overlap,
+        AssociationRule, Saved, StampedEstimate, start_pose, warn_of_an_empty_map, warn_of_no_overlap,
         warn_of_reference, warn_of_start,
     },
     system::{Events, ODOMETRY, System, check_overlap, drive, warn_of_lag, without_odometry_delay},
@@ -89,20 +89,24 @@ fn drive_through(
 ) -> Result<WallRun> {
     let records = without_odometry_delay(records, system.params.odometry_delay);
     drive(&mut system, &records, observe);
-    if system.keyframes().is_empty() {
+    if system.stamped_estimates().is_empty() {
         let n_before = system.events().get("before_resume");
         bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
     }
-    let keyframes = system.keyframes();
-    let estimated = keyframes.first().zip(keyframes.last()).map(|(first, last)| (first.stamp, last.stamp));
-    let dead_reckoning: Vec<_> = keyframes.iter().map(|at| (at.stamp, at.dead_reckoning)).collect();
+    let stamped_estimates = system.stamped_estimates();
+    let estimated = stamped_estimates
+        .first()
+        .zip(stamped_estimates.last())
+        .map(|(first, last)| (first.stamp, last.stamp));
+    let dead_reckoning: Vec<_> = stamped_estimates.iter().map(|at| (at.stamp, at.dead_reckoning)).collect();
     warn_of_no_overlap(system.events(), &track, estimated);
     let (seen_turns, delay) = (system.seen_turns().to_vec(), system.params.odometry_delay);
     warn_of_lag(system.events(), &dead_reckoning, &seen_turns, delay);
     let mut run = WallRun { system, truth: track, true_walls };
     let samples = run.samples();
-    let is_odometry =
-        |(keyframe, sample): &(Keyframe, Sample)| sample.truth.local(&keyframe.dead_reckoning).norm() < SAME;
+    let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, Sample)| {
+        sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME
+    };
     if !samples.is_empty() && samples.iter().all(is_odometry) {
         run.truth = TrueTrack::default();
         run.events().warn(
@@ -132,12 +136,12 @@ const SAME: f64 = 1e-3;
 
 impl WallRun {
     /// Keyframes with the poses of the log.
-    pub fn samples(&self) -> Vec<(Keyframe, Sample)> {
-        let sample = |keyframe: &Keyframe| {
-            let Keyframe { stamp, pose, covariance, .. } = keyframe;
-            Some((*keyframe, self.truth.sample(*stamp, *pose, covariance)?))
+    pub fn samples(&self) -> Vec<(StampedEstimate, Sample)> {
+        let sample = |stamped_estimate: &StampedEstimate| {
+            let StampedEstimate { stamp, pose, covariance, .. } = stamped_estimate;
+            Some((*stamped_estimate, self.truth.sample(*stamp, *pose, covariance)?))
         };
-        self.system.keyframes().iter().filter_map(sample).collect()
+        self.system.stamped_estimates().iter().filter_map(sample).collect()
     }
     /// How far each estimated wall is from its true one, in units of its covariance: see [`summarize`](super::summarize).
     pub(super) fn wall_nees(&self) -> Vec<f64> {

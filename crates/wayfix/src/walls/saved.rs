@@ -7,9 +7,9 @@ use wayfix_slam_ekf::{DriftingPose, EkfSlam, SlamError, Snapshot, Wall};
 use super::{
     WallSlamParams, WallSystem,
     odometry::Odometry,
-    scan::{Look, PlacedScan, WaitingScan},
+    relative_motion::RelativeMotion,
+    scan::{KeyframeScan, PlacedScan, WaitingScan},
     system::Rule,
-    travel::Travel,
 };
 use crate::slam::{AssociationRule, Save, Saved, SavedMapError, SavedState, check_association};
 
@@ -29,7 +29,7 @@ pub struct WallState {
     /// Where the laser sits on the robot.
     pub laser: Option<[f64; 3]>,
     /// Where it was at last, where the log says it and the parameters do not.
-    pub laser_now: Option<Pose2<f64>>,
+    pub current_laser_mount: Option<Pose2<f64>>,
     /// Whether the log places it.
     pub laser_follows_log: bool,
     /// Whether velocities move the robot, and not increments.
@@ -37,9 +37,9 @@ pub struct WallState {
     /// How far odometry is used, and the velocity that holds.
     pub odometry: Odometry,
     /// The way since the last look.
-    pub travel: Travel,
+    pub relative_motion: RelativeMotion,
     /// The scan of the last look.
-    pub last_look: Option<SavedScan>,
+    pub last_keyframe: Option<SavedScan>,
 }
 
 /// A scan and where the laser was.
@@ -71,14 +71,15 @@ impl Save for WallSystem {
             Rule::NearestNeighbour(rule) => (AssociationRule::Nn, rule.next_id()),
             Rule::JointCompatibility(rule) => (AssociationRule::Jcbb, rule.next_id()),
         };
-        let scan = |Look { scan: PlacedScan { scan, laser, beam_step }, .. }: &Look| SavedScan {
-            angle_min: scan.angle_min,
-            angle_increment: scan.angle_increment,
-            range_max: scan.range_max,
-            ranges: scan.ranges.clone(),
-            laser: *laser,
-            beam_step: *beam_step,
-        };
+        let scan =
+            |KeyframeScan { scan: PlacedScan { scan, laser, beam_step }, .. }: &KeyframeScan| SavedScan {
+                angle_min: scan.angle_min,
+                angle_increment: scan.angle_increment,
+                range_max: scan.range_max,
+                ranges: scan.ranges.clone(),
+                laser: *laser,
+                beam_step: *beam_step,
+            };
         Saved {
             state: WallState {
                 filter: self.filter.snapshot(),
@@ -87,12 +88,12 @@ impl Save for WallSystem {
                 taken_until: self.settled_until().nanoseconds(),
                 dead_reckoning: self.dead_reckoning,
                 laser: self.params.laser,
-                laser_now: self.laser_now,
+                current_laser_mount: self.current_laser_mount,
                 laser_follows_log: self.laser_follows_log,
                 moves_by_velocity: self.moves_by_velocity,
                 odometry: self.odometry,
-                travel: self.travel,
-                last_look: self.last_look.as_ref().map(scan),
+                relative_motion: self.relative_motion,
+                last_keyframe: self.last_keyframe.as_ref().map(scan),
             },
         }
     }
@@ -112,7 +113,8 @@ impl WallSystem {
         saved: Saved<WallState>,
         asked: Option<AssociationRule>,
     ) -> anyhow::Result<Self> {
-        let WallState { filter, association, next_id, taken_until, travel, last_look, .. } = saved.state;
+        let WallState { filter, association, next_id, taken_until, relative_motion, last_keyframe, .. } =
+            saved.state;
         check_association(asked, association)?;
         let laser_follows_log = params.laser.is_none() && saved.state.laser_follows_log;
         let laser = params.laser.or(saved.state.laser);
@@ -125,26 +127,29 @@ impl WallSystem {
             Rule::NearestNeighbour(rule) => Rule::NearestNeighbour(rule.numbering_from(next_id)),
             Rule::JointCompatibility(rule) => Rule::JointCompatibility(rule.numbering_from(next_id)),
         };
-        if !travel.is_sound() {
+        if !relative_motion.is_finite() {
             return Err(
                 SavedMapError::from(SlamError::NotFinite { what: "saved way since the last look" }).into()
             );
         }
-        system.travel = travel;
-        if let Some(SavedScan { angle_min, angle_increment, range_max, ranges, laser, beam_step }) = last_look
+        system.relative_motion = relative_motion;
+        if let Some(SavedScan { angle_min, angle_increment, range_max, ranges, laser, beam_step }) =
+            last_keyframe
         {
             let scan = LaserScan { angle_min, angle_increment, range_max, beam_period: 0.0, ranges };
             let scan = PlacedScan { scan, laser, beam_step };
             let unsound = |_| SavedMapError::from(SlamError::NotFinite { what: "saved scan" });
             let cloud = scan.cloud().map_err(unsound)?;
-            system.last_look = Some(Look { scan, cloud });
+            system.last_keyframe = Some(KeyframeScan { scan, cloud });
         }
-        if !saved.state.odometry.is_finite() || saved.state.laser_now.is_some_and(|laser| !laser.is_finite())
+        if !saved.state.odometry.is_finite()
+            || saved.state.current_laser_mount.is_some_and(|laser| !laser.is_finite())
         {
             return Err(SavedMapError::from(SlamError::NotFinite { what: "saved odometry" }).into());
         }
         system.odometry = saved.state.odometry;
-        (system.laser_now, system.laser_follows_log) = (saved.state.laser_now, laser_follows_log);
+        (system.current_laser_mount, system.laser_follows_log) =
+            (saved.state.current_laser_mount, laser_follows_log);
         system.taken_until = Stamp::from_nanoseconds(taken_until);
         system.resumed_at = Some(system.taken_until);
         Ok(system)

@@ -24,7 +24,7 @@ pub(super) struct PlacedScan {
 }
 
 /// A scan that walls were taken from.
-pub(super) struct Look {
+pub(super) struct KeyframeScan {
     pub(super) scan: PlacedScan,
     pub(super) cloud: Cloud,
 }
@@ -54,8 +54,8 @@ impl PlacedScan {
     pub(super) fn cloud(&self) -> Result<Cloud, ScanMatchError> {
         let LaserScan { angle_min, angle_increment, ranges, .. } = &self.scan;
         let (step, max_range) = (self.beam_step.as_ref(), largest_echo(&self.scan));
-        let cloud = Cloud::from_moving_ranges(*angle_min, *angle_increment, ranges, max_range, step)?;
-        Ok(cloud.carried_at(&self.laser))
+        let cloud = Cloud::from_ranges_deskewed(*angle_min, *angle_increment, ranges, max_range, step)?;
+        Ok(cloud.transformed(&self.laser))
     }
 
     /// The walls of the scan in the frame of the laser at the first beam.
@@ -64,6 +64,6 @@ impl PlacedScan {
         let (angle_min, angle_increment) = (*angle_min, *angle_increment);
         let scan = Scan { angle_min, angle_increment, ranges, max_range: largest_echo(&self.scan) };
         let step = self.beam_step.map(|step| Isometry2::new(step.translation, step.heading()));
-        extractor.extract_moving(&scan, step.as_ref())
+        extractor.extract_deskewed(&scan, step.as_ref())
     }
 }

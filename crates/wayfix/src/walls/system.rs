@@ -6,23 +6,24 @@ use wayfix_line_extract::Extractor;
 use wayfix_scan_match::{Cloud, Guess, Matcher};
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
 use wayfix_slam_ekf::{
-    DriftingPose, EkfSlam, JointCompatibility, LandmarkId, Mounted, NearestNeighbour, Observation,
-    OnDrifting, SeenWall, SlamError, StepReport, Wall, WallSensor, observability::ObservabilityRecorder,
+    DriftingPose, DriftingPoseSensor, EkfSlam, JointCompatibility, LandmarkId, MountedSensor,
+    NearestNeighbour, Observation, SlamError, StepReport, Wall, WallMeasurement, WallSensor,
+    observability::ObservabilityRecorder,
 };
 
 use super::{
-    Gait, WallSlamParams,
+    KeyframeThreshold, WallSlamParams,
     odometry::{Motion, Odometry},
-    scan::{Look, PlacedScan, WaitingScan, beam_step},
-    travel::{DriftSeen, Travel},
+    relative_motion::{DriftMeasurement, RelativeMotion},
+    scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::{
-    slam::{AssociationRule, Keyframe, event_name, seen_landmarks},
-    system::{Events, PlausibleIncrement, Stopwatch, System, possible},
+    slam::{AssociationRule, StampedEstimate, event_name, seen_landmarks},
+    system::{Events, PlausibleIncrement, Stopwatch, System, check_velocity},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
-pub type WallModel = OnDrifting<Mounted<WallSensor>>;
+pub type WallModel = DriftingPoseSensor<MountedSensor<WallSensor>>;
 
 /// EKF-SLAM that takes scans and keeps a map of walls.
 pub struct WallSystem {
@@ -31,9 +32,9 @@ pub struct WallSystem {
     extractor: Extractor,
     matcher: Option<Matcher>,
     /// The scan that was looked at last, which those after it are laid on.
-    pub(super) last_look: Option<Look>,
+    pub(super) last_keyframe: Option<KeyframeScan>,
     /// The way since.
-    pub(super) travel: Travel,
+    pub(super) relative_motion: RelativeMotion,
     pub(super) filter: EkfSlam<WallModel>,
     pub(super) association: Rule,
     /// Stamp of the last record that was taken.
@@ -42,7 +43,7 @@ pub struct WallSystem {
     pub(super) resumed_at: Option<Stamp>,
     pub(super) odometry: Odometry,
     /// Where the laser is now, where the log says it and the parameters do not.
-    pub(super) laser_now: Option<Pose2<f64>>,
+    pub(super) current_laser_mount: Option<Pose2<f64>>,
     /// Whether the log places the laser, and not the parameters.
     pub(super) laser_follows_log: bool,
     plausible: PlausibleIncrement,
@@ -50,10 +51,10 @@ pub struct WallSystem {
     pub(super) waiting: VecDeque<WaitingScan>,
     pub(super) dead_reckoning: Pose2<f64>,
     observability: Option<ObservabilityRecorder>,
-    keyframes: Vec<Keyframe>,
+    stamped_estimates: Vec<StampedEstimate>,
     /// Heading by the points of the last scan alone, seen from the last look, rad.
     laser_heading: Option<f64>,
-    /// By how much the robot has turned to each keyframe from the one before, by the scans alone, rad.
+    /// By how much the robot has turned to each stamped_estimate from the one before, by the scans alone, rad.
     seen_turns: Vec<Option<f64>>,
     events: Events,
     step: Duration,
@@ -87,7 +88,7 @@ impl WallSystem {
             }
             _ => Rule::NearestNeighbour(NearestNeighbour::new(params.nearest_neighbour)?),
         };
-        let sensor = OnDrifting(Mounted { sensor: params.sensor, mount: params.mount() });
+        let sensor = DriftingPoseSensor(MountedSensor { sensor: params.sensor, mount: params.mount() });
         let state = DriftingPose { pose: start, heading_drift: 0.0 };
         let mut covariance = start_covariance.to_homogeneous();
         covariance.m44 = params.heading_drift_sigma.powi(2);
@@ -95,8 +96,8 @@ impl WallSystem {
         Ok(Self {
             extractor: Extractor::new(params.lines)?,
             matcher: params.match_scans.then(|| Matcher::new(params.scan_match)).transpose()?,
-            last_look: None,
-            travel: Travel::default(),
+            last_keyframe: None,
+            relative_motion: RelativeMotion::default(),
             observability: params.record_observability.then(|| ObservabilityRecorder::new(&filter)),
             filter,
             association,
@@ -105,12 +106,12 @@ impl WallSystem {
             taken_until: Stamp::default(),
             resumed_at: None,
             odometry: Odometry::default(),
-            laser_now: None,
+            current_laser_mount: None,
             laser_follows_log: false,
             plausible: PlausibleIncrement::default(),
             waiting: VecDeque::new(),
             dead_reckoning: start,
-            keyframes: Vec::new(),
+            stamped_estimates: Vec::new(),
             laser_heading: None,
             seen_turns: Vec::new(),
             events: Events::default(),
@@ -127,10 +128,10 @@ impl WallSystem {
         &self.filter
     }
     /// One estimate for every scan.
-    pub fn keyframes(&self) -> &[Keyframe] {
-        &self.keyframes
+    pub fn stamped_estimates(&self) -> &[StampedEstimate] {
+        &self.stamped_estimates
     }
-    /// By how much the robot has turned to each keyframe from the one before, by the scans alone, where they tell.
+    /// By how much the robot has turned to each stamped_estimate from the one before, by the scans alone, where they tell.
     pub(super) fn seen_turns(&self) -> &[Option<f64>] {
         &self.seen_turns
     }
@@ -162,7 +163,7 @@ impl WallSystem {
         for motion in &motions {
             self.move_by(motion);
             if let Some(waiting) = scans.next() {
-                self.try_scan(waiting);
+                self.take_waiting_scan(waiting);
             }
         }
         Ok(())
@@ -170,10 +171,10 @@ impl WallSystem {
 
     fn move_by(&mut self, motion: &Motion) {
         let Motion { increment, error, unknown_seconds } = motion;
-        self.travel = self
-            .travel
+        self.relative_motion = self
+            .relative_motion
             .then(&self.params.increment, self.filter.robot().heading_drift, increment)
-            .less_certain(error);
+            .with_added_covariance(error);
         self.dead_reckoning = self.dead_reckoning.compose(increment);
         if *unknown_seconds > self.params.velocity_hold {
             self.events.warn(
@@ -194,7 +195,7 @@ impl WallSystem {
 
     /// Takes a scan now, when odometry leads up to it or never will, else with the next increment.
     fn take_or_wait(&mut self, stamp: Stamp, scan: &LaserScan) -> Result<(), String> {
-        let laser = self.laser_now.unwrap_or(self.mount());
+        let laser = self.current_laser_mount.unwrap_or(self.mount());
         if self.moves_by_velocity {
             self.advance_to(stamp);
         } else if !(self.waiting.is_empty() && self.odometry.reaches(stamp)) || self.needs_twist(scan) {
@@ -213,7 +214,7 @@ impl WallSystem {
     }
 
     /// Takes a scan that waited.
-    fn try_scan(&mut self, WaitingScan { stamp, scan, laser }: &WaitingScan) {
+    fn take_waiting_scan(&mut self, WaitingScan { stamp, scan, laser }: &WaitingScan) {
         if let Err(reason) = self.take_scan(*stamp, scan, laser) {
             self.events.refuse("record_refused", format!("scan of {stamp}: {reason}"));
         }
@@ -223,22 +224,23 @@ impl WallSystem {
         let stopwatch = Stopwatch::start();
         let scan = self.placed(scan, laser);
         let cloud = scan.cloud().map_err(|error| error.to_string())?;
-        let laser_heading = self.lay_on_the_last_look(&cloud);
+        let laser_heading = self.match_to_keyframe(&cloud);
         let seen_turn = self.laser_heading.zip(laser_heading).map(|(from, to)| wrap_angle(to - from));
         self.laser_heading = laser_heading;
-        let Gait { least_way, least_turn } = self.params.looks;
-        let nis = if self.last_look.is_some() && self.travel.is_within(least_way, least_turn) {
-            self.events.count("scan_passed_by");
-            (0.0, 0)
-        } else {
-            let observations = self.walls_in(&scan)?;
-            self.move_on()?;
-            self.last_look = Some(Look { scan, cloud });
-            self.laser_heading = Some(0.0);
-            self.look_at(&observations)?
-        };
+        let KeyframeThreshold { min_distance, min_rotation } = self.params.keyframes;
+        let nis =
+            if self.last_keyframe.is_some() && self.relative_motion.is_within(min_distance, min_rotation) {
+                self.events.count("scan_skipped");
+                (0.0, 0)
+            } else {
+                let observations = self.walls_in(&scan)?;
+                self.predict_to_scan()?;
+                self.last_keyframe = Some(KeyframeScan { scan, cloud });
+                self.laser_heading = Some(0.0);
+                self.update_with_walls(&observations)?
+            };
         self.step += stopwatch.elapsed();
-        self.add_keyframe(stamp, nis);
+        self.add_stamped_estimate(stamp, nis);
         self.seen_turns.push(seen_turn);
         Ok(())
     }
@@ -260,33 +262,36 @@ impl WallSystem {
 
     /// Corrects the way since the last look, and the drift, by how a scan lies on that of the last look. Returns the heading that
     /// the points alone ask for, seen from there.
-    fn lay_on_the_last_look(&mut self, cloud: &Cloud) -> Option<f64> {
+    fn match_to_keyframe(&mut self, cloud: &Cloud) -> Option<f64> {
         let mut laser_heading = None;
-        self.travel = self.travel.at_a_scan(&self.params.disagreement);
-        if let (Some(look), Some(matcher)) = (&self.last_look, self.matcher) {
+        self.relative_motion =
+            self.relative_motion.with_odometry_scan_noise(&self.params.odometry_scan_noise);
+        if let (Some(look), Some(matcher)) = (&self.last_keyframe, self.matcher) {
             let drift_variance = self.filter.robot_covariance()[(3, 3)];
-            let covariance = self.travel.total_covariance(drift_variance);
-            let others = self.travel.without_wheels();
-            let guess = Guess { pose: self.travel.motion, covariance, others: &others };
+            let covariance = self.relative_motion.total_covariance(drift_variance);
+            let others = self.relative_motion.guesses_without_odometry();
+            let guess = Guess { pose: self.relative_motion.motion, covariance, alternative_poses: &others };
             let found = matcher.align(&look.cloud, cloud, &guess);
             if let Some(found) = found.ok().filter(|found| found.overlap >= LEAST_OVERLAP) {
                 self.events.count("scan_matched");
-                laser_heading = self.travel.heading_seen(&found);
-                let travel = self.travel.doubted(found.guess_scale);
-                let drift_change = travel.drift_seen(&found).map_or(0.0, |seen| self.correct_drift(seen));
-                self.travel = travel.corrected_by(&found, drift_change).unwrap_or(travel);
+                laser_heading = self.relative_motion.heading_from_match(&found);
+                let relative_motion = self.relative_motion.with_scaled_covariance(found.guess_scale);
+                let drift_change =
+                    relative_motion.drift_from_match(&found).map_or(0.0, |seen| self.correct_drift(seen));
+                self.relative_motion =
+                    relative_motion.corrected_by(&found, drift_change).unwrap_or(relative_motion);
             } else {
                 self.events.count("scan_unmatched");
             }
         }
-        self.travel = self.travel.after_scan();
+        self.relative_motion = self.relative_motion.after_scan();
         laser_heading
     }
 
     /// Corrects the drift by a change and its variance, and says by how much. A look that the filter refuses leaves it as it is.
     fn correct_drift(&mut self, (change, variance): (f64, f64)) -> f64 {
         let before = self.filter.robot().heading_drift;
-        let seen = self.filter.update_robot(&DriftSeen(variance), &Vector1::new(before + change));
+        let seen = self.filter.update_robot(&DriftMeasurement(variance), &Vector1::new(before + change));
         if let (Ok(innovation), Some(recorder)) = (seen, &mut self.observability) {
             let jacobian = Matrix1x4::new(0.0, 0.0, 0.0, 1.0);
             recorder.record_robot(&self.filter, &jacobian, &innovation.covariance);
@@ -295,19 +300,22 @@ impl WallSystem {
     }
 
     /// Moves the robot on by the way since the last look.
-    fn move_on(&mut self) -> Result<(), String> {
-        let travel = self.travel;
-        let jacobian = travel.jacobian(self.filter.robot(), &travel.motion);
-        self.filter.predict(&travel, &travel.motion).map_err(|error| error.to_string())?;
-        self.travel = travel.begun_anew();
+    fn predict_to_scan(&mut self) -> Result<(), String> {
+        let relative_motion = self.relative_motion;
+        let jacobian = relative_motion.jacobian(self.filter.robot(), &relative_motion.motion);
+        self.filter.predict(&relative_motion, &relative_motion.motion).map_err(|error| error.to_string())?;
+        self.relative_motion = relative_motion.reset_at_keyframe();
         if let Some(recorder) = &mut self.observability {
-            recorder.moved(&jacobian);
+            recorder.record_motion(&jacobian);
         }
         Ok(())
     }
 
     /// Corrects robot and map with the walls of a scan; sum and number of the NIS of what corrected.
-    fn look_at(&mut self, observations: &[Observation<SeenWall>]) -> Result<(f64, usize), String> {
+    fn update_with_walls(
+        &mut self,
+        observations: &[Observation<WallMeasurement>],
+    ) -> Result<(f64, usize), String> {
         let report = match &mut self.association {
             Rule::NearestNeighbour(rule) => self.filter.update(observations, rule),
             Rule::JointCompatibility(rule) => self.filter.update(observations, rule),
@@ -320,15 +328,15 @@ impl WallSystem {
         Ok(report.innovations().fold((0.0, 0), |(sum, n), innovation| (sum + innovation.nis, n + 1)))
     }
 
-    /// The filter is at the last scan that was looked at; the keyframe says where the robot is by now.
-    fn add_keyframe(&mut self, stamp: Stamp, nis: (f64, usize)) {
-        let (state, travel) = (self.filter.robot(), &self.travel);
-        let jacobian = travel.jacobian(state, &travel.motion);
+    /// The filter is at the last scan that was looked at; the stamped_estimate says where the robot is by now.
+    fn add_stamped_estimate(&mut self, stamp: Stamp, nis: (f64, usize)) {
+        let (state, relative_motion) = (self.filter.robot(), &self.relative_motion);
+        let jacobian = relative_motion.jacobian(state, &relative_motion.motion);
         let covariance = jacobian * self.filter.robot_covariance() * jacobian.transpose()
-            + travel.noise(state, &travel.motion);
-        self.keyframes.push(Keyframe {
+            + relative_motion.noise(state, &relative_motion.motion);
+        self.stamped_estimates.push(StampedEstimate {
             stamp,
-            pose: travel.propagate(state, &travel.motion).pose,
+            pose: relative_motion.propagate(state, &relative_motion.motion).pose,
             covariance: covariance.fixed_view::<3, 3>(0, 0).into_owned(),
             dead_reckoning: self.dead_reckoning,
             n_landmarks: self.filter.n_landmarks(),
@@ -338,17 +346,17 @@ impl WallSystem {
     }
 
     /// The walls of a scan that are long enough to be walls, as the laser would see them from where the model has it.
-    fn walls_in(&mut self, scan: &PlacedScan) -> Result<Vec<Observation<SeenWall>>, String> {
+    fn walls_in(&mut self, scan: &PlacedScan) -> Result<Vec<Observation<WallMeasurement>>, String> {
         let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
         let long = found.segments.iter().filter(|segment| segment.length() >= self.params.min_wall_length);
-        let seen = long.map(SeenWall::from);
+        let seen = long.map(WallMeasurement::from);
         let moved = self.mount().inverse().compose(&scan.laser);
         let as_seen =
-            |seen: SeenWall| if scan.laser == self.mount() { seen } else { seen.carried_at(&moved) };
+            |seen: WallMeasurement| if scan.laser == self.mount() { seen } else { seen.transformed(&moved) };
         Ok(seen.map(|seen| Observation { label: None, measurement: as_seen(seen) }).collect())
     }
 
-    fn count(&mut self, report: &StepReport<SeenWall>) {
+    fn count(&mut self, report: &StepReport<WallMeasurement>) {
         for outcome in &report.outcomes {
             self.events.count(event_name(outcome));
         }
@@ -365,13 +373,13 @@ impl System for WallSystem {
         match &record.data {
             Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment),
             Data::Velocity(velocity) if self.moves_by_velocity => {
-                possible(*velocity)?;
+                check_velocity(*velocity)?;
                 self.advance_to(record.stamp);
                 self.odometry.hold(record.stamp, *velocity)
             }
             Data::Scan(scan) => self.take_or_wait(record.stamp, scan),
             Data::LaserMount(mount) if self.laser_follows_log => {
-                self.laser_now = Some(*mount);
+                self.current_laser_mount = Some(*mount);
                 Ok(())
             }
             _ => Ok(()),
@@ -386,7 +394,7 @@ impl System for WallSystem {
             } else {
                 self.odometry.start(waiting.stamp);
             }
-            self.try_scan(&waiting);
+            self.take_waiting_scan(&waiting);
         }
         Ok(())
     }

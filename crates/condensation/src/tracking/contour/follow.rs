@@ -96,7 +96,7 @@ impl ContourTracker {
         let mut quality = scene.confidence(&candidate, mask)?;
         if self.status == TrackStatus::Lost {
             // Out of the place that spoke for it, the segmentation alone proves little.
-            quality *= scene.likeness(state, &candidate, mask)?;
+            quality *= scene.color_similarity(state, &candidate, mask)?;
         }
         let candidate = candidate.refined(scene, mask);
         let cloud = if self.params.adapts { scene.colors_of(&candidate, set, mask)? } else { None };

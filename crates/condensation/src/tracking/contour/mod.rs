@@ -2,10 +2,10 @@
 
 mod agreement;
 mod candidate;
+mod color_similarity;
 mod each;
 mod follow;
 mod history;
-mod likeness;
 mod params;
 mod recolor;
 mod reference;

@@ -20,7 +20,7 @@ impl Candidate {
         let edges =
             ColorEdges::new(scene.picture, params.edge_contrast).within(&band, scene.region.rect.corner());
         // The snake is where it belongs but for the width of the band.
-        let near = SnakeParams { reach: 0.0, ..params.snake };
+        let near = SnakeParams { search_distance: 0.0, ..params.snake };
         let snake = &scene.reference.snake;
         let fit = snake.fit(&self.map, &edges, &near);
         let area = snake.area_at(&fit.map);

@@ -20,7 +20,7 @@ const N_GAINS: i32 = 6;
 const MAX_BLOBS: usize = 4;
 
 /// A blob that may be the target.
-pub(super) struct Sighting {
+pub(super) struct BlobCandidate {
     pub(super) candidate: Candidate,
     pub(super) mask: BitMask,
     pub(super) score: f64,
@@ -52,7 +52,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The best blob of a hypothesis, anywhere, by its score times the likeness of its colours.
-    pub(super) fn find(&self, state: &ColorState) -> Option<Sighting> {
+    pub(super) fn find(&self, state: &ColorState) -> Option<BlobCandidate> {
         let blobs = self.segment(&self.bin_set(state)).blobs(Connectivity::Eight);
         let ratio = |area: usize| area as f64 / self.expected_area;
         let mut near: Vec<(usize, f64)> = blobs
@@ -65,8 +65,8 @@ impl<'a> Scene<'a> {
         let weigh = |&(i, _): &(usize, f64)| {
             let mask = blobs.mask(i)?;
             let candidate = self.placed_on(&mask)?;
-            let score = self.score(&candidate) * self.likeness(state, &candidate, &mask).ok()?;
-            Some(Sighting { candidate, mask, score })
+            let score = self.score(&candidate) * self.color_similarity(state, &candidate, &mask).ok()?;
+            Some(BlobCandidate { candidate, mask, score })
         };
         let candidates = near.iter().take(MAX_BLOBS).filter_map(weigh);
         candidates.reduce(|best, other| if other.score > best.score { other } else { best })

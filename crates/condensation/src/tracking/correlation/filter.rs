@@ -184,7 +184,7 @@ mod tests {
         let peak = Peak::of(&filter.response(&learned, &moved), SIDE);
         assert!((peak.shift[0] - 3.0).abs() < 0.5 && (peak.shift[1] + 2.0).abs() < 0.5, "{peak:?}");
         // the largest of 576 normal values is beyond 5 in less than one of a thousand fields
-        assert!(peak.standing_out > 5.0, "{peak:?}");
+        assert!(peak.peak_to_sidelobe > 5.0, "{peak:?}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 use super::planes::Spectrum;
-use super::recognizer::{Evidence, Sight};
+use super::recenter::N_RECENTERING_FRAMES;
+use super::recognizer::{FilterResponse, WindowSample};
 use super::response::Peak;
-use super::settle::SETTLING;
 use super::tracker::CorrelationTracker;
 use super::window::{Pose, SIDE};
 use crate::Picture;
@@ -11,13 +11,13 @@ impl CorrelationTracker {
     pub(super) fn recognized_elsewhere(
         &self,
         picture: &Picture,
-        around: &Sight,
-    ) -> Option<(Pose, Sight, Evidence)> {
+        around: &WindowSample,
+    ) -> Option<(Pose, WindowSample, FilterResponse)> {
         self.recognized_by(&self.trusted, picture, self.pose, around).or_else(|| {
-            let turn = self.n_untrusted.checked_sub(self.params.patience)?;
+            let turn = self.n_untrusted.checked_sub(self.params.lost_after)?;
             let center = self.place(turn);
             let from = Pose { center, ..self.pose };
-            self.recognized_by(&self.trusted, picture, from, &self.recognizer.look(picture, from))
+            self.recognized_by(&self.trusted, picture, from, &self.recognizer.sample_at(picture, from))
         })
     }
 
@@ -29,10 +29,10 @@ impl CorrelationTracker {
         self.n_lost += 1;
         for center in centers {
             let from = Pose { center, ..self.pose };
-            let around = self.recognizer.look(picture, from);
+            let around = self.recognizer.sample_at(picture, from);
             let found = [&self.trusted, &self.current].into_iter().find_map(|filter| {
                 let (pose, _, evidence) = self.recognized_by(filter, picture, from, &around)?;
-                Some((filter.clone(), pose, evidence.value / self.usual))
+                Some((filter.clone(), pose, evidence.value / self.typical_response))
             });
             if let Some((filter, pose, quality)) = found {
                 (self.current, self.pose) = (filter, pose);
@@ -45,7 +45,7 @@ impl CorrelationTracker {
 
     /// A lost target is found.
     pub(super) fn found(&mut self) {
-        (self.n_lost, self.n_doubts, self.n_settling) = (0, 0, SETTLING);
+        (self.n_lost, self.n_without_evidence, self.n_recentering) = (0, 0, N_RECENTERING_FRAMES);
     }
 
     /// Where in what is seen `around` a pose a filter recognizes the target, if it does.
@@ -54,16 +54,16 @@ impl CorrelationTracker {
         filter: &Spectrum,
         picture: &Picture,
         pose: Pose,
-        around: &Sight,
-    ) -> Option<(Pose, Sight, Evidence)> {
+        around: &WindowSample,
+    ) -> Option<(Pose, WindowSample, FilterResponse)> {
         let response = self.recognizer.response(filter, around);
-        if Peak::of(&response, SIDE).standing_out < self.params.doubt_below {
+        if Peak::of(&response, SIDE).peak_to_sidelobe < self.params.no_evidence_below {
             return None;
         }
         let pose = self.shifted(picture, pose, &response);
-        let sight = self.recognizer.look(picture, pose);
-        let evidence = self.recognizer.evidence(filter, &sight);
-        (self.recognized(evidence) && self.is_alike(&sight)).then_some((pose, sight, evidence))
+        let sample = self.recognizer.sample_at(picture, pose);
+        let evidence = self.recognizer.evidence(filter, &sample);
+        (self.recognized(evidence) && self.has_target_colors(&sample)).then_some((pose, sample, evidence))
     }
 
     /// One place after the other, so that the whole picture is looked at again and again.

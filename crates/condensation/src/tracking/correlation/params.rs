@@ -40,9 +40,9 @@ pub struct CorrelationTrackerParams {
     pub scale_rate: f64,
     /// Standing out, in standard deviations of the response, below which there is no evidence of the target. Noise reaches 5 to 9.
     /// Default 10.
-    pub doubt_below: f64,
+    pub no_evidence_below: f64,
     /// Pictures in a row without evidence after which the target is lost. Default 8.
-    pub patience: usize,
+    pub lost_after: usize,
     /// Standing out above which a picture is learned. Default 12.
     pub learn_above: f64,
     /// Standing out above which a target is recognized, after an occlusion or a loss. Default 15.
@@ -50,7 +50,7 @@ pub struct CorrelationTrackerParams {
     /// Share of the usual response that it takes for that, too; three fifths of it suffice for a lost target. Default 0.5.
     pub recognize_share: f64,
     /// Share of the usual agreement of colours below which something is not the target unless its shape is recognized. Default 0.5.
-    pub alike_share: f64,
+    pub color_agreement_share: f64,
     /// Pictures after which a changed target is believed to be the target, if what it was is not seen elsewhere. Default 60.
     pub forget_after: usize,
     /// Places beside the last one that are searched in each picture while the target is lost. Default 2.
@@ -72,12 +72,12 @@ impl Default for CorrelationTrackerParams {
             n_scales: 17,
             scale_step: 1.03,
             scale_rate: 0.025,
-            doubt_below: 10.0,
-            patience: 8,
+            no_evidence_below: 10.0,
+            lost_after: 8,
             learn_above: 12.0,
             recognize_above: 15.0,
             recognize_share: 0.5,
-            alike_share: 0.5,
+            color_agreement_share: 0.5,
             forget_after: 60,
             n_searches: 2,
         }
@@ -101,7 +101,7 @@ impl CorrelationTrackerParams {
             ("colour rate", self.color_rate),
             ("scale rate", self.scale_rate),
             ("share to recognize by", self.recognize_share),
-            ("share of alike colours", self.alike_share),
+            ("share of alike colours", self.color_agreement_share),
         ] {
             probability(what, value)?;
         }
@@ -110,7 +110,7 @@ impl CorrelationTrackerParams {
         let step = (1.001..=1.5).contains(&self.scale_step);
         checked("scale step", self.scale_step, step, "between 1.001 and 1.5")?;
         for (what, value) in [
-            ("standing out for doubt", self.doubt_below),
+            ("standing out for doubt", self.no_evidence_below),
             ("standing out for learning", self.learn_above),
             ("standing out to recognize", self.recognize_above),
         ] {

@@ -17,17 +17,17 @@ pub(super) struct Recognizer {
 
 /// What is seen around a pose.
 #[derive(Clone, Debug)]
-pub(super) struct Sight {
+pub(super) struct WindowSample {
     pub(super) patch: Patch,
     pub(super) spectrum: Spectrum,
 }
 
 /// How much a filter recognizes in the middle of what is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Evidence {
+pub(super) struct FilterResponse {
     pub(super) value: f64,
     /// How far the value stands out of the rest, in standard deviations; 0 if there is a higher one elsewhere.
-    pub(super) standing_out: f64,
+    pub(super) peak_to_sidelobe: f64,
 }
 
 /// Shift in cells up to which a peak is in the middle.
@@ -45,27 +45,27 @@ impl Recognizer {
         Self { window, filter, shares: Shares { gradient: 1.0 - color - grey, grey, color } }
     }
 
-    pub(super) fn look(&self, picture: &Picture, pose: Pose) -> Sight {
-        self.sight(self.window.patch(picture, pose))
+    pub(super) fn sample_at(&self, picture: &Picture, pose: Pose) -> WindowSample {
+        self.sample(self.window.patch(picture, pose))
     }
 
     /// What a patch of the window shows.
-    pub(super) fn sight(&self, patch: Patch) -> Sight {
+    pub(super) fn sample(&self, patch: Patch) -> WindowSample {
         let features = features(&patch, self.window.taper(), self.shares);
-        Sight { spectrum: self.filter.fourier().forward(&features), patch }
+        WindowSample { spectrum: self.filter.fourier().forward(&features), patch }
     }
 
-    pub(super) fn response(&self, filter: &Spectrum, sight: &Sight) -> Vec<f32> {
-        self.filter.response(filter, &sight.spectrum)
+    pub(super) fn response(&self, filter: &Spectrum, sample: &WindowSample) -> Vec<f32> {
+        self.filter.response(filter, &sample.spectrum)
     }
 
-    pub(super) fn evidence(&self, filter: &Spectrum, sight: &Sight) -> Evidence {
-        let response = self.response(filter, sight);
+    pub(super) fn evidence(&self, filter: &Spectrum, sample: &WindowSample) -> FilterResponse {
+        let response = self.response(filter, sample);
         let peak = Peak::of(&response, SIDE);
         if peak.shift.iter().all(|shift| shift.abs() < MIDDLE) {
-            Evidence { value: peak.value, standing_out: peak.standing_out }
+            FilterResponse { value: peak.value, peak_to_sidelobe: peak.peak_to_sidelobe }
         } else {
-            Evidence { value: f64::from(response[0]).max(0.0), standing_out: 0.0 }
+            FilterResponse { value: f64::from(response[0]).max(0.0), peak_to_sidelobe: 0.0 }
         }
     }
 }

@@ -6,7 +6,7 @@ pub(super) struct Peak {
     /// The response there.
     pub(super) value: f64,
     /// By how many standard deviations of the rest the peak rises above its mean. [Bolme et al. 2010, sec. 3.5]
-    pub(super) standing_out: f64,
+    pub(super) peak_to_sidelobe: f64,
 }
 
 /// Half the side of the square around a peak that does not count as rest, in cells.
@@ -25,7 +25,7 @@ impl Peak {
             signed(x) + vertex(at(side - 1, 0), value, at(1, 0)),
             signed(y) + vertex(at(0, side - 1), value, at(0, 1)),
         ];
-        Self { shift, value, standing_out: standing_out(response, side, (x, y), value) }
+        Self { shift, value, peak_to_sidelobe: peak_to_sidelobe(response, side, (x, y), value) }
     }
 }
 
@@ -38,7 +38,7 @@ pub(super) fn vertex(before: f64, at: f64, after: f64) -> f64 {
     if bend < 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 }
 }
 
-fn standing_out(response: &[f32], side: usize, (x, y): (usize, usize), value: f64) -> f64 {
+fn peak_to_sidelobe(response: &[f32], side: usize, (x, y): (usize, usize), value: f64) -> f64 {
     let apart = |a: usize, b: usize| a.abs_diff(b).min(side - a.abs_diff(b));
     let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
     for (i, &v) in response.iter().enumerate() {
@@ -74,6 +74,6 @@ mod tests {
         response[11 * 12 + 2] = 1.0;
         let peak = Peak::of(&response, 12);
         assert_eq!((peak.shift, peak.value), ([2.0, -1.0], 1.0));
-        assert_eq!(Peak::of(&[0.0; 144], 12).standing_out, 0.0);
+        assert_eq!(Peak::of(&[0.0; 144], 12).peak_to_sidelobe, 0.0);
     }
 }

@@ -5,7 +5,7 @@ use super::filter::Learning;
 use super::params::CorrelationTrackerParams;
 use super::patch::Patch;
 use super::planes::Spectrum;
-use super::recognizer::{Evidence, Recognizer, Sight};
+use super::recognizer::{FilterResponse, Recognizer, WindowSample};
 use super::response::Peak;
 use super::scale_filter::ScaleFilter;
 use super::window::{Pose, SIDE};
@@ -18,7 +18,7 @@ const MIN_SIDE: f64 = 3.0;
 /// How much larger than the picture a target may grow, as something that comes close does.
 const MAX_SHARE: f64 = 1.5;
 /// Rate at which the response that is usual follows.
-const USUAL_RATE: f64 = 0.05;
+const TYPICAL_RATE: f64 = 0.05;
 
 /// Follows what a box encloses by its shape, its colours and its size: anything, in colour or grey, from the first box alone.
 ///
@@ -76,15 +76,15 @@ pub struct CorrelationTracker {
     /// Pictures since then.
     pub(super) n_untrusted: usize,
     /// The response that is usual for the target.
-    pub(super) usual: f64,
+    pub(super) typical_response: f64,
     /// The agreement of colours that is usual for it.
-    pub(super) usual_agreement: f64,
+    pub(super) typical_color_agreement: f64,
     /// Pictures in a row without evidence.
-    pub(super) n_doubts: usize,
+    pub(super) n_without_evidence: usize,
     /// Pictures since the target was lost; 0 while it is not.
     pub(super) n_lost: usize,
     /// Pictures in which a target that was found again may come further into sight.
-    pub(super) n_settling: usize,
+    pub(super) n_recentering: usize,
 }
 
 impl CorrelationTracker {
@@ -109,16 +109,16 @@ impl CorrelationTracker {
         }
         let recognizer = Recognizer::new(picture, size, &params);
         let pose = Pose { center: target.center(), scale: 1.0 };
-        let sight = recognizer.look(picture, pose);
+        let sample = recognizer.sample_at(picture, pose);
         let learning = Learning { inertia: 0.0, penalty: params.penalty as f32 };
-        let current = recognizer.filter.learned(None, &sight.spectrum, learning);
-        let usual = recognizer.evidence(&current, &sight).value;
-        if usual <= 0.0 {
+        let current = recognizer.filter.learned(None, &sample.spectrum, learning);
+        let typical_response = recognizer.evidence(&current, &sample).value;
+        if typical_response <= 0.0 {
             return Err(CondensationError::Empty { what: "structure in the first picture" });
         }
         let mut colors = ColorRatio::new();
-        colors.learn(&sight.patch, recognizer.window.target_pixels(), 1.0);
-        let usual_agreement = colors.agreement(&sight.patch, recognizer.window.target_pixels());
+        colors.learn(&sample.patch, recognizer.window.target_pixels(), 1.0);
+        let typical_color_agreement = colors.agreement(&sample.patch, recognizer.window.target_pixels());
         let mut scales = ScaleFilter::new(params.n_scales, params.scale_step, size);
         scales.learn(picture, pose.center, size, 1.0);
         Ok(Self {
@@ -130,51 +130,51 @@ impl CorrelationTracker {
             pose,
             trusted: current.clone(),
             current,
-            learned: sight.patch,
+            learned: sample.patch,
             n_untrusted: 0,
-            usual,
-            usual_agreement,
-            n_doubts: 0,
+            typical_response,
+            typical_color_agreement,
+            n_without_evidence: 0,
             n_lost: 0,
-            n_settling: 0,
+            n_recentering: 0,
         })
     }
 
     /// One picture of a target in sight; the quality.
     fn follow(&mut self, picture: &Picture) -> f64 {
-        let around = self.recognizer.look(picture, self.pose);
+        let around = self.recognizer.sample_at(picture, self.pose);
         // What looks exactly as it was learned has not moved and teaches nothing. The fraction of a cell that a peak is off even then would add up.
         if around.patch == self.learned {
-            self.n_doubts = 0;
-            return self.recognizer.evidence(&self.current, &around).value / self.usual;
+            self.n_without_evidence = 0;
+            return self.recognizer.evidence(&self.current, &around).value / self.typical_response;
         }
         let mut pose = self.moved(picture, self.pose, &around);
-        let mut sight = self.recognizer.look(picture, pose);
-        let mut trust = self.recognizer.evidence(&self.trusted, &sight);
+        let mut sample = self.recognizer.sample_at(picture, pose);
+        let mut trust = self.recognizer.evidence(&self.trusted, &sample);
         if !self.recognized(trust)
             && let Some((there, seen, evidence)) = self.recognized_elsewhere(picture, &around)
         {
-            (pose, sight, trust) = (there, seen, evidence);
+            (pose, sample, trust) = (there, seen, evidence);
             self.current = self.trusted.clone();
         }
-        let evidence = self.recognizer.evidence(&self.current, &sight);
-        let is_unlike = !self.recognized(trust) && !self.is_alike(&sight);
+        let evidence = self.recognizer.evidence(&self.current, &sample);
+        let is_unlike = !self.recognized(trust) && !self.has_target_colors(&sample);
         // what may be something else must show more
-        let least = if is_unlike { self.params.recognize_above } else { self.params.doubt_below };
-        if evidence.standing_out < least {
-            self.n_doubts += 1;
-            self.n_lost = usize::from(is_unlike || self.n_doubts > self.params.patience);
+        let least = if is_unlike { self.params.recognize_above } else { self.params.no_evidence_below };
+        if evidence.peak_to_sidelobe < least {
+            self.n_without_evidence += 1;
+            self.n_lost = usize::from(is_unlike || self.n_without_evidence > self.params.lost_after);
         } else {
-            self.n_doubts = 0;
+            self.n_without_evidence = 0;
             self.pose = pose;
-            self.learn(picture, &sight, evidence, trust);
-            self.settle(picture);
+            self.learn(picture, &sample, evidence, trust);
+            self.recenter(picture);
         }
-        evidence.value / self.usual
+        evidence.value / self.typical_response
     }
 
     /// The pose to which the target has moved from `pose`, by shape and colour together.
-    fn moved(&self, picture: &Picture, pose: Pose, around: &Sight) -> Pose {
+    fn moved(&self, picture: &Picture, pose: Pose, around: &WindowSample) -> Pose {
         let window = &self.recognizer.window;
         let mut response = self.recognizer.response(&self.current, around);
         let score = window.box_means(&self.colors.of(&around.patch));
@@ -200,49 +200,56 @@ impl CorrelationTracker {
         pose
     }
 
-    pub(super) fn recognized(&self, evidence: Evidence) -> bool {
+    pub(super) fn recognized(&self, evidence: FilterResponse) -> bool {
         // a lost target has changed more since it was learned, and nothing is given up for it
         let share = self.params.recognize_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
-        evidence.standing_out > self.params.recognize_above && evidence.value > share * self.usual
+        evidence.peak_to_sidelobe > self.params.recognize_above
+            && evidence.value > share * self.typical_response
     }
 
     /// Whether the colours in the middle of what is seen may be the target's.
-    pub(super) fn is_alike(&self, sight: &Sight) -> bool {
-        self.is_usual(self.agreement(sight))
+    pub(super) fn has_target_colors(&self, sample: &WindowSample) -> bool {
+        self.is_typical(self.agreement(sample))
     }
 
-    fn is_usual(&self, agreement: f64) -> bool {
-        agreement >= self.params.alike_share * self.usual_agreement
+    fn is_typical(&self, agreement: f64) -> bool {
+        agreement >= self.params.color_agreement_share * self.typical_color_agreement
     }
 
-    fn agreement(&self, sight: &Sight) -> f64 {
-        self.colors.agreement(&sight.patch, self.recognizer.window.target_pixels())
+    fn agreement(&self, sample: &WindowSample) -> f64 {
+        self.colors.agreement(&sample.patch, self.recognizer.window.target_pixels())
     }
 
-    fn learn(&mut self, picture: &Picture, sight: &Sight, evidence: Evidence, trust: Evidence) {
+    fn learn(
+        &mut self,
+        picture: &Picture,
+        sample: &WindowSample,
+        evidence: FilterResponse,
+        trust: FilterResponse,
+    ) {
         let recognized = self.recognized(trust);
         self.n_untrusted = if recognized { 0 } else { self.n_untrusted + 1 };
-        let agreement = self.agreement(sight);
+        let agreement = self.agreement(sample);
         let may_be_another =
-            !recognized && !self.is_usual(agreement) && self.n_untrusted <= self.params.forget_after;
-        if evidence.standing_out < self.params.learn_above || may_be_another {
+            !recognized && !self.is_typical(agreement) && self.n_untrusted <= self.params.forget_after;
+        if evidence.peak_to_sidelobe < self.params.learn_above || may_be_another {
             return;
         }
         let window = &self.recognizer.window;
         let learning = Learning { inertia: self.params.inertia as f32, penalty: self.params.penalty as f32 };
-        self.current = self.recognizer.filter.learned(Some(&self.current), &sight.spectrum, learning);
-        if self.n_settling == 0 {
-            self.colors.learn(&sight.patch, window.target_pixels(), self.params.color_rate as f32);
+        self.current = self.recognizer.filter.learned(Some(&self.current), &sample.spectrum, learning);
+        if self.n_recentering == 0 {
+            self.colors.learn(&sample.patch, window.target_pixels(), self.params.color_rate as f32);
         }
         let size = window.size(self.pose.scale);
         self.scales.learn(picture, self.pose.center, size, self.params.scale_rate as f32);
-        self.learned.clone_from(&sight.patch);
+        self.learned.clone_from(&sample.patch);
         if recognized || self.n_untrusted > self.params.forget_after {
             self.trusted.clone_from(&self.current);
             self.n_untrusted = 0;
             let value = if recognized { trust.value } else { evidence.value };
-            self.usual += USUAL_RATE * (value - self.usual);
-            self.usual_agreement += USUAL_RATE * (agreement - self.usual_agreement);
+            self.typical_response += TYPICAL_RATE * (value - self.typical_response);
+            self.typical_color_agreement += TYPICAL_RATE * (agreement - self.typical_color_agreement);
         }
     }
 }

@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use super::filter::Learning;
 use super::patch::Patch;
-use super::recognizer::Sight;
+use super::recognizer::WindowSample;
 use super::response::Peak;
 use super::tracker::CorrelationTracker;
 use super::window::{Pose, SIDE, Window};
@@ -28,33 +28,33 @@ impl CorrelationTracker {
         let angles = (first..(first + N_AT_ONCE).min(N_ANGLES)).map(|k| TAU * k as f64 / N_ANGLES as f64);
         let seen: Vec<(f64, Peak)> = angles
             .map(|angle| {
-                let sight = self.recognizer.sight(Window::turned(&surroundings, angle));
-                (angle, Peak::of(&self.recognizer.response(&self.trusted, &sight), SIDE))
+                let sample = self.recognizer.sample(Window::turned(&surroundings, angle));
+                (angle, Peak::of(&self.recognizer.response(&self.trusted, &sample), SIDE))
             })
             .collect();
-        let best = seen.into_iter().max_by(|a, b| a.1.standing_out.total_cmp(&b.1.standing_out));
+        let best = seen.into_iter().max_by(|a, b| a.1.peak_to_sidelobe.total_cmp(&b.1.peak_to_sidelobe));
         let Some((angle, peak)) = best else { return 0.0 };
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let [x, y] = peak.shift;
         let pose = self.recognizer.window.moved(from, [cos * x - sin * y, sin * x + cos * y]);
-        let sight = self.recognizer.look(picture, pose);
-        let is_clear = peak.standing_out > STRICTER * self.params.recognize_above
-            && peak.value > self.params.recognize_share * self.usual;
-        if !is_clear || !self.is_alike(&sight) {
+        let sample = self.recognizer.sample_at(picture, pose);
+        let is_clear = peak.peak_to_sidelobe > STRICTER * self.params.recognize_above
+            && peak.value > self.params.recognize_share * self.typical_response;
+        if !is_clear || !self.has_target_colors(&sample) {
             return 0.0;
         }
-        self.begin_again(picture, pose, &sight);
+        self.relearn(picture, pose, &sample);
         self.found();
-        peak.value / self.usual
+        peak.value / self.typical_response
     }
 
     /// Learns the target afresh as it stands there.
-    pub(super) fn begin_again(&mut self, picture: &Picture, pose: Pose, sight: &Sight) {
+    pub(super) fn relearn(&mut self, picture: &Picture, pose: Pose, sample: &WindowSample) {
         let learning = Learning { inertia: 0.0, penalty: self.params.penalty as f32 };
-        self.current = self.recognizer.filter.learned(None, &sight.spectrum, learning);
+        self.current = self.recognizer.filter.learned(None, &sample.spectrum, learning);
         self.trusted.clone_from(&self.current);
         self.scales.learn(picture, pose.center, self.recognizer.window.size(pose.scale), 1.0);
-        self.learned.clone_from(&sight.patch);
+        self.learned.clone_from(&sample.patch);
         (self.pose, self.n_untrusted) = (pose, 0);
     }
 

@@ -64,7 +64,7 @@ struct HeadState {
     center: [i64; 2],
     velocity: [i64; 2],
     scale: f64,
-    n_doubts: usize,
+    n_without_evidence: usize,
     is_lost: bool,
 }
 
@@ -116,7 +116,7 @@ impl HeadTracker {
         let histogram = histogram(&bins, RowSpans::ellipse(base)?, center)?;
         let own = own_colors(&bins, &histogram, center, base)?;
         let model = BimodalHistogram::new(&quantizer, &own, params.bimodal)?;
-        let state = HeadState { center, velocity: [0; 2], scale: 1.0, n_doubts: 0, is_lost: false };
+        let state = HeadState { center, velocity: [0; 2], scale: 1.0, n_without_evidence: 0, is_lost: false };
         let picture_size = (picture.width(), picture.height());
         Ok(Self { params, picture_size, quantizer, model, scale_source: LocalScale, base, state })
     }
@@ -156,7 +156,7 @@ impl<S: ScaleSource> HeadTracker<S> {
         let HeadState { center, velocity, scale, is_lost, .. } = self.state;
         let search = Search { bins, field, model: &self.model, gradient_weight: self.params.gradient_weight };
         let sizes: Vec<[f64; 2]> = scales.iter().map(|scale| self.base.map(|axis| axis * scale)).collect();
-        let reach = self.params.reach * scale * self.base[0].max(self.base[1]);
+        let reach = self.params.search_radius * scale * self.base[0].max(self.base[1]);
         if !is_lost {
             let predicted = [center[0] + velocity[0], center[1] + velocity[1]];
             return search.best(predicted, reach.ceil() as i64, &sizes);
@@ -170,9 +170,9 @@ impl<S: ScaleSource> HeadTracker<S> {
         if is_lost && candidate.color < self.params.adapt_above {
             return Ok(());
         }
-        if candidate.color < self.params.doubt_below {
-            self.state.n_doubts += 1;
-            self.state.is_lost = self.state.n_doubts > self.params.patience;
+        if candidate.color < self.params.no_evidence_below {
+            self.state.n_without_evidence += 1;
+            self.state.is_lost = self.state.n_without_evidence > self.params.lost_after;
             self.state.velocity = [0; 2];
             return Ok(());
         }
@@ -181,7 +181,7 @@ impl<S: ScaleSource> HeadTracker<S> {
             center: candidate.center,
             velocity: if is_lost { [0; 2] } else { moved },
             scale: candidate.semi_axes[0] / self.base[0],
-            n_doubts: 0,
+            n_without_evidence: 0,
             is_lost: false,
         };
         if candidate.color >= self.params.adapt_above {

@@ -25,7 +25,7 @@ pub struct MeanShiftParams {
     /// Below this share of the contrast of colour at the start the target is lost.
     pub lost_below: f64,
     /// From this share on it is found again.
-    pub found_from: f64,
+    pub found_above: f64,
 }
 
 impl Default for MeanShiftParams {
@@ -40,7 +40,7 @@ impl Default for MeanShiftParams {
             margin: 0.2,
             growth: 1.1,
             lost_below: 0.3,
-            found_from: 0.5,
+            found_above: 0.5,
         }
     }
 }
@@ -54,10 +54,10 @@ impl MeanShiftParams {
         checked("margin of a window", self.margin, (0.0..=1.0).contains(&self.margin), "between 0 and 1")?;
         checked("growth of a window", self.growth, (1.0..=2.0).contains(&self.growth), "between 1 and 2")?;
         probability("share at which a target is lost", self.lost_below)?;
-        let above = (self.lost_below..=1.0).contains(&self.found_from);
+        let above = (self.lost_below..=1.0).contains(&self.found_above);
         checked(
             "share at which a target is found",
-            self.found_from,
+            self.found_above,
             above,
             "between the share of loss and 1",
         )?;

@@ -119,7 +119,7 @@ impl Tracker for MeanShift {
         let (from, enough) = match self.status {
             TrackStatus::Tracked => (self.window, self.params.lost_below),
             TrackStatus::Lost => {
-                (projection.densest(width, height).unwrap_or(self.window), self.params.found_from)
+                (projection.densest(width, height).unwrap_or(self.window), self.params.found_above)
             }
         };
         let window = projection.climb(from, self.params.max_iterations, self.params.tolerance);

@@ -18,7 +18,7 @@ pub struct SnakeParams {
     pub n_points: usize,
     /// How far along the normals an edge is looked for at first, in radii of a circle of the same area, but 3 pixels at least; it shrinks to
     /// a quarter. Default 0.5.
-    pub reach: f64,
+    pub search_distance: f64,
     /// A point this near to an edge is on it, in pixels. Default 1.5.
     pub tolerance: f64,
     /// Weight of the shape at the start against that of the edges; 0.01 lets a shape follow nearly all of a change that is seen all round.
@@ -30,7 +30,7 @@ pub struct SnakeParams {
 
 impl Default for SnakeParams {
     fn default() -> Self {
-        Self { n_points: 80, reach: 0.5, tolerance: 1.5, stiffness: 0.02, max_iterations: 10 }
+        Self { n_points: 80, search_distance: 0.5, tolerance: 1.5, stiffness: 0.02, max_iterations: 10 }
     }
 }
 
@@ -40,7 +40,12 @@ impl SnakeParams {
     pub fn validate(&self) -> Result<(), CondensationError> {
         let n_points = self.n_points as f64;
         checked("n_points", n_points, (8..=10_000).contains(&self.n_points), "from 8 to 10000")?;
-        checked("reach", self.reach, (0.0..=10.0).contains(&self.reach), "from 0 to 10")?;
+        checked(
+            "search_distance",
+            self.search_distance,
+            (0.0..=10.0).contains(&self.search_distance),
+            "from 0 to 10",
+        )?;
         checked(
             "tolerance",
             self.tolerance,

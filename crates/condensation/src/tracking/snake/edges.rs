@@ -6,7 +6,7 @@ pub trait EdgeSearch {
     fn find(&self, point: [f64; 2], normal: [f64; 2], reach: f64) -> Option<f64>;
 
     /// Whether anything can be said about a point; one outside the picture is neither on an edge nor off it.
-    fn sees(&self, point: [f64; 2]) -> bool;
+    fn covers(&self, point: [f64; 2]) -> bool;
 }
 
 /// The boundary of a mask, crossed from inside to outside along the normal: $`∇S`$.
@@ -60,7 +60,7 @@ impl EdgeSearch for MaskEdges<'_> {
         None
     }
 
-    fn sees(&self, point: [f64; 2]) -> bool {
+    fn covers(&self, point: [f64; 2]) -> bool {
         self.pixel(point).is_some()
     }
 }
@@ -124,7 +124,7 @@ impl EdgeSearch for ColorEdges<'_> {
         (best.0 > 0.0).then(|| f64::from(best.1 as i32 - n) + vertex(&contrast, best.1))
     }
 
-    fn sees(&self, [u, v]: [f64; 2]) -> bool {
+    fn covers(&self, [u, v]: [f64; 2]) -> bool {
         u >= 0.0 && v >= 0.0 && u < self.picture.width() as f64 && v < self.picture.height() as f64
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn fit(
     params: &SnakeParams,
 ) -> SnakeFit {
     let mut map = *start;
-    let mut reach = (params.reach * start.linear.determinant().abs().sqrt()).clamp(3.0, 1e3);
+    let mut reach = (params.search_distance * start.linear.determinant().abs().sqrt()).clamp(3.0, 1e3);
     let last_reach = (LAST_REACH * reach).max(params.tolerance);
     for _ in 0..params.max_iterations {
         let stiffness = if reach > last_reach { STIFF } else { params.stiffness };
@@ -56,7 +56,7 @@ fn step(
     let mut information = Matrix6::zeros();
     let mut pull = Vector6::zeros();
     for (q, point, normal) in along(shape, map) {
-        if !edges.sees(point) {
+        if !edges.covers(point) {
             continue;
         }
         let Some(distance) = edges.find(point, normal, reach) else { continue };
@@ -97,7 +97,7 @@ fn is_sound(map: &AffineMap, start: &AffineMap) -> bool {
 fn support(shape: &[Vector2<f64>], map: &AffineMap, edges: &impl EdgeSearch, tolerance: f64) -> (f64, f64) {
     let (mut n_seen, mut n_supported) = (0, 0);
     for (_, point, normal) in along(shape, map) {
-        if edges.sees(point) {
+        if edges.covers(point) {
             n_seen += 1;
             n_supported +=
                 usize::from(edges.find(point, normal, tolerance).is_some_and(|d| d.abs() <= tolerance));

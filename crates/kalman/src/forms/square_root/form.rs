@@ -7,11 +7,10 @@ use super::{
     rotation::{Rotation, triangle, triangle_of_sum, turn_columns},
 };
 use crate::{
-    Form, Innovation,
-    carry::transport,
-    check,
+    Form, Innovation, check,
     error::Checked,
     linearize::{linearize_motion, linearize_sensor},
+    transport::transport,
 };
 
 /// The square-root (array) form: carries the Cholesky factor $`L`$ of $`P`$ and rotates arrays into triangles.
@@ -32,7 +31,7 @@ where
 {
     type Belief = FactoredGaussian<X>;
 
-    fn believe(&self, gaussian: &Gaussian<X>) -> Checked<FactoredGaussian<X>> {
+    fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<FactoredGaussian<X>> {
         let factor = cholesky("prior", gaussian.covariance())?.unpack();
         Ok(FactoredGaussian { mean: gaussian.mean().clone(), factor })
     }

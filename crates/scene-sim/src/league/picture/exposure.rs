@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose3;
 
 use super::layer::Layer;
 use super::scene::Scene;
-use super::surface::Skin;
+use super::surface::Material;
 use super::view::View;
 use crate::league::Rgb;
 use crate::space;
@@ -85,8 +85,8 @@ impl Exposure {
 }
 
 fn label(met: [u16; RAYS.len()], scene: &Scene<'_>) -> u8 {
-    let of = |number: u16| match scene.surfaces.get(usize::from(number)).map(|surface| surface.skin) {
-        Some(Skin::Map(color)) => color.0.saturating_add(1),
+    let of = |number: u16| match scene.surfaces.get(usize::from(number)).map(|surface| surface.material) {
+        Some(Material::Map(color)) => color.0.saturating_add(1),
         _ => 0,
     };
     let first = of(met[0]);

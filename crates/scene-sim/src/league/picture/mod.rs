@@ -1,15 +1,15 @@
 //! How light becomes a picture.
 
 mod camera;
-mod develop;
+mod camera_simulator;
 mod exposure;
+mod image_pipeline;
 mod layer;
-mod photographer;
 mod scene;
 mod surface;
 mod view;
 
 pub use camera::{CameraParams, Chroma};
-pub use photographer::{Photographer, Picture};
+pub use camera_simulator::{CameraSimulator, Picture};
 pub use scene::Scene;
-pub use surface::{Form, Skin, Surface};
+pub use surface::{Form, Material, Surface};

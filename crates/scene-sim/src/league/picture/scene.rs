@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use super::surface::{Skin, Surface};
+use super::surface::{Material, Surface};
 use crate::league::{Backdrop, LightField, Rgb};
 
 /// Everything there is to see at one moment, and the light it is seen in.
@@ -18,9 +18,9 @@ pub struct Scene<'a> {
 impl Scene<'_> {
     /// What a point of a surface sends to the eye.
     pub(super) fn radiance(&self, surface: &Surface, point: &Vector3<f64>, eye: &Vector3<f64>) -> Rgb {
-        let reflectance = match surface.skin {
-            Skin::Map(color) => self.paints.get(usize::from(color.0)).copied().unwrap_or_default(),
-            Skin::Unmapped(reflectance) => reflectance,
+        let reflectance = match surface.material {
+            Material::Map(color) => self.paints.get(usize::from(color.0)).copied().unwrap_or_default(),
+            Material::Unmapped(reflectance) => reflectance,
         };
         let normal = surface.form.normal(point, eye);
         reflectance.component_mul(&self.light.irradiance(point, &normal))
@@ -28,7 +28,7 @@ impl Scene<'_> {
 
     /// What comes from behind everything.
     pub(super) fn beyond(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> Rgb {
-        let seen = self.backdrop.seen(eye, direction);
+        let seen = self.backdrop.surface_hit(eye, direction);
         seen.reflectance.component_mul(&self.light.irradiance(&seen.point, &seen.normal))
     }
 }

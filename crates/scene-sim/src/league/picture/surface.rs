@@ -33,7 +33,7 @@ pub enum Form {
 
 /// What a surface is painted with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Skin {
+pub enum Material {
     /// A colour of the map; the venue says what it looks like.
     Map(ColorId),
     /// A diffuse reflectance that no map lists.
@@ -46,7 +46,7 @@ pub struct Surface {
     /// Where it is.
     pub form: Form,
     /// What it looks like.
-    pub skin: Skin,
+    pub material: Material,
 }
 
 impl Surface {
@@ -60,7 +60,7 @@ impl Surface {
         place: &wayfix_estimation_traits::Pose2<f64>,
         low: [f64; 3],
         high: [f64; 3],
-        skin: Skin,
+        material: Material,
     ) -> [Self; 5] {
         let ahead = crate::plane::direction(place.heading());
         let corner = |k: usize| {
@@ -70,14 +70,17 @@ impl Surface {
             Vector3::new(at.x, at.y, pick(2))
         };
         [[0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6]]
-            .map(|side| Self { form: Form::Polygon { corners: side.map(corner).to_vec() }, skin })
+            .map(|side| Self { form: Form::Polygon { corners: side.map(corner).to_vec() }, material })
     }
 }
 
 fn of_shape(shape: &Shape) -> Vec<Surface> {
     match shape {
         Shape::Polygon { color, vertices } => {
-            vec![Surface { form: Form::Polygon { corners: vertices.clone() }, skin: Skin::Map(*color) }]
+            vec![Surface {
+                form: Form::Polygon { corners: vertices.clone() },
+                material: Material::Map(*color),
+            }]
         }
         Shape::Post { x, y, radius, bands } => bands
             .iter()
@@ -88,7 +91,7 @@ fn of_shape(shape: &Shape) -> Vec<Surface> {
                     from: band.from,
                     to: band.to,
                 },
-                skin: Skin::Map(band.color),
+                material: Material::Map(band.color),
             })
             .collect(),
     }

@@ -62,7 +62,7 @@ impl Default for LaserParams {
             n_beams: 181,
             max_range_m: 30.0,
             no_echo_m: 81.91,
-            range_noise: RangeSigma { constant_m: 0.005, per_metre: 0.0 },
+            range_noise: RangeSigma { constant_m: 0.005, per_meter: 0.0 },
             tail: Tail::Gaussian,
             range_bias_m: 0.0,
             bearing_sigma_rad: 0.0005,

@@ -5,7 +5,7 @@ use wayfix_sensor_log::{Data, LaserScan};
 use super::LaserParams;
 use super::people::Person;
 use crate::random::{Source, Streams, deviate};
-use crate::sensor::{Moment, Reading, Sensor};
+use crate::sensor::{Reading, Sensor, TrueState};
 use crate::world::Wall;
 use crate::{SimError, plane};
 
@@ -16,13 +16,13 @@ use crate::{SimError, plane};
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
-/// use wayfix_scene_sim::{random::Streams, sensor::{Laser, LaserParams, Moment, Sensor}, world::{Plan, PlanarWorld, Wall}};
+/// use wayfix_scene_sim::{random::Streams, sensor::{Laser, LaserParams, TrueState, Sensor}, world::{Plan, PlanarWorld, Wall}};
 /// use wayfix_sensor_log::Data;
 ///
 /// let ahead = Wall { from: Vector2::new(3.0, -1.0), to: Vector2::new(3.0, 1.0) };
 /// let world = PlanarWorld::new(Plan { landmarks: vec![], walls: vec![ahead] });
 /// let pose = Pose2::new(0.0, 0.0, 0.0);
-/// let moment = Moment { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
+/// let moment = TrueState { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
 /// let mut laser = Laser::new(LaserParams::default())?;
 /// let reading = laser.sense(&moment, &mut Streams::new(ChaCha8Rng::seed_from_u64(1)));
 /// let Some(Data::Scan(scan)) = reading.map(|r| r.data) else { panic!("no scan") };
@@ -82,7 +82,7 @@ impl Sensor for Laser {
         self.params.period_ms
     }
 
-    fn sense(&mut self, moment: &Moment<'_>, streams: &mut Streams) -> Option<Reading> {
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
         let LaserParams { first_beam_rad, beam_step_rad, n_beams, no_echo_m, .. } = self.params;
         let mut scan = LaserScan {
             angle_min: first_beam_rad,
@@ -96,7 +96,7 @@ impl Sensor for Laser {
         scan.ranges = (0..n_beams)
             .map(|beam| self.range(scan.bearing(beam), &scene, &Errors::draw(&self.params, streams)))
             .collect();
-        Some(Reading { data: Data::Scan(scan), late_ms: 0 })
+        Some(Reading { data: Data::Scan(scan), stamp_offset_ms: 0 })
     }
 }
 

@@ -1,4 +1,4 @@
-use wayfix_sensor_log::{Sighting, Target};
+use wayfix_sensor_log::{Detection, Target};
 
 use super::RangeBearingParams;
 use crate::random::{Source, Streams, deviate};
@@ -37,7 +37,7 @@ impl Clutter {
         params: &RangeBearingParams,
         landmark_ids: &[u32],
         streams: &mut Streams,
-    ) -> Vec<Sighting> {
+    ) -> Vec<Detection> {
         let rng = streams.of(Source::Clutter);
         let count = deviate::poisson(self.mean, rng);
         (0..count)
@@ -45,7 +45,7 @@ impl Clutter {
                 let range = deviate::uniform(params.min_range_m, params.max_range_m, rng);
                 let bearing = deviate::uniform(-params.half_view(), params.half_view(), rng);
                 let idx = deviate::below(landmark_ids.len(), rng);
-                Sighting { target: self.label.target(landmark_ids.get(idx)), range, bearing }
+                Detection { target: self.label.target(landmark_ids.get(idx)), range, bearing }
             })
             .collect()
     }

@@ -37,7 +37,7 @@ pub struct RangeBearingParams {
     pub drift: DriftParams,
     /// How late the stamp is, milliseconds. Default 0.
     pub latency_ms: u32,
-    /// Share of sightings that are gross outliers. Default 0.
+    /// Share of detections that are gross outliers. Default 0.
     pub outlier_share: f64,
     /// Share of looks of which nothing reaches the log. (A look that sees nothing is logged, empty.) Default 0.
     pub dropout_share: f64,
@@ -45,7 +45,7 @@ pub struct RangeBearingParams {
     pub missed_share: f64,
     /// Reports of things that are not there. Default none.
     pub clutter: Clutter,
-    /// Share of landmark sightings under another landmark's identity. Default 0.
+    /// Share of landmark detections under another landmark's identity. Default 0.
     pub mislabelled_share: f64,
     /// Whether the sensor tells things apart. Default true.
     pub labelled: bool,
@@ -57,18 +57,18 @@ pub struct RangeSigma {
     /// At range 0, metres.
     pub constant_m: f64,
     /// Growth, metres per metre.
-    pub per_metre: f64,
+    pub per_meter: f64,
 }
 
 impl RangeSigma {
     /// The standard deviation at `range` metres.
     pub fn at(&self, range: f64) -> f64 {
-        self.constant_m + self.per_metre * range
+        self.constant_m + self.per_meter * range
     }
 
     pub(in crate::sensor) fn validate(&self) -> Result<(), SimError> {
         check::not_negative("σ of range (m)", self.constant_m)?;
-        check::not_negative("growth of σ with range", self.per_metre)
+        check::not_negative("growth of σ with range", self.per_meter)
     }
 }
 
@@ -79,7 +79,7 @@ impl Default for RangeBearingParams {
             min_range_m: 0.1,
             max_range_m: 8.0,
             field_of_view_rad: TAU,
-            range_noise: RangeSigma { constant_m: 0.05, per_metre: 0.0 },
+            range_noise: RangeSigma { constant_m: 0.05, per_meter: 0.0 },
             bearing_sigma_rad: 0.01,
             tail: Tail::Gaussian,
             range_bias_m: 0.0,
@@ -120,10 +120,10 @@ impl RangeBearingParams {
         check::finite("bearing bias (rad)", self.bearing_bias_rad)?;
         self.drift.validate()?;
         check::share("share of outliers", self.outlier_share)?;
-        check::share("share of lost looks", self.dropout_share)?;
+        check::share("share of dropped scans", self.dropout_share)?;
         check::share("share of missed detections", self.missed_share)?;
         self.clutter.validate()?;
-        check::share("share of mislabelled sightings", self.mislabelled_share)
+        check::share("share of mislabelled detections", self.mislabelled_share)
     }
 
     /// Half the opening angle, at most π.

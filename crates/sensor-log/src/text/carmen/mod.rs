@@ -4,12 +4,12 @@
 //! scan without poses, which is read where there are no others. The order is that of the lines, for not all logs have stamps to go by. A
 //! scan gives the robot's pose where that is another than the odometry, the motion since the scan before, and what the laser saw. In
 //! corrected logs, the motion is still that of the wheels (`scan_odometry.rs` says how). The log is read twice: what the poses are, where
-//! the laser is, and what is wrong with the clock only the whole log tells (`survey.rs`).
+//! the laser is, and what is wrong with the clock only the whole log tells (`first_pass.rs`).
 
 mod agreement;
+mod first_pass;
 mod line_clock;
 mod row;
-mod survey;
 mod trajectory;
 
 use std::collections::VecDeque;
@@ -17,9 +17,9 @@ use std::path::Path;
 
 use wayfix_estimation_traits::LieGroup;
 
+use self::first_pass::FirstPass;
 use self::line_clock::LineClock;
 use self::row::{CarmenRow, ScanMessage, ScanPoses, ScanRow, parse};
-use self::survey::Survey;
 use super::Lines;
 use super::clock_faults::ClockFault;
 use super::half_circle::is_half_circle;
@@ -37,7 +37,7 @@ pub(crate) struct CarmenLog {
     lines: Option<Lines<TextReader>>,
     file: String,
     poses: PoseKind,
-    survey: Survey,
+    first_pass: FirstPass,
     clock: LineClock,
     odometry: ScanOdometry,
     last_scan: Option<(ScanMessage, f64)>,
@@ -52,7 +52,7 @@ impl CarmenLog {
             file: lines.file_name(),
             lines: Some(lines),
             poses,
-            survey: Survey::of(path, report)?,
+            first_pass: FirstPass::of(path, report)?,
             clock: LineClock::default(),
             odometry: ScanOdometry::default(),
             last_scan: None,
@@ -109,7 +109,7 @@ impl CarmenLog {
     /// A raw scan beside those with poses, and a scan that is logged once more by another message, are no scans of their own.
     fn why_ignored(&self, scan: &ScanRow) -> Option<String> {
         let word = scan.message.word();
-        if scan.message == ScanMessage::Raw && self.survey.odometry.is_none() {
+        if scan.message == ScanMessage::Raw && self.first_pass.odometry.is_none() {
             return Some(word.to_owned());
         }
         let (message, seconds) = self.last_scan?;
@@ -119,7 +119,7 @@ impl CarmenLog {
 
     fn take_scan(&mut self, line: u64, row: ScanRow, report: &mut ReadReport) -> Result<(), RowError> {
         let own = stamp_of(row.seconds)?;
-        match self.survey.faults.get(&line) {
+        match self.first_pass.faults.get(&line) {
             Some(ClockFault::Outlier) => {
                 let reason = format!("{own} is far from the times of the scans around it");
                 return Err(RowError::new(ProblemKind::BadStamp, reason));
@@ -137,7 +137,7 @@ impl CarmenLog {
         }
         self.last_scan = Some((row.message, row.seconds));
         let poses = row.poses.or_else(|| {
-            let pose = self.survey.odometry.as_ref()?.at(row.seconds)?;
+            let pose = self.first_pass.odometry.as_ref()?.at(row.seconds)?;
             Some(ScanPoses { laser: pose, odometry: pose })
         });
         let motion = poses.and_then(|poses| self.odometry.scan(row.seconds, poses.odometry));
@@ -145,12 +145,12 @@ impl CarmenLog {
         let mut scan = row.scan;
         if row.message == ScanMessage::Front
             && !is_half_circle(scan.ranges.len())
-            && let Some((angle_min, angle_increment)) = self.survey.angles.get(&scan.ranges.len())
+            && let Some((angle_min, angle_increment)) = self.first_pass.angles.get(&scan.ranges.len())
         {
             (scan.angle_min, scan.angle_increment) = (*angle_min, *angle_increment);
         }
         let data = [
-            self.survey.mount.take().map(Data::LaserMount),
+            self.first_pass.mount.take().map(Data::LaserMount),
             row.poses.and_then(|poses| self.pose(&poses)),
             motion.map(Data::OdometryIncrement),
             Some(Data::Scan(scan)),
@@ -161,8 +161,8 @@ impl CarmenLog {
 
     /// The robot's pose, unless it is the odometry; one that the caller says is true always.
     fn pose(&self, poses: &ScanPoses) -> Option<Data> {
-        let is_told = self.survey.poses_are_estimates || self.poses == PoseKind::True;
-        let robot = match &self.survey.pose_mount {
+        let is_told = self.first_pass.poses_are_estimates || self.poses == PoseKind::True;
+        let robot = match &self.first_pass.pose_mount {
             Some(mount) => poses.laser.compose(&mount.inverse()),
             None => poses.laser,
         };

@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use super::{area::CompressedCovariance, passive::Reach};
+use super::{area::CompressedCovariance, passive::OutsideBlock};
 
 impl CompressedCovariance {
     /// Takes a landmark block into the area. Its value does not change, only where it is kept.
@@ -8,8 +8,8 @@ impl CompressedCovariance {
         if self.rows[states.start].is_some() {
             return;
         }
-        self.backlog.settle(states.clone(), &mut self.base);
-        let Reach { with_local, own } = self.reach(states.clone());
+        self.deferred.settle(states.clone(), &mut self.base);
+        let OutsideBlock { with_local, own } = self.outside_block(states.clone());
         for state in states.clone() {
             self.lag[state] += self.influenced(state);
         }

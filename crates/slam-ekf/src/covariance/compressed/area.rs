@@ -1,6 +1,6 @@
 use nalgebra::{DMatrix, DVector, DefaultAllocator, DimName, OMatrix, allocator::Allocator};
 
-use super::{backlog::Backlog, schedule::Schedule};
+use super::{deferred::DeferredCorrection, schedule::Schedule};
 use crate::covariance::{JointCovariance, ROUNDING, SparseJacobian};
 
 /// A covariance in two parts: the area around the robot, and the whole map as it was when the area was chosen.
@@ -15,7 +15,7 @@ pub(crate) struct CompressedCovariance {
     pub(super) influences: Vec<Influence>,
     /// The whole map as it was when the area was chosen, for pairs outside the area; the backlog is still to be subtracted.
     pub(super) base: JointCovariance,
-    pub(super) backlog: Backlog,
+    pub(super) deferred: DeferredCorrection,
     /// By how much the means that the filter holds lag behind, but for what the influences add outside the area.
     pub(super) lag: DVector<f64>,
     /// Corrections since the area was chosen: each owes every variance a little for its rounding.
@@ -46,7 +46,7 @@ impl CompressedCovariance {
             area: (0..R::DIM).collect(),
             influences: Vec::new(),
             base: JointCovariance::from_robot(robot),
-            backlog: Backlog::default(),
+            deferred: DeferredCorrection::default(),
             lag: DVector::zeros(R::DIM),
             n_corrections: 0,
             schedule: Schedule::for_robot_states(R::DIM),
@@ -63,7 +63,7 @@ impl CompressedCovariance {
             area: (0..n).collect(),
             influences: Vec::new(),
             base,
-            backlog: Backlog::default(),
+            deferred: DeferredCorrection::default(),
             lag: DVector::zeros(n),
             n_corrections: 0,
             schedule: Schedule::for_robot_states(n_robot),
@@ -150,7 +150,7 @@ impl CompressedCovariance {
 
     /// What a full map would have given back to a variance outside for the rounding of every correction since the area was chosen, when the
     /// variance was `first`, until now.
-    pub(super) fn given_back(&self, first: f64, now: f64) -> f64 {
+    pub(super) fn rounding_allowance(&self, first: f64, now: f64) -> f64 {
         0.5 * (first + now) * ROUNDING * self.n_corrections as f64
     }
 }

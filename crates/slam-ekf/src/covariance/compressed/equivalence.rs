@@ -8,7 +8,7 @@ use super::CompressedCovariance;
 use crate::covariance::{JointCovariance, SparseJacobian};
 
 /// Both forms go through the same, each with the means that a filter would hold.
-struct Twins {
+struct FullAndCompressed {
     full: JointCovariance,
     full_mean: DVector<f64>,
     compressed: CompressedCovariance,
@@ -17,7 +17,7 @@ struct Twins {
     n_restarts: usize,
 }
 
-impl Twins {
+impl FullAndCompressed {
     fn new(seed: u64) -> Self {
         let start = Matrix3::identity() * 0.01;
         Self {
@@ -84,7 +84,7 @@ impl Twins {
                 self.compressed.correct(&jacobian, &noise, &residual).expect("a definite noise");
         }
         let before = self.compressed.influences.len();
-        self.compressed.end_look();
+        self.compressed.end_update();
         self.n_restarts += usize::from(self.compressed.influences.len() < before);
     }
 
@@ -120,7 +120,7 @@ impl Twins {
 fn both_forms_are_the_same_whatever_happens_to_them() {
     let mut n_restarts = 0;
     for seed in 0..6 {
-        let mut twins = Twins::new(seed);
+        let mut twins = FullAndCompressed::new(seed);
         let mut nearest = 0;
         for step in 0..400 {
             twins.drive();
@@ -147,7 +147,7 @@ fn both_forms_are_the_same_whatever_happens_to_them() {
 
 #[test]
 fn a_refused_correction_changes_no_value() {
-    let mut twins = Twins::new(6);
+    let mut twins = FullAndCompressed::new(6);
     for step in 0..90 {
         twins.drive();
         if step % 3 == 0 {

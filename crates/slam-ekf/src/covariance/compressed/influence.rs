@@ -4,10 +4,10 @@ impl CompressedCovariance {
     /// Makes the influences of states that have just come into the area: one step of a Cholesky factorization of the base each.
     ///
     /// What earlier influences leave of a state, standardized, is the new one. That is correlated with no other and with no state of the
-    /// area but `newcomers`. Where rounding alone is left of a variance it is lifted a little, and not taken for nothing: covariances
+    /// area but `new_states`. Where rounding alone is left of a variance it is lifted a little, and not taken for nothing: covariances
     /// are of the size of its root.
-    pub(super) fn add_influences(&mut self, newcomers: &[usize]) {
-        for &state in newcomers {
+    pub(super) fn add_influences(&mut self, new_states: &[usize]) {
+        for &state in new_states {
             let base = self.base.matrix();
             let mut loadings: Vec<f64> = base.column(state).iter().copied().collect();
             for earlier in &self.influences {
@@ -32,7 +32,7 @@ impl CompressedCovariance {
                 local[(own, own)] += lifted;
             }
             loadings[state] += scale * lifted;
-            for &newcomer in newcomers {
+            for &newcomer in new_states {
                 if let Some(own) = self.rows[newcomer] {
                     local[(own, row)] = loadings[newcomer];
                     local[(row, own)] = loadings[newcomer];

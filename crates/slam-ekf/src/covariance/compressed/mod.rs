@@ -23,9 +23,9 @@
 
 mod activate;
 mod area;
-mod backlog;
+mod deferred;
 mod factor;
-mod hand_over;
+mod global_update;
 mod influence;
 mod passive;
 mod remove;

@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DefaultAllocator, DimName, OMatrix, OVector, allocator::
 use super::area::{CompressedCovariance, Influence};
 
 /// A landmark as seen from the area.
-pub(super) struct Reach {
+pub(super) struct OutsideBlock {
     /// Covariance with all rows of the area and the influences: one column a state of the landmark.
     pub(super) with_local: DMatrix<f64>,
     /// Its own covariance.
@@ -22,7 +22,7 @@ impl CompressedCovariance {
         if let Some(row) = self.rows[offset] {
             return self.local.landmark_blocks(row);
         }
-        let Reach { with_local, own } = self.reach(offset..offset + L::DIM);
+        let OutsideBlock { with_local, own } = self.outside_block(offset..offset + L::DIM);
         let with_robot = OMatrix::<f64, L, R>::from_fn(|i, robot| with_local[(robot, i)]);
         (with_robot, OMatrix::<f64, L, L>::from_fn(|i, j| own[(i, j)]))
     }
@@ -37,7 +37,7 @@ impl CompressedCovariance {
                 self.influences.iter().map(|v| v.loadings[other] * local[(row, v.row)]).sum()
             }
             (None, None) => {
-                let Reach { own, .. } = self.reach([one.min(other), one.max(other)]);
+                let OutsideBlock { own, .. } = self.outside_block([one.min(other), one.max(other)]);
                 own[(0, 1)]
             }
         }
@@ -61,7 +61,7 @@ impl CompressedCovariance {
     }
 
     /// Covariances of states outside the area: $`P_{j·} = B_j P_{v·}`$, $`P_{jj} = P_{jj,0} - B_j (I - P_{vv}) B_j^T`$.
-    pub(super) fn reach(&self, states: impl IntoIterator<Item = usize>) -> Reach {
+    pub(super) fn outside_block(&self, states: impl IntoIterator<Item = usize>) -> OutsideBlock {
         let states: Vec<usize> = states.into_iter().collect();
         let (base, local) = (self.base.matrix(), self.local.matrix());
         let mut with_local = DMatrix::zeros(local.nrows(), states.len());
@@ -74,10 +74,10 @@ impl CompressedCovariance {
             let (one, other) = (states[i.min(j)], states[i.max(j)]); // the same bits on both sides
             let change =
                 |v: &Influence| v.loadings[one] * (with_local[(v.row, i.max(j))] - v.loadings[other]);
-            let first = base[(one, other)] - self.backlog.owed(one, other);
+            let first = base[(one, other)] - self.deferred.pending(one, other);
             let now = first + self.influences.iter().map(change).sum::<f64>();
-            now + if one == other { self.given_back(first, now) } else { 0.0 }
+            now + if one == other { self.rounding_allowance(first, now) } else { 0.0 }
         });
-        Reach { with_local, own }
+        OutsideBlock { with_local, own }
     }
 }

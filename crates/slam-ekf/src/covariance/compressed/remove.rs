@@ -17,7 +17,7 @@ impl CompressedCovariance {
             }
         }
         self.base.remove(block.clone());
-        self.backlog.remove(&block);
+        self.deferred.remove(&block);
         self.schedule.remove(&block);
         self.rows.drain(block.clone());
         for influence in &mut self.influences {

@@ -9,15 +9,15 @@ impl CompressedCovariance {
     /// The whole covariance.
     pub(in crate::covariance) fn matrix(&self) -> DMatrix<f64> {
         let mut settled = self.clone();
-        settled.hand_over();
-        settled.backlog.finish(&mut settled.base);
+        settled.global_update();
+        settled.deferred.finish(&mut settled.base);
         settled.base.matrix().into_owned()
     }
 
     /// Takes the whole map for the area: nothing is outside, so nothing is deferred.
-    pub(super) fn unite(&mut self) {
-        self.hand_over();
-        self.backlog.finish(&mut self.base);
+    pub(super) fn activate_all(&mut self) {
+        self.global_update();
+        self.deferred.finish(&mut self.base);
         self.local = self.base.clone();
         let n = self.rows.len();
         self.rows = (0..n).map(Some).collect();
@@ -26,7 +26,7 @@ impl CompressedCovariance {
 
     /// Hands on to the rest of the map what the area has learnt, and goes on with an area of these states only.
     pub(super) fn restart(&mut self, area: &BTreeSet<usize>) {
-        self.hand_over();
+        self.global_update();
         self.area = area.iter().copied().collect();
         let n = self.area.len();
         let base = self.base.matrix();

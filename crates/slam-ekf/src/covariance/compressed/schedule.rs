@@ -42,7 +42,7 @@ impl CompressedCovariance {
     /// Rent or buy: a too large area costs a little in every look, a new one costs once. Changing when the rents have
     /// added up to the price costs at most twice what is best, whatever comes. It waits for the backlog, which is worked off with
     /// as much work a look as the look itself was, so that no look is much longer than others.
-    pub(in crate::covariance) fn end_look(&mut self) {
+    pub(in crate::covariance) fn end_update(&mut self) {
         let Schedule { n_rows, n_robot_states, .. } = self.schedule;
         let needed = std::mem::replace(&mut self.schedule.needed, (0..n_robot_states).collect());
         self.schedule.n_rows = 0;
@@ -51,19 +51,19 @@ impl CompressedCovariance {
         let best = if is_compression_worth_it { 2 * needed.len() } else { n };
         let cost = work::correction(self.local.dimension(), n_rows);
         self.schedule.rent += (cost - work::correction(best, n_rows)).max(0.0);
-        if !self.backlog.is_done() {
-            self.backlog.advance(cost, &mut self.base);
+        if !self.deferred.is_done() {
+            self.deferred.advance(cost, &mut self.base);
         } else if self.schedule.rent > self.price() {
             if is_compression_worth_it {
                 self.restart(&needed);
             } else {
-                self.unite();
+                self.activate_all();
             }
             self.schedule.rent = 0.0;
         }
     }
 
     fn price(&self) -> f64 {
-        work::hand_over(self.rows.len(), self.area.len(), self.influences.len())
+        work::global_update(self.rows.len(), self.area.len(), self.influences.len())
     }
 }

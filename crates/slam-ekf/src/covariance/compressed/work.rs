@@ -7,7 +7,7 @@ pub(super) fn correction(n: usize, m: usize) -> f64 {
 }
 
 /// Handing on what an area of `area` states has learnt to the rest of a map of `n`, and choosing another.
-pub(super) fn hand_over(n: usize, area: usize, n_influences: usize) -> f64 {
+pub(super) fn global_update(n: usize, area: usize, n_influences: usize) -> f64 {
     let (outside, area, v) = ((n - area) as f64, area as f64, n_influences as f64);
     let copies = COPY * n as f64 * area;
     0.5 * outside * outside * v + outside * v * (area + v) + 0.5 * outside * area * area + copies

@@ -54,7 +54,7 @@ impl WallLine {
 
 impl WallLine {
     /// Whether the normals of both point to the same side, so that [`local`](Manifold::local) compares both lines as they are.
-    pub fn is_in_the_form_of(&self, other: &Self) -> bool {
+    pub fn normal_agrees_with(&self, other: &Self) -> bool {
         wrap_angle(other.alpha - self.alpha).abs() <= FRAC_PI_2
     }
 }
@@ -70,7 +70,7 @@ impl Manifold for WallLine {
     }
     fn local(&self, other: &Self) -> Vector2<f64> {
         let turn = wrap_angle(other.alpha - self.alpha);
-        if self.is_in_the_form_of(other) {
+        if self.normal_agrees_with(other) {
             Vector2::new(other.rho - self.rho, turn)
         } else {
             Vector2::new(-other.rho - self.rho, wrap_angle(turn + PI))

@@ -1,11 +1,11 @@
 //! Walls: lines of the plane with the stretch of them that was seen.
 
 mod line;
-mod seen;
 mod sensor;
 mod wall_landmark;
+mod wall_measurement;
 
 pub use line::WallLine;
-pub use seen::SeenWall;
 pub use sensor::WallSensor;
 pub use wall_landmark::Wall;
+pub use wall_measurement::WallMeasurement;

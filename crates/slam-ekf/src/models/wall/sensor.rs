@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, Matrix2, Matrix2x3, Vector2, linalg::Cholesky};
 use wayfix_estimation_traits::Pose2;
 
-use super::{SeenWall, Wall, WallLine};
+use super::{Wall, WallLine, WallMeasurement};
 use crate::{
     LandmarkModel, NewLandmark,
     models::planar::{PLANAR_SYMMETRIES, pose_symmetry},
@@ -36,7 +36,7 @@ pub struct WallSensor {
     /// How far apart along a wall two pieces may be and still be taken for one, m.
     pub largest_gap: f64,
     /// Distance up to which the middle of a wall is seen as a rule, m.
-    pub reach: f64,
+    pub sensor_range: f64,
     /// The same for its direction to either side, rad.
     pub half_field_of_view: f64,
 }
@@ -44,18 +44,24 @@ pub struct WallSensor {
 impl Default for WallSensor {
     /// A laser of half a turn in a building of plaster and doors.
     fn default() -> Self {
-        Self { rho_sigma: 0.02, alpha_sigma: 0.01, largest_gap: 0.5, reach: 8.0, half_field_of_view: 1.4 }
+        Self {
+            rho_sigma: 0.02,
+            alpha_sigma: 0.01,
+            largest_gap: 0.5,
+            sensor_range: 8.0,
+            half_field_of_view: 1.4,
+        }
     }
 }
 
 impl LandmarkModel for WallSensor {
     type Robot = Pose2<f64>;
     type Landmark = Wall;
-    type Measurement = SeenWall;
+    type Measurement = WallMeasurement;
 
-    fn expected(&self, robot: &Pose2<f64>, wall: &Wall) -> SeenWall {
+    fn expected(&self, robot: &Pose2<f64>, wall: &Wall) -> WallMeasurement {
         let rho = wall.line.about(&(robot.translation - wall.origin)).rho;
-        SeenWall {
+        WallMeasurement {
             line: WallLine::new(rho, wall.line.alpha - robot.heading()),
             covariance: Matrix2::zeros(),
             ends: wall.ends().map(|end| robot.inverse_transform(&end)),
@@ -79,7 +85,7 @@ impl LandmarkModel for WallSensor {
         )
     }
 
-    fn noise(&self, measurement: &SeenWall) -> Matrix2<f64> {
+    fn noise(&self, measurement: &WallMeasurement) -> Matrix2<f64> {
         let own = Vector2::new(self.rho_sigma.powi(2), self.alpha_sigma.powi(2));
         measurement.covariance + Matrix2::from_diagonal(&own)
     }
@@ -87,16 +93,16 @@ impl LandmarkModel for WallSensor {
     /// A line in its other form, $`(-ρ, α + π)`$, has the noise $`D R D`$ with $`D = \mathrm{diag}(-1, 1)`$.
     fn noise_at_expected(
         &self,
-        expected: &SeenWall,
-        measurement: &SeenWall,
+        expected: &WallMeasurement,
+        measurement: &WallMeasurement,
         noise: &Matrix2<f64>,
     ) -> Matrix2<f64> {
-        let sign = if expected.line.is_in_the_form_of(&measurement.line) { 1.0 } else { -1.0 };
+        let sign = if expected.line.normal_agrees_with(&measurement.line) { 1.0 } else { -1.0 };
         Matrix2::new(noise.m11, sign * noise.m12, sign * noise.m21, noise.m22)
     }
 
-    fn is_usable(&self, measurement: &SeenWall) -> bool {
-        let SeenWall { line, covariance, ends } = measurement;
+    fn is_usable(&self, measurement: &WallMeasurement) -> bool {
+        let WallMeasurement { line, covariance, ends } = measurement;
         let is_finite = line.rho.is_finite()
             && line.alpha.is_finite()
             && covariance.iter().chain(ends.iter().flatten()).all(|entry| entry.is_finite());
@@ -104,16 +110,16 @@ impl LandmarkModel for WallSensor {
     }
 
     /// Parallel pieces far apart along their line are different walls.
-    fn may_be(&self, expected: &SeenWall, measurement: &SeenWall) -> bool {
+    fn is_compatible(&self, expected: &WallMeasurement, measurement: &WallMeasurement) -> bool {
         measurement.overlap(expected) > -self.largest_gap
     }
 
-    fn should_see(&self, expected: &SeenWall) -> bool {
+    fn expects_detection(&self, expected: &WallMeasurement) -> bool {
         let middle = (expected.ends[0] + expected.ends[1]) * 0.5;
-        middle.norm() <= self.reach && middle.y.atan2(middle.x).abs() <= self.half_field_of_view
+        middle.norm() <= self.sensor_range && middle.y.atan2(middle.x).abs() <= self.half_field_of_view
     }
 
-    fn extended(&self, robot: &Pose2<f64>, wall: &Wall, measurement: &SeenWall) -> Wall {
+    fn extended(&self, robot: &Pose2<f64>, wall: &Wall, measurement: &WallMeasurement) -> Wall {
         wall.extended_to(measurement.ends.map(|end| robot.transform(&end)))
     }
 
@@ -131,7 +137,7 @@ impl LandmarkModel for WallSensor {
         DMatrix::from_row_slice(2, 3, &[normal.x, normal.y, -wall.line.along(&wall.origin), 0.0, 0.0, 1.0])
     }
 
-    fn initialize(&self, robot: &Pose2<f64>, measurement: &SeenWall) -> NewLandmark<Wall, Pose2<f64>> {
+    fn initialize(&self, robot: &Pose2<f64>, measurement: &WallMeasurement) -> NewLandmark<Wall, Pose2<f64>> {
         let ends = measurement.ends.map(|end| robot.transform(&end));
         let origin = (ends[0] + ends[1]) * 0.5;
         let from_robot = WallLine::new(measurement.line.rho, measurement.line.alpha + robot.heading());

@@ -13,11 +13,11 @@ pub(super) use arguments::Arguments;
 use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
 
 use super::{
-    account::{account, read_all},
     input::read_toml,
-    output::{print, tell},
+    output::{print, print_message},
     outputs::Outputs,
     progress,
+    read_problems::{add_read_problems, read_all},
 };
 use crate::{
     cml::{
@@ -61,14 +61,14 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let mut run = run?;
-    let warnings = account(run.system.events(), &read);
+    let warnings = add_read_problems(run.system.events(), &read);
     if let Some(saver) = saver {
         saver.finish(&run.system).context("cannot save the map")?;
     }
 
     let seconds = stopwatch.elapsed().as_secs_f64();
     let summary = Run { name: arguments.name(), seconds, warnings, ..cml::summarize(&mut run) };
-    tell(summary.notes.join("\n"));
+    print_message(summary.notes.join("\n"));
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
@@ -185,9 +185,9 @@ impl Arguments {
         let (columns, stamp_columns) = (self.columns.as_ref(), self.stamp_columns.as_ref());
         let recording = Recording::read(frames, &Tables { poses, columns, stamps, stamp_columns })?;
         if !recording.read.is_clean() {
-            tell(&recording.read);
+            print_message(&recording.read);
         }
-        recording.notes.iter().for_each(|note| tell(format!("note: {note}")));
+        recording.notes.iter().for_each(|note| print_message(format!("note: {note}")));
         Ok(recording)
     }
 }

@@ -3,10 +3,10 @@ use wayfix_appearance_cml::LocalizerParams;
 use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
 use wayfix_scene_sim::world::World;
 
-use super::follow::known_start;
+use super::localize_trip::known_start;
 use super::summary::{largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot};
-use super::{Course, Setup, Trip, follow};
+use super::{Setup, Trip, TripResult, localize_trip};
 use crate::cml::PanoramaLocalizer;
 use crate::plot::MapPlot;
 use crate::report::{Metric, Run};
@@ -17,9 +17,9 @@ const N_LAPS: usize = 7;
 struct Lapped {
     building: Building,
     trip: Trip,
-    course: Course,
+    course: TripResult,
     /// The same with the method as printed.
-    printed: Course,
+    printed: TripResult,
 }
 
 /// Fig. 4: seven laps around shelves from an empty map, odometry as it is. Length and share of the setup play no part.
@@ -57,12 +57,12 @@ fn one(setup: &Setup, seed: u64) -> Result<Lapped> {
     let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
     let params = IndoorParams { drive: robot(seed), ..IndoorParams::default() };
     let trip = Trip::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
-    let with = |params| follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
+    let with = |params| localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
     let (course, printed) = (with(setup.localizer)?, with(LocalizerParams::printed())?);
     Ok(Lapped { building, trip, course, printed })
 }
 
-fn of_lap(course: &Course, lap: usize) -> &[f64] {
+fn of_lap(course: &TripResult, lap: usize) -> &[f64] {
     let n = course.errors.len();
     &course.errors[n * lap / N_LAPS..n * (lap + 1) / N_LAPS]
 }
@@ -84,7 +84,7 @@ fn path(lapped: &Lapped) -> MapPlot {
 }
 
 /// Paths of a drive between the shelves.
-pub(super) fn plan(building: &Building, trip: &Trip, course: &Course) -> MapPlot {
+pub(super) fn plan(building: &Building, trip: &Trip, course: &TripResult) -> MapPlot {
     let points = |poses: Vec<wayfix_estimation_traits::Pose2<f64>>| {
         poses.iter().map(|pose| (pose.x(), pose.y())).collect()
     };

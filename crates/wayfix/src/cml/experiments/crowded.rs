@@ -2,10 +2,10 @@ use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
 use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
 
-use super::follow::known_start;
+use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Setup, follow};
+use super::{Setup, TripResult, localize_trip};
 use crate::cml::PanoramaLocalizer;
 use crate::report::{Metric, Run};
 
@@ -21,7 +21,8 @@ pub fn crowded(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (name, at) in [("crowded", 0), ("crowded_all_learned", 1), ("empty", 2)] {
-        let references = |courses: &[Course; 3]| courses[at].n_references.last().map_or(0.0, |n| *n as f64);
+        let references =
+            |courses: &[TripResult; 3]| courses[at].n_references.last().map_or(0.0, |n| *n as f64);
         metrics.extend(mean_of(&format!("references_{name}"), "", &seeds, references));
         metrics.extend(mean_of(&format!("error_mean_m_{name}"), "m", &seeds, |courses| {
             mean(&courses[at].errors)
@@ -34,12 +35,12 @@ pub fn crowded(setup: &Setup, seed: u64) -> Result<Run> {
     Ok(Run { metrics, notes: vec![note], ..Run::default() })
 }
 
-fn one(setup: &Setup, seed: u64) -> Result<[Course; 3]> {
+fn one(setup: &Setup, seed: u64) -> Result<[TripResult; 3]> {
     let building = Store::draw(StoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let through = |n_people, params: LocalizerParams| {
         let drive = IndoorParams { drive: robot(seed), n_people, ..IndoorParams::default() };
         let trip = tour(&building, setup.length_m, drive, (seed, 0))?;
-        follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
+        localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
     let ours = setup.localizer;
     Ok([

@@ -2,11 +2,11 @@ use anyhow::Result;
 use wayfix_appearance_cml::{Learning, LocalizerParams};
 use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
 
-use super::follow::{known_start, taught};
 use super::histogram::histogram;
+use super::localize_trip::{known_start, taught};
 use super::summary::{by_seed, largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Setup, Trip, follow};
+use super::{Setup, Trip, TripResult, localize_trip};
 use crate::cml::{PanoramaLocalizer, PanoramaMap};
 use crate::report::{Metric, Run};
 
@@ -28,7 +28,7 @@ pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (at, name) in COURSES.iter().enumerate() {
-        let of = |courses: &[Course; 6], value: fn(&[f64]) -> f64| value(&courses[at].errors);
+        let of = |courses: &[TripResult; 6], value: fn(&[f64]) -> f64| value(&courses[at].errors);
         metrics.extend(mean_of(&format!("error_mean_m_{name}"), "m", &seeds, |courses| of(courses, mean)));
         metrics.extend(mean_of(&format!("error_max_m_{name}"), "m", &seeds, |courses| of(courses, largest)));
         metrics.extend(mean_of(&format!("lost_{name}"), "", &seeds, |courses| courses[at].n_lost as f64));
@@ -42,11 +42,11 @@ pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
         ("adapting_over_static_printed", 1, 4),
         ("adapting_printed_over_static_printed", 5, 4),
     ] {
-        let error = |at: usize| move |courses: &[Course; 6]| mean(&courses[at].errors);
+        let error = |at: usize| move |courses: &[TripResult; 6]| mean(&courses[at].errors);
         metrics.extend(ratio_of(name, &seeds, error(ours), error(against)));
     }
     let errors =
-        |at: usize| seeds.iter().flat_map(|courses: &[Course; 6]| courses[at].errors.clone()).collect();
+        |at: usize| seeds.iter().flat_map(|courses: &[TripResult; 6]| courses[at].errors.clone()).collect();
     let plot = histogram(
         "Errors four weeks later",
         2.0,
@@ -69,7 +69,7 @@ pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
 }
 
 /// Two drives four weeks later: with the map as it was and while it adapts, then with the map as it was and with the adapted one; the first again as printed.
-fn one(setup: &Setup, seed: u64) -> Result<[Course; 6]> {
+fn one(setup: &Setup, seed: u64) -> Result<[TripResult; 6]> {
     let store = Store::draw(StoreParams::home_store(), &mut Draw::World.rng(seed))?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
     let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
@@ -78,7 +78,7 @@ fn one(setup: &Setup, seed: u64) -> Result<[Course; 6]> {
     let drive = |map: &PanoramaMap, trip: &Trip, learning, params| {
         let params = LocalizerParams { learning, ..params };
         let mut localizer = PanoramaLocalizer::with_map(params, map.clone(), known_start(trip)?)?;
-        Ok::<_, anyhow::Error>((follow(&mut localizer, trip)?, localizer.into_map()))
+        Ok::<_, anyhow::Error>((localize_trip(&mut localizer, trip)?, localizer.into_map()))
     };
     let (ours, printed) = (setup.localizer, LocalizerParams::printed());
     let first = trip(1)?;

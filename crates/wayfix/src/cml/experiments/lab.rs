@@ -1,11 +1,11 @@
 use anyhow::Result;
 use wayfix_appearance_cml::{Forgetting, LocalizerParams, MapParams};
-use wayfix_scene_sim::indoors::{AmbienceParams, IndoorParams, Lab};
+use wayfix_scene_sim::indoors::{AmbientLightParams, IndoorParams, Lab};
 
-use super::follow::known_start;
+use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Setup, follow};
+use super::{Setup, TripResult, localize_trip};
 use crate::cml::PanoramaLocalizer;
 use crate::plot::{LinesPlot, Series};
 use crate::report::{Metric, Run};
@@ -25,7 +25,7 @@ pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
     for (name, at) in [("passive", 0), ("active", 1)] {
         for step in STEPS {
             if seeds.iter().all(|courses| courses[at].n_references.len() >= step) {
-                let count = |courses: &[Course; 2]| courses[at].n_references[step - 1] as f64;
+                let count = |courses: &[TripResult; 2]| courses[at].n_references[step - 1] as f64;
                 metrics.extend(mean_of(&format!("references_{name}_{step}"), "", &seeds, count));
             }
         }
@@ -34,7 +34,7 @@ pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
             mean(&courses[at].errors)
         }));
     }
-    let points = |course: &Course| {
+    let points = |course: &TripResult| {
         course.n_references.iter().enumerate().step_by(20).map(|(step, n)| (step as f64, *n as f64)).collect()
     };
     let series = seeds.first().map_or(Vec::new(), |[passive, active]| {
@@ -58,8 +58,8 @@ pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
 }
 
 /// What the last quarter of the steps adds to the number of references, as a share of it.
-fn growth(name: &str, seeds: &[[Course; 2]], at: usize) -> Vec<Metric> {
-    let share = |courses: &[Course; 2]| {
+fn growth(name: &str, seeds: &[[TripResult; 2]], at: usize) -> Vec<Metric> {
+    let share = |courses: &[TripResult; 2]| {
         let counts = &courses[at].n_references;
         let at = |quarter: usize| {
             counts.get((counts.len() * quarter / 4).saturating_sub(1)).map_or(f64::NAN, |n| *n as f64)
@@ -70,16 +70,17 @@ fn growth(name: &str, seeds: &[[Course; 2]], at: usize) -> Vec<Metric> {
 }
 
 /// The same drive with passive, then with active forgetting.
-fn one(setup: &Setup, seed: u64) -> Result<[Course; 2]> {
+fn one(setup: &Setup, seed: u64) -> Result<[TripResult; 2]> {
     let building = Lab::draw(&mut Draw::World.rng(seed)).building();
-    let ambience = AmbienceParams { switching_s: Some(SWITCHING_S), ..AmbienceParams::default() };
-    let params = IndoorParams { drive: robot(seed), ambience, n_people: 1, ..IndoorParams::default() };
+    let ambient_light =
+        AmbientLightParams { switching_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
+    let params = IndoorParams { drive: robot(seed), ambient_light, n_people: 1, ..IndoorParams::default() };
     let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
     trip.steps.truncate(STEPS[STEPS.len() - 1]);
     let with = |forgetting| {
         let params =
             LocalizerParams { map: MapParams { forgetting, ..setup.localizer.map }, ..setup.localizer };
-        follow(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
+        localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
     Ok([with(Forgetting::Passive)?, with(Forgetting::Active)?])
 }

@@ -5,9 +5,9 @@ use wayfix_appearance_cml::{Learning, LocalizerParams, PanoramaDescriptor, Start
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
 
-use super::follow::{known_start, surveyed, taught};
+use super::localize_trip::{known_start, surveyed, taught};
 use super::worlds::{Draw, robot, tour};
-use super::{Setup, Trip, TripStep, follow};
+use super::{Setup, Trip, TripStep, localize_trip};
 use crate::cml::{PanoramaLocalizer, PanoramaMap};
 use crate::plot::{LinesPlot, Scale, Series, statistics::quantile};
 use crate::report::{Metric, Run};
@@ -18,7 +18,7 @@ const N_REFERENCES: [usize; 7] = [1000, 3000, 10_000, 30_000, 100_000, 300_000, 
 /// Steps that are timed in each map.
 const N_STEPS: usize = 200;
 /// Share of the steps that are not dearer than what is told of a robot in doubt, whose steps are not alike.
-const DEAR: f64 = 0.95;
+const KIDNAPPED_QUANTILE: f64 = 0.95;
 
 /// Computing time against the number of references: of a step of a robot that knows where it is, of one that is elsewhere than it believes and follows two
 /// beliefs at once, and of the search of the whole map that one needs who knows nothing.
@@ -53,11 +53,11 @@ pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
         let n = map.len() as f64;
         searches.push((n, median_ms(search_s(&map, &again, &setup.localizer))));
         for (start, params, share, times) in [
-            (elsewhere.clone(), astray, DEAR, &mut doubts),
+            (elsewhere.clone(), astray, KIDNAPPED_QUANTILE, &mut doubts),
             (known_start(&again)?, setup.localizer, 0.5, &mut steps),
         ] {
             let mut localizer = PanoramaLocalizer::with_map(params, map, start)?;
-            times.push((n, quantile_ms(follow(&mut localizer, &again)?.step_s, share)));
+            times.push((n, quantile_ms(localize_trip(&mut localizer, &again)?.step_s, share)));
             map = localizer.into_map();
         }
     }
@@ -78,8 +78,9 @@ pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
         let named = |(n, (_, ms)): (&usize, &(f64, f64))| Metric::new(format!("{what}_ms_{n}"), *ms, "ms");
         N_REFERENCES.iter().zip(times).map(named).collect::<Vec<_>>()
     };
-    let timings =
-        [("step_median", &steps[..]), ("astray_p95", &doubts), ("search_median", &searches)].map(of).concat();
+    let timings = [("step_median", &steps[..]), ("kidnapped_p95", &doubts), ("search_median", &searches)]
+        .map(of)
+        .concat();
     Ok(Run { timings, figures: vec![plot.draw()?], ..Run::default() })
 }
 
@@ -103,7 +104,7 @@ fn search_s(map: &PanoramaMap, trip: &Trip, params: &LocalizerParams) -> Vec<f64
     let views = trip.steps.iter().filter_map(|step| step.view.as_ref());
     let search = |view: &PanoramaDescriptor| {
         let stopwatch = Stopwatch::start();
-        black_box(map.sightings_anywhere(view, &[], params.most_matches, limit));
+        black_box(map.place_matches_anywhere(view, &[], params.most_matches, limit));
         stopwatch.elapsed().as_secs_f64()
     };
     views.map(search).collect()

@@ -2,11 +2,11 @@ use anyhow::Result;
 use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
 
 use super::area::plan;
-use super::follow::known_start;
 use super::histogram::histogram;
+use super::localize_trip::known_start;
 use super::summary::{by_seed, largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot, tour};
-use super::{Course, Setup, Trip, follow};
+use super::{Setup, Trip, TripResult, localize_trip};
 use crate::cml::PanoramaLocalizer;
 use crate::plot::MapPlot;
 use crate::report::{Metric, Run};
@@ -21,7 +21,7 @@ const SIZE_M: [f64; 2] = [40.0, 25.0];
 struct Day {
     building: Building,
     trip: Trip,
-    course: Course,
+    course: TripResult,
 }
 
 /// Fig. 6: three days from an empty map, odometry as it is; each day begins where the robot is charged.
@@ -91,7 +91,7 @@ fn one(setup: &Setup, seed: u64) -> Result<Vec<Day>> {
             }
             None => PanoramaLocalizer::new(setup.localizer, known_start(&trip)?)?,
         };
-        let course = follow(&mut today, &trip)?;
+        let course = localize_trip(&mut today, &trip)?;
         localizer = Some(today);
         days.push(Day { building, trip, course });
     }

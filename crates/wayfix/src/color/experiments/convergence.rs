@@ -39,7 +39,7 @@ pub struct Trial {
     /// Position error frame by frame, metres.
     pub errors: Vec<f64>,
     /// Whether the estimate said of itself that it is worth something at the end.
-    pub trusted: bool,
+    pub reported_tracking: bool,
 }
 
 /// Starts anywhere, light unknown.
@@ -106,9 +106,9 @@ fn trial(
     let records = drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?;
     let run: ColorRun = run(&records, Arc::clone(map), bank.clone(), params, start, seed, |_| {})?;
     let errors = run.samples().iter().map(|(_, sample)| sample.position_error()).collect();
-    let trusted =
+    let reported_tracking =
         run.samples().last().is_some_and(|(frame, _)| frame.fix == wayfix_color_model::Fix::Tracking);
-    Ok(Trial { seed, errors, trusted })
+    Ok(Trial { seed, errors, reported_tracking })
 }
 
 impl Trial {
@@ -133,7 +133,8 @@ impl Convergence {
         let n = self.trials.len();
         let n_succeeded = self.trials.iter().filter(|trial| trial.succeeded()).count();
         let n_near_at_end = self.trials.iter().filter(|trial| trial.is_near_at_end()).count();
-        let n_deceived = self.trials.iter().filter(|trial| trial.trusted && !trial.succeeded()).count();
+        let n_deceived =
+            self.trials.iter().filter(|trial| trial.reported_tracking && !trial.succeeded()).count();
         let (low, high) = proportion_interval(n_succeeded as u64, n as u64);
         let mut notes = vec![format!(
             "{n} halls of their own, every other one dark; success: within {NEAR_M} m in each of the last {LAST_FRAMES} of {FRAMES} frames; near at the end: in the last one."

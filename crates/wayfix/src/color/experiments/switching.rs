@@ -49,7 +49,7 @@ pub fn switching(
     let mut metrics = Vec::new();
     for (name, curve) in curves.iter().chain(&known) {
         metrics.push(Metric::new(format!("{name}_rate"), mean(curve.iter().map(|point| point.1)), ""));
-        metrics.push(Metric::new(format!("{name}_worst_fall"), worst_fall(curve, switches), ""));
+        metrics.push(Metric::new(format!("{name}_worst_drop"), worst_drop(curve, switches), ""));
     }
     let figures = vec![
         plot("Classification rate while lights are switched, localizing", &curves).draw()?,
@@ -69,7 +69,7 @@ fn rates(run: &ColorRun) -> Curve {
 }
 
 /// The largest fall of the mean rate over ten frames, from before a switch to after it.
-fn worst_fall(curve: &Curve, switches: &[usize]) -> f64 {
+fn worst_drop(curve: &Curve, switches: &[usize]) -> f64 {
     const AROUND: f64 = 10.0;
     let between = |from: f64, to: f64| {
         mean(curve.iter().filter(|(at, _)| *at >= from && *at < to).map(|(_, rate)| *rate))

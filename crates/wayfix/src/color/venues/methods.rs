@@ -4,7 +4,7 @@ use wayfix_color_map::ColorId;
 use wayfix_color_model::{ColorDensity, ColorMeans, LightingFilter, LightingParams, LightingPriors};
 
 use super::image::VenueImage;
-use super::prior::{BALL, CARPET, Experience, block};
+use super::prior::{BALL, CARPET, TrainingStatistics, block};
 
 /// How the two colours of an image become Gaussians; the order is that of all tables here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl Method {
     /// Gaussians of carpet and ball for one image of a venue whose ball pixels are truly `own_ball`.
     pub(super) fn densities(
         self,
-        experience: &Experience,
+        experience: &TrainingStatistics,
         image: &VenueImage,
         own_ball: &ColorDensity,
     ) -> Result<[ColorDensity; 2]> {
@@ -75,18 +75,22 @@ struct Light {
     covariance: nalgebra::DMatrix<f64>,
 }
 
-fn prior(experience: &Experience) -> Light {
+fn prior(experience: &TrainingStatistics) -> Light {
     let joint = experience.joint();
     Light { mean: joint.mean().clone(), covariance: joint.covariance().clone() }
 }
 
 /// The colours' means once an image's carpet was seen.
-fn lit(experience: &Experience, priors: &LightingPriors, carpet: &Vector3<f64>) -> Result<Light> {
+fn lit(experience: &TrainingStatistics, priors: &LightingPriors, carpet: &Vector3<f64>) -> Result<Light> {
     let light = filter(experience, priors, carpet)?;
     Ok(Light { mean: light.mean().clone(), covariance: light.covariance().clone() })
 }
 
-fn filter(experience: &Experience, priors: &LightingPriors, carpet: &Vector3<f64>) -> Result<LightingFilter> {
+fn filter(
+    experience: &TrainingStatistics,
+    priors: &LightingPriors,
+    carpet: &Vector3<f64>,
+) -> Result<LightingFilter> {
     let params = LightingParams {
         pixel_noise: experience.priors.pixel_noise(),
         mean_noise: experience.priors.mean_noise(),
@@ -99,7 +103,7 @@ fn filter(experience: &Experience, priors: &LightingPriors, carpet: &Vector3<f64
 }
 
 /// The pixels of a colour that is known as well as `light` knows it: its mean, the image's mean about that, the pixels about the image's.
-fn predicted(experience: &Experience, light: &Light, color: usize) -> ColorDensity {
+fn predicted(experience: &TrainingStatistics, light: &Light, color: usize) -> ColorDensity {
     let (mean, covariance) = block(&light.mean, &light.covariance, color);
     ColorDensity { mean, covariance: covariance + experience.mean_noise() + experience.pixels[color] }
 }
@@ -107,7 +111,7 @@ fn predicted(experience: &Experience, light: &Light, color: usize) -> ColorDensi
 /// How much better the joint prior foretells the venue's ball than the independent one, nats: the logarithm of the ratio of the densities
 /// of the mean ball once the mean carpet is seen.
 pub(super) fn joint_gain_nats(
-    experience: &Experience,
+    experience: &TrainingStatistics,
     carpet: &Vector3<f64>,
     ball: &Vector3<f64>,
 ) -> Result<f64> {

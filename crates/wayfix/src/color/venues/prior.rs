@@ -12,13 +12,13 @@ pub(super) const CARPET: usize = 0;
 pub(super) const BALL: usize = 1;
 
 /// What other venues say of one not seen: where the colours are, and how their pixels scatter.
-pub(super) struct Experience {
+pub(super) struct TrainingStatistics {
     pub(super) priors: LightingPriors,
     /// Covariance of a pixel about its image's mean, carpet and ball each their own.
     pub(super) pixels: [Matrix3<f64>; 2],
 }
 
-impl Experience {
+impl TrainingStatistics {
     /// Learned with the default parameters; every image counts alike for the scatter of pixels.
     pub(super) fn of(venues: &[&Venue]) -> Result<Self> {
         let mut covariances = [Vec::new(), Vec::new()];

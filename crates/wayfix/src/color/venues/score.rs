@@ -5,7 +5,7 @@ use wayfix_color_model::Classifier;
 
 use super::{
     methods::{Method, joint_gain_nats},
-    prior::{BALL, CARPET, Experience},
+    prior::{BALL, CARPET, TrainingStatistics},
     venue::Venue,
 };
 
@@ -48,7 +48,7 @@ impl Rates {
 
 /// Learns from `others` and classifies the pixels of `venue`.
 pub(super) fn score(venue: &Venue, others: &[&Venue]) -> Result<VenueScore> {
-    let experience = Experience::of(others)?;
+    let experience = TrainingStatistics::of(others)?;
     let own_ball = venue.ball().context("no ball in any image")?;
     let rates = Method::ALL.into_iter().map(|method| {
         let mut rates = Rates::default();

@@ -32,9 +32,9 @@ enum Experiment {
     /// From anywhere in a known map.
     GlobalStart,
     /// Carried elsewhere.
-    CarriedAway,
+    Kidnapped,
     /// Carried elsewhere, and what becomes of it.
-    CarriedOn,
+    AfterRelocalization,
     /// People before the camera.
     Crowded,
     /// Time of a step against the number of references.
@@ -51,8 +51,8 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
         Experiment::FourWeeks => experiments::four_weeks,
         Experiment::ThreeDays => experiments::three_days,
         Experiment::GlobalStart => experiments::global_start,
-        Experiment::CarriedAway => experiments::carried_away,
-        Experiment::CarriedOn => experiments::carried_on,
+        Experiment::Kidnapped => experiments::kidnapped,
+        Experiment::AfterRelocalization => experiments::after_relocalization,
         Experiment::Crowded => experiments::crowded,
         Experiment::StepTime => experiments::step_time,
     };

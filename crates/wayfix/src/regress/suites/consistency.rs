@@ -75,7 +75,7 @@ fn landmarks(job: &Job<'_>, n_landmarks: &[usize], n_runs: u64, noise: Noise) ->
         metrics.push(Metric::new(format!("end_landmark_rms_m_n{n}"), all.end_rms(), "m"));
     }
     let fall = metrics.first().zip(metrics.last()).map_or(f64::NAN, |(few, many)| few.value / many.value);
-    metrics.push(Metric::new("fall", fall, ""));
+    metrics.push(Metric::new("landmark_rms_ratio", fall, ""));
     Ok(Run { metrics, ..Run::default() })
 }
 

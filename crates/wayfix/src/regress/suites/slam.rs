@@ -17,7 +17,7 @@ use crate::{
 struct Settings {
     /// Which robot, in sets of several.
     robot: Option<u32>,
-    /// How sightings find their landmarks.
+    /// How detections find their landmarks.
     association: Option<AssociationRule>,
     /// The robot's defaults, when they are not those of the log's format.
     profile: Option<Profile>,

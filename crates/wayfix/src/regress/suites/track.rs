@@ -78,5 +78,5 @@ fn recording(job: &Job<'_>, settings: &Settings) -> Result<Run> {
     let mut estimates = TrackLog::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
     let mut run = track::run(system, &mut log, |system, record| estimates.observe(record, system))?;
     estimates.finish(run.system.n_frames())?;
-    Ok(Run { log: Some(name), figures: track::pictures(&run.story)?, ..track::summarize(&mut run) })
+    Ok(Run { log: Some(name), figures: track::pictures(&run.run_history)?, ..track::summarize(&mut run) })
 }

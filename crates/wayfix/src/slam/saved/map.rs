@@ -27,7 +27,7 @@ pub type SavedMap = Saved<SystemState>;
 /// What a system saves, in a file.
 ///
 /// Noise, gates and timing are not in it: they are parameters of the robot and come from its settings, so that a robot can go on with better
-/// ones. What must be the same is checked: the kind of robot and landmarks, and how sightings find their landmarks.
+/// ones. What must be the same is checked: the kind of robot and landmarks, and how detections find their landmarks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saved<S> {
     /// The state of the system.

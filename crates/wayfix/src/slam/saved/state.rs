@@ -9,14 +9,14 @@ use crate::slam::{
     AssociationRule, SlamSystem, SlamSystemParams,
     system::{Past, Rule},
 };
-use crate::system::{MotionStatistics, possible};
+use crate::system::{MotionStatistics, check_velocity};
 
 /// All that a [`SlamSystem`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SystemState {
     /// Robot, map and covariance.
     pub filter: Snapshot<ScaledPose, Vector2<f64>>,
-    /// How sightings find their landmarks.
+    /// How detections find their landmarks.
     pub association: AssociationRule,
     /// The number that the next new landmark gets, where association makes numbers up.
     pub next_id: Option<u32>,
@@ -119,7 +119,7 @@ impl SlamSystem {
         for (nanoseconds, linear, angular) in commands {
             let velocity = Velocity { linear, angular };
             let impossible = |_| SlamError::NotFinite { what: "saved command" };
-            let velocity = possible(velocity).map_err(impossible)?;
+            let velocity = check_velocity(velocity).map_err(impossible)?;
             system.commands.push(stamp(nanoseconds), velocity);
         }
         if !motion.is_finite() {

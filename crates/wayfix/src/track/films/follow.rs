@@ -36,9 +36,9 @@ pub fn follow(
         let picture = pixels(&frame)?;
         for (k, tracker) in trackers.iter_mut().enumerate() {
             let stopwatch = Stopwatch::start();
-            let target = tracker.follow(&picture, &mut rngs[k])?;
+            let target = tracker.track_frame(&picture, &mut rngs[k])?;
             let step = stopwatch.elapsed();
-            let n_judged = scores[k].iou.len();
+            let n_frames_with_truth = scores[k].iou.len();
             scores[k].add(&target, &frame)?;
             if k == 0 {
                 observe(&FrameResult {
@@ -47,7 +47,7 @@ pub fn follow(
                     picture: picture.clone(),
                     target,
                     truth: bounds(&frame.target).map_or(Truth::Absent, Truth::At),
-                    iou: scores[0].iou.get(n_judged).copied(),
+                    iou: scores[0].iou.get(n_frames_with_truth).copied(),
                     colors: tracker.colors(),
                     step,
                 })?;

@@ -9,7 +9,7 @@ const RIGHT: f64 = 0.5;
 /// Distance of the centre of a box in pixels up to which it is right. [Wu, Lim & Yang 2013, "precision"]
 const NEAR: f64 = 20.0;
 /// Fewer pixels of a neck in a frame say nothing of where it is.
-const LEAST_NECK: usize = 100;
+const MIN_DISTRACTOR_PX: usize = 100;
 
 /// How well one tracker followed the target of one film, after the frame it began with.
 ///
@@ -25,7 +25,7 @@ pub struct FilmScore {
     /// overlap of a box is no measure for a target that turns in it.
     pub right: Vec<bool>,
     /// Share of the neck that is inside the outline, of the frames with enough of a neck.
-    pub neck_share: Vec<f64>,
+    pub distractor_share: Vec<f64>,
     /// How often the tracker is wrong about whether it has the target.
     pub status: StatusScore,
     /// In how many frames with a visible target the tracker says that it is lost.
@@ -62,9 +62,10 @@ impl FilmScore {
         } else {
             let estimate = inside(target, &frame.target)?;
             let truth = mask(&frame.target)?;
-            if frame.decoy.area() >= LEAST_NECK {
-                let share = estimate.overlap(&mask(&frame.decoy)?)? as f64 / frame.decoy.area() as f64;
-                self.neck_share.push(share);
+            if frame.distractor.area() >= MIN_DISTRACTOR_PX {
+                let share =
+                    estimate.overlap(&mask(&frame.distractor)?)? as f64 / frame.distractor.area() as f64;
+                self.distractor_share.push(share);
             }
             let centers = estimate.centroid().zip(truth.centroid());
             (estimate.iou(&truth)?, centers.map_or([f64::NAN; 2], |(one, other)| apart(one, other)))
@@ -78,7 +79,7 @@ impl FilmScore {
     }
 
     /// Whether most of the last frames are right.
-    pub fn is_right_at_the_end(&self, n_frames: usize) -> bool {
+    pub fn is_correct_at_end(&self, n_frames: usize) -> bool {
         let last = &self.right[self.right.len().saturating_sub(n_frames)..];
         2 * last.iter().filter(|right| **right).count() > last.len()
     }

@@ -8,7 +8,7 @@ use super::{FilmScore, follow, score::mean};
 use crate::{
     evaluate::MeanInterval,
     report::{Metric, Run, Spread},
-    track::{Method, StatusScore, Story, TrackParams, pictures},
+    track::{Method, RunHistory, StatusScore, TrackParams, pictures},
 };
 
 /// Frames at the end of a film by which it is judged whether the target was found again.
@@ -21,13 +21,13 @@ const N_END: usize = 20;
 /// When a tracker cannot begin or refuses a frame, or a picture not be drawn.
 pub fn table(film: &Film, seeds: Range<u64>, methods: &[Method], params: &TrackParams) -> Result<Run> {
     let shown = seeds.start;
-    let one = |seed: u64| -> Result<(Vec<FilmScore>, Story, Vec<Duration>)> {
-        let (mut story, mut steps) = (Story::default(), Vec::new());
+    let one = |seed: u64| -> Result<(Vec<FilmScore>, RunHistory, Vec<Duration>)> {
+        let (mut run_history, mut steps) = (RunHistory::default(), Vec::new());
         let scores = follow(&Film { seed, ..*film }, methods, params, |frame| {
             steps.push(frame.step);
-            if seed == shown { Ok(story.observe(frame)?) } else { Ok(()) }
+            if seed == shown { Ok(run_history.observe(frame)?) } else { Ok(()) }
         })?;
-        Ok((scores, story, steps))
+        Ok((scores, run_history, steps))
     };
     let runs = seeds.into_par_iter().map(one).collect::<Result<Vec<_>>>()?;
     let mut metrics = Vec::new();
@@ -41,7 +41,8 @@ pub fn table(film: &Film, seeds: Range<u64>, methods: &[Method], params: &TrackP
     steps.sort_unstable();
     let median = steps.get(steps.len() / 2).map_or(f64::NAN, |step| 1e3 * step.as_secs_f64());
     let timings = vec![Metric::new("frame_median_ms", median, "ms")];
-    let figures = runs.first().map(|(_, story, _)| pictures(story)).transpose()?.unwrap_or_default();
+    let figures =
+        runs.first().map(|(_, run_history, _)| pictures(run_history)).transpose()?.unwrap_or_default();
     let notes =
         vec![format!("{} seeds; the pictures are of seed {shown} and {}.", runs.len(), methods[0].name())];
     Ok(Run { metrics, timings, figures, notes, ..Run::default() })
@@ -68,18 +69,18 @@ fn over_seeds(scores: &[&FilmScore], incident: Incident) -> Vec<Metric> {
     if !centers.is_empty() {
         metrics.push(Metric::new("center_error_mean_px", mean(&centers), "px"));
     }
-    let necks = all(|score| &score.neck_share);
+    let necks = all(|score| &score.distractor_share);
     if !necks.is_empty() {
-        metrics.push(Metric::new("neck_share_mean", mean(&necks), ""));
+        metrics.push(Metric::new("distractor_share_mean", mean(&necks), ""));
     }
     if incident != Incident::None {
-        let found = scores.iter().filter(|score| score.is_right_at_the_end(N_END)).count();
-        metrics.push(Metric::new("found_again_share", found as f64 / scores.len() as f64, ""));
+        let found = scores.iter().filter(|score| score.is_correct_at_end(N_END)).count();
+        metrics.push(Metric::new("reacquired_share", found as f64 / scores.len() as f64, ""));
     }
     let n_hidden = sum(|score| score.n_hidden);
     if n_hidden > 0.0 {
         let share = sum(|score| score.n_hidden_and_lost) / n_hidden;
-        metrics.push(Metric::new("said_lost_share", share, ""));
+        metrics.push(Metric::new("lost_reported_share", share, ""));
     }
     metrics
 }

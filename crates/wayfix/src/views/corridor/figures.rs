@@ -1,12 +1,12 @@
 use anyhow::Result;
 use wayfix_condensation::FeatureTable;
 
-use super::localize::{Journey, Method, STEADY, TOLERANCE, VAGUE};
+use super::localize::{LocalizationRun, Method, STEADY, TOLERANCE, VAGUE};
 use crate::{report::Metric, views::FeatureKind};
 
 /// One feature along the corridor in every way.
 pub(super) struct Variants {
-    pub(super) filtered: Journey,
+    pub(super) filtered: LocalizationRun,
     swapped: f64,
     vague_motion: f64,
     independent: f64,
@@ -17,10 +17,10 @@ pub(super) struct Variants {
 
 impl Variants {
     pub(super) fn of(learned: &FeatureTable, seen: &FeatureTable) -> Result<Self> {
-        let share = |method| Journey::of(learned, seen, method).map(|journey| journey.share());
+        let share = |method| LocalizationRun::of(learned, seen, method).map(|journey| journey.share());
         Ok(Self {
-            filtered: Journey::of(learned, seen, Method::Filter(STEADY))?,
-            swapped: Journey::of(seen, learned, Method::Filter(STEADY))?.share(),
+            filtered: LocalizationRun::of(learned, seen, Method::Filter(STEADY))?,
+            swapped: LocalizationRun::of(seen, learned, Method::Filter(STEADY))?.share(),
             vague_motion: share(Method::Filter(VAGUE))?,
             independent: share(Method::Independent(STEADY))?,
             single_frame: share(Method::SingleFrame)?,
@@ -36,7 +36,7 @@ fn found_after(n_frames: usize, learned: &FeatureTable, seen: &FeatureTable) -> 
     let mut n_found = 0;
     for start in 0..n_starts {
         let rows: Vec<Vec<f64>> = seen.rows().skip(start).take(n_frames).map(<[f64]>::to_vec).collect();
-        let journey = Journey::of(learned, &FeatureTable::from_rows(&rows)?, Method::Filter(STEADY))?;
+        let journey = LocalizationRun::of(learned, &FeatureTable::from_rows(&rows)?, Method::Filter(STEADY))?;
         let place = journey.best.last().copied().unwrap_or(0);
         n_found += usize::from(place.abs_diff(start + n_frames - 1) <= TOLERANCE);
     }

@@ -23,7 +23,7 @@ pub(super) const STEADY: [f64; 3] = [0.1, 0.8, 0.1];
 pub(super) const VAGUE: [f64; 3] = [0.25, 0.5, 0.25];
 
 /// What was believed after every frame.
-pub(super) struct Journey {
+pub(super) struct LocalizationRun {
     /// One distribution over the places a frame.
     pub(super) beliefs: Vec<Vec<f64>>,
     /// The place believed in most.
@@ -32,7 +32,7 @@ pub(super) struct Journey {
     pub(super) correlation_length: f64,
 }
 
-impl Journey {
+impl LocalizationRun {
     /// Goes through the frames of one traverse, knowing the other.
     pub(super) fn of(learned: &FeatureTable, seen: &FeatureTable, method: Method) -> Result<Self> {
         let params = TraverseParams { tolerance: TOLERANCE, ..TraverseParams::default() };

@@ -3,7 +3,7 @@ use wayfix_sensor_log::EncodedImage;
 
 use super::{
     figures::Variants,
-    localize::Journey,
+    localize::LocalizationRun,
     traverses::{Frame, Traverses},
 };
 use crate::{
@@ -69,7 +69,7 @@ fn errors(variants: &[(FeatureKind, Variants)]) -> LinesPlot {
     }
 }
 
-fn film(traverses: &Traverses, kind: FeatureKind, journey: &Journey) -> Result<Picture> {
+fn film(traverses: &Traverses, kind: FeatureKind, journey: &LocalizationRun) -> Result<Picture> {
     let (mut seen, mut believed) = (Vec::new(), Vec::new());
     let film_frame = |frame: &Frame, caption| FilmFrame { image: frame.image.clone(), caption };
     for k in 0..FILM_FRAMES {

@@ -1,8 +1,8 @@
 use anyhow::Result;
 use wayfix_condensation::Picture;
-use wayfix_scene_sim::scenery::{Scenery, Visit};
+use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 
-use super::settings::{Settings, VisitKind};
+use super::settings::{ImagingConditionsKind, Settings};
 use crate::{
     regress::Job,
     views::{self, FeatureKind, Normalization, RealScene, Setup},
@@ -39,11 +39,11 @@ impl Scenes {
     /// A composed scene.
     pub(super) fn compose(settings: &Settings) -> Result<Self> {
         let scenery = Scenery::named(settings.scene()?)?;
-        let visit = match settings.visit {
-            VisitKind::Dimmed => Visit::dimmed(),
-            VisitKind::OtherCamera => Visit::default(),
+        let imaging_conditions = match settings.imaging_conditions {
+            ImagingConditionsKind::Dimmed => ImagingConditions::dimmed(),
+            ImagingConditionsKind::OtherCamera => ImagingConditions::default(),
         };
-        let (learned, real) = views::composed(&scenery, &visit)?;
+        let (learned, real) = views::composed(&scenery, &imaging_conditions)?;
         Ok(Self { learned, real, view: Scenery::VIEW_PX, step: scenery.step_px })
     }
 

@@ -16,7 +16,7 @@ pub(super) struct Settings {
     pub(super) scene: Option<String>,
     /// How it is seen.
     #[serde(default)]
-    pub(super) visit: VisitKind,
+    pub(super) imaging_conditions: ImagingConditionsKind,
     /// The scene that was learned, beside the one of the run, when it is another picture.
     pub(super) learn_from: Option<PathBuf>,
     /// How far the camera may have moved on the whole, pixels; that is measured and taken out.
@@ -52,7 +52,7 @@ pub(super) enum Experiment {
 /// How a composed scene is seen.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum VisitKind {
+pub(super) enum ImagingConditionsKind {
     /// Gain, offset, gamma, noise and a shift.
     #[default]
     Dimmed,

@@ -1,0 +1,47 @@
+use crate::{CondensationError, FeatureTable, Picture, View, ViewFeature, ViewGrid};
+
+/// Several features side by side as one.
+///
+/// ```
+/// use wayfix_condensation::{Fft6, Hist6, JoinedFeature, MeanVar, ViewFeature};
+/// let all = JoinedFeature::new(vec![Box::new(MeanVar), Box::new(Fft6), Box::new(Hist6::default())]);
+/// assert_eq!(all.n_components(), 18);
+/// ```
+pub struct JoinedFeature {
+    parts: Vec<Box<dyn ViewFeature + Send>>,
+}
+
+impl JoinedFeature {
+    /// In that order.
+    pub fn new(parts: Vec<Box<dyn ViewFeature + Send>>) -> Self {
+        Self { parts }
+    }
+}
+
+impl ViewFeature for JoinedFeature {
+    fn n_components(&self) -> usize {
+        self.parts.iter().map(|part| part.n_components()).sum()
+    }
+
+    fn extract(&self, view: &View<'_>, features: &mut [f64]) {
+        let mut rest = features;
+        for part in &self.parts {
+            let (own, others) = rest.split_at_mut(part.n_components());
+            part.extract(view, own);
+            rest = others;
+        }
+    }
+
+    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
+        let mut joined = FeatureTable::zeros(views.grid(), self.n_components());
+        let mut begin = 0;
+        for part in &self.parts {
+            let table = part.extract_all(scene, views)?;
+            for (state, row) in table.rows().enumerate() {
+                joined.row_mut(state)[begin..begin + row.len()].copy_from_slice(row);
+            }
+            begin += part.n_components();
+        }
+        Ok(joined)
+    }
+}

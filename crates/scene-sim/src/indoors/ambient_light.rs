@@ -1,0 +1,114 @@
+use rand::Rng;
+
+use super::light::LightKind;
+use crate::random::deviate::{below, chance, normal, uniform};
+use crate::random::{GaussMarkov, Source, Streams};
+use crate::{SimError, check};
+
+/// Light from everywhere, so that nothing is quite black.
+const STRAY: [f32; 3] = [0.12; 3];
+
+/// How light changes while a robot drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmbientLightParams {
+    /// Standard deviation of the logarithm of the daylight: clouds. Default 0.35.
+    pub daylight_sigma: f64,
+    /// Correlation time of the daylight, seconds. Default 600.
+    pub daylight_correlation_s: f64,
+    /// Standard deviation of the logarithm of each group of lamps from one drive to the next: some fail, some are new. Default 0.1.
+    pub lamp_sigma: f64,
+    /// Mean time between two changes made by people who switch lamps and draw curtains, seconds; `None` when nobody does. Default `None`.
+    pub switching_s: Option<f64>,
+}
+
+impl Default for AmbientLightParams {
+    fn default() -> Self {
+        Self { daylight_sigma: 0.35, daylight_correlation_s: 600.0, lamp_sigma: 0.1, switching_s: None }
+    }
+}
+
+impl AmbientLightParams {
+    /// Whether the numbers have a meaning.
+    ///
+    /// # Errors
+    /// Names the first that has none.
+    pub fn validate(&self) -> Result<(), SimError> {
+        check::not_negative("σ of the daylight", self.daylight_sigma)?;
+        check::positive("correlation time of the daylight (s)", self.daylight_correlation_s)?;
+        check::not_negative("σ of the lamps", self.lamp_sigma)?;
+        check::positive("time between switchings (s)", self.switching_s.unwrap_or(1.0))
+    }
+}
+
+/// Lamps, curtains and daylight of a moment.
+#[derive(Clone, Debug)]
+pub(super) struct AmbientLight {
+    params: AmbientLightParams,
+    /// Light from everywhere.
+    pub(super) stray: [f32; 3],
+    /// Share of its full light that each group of lamps gives.
+    lamps: Vec<f64>,
+    /// Which share of its window each curtain leaves open.
+    pub(super) curtains: Vec<f64>,
+    /// Brightness of the day, 1 as usual.
+    pub(super) daylight: f64,
+    clouds: GaussMarkov,
+}
+
+impl AmbientLight {
+    pub(super) fn new(
+        params: AmbientLightParams,
+        n_lamps: usize,
+        n_curtains: usize,
+        streams: &mut Streams,
+    ) -> Self {
+        let rng = streams.of(Source::Lamps);
+        let lamps = (0..n_lamps).map(|_| libm::exp(params.lamp_sigma * normal(rng)));
+        let clouds = GaussMarkov::new(params.daylight_correlation_s);
+        let mut ambient_light =
+            Self { params, lamps: lamps.collect(), clouds, ..Self::nominal(0, n_curtains) };
+        ambient_light.advance(1.0, streams);
+        ambient_light
+    }
+
+    /// As the day usually is, every lamp lit and every curtain open.
+    pub(super) fn nominal(n_lamps: usize, n_curtains: usize) -> Self {
+        Self {
+            params: AmbientLightParams::default(),
+            stray: STRAY,
+            lamps: vec![1.0; n_lamps],
+            curtains: vec![1.0; n_curtains],
+            daylight: 1.0,
+            clouds: GaussMarkov::new(1.0),
+        }
+    }
+
+    /// Lets time pass.
+    pub(super) fn advance(&mut self, seconds: f64, streams: &mut Streams) {
+        let clouds = self.clouds.advance(seconds, streams.of(Source::Daylight));
+        self.daylight = libm::exp(self.params.daylight_sigma * clouds);
+        let rng = streams.of(Source::Switching);
+        let share = self.params.switching_s.map_or(0.0, |mean_s| 1.0 - libm::exp(-seconds / mean_s));
+        if chance(share, rng) {
+            self.switch(rng);
+        }
+    }
+
+    /// Somebody switches one group of lamps or draws one curtain.
+    fn switch<R: Rng + ?Sized>(&mut self, rng: &mut R) {
+        let which = below(self.lamps.len() + self.curtains.len(), rng);
+        let open = uniform(-0.3, 1.3, rng).clamp(0.0, 1.0);
+        match which.checked_sub(self.lamps.len()) {
+            Some(curtain) => self.curtains.iter_mut().skip(curtain).take(1).for_each(|share| *share = open),
+            None => self.lamps[which] = if self.lamps[which] > 0.0 { 0.0 } else { 1.0 },
+        }
+    }
+
+    pub(super) fn level(&self, kind: LightKind) -> f64 {
+        match kind {
+            LightKind::Lamps(number) => self.lamps[number],
+            LightKind::Window(number) => self.daylight * (0.04 + 0.96 * self.curtains[number]),
+            LightKind::Skylight => self.daylight,
+        }
+    }
+}

@@ -1,0 +1,87 @@
+use rand::Rng;
+
+use super::camera::{CameraParams, Chroma};
+use crate::league::{Rgb, yuv};
+use crate::random::deviate::quick_normal;
+
+/// Entries of the table of the response.
+const STEPS: usize = 4096;
+
+/// From light to the bytes of a picture: what the chip and the electronics do.
+pub(super) struct ImagePipeline {
+    params: CameraParams,
+    /// What the lens lets through, row by row.
+    lens: Vec<Rgb>,
+    response: Vec<f64>,
+}
+
+impl ImagePipeline {
+    pub(super) fn new(params: CameraParams) -> Self {
+        let response =
+            (0..=STEPS).map(|step| 255.0 * libm::pow(step as f64 / STEPS as f64, params.gamma)).collect();
+        Self { params, lens: lens(&params), response }
+    }
+
+    /// `balance` multiplies the gains of the channels.
+    pub(super) fn process<R: Rng + ?Sized>(&self, light: &[Rgb], balance: &Rgb, rng: &mut R) -> Vec<u8> {
+        let stray = light.iter().sum::<Rgb>() * (self.params.flare / light.len().max(1) as f64);
+        let gains = self.params.white_balance.component_mul(balance) * self.params.gain;
+        let grey = light.iter().zip(&self.lens).map(|(light, lens)| {
+            let seen = self.mixed(&(light + stray).component_mul(lens));
+            seen.component_mul(&gains).map(|signal| self.grey_value(signal, rng))
+        });
+        self.share_chroma(grey.map(|rgb| yuv::from_rgb(&rgb)).collect())
+    }
+
+    /// The filters before the pixels are not those of the primaries.
+    fn mixed(&self, light: &Rgb) -> Rgb {
+        let cross = self.params.crosstalk;
+        light * (1.0 - 3.0 * cross) + Rgb::repeat(cross * light.sum())
+    }
+
+    fn grey_value<R: Rng + ?Sized>(&self, signal: f64, rng: &mut R) -> f64 {
+        let read = self.params.read_noise;
+        let sigma = (signal / self.params.full_well + read * read).sqrt();
+        let noisy = (signal + sigma * quick_normal(rng)).clamp(0.0, 1.0);
+        self.response[(noisy * STEPS as f64) as usize]
+    }
+
+    /// Averages U and V over the pixels that share them, and makes bytes.
+    fn share_chroma(&self, yuv: Vec<Rgb>) -> Vec<u8> {
+        let width = self.params.camera.width() as usize;
+        let (across, down) = match self.params.chroma {
+            Chroma::Each => (1, 1),
+            Chroma::Pairs => (2, 1),
+            Chroma::Squares => (2, 2),
+        };
+        let mut bytes = Vec::with_capacity(3 * yuv.len());
+        for (pixel, own) in yuv.iter().enumerate() {
+            let (column, row) = (pixel % width, pixel / width);
+            let (left, top) = (column - column % across, row - row % down);
+            let mut sum = Rgb::zeros();
+            let mut count = 0.0;
+            for y in top..top + down {
+                for x in left..(left + across).min(width) {
+                    if let Some(other) = yuv.get(y * width + x) {
+                        sum += other;
+                        count += 1.0;
+                    }
+                }
+            }
+            bytes.extend(yuv::to_rgb(own.x, sum.y / count, sum.z / count));
+        }
+        bytes
+    }
+}
+
+/// A smooth fall to the corners, where the stated share is lost.
+fn lens(params: &CameraParams) -> Vec<Rgb> {
+    let (width, height) = (params.camera.width(), params.camera.height());
+    let (half_width, half_height) = (0.5 * f64::from(width), 0.5 * f64::from(height));
+    let through = |column: u32, row: u32| {
+        let (x, y) = (f64::from(column) + 0.5 - half_width, f64::from(row) + 0.5 - half_height);
+        let corner = (x * x + y * y) / (half_width * half_width + half_height * half_height);
+        Rgb::repeat(1.0) - params.vignetting * corner
+    };
+    (0..height).flat_map(|row| (0..width).map(move |column| through(column, row))).collect()
+}

@@ -1,0 +1,79 @@
+use wayfix_estimation_traits::Pose2;
+
+use super::candidate::Candidate;
+use super::motion::planar;
+use super::transforms::{is_body, last_part};
+use crate::image::picture;
+use crate::ros::{RosMessage, RosSchema};
+
+/// The frame of wheel odometry. [REP 105]
+pub(super) const ODOMETRY_FRAME: &str = "odom";
+
+/// A topic that is put to a probe before it is chosen.
+#[derive(Debug)]
+pub(crate) struct TopicProbe {
+    /// Which of the file's topics.
+    pub(crate) index: usize,
+    pub(crate) schema: RosSchema,
+    pub(crate) probe: Probe,
+}
+
+/// What has to be seen of a topic before it is known whether to read it.
+#[derive(Debug)]
+pub(crate) enum Probe {
+    /// Whether the first image can be read.
+    Image,
+    /// Whether the robot ever moves by the poses.
+    Poses { first: Option<Pose2<f64>> },
+    /// Whether there is odometry among the transforms.
+    Transforms,
+}
+
+/// What has to be found out of a file by reading.
+pub(super) fn topic_probes(
+    motion: Option<Candidate<'_>>,
+    images: &[Candidate<'_>],
+    transforms: &[Candidate<'_>],
+) -> Vec<TopicProbe> {
+    let question =
+        |topic: &Candidate<'_>, probe| TopicProbe { index: topic.index, schema: topic.schema, probe };
+    // One camera alone is read whatever it sends: what is wrong with it gets told message by message.
+    let images = if images.len() > 1 { images } else { &[] };
+    let mut topic_probes: Vec<TopicProbe> =
+        images.iter().map(|image| question(image, Probe::Image)).collect();
+    match motion {
+        Some(odometry) if odometry.is_odometry() => {
+            topic_probes.push(question(&odometry, Probe::Poses { first: None }));
+        }
+        Some(_) => {
+            // What is said to stand still is no odometry.
+            let moving = transforms.iter().filter(|topic| !topic.topic.name.ends_with("tf_static"));
+            topic_probes.extend(moving.map(|topic| question(topic, Probe::Transforms)));
+        }
+        None => {}
+    }
+    topic_probes
+}
+
+impl Probe {
+    /// Looks at a message: an answer, or `None` when more have to be seen.
+    pub(crate) fn inspect(&mut self, schema: RosSchema, bytes: &[u8]) -> Option<bool> {
+        match (self, schema.decode(bytes)) {
+            (Self::Image, message) => Some(match message {
+                Ok(RosMessage::Image(image)) => image.pixels().uncompressed().is_ok(),
+                Ok(RosMessage::CompressedImage(image)) => picture(image.format, image.data).is_ok(),
+                _ => false,
+            }),
+            (Self::Poses { first }, Ok(RosMessage::Odometry(odometry))) => {
+                let pose = planar(&odometry.pose).ok()?;
+                (*first.get_or_insert(pose) != pose).then_some(true)
+            }
+            (Self::Transforms, Ok(RosMessage::Transforms(transforms))) => {
+                let is_odometry = |parent, child| last_part(parent) == ODOMETRY_FRAME && is_body(child);
+                let mut transforms = transforms.iter();
+                transforms.any(|t| is_odometry(t.header.frame_id, t.child_frame_id)).then_some(true)
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,33 @@
+use wayfix_sensor_log::{Log, LogEnd, ReadReport, Record, Warning};
+
+use super::output::print_message;
+use crate::system::Events;
+
+/// All records of a log; tells what could not be read and what was assumed.
+pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
+    let (records, read) = log.read_all();
+    if !read.is_clean() {
+        print_message(&read);
+    }
+    (records, read)
+}
+
+/// Names what was refused and what the run assumed, counts what could not be read, and gives all warnings for the report.
+pub(super) fn add_read_problems(events: &mut Events, read: &ReadReport) -> Vec<String> {
+    for refusal in events.refusals() {
+        print_message(format!("refused {refusal}"));
+    }
+    let n_unlisted = events.n_refusals() - events.refusals().len() as u64;
+    if n_unlisted > 0 {
+        print_message(format!("refused … and {n_unlisted} more"));
+    }
+    events.warnings().iter().for_each(print_message); // those of the log were told when it was read
+    events.add("log_problem", read.n_problems());
+    if read.end != LogEnd::Complete {
+        events.count("log_incomplete");
+    }
+    for Warning { name, .. } in &read.warnings {
+        events.count(name);
+    }
+    read.warnings.iter().chain(events.warnings()).map(|warning| warning.text.clone()).collect()
+}

@@ -1,0 +1,73 @@
+use nalgebra::{Matrix3, Vector3};
+use rand_chacha::ChaCha8Rng;
+use wayfix_condensation::{
+    ColorSpace, CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture, Target, Tracker,
+};
+
+/// Any tracker, behind one type.
+pub trait FrameTracker {
+    /// Takes the next picture.
+    ///
+    /// # Errors
+    /// As [`Tracker::track`].
+    fn track_frame(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError>;
+
+    /// The colours of what is followed, for trackers that know them.
+    fn colors(&self) -> Option<TargetColors> {
+        None
+    }
+}
+
+/// Where the colours of a target are in a colour space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetColors {
+    /// The space.
+    pub space: ColorSpace,
+    /// Their mean, each axis scaled to [0, 1].
+    pub mean: Vector3<f64>,
+    /// Their covariance.
+    pub covariance: Matrix3<f64>,
+}
+
+impl FrameTracker for CorrelationTracker {
+    fn track_frame(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+        self.track(picture, rng)
+    }
+}
+
+impl FrameTracker for HeadTracker {
+    fn track_frame(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+        self.track(picture, rng)
+    }
+}
+
+/// A contour tracker, and the space of its colours.
+pub(super) struct ContourFrameTracker {
+    pub(super) tracker: ContourTracker,
+    pub(super) space: ColorSpace,
+}
+
+impl FrameTracker for ContourFrameTracker {
+    fn track_frame(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+        self.tracker.track(picture, rng)
+    }
+
+    fn colors(&self) -> Option<TargetColors> {
+        let colors = self.tracker.colors();
+        let variances = Matrix3::from_diagonal(&colors.magnitudes.map(|magnitude| magnitude * magnitude));
+        let covariance = colors.axes * variances * colors.axes.transpose();
+        Some(TargetColors { space: self.space, mean: colors.mean, covariance })
+    }
+}
+
+/// What the axes of a space are called.
+pub(super) fn axis_names(space: ColorSpace) -> [&'static str; 3] {
+    match space {
+        ColorSpace::Rgb => ["R", "G", "B"],
+        ColorSpace::NormalizedRgb => ["r", "g", "b"],
+        ColorSpace::Hsi => ["H", "S", "I"],
+        ColorSpace::Yuv => ["Y", "U", "V"],
+        ColorSpace::Opponent => ["B − G", "G − R", "R + G + B"],
+        _ => ["first axis", "second axis", "third axis"],
+    }
+}
