@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""OpenCV's trackers on the sequences of crates/condensation/examples/04_track_boxes.rs, with the same figures.
+"""OpenCV's trackers on the sequences of crates/visual-tracking/examples/01_track_boxes.rs, with the same figures.
 
 opencv_track_boxes.py FOLDER...     each with the frames in img and x,y,w,h a line in groundtruth_rect.txt, corners counted from 1
 """

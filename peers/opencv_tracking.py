@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A frame of colour tracking in OpenCV, one thread: the jobs of crates/condensation/benches/track.rs on its frame."""
+"""A frame of colour tracking in OpenCV, one thread: the jobs of crates/visual-tracking/benches/track.rs on its frame."""
 
 import math
 import time
@@ -13,7 +13,7 @@ N_HYPOTHESES = 300
 
 
 def xorshift():
-    """Uniform numbers in [0, 1), those of crates/condensation/benches/track.rs."""
+    """Uniform numbers in [0, 1), those of crates/visual-tracking/benches/track.rs."""
     state, mask = 88172645463325252, (1 << 64) - 1
     while True:
         state ^= (state << 13) & mask
@@ -70,17 +70,6 @@ def main():
     uniform = xorshift()
     places = [(int(260 * next(uniform)), int(180 * next(uniform))) for _ in range(N_HYPOTHESES)]
     measure("track 300 colour hypotheses", hypotheses, 30)
-
-    model = cv2.calcHist([hsv[target]], [0, 1], None, [16, 16], [0, 180, 0, 256])
-    cv2.normalize(model, model, 0, 255, cv2.NORM_MINMAX)
-    criteria = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 10, 1)
-
-    def camshift():
-        converted = cv2.cvtColor(image, cv2.COLOR_BGR2HSV)
-        projection = cv2.calcBackProject([converted], [0, 1], model, [0, 180, 0, 256], 1)
-        return cv2.CamShift(projection, (LEFT, TOP, SIDE, SIDE), criteria)
-
-    measure("track mean shift", camshift, 300)
 
 
 if __name__ == "__main__":

@@ -63,7 +63,10 @@ fn a_resumed_run_goes_on_bit_for_bit_through_a_file() {
         .unwrap();
         halves[0].write(&path).unwrap();
         let resumed = run_on(SavedMap::read(&path).unwrap(), &records, &params, |_| {}).unwrap();
-        assert!(halves[0].state.filter.n_updates > 10 && resumed.system.stamped_estimates().len() > 10, "{log:?}");
+        assert!(
+            halves[0].state.filter.n_updates > 10 && resumed.system.stamped_estimates().len() > 10,
+            "{log:?}"
+        );
         let (whole, resumed) = (whole.system.save(), resumed.system.save());
         assert_eq!(resumed.to_bytes().unwrap(), whole.to_bytes().unwrap(), "{log:?}");
     }

@@ -9,8 +9,8 @@ use wayfix::{
         films::{FilmScore, table},
     },
 };
-use wayfix_condensation::{BoundingBox, Target, TrackStatus};
 use wayfix_scene_sim::film::{Film, Frame, Incident};
+use wayfix_visual_tracking::{BoundingBox, Target, TrackStatus};
 
 fn film(n_frames: usize) -> Film {
     Film { n_frames, ..Film::named("snail").unwrap() }

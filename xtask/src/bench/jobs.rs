@@ -117,7 +117,7 @@ fn python_peers(options: &Options) -> Vec<Job> {
     let mut simplify =
         job("line-extract shapely OpenCV", shell::command(&python, &["peers/shapely_opencv_simplify.py"]));
     simplify.missing = pypi(&["numpy", "cv2", "shapely"], "numpy opencv-python-headless shapely");
-    let mut tracking = job("condensation OpenCV", shell::command(&python, &["peers/opencv_tracking.py"]));
+    let mut tracking = job("visual-tracking OpenCV", shell::command(&python, &["peers/opencv_tracking.py"]));
     tracking.missing = pypi(&["numpy", "cv2"], "numpy opencv-python-headless");
     let mut jobs = vec![kalman, resampling, simplify, tracking];
     jobs.extend(slam_jobs(options, "numpy", &KNOWN, |log, _, job| {

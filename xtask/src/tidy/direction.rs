@@ -4,7 +4,7 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 13] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 14] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
@@ -15,6 +15,7 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 13] = [
     ("color-map", &["estimation-traits"]),
     ("color-model", &["estimation-traits", "gaussian-core", "kalman", "particle", "color-map"]),
     ("condensation", &["estimation-traits", "gaussian-core", "particle"]),
+    ("visual-tracking", &["gaussian-core", "particle"]),
     ("appearance-cml", &["estimation-traits", "gaussian-core"]),
     ("sensor-log", &["estimation-traits"]),
     ("scene-sim", &["estimation-traits", "sensor-log", "color-map"]),

@@ -7,8 +7,8 @@ use std::{
 };
 
 use anyhow::{Context, Result};
-use wayfix_condensation::BoundingBox;
 use wayfix_sensor_log::{Format, Log, OpenOptions};
+use wayfix_visual_tracking::BoundingBox;
 
 use super::{
     common::Common,

@@ -1,6 +1,6 @@
 use std::{io, path::PathBuf};
 
-use wayfix_condensation::CondensationError;
+use wayfix_visual_tracking::TrackingError;
 
 /// Why a target cannot be followed.
 #[derive(Debug, thiserror::Error)]
@@ -55,11 +55,11 @@ pub enum TrackError {
         /// What it was given.
         init: String,
         /// Of the first frame.
-        width: usize,
+        width: u32,
         /// Of the first frame.
-        height: usize,
+        height: u32,
         /// What the tracker says.
-        source: CondensationError,
+        source: TrackingError,
     },
     /// A picture could not be written.
     #[error(transparent)]

@@ -5,8 +5,8 @@ use std::{
 };
 
 use anyhow::{Context, Result};
-use wayfix_condensation::TrackStatus;
 use wayfix_sensor_log::{Data, Format, ImageOutline, McapFile, MessageWriter, Record, Sinks, topics};
+use wayfix_visual_tracking::TrackStatus;
 
 use super::{FrameResult, TrackSystem, Truth, overlay, run_history::outline};
 use crate::system::EstimateWriter;

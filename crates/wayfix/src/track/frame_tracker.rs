@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rand_chacha::ChaCha8Rng;
-use wayfix_condensation::{
-    ColorSpace, CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture, Target, Tracker,
+use wayfix_visual_tracking::{
+    ColorSpace, ContourTracker, CorrelationTracker, HeadTracker, RgbImage, Target, Tracker, TrackingError,
 };
 
 /// Any tracker, behind one type.
@@ -10,7 +10,7 @@ pub trait FrameTracker {
     ///
     /// # Errors
     /// As [`Tracker::track`].
-    fn track_frame(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError>;
+    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError>;
 
     /// The colours of what is followed, for trackers that know them.
     fn colors(&self) -> Option<TargetColors> {
@@ -30,13 +30,13 @@ pub struct TargetColors {
 }
 
 impl FrameTracker for CorrelationTracker {
-    fn track_frame(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError> {
         self.track(picture, rng)
     }
 }
 
 impl FrameTracker for HeadTracker {
-    fn track_frame(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError> {
         self.track(picture, rng)
     }
 }
@@ -48,7 +48,7 @@ pub(super) struct ContourFrameTracker {
 }
 
 impl FrameTracker for ContourFrameTracker {
-    fn track_frame(&mut self, picture: &Picture, rng: &mut ChaCha8Rng) -> Result<Target, CondensationError> {
+    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError> {
         self.tracker.track(picture, rng)
     }
 

@@ -1,7 +1,7 @@
 use clap::ValueEnum;
 use serde::Deserialize;
-use wayfix_condensation::{
-    CondensationError, ContourTracker, CorrelationTracker, HeadTracker, Picture, TrackingCues,
+use wayfix_visual_tracking::{
+    ContourTracker, CorrelationTracker, HeadTracker, RgbImage, TrackingCues, TrackingError,
 };
 
 use super::{FrameTracker, Start, TrackParams, frame_tracker::ContourFrameTracker};
@@ -45,9 +45,9 @@ impl Method {
     pub fn begin(
         self,
         params: &TrackParams,
-        picture: &Picture,
+        picture: &RgbImage,
         start: &Start,
-    ) -> Result<Box<dyn FrameTracker>, CondensationError> {
+    ) -> Result<Box<dyn FrameTracker>, TrackingError> {
         let mut contour = params.contour;
         match self {
             Self::Box => {

@@ -1,6 +1,7 @@
 //! Lines drawn into pictures.
 
-use wayfix_condensation::BoundingBox;
+use image::{Rgb, RgbImage};
+use wayfix_visual_tracking::BoundingBox;
 
 pub(super) const TRUTH: [u8; 3] = [60, 220, 90];
 pub(super) const ESTIMATE: [u8; 3] = [255, 225, 40];
@@ -14,9 +15,9 @@ pub(super) fn corners(target: &BoundingBox) -> [[f64; 2]; 4] {
 }
 
 /// Draws a closed line, a pixel wide, as far as it lies in the picture.
-pub(super) fn draw(pixels: &mut [[u8; 3]], width: usize, points: &[[f64; 2]], color: [u8; 3]) {
-    let height = pixels.len() / width.max(1);
-    let reach = 2.0 * (width + height) as f64;
+pub(super) fn draw(picture: &mut RgbImage, points: &[[f64; 2]], color: [u8; 3]) {
+    let [width, height] = [picture.width(), picture.height()].map(f64::from);
+    let reach = 2.0 * (width + height);
     for (k, from) in points.iter().enumerate() {
         let to = points[(k + 1) % points.len()];
         let (du, dv) = (to[0] - from[0], to[1] - from[1]);
@@ -25,8 +26,8 @@ pub(super) fn draw(pixels: &mut [[u8; 3]], width: usize, points: &[[f64; 2]], co
         for step in 0..n_steps as usize {
             let share = step as f64 / n_steps;
             let (u, v) = (from[0] + share * du, from[1] + share * dv);
-            if (0.0..width as f64).contains(&u) && (0.0..height as f64).contains(&v) {
-                pixels[v as usize * width + u as usize] = color;
+            if (0.0..width).contains(&u) && (0.0..height).contains(&v) {
+                picture.put_pixel(u as u32, v as u32, Rgb(color));
             }
         }
     }

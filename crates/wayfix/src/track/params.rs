@@ -1,6 +1,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::{ContourTrackerParams, CorrelationTrackerParams, HeadTrackerParams};
+use wayfix_visual_tracking::{ContourTrackerParams, CorrelationTrackerParams, HeadTrackerParams};
 
 use crate::settings::over_defaults;
 

@@ -1,5 +1,5 @@
-use wayfix_condensation::{Target, TrackStatus};
 use wayfix_sensor_log::{EncodedImage, ImageError};
+use wayfix_visual_tracking::{Target, TrackStatus};
 
 use super::{FrameResult, TargetColors, Truth, decimated::Decimated, overlay};
 
@@ -50,19 +50,19 @@ impl RunHistory {
         if let Some(colors) = colors {
             self.clouds.push((index, colors));
         }
-        let (width, height) = (frame.picture.width() as u32, frame.picture.height() as u32);
+        let (width, height) = (frame.picture.width(), frame.picture.height());
         if self.frame_size == (0, 0) {
             self.frame_size = (width, height);
         }
         self.film.offer(|| {
-            let mut pixels = frame.picture.pixels().to_vec();
+            let mut picture = frame.picture.clone();
             if let Truth::At(truth) = frame.truth {
-                overlay::draw(&mut pixels, frame.picture.width(), &overlay::corners(&truth), overlay::TRUTH);
+                overlay::draw(&mut picture, &overlay::corners(&truth), overlay::TRUTH);
             }
             let color =
                 if frame.target.status == TrackStatus::Lost { overlay::LOST } else { overlay::ESTIMATE };
-            overlay::draw(&mut pixels, frame.picture.width(), &outline(&frame.target), color);
-            Ok((frame.index, EncodedImage::jpeg(width, height, pixels.as_flattened(), JPEG_QUALITY)?))
+            overlay::draw(&mut picture, &outline(&frame.target), color);
+            Ok((frame.index, EncodedImage::jpeg(width, height, picture.as_raw(), JPEG_QUALITY)?))
         })
     }
 }

@@ -1,4 +1,4 @@
-use wayfix_condensation::BoundingBox;
+use wayfix_visual_tracking::BoundingBox;
 
 /// Overlap thresholds of the success curve: 0, 0.05, …, 1. [Wu, Lim & Yang 2013]
 const N_THRESHOLDS: usize = 21;
@@ -11,7 +11,7 @@ const NEAR_PX: f64 = 20.0;
 ///
 /// ```
 /// use wayfix::track::Score;
-/// use wayfix_condensation::BoundingBox;
+/// use wayfix_visual_tracking::BoundingBox;
 /// let truth = BoundingBox::from_corner(0.0, 0.0, 30.0, 30.0)?;
 /// let mut score = Score::default();
 /// score.add(Some(&BoundingBox::from_corner(10.0, 0.0, 30.0, 30.0)?), &truth); // overlap 1/2, off by 10 px
@@ -19,7 +19,7 @@ const NEAR_PX: f64 = 20.0;
 /// assert!((score.iou_mean().unwrap() - (0.5 + 1.0 / 11.0) / 2.0).abs() < 1e-12);
 /// assert_eq!((score.precision(), score.center_error_mean()), (Some(0.5), Some(17.5)));
 /// assert!((score.success_auc().unwrap() - (10.0 + 2.0) / 42.0).abs() < 1e-12); // above 0 … 0.45, above 0 and 0.05
-/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Score {

@@ -1,7 +1,7 @@
 use std::{fs, path::Path};
 
-use wayfix_condensation::{BitMask, BoundingBox, CondensationError, Picture};
 use wayfix_sensor_log::{EncodedImage, ImageFormat};
+use wayfix_visual_tracking::{BitMask, BoundingBox, RgbImage, TrackingError};
 
 use super::TrackError;
 
@@ -9,10 +9,10 @@ use super::TrackError;
 ///
 /// ```
 /// use wayfix::track::Start;
-/// use wayfix_condensation::{BitMask, BoundingBox};
+/// use wayfix_visual_tracking::{BitMask, BoundingBox};
 /// let mask = BitMask::from_fn(20, 10, |u, v| (4..9).contains(&u) && v > 6)?;
 /// assert_eq!(Start::Mask(mask).bounding_box()?, BoundingBox::from_corner(4.0, 7.0, 5.0, 3.0)?);
-/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub enum Start {
@@ -42,12 +42,11 @@ impl Start {
     ///
     /// # Errors
     /// When a mask is empty.
-    pub fn bounding_box(&self) -> Result<BoundingBox, CondensationError> {
+    pub fn bounding_box(&self) -> Result<BoundingBox, TrackingError> {
         match self {
             Self::Box(bounds) => Ok(*bounds),
             Self::Mask(mask) => {
-                let rect =
-                    mask.bounding_rect().ok_or(CondensationError::Empty { what: "target in the mask" })?;
+                let rect = mask.bounding_rect().ok_or(TrackingError::Empty { what: "target in the mask" })?;
                 rect.to_box()
             }
         }
@@ -57,15 +56,15 @@ impl Start {
     ///
     /// # Errors
     /// When a mask is empty or not as large as the picture.
-    pub(super) fn box_in(&self, picture: &Picture) -> Result<BoundingBox, CondensationError> {
+    pub(super) fn box_in(&self, picture: &RgbImage) -> Result<BoundingBox, TrackingError> {
         if let Self::Mask(mask) = self {
             let sizes = [
-                ("width of the mask", picture.width(), mask.width()),
-                ("height of the mask", picture.height(), mask.height()),
+                ("width of the mask", picture.width() as usize, mask.width()),
+                ("height of the mask", picture.height() as usize, mask.height()),
             ];
             for (what, expected, got) in sizes {
                 if expected != got {
-                    return Err(CondensationError::Dimension { what, expected, got });
+                    return Err(TrackingError::Dimension { what, expected, got });
                 }
             }
         }

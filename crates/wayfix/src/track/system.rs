@@ -1,8 +1,8 @@
 use std::time::Duration;
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_condensation::{Picture, Target, TrackStatus};
 use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
+use wayfix_visual_tracking::{RgbImage, Target, TrackStatus};
 
 use super::{
     FrameTracker, Method, Score, Start, StatusScore, TargetColors, TrackError, TrackParams, TrueBoxes, Truth,
@@ -51,7 +51,7 @@ pub struct FrameResult {
     /// When it was taken.
     pub stamp: Stamp,
     /// The pixels.
-    pub picture: Picture,
+    pub picture: RgbImage,
     /// What the tracker says.
     pub target: Target,
     /// What is known.
@@ -175,13 +175,14 @@ impl TrackSystem {
     }
 
     /// What the tracker says of a frame; `None` before the first box.
-    fn follow(&mut self, image: &EncodedImage) -> Result<Option<(Picture, Target, Duration)>, String> {
+    fn follow(&mut self, image: &EncodedImage) -> Result<Option<(RgbImage, Target, Duration)>, String> {
         if self.failure.is_some() {
             return Err("the tracker could not begin".to_owned());
         }
         let decoded = image.decode_rgb().map_err(|error| error.to_string())?;
-        let (width, height) = (decoded.width as usize, decoded.height as usize);
-        let picture = Picture::from_rgb(width, height, decoded.pixels).map_err(|error| error.to_string())?;
+        let (width, height) = (decoded.width, decoded.height);
+        let picture = RgbImage::from_raw(width, height, decoded.pixels)
+            .ok_or_else(|| format!("the image has not three bytes for each of {width} x {height} pixels"))?;
         if let Some(tracker) = &mut self.tracker {
             let stopwatch = Stopwatch::start();
             let target = tracker.track_frame(&picture, &mut self.rng).map_err(|error| error.to_string())?;
@@ -206,7 +207,7 @@ impl TrackSystem {
         }
     }
 
-    fn account(&mut self, stamp: Stamp, picture: Picture, target: Target, step: Duration) {
+    fn account(&mut self, stamp: Stamp, picture: RgbImage, target: Target, step: Duration) {
         let index = self.next_index;
         let truth = self.setup.truth.at(index);
         let lost = target.status == TrackStatus::Lost;

@@ -1,6 +1,6 @@
 use std::{fs, path::Path};
 
-use wayfix_condensation::BoundingBox;
+use wayfix_visual_tracking::BoundingBox;
 
 use super::TrackError;
 

@@ -1,8 +1,8 @@
 use anyhow::{Context, Result};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_condensation::Picture;
 use wayfix_scene_sim::film::{Film, Frame};
 use wayfix_sensor_log::Stamp;
+use wayfix_visual_tracking::RgbImage;
 
 use super::{
     FilmScore,
@@ -57,7 +57,8 @@ pub fn follow(
     Ok(scores)
 }
 
-fn pixels(frame: &Frame) -> Result<Picture> {
+fn pixels(frame: &Frame) -> Result<RgbImage> {
     let picture = &frame.picture;
-    Ok(Picture::from_rgb(picture.width, picture.height, picture.rgb.clone())?)
+    RgbImage::from_raw(picture.width as u32, picture.height as u32, picture.rgb.clone())
+        .context("a frame of the film has not three bytes a pixel")
 }

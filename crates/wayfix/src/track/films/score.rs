@@ -1,6 +1,6 @@
 use anyhow::{Context, Result};
-use wayfix_condensation::{BitMask, BoundingBox, Target, TrackStatus};
 use wayfix_scene_sim::film::{Frame, Silhouette};
+use wayfix_visual_tracking::{BitMask, BoundingBox, Target, TrackStatus};
 
 use crate::track::StatusScore;
 

@@ -1,0 +1,146 @@
+use super::{BinImage, BinSet, ColorQuantizer};
+use crate::error::{check_size, checked, probability};
+use crate::{BitMask, TrackingError};
+
+/// How many pixels of each colour bin there are, as a count of pixels or blended from several.
+///
+/// ```
+/// use wayfix_visual_tracking::{BinImage, ColorHistogram, ColorQuantizer, ColorSpace, RgbImage};
+/// let quantizer = ColorQuantizer::new(ColorSpace::Rgb, [2, 2, 2])?;
+/// let of = |bytes: Vec<u8>| -> Result<_, wayfix_visual_tracking::TrackingError> {
+///     let picture = RgbImage::from_raw(4, 1, bytes).expect("3 bytes a pixel");
+///     Ok(ColorHistogram::of_image(&BinImage::new(&quantizer, &picture)?))
+/// };
+/// let mut model = of(vec![0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255])?;
+/// let candidate = of(vec![0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255])?;
+/// assert_eq!(candidate.intersection(&model)?, 0.5);
+/// model.blend(&candidate, 0.25)?;
+/// assert_eq!((model.counts()[0], model.counts()[7]), (2.5, 1.5));
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorHistogram {
+    // Whole numbers up to 2^53 are exact, so that counting up and down again leaves nothing behind.
+    counts: Vec<f64>,
+}
+
+impl ColorHistogram {
+    /// Without pixels.
+    pub fn empty(quantizer: &ColorQuantizer) -> Self {
+        Self::of_size(quantizer.n_bins())
+    }
+
+    /// Of all pixels.
+    pub fn of_image(image: &BinImage) -> Self {
+        Self::counted(image.n_bins(), [image.bins()])
+    }
+
+    /// Of the pixels that are on in a mask.
+    ///
+    /// # Errors
+    /// [`TrackingError::Dimension`] when image and mask differ in size.
+    pub fn of_mask(image: &BinImage, mask: &BitMask) -> Result<Self, TrackingError> {
+        mask.check_size((image.width(), image.height()))?;
+        Ok(Self::counted(image.n_bins(), mask.runs().map(|(v, run)| &image.row(v)[run])))
+    }
+
+    /// From counts of one's own, one a bin.
+    ///
+    /// # Errors
+    /// [`TrackingError::Dimension`] and, for a count that is negative or not finite, [`TrackingError::Parameter`].
+    pub fn from_counts(quantizer: &ColorQuantizer, counts: Vec<f64>) -> Result<Self, TrackingError> {
+        check_size("counts", quantizer.n_bins(), counts.len())?;
+        for &count in &counts {
+            checked("count of a bin", count, count.is_finite() && count >= 0.0, "finite and not negative")?;
+        }
+        Ok(Self { counts })
+    }
+
+    /// The count of each bin.
+    pub fn counts(&self) -> &[f64] {
+        &self.counts
+    }
+
+    /// The sum of all counts.
+    pub fn total(&self) -> f64 {
+        self.counts.iter().sum()
+    }
+
+    /// How much of this histogram, the candidate's, is in the model's: $`\sum_i \min(C_i, M_i) / \sum_i C_i`$, from 0 to 1; 0 without pixels.
+    /// [Swain & Ballard 1991; Andrade-Cetto & Sanfeliu, Eq. 28]
+    ///
+    /// # Errors
+    /// [`TrackingError::Dimension`] when they differ in the number of bins.
+    pub fn intersection(&self, model: &Self) -> Result<f64, TrackingError> {
+        check_size("histogram", self.counts.len(), model.counts.len())?;
+        let (mut shared, mut total) = ([0.0; LANES], [0.0; LANES]);
+        let (own, theirs) = (self.counts.chunks(LANES), model.counts.chunks(LANES));
+        for (own, theirs) in own.zip(theirs) {
+            for (k, (&count, &other)) in own.iter().zip(theirs).enumerate() {
+                shared[k] += if count < other { count } else { other };
+                total[k] += count;
+            }
+        }
+        let total: f64 = total.iter().sum();
+        Ok(if total > 0.0 { shared.iter().sum::<f64>() / total } else { 0.0 })
+    }
+
+    /// Adapts a model to a candidate: $`M ← (1 - a) M + a C`$. [Andrade-Cetto & Sanfeliu, Eq. 29]
+    ///
+    /// # Errors
+    /// [`TrackingError::Dimension`] as [`intersection`](Self::intersection), [`TrackingError::Parameter`] when `rate` is not
+    /// between 0 and 1.
+    pub fn blend(&mut self, candidate: &Self, rate: f64) -> Result<(), TrackingError> {
+        check_size("histogram", self.counts.len(), candidate.counts.len())?;
+        let rate = probability("rate of adaptation", rate)?;
+        for (count, other) in self.counts.iter_mut().zip(&candidate.counts) {
+            *count = (1.0 - rate) * *count + rate * other;
+        }
+        Ok(())
+    }
+
+    /// The same shares of another total, such as 1, or the pixels of a candidate of another size; unchanged without pixels.
+    ///
+    /// # Errors
+    /// [`TrackingError::Parameter`] when `total` is not finite and positive.
+    pub fn scaled_to(&self, total: f64) -> Result<Self, TrackingError> {
+        checked("total of a histogram", total, total.is_finite() && total > 0.0, "finite and positive")?;
+        let factor = match self.total() {
+            0.0 => 1.0,
+            own => total / own,
+        };
+        Ok(Self { counts: self.counts.iter().map(|count| count * factor).collect() })
+    }
+
+    /// The bins that count more than `threshold`; with 0 those that have a pixel.
+    pub fn bins_above(&self, threshold: f64) -> BinSet {
+        let above = |bin: u16| self.counts[usize::from(bin)] > threshold;
+        BinSet::from_predicate(self.counts.len(), above)
+    }
+
+    /// Counts pixels by their bins.
+    pub(super) fn add(&mut self, bins: &[u16]) {
+        bins.iter().for_each(|&bin| self.counts[usize::from(bin)] += 1.0);
+    }
+
+    /// Takes pixels back that were counted.
+    pub(super) fn remove(&mut self, bins: &[u16]) {
+        bins.iter().for_each(|&bin| self.counts[usize::from(bin)] -= 1.0);
+    }
+
+    /// Counts pieces of rows, in integers: where many pixels in a row share a bin, sums of floats would wait ten times as long for one another.
+    pub(super) fn counted<'a>(n_bins: usize, pieces: impl IntoIterator<Item = &'a [u16]>) -> Self {
+        let mut counts = vec![0_u32; n_bins];
+        for piece in pieces {
+            piece.iter().for_each(|&bin| counts[usize::from(bin)] += 1);
+        }
+        Self { counts: counts.into_iter().map(f64::from).collect() }
+    }
+
+    fn of_size(n_bins: usize) -> Self {
+        Self { counts: vec![0.0; n_bins] }
+    }
+}
+
+/// Sums side by side, which the compiler may keep in vectors; the order of summation is fixed all the same.
+const LANES: usize = 8;

@@ -1,0 +1,172 @@
+use crate::error::{checked, probability};
+use crate::{ColorSpace, ColorVector, SnakeParams, TrackingError};
+
+/// What a [`ContourTracker`](crate::ContourTracker) goes by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[non_exhaustive]
+pub enum TrackingCues {
+    /// Colours that the contour validates: the method.
+    #[default]
+    ColorAndShape,
+    /// Colours only: the target is the blob.
+    Color,
+    /// The contour only: a snake on the edges of the picture.
+    Shape,
+}
+
+/// Parameters of a [`ContourTracker`](crate::ContourTracker). The defaults are for pictures of some 320 × 240 pixels at 10 to 60 a second and
+/// were not chosen on any one recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct ContourTrackerParams {
+    /// Which cues are used. Default both.
+    pub cues: TrackingCues,
+    /// Whether the colours are followed; otherwise they stay as they were at the start. Default true.
+    pub adapts: bool,
+    /// Space of the colours. Default [`ColorSpace::Opponent`].
+    pub color_space: ColorSpace,
+    /// Bins of its axes. Default 32 each.
+    pub bins: [usize; 3],
+    /// Hypotheses about the colours a picture. Default 100.
+    pub n_samples: usize,
+    /// Share of the samples that start from the colours found in the last picture and not from the samples of before; 0 is plain
+    /// CONDENSATION. Default 0.5.
+    pub anchored_share: f64,
+    /// How much of its velocity the colour state keeps, from 0 to 1. Default 0.5.
+    pub damping: f64,
+    /// Noise of the colour state per picture: centroid (3), magnitudes (3), in units of the colour space, and angles (2) in radians.
+    /// Default 0.015 each, 0.006 each, 0.05 each.
+    pub noise: [f64; 8],
+    /// A bin is the target's if it is this many times as frequent among the predicted colours as around the target; 0 takes every bin with
+    /// a colour in it, as the paper does. Default 1.
+    pub background_odds: f64,
+    /// How much the colours of before still count in the set of colours, carried along with the change of light: a part of the target that
+    /// one contour missed is not forgotten at once. 0 forgets them, as the paper does. Default 0.8.
+    pub color_memory: f64,
+    /// Most points in a colour set. Default 512.
+    pub max_colors: usize,
+    /// $`μ_1, μ_2, μ_3`$: what the affine similarity, the area and the Euler number count. Default 1, 1, 0.5.
+    pub mu: [f64; 3],
+    /// $`σ`$ of the weights. Default 0.15.
+    pub sigma: f64,
+    /// $`μ`$ of the predicted area, how much of its change goes on. Default 0.5.
+    pub area_gain: f64,
+    /// How much the mean area of the last seconds counts in the predicted area, against a contour that shrinks or grows step by step; 0 is
+    /// the paper's. Default 0.3.
+    pub area_memory: f64,
+    /// An Euler number this far from 1 makes a segmentation worthless. Default 10.
+    pub euler_range: f64,
+    /// Radius of closing and opening in pixels; 0 leaves the segmentation as it is. Default 1.
+    pub morphology_radius: usize,
+    /// How the snake is fitted.
+    pub snake: SnakeParams,
+    /// How far from the segmented boundary the final contour looks for an edge of the picture, in pixels; 0 leaves it there. Default 2.
+    pub band_radius: usize,
+    /// The change of colour over two pixels that is an edge, in grey values (root of the sum of squares over the channels). Default 20.
+    pub edge_contrast: f64,
+    /// Below this quality the target is lost. Default 0.5.
+    pub lost_below: f64,
+    /// From this quality on, times the likeness of the colours, it is found again. Default 0.75.
+    pub found_above: f64,
+    /// Hypotheses about the colours when the whole picture is searched, besides those about the strength of the
+    /// light. Default 12.
+    pub n_search_samples: usize,
+}
+
+impl Default for ContourTrackerParams {
+    fn default() -> Self {
+        Self {
+            cues: TrackingCues::default(),
+            adapts: true,
+            color_space: ColorSpace::Opponent,
+            bins: [32; 3],
+            n_samples: 100,
+            anchored_share: 0.5,
+            damping: 0.5,
+            noise: [0.015, 0.015, 0.015, 0.006, 0.006, 0.006, 0.05, 0.05],
+            background_odds: 1.0,
+            color_memory: 0.8,
+            max_colors: 512,
+            mu: [1.0, 1.0, 0.5],
+            sigma: 0.15,
+            area_gain: 0.5,
+            area_memory: 0.3,
+            euler_range: 10.0,
+            morphology_radius: 1,
+            snake: SnakeParams::default(),
+            band_radius: 2,
+            edge_contrast: 20.0,
+            lost_below: 0.5,
+            found_above: 0.75,
+            n_search_samples: 12,
+        }
+    }
+}
+
+impl ContourTrackerParams {
+    /// The method as it was published: no model of the background, no memory of colours and areas, samples only from samples, in bins as large
+    /// as the dynamics and a hundred samples can fill.
+    pub fn as_published() -> Self {
+        Self {
+            background_odds: 0.0,
+            color_memory: 0.0,
+            area_gain: 1.0,
+            area_memory: 0.0,
+            anchored_share: 0.0,
+            bins: [16; 3],
+            ..Self::default()
+        }
+    }
+
+    /// # Errors
+    /// [`TrackingError::Parameter`] with the first parameter that is out of range.
+    pub fn validate(&self) -> Result<(), TrackingError> {
+        let count = |what, n: usize, most: usize| {
+            checked(what, n as f64, (1..=most).contains(&n), "at least 1, and not beyond measure")
+        };
+        count("n_samples", self.n_samples, 1_000_000)?;
+        count("max_colors", self.max_colors, 1_000_000)?;
+        count("n_search_samples", self.n_search_samples, 1_000_000)?;
+        for (what, value) in [
+            ("anchored_share", self.anchored_share),
+            ("color_memory", self.color_memory),
+            ("area_memory", self.area_memory),
+            ("lost_below", self.lost_below),
+            ("found_above", self.found_above),
+        ] {
+            probability(what, value)?;
+        }
+        for (what, value) in [
+            ("background_odds", self.background_odds),
+            ("edge_contrast", self.edge_contrast),
+            ("area_gain", self.area_gain),
+        ] {
+            checked(what, value, value.is_finite() && value >= 0.0, "finite, not negative")?;
+        }
+        for (what, value) in
+            [("sigma", self.sigma), ("euler_range", self.euler_range), ("sum of mu", self.mu.iter().sum())]
+        {
+            checked(what, value, value.is_finite() && value > 0.0, "finite, positive")?;
+        }
+        for value in self.mu {
+            checked("mu", value, value >= 0.0, "not negative")?;
+        }
+        for (what, radius) in
+            [("morphology_radius", self.morphology_radius), ("band_radius", self.band_radius)]
+        {
+            checked(what, radius as f64, radius <= 100, "at most 100")?;
+        }
+        self.snake.validate()
+    }
+
+    pub(super) fn noise(&self) -> ColorVector {
+        ColorVector::from(self.noise)
+    }
+}

@@ -1,0 +1,62 @@
+use super::{TrackingCues, candidate::Candidate, scene::Scene};
+use crate::Element;
+use crate::picture::rgb_pixels;
+use crate::{BinSet, BitMask, ColorCloud, TrackingError};
+
+/// Share of the expected area that the pixels of a new colour set must have.
+const LEAST_SHARE: f64 = 0.25;
+
+/// Support of a contour from which on nothing covers the target.
+pub(super) const SEEN_ALL_ROUND: f64 = 0.8;
+
+impl Scene<'_> {
+    /// The colours inside the contour of the best candidate; none when there are too few pixels to tell.
+    ///
+    /// Pixels at the rim are mixed with the background and left out. With a background model so are bins that are more frequent outside,
+    /// and, unless the contour is seen nearly all round, bins that do not touch one of the best hypothesis: they may be of what covers the
+    /// target.
+    pub(super) fn colors_of(
+        &self,
+        candidate: &Candidate,
+        set: &BinSet,
+        mask: &BitMask,
+    ) -> Result<Option<ColorCloud>, TrackingError> {
+        let inside = self.interior(candidate, mask)?;
+        let n_expected = LEAST_SHARE * self.expected_area;
+        let plain = self.params.background_odds == 0.0;
+        let shares = self.region.shares(&inside);
+        let is_open = candidate.agreement.affine >= SEEN_ALL_ROUND;
+        let near = set.dilated(self.quantizer);
+        let is_target = |bin: u16| {
+            let i = usize::from(bin);
+            plain || (shares[i] > self.background[i] && (is_open || near.contains(bin)))
+        };
+        let colors = self.colors_in(&inside).filter(|(bin, _)| is_target(*bin)).map(|(_, color)| color);
+        match ColorCloud::from_colors(colors, self.params.max_colors) {
+            Ok(cloud) if cloud.n_pixels() >= n_expected => Ok(Some(cloud)),
+            Ok(_) | Err(TrackingError::Empty { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Bin and colour of every pixel of a mask of the region.
+    pub(super) fn colors_in(&self, mask: &BitMask) -> impl Iterator<Item = (u16, [f64; 3])> {
+        let ((left, top), width) = (self.region.rect.corner(), self.picture.width() as usize);
+        let pixels = mask.runs().flat_map(|(v, run)| run.map(move |u| (u, v)));
+        pixels.map(move |(u, v)| {
+            let bin = self.region.bins.bins()[v * self.region.bins.width() + u];
+            let color = rgb_pixels(self.picture)[(top + v) * width + left + u];
+            (bin, self.params.color_space.convert(color))
+        })
+    }
+
+    /// The pixels inside a candidate but for its rim.
+    pub(super) fn interior(&self, candidate: &Candidate, mask: &BitMask) -> Result<BitMask, TrackingError> {
+        let inside = match self.params.cues {
+            TrackingCues::Color => mask.clone(),
+            _ => self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?,
+        };
+        let core = inside.eroded(Element::Square { radius: 1 });
+        Ok(if 2 * core.area() >= inside.area() { core } else { inside })
+    }
+}

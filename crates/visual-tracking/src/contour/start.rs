@@ -1,0 +1,128 @@
+use super::history::History;
+use super::reference::Reference;
+use super::region::Region;
+use super::samples::Samples;
+use super::{ContourTracker, ContourTrackerParams};
+use crate::Element;
+use crate::error::check_size;
+use crate::picture::rgb_pixels;
+use crate::{
+    AffineSnake, BinSet, BitMask, BoundingBox, ColorCloud, ColorDynamics, ColorQuantizer, Connectivity,
+    Outline, RgbImage, TrackStatus, TrackingError,
+};
+
+/// Corners of the ellipse that stands for a target of unknown shape.
+const N_ELLIPSE: usize = 80;
+
+/// The blob in a box must agree with it that well (intersection over union of the boxes) to be the target.
+const LEAST_IOU: f64 = 0.75;
+
+/// Half the width of limbs that are no part of the body, in sides of the box.
+const LIMB: f64 = 0.08;
+
+/// It must fill so much of its convex hull to be a body with some notches, which a few colours that the target shares with what is
+/// behind it leave; and so much not to have any.
+const LEAST_SOLIDITY: f64 = 0.75;
+const SOLID: f64 = 0.95;
+
+impl ContourTracker {
+    /// Starts from an outline in the first picture.
+    ///
+    /// # Errors
+    /// [`TrackingError::Parameter`] for parameters out of range, [`TrackingError::Empty`] when no pixel of the picture is inside.
+    pub fn from_outline(
+        picture: &RgbImage,
+        outline: &Outline,
+        params: ContourTrackerParams,
+    ) -> Result<Self, TrackingError> {
+        params.validate()?;
+        let quantizer = ColorQuantizer::new(params.color_space, params.bins)?;
+        let dynamics = ColorDynamics::constant_velocity(params.damping, &params.noise())?;
+        let snake = AffineSnake::new(outline, &params.snake)?;
+        let size = (picture.width() as usize, picture.height() as usize);
+        let inside = BitMask::from_polygon(size.0, size.1, outline.points())?;
+        let of_target =
+            rgb_pixels(picture).iter().enumerate().filter(|(i, _)| inside.get(i % size.0, i / size.0));
+        let colors = of_target.map(|(_, pixel)| params.color_space.convert(*pixel));
+        let cloud = ColorCloud::from_colors(colors, params.max_colors)?;
+        let reference = Reference::at_start(cloud, snake)?;
+        let samples = Samples::at_start(&reference.colors, params.n_samples)?;
+        let (history, status) = (History::at_start(&reference), TrackStatus::Tracked);
+        Ok(Self { params, quantizer, dynamics, size, reference, history, samples, status })
+    }
+
+    /// Starts from a mask of the first picture, the largest blob in it.
+    ///
+    /// # Errors
+    /// As [`from_outline`](Self::from_outline), and [`TrackingError::Dimension`] when the mask is not as large as the picture.
+    pub fn from_mask(
+        picture: &RgbImage,
+        mask: &BitMask,
+        params: ContourTrackerParams,
+    ) -> Result<Self, TrackingError> {
+        check_size("width of the mask", picture.width() as usize, mask.width())?;
+        check_size("height of the mask", picture.height() as usize, mask.height())?;
+        Self::from_outline(picture, &outline_of_mask(mask)?, params)
+    }
+
+    /// Starts from a box in the first picture. The outline is that of the blob in it whose colours are more frequent in the box than round
+    /// it; where that does not fill the box, the ellipse that does.
+    ///
+    /// # Errors
+    /// As [`from_outline`](Self::from_outline).
+    pub fn from_box(
+        picture: &RgbImage,
+        bounds: &BoundingBox,
+        params: ContourTrackerParams,
+    ) -> Result<Self, TrackingError> {
+        let quantizer = ColorQuantizer::new(params.color_space, params.bins)?;
+        Self::from_outline(picture, &outline_in_box(picture, &quantizer, bounds)?, params)
+    }
+}
+
+/// The outline of what a box is drawn round: the blob of the colours that are more frequent in the ellipse in the box than round the box,
+/// without notches, if it fills the box, else that ellipse.
+fn outline_in_box(
+    picture: &RgbImage,
+    quantizer: &ColorQuantizer,
+    bounds: &BoundingBox,
+) -> Result<Outline, TrackingError> {
+    let ellipse = Outline::ellipse(bounds, N_ELLIPSE)?;
+    let margin = 0.25 * (bounds.width() + bounds.height());
+    let Some(region) = Region::around(picture, quantizer, bounds, margin)? else {
+        return Err(TrackingError::Empty { what: "target in the picture" });
+    };
+    let [x, y] = bounds.corner();
+    let (right, bottom) = (x + bounds.width(), y + bounds.height());
+    let box_mask = region.inside(&[[x, y], [right, y], [right, bottom], [x, bottom]])?;
+    let inner = region.shares(&region.inside(ellipse.points())?);
+    let outer = region.shares(&box_mask.dilated(Element::Square { radius: 2 }).not());
+    let set = BinSet::from_fn(quantizer, |bin| inner[usize::from(bin)] > outer[usize::from(bin)]);
+    // Closes small gaps in the colours of the target and cuts off what is thin beside it.
+    let limb = (LIMB * (bounds.width() * bounds.height()).sqrt()).max(1.0) as usize;
+    let closed = region.segment(&set).and(&box_mask)?.closed(Element::Square { radius: 2 });
+    let blobs = closed
+        .without_holes(Connectivity::Eight)
+        .opened(Element::Square { radius: limb })
+        .blobs(Connectivity::Eight);
+    let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
+    let body = blob.and_then(|mask| Outline::of_mask(&mask, region.rect.corner())).and_then(without_notches);
+    Ok(body.filter(|body| body.bounding_box().iou(bounds) >= LEAST_IOU).unwrap_or(ellipse))
+}
+
+/// The outline of the largest blob of a mask as large as a picture.
+fn outline_of_mask(mask: &BitMask) -> Result<Outline, TrackingError> {
+    let blobs = mask.blobs(Connectivity::Eight);
+    let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
+    blob.and_then(|blob| Outline::of_mask(&blob, (0, 0)))
+        .ok_or(TrackingError::Empty { what: "target in the mask" })
+}
+
+fn without_notches(blob: Outline) -> Option<Outline> {
+    let hull = blob.convex_hull();
+    match blob.area() / hull.area() {
+        solidity if solidity >= SOLID => Some(blob),
+        solidity if solidity >= LEAST_SOLIDITY => Some(hull),
+        _ => None,
+    }
+}

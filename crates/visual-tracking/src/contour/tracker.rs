@@ -1,0 +1,158 @@
+use rand::Rng;
+
+use super::ContourTrackerParams;
+use super::candidate::Candidate;
+use super::follow::Found;
+use super::history::History;
+use super::reference::Reference;
+use super::samples::Samples;
+use crate::error::check_size;
+use crate::{
+    AffineSnake, ColorDynamics, ColorQuantizer, Outline, PrincipalColors, RgbImage, Target, TrackStatus,
+    Tracker, TrackingError,
+};
+
+/// Follows a target by its colours, which change, and its contour, which moves only by affine maps: CONDENSATION in colour space,
+/// validated by the contour. [Andrade-Cetto & Sanfeliu, section 3.3]
+///
+/// Every sample is a hypothesis about the colours. It warps the colours of the last picture, switches on the bins they fall into,
+/// segments the picture, lays an affine snake on the blob of the target and is weighed by how well that agrees with the contour and the
+/// area of before. The best one is refined on the edges of the picture; what lies inside is the reference for the next picture.
+///
+/// When the target is not recognized where it was expected, the whole picture is searched. It is [`TrackStatus::Lost`] when it is not found there
+/// either, with its shape and with colours that are alike; nothing is learned from such a picture.
+///
+/// ```
+/// use rand::SeedableRng;
+/// use wayfix_visual_tracking::{BoundingBox, ContourTracker, ContourTrackerParams, RgbImage, Tracker, TrackStatus};
+/// let disk = |u: f64, color: [u8; 3]| {
+///     let inside = |i: usize| (i as f64 % 80.0 - u).hypot((i / 80) as f64 - 30.0) < 12.0;
+///     let bytes = (0..80 * 60).flat_map(|i| if inside(i) { color } else { [90, 120, 90] }).collect();
+///     RgbImage::from_raw(80, 60, bytes).expect("3 bytes a pixel")
+/// };
+/// let first = disk(30.0, [200, 60, 60])?;
+/// let start = BoundingBox::from_corner(18.0, 18.0, 24.0, 24.0)?;
+/// let mut tracker = ContourTracker::from_box(&first, &start, ContourTrackerParams::default())?;
+/// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+/// let target = tracker.track(&disk(33.0, [190, 62, 64])?, &mut rng)?;
+/// assert_eq!(target.status, TrackStatus::Tracked);
+/// assert!(target.bounding_box.iou(&BoundingBox::from_corner(21.5, 18.5, 24.0, 24.0)?) > 0.8);
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ContourTracker {
+    pub(super) params: ContourTrackerParams,
+    pub(super) quantizer: ColorQuantizer,
+    pub(super) dynamics: ColorDynamics,
+    pub(super) size: (usize, usize),
+    pub(super) reference: Reference,
+    pub(super) history: History,
+    pub(super) samples: Samples,
+    pub(super) status: TrackStatus,
+}
+
+impl ContourTracker {
+    /// The same with dynamics of the colours of one's own, learned ([`ColorDynamics::learn`]) for instance.
+    #[must_use]
+    pub fn with_dynamics(self, dynamics: ColorDynamics) -> Self {
+        Self { dynamics, ..self }
+    }
+
+    /// The parameters of the target's colours, $`\mathbf m`$, $`\boldsymbol λ`$ and the axes, as they were seen last: the path of Fig. 13.
+    pub fn colors(&self) -> &PrincipalColors {
+        &self.reference.colors
+    }
+
+    /// The contour as it was seen last.
+    pub fn snake(&self) -> &AffineSnake {
+        &self.reference.snake
+    }
+
+    /// The target is where it was found.
+    fn accept(&mut self, found: Found) -> Result<Target, TrackingError> {
+        let mut reference = self.reference.clone();
+        let mut samples = found.samples;
+        let Candidate { map, area, .. } = found.candidate;
+        if self.status == TrackStatus::Lost || found.regrown {
+            reference.jump_to(&map, area)?;
+        } else {
+            reference.move_to(&map, area)?;
+        }
+        if let Some(cloud) = found.cloud {
+            let before = reference.colors;
+            reference.colors = cloud.principal(Some(&before))?;
+            let (memory, now) = (self.params.color_memory, &reference.colors);
+            reference.cloud =
+                cloud.with_memory_of(&reference.cloud, [&before, now], memory, self.params.max_colors)?;
+            samples.measure(&before, &reference.colors);
+        }
+        let outline = found.outline.unwrap_or_else(|| reference.snake.outline());
+        self.history.push(&reference);
+        (self.reference, self.samples, self.status) = (reference, samples, TrackStatus::Tracked);
+        Ok(target(&outline, TrackStatus::Tracked, found.quality))
+    }
+
+    /// The target is not where it was expected: it is looked for everywhere.
+    fn look_again<R: Rng + ?Sized>(
+        &mut self,
+        picture: &RgbImage,
+        here: Option<Found>,
+        rng: &mut R,
+    ) -> Result<Target, TrackingError> {
+        let outline = self.reference.snake.outline();
+        // What was just not good enough to go on with is not what is sought.
+        let here = here.filter(|_| self.status == TrackStatus::Lost);
+        self.miss()?;
+        let quality = |found: &Option<Found>| found.as_ref().map_or(0.0, |found| found.quality);
+        let mut best = here;
+        if quality(&best) < self.params.found_above {
+            let elsewhere = self.search(picture, rng)?;
+            if quality(&elsewhere) > quality(&best) {
+                best = elsewhere;
+            }
+        }
+        match best {
+            Some(found) if found.quality >= self.params.found_above => self.accept(found),
+            best => {
+                self.samples.drift(&self.dynamics, rng);
+                Ok(target(&outline, TrackStatus::Lost, quality(&best)))
+            }
+        }
+    }
+
+    /// Takes the target as it was before it began to vanish.
+    fn miss(&mut self) -> Result<(), TrackingError> {
+        if self.status == TrackStatus::Tracked {
+            let before = self.history.restart().left_at(&self.reference);
+            self.samples = Samples::at_start(&before.colors, self.params.n_samples)?;
+            (self.reference, self.status) = (before, TrackStatus::Lost);
+        }
+        Ok(())
+    }
+}
+
+impl Tracker for ContourTracker {
+    /// One step of CONDENSATION.
+    ///
+    /// # Errors
+    /// [`TrackingError::Dimension`] when the picture is not as large as the first one.
+    fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, rng: &mut R) -> Result<Target, TrackingError> {
+        check_size("width of the picture", self.size.0, picture.width() as usize)?;
+        check_size("height of the picture", self.size.1, picture.height() as usize)?;
+        match self.follow(picture, rng)? {
+            Some(found) if self.status == TrackStatus::Tracked && found.quality >= self.params.lost_below => {
+                self.accept(found)
+            }
+            found => {
+                let mut next = self.clone();
+                let target = next.look_again(picture, found, rng)?;
+                *self = next;
+                Ok(target)
+            }
+        }
+    }
+}
+
+fn target(outline: &Outline, status: TrackStatus, quality: f64) -> Target {
+    Target { bounding_box: outline.bounding_box(), outline: outline.points().to_vec(), status, quality }
+}

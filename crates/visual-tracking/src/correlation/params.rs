@@ -1,0 +1,123 @@
+use crate::TrackingError;
+use crate::error::{checked, probability};
+
+/// How a [`CorrelationTracker`](super::CorrelationTracker) sees, learns and doubts.
+///
+/// The defaults were chosen on OTB "David" and on photographs pasted into photographs that move, turn, grow, deform, and are lit and
+/// hidden. There the mean overlap is flat: halving or doubling one parameter changes it by 0.01 or less in most sequences; what it decides
+/// is now and then whether a target is found again after it was hidden.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct CorrelationTrackerParams {
+    /// Side of the window the target is looked for in, in sides of a square of the target's area. Default 4.
+    pub padding: f64,
+    /// Width of the response that is desired at the target, in sides of the target. Default 1/16.
+    pub response_width: f64,
+    /// How much a filter keeps to the one before, in units of the energy of a picture. Default 2.5.
+    pub inertia: f64,
+    /// Weight by which the filter's two domains are brought to agree, in the same units. Default 0.2.
+    pub penalty: f64,
+    /// Share of the colour channels in the energy of a picture, unless the first one is grey. Default 0.2.
+    pub color_share: f64,
+    /// Share of the grey values, the rest being gradients. Default 0.05.
+    pub grey_share: f64,
+    /// Weight of the colour histograms beside the filter when the target is looked for. Default 0.3.
+    pub color_weight: f64,
+    /// Rate at which the colour histograms follow. Default 0.04.
+    pub color_rate: f64,
+    /// Standard deviation of how far a target moves between two pictures, in sides of the target. Default 2.
+    pub motion_width: f64,
+    /// Scales that are compared, an odd number. Default 17.
+    pub n_scales: usize,
+    /// Factor between two scales. Default 1.03.
+    pub scale_step: f64,
+    /// Rate at which the filter over scales follows. Default 0.025.
+    pub scale_rate: f64,
+    /// Standing out, in standard deviations of the response, below which there is no evidence of the target. Noise reaches 5 to 9.
+    /// Default 10.
+    pub no_evidence_below: f64,
+    /// Pictures in a row without evidence after which the target is lost. Default 8.
+    pub lost_after: usize,
+    /// Standing out above which a picture is learned. Default 12.
+    pub learn_above: f64,
+    /// Standing out above which a target is recognized, after an occlusion or a loss. Default 15.
+    pub recognize_above: f64,
+    /// Share of the usual response that it takes for that, too; three fifths of it suffice for a lost target. Default 0.5.
+    pub recognize_share: f64,
+    /// Share of the usual agreement of colours below which something is not the target unless its shape is recognized. Default 0.5.
+    pub color_agreement_share: f64,
+    /// Pictures after which a changed target is believed to be the target, if what it was is not seen elsewhere. Default 60.
+    pub forget_after: usize,
+    /// Places beside the last one that are searched in each picture while the target is lost. Default 2.
+    pub n_searches: usize,
+}
+
+impl Default for CorrelationTrackerParams {
+    fn default() -> Self {
+        Self {
+            padding: 4.0,
+            response_width: 0.0625,
+            inertia: 2.5,
+            penalty: 0.2,
+            color_share: 0.2,
+            grey_share: 0.05,
+            color_weight: 0.3,
+            color_rate: 0.04,
+            motion_width: 2.0,
+            n_scales: 17,
+            scale_step: 1.03,
+            scale_rate: 0.025,
+            no_evidence_below: 10.0,
+            lost_after: 8,
+            learn_above: 12.0,
+            recognize_above: 15.0,
+            recognize_share: 0.5,
+            color_agreement_share: 0.5,
+            forget_after: 60,
+            n_searches: 2,
+        }
+    }
+}
+
+impl CorrelationTrackerParams {
+    pub(super) fn validate(&self) -> Result<(), TrackingError> {
+        let positive = |what, value: f64| checked(what, value, value > 0.0 && value.is_finite(), "positive");
+        checked("padding", self.padding, (1.5..=8.0).contains(&self.padding), "between 1.5 and 8")?;
+        positive("response width", self.response_width)?;
+        positive("penalty", self.penalty)?;
+        positive("motion width", self.motion_width)?;
+        checked("inertia", self.inertia, self.inertia >= 0.0 && self.inertia.is_finite(), "not negative")?;
+        let share = self.color_share + self.grey_share;
+        checked("colour and grey share", share, (0.0..1.0).contains(&share), "below 1")?;
+        for (what, value) in [
+            ("colour share", self.color_share),
+            ("grey share", self.grey_share),
+            ("colour weight", self.color_weight),
+            ("colour rate", self.color_rate),
+            ("scale rate", self.scale_rate),
+            ("share to recognize by", self.recognize_share),
+            ("share of alike colours", self.color_agreement_share),
+        ] {
+            probability(what, value)?;
+        }
+        let odd = self.n_scales % 2 == 1 && self.n_scales <= 99;
+        checked("number of scales", self.n_scales as f64, odd, "odd, at most 99")?;
+        let step = (1.001..=1.5).contains(&self.scale_step);
+        checked("scale step", self.scale_step, step, "between 1.001 and 1.5")?;
+        for (what, value) in [
+            ("standing out for doubt", self.no_evidence_below),
+            ("standing out for learning", self.learn_above),
+            ("standing out to recognize", self.recognize_above),
+        ] {
+            checked(what, value, value >= 0.0, "not negative")?;
+        }
+        let n_searches = self.n_searches as f64;
+        checked("number of searches", n_searches, self.n_searches <= 100, "at most 100")?;
+        Ok(())
+    }
+}

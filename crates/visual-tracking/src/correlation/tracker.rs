@@ -1,0 +1,270 @@
+use rand::Rng;
+
+use super::color_ratio::ColorRatio;
+use super::filter::Learning;
+use super::params::CorrelationTrackerParams;
+use super::patch::Patch;
+use super::planes::Spectrum;
+use super::recognizer::{FilterResponse, Recognizer, WindowSample};
+use super::response::Peak;
+use super::scale_filter::ScaleFilter;
+use super::window::{Pose, SIDE};
+use crate::error::check_size;
+use crate::{BoundingBox, Target, TrackStatus, Tracker};
+use crate::{RgbImage, TrackingError};
+
+/// Sides below which a target has no shape, in pixels.
+const MIN_SIDE: f64 = 3.0;
+/// How much larger than the picture a target may grow, as something that comes close does.
+const MAX_SHARE: f64 = 1.5;
+/// Rate at which the response that is usual follows.
+const TYPICAL_RATE: f64 = 0.05;
+
+/// Follows what a box encloses by its shape, its colours and its size: anything, in colour or grey, from the first box alone.
+///
+/// Each picture is looked at in a square window around the last place. Position: the peak of
+///
+/// ```math
+/// (1 − w) \sum_d f_d ⋆ x_d + w \, \overline{p(c)}
+/// ```
+///
+/// where $`x_d`$ are gradient-orientation, grey and colour channels, $`f`$ is a correlation filter that vanishes outside the target and
+/// stays near the one before [Galoogahi et al. 2017; Li et al. 2018], and $`p(c)`$ the ratio of the colour histograms of target and
+/// surroundings [Bertinetto et al. 2016]. Size: a correlation filter over scales [Danelljan et al. 2017]. Whatever is found is learned,
+/// if it stands out of the rest of the response. The filter that recognized the target last beyond doubt is kept: when something passes
+/// in front and is learned, the kept one finds the target where it comes out again. What the kept filter does not recognize and what has other
+/// colours is not learned. The target is [`Lost`](TrackStatus::Lost) when such a thing hardly stands out, or nothing does for some pictures. It
+/// is then looked for in the whole picture, upright and turned, and found where shape and colours agree.
+///
+/// The memory does not grow, and nothing is random: the generator of [`Tracker::track`] is not used.
+///
+/// ```
+/// use rand::SeedableRng;
+/// use rand_chacha::ChaCha8Rng;
+/// use wayfix_visual_tracking::{
+///     BoundingBox, CorrelationTracker, CorrelationTrackerParams, RgbImage, TrackStatus, Tracker,
+/// };
+/// // a checkered square on a plain ground, 3 pixels further to the right in the second picture
+/// let picture = |left: usize| {
+///     let value = |u: usize, v: usize| match (u.wrapping_sub(left) < 16, v.wrapping_sub(20) < 16) {
+///         (true, true) => if (u - left) / 4 % 2 == v / 4 % 2 { 220 } else { 40 },
+///         _ => 120,
+///     };
+///     RgbImage::from_raw(80, 60, (0..80 * 60).flat_map(|i| [value(i % 80, i / 80); 3]).collect()).expect("3 bytes a pixel")
+/// };
+/// let first = BoundingBox::from_corner(30.0, 20.0, 16.0, 16.0)?;
+/// let mut tracker = CorrelationTracker::new(&picture(30)?, first, CorrelationTrackerParams::default())?;
+/// let target = tracker.track(&picture(33)?, &mut ChaCha8Rng::seed_from_u64(0))?;
+/// assert_eq!(target.status, TrackStatus::Tracked);
+/// assert!(target.bounding_box.iou(&BoundingBox::from_corner(33.0, 20.0, 16.0, 16.0)?) > 0.8);
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CorrelationTracker {
+    pub(super) params: CorrelationTrackerParams,
+    pub(super) picture_size: (usize, usize),
+    pub(super) recognizer: Recognizer,
+    pub(super) colors: ColorRatio,
+    pub(super) scales: ScaleFilter,
+    pub(super) pose: Pose,
+    /// The filter as it was learned last.
+    pub(super) current: Spectrum,
+    /// What the window showed when the target was learned last.
+    pub(super) learned: Patch,
+    /// The filter when the target was last recognized beyond doubt.
+    pub(super) trusted: Spectrum,
+    /// Pictures since then.
+    pub(super) n_untrusted: usize,
+    /// The response that is usual for the target.
+    pub(super) typical_response: f64,
+    /// The agreement of colours that is usual for it.
+    pub(super) typical_color_agreement: f64,
+    /// Pictures in a row without evidence.
+    pub(super) n_without_evidence: usize,
+    /// Pictures since the target was lost; 0 while it is not.
+    pub(super) n_lost: usize,
+    /// Pictures in which a target that was found again may come further into sight.
+    pub(super) n_recentering: usize,
+}
+
+impl CorrelationTracker {
+    /// Starts from the box around the target in the first picture; what of it lies outside the picture is cut off.
+    ///
+    /// # Errors
+    /// [`TrackingError::Parameter`] for a parameter out of its range and a target smaller than 3 pixels,
+    /// [`TrackingError::OutsidePicture`] for a box beyond the picture, [`TrackingError::Empty`] when all is of one colour.
+    pub fn new(
+        picture: &RgbImage,
+        target: BoundingBox,
+        params: CorrelationTrackerParams,
+    ) -> Result<Self, TrackingError> {
+        params.validate()?;
+        let picture_size = (picture.width() as usize, picture.height() as usize);
+        let target = target.clipped(picture_size)?;
+        let size = [target.width(), target.height()];
+        for (what, side) in [("width of the target", size[0]), ("height of the target", size[1])] {
+            if side < MIN_SIDE {
+                return Err(TrackingError::Parameter { what, value: side, range: "at least 3 pixels" });
+            }
+        }
+        let recognizer = Recognizer::new(picture, size, &params);
+        let pose = Pose { center: target.center(), scale: 1.0 };
+        let sample = recognizer.sample_at(picture, pose);
+        let learning = Learning { inertia: 0.0, penalty: params.penalty as f32 };
+        let current = recognizer.filter.learned(None, &sample.spectrum, learning);
+        let typical_response = recognizer.evidence(&current, &sample).value;
+        if typical_response <= 0.0 {
+            return Err(TrackingError::Empty { what: "structure in the first picture" });
+        }
+        let mut colors = ColorRatio::new();
+        colors.learn(&sample.patch, recognizer.window.target_pixels(), 1.0);
+        let typical_color_agreement = colors.agreement(&sample.patch, recognizer.window.target_pixels());
+        let mut scales = ScaleFilter::new(params.n_scales, params.scale_step, size);
+        scales.learn(picture, pose.center, size, 1.0);
+        Ok(Self {
+            params,
+            picture_size,
+            recognizer,
+            colors,
+            scales,
+            pose,
+            trusted: current.clone(),
+            current,
+            learned: sample.patch,
+            n_untrusted: 0,
+            typical_response,
+            typical_color_agreement,
+            n_without_evidence: 0,
+            n_lost: 0,
+            n_recentering: 0,
+        })
+    }
+
+    /// One picture of a target in sight; the quality.
+    fn follow(&mut self, picture: &RgbImage) -> f64 {
+        let around = self.recognizer.sample_at(picture, self.pose);
+        // What looks exactly as it was learned has not moved and teaches nothing. The fraction of a cell that a peak is off even then would add up.
+        if around.patch == self.learned {
+            self.n_without_evidence = 0;
+            return self.recognizer.evidence(&self.current, &around).value / self.typical_response;
+        }
+        let mut pose = self.moved(picture, self.pose, &around);
+        let mut sample = self.recognizer.sample_at(picture, pose);
+        let mut trust = self.recognizer.evidence(&self.trusted, &sample);
+        if !self.recognized(trust)
+            && let Some((there, seen, evidence)) = self.recognized_elsewhere(picture, &around)
+        {
+            (pose, sample, trust) = (there, seen, evidence);
+            self.current = self.trusted.clone();
+        }
+        let evidence = self.recognizer.evidence(&self.current, &sample);
+        let is_unlike = !self.recognized(trust) && !self.has_target_colors(&sample);
+        // what may be something else must show more
+        let least = if is_unlike { self.params.recognize_above } else { self.params.no_evidence_below };
+        if evidence.peak_to_sidelobe < least {
+            self.n_without_evidence += 1;
+            self.n_lost = usize::from(is_unlike || self.n_without_evidence > self.params.lost_after);
+        } else {
+            self.n_without_evidence = 0;
+            self.pose = pose;
+            self.learn(picture, &sample, evidence, trust);
+            self.recenter(picture);
+        }
+        evidence.value / self.typical_response
+    }
+
+    /// The pose to which the target has moved from `pose`, by shape and colour together.
+    fn moved(&self, picture: &RgbImage, pose: Pose, around: &WindowSample) -> Pose {
+        let window = &self.recognizer.window;
+        let mut response = self.recognizer.response(&self.current, around);
+        let score = window.box_means(&self.colors.of(&around.patch));
+        let prior = window.shift_prior(self.params.motion_width);
+        let weight = self.params.color_weight as f32;
+        for ((value, score), prior) in response.iter_mut().zip(&score).zip(&prior) {
+            *value = ((1.0 - weight) * *value + weight * score) * prior;
+        }
+        self.shifted(picture, pose, &response)
+    }
+
+    /// The pose at the peak of a response, at the scale that fits there.
+    pub(super) fn shifted(&self, picture: &RgbImage, pose: Pose, response: &[f32]) -> Pose {
+        let window = &self.recognizer.window;
+        let mut pose = window.moved(pose, Peak::of(response, SIDE).shift);
+        let (width, height) = (self.picture_size.0 as f64, self.picture_size.1 as f64);
+        pose.center = [pose.center[0].clamp(0.0, width), pose.center[1].clamp(0.0, height)];
+        let factor = self.scales.factor(picture, pose.center, window.size(pose.scale));
+        let [base_width, base_height] = window.size(1.0);
+        let smallest = (MIN_SIDE / base_width.min(base_height)).min(1.0);
+        let largest = (MAX_SHARE * (width / base_width).min(height / base_height)).max(1.0);
+        pose.scale = (pose.scale * factor).clamp(smallest, largest);
+        pose
+    }
+
+    pub(super) fn recognized(&self, evidence: FilterResponse) -> bool {
+        // a lost target has changed more since it was learned, and nothing is given up for it
+        let share = self.params.recognize_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
+        evidence.peak_to_sidelobe > self.params.recognize_above
+            && evidence.value > share * self.typical_response
+    }
+
+    /// Whether the colours in the middle of what is seen may be the target's.
+    pub(super) fn has_target_colors(&self, sample: &WindowSample) -> bool {
+        self.is_typical(self.agreement(sample))
+    }
+
+    fn is_typical(&self, agreement: f64) -> bool {
+        agreement >= self.params.color_agreement_share * self.typical_color_agreement
+    }
+
+    fn agreement(&self, sample: &WindowSample) -> f64 {
+        self.colors.agreement(&sample.patch, self.recognizer.window.target_pixels())
+    }
+
+    fn learn(
+        &mut self,
+        picture: &RgbImage,
+        sample: &WindowSample,
+        evidence: FilterResponse,
+        trust: FilterResponse,
+    ) {
+        let recognized = self.recognized(trust);
+        self.n_untrusted = if recognized { 0 } else { self.n_untrusted + 1 };
+        let agreement = self.agreement(sample);
+        let may_be_another =
+            !recognized && !self.is_typical(agreement) && self.n_untrusted <= self.params.forget_after;
+        if evidence.peak_to_sidelobe < self.params.learn_above || may_be_another {
+            return;
+        }
+        let window = &self.recognizer.window;
+        let learning = Learning { inertia: self.params.inertia as f32, penalty: self.params.penalty as f32 };
+        self.current = self.recognizer.filter.learned(Some(&self.current), &sample.spectrum, learning);
+        if self.n_recentering == 0 {
+            self.colors.learn(&sample.patch, window.target_pixels(), self.params.color_rate as f32);
+        }
+        let size = window.size(self.pose.scale);
+        self.scales.learn(picture, self.pose.center, size, self.params.scale_rate as f32);
+        self.learned.clone_from(&sample.patch);
+        if recognized || self.n_untrusted > self.params.forget_after {
+            self.trusted.clone_from(&self.current);
+            self.n_untrusted = 0;
+            let value = if recognized { trust.value } else { evidence.value };
+            self.typical_response += TYPICAL_RATE * (value - self.typical_response);
+            self.typical_color_agreement += TYPICAL_RATE * (agreement - self.typical_color_agreement);
+        }
+    }
+}
+
+impl Tracker for CorrelationTracker {
+    fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, _rng: &mut R) -> Result<Target, TrackingError> {
+        check_size("width of a picture", self.picture_size.0, picture.width() as usize)?;
+        check_size("height of a picture", self.picture_size.1, picture.height() as usize)?;
+        let quality = if self.n_lost > 0 { self.search(picture) } else { self.follow(picture) };
+        let [width, height] = self.recognizer.window.size(self.pose.scale);
+        Ok(Target {
+            bounding_box: BoundingBox::from_center(self.pose.center, width, height)?,
+            outline: Vec::new(),
+            status: if self.n_lost > 0 { TrackStatus::Lost } else { TrackStatus::Tracked },
+            quality: quality.clamp(0.0, 1.0),
+        })
+    }
+}

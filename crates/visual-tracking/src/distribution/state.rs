@@ -1,0 +1,77 @@
+use nalgebra::{Rotation3, SVector, Vector3};
+
+use super::{ColorWarp, PrincipalColors};
+
+/// Numbers of a colour distribution: centroid, three magnitudes, two angles.
+pub const COLOR_DIM: usize = 8;
+
+/// $`[\mathbf m, \boldsymbol λ, θ, φ]`$.
+pub type ColorVector = SVector<f64, COLOR_DIM>;
+
+/// What one sample says about the colours of the target: $`\mathbf x = [\mathbf mᵀ, \boldsymbol λᵀ, θ, φ]ᵀ`$ and its change per picture.
+/// [Andrade-Cetto & Sanfeliu, section 3.3]
+///
+/// The angles are against the axes of a reference distribution, so a state means something only beside it.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use wayfix_visual_tracking::{ColorState, PrincipalColors};
+/// let colors = [Vector3::new(0.2, 0.5, 0.5), Vector3::new(0.4, 0.5, 0.5)];
+/// let reference = PrincipalColors::of(&colors, &[1.0; 2], None)?;
+/// let mut brighter = ColorState::at_rest(&reference);
+/// brighter.value[0] += 0.1; // the centroid
+/// brighter.value[3] *= 2.0; // the first magnitude
+/// let warped = brighter.warp_from(&reference).apply(&colors[1]);
+/// assert!((warped - Vector3::new(0.6, 0.5, 0.5)).norm() < 1e-9);
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorState {
+    /// $`\mathbf x`$.
+    pub value: ColorVector,
+    /// Change of $`\mathbf x`$ from one picture to the next.
+    pub velocity: ColorVector,
+}
+
+impl ColorState {
+    /// The state of the reference itself, which does not move.
+    pub fn at_rest(reference: &PrincipalColors) -> Self {
+        let mut value = ColorVector::zeros();
+        value.fixed_rows_mut::<3>(0).copy_from(&reference.mean);
+        value.fixed_rows_mut::<3>(3).copy_from(&reference.magnitudes);
+        Self { value, velocity: ColorVector::zeros() }
+    }
+
+    /// The centroid.
+    pub fn mean(&self) -> Vector3<f64> {
+        self.value.fixed_rows::<3>(0).into_owned()
+    }
+
+    /// Standard deviations along the axes.
+    pub fn magnitudes(&self) -> Vector3<f64> {
+        self.value.fixed_rows::<3>(3).into_owned()
+    }
+
+    /// $`[θ, φ]`$ in radians.
+    pub fn angles(&self) -> [f64; 2] {
+        [self.value[6], self.value[7]]
+    }
+
+    /// The affine map that carries the colours of the reference into those that this state says:
+    /// $`\mathbf c ↦ \mathbf m' + U R(θ, φ) \operatorname{diag}(λ'_i / λ_i)\, Uᵀ (\mathbf c - \mathbf m)`$.
+    pub fn warp_from(&self, reference: &PrincipalColors) -> ColorWarp {
+        let [theta, phi] = self.angles();
+        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), theta)
+            * Rotation3::from_axis_angle(&Vector3::y_axis(), -phi);
+        let scales = reference.magnitudes.zip_map(&self.magnitudes(), ColorWarp::scale);
+        ColorWarp::new(&reference.mean, &self.mean(), &reference.axes, &turn, &scales)
+    }
+
+    /// The same distribution seen from a new reference: angles are counted from its axes.
+    pub(crate) fn seen_from(mut self, reference_angles: [f64; 2]) -> Self {
+        for (i, angle) in reference_angles.into_iter().enumerate() {
+            self.value[6 + i] -= angle;
+        }
+        self
+    }
+}

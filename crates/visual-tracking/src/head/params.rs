@@ -1,0 +1,70 @@
+use crate::TrackingError;
+use crate::error::{checked, probability};
+
+/// How a [`HeadTracker`](super::HeadTracker) searches, adapts and doubts.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct HeadTrackerParams {
+    /// Bins of the axes $`B − G`$, $`G − R`$ and $`R + G + B`$. Default 32, 32, 8.
+    pub bins: [usize; 3],
+    /// Two modes, skin and hair, whose proportion may change; else one histogram as it is. Default true.
+    pub bimodal: bool,
+    /// How far around the predicted place is searched, in semi-axes of the ellipse. Default 0.5.
+    pub search_radius: f64,
+    /// Factor between the three sizes that are compared. Default 1.04.
+    pub scale_step: f64,
+    /// Weight of the gradient across the edge beside that of the colours. Default 0.25: in a cluttered room many edges are stronger than that of a
+    /// head.
+    pub gradient_weight: f64,
+    /// Rate $`a`$ at which the colours adapt. [Eq. 29] Default 0.1.
+    pub adaptation: f64,
+    /// Intersection above which they do. Default 0.6.
+    pub adapt_above: f64,
+    /// Intersection below which there is no evidence of the head. Default 0.3.
+    pub no_evidence_below: f64,
+    /// Pictures in a row without evidence after which the head is lost. Default 8.
+    pub lost_after: usize,
+}
+
+impl Default for HeadTrackerParams {
+    fn default() -> Self {
+        Self {
+            bins: [32, 32, 8],
+            bimodal: true,
+            search_radius: 0.5,
+            scale_step: 1.04,
+            gradient_weight: 0.25,
+            adaptation: 0.1,
+            adapt_above: 0.6,
+            no_evidence_below: 0.3,
+            lost_after: 8,
+        }
+    }
+}
+
+impl HeadTrackerParams {
+    pub(super) fn validate(&self) -> Result<(), TrackingError> {
+        checked(
+            "search_radius",
+            self.search_radius,
+            (0.05..=4.0).contains(&self.search_radius),
+            "between 0.05 and 4",
+        )?;
+        let step = (1.0..=1.5).contains(&self.scale_step);
+        checked("scale step", self.scale_step, step, "between 1 and 1.5")?;
+        for (what, value) in [
+            ("gradient weight", self.gradient_weight),
+            ("adaptation", self.adaptation),
+            ("intersection to adapt", self.adapt_above),
+            ("intersection for doubt", self.no_evidence_below),
+        ] {
+            probability(what, value)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,33 @@
+use crate::RgbImage;
+
+/// Knows how large the head is, such as a stereo camera that measures how far away it is.
+///
+/// ```
+/// use wayfix_visual_tracking::{RgbImage, ScaleSource};
+/// /// Distances that a stereo camera measured, picture after picture, in metres.
+/// struct Stereo(Vec<f64>);
+/// impl ScaleSource for Stereo {
+///     fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
+///         let first = 2.0;
+///         self.0.pop().map(|distance| first / distance)
+///     }
+/// }
+/// let picture = RgbImage::from_raw(1, 1, vec![0; 3]).expect("3 bytes a pixel");
+/// assert_eq!(Stereo(vec![4.0]).scale(&picture, [0.0, 0.0]), Some(0.5));
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
+/// ```
+pub trait ScaleSource {
+    /// The size of the head in `picture` beside that in the first one, or `None` where it is to be searched; `center` is where the head
+    /// was, in pixels.
+    fn scale(&mut self, picture: &RgbImage, center: [f64; 2]) -> Option<f64>;
+}
+
+/// Leaves the scale to the search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LocalScale;
+
+impl ScaleSource for LocalScale {
+    fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
+        None
+    }
+}

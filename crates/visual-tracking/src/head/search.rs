@@ -1,0 +1,111 @@
+use super::bimodal::BimodalHistogram;
+use super::edge::{GradientField, Rim};
+use crate::TrackingError;
+use crate::{BinImage, RowSpans, SlidingHistogram};
+
+/// Steps along an axis of a search; between two of them is searched again, pixel by pixel.
+const STEPS: i64 = 8;
+
+/// An ellipse that may be the head.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) center: [i64; 2],
+    pub(super) semi_axes: [f64; 2],
+    /// Histogram intersection.
+    pub(super) color: f64,
+    /// Mean gradient across the rim.
+    pub(super) gradient: f64,
+}
+
+/// A picture in which the head is searched.
+pub(super) struct Search<'a> {
+    pub(super) bins: &'a BinImage,
+    pub(super) field: &'a GradientField,
+    pub(super) model: &'a BimodalHistogram,
+    pub(super) gradient_weight: f64,
+}
+
+impl Search<'_> {
+    /// The best ellipse of one of the sizes, at most `reach` pixels from `around`: first in steps of at most half a semi-axis, then pixel by
+    /// pixel.
+    pub(super) fn best(
+        &self,
+        around: [i64; 2],
+        reach: i64,
+        sizes: &[[f64; 2]],
+    ) -> Result<Option<Candidate>, TrackingError> {
+        let narrowest = sizes.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+        let step = (reach / STEPS).min((narrowest / 2.0) as i64).max(1);
+        let Some(coarse) = self.better(self.candidates(around, reach, step, sizes)?) else { return Ok(None) };
+        if step == 1 {
+            return Ok(Some(coarse));
+        }
+        Ok(self.better(self.candidates(coarse.center, step, 1, &[coarse.semi_axes])?))
+    }
+
+    /// Ellipses on a grid; the histogram of each comes from its neighbour's.
+    fn candidates(
+        &self,
+        around: [i64; 2],
+        reach: i64,
+        step: i64,
+        sizes: &[[f64; 2]],
+    ) -> Result<Vec<Candidate>, TrackingError> {
+        let n = reach / step;
+        let mut candidates = Vec::new();
+        for &semi_axes in sizes {
+            let (spans, rim) = (RowSpans::ellipse(semi_axes)?, Rim::ellipse(semi_axes));
+            let mut sliding = SlidingHistogram::new(self.bins, spans, around);
+            for j in -n..=n {
+                for i in -n..=n {
+                    // there and back, so that neighbours overlap
+                    let i = if (j + n) % 2 == 0 { i } else { -i };
+                    let center = [around[0] + i * step, around[1] + j * step];
+                    if !self.contains(center) {
+                        continue;
+                    }
+                    sliding.move_to(center);
+                    let color =
+                        self.model.intersection(sliding.histogram(), self.n_inside(sliding.spans(), center));
+                    candidates.push(Candidate {
+                        center,
+                        semi_axes,
+                        color,
+                        gradient: self.field.across(&rim, center),
+                    });
+                }
+            }
+        }
+        Ok(candidates)
+    }
+
+    /// The highest sum of both modules, each scaled to the range it has among the candidates. [Birchfield 1998]
+    fn better(&self, candidates: Vec<Candidate>) -> Option<Candidate> {
+        let scaled = |module: fn(&Candidate) -> f64| {
+            let low = candidates.iter().map(module).fold(f64::INFINITY, f64::min);
+            let high = candidates.iter().map(module).fold(f64::NEG_INFINITY, f64::max);
+            move |candidate: &Candidate| {
+                if high > low { (module(candidate) - low) / (high - low) } else { 0.0 }
+            }
+        };
+        let (color, gradient) = (scaled(|c| c.color), scaled(|c| c.gradient));
+        let weight = self.gradient_weight;
+        let score = |c: &Candidate| (1.0 - weight) * color(c) + weight * gradient(c);
+        candidates.iter().copied().max_by(|a, b| score(a).total_cmp(&score(b)))
+    }
+
+    /// Pixels of the picture under a shape about `center`.
+    fn n_inside(&self, spans: &RowSpans, center: [i64; 2]) -> usize {
+        let (width, height) = (self.bins.width() as i64, self.bins.height() as i64);
+        let row = |v: i64| {
+            let columns = spans.columns(v).filter(|_| (0..height).contains(&(v + center[1]))).unwrap_or(0..0);
+            ((columns.end + center[0]).min(width) - (columns.start + center[0]).max(0)).max(0) as usize
+        };
+        spans.rows().map(row).sum()
+    }
+
+    fn contains(&self, center: [i64; 2]) -> bool {
+        (0..self.bins.width() as i64).contains(&center[0])
+            && (0..self.bins.height() as i64).contains(&center[1])
+    }
+}

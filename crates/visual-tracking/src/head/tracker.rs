@@ -1,0 +1,222 @@
+use rand::Rng;
+use std::f64::consts::TAU;
+
+use super::bimodal::BimodalHistogram;
+use super::edge::GradientField;
+use super::params::HeadTrackerParams;
+use super::scale_source::{LocalScale, ScaleSource};
+use super::search::{Candidate, Search};
+use super::surroundings::own_colors;
+use crate::error::{check_size, checked};
+use crate::{
+    BinImage, BitMask, BoundingBox, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram,
+    Target, TrackStatus, Tracker,
+};
+use crate::{RgbImage, TrackingError};
+
+/// Semi-axes below which an ellipse has no colours to speak of, in pixels.
+const MIN_SEMI_AXIS: f64 = 3.0;
+/// Points of an outline.
+const N_OUTLINE: usize = 48;
+
+/// Follows a head as an upright ellipse, by the colours inside and the gradient across its rim.
+/// [Andrade-Cetto & Sanfeliu 2004, sec. 3.2; Birchfield 1998]
+///
+/// Around the place that a constant velocity predicts, every ellipse is compared by histogram intersection with the colours of the head,
+/// [Eq. 28] counted from one ellipse to the next only where they differ, and by the gradient across it; both scaled to their range, the
+/// highest sum wins. The colours adapt [Eq. 29] where the intersection is high. Skin and hair are two modes: their proportion changes when
+/// the head turns, so it does not count. Colours that are more frequent around the ellipse than in it are not the head's. The size comes from a [`ScaleSource`] or from the search.
+///
+/// ```
+/// use rand::SeedableRng;
+/// use rand_chacha::ChaCha8Rng;
+/// use wayfix_visual_tracking::{BoundingBox, HeadTracker, HeadTrackerParams, RgbImage, Tracker};
+/// let picture = |middle: f64| {
+///     let color = |u: f64, v: f64| match ((u - middle) / 12.0).hypot((v - 30.0) / 15.0) {
+///         r if r > 1.0 => [90, 120, 150],
+///         _ if v < 24.0 => [60, 40, 30],
+///         _ => [220, 160, 130],
+///     };
+///     let bytes = (0..100 * 60).flat_map(|i| color(f64::from(i % 100) + 0.5, f64::from(i / 100) + 0.5));
+///     RgbImage::from_raw(100, 60, bytes.collect()).expect("3 bytes a pixel")
+/// };
+/// let head = BoundingBox::from_center([40.0, 30.0], 24.0, 30.0)?;
+/// let mut tracker = HeadTracker::new(&picture(40.0)?, head, HeadTrackerParams::default())?;
+/// let target = tracker.track(&picture(44.0)?, &mut ChaCha8Rng::seed_from_u64(0))?;
+/// assert!((target.bounding_box.center()[0] - 44.0).abs() < 1.5);
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct HeadTracker<S = LocalScale> {
+    params: HeadTrackerParams,
+    picture_size: (usize, usize),
+    quantizer: ColorQuantizer,
+    model: BimodalHistogram,
+    scale_source: S,
+    /// Semi-axes of the first ellipse.
+    base: [f64; 2],
+    state: HeadState,
+}
+
+/// Where the head is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct HeadState {
+    center: [i64; 2],
+    velocity: [i64; 2],
+    scale: f64,
+    n_without_evidence: usize,
+    is_lost: bool,
+}
+
+impl HeadTracker {
+    /// Starts from the box around the head in the first picture.
+    ///
+    /// # Errors
+    /// [`TrackingError::Parameter`] for a parameter out of its range or a head less than 6 pixels wide,
+    /// [`TrackingError::OutsidePicture`] for a box beyond the picture.
+    pub fn new(
+        picture: &RgbImage,
+        head: BoundingBox,
+        params: HeadTrackerParams,
+    ) -> Result<Self, TrackingError> {
+        let head = head.clipped((picture.width() as usize, picture.height() as usize))?;
+        Self::started(picture, head, params, |bins, spans, center| {
+            Ok(SlidingHistogram::new(bins, spans, center).into_histogram())
+        })
+    }
+
+    /// Starts from the pixels of the head in the first picture.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); [`TrackingError::Empty`] without a pixel, [`TrackingError::Dimension`] when mask and picture differ
+    /// in size.
+    pub fn from_mask(
+        picture: &RgbImage,
+        mask: &BitMask,
+        params: HeadTrackerParams,
+    ) -> Result<Self, TrackingError> {
+        let rect = mask.bounding_rect().ok_or(TrackingError::Empty { what: "pixels of the head" })?;
+        Self::started(picture, rect.to_box()?, params, |bins, _, _| ColorHistogram::of_mask(bins, mask))
+    }
+
+    fn started(
+        picture: &RgbImage,
+        head: BoundingBox,
+        params: HeadTrackerParams,
+        histogram: impl FnOnce(&BinImage, RowSpans, [i64; 2]) -> Result<ColorHistogram, TrackingError>,
+    ) -> Result<Self, TrackingError> {
+        params.validate()?;
+        let base = [head.width() / 2.0, head.height() / 2.0];
+        for semi_axis in base {
+            checked("semi-axis of the head", semi_axis, semi_axis >= MIN_SEMI_AXIS, "at least 3 pixels")?;
+        }
+        let quantizer = ColorQuantizer::new(ColorSpace::Opponent, params.bins)?;
+        let bins = BinImage::new(&quantizer, &picture)?;
+        let center = head.center().map(|c| c.floor() as i64);
+        let histogram = histogram(&bins, RowSpans::ellipse(base)?, center)?;
+        let own = own_colors(&bins, &histogram, center, base)?;
+        let model = BimodalHistogram::new(&quantizer, &own, params.bimodal)?;
+        let state = HeadState { center, velocity: [0; 2], scale: 1.0, n_without_evidence: 0, is_lost: false };
+        let picture_size = (picture.width() as usize, picture.height() as usize);
+        Ok(Self { params, picture_size, quantizer, model, scale_source: LocalScale, base, state })
+    }
+}
+
+impl<S: ScaleSource> HeadTracker<S> {
+    /// The same tracker with another source of the scale.
+    pub fn with_scale_source<T: ScaleSource>(self, scale_source: T) -> HeadTracker<T> {
+        let Self { params, picture_size, quantizer, model, base, state, .. } = self;
+        HeadTracker { params, picture_size, quantizer, model, scale_source, base, state }
+    }
+
+    /// The scales to compare in the next picture.
+    fn scales(&mut self, picture: &RgbImage) -> Result<Vec<f64>, TrackingError> {
+        let center = self.state.center.map(|c| c as f64 + 0.5);
+        let smallest = (MIN_SEMI_AXIS / self.base[0].min(self.base[1])).min(1.0);
+        let (width, height) = (self.picture_size.0 as f64, self.picture_size.1 as f64);
+        let largest = (width / self.base[0]).min(height / self.base[1]);
+        let scales = match self.scale_source.scale(picture, center) {
+            Some(scale) => {
+                vec![checked("scale of the head", scale, scale > 0.0 && scale.is_finite(), "positive")?]
+            }
+            None => [1.0 / self.params.scale_step, 1.0, self.params.scale_step]
+                .map(|f| f * self.state.scale)
+                .to_vec(),
+        };
+        Ok(scales.into_iter().map(|scale| scale.clamp(smallest, largest)).collect())
+    }
+
+    /// The best ellipse; of a lost head, in the whole picture.
+    fn found(
+        &self,
+        bins: &BinImage,
+        field: &GradientField,
+        scales: &[f64],
+    ) -> Result<Option<Candidate>, TrackingError> {
+        let HeadState { center, velocity, scale, is_lost, .. } = self.state;
+        let search = Search { bins, field, model: &self.model, gradient_weight: self.params.gradient_weight };
+        let sizes: Vec<[f64; 2]> = scales.iter().map(|scale| self.base.map(|axis| axis * scale)).collect();
+        let reach = self.params.search_radius * scale * self.base[0].max(self.base[1]);
+        if !is_lost {
+            let predicted = [center[0] + velocity[0], center[1] + velocity[1]];
+            return search.best(predicted, reach.ceil() as i64, &sizes);
+        }
+        let middle = [self.picture_size.0 as i64 / 2, self.picture_size.1 as i64 / 2];
+        search.best(middle, middle[0].max(middle[1]), &sizes[sizes.len() / 2..][..1])
+    }
+
+    fn accept(&mut self, bins: &BinImage, candidate: Candidate) -> Result<(), TrackingError> {
+        let HeadState { center, is_lost, .. } = self.state;
+        if is_lost && candidate.color < self.params.adapt_above {
+            return Ok(());
+        }
+        if candidate.color < self.params.no_evidence_below {
+            self.state.n_without_evidence += 1;
+            self.state.is_lost = self.state.n_without_evidence > self.params.lost_after;
+            self.state.velocity = [0; 2];
+            return Ok(());
+        }
+        let moved = [candidate.center[0] - center[0], candidate.center[1] - center[1]];
+        self.state = HeadState {
+            center: candidate.center,
+            velocity: if is_lost { [0; 2] } else { moved },
+            scale: candidate.semi_axes[0] / self.base[0],
+            n_without_evidence: 0,
+            is_lost: false,
+        };
+        if candidate.color >= self.params.adapt_above {
+            let spans = RowSpans::ellipse(candidate.semi_axes)?;
+            let histogram = SlidingHistogram::new(bins, spans, candidate.center).into_histogram();
+            self.model.adapt(histogram.counts(), self.params.adaptation);
+        }
+        Ok(())
+    }
+
+    fn target(&self, quality: f64) -> Result<Target, TrackingError> {
+        let center = self.state.center.map(|c| c as f64 + 0.5);
+        let [a, b] = self.base.map(|axis| axis * self.state.scale);
+        let point = |i: usize| {
+            let angle = TAU * i as f64 / N_OUTLINE as f64;
+            [center[0] + a * libm::cos(angle), center[1] + b * libm::sin(angle)]
+        };
+        Ok(Target {
+            bounding_box: BoundingBox::from_center(center, 2.0 * a, 2.0 * b)?,
+            outline: (0..N_OUTLINE).map(point).collect(),
+            status: if self.state.is_lost { TrackStatus::Lost } else { TrackStatus::Tracked },
+            quality,
+        })
+    }
+}
+
+impl<S: ScaleSource> Tracker for HeadTracker<S> {
+    fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, _rng: &mut R) -> Result<Target, TrackingError> {
+        check_size("width of a picture", self.picture_size.0, picture.width() as usize)?;
+        check_size("height of a picture", self.picture_size.1, picture.height() as usize)?;
+        let scales = self.scales(picture)?;
+        let bins = BinImage::new(&self.quantizer, &picture)?;
+        let candidate = self.found(&bins, &GradientField::new(picture), &scales)?;
+        let Some(candidate) = candidate else { return self.target(0.0) };
+        self.accept(&bins, candidate)?;
+        self.target(candidate.color.clamp(0.0, 1.0))
+    }
+}

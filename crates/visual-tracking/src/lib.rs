@@ -1,0 +1,40 @@
+//! A target followed from picture to picture while the light changes.
+//!
+//! | part | what is in it |
+//! | --- | --- |
+//! | trackers | [`Tracker`]: [`CorrelationTracker`] (a box around anything), [`HeadTracker`] (an ellipse by colours and rim), [`ContourTracker`] (an outline) |
+//! | colours | bins of a [`ColorSpace`]: [`ColorQuantizer`], [`BinImage`], [`ColorHistogram`], [`SlidingHistogram`] |
+//! | masks | [`BitMask`] with 64 pixels a word: morphology, Euler number, [`Blobs`] |
+//! | contours | [`Outline`], [`AffineSnake`] on [`ColorEdges`] or [`MaskEdges`] |
+//! | colour distributions | [`ColorCloud`], [`PrincipalColors`], [`ColorDynamics`], learned by [`LearnedDynamics`] |
+//!
+//! Andrade-Cetto & Sanfeliu, *Active perception in changing light*, section 3. Pictures are [`RgbImage`]s of the crate `image`; no files are opened.
+
+mod bounding_box;
+mod color;
+mod contour;
+mod correlation;
+mod distribution;
+mod error;
+mod head;
+mod mask;
+mod picture;
+mod pixel_rect;
+mod snake;
+mod tracker;
+
+pub use bounding_box::BoundingBox;
+pub use color::{BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram};
+pub use contour::{Agreement, ContourTracker, ContourTrackerParams, TrackingCues};
+pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
+pub use distribution::{
+    COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorVector, ColorWarp, LearnedDynamics,
+    PrincipalColors,
+};
+pub use error::TrackingError;
+pub use head::{HeadTracker, HeadTrackerParams, LocalScale, ScaleSource};
+pub use image::RgbImage;
+pub use mask::{BitMask, Blob, Blobs, Connectivity, Element};
+pub use pixel_rect::PixelRect;
+pub use snake::{AffineMap, AffineSnake, ColorEdges, EdgeSearch, MaskEdges, Outline, SnakeFit, SnakeParams};
+pub use tracker::{Target, TrackStatus, Tracker};

@@ -1,0 +1,55 @@
+use crate::BitMask;
+
+/// The eight neighbours clockwise from the right, as columns and rows are counted.
+const AROUND: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
+
+impl BitMask {
+    /// The outer contour of the blob that comes first row by row, followed clockwise from its first pixel: pixels `[u, v]`, each a neighbour of
+    /// the next and the last of the first, by side or corner. Empty without pixels.
+    ///
+    /// Where the blob is one pixel thin the contour goes there and back and names pixels twice. [Moore's neighbour tracing]
+    ///
+    /// ```
+    /// use wayfix_visual_tracking::BitMask;
+    /// let mask = BitMask::from_fn(9, 9, |u, v| (2..5).contains(&u) && (3..6).contains(&v))?;
+    /// let ring = [[2, 3], [3, 3], [4, 3], [4, 4], [4, 5], [3, 5], [2, 5], [2, 4]];
+    /// assert_eq!(mask.outer_contour(), ring);
+    /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
+    /// ```
+    pub fn outer_contour(&self) -> Vec<[usize; 2]> {
+        let Some(start) = self.first_pixel() else { return Vec::new() };
+        let mut contour = vec![start];
+        // Left of and above the first pixel nothing is on.
+        let Some(first) = self.next_around(start, 0) else { return contour };
+        let (mut pixel, mut direction) = (start, first);
+        loop {
+            pixel = neighbour(pixel, direction);
+            // The neighbour that was found off last is beside the step just made; behind it the search goes on.
+            direction = self.next_around(pixel, direction + 7 - direction % 2).unwrap_or(direction);
+            if pixel == start && direction == first {
+                return contour;
+            }
+            contour.push(pixel);
+        }
+    }
+
+    fn first_pixel(&self) -> Option<[usize; 2]> {
+        let i = self.words().iter().position(|&word| word != 0)?;
+        let n = self.words_per_row();
+        Some([64 * (i % n) + self.words()[i].trailing_zeros() as usize, i / n])
+    }
+
+    /// The direction of the first neighbour that is on, clockwise from direction `from`.
+    fn next_around(&self, pixel: [usize; 2], from: usize) -> Option<usize> {
+        (from..from + 8).map(|direction| direction % 8).find(|&direction| {
+            let [u, v] = neighbour(pixel, direction);
+            self.get(u, v)
+        })
+    }
+}
+
+/// A neighbour; beyond the left and upper edges the largest number, where no mask reaches.
+fn neighbour([u, v]: [usize; 2], direction: usize) -> [usize; 2] {
+    let (du, dv) = AROUND[direction];
+    [u.wrapping_add_signed(du), v.wrapping_add_signed(dv)]
+}
