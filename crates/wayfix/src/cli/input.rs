@@ -3,6 +3,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use wayfix_sensor_log::read_text;
 
+use super::renamed::present_name;
+
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]
 pub(super) struct Topics {
@@ -21,20 +23,23 @@ pub(super) fn name_of(log: &[PathBuf]) -> String {
 pub(super) fn read_toml<P>(path: &Path, parse: impl Fn(&str) -> Result<P, toml::de::Error>) -> Result<P> {
     let text = read_text(path).with_context(|| format!("cannot read parameters from {}", path.display()))?;
     let read = parse(&text).map_err(|error| {
-        let hint =
-            nearest(error.message()).map(|name| format!("\ndid you mean `{name}`?")).unwrap_or_default();
-        anyhow::anyhow!("{}{hint}", error.to_string().trim_end())
+        anyhow::anyhow!("{}{}", error.to_string().trim_end(), hint(error.message()).unwrap_or_default())
     });
     read.with_context(|| format!("parameters in {} are not usable", path.display()))
 }
 
-/// The name most like the one that is unknown, if any is like it: of "unknown field `a`, expected one of `b`, `c`".
-fn nearest(message: &str) -> Option<&str> {
+/// What an unknown name is called now, or the name most like it, if any is: of "unknown field `a`, expected one of `b`, `c`".
+fn hint(message: &str) -> Option<String> {
     let names = message.strip_prefix("unknown ").map(|rest| rest.split('`').skip(1).step_by(2))?;
     let mut names = names.map(|name| name.trim());
     let unknown = names.next()?;
+    let allowed: Vec<&str> = names.collect();
+    if let Some(name) = present_name(unknown, allowed.iter().copied()) {
+        return Some(format!("\n`{unknown}` is called `{name}` now"));
+    }
     let likeness = |name: &str| strsim::jaro_winkler(unknown, name);
-    names.filter(|name| likeness(name) > ALIKE).max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+    let alike = allowed.into_iter().filter(|name| likeness(name) > ALIKE);
+    alike.max_by(|a, b| likeness(a).total_cmp(&likeness(b))).map(|name| format!("\ndid you mean `{name}`?"))
 }
 
 /// What a slip of the finger leaves: one or two letters of a word wrong, swapped or missing.
@@ -48,9 +53,12 @@ mod tests {
     fn a_slip_is_recognized_and_nonsense_is_not() {
         let message =
             "unknown field `gate_probabilty`, expected one of `outliers`, `gate_probability`, `order`";
-        assert_eq!(nearest(message), Some("gate_probability"));
-        assert_eq!(nearest("unknown field `zzz`, expected one of `outliers`, `order`"), None);
-        assert_eq!(nearest("unknown variant `jcb`, expected one of `known`, `nn`, `jcbb`"), Some("jcbb"));
-        assert_eq!(nearest("invalid type: string \"x\", expected f64"), None);
+        assert_eq!(hint(message).as_deref(), Some("\ndid you mean `gate_probability`?"));
+        assert_eq!(hint("unknown field `zzz`, expected one of `outliers`, `order`"), None);
+        let variant = hint("unknown variant `jcb`, expected one of `known`, `nn`, `jcbb`");
+        assert_eq!(variant.as_deref(), Some("\ndid you mean `jcbb`?"));
+        let old = hint("unknown field `looks`, expected one of `keyframes`, `lines`");
+        assert_eq!(old.as_deref(), Some("\n`looks` is called `keyframes` now"));
+        assert_eq!(hint("invalid type: string \"x\", expected f64"), None);
     }
 }

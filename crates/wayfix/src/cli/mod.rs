@@ -15,6 +15,7 @@ mod params;
 mod progress;
 mod read_problems;
 mod regress;
+mod renamed;
 mod run_cml;
 mod run_color;
 mod run_lines;

@@ -1,0 +1,66 @@
+//! Parameters that had another name: an old file of parameters is told the new one.
+
+/// Old name, new name. An old name may have become several.
+const RENAMED: [(&str, &str); 42] = [
+    ("alike_share", "color_agreement_share"),
+    ("bearing", "bearing_sigma"),
+    ("bearing_per_extent", "bearing_sigma_per_extent"),
+    ("clutter", "mean_clutter"),
+    ("command_erosion", "turn_command_shortening"),
+    ("contradiction", "restart_nis"),
+    ("detection", "detection_probability"),
+    ("disagreement", "odometry_scan_noise"),
+    ("doubt_below", "no_evidence_below"),
+    ("first_kernel_m", "initial_kernel_m"),
+    ("found_from", "found_above"),
+    ("greatest_count", "max_count"),
+    ("greatest_sigma", "max_sigma"),
+    ("heading_per_metre", "heading_per_meter"),
+    ("independent_rad", "correlation_angle_rad"),
+    ("least_share_seen", "min_detection_rate"),
+    ("least_turn", "min_rotation"),
+    ("least_way", "min_distance"),
+    ("least_weight", "min_weight"),
+    ("light_stays", "light_persistence"),
+    ("log_area", "log_area_sigma"),
+    ("look_errors", "correlated_noise"),
+    ("looks", "keyframes"),
+    ("made_odometry", "synthetic_odometry"),
+    ("most", "max_components"),
+    ("most_references", "max_references"),
+    ("n_sightings", "n_detections"),
+    ("never_twice", "one_detection_per_landmark"),
+    ("own_bearing_sigma", "independent_bearing_sigma"),
+    ("own_range_sigma", "independent_range_sigma"),
+    ("own_range_sigma_per_meter", "independent_range_sigma_per_meter"),
+    ("patience", "lost_after"),
+    ("patience", "max_missed"),
+    ("reach", "search_distance"),
+    ("reach", "search_radius"),
+    ("reach", "sensor_range"),
+    ("reach_m", "max_range_m"),
+    ("stays", "stay_probability"),
+    ("strays", "other_action_probability"),
+    ("taught", "taught_pose"),
+    ("visit", "imaging_conditions"),
+    ("with_things", "with_unmapped_objects"),
+];
+
+/// The present name of what a file calls `old`, among the names that may stand there.
+pub(super) fn present_name<'a>(old: &str, allowed: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let new: Vec<&str> = RENAMED.iter().filter(|(name, _)| *name == old).map(|(_, new)| *new).collect();
+    allowed.into_iter().find(|name| new.contains(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn old_name_is_told_the_present_one_that_fits_there() {
+        let allowed = ["sensor_range", "range_sigma"];
+        assert_eq!(present_name("reach", allowed.into_iter()), Some("sensor_range"));
+        assert_eq!(present_name("reach", ["step"].into_iter()), None);
+        assert_eq!(present_name("range_sigmas", allowed.into_iter()), None);
+    }
+}
