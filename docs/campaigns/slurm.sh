@@ -6,7 +6,7 @@
 #SBATCH --output=campaign/share-%a.log
 # One regression as a job array; the folder must be one that all nodes see.
 #   mkdir -p campaign && id=$(sbatch --parsable docs/campaigns/slurm.sh)
-#   sbatch --dependency=afterok:"$id" --wrap 'wayfix merge-reports --out campaign campaign/share-*/'
+#   sbatch --dependency=afterok:"$id" --wrap 'wayfix-experiments merge-reports --out campaign campaign/share-*/'
 set -euo pipefail
 k=$SLURM_ARRAY_TASK_ID n=$SLURM_ARRAY_TASK_COUNT
-wayfix regress slam --seeds 100 --threads 1 --shard "$k/$n" --out "campaign/share-$k"
+wayfix-experiments regress slam --seeds 100 --threads 1 --shard "$k/$n" --out "campaign/share-$k"

@@ -12,5 +12,5 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
         [flag] if flag == "--check" => "check",
         _ => bail!("usage: cargo xtask fixtures [--check]"),
     };
-    shell::pass_on(&mut shell::wayfix(&["fixtures", verb]))
+    shell::pass_on(&mut shell::experiments(&["fixtures", verb]))
 }

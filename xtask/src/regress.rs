@@ -1,4 +1,4 @@
-//! `cargo xtask regress`: the application's regression run, with the folder for results filled in.
+//! `cargo xtask regress`: the regression run of `wayfix-experiments`, with the folder for results filled in.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -8,7 +8,7 @@ use anyhow::Result;
 use crate::shell;
 
 pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
-    let mut command = shell::wayfix(&["regress"]);
+    let mut command = shell::experiments(&["regress"]);
     command.args(args);
     if !names_option(args, "--out") {
         command.arg("--out").arg(default_out());

@@ -27,9 +27,10 @@ pub(crate) fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
     command
 }
 
-/// The application, built for speed; arguments follow.
-pub(crate) fn wayfix(args: &[&str]) -> Command {
-    let mut command = command("cargo", &["run", "--quiet", "--release", "--package", "wayfix", "--"]);
+/// The experiments, built for speed; arguments follow.
+pub(crate) fn experiments(args: &[&str]) -> Command {
+    let mut command =
+        command("cargo", &["run", "--quiet", "--release", "--package", "wayfix-experiments", "--"]);
     command.args(args);
     command
 }

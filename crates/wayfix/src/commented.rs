@@ -132,7 +132,7 @@ const WIDTH: usize = 100;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
+    use wayfix_systems::{
         cml::CmlParams,
         color::ColorSystemParams,
         slam::{Profile, SlamSystemParams},

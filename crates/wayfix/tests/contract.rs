@@ -146,7 +146,6 @@ fn help_teaches_the_options_and_shows_examples() {
         (vec!["run", "slam", "--help"], "range_sigma = 0.10"),
         (vec!["convert", "--help"], "MCAP keeps everything"),
         (vec!["info", "--help"], "UTIAS"),
-        (vec!["regress", "--help"], "each bound a source"),
     ] {
         let outcome = wayfix(&arguments);
         assert_eq!(outcome.code, 0);

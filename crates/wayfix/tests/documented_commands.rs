@@ -51,7 +51,7 @@ fn columns(line: &str) -> Vec<String> {
 
 /// What of a text is a command line: from the name of the program to a redirection or the next command.
 fn command_in(text: &str) -> Option<String> {
-    let starts = ["wayfix ", "cargo run ", "cargo xtask "];
+    let starts = ["wayfix ", "wayfix-experiments ", "cargo run ", "cargo xtask "];
     let text = text.trim_start_matches("$ ").trim_start_matches("then: ");
     let text = text.split(" > ").next()?.split(" && ").next()?.trim();
     if let Some(system) = text.strip_prefix("run ") {
@@ -190,14 +190,23 @@ fn check_wayfix(words: &[String], commands: &Command) -> Result<(), String> {
         .map_err(|error| error.to_string().lines().next().unwrap_or_default().to_owned())
 }
 
-fn check_xtask(words: &[String], commands: &Command) -> Result<(), String> {
+fn check_experiments(words: &[String]) -> Result<(), String> {
+    if words.len() < 2 {
+        return Ok(()); // a command that is spoken of, not one to type
+    }
+    let filled = words.iter().map(|word| filled_in(word));
+    wayfix_experiments::cli::parses(std::iter::once("wayfix-experiments".to_owned()).chain(filled))
+        .map_err(|error| error.to_string().lines().next().unwrap_or_default().to_owned())
+}
+
+fn check_xtask(words: &[String]) -> Result<(), String> {
     let Some((task, rest)) = words.split_first() else { return Err("no task".to_owned()) };
     let tasks = fs::read_to_string(root().join("xtask/src/main.rs")).unwrap();
     if !tasks.contains(&format!("\"{task}\" =>")) {
         return Err(format!("no task {task}"));
     }
     // what follows is handed on to the program
-    if task == "regress" && !rest.is_empty() { check_wayfix(words, commands) } else { Ok(()) }
+    if task == "regress" && !rest.is_empty() { check_experiments(words) } else { Ok(()) }
 }
 
 fn check_cargo_run(words: &[String], commands: &Command) -> Result<(), String> {
@@ -222,7 +231,8 @@ fn check(line: &Line, commands: &Command) -> Result<(), String> {
     let words: Vec<String> = line.text.split_whitespace().map(str::to_owned).collect();
     match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["wayfix", ..] => check_wayfix(&words[1..], commands),
-        ["cargo", "xtask", ..] => check_xtask(&words[2..], commands),
+        ["cargo", "xtask", ..] => check_xtask(&words[2..]),
+        ["wayfix-experiments", ..] => check_experiments(&words[1..]),
         ["cargo", "run", ..] => check_cargo_run(&words[2..], commands),
         _ => Err("not a command".to_owned()),
     }

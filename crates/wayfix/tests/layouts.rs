@@ -17,7 +17,7 @@ use std::{
 use common::{Scratch, wayfix};
 use mcap::MessageStream;
 use serde_json::Value;
-use wayfix::report::foxglove_layout;
+use wayfix_evaluation::report::foxglove_layout;
 use wayfix_scene_sim::film::Film;
 use wayfix_sensor_log::{EncodedImage, Format, OpenOptions, Record, open, write};
 

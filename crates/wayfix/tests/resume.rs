@@ -15,8 +15,10 @@ use std::{
 use common::{Outcome, Scratch, run_slam, utias_walk, walk};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix::slam::{AssociationRule, Profile, SavedMap, SavedMapError, SlamSystemParams, run, run_on};
 use wayfix_sensor_log::{OpenOptions, Record};
+use wayfix_systems::slam::{
+    AssociationRule, Profile, SavedMap, SavedMapError, SlamSystemParams, run, run_on,
+};
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const KILL_SEED: u64 = 9;

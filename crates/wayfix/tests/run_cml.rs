@@ -328,7 +328,7 @@ fn kill_while_saving(n: usize) {
         thread,
         time::Duration,
     };
-    use wayfix::cml::{PanoramaMap, read_map};
+    use wayfix_systems::cml::{PanoramaMap, read_map};
 
     let (scratch, drive) = (Scratch::new(), Drive::new());
     let (log, map) = (drive.log(&scratch), scratch.path("area.map"));

@@ -4,7 +4,7 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 14] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 16] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
@@ -19,10 +19,30 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 14] = [
     ("appearance-cml", &["estimation-traits", "gaussian-core"]),
     ("sensor-log", &["estimation-traits"]),
     ("scene-sim", &["estimation-traits", "sensor-log", "color-map"]),
+    ("evaluation", &["estimation-traits", "gaussian-core", "sensor-log"]),
+    (
+        "systems",
+        &[
+            "appearance-cml",
+            "color-map",
+            "color-model",
+            "condensation",
+            "estimation-traits",
+            "evaluation",
+            "gaussian-core",
+            "kalman",
+            "line-extract",
+            "scan-match",
+            "scene-sim",
+            "sensor-log",
+            "slam-ekf",
+            "visual-tracking",
+        ],
+    ),
 ];
 
-/// The application and the tasks may know every library.
-const UNRESTRICTED: [&str; 2] = ["wayfix", "xtask"];
+/// The application, the experiments and the tasks may know every library.
+const UNRESTRICTED: [&str; 3] = ["wayfix", "experiments", "xtask"];
 
 /// Crates that must not learn what an image is.
 const IMAGE_FREE: [&str; 7] =

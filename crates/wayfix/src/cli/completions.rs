@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::CommandFactory;
 use clap_complete::{Shell, generate};
 
-use super::output::print;
+use wayfix_evaluation::terminal::print;
 
 /// Print the script that completes `wayfix` in a shell.
 #[derive(clap::Args)]

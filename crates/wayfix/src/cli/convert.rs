@@ -1,12 +1,10 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Result, bail};
+use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_sensor_log::{Format, OpenOptions};
 
-use super::{
-    input::Topics,
-    output::{print, print_message},
-};
+use super::input::Topics;
 
 /// Write a log in another format.
 ///

@@ -1,9 +1,10 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::Result;
+use wayfix_evaluation::terminal::print;
 use wayfix_sensor_log::{Format, LogSummary, OpenOptions};
 
-use super::{input::Topics, output::print};
+use super::input::Topics;
 
 /// Tell what a log holds: kinds of records and their rates, landmarks, robots, what could not be read.
 #[derive(clap::Args)]

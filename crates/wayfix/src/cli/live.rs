@@ -3,8 +3,8 @@ use std::net::{IpAddr, SocketAddr};
 use anyhow::Result;
 use wayfix_sensor_log::MessageSink;
 
-use super::output::print_message;
 use crate::live::{LiveServer, Pace};
+use wayfix_evaluation::terminal::print_message;
 
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]

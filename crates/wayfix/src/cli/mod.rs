@@ -3,18 +3,13 @@
 mod common;
 mod completions;
 mod convert;
-mod fixtures;
 mod info;
 mod input;
 #[cfg_attr(not(feature = "live"), path = "no_live.rs")]
 mod live;
-mod merge_reports;
-mod output;
 mod outputs;
 mod params;
-mod progress;
 mod read_problems;
-mod regress;
 mod renamed;
 mod run_cml;
 mod run_color;
@@ -60,15 +55,10 @@ enum Command {
     Params(params::Arguments),
     Info(info::Arguments),
     Convert(convert::Arguments),
-    Regress(regress::Arguments),
-    MergeReports(merge_reports::Arguments),
     Completions(completions::Arguments),
     /// Make pictures to try a system on.
     #[command(subcommand)]
     Simulate(simulate::Command),
-    /// Build or check the stored logs.
-    #[command(subcommand)]
-    Fixtures(fixtures::Command),
 }
 
 #[derive(Subcommand)]
@@ -105,16 +95,13 @@ pub fn main() -> ExitCode {
         Command::Params(arguments) => params::main(arguments),
         Command::Info(arguments) => info::main(arguments),
         Command::Convert(arguments) => convert::main(arguments),
-        Command::Regress(arguments) => regress::main(arguments),
-        Command::MergeReports(arguments) => merge_reports::main(arguments),
         Command::Completions(arguments) => completions::main(arguments),
         Command::Simulate(command) => simulate::main(command),
-        Command::Fixtures(command) => fixtures::main(command),
     };
     match result {
         Ok(code) => code,
         Err(error) => {
-            output::print_message(format!("error: {error:#}"));
+            wayfix_evaluation::terminal::print_message(format!("error: {error:#}"));
             ExitCode::FAILURE
         }
     }

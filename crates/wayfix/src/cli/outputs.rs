@@ -4,18 +4,15 @@ use std::{
 };
 
 use anyhow::{Context, Result};
+use wayfix_evaluation::terminal::{print, print_message};
 use wayfix_sensor_log::{Format, McapFile, Sinks};
 
-use super::{
-    common::Common,
-    live::Live,
-    output::{print, print_message},
-};
-use crate::{
+use super::{common::Common, live::Live};
+use wayfix_evaluation::{
     plot::Picture,
     report::{Machine, Report, Run, RunSummary, Suite, foxglove_layout, table, table::TableStyle},
-    system::{Drawing, EstimateLog},
 };
+use wayfix_systems::system::{Drawing, EstimateLog};
 
 /// The estimates beside the report.
 const ESTIMATES: &str = "estimates.mcap";

@@ -5,11 +5,11 @@ use clap::ValueEnum;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::output::print;
-use crate::{
+use crate::commented::{commented, schema_of};
+use wayfix_evaluation::terminal::print;
+use wayfix_systems::{
     cml::CmlParams,
     color::ColorSystemParams,
-    commented::{commented, schema_of},
     slam::{Profile, SlamSystemParams},
     track::TrackParams,
     views::ViewsParams,

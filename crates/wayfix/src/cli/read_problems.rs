@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{Log, LogEnd, ReadReport, Record, Warning};
 
-use super::output::print_message;
-use crate::system::Events;
+use wayfix_evaluation::terminal::print_message;
+use wayfix_systems::system::Events;
 
 /// All records of a log; tells what could not be read and what was assumed.
 pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {

@@ -2,22 +2,20 @@ use std::{fs, path::PathBuf, process::ExitCode, str::FromStr, sync::Arc};
 
 use anyhow::{Context, Result, ensure};
 use wayfix_estimation_traits::Pose2;
+use wayfix_evaluation::terminal::{self, print};
 use wayfix_sensor_log::{OpenOptions, Record};
 
 use super::{
     common::Common,
     input::{Topics, name_of, read_toml},
-    output::print,
     outputs::Outputs,
-    progress,
     read_problems::{add_read_problems, read_all},
     truth::TruthFile,
 };
-use crate::{
+use crate::commented::commented;
+use wayfix_evaluation::{plot::Picture, report::Run};
+use wayfix_systems::{
     color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleFilm, StartPose, priors},
-    commented::commented,
-    plot::Picture,
-    report::Run,
     system::{Stopwatch, System},
 };
 
@@ -124,7 +122,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut estimates: Option<ColorEstimateLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let mut particles = ParticleFilm::new(color::n_images(&records));
-    let bar = progress::bar(records.len(), "colour localization");
+    let bar = terminal::bar(records.len(), "colour localization");
     let mut remaining = records.iter();
     let start = arguments.start.map(|start| start.0);
     let color = color::run(&records, map, bank, &params, start, arguments.common.seed, |system| {

@@ -1,21 +1,20 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Result, ensure};
+use wayfix_evaluation::terminal::{self, print};
 use wayfix_line_extract::Params;
 use wayfix_sensor_log::{Format, OpenOptions};
 
 use super::{
     common::Common,
     input::{Topics, name_of, read_toml},
-    output::print,
     outputs::Outputs,
-    progress,
     read_problems::{add_read_problems, read_all},
 };
-use crate::{
-    commented::commented,
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
     lines::{self, LineLog, LineSystem},
-    report::Run,
     system::{Stopwatch, System, drive},
 };
 
@@ -66,7 +65,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut outputs = Outputs::open("lines", &arguments.common)?;
     let mut walls: Option<LineLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let bar = progress::bar(records.len(), "walls");
+    let bar = terminal::bar(records.len(), "walls");
     let mut remaining = records.iter();
     drive(&mut system, &records, |system| {
         if let (Some(walls), Some(record)) = (&mut walls, remaining.next()) {

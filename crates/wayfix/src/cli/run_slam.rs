@@ -4,21 +4,20 @@ use std::{
 };
 
 use anyhow::{Context, Result};
+use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_sensor_log::{Format, OpenOptions, Record};
 
 use super::{
     common::Common,
     input::{Topics, name_of, read_toml},
-    output::{print, print_message},
     outputs::Outputs,
-    progress,
     read_problems::{add_read_problems, read_all},
     run_walls,
     truth::TruthFile,
 };
-use crate::{
-    commented::commented,
-    report::Run,
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
     slam::{
         self, AssociationRule, Profile, SavedMap, Saver, SlamEstimateLog, SlamRun, SlamSystem,
         SlamSystemParams,
@@ -178,7 +177,7 @@ fn run(
     mut estimates: Option<&mut SlamEstimateLog>,
     mut saver: Option<&mut Saver>,
 ) -> Result<SlamRun> {
-    let bar = progress::bar(records.len(), "EKF-SLAM");
+    let bar = terminal::bar(records.len(), "EKF-SLAM");
     let mut remaining = records.iter();
     let observe = |system: &SlamSystem| {
         let Some(record) = remaining.next() else { return };

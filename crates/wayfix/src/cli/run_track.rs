@@ -7,20 +7,14 @@ use std::{
 };
 
 use anyhow::{Context, Result};
+use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_sensor_log::{Format, Log, OpenOptions};
 use wayfix_visual_tracking::BoundingBox;
 
-use super::{
-    common::Common,
-    input::read_toml,
-    output::{print, print_message},
-    outputs::Outputs,
-    progress,
-    read_problems::add_read_problems,
-};
-use crate::{
-    commented::commented,
-    report::Run,
+use super::{common::Common, input::read_toml, outputs::Outputs, read_problems::add_read_problems};
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
     system::{Stopwatch, System},
     track::{self, Method, Start, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
 };
@@ -110,7 +104,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     };
     let setup = TrackSetup { method: arguments.method, params, init, truth, rate_hz };
     let system = TrackSystem::new(setup, arguments.common.seed);
-    let bar = progress::counter("tracking");
+    let bar = terminal::counter("tracking");
     let track = track::run(system, &mut log, |system, record| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);

@@ -7,17 +7,12 @@ use std::{
 use anyhow::{Context, Result};
 use clap::builder::RangedU64ValueParser;
 use wayfix_condensation::{ActionChoice, Light};
+use wayfix_evaluation::terminal::{self, print, print_message};
 
-use super::{
-    common::Common,
-    input::read_toml,
-    output::{print, print_message},
-    outputs::Outputs,
-    progress,
-};
-use crate::{
-    commented::commented,
-    report::Run,
+use super::{common::Common, input::read_toml, outputs::Outputs};
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
     system::Stopwatch,
     views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams},
 };
@@ -138,7 +133,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
         feature: arguments.feature,
         normalization: arguments.normalization,
     };
-    let bar = progress::bar(arguments.trials as usize, "drives");
+    let bar = terminal::bar(arguments.trials as usize, "drives");
     let run =
         views::run(learned, &real, &setup, &params, arguments.trials, arguments.common.seed, &|| bar.inc(1));
     bar.finish_and_clear();

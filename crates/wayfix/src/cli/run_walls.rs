@@ -1,19 +1,18 @@
 use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
+use wayfix_evaluation::terminal::{self, print, print_message};
 use wayfix_sensor_log::{Data, Format, ReadReport, Record, read_relations};
 
 use super::{
     input::{name_of, read_toml},
-    output::{print, print_message},
     outputs::Outputs,
-    progress,
     read_problems::add_read_problems,
     run_slam,
 };
-use crate::{
-    commented::commented,
-    report::Run,
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
     slam::{AssociationRule, Saved, Saver},
     system::Stopwatch,
     walls::{self, WallEstimateLog, WallSlamParams, WallState, WallSystem},
@@ -45,7 +44,7 @@ pub(super) fn main(
     let mut estimates: Option<WallEstimateLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
-    let bar = progress::bar(records.len(), "EKF-SLAM with walls");
+    let bar = terminal::bar(records.len(), "EKF-SLAM with walls");
     let mut remaining = records.iter();
     let observe = |system: &WallSystem| {
         let Some(record) = remaining.next() else { return };

@@ -6,12 +6,11 @@ use std::{
 
 use anyhow::{Context, Result, anyhow};
 use clap::builder::PossibleValuesParser;
+use wayfix_evaluation::terminal::{self, print};
 use wayfix_scene_sim::{
     film::{Film, Frame, Incident, Silhouette},
     scenery::{ImagingConditions, RgbPicture, Scenery},
 };
-
-use super::{output::print, progress};
 
 /// Make pictures to try a system on, when there are no recordings at hand.
 ///
@@ -83,7 +82,7 @@ fn shoot(film: &Film, out: &Path) -> Result<()> {
     let folder = out.join("frames");
     create(&folder)?;
     let mut truth = String::new();
-    let bar = progress::bar(film.n_frames, "filming");
+    let bar = terminal::bar(film.n_frames, "filming");
     for (index, frame) in film.frames()?.enumerate() {
         save(&folder.join(format!("{index:05}.png")), frame.picture.clone())?;
         if index == 0 {

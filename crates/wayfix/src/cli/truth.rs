@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use wayfix_sensor_log::{Data, Format, OpenOptions, PoseKind, Record};
 
 use super::read_problems::read_all;
-use crate::system::check_overlap;
+use wayfix_systems::system::check_overlap;
 
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]

@@ -3,7 +3,7 @@ use std::{thread, time::Duration};
 use wayfix_sensor_log::Stamp;
 
 use super::LiveError;
-use crate::system::Stopwatch;
+use wayfix_systems::system::Stopwatch;
 
 /// Nobody wants to look at nothing for longer; a first stamp of 0 before those of today would be a pause of decades.
 const LONGEST_PAUSE: Duration = Duration::from_secs(5);

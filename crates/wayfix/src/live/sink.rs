@@ -4,7 +4,7 @@ use foxglove::{Context, WebSocketServerHandle};
 use wayfix_sensor_log::{LogError, Message, MessageSink, Stamp};
 
 use super::{Pace, audience::Audience};
-use crate::system::Stopwatch;
+use wayfix_systems::system::Stopwatch;
 
 /// Viewers are told the time of the log this often at most: one that is told faster than it reads would be cut off.
 const CLOCK_PERIOD: Duration = Duration::from_millis(20);

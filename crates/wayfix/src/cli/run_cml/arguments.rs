@@ -3,13 +3,11 @@ use std::{path::PathBuf, str::FromStr};
 use wayfix_appearance_cml::{Donut, RingOrder, TurnSense};
 use wayfix_estimation_traits::Pose2;
 
-use crate::{
-    cli::{
-        common::Common,
-        input::{Topics, name_of},
-    },
-    cml::{Task, recording::ColumnNames},
+use crate::cli::{
+    common::Common,
+    input::{Topics, name_of},
 };
+use wayfix_systems::cml::{Task, recording::ColumnNames};
 
 /// Appearance maps: learn what places look like all round, and localize in what was learned.
 ///

@@ -3,6 +3,7 @@
 mod arguments;
 
 use std::{path::Path, process::ExitCode};
+use wayfix_evaluation::terminal::{self, print, print_message};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_appearance_cml::{ArchiveParams, Forgetting, Learning, MapArchive, Start, TurnSense};
@@ -14,19 +15,17 @@ use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
 
 use super::{
     input::read_toml,
-    output::{print, print_message},
     outputs::Outputs,
-    progress,
     read_problems::{add_read_problems, read_all},
 };
-use crate::{
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
     cml::{
         self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
         Task, ViewReader,
         recording::{Recording, Tables},
     },
-    commented::commented,
-    report::Run,
     system::{Stopwatch, System},
 };
 
@@ -50,7 +49,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut outputs = Outputs::open("cml", &arguments.common)?;
     let mut estimates: Option<CmlEstimateLog> = outputs.estimates(origin)?;
     let mut saver = arguments.save_map.clone().map(|path| MapSaver::new(path, arguments.save_every));
-    let bar = progress::bar(plan.records.len(), "appearance map");
+    let bar = terminal::bar(plan.records.len(), "appearance map");
     let mut remaining = plan.records.iter();
     let run = cml::run(system, &plan, task, start, &params, arguments.common.seed, |system| {
         if let Some(record) = remaining.next() {

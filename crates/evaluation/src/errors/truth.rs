@@ -1,0 +1,135 @@
+use nalgebra::Matrix3;
+use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_sensor_log::{Data, Record, Stamp};
+
+use super::{Sample, truth_noise::truth_noise};
+
+/// True poses over time, or those of another program.
+#[derive(Clone, Debug, Default)]
+pub struct TrueTrack {
+    poses: Vec<(Stamp, Pose2<f64>)>,
+    noise: Matrix3<f64>,
+    is_estimate: bool,
+}
+
+/// Motion capture and GPS lose sight of a robot; across a longer gap nobody knows where it was, s.
+pub const LONGEST_GAP: f64 = 0.5;
+
+impl TrueTrack {
+    /// The true poses among `records`; those that are not finite or go back in time are left out.
+    pub fn from_records(records: &[Record]) -> Self {
+        let mut poses: Vec<(Stamp, Pose2<f64>)> = Vec::new();
+        for record in records {
+            if let Data::TruePose(pose) = &record.data {
+                let later = poses.last().is_none_or(|(last, _)| *last < record.stamp);
+                if later && pose.is_finite() {
+                    poses.push((record.stamp, *pose));
+                }
+            }
+        }
+        let noise = truth_noise(&poses, records);
+        Self { poses, noise, is_estimate: false }
+    }
+
+    /// The true poses, or those that another program estimated, where the log has no true ones.
+    pub fn from_records_or_estimates(records: &[Record]) -> Self {
+        let truth = Self::from_records(records);
+        if !truth.poses.is_empty() {
+            return truth;
+        }
+        let as_truth = |record: &Record| match record.data {
+            Data::EstimatedPose(pose) => Record { stamp: record.stamp, data: Data::TruePose(pose) },
+            _ => record.clone(),
+        };
+        let track = Self::from_records(&records.iter().map(as_truth).collect::<Vec<_>>());
+        Self { is_estimate: !track.poses.is_empty(), ..track }
+    }
+
+    /// Covariance of the errors of the truth itself, `(x, y, θ)` in the body frame; zero as far as the log does not show any.
+    pub fn noise(&self) -> &Matrix3<f64> {
+        &self.noise
+    }
+
+    /// Whether the poses are those of another program, whose errors are unknown.
+    pub fn is_estimate(&self) -> bool {
+        self.is_estimate
+    }
+
+    /// Whether there is no pose at all.
+    pub fn is_empty(&self) -> bool {
+        self.poses.is_empty()
+    }
+
+    /// An estimate beside the truth at its stamp. The noise of the truth is part of what they may differ by.
+    pub fn sample(&self, stamp: Stamp, estimate: Pose2<f64>, covariance: &Matrix3<f64>) -> Option<Sample> {
+        let truth = self.at(stamp)?;
+        Some(Sample { estimate, covariance: covariance + self.noise, truth })
+    }
+
+    /// Last stamp with a true pose.
+    pub fn last_stamp(&self) -> Option<Stamp> {
+        self.poses.last().map(|(stamp, _)| *stamp)
+    }
+
+    /// The first true pose at or after a stamp.
+    pub fn first_after(&self, stamp: Stamp) -> Option<(Stamp, Pose2<f64>)> {
+        self.poses.get(self.poses.partition_point(|(known, _)| *known < stamp)).copied()
+    }
+
+    /// First and last stamp with a true pose.
+    pub fn span(&self) -> Option<(Stamp, Stamp)> {
+        Some((self.poses.first()?.0, self.poses.last()?.0))
+    }
+
+    /// The pose at `stamp`: interpolated linearly, headings along the shorter arc, never across more than half a second.
+    pub fn at(&self, stamp: Stamp) -> Option<Pose2<f64>> {
+        let after = self.poses.partition_point(|(known, _)| *known < stamp);
+        let (late, late_pose) = self.poses.get(after)?;
+        if *late == stamp {
+            return Some(*late_pose);
+        }
+        let (early, early_pose) = self.poses.get(after.checked_sub(1)?)?;
+        let gap = late.seconds_since(*early);
+        if gap > LONGEST_GAP {
+            return None;
+        }
+        let fraction = stamp.seconds_since(*early) / gap;
+        let position = early_pose.translation.lerp(&late_pose.translation, fraction);
+        let turn = early_pose.rotation.local(&late_pose.rotation) * fraction;
+        Some(Pose2 { translation: position, rotation: early_pose.rotation.retract(&turn) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track(rows: &[(u64, f64)]) -> TrueTrack {
+        let record = |&(milliseconds, heading): &(u64, f64)| Record {
+            stamp: Stamp::from_nanoseconds(milliseconds * 1_000_000),
+            data: Data::TruePose(Pose2::new(milliseconds as f64, 0.0, heading)),
+        };
+        TrueTrack::from_records(&rows.iter().map(record).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn interpolates_along_the_shorter_arc_and_not_across_gaps() {
+        let track = track(&[(0, 3.1), (100, -3.1), (1000, 0.0)]);
+        let at = |milliseconds: u64| track.at(Stamp::from_nanoseconds(milliseconds * 1_000_000));
+        let middle = at(50).unwrap();
+        assert!(
+            (middle.heading().abs() - std::f64::consts::PI).abs() < 1e-12
+                && (middle.x() - 50.0).abs() < 1e-12
+        );
+        assert_eq!(at(0).unwrap().heading(), 3.1);
+        assert_eq!(at(500), None);
+        assert_eq!(at(1000).unwrap().heading(), 0.0);
+        assert_eq!(at(1001), None);
+    }
+
+    #[test]
+    fn leaves_out_what_goes_back_in_time() {
+        let track = track(&[(0, 0.0), (200, 0.2), (100, 3.0), (300, 0.3)]);
+        assert!((track.at(Stamp::from_nanoseconds(100_000_000)).unwrap().heading() - 0.1).abs() < 1e-12);
+    }
+}

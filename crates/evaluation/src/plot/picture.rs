@@ -1,0 +1,40 @@
+use serde::{Deserialize, Serialize};
+
+use super::ink::{DARK_PALETTE, LIGHT_PALETTE};
+
+/// A drawn plot: an inline `<svg>` element whose colours are the CSS variables of the page around it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Picture {
+    /// Caption.
+    pub title: String,
+    /// What the picture shows, for readers who do not see it.
+    pub alt: String,
+    /// Natural width, CSS pixels.
+    pub width: u32,
+    /// Natural height, CSS pixels.
+    pub height: u32,
+    /// The `<svg>` element, well-formed XML; not stored in `report.json`.
+    #[serde(skip)]
+    pub svg: String,
+}
+
+impl Picture {
+    /// The picture as a file of its own: the same element with the palette inside.
+    ///
+    /// ```
+    /// use wayfix_evaluation::plot::{LinesPlot, Series};
+    /// let plot = LinesPlot { series: vec![Series::new("speed", vec![(0.0, 1.0), (1.0, 3.0)])], ..Default::default() };
+    /// assert!(plot.draw()?.standalone().contains("prefers-color-scheme: dark"));
+    /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
+    /// ```
+    pub fn standalone(&self) -> String {
+        let style = format!(
+            "<style>svg{{{LIGHT_PALETTE};background:var(--paper)}}text{{font-family:system-ui,sans-serif}}\
+             @media (prefers-color-scheme: dark){{svg{{{DARK_PALETTE}}}}}</style>"
+        );
+        match self.svg.find('>') {
+            Some(end) => format!("{}{style}{}", &self.svg[..=end], &self.svg[end + 1..]),
+            None => String::new(),
+        }
+    }
+}

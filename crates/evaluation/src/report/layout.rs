@@ -1,0 +1,18 @@
+/// How Foxglove should show what `wayfix run SYSTEM` writes: a layout that it imports, as JSON; `None` for systems that are none.
+///
+/// ```
+/// let layout = wayfix_evaluation::report::foxglove_layout("slam").expect("a system");
+/// assert!(layout.contains("/estimate/pose"));
+/// assert!(wayfix_evaluation::report::foxglove_layout("weather").is_none());
+/// ```
+pub fn foxglove_layout(system: &str) -> Option<&'static str> {
+    Some(match system {
+        "slam" => include_str!("../../layouts/slam.json"),
+        "lines" => include_str!("../../layouts/lines.json"),
+        "color" => include_str!("../../layouts/color.json"),
+        "views" => include_str!("../../layouts/views.json"),
+        "track" => include_str!("../../layouts/track.json"),
+        "cml" => include_str!("../../layouts/cml.json"),
+        _ => return None,
+    })
+}

@@ -1,0 +1,139 @@
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Machine, Metric};
+use crate::plot::Picture;
+
+/// All suites of one call, and what is needed to repeat it.
+///
+/// ```
+/// use wayfix_evaluation::report::{Metric, Report, Run, Suite};
+/// let run = Run { name: "robot 1".to_owned(), metrics: vec![Metric::new("nees_mean", 2.9, "").at_most(4.0)], ..Run::default() };
+/// let report = Report { suites: vec![Suite { name: "slam".to_owned(), runs: vec![run] }], seed: 1, ..Report::default() };
+/// assert!(report.tally().all_pass());
+/// assert!(serde_json::to_string(&report)?.contains(r#""pass":true"#));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// In the order in which they ran.
+    pub suites: Vec<Suite>,
+    /// Seed of every generator.
+    pub seed: u64,
+    /// Revision of the source, `null` when unknown.
+    pub commit: Option<String>,
+    /// Where it ran.
+    pub machine: Machine,
+}
+
+/// Runs that belong together: `slam`, `color`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Suite {
+    /// Its name on the command line.
+    pub name: String,
+    /// In the order in which they ran.
+    pub runs: Vec<Run>,
+}
+
+/// One log through one estimator.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// Its name, unique in its suite.
+    pub name: String,
+    /// Figures that the seed and the log decide, bit for bit.
+    pub metrics: Vec<Metric>,
+    /// How long it took.
+    pub seconds: f64,
+    /// Figures that change from call to call: times. Their bounds count like those of `metrics`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub timings: Vec<Metric>,
+    /// How often each kind of event happened: lost, rejected, new landmark.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub events: BTreeMap<String, u64>,
+    /// Pictures in the order of the page; the drawings themselves are in the page only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub figures: Vec<Picture>,
+    /// Remarks for the reader, a paragraph each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+    /// What was assumed for the user or is doubtful, a sentence each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+    /// MCAP of the estimates, relative to the folder of the report.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub log: Option<String>,
+    /// A layout with which Foxglove shows the log, beside the report.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layout: Option<String>,
+    /// Why the run ended early; such a run fails.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+}
+
+impl Run {
+    /// Metrics, then timings.
+    pub fn all_metrics(&self) -> impl Iterator<Item = &Metric> {
+        self.metrics.iter().chain(&self.timings)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn report() -> Report {
+        let run = Run {
+            name: "utias-7-1".to_owned(),
+            metrics: vec![
+                Metric::new("ate_rmse_m", 0.25, "m").at_most(0.5).paper(0.3),
+                Metric::new("nees_mean", f64::NAN, ""),
+            ],
+            seconds: 1.5,
+            timings: vec![Metric::new("step_mean_us", 12.0, "µs")],
+            events: BTreeMap::from([("rejected".to_owned(), 3)]),
+            figures: vec![Picture {
+                title: "Map".to_owned(),
+                svg: "<svg></svg>".to_owned(),
+                ..Picture::default()
+            }],
+            ..Run::default()
+        };
+        Report {
+            suites: vec![Suite { name: "slam".to_owned(), runs: vec![run] }],
+            seed: 7,
+            ..Report::default()
+        }
+    }
+
+    #[test]
+    fn json_has_the_shape_of_the_contract() {
+        let value = serde_json::to_value(report()).unwrap();
+        let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+        assert_eq!(keys(&value), ["commit", "machine", "seed", "suites"]);
+        assert_eq!((&value["seed"], &value["commit"]), (&json!(7), &Value::Null));
+        let run = &value["suites"][0]["runs"][0];
+        assert_eq!(
+            (&value["suites"][0]["name"], &run["name"], &run["seconds"]),
+            (&json!("slam"), &json!("utias-7-1"), &json!(1.5))
+        );
+        assert_eq!(
+            run["metrics"],
+            json!([
+                {"name": "ate_rmse_m", "value": 0.25, "unit": "m", "low": null, "high": 0.5, "paper": 0.3, "pass": true},
+                {"name": "nees_mean", "value": null, "unit": "", "low": null, "high": null, "paper": null, "pass": false},
+            ])
+        );
+        assert!(!value.to_string().contains("<svg"), "drawings do not bloat the figures");
+    }
+
+    #[test]
+    fn json_reads_back() {
+        let text = serde_json::to_string(&report()).unwrap();
+        let read: Report = serde_json::from_str(&text).unwrap();
+        assert_eq!(serde_json::to_string(&read).unwrap(), text);
+        let bare = r#"{"suites":[{"name":"s","runs":[{"name":"r","metrics":[],"seconds":0.1}]}],"seed":0,"commit":"abc","machine":{}}"#;
+        assert_eq!(serde_json::from_str::<Report>(bare).unwrap().commit.as_deref(), Some("abc"));
+    }
+}

@@ -1,0 +1,47 @@
+use std::{fs, path::PathBuf, process::ExitCode};
+
+use anyhow::{Context, Result};
+
+use crate::fixtures;
+use wayfix_evaluation::terminal::print;
+use wayfix_systems::color::priors;
+
+#[derive(clap::Subcommand)]
+pub(super) enum Command {
+    /// Write every stored log from its seed.
+    Build(Arguments),
+    /// Compare every stored log with what its seed gives, byte for byte.
+    Check(Arguments),
+    /// Learn the priors of `wayfix run color` from the simulated training venues.
+    Priors {
+        /// Where to write them.
+        #[arg(default_value = "crates/systems/data/four-legged-priors.json")]
+        file: PathBuf,
+        /// How many, from dark to bright.
+        #[arg(long, default_value_t = 2)]
+        lights: usize,
+    },
+}
+
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// Folder of the stored logs.
+    #[arg(default_value = "fixtures")]
+    folder: PathBuf,
+}
+
+pub(super) fn main(command: Command) -> Result<ExitCode> {
+    let (stored, verb) = match &command {
+        Command::Build(arguments) => (fixtures::build(&arguments.folder)?, "wrote"),
+        Command::Check(arguments) => (fixtures::check(&arguments.folder)?, "same"),
+        Command::Priors { file, lights } => {
+            let text = serde_json::to_string(&priors::learn_from_simulation(*lights)?)? + "\n";
+            fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+    };
+    for log in stored {
+        print(format!("{verb} {} ({} bytes)\n", log.path.display(), log.n_bytes))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

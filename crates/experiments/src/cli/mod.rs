@@ -1,0 +1,57 @@
+//! The command line: regress, the stored logs, reports of several machines.
+
+mod fixtures;
+mod merge_reports;
+mod regress;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use wayfix_evaluation::terminal::print_message;
+
+/// The experiments of Wayfix: every system on stored logs and public recordings, with the figures of papers and other programs beside ours.
+///
+/// Examples:
+///   wayfix-experiments regress                    every system on the stored logs
+///   wayfix-experiments regress slam --data DATA   one suite, on public recordings too
+///   wayfix-experiments fixtures check fixtures    are the stored logs what their seeds make?
+#[derive(Parser)]
+#[command(name = "wayfix-experiments", version, verbatim_doc_comment)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// What an argument structure says of itself is its help; the group says it here.
+#[derive(Subcommand)]
+enum Command {
+    Regress(regress::Arguments),
+    MergeReports(merge_reports::Arguments),
+    /// Build or check the stored logs.
+    #[command(subcommand)]
+    Fixtures(fixtures::Command),
+}
+
+/// Whether a command line, with the name of the program first, is one that the program takes. For tests of what is documented.
+///
+/// # Errors
+/// What is wrong with it.
+#[doc(hidden)]
+pub fn parses<T: Into<std::ffi::OsString> + Clone>(
+    command_line: impl IntoIterator<Item = T>,
+) -> Result<(), clap::Error> {
+    Arguments::try_parse_from(command_line).map(|_| ())
+}
+
+/// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
+pub fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Regress(arguments) => regress::main(arguments),
+        Command::MergeReports(arguments) => merge_reports::main(arguments),
+        Command::Fixtures(command) => fixtures::main(command),
+    };
+    result.unwrap_or_else(|error| {
+        print_message(format!("error: {error:#}"));
+        ExitCode::FAILURE
+    })
+}

@@ -1,0 +1,106 @@
+use anyhow::Result;
+use wayfix_appearance_cml::LocalizerParams;
+use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
+use wayfix_scene_sim::world::World;
+
+use super::localize_trip::known_start;
+use super::summary::{largest, mean, mean_of, over_seeds, ratio_of};
+use super::worlds::{Draw, robot};
+use super::{Setup, Trip, TripResult, localize_trip};
+use wayfix_evaluation::plot::MapPlot;
+use wayfix_evaluation::report::{Metric, Run};
+use wayfix_systems::cml::PanoramaLocalizer;
+
+/// Laps around the shelves. [Gross et al. 2004, Fig. 4]
+const N_LAPS: usize = 7;
+
+struct Lapped {
+    building: Building,
+    trip: Trip,
+    course: TripResult,
+    /// The same with the method as printed.
+    printed: TripResult,
+}
+
+/// Fig. 4: seven laps around shelves from an empty map, odometry as it is. Length and share of the setup play no part.
+///
+/// # Errors
+/// When a drive cannot be simulated or followed, or the picture not be drawn.
+pub fn laps(setup: &Setup, seed: u64) -> Result<Run> {
+    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
+    let mut metrics: Vec<Metric> = Vec::new();
+    metrics.extend(mean_of("error_mean_m", "m", &seeds, |lapped| mean(&lapped.course.errors)));
+    metrics.extend(mean_of("error_max_m", "m", &seeds, |lapped| largest(&lapped.course.errors)));
+    metrics.extend(mean_of("error_mean_m_printed", "m", &seeds, |lapped| mean(&lapped.printed.errors)));
+    metrics.extend(mean_of("dead_reckoning_error_mean_m", "m", &seeds, |lapped| {
+        mean(&dead_reckoning_errors(&lapped.trip))
+    }));
+    let error = |lap: usize| move |lapped: &Lapped| mean(of_lap(&lapped.course, lap));
+    for (name, lap) in [("first", 0), ("second", 1), ("last", N_LAPS - 1)] {
+        metrics.extend(mean_of(&format!("error_mean_m_{name}_lap"), "m", &seeds, error(lap)));
+    }
+    metrics.extend(ratio_of("last_lap_over_first", &seeds, error(N_LAPS - 1), error(0)));
+    metrics.extend(ratio_of("last_lap_over_second", &seeds, error(N_LAPS - 1), error(1)));
+    metrics.extend(mean_of("references", "", &seeds, |lapped| {
+        lapped.course.n_references.last().map_or(0.0, |n| *n as f64)
+    }));
+    let figures = seeds.first().map(|lapped| path(lapped).draw()).transpose()?.into_iter().collect();
+    let note = format!(
+        "{} seeds; an area of 25 m × 10 m, {N_LAPS} laps, empty map, odometry as it is.",
+        setup.n_seeds
+    );
+    Ok(Run { metrics, figures, notes: vec![note], ..Run::default() })
+}
+
+fn one(setup: &Setup, seed: u64) -> Result<Lapped> {
+    let building = Store::draw(StoreParams::area(), &mut Draw::World.rng(seed))?.building();
+    let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
+    let params = IndoorParams { drive: robot(seed), ..IndoorParams::default() };
+    let trip = Trip::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
+    let with = |params| localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
+    let (course, printed) = (with(setup.localizer)?, with(LocalizerParams::printed())?);
+    Ok(Lapped { building, trip, course, printed })
+}
+
+fn of_lap(course: &TripResult, lap: usize) -> &[f64] {
+    let n = course.errors.len();
+    &course.errors[n * lap / N_LAPS..n * (lap + 1) / N_LAPS]
+}
+
+fn dead_reckoning_errors(trip: &Trip) -> Vec<f64> {
+    let reckoned = trip.dead_reckoning();
+    trip.steps
+        .iter()
+        .zip(reckoned)
+        .map(|(step, pose)| (step.pose.translation - pose.translation).norm())
+        .collect()
+}
+
+fn path(lapped: &Lapped) -> MapPlot {
+    MapPlot {
+        title: format!("{N_LAPS} laps (first seed)"),
+        ..plan(&lapped.building, &lapped.trip, &lapped.course)
+    }
+}
+
+/// Paths of a drive between the shelves.
+pub(super) fn plan(building: &Building, trip: &Trip, course: &TripResult) -> MapPlot {
+    let points = |poses: Vec<wayfix_estimation_traits::Pose2<f64>>| {
+        poses.iter().map(|pose| (pose.x(), pose.y())).collect()
+    };
+    let walls = building.walls();
+    MapPlot {
+        truth: points(trip.steps.iter().map(|step| step.pose).collect()),
+        estimate: course
+            .estimates
+            .iter()
+            .map(|pose| pose.map_or((f64::NAN, f64::NAN), |pose| (pose.x(), pose.y())))
+            .collect(),
+        dead_reckoning: points(trip.dead_reckoning()),
+        surroundings: walls
+            .iter()
+            .map(|wall| vec![(wall.from.x, wall.from.y), (wall.to.x, wall.to.y)])
+            .collect(),
+        ..MapPlot::default()
+    }
+}

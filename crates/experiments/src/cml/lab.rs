@@ -1,0 +1,86 @@
+use anyhow::Result;
+use wayfix_appearance_cml::{Forgetting, LocalizerParams, MapParams};
+use wayfix_scene_sim::indoors::{AmbientLightParams, IndoorParams, Lab};
+
+use super::localize_trip::known_start;
+use super::summary::{mean, mean_of, over_seeds};
+use super::worlds::{Draw, robot, tour};
+use super::{Setup, TripResult, localize_trip};
+use wayfix_evaluation::plot::{LinesPlot, Series};
+use wayfix_evaluation::report::{Metric, Run};
+use wayfix_systems::cml::PanoramaLocalizer;
+
+/// Mean time between two changes of lamps or curtains, seconds.
+const SWITCHING_S: f64 = 30.0;
+/// Steps after which references are counted. [Gross et al. 2004, Table 1]
+const STEPS: [usize; 4] = [2000, 4000, 6000, 8000];
+
+/// Table 1: references in a lab whose lamps and curtains never stay as they are, with and without active forgetting.
+///
+/// # Errors
+/// When a drive cannot be simulated or followed, or the picture not be drawn.
+pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
+    let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
+    let mut metrics: Vec<Metric> = Vec::new();
+    for (name, at) in [("passive", 0), ("active", 1)] {
+        for step in STEPS {
+            if seeds.iter().all(|courses| courses[at].n_references.len() >= step) {
+                let count = |courses: &[TripResult; 2]| courses[at].n_references[step - 1] as f64;
+                metrics.extend(mean_of(&format!("references_{name}_{step}"), "", &seeds, count));
+            }
+        }
+        metrics.extend(growth(name, &seeds, at));
+        metrics.extend(mean_of(&format!("error_mean_m_{name}"), "m", &seeds, |courses| {
+            mean(&courses[at].errors)
+        }));
+    }
+    let points = |course: &TripResult| {
+        course.n_references.iter().enumerate().step_by(20).map(|(step, n)| (step as f64, *n as f64)).collect()
+    };
+    let series = seeds.first().map_or(Vec::new(), |[passive, active]| {
+        vec![
+            Series::new("passive forgetting", points(passive)),
+            Series::new("active forgetting", points(active)),
+        ]
+    });
+    let plot = LinesPlot {
+        title: "References in a lab whose light changes (first seed)".to_owned(),
+        x_label: "step".to_owned(),
+        y_label: "references".to_owned(),
+        series,
+        ..LinesPlot::default()
+    };
+    let note = format!(
+        "{} seeds; somebody switches lamps or draws a curtain every {SWITCHING_S} s in the mean; empty map, odometry as it is.",
+        setup.n_seeds
+    );
+    Ok(Run { metrics, figures: vec![plot.draw()?], notes: vec![note], ..Run::default() })
+}
+
+/// What the last quarter of the steps adds to the number of references, as a share of it.
+fn growth(name: &str, seeds: &[[TripResult; 2]], at: usize) -> Vec<Metric> {
+    let share = |courses: &[TripResult; 2]| {
+        let counts = &courses[at].n_references;
+        let at = |quarter: usize| {
+            counts.get((counts.len() * quarter / 4).saturating_sub(1)).map_or(f64::NAN, |n| *n as f64)
+        };
+        at(4) / at(3) - 1.0
+    };
+    mean_of(&format!("growth_last_quarter_{name}"), "", seeds, share)
+}
+
+/// The same drive with passive, then with active forgetting.
+fn one(setup: &Setup, seed: u64) -> Result<[TripResult; 2]> {
+    let building = Lab::draw(&mut Draw::World.rng(seed)).building();
+    let ambient_light =
+        AmbientLightParams { switching_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
+    let params = IndoorParams { drive: robot(seed), ambient_light, n_people: 1, ..IndoorParams::default() };
+    let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
+    trip.steps.truncate(STEPS[STEPS.len() - 1]);
+    let with = |forgetting| {
+        let params =
+            LocalizerParams { map: MapParams { forgetting, ..setup.localizer.map }, ..setup.localizer };
+        localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
+    };
+    Ok([with(Forgetting::Passive)?, with(Forgetting::Active)?])
+}

@@ -1,0 +1,78 @@
+use anyhow::Result;
+use nalgebra::Vector3;
+use wayfix_appearance_cml::{Event, LocalizerParams, Start};
+use wayfix_estimation_traits::Pose2;
+use wayfix_gaussian_core::Gaussian;
+
+use super::Trip;
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
+use wayfix_systems::system::Stopwatch;
+
+/// How well a pose is known that somebody has measured by hand, m, m and rad.
+const SURVEYED: [f64; 3] = [0.02, 0.02, 0.01];
+
+/// What became of a drive, view by view.
+#[derive(Clone, Debug, Default)]
+pub struct TripResult {
+    /// The heaviest hypothesis, when there was any.
+    pub estimates: Vec<Option<Pose2<f64>>>,
+    /// Distance from the truth, metres; infinite without an estimate.
+    pub errors: Vec<f64>,
+    /// References in the map.
+    pub n_references: Vec<usize>,
+    /// Computing time of prediction and update, seconds.
+    pub step_s: Vec<f64>,
+    /// How often the state fell apart, and the robot was found elsewhere.
+    pub n_lost: usize,
+    /// How often the robot turned out to be elsewhere than it was thought.
+    pub n_relocated: usize,
+}
+
+/// Drives a localizer along a trip.
+///
+/// # Errors
+/// When it refuses a step.
+pub fn localize_trip(localizer: &mut PanoramaLocalizer, trip: &Trip) -> Result<TripResult> {
+    let mut course = TripResult::default();
+    for step in &trip.steps {
+        let stopwatch = Stopwatch::start();
+        if let Some(odometry) = &step.odometry {
+            localizer.predict(odometry)?;
+        }
+        let outcome = step.view.clone().map(|view| localizer.update(view)).transpose()?;
+        course.step_s.push(stopwatch.elapsed().as_secs_f64());
+        for event in outcome.into_iter().flat_map(|outcome| outcome.events) {
+            course.n_lost += usize::from(event == Event::Lost);
+            course.n_relocated += usize::from(event == Event::Relocated);
+        }
+        let estimate = localizer.estimate().map(|estimate| *estimate.mean());
+        let error = |pose: Pose2<f64>| (pose.translation - step.pose.translation).norm();
+        course.errors.push(estimate.map_or(f64::INFINITY, error));
+        course.estimates.push(estimate);
+        course.n_references.push(localizer.map().len());
+    }
+    Ok(course)
+}
+
+/// A map taught with the true poses of a trip: "manually corrected odometric data".
+pub(super) fn taught(trip: &Trip) -> Result<PanoramaMap> {
+    let mut teacher = PanoramaLocalizer::new(LocalizerParams::default(), Start::Anywhere)?;
+    for step in &trip.steps {
+        if let Some(view) = &step.view {
+            teacher.teach(view.clone(), &surveyed(step.pose)?)?;
+        }
+    }
+    Ok(teacher.into_map())
+}
+
+/// A start that was measured by hand.
+pub(super) fn known_start(trip: &Trip) -> Result<Start> {
+    Ok(match trip.steps.first() {
+        Some(first) => Start::Known(surveyed(first.pose)?),
+        None => Start::Anywhere,
+    })
+}
+
+pub(super) fn surveyed(pose: Pose2<f64>) -> Result<Gaussian<Pose2<f64>>> {
+    Ok(Gaussian::from_sigmas(pose, &Vector3::from(SURVEYED))?)
+}

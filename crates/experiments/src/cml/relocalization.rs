@@ -1,0 +1,192 @@
+use anyhow::{Result, bail};
+use nalgebra::Vector2;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use wayfix_appearance_cml::Start;
+use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
+use wayfix_scene_sim::route::Route;
+
+use super::localize_trip::{known_start, taught};
+use super::summary::over_seeds;
+use super::worlds::{Draw, robot, tour};
+use super::{Setup, Trip, TripResult, localize_trip};
+use wayfix_evaluation::errors::proportion_interval;
+use wayfix_evaluation::plot::{LinesPlot, Series};
+use wayfix_evaluation::report::{Metric, Run};
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
+
+/// A run has succeeded that ends this near, metres.
+const NEAR_M: f64 = 1.0;
+/// How far the robot drives to find out where it is, metres.
+const TRAVEL_M: f64 = 20.0;
+/// Way between two views, metres, about.
+const VIEW_M: f64 = 0.25;
+/// How far one that was carried is followed, metres: what it was before goes along for 50 m from where it was found.
+const FOLLOWED_M: f64 = 80.0;
+/// Who has been found and is this far off afterwards was led away again, metres: across an aisle.
+const DIVERGED_M: f64 = 3.0;
+/// Runs in each store: a map takes far longer to learn than a run.
+const RUNS_PER_STORE: u64 = 10;
+const REARRANGED: f64 = 0.1;
+const N_PEOPLE: usize = 20;
+/// A drive is in known ground that is never further than this from what was taught, metres: the width of an aisle, in which a robot keeps within 0.4 m of
+/// the middle. Nobody can be found where nothing was ever seen, and 2 000 m do not pass all aisles of a store.
+const KNOWN_M: f64 = 1.0;
+/// Drives that are drawn at most until one is in known ground.
+const MOST_DRAWS: usize = 1000;
+
+/// How many runs in known stores that begin anywhere end near the truth after 20 m.
+///
+/// # Errors
+/// When a drive cannot be simulated or followed, or the picture not be drawn.
+pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
+    let courses = in_stores(setup, seed, |map, later, at| {
+        let trip = away(later, map, at, TRAVEL_M)?;
+        localize_trip(&mut PanoramaLocalizer::with_map(setup.localizer, map.clone(), Start::Anywhere)?, &trip)
+    })?;
+    report("From anywhere", setup, &courses)
+}
+
+/// How many runs in which a robot is carried elsewhere, after 20 m that it knew where it was, end near the truth after 20 m more.
+///
+/// # Errors
+/// As [`global_start`].
+pub fn kidnapped(setup: &Setup, seed: u64) -> Result<Run> {
+    report("Carried away", setup, &kidnapped_results(setup, seed, TRAVEL_M)?)
+}
+
+/// How many runs in which a robot is carried elsewhere, and finds itself, are led away from there in the 60 m that follow: back to where it would be had
+/// it not been carried, or to any other place.
+///
+/// # Errors
+/// As [`global_start`].
+pub fn after_relocalization(setup: &Setup, seed: u64) -> Result<Run> {
+    let courses = kidnapped_results(setup, seed, FOLLOWED_M)?;
+    let after = |course: &TripResult| course.errors.get((TRAVEL_M / VIEW_M) as usize..).map(<[f64]>::to_vec);
+    let mut found: Vec<Vec<f64>> = courses.iter().filter_map(after).collect();
+    found.retain(|errors| errors.first().is_some_and(|error| *error <= NEAR_M));
+    let n_diverged = found.iter().filter(|errors| errors.iter().any(|error| *error > DIVERGED_M)).count();
+    let n_diverged_at_end =
+        found.iter().filter(|errors| errors.last().is_some_and(|error| *error > DIVERGED_M)).count();
+    // Nobody was found: no share, and no bound is kept.
+    let share = |n: usize| n as f64 / found.len() as f64;
+    let (low, high) = proportion_interval(n_diverged as u64, found.len() as u64);
+    let metrics = vec![
+        Metric::new("trials", courses.len() as f64, ""),
+        Metric::new("found", found.len() as f64, ""),
+        Metric::new("diverged_after_relocalization_share", share(n_diverged), ""),
+        Metric::new("diverged_after_relocalization_share_low95", low, ""),
+        Metric::new("diverged_after_relocalization_share_high95", high, ""),
+        Metric::new("diverged_at_end_share", share(n_diverged_at_end), ""),
+    ];
+    let note = format!(
+        "{} carried robots, of whom {} are within {NEAR_M} m after {TRAVEL_M} m; led away: further off than {DIVERGED_M} m at some time up to {FOLLOWED_M} m. Stores as for `kidnapped`; routes are longer and others.",
+        courses.len(),
+        found.len()
+    );
+    let figures = vec![quantiles("Carried away, and on", &courses).draw()?];
+    Ok(Run { metrics, figures, notes: vec![note], ..Run::default() })
+}
+
+/// Robots that know where they are for 20 m, and are then carried to where a drive of `length_m` begins.
+fn kidnapped_results(setup: &Setup, seed: u64, length_m: f64) -> Result<Vec<TripResult>> {
+    in_stores(setup, seed, |map, later, at| {
+        let before = away(later, map, (at.0, at.1 + 1000), TRAVEL_M)?;
+        let after = away(later, map, at, length_m)?;
+        let mut localizer = PanoramaLocalizer::with_map(setup.localizer, map.clone(), known_start(&before)?)?;
+        localize_trip(&mut localizer, &before)?;
+        localize_trip(&mut localizer, &after)
+    })
+}
+
+/// Several runs in each store, some days after its map was taught.
+fn in_stores(
+    setup: &Setup,
+    seed: u64,
+    run: impl Fn(&PanoramaMap, &Building, (u64, u64)) -> Result<TripResult> + Sync,
+) -> Result<Vec<TripResult>> {
+    let stores = Setup { n_seeds: setup.n_seeds.div_ceil(RUNS_PER_STORE), ..*setup };
+    let courses = over_seeds(&stores, seed, |seed| {
+        let store = Store::draw(StoreParams::home_store(), &mut Draw::World.rng(seed))?;
+        let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
+        let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
+        let later = store.rearranged(REARRANGED, &mut Draw::Rearranged(1).rng(seed))?.building();
+        let n_runs = RUNS_PER_STORE.min(setup.n_seeds);
+        (1..=n_runs).into_par_iter().map(|visit| run(&map, &later, (seed, visit))).collect::<Result<Vec<_>>>()
+    })?;
+    Ok(courses.into_iter().flatten().collect())
+}
+
+/// A drive from some crossing, through aisles that the map knows.
+fn away(building: &Building, map: &PanoramaMap, (seed, visit): (u64, u64), length_m: f64) -> Result<Trip> {
+    let mut rng = Draw::Visit(visit).rng(seed);
+    let route = known_route(building, map, length_m, &mut rng)?;
+    let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
+    let mut trip = Trip::drive(building, route, params, Draw::Visit(visit).streams(seed))?;
+    let mut travelled_m = 0.0;
+    trip.steps.retain(|step| {
+        travelled_m += step.odometry.map_or(0.0, |moved| moved.translation.norm());
+        travelled_m <= length_m
+    });
+    Ok(trip)
+}
+
+fn known_route(building: &Building, map: &PanoramaMap, length_m: f64, rng: &mut ChaCha8Rng) -> Result<Route> {
+    let taught = || map.references().values().flat_map(|reference| &reference.places);
+    let is_known =
+        |at: Vector2<f64>| taught().any(|place| (place.gaussian.mean().translation - at).norm() <= KNOWN_M);
+    let crossings = building.aisles().crossings();
+    for _ in 0..MOST_DRAWS {
+        let start = crossings[rng.random_range(0..crossings.len())];
+        let route = building.aisles().tour_from(start, length_m, rng)?;
+        let mut points = (0..=length_m as usize).map(|metre| route.at(metre as f64).translation);
+        if points.all(is_known) {
+            return Ok(route);
+        }
+    }
+    bail!("no drive of {length_m} m through known aisles in {MOST_DRAWS} draws")
+}
+
+fn report(title: &str, setup: &Setup, courses: &[TripResult]) -> Result<Run> {
+    let n = courses.len();
+    let near = |course: &&TripResult| course.errors.last().is_some_and(|error| *error <= NEAR_M);
+    let n_near = courses.iter().filter(near).count();
+    let (low, high) = proportion_interval(n_near as u64, n as u64);
+    let metrics = vec![
+        Metric::new("trials", n as f64, ""),
+        Metric::new("success_share", n_near as f64 / n.max(1) as f64, ""),
+        Metric::new("success_share_low95", low, ""),
+        Metric::new("success_share_high95", high, ""),
+    ];
+    let note = format!(
+        "{n} runs of {TRAVEL_M} m, {RUNS_PER_STORE} a store of 80 m × 50 m whose map was taught along {} m, {:.0} % of the shelf sections rearranged since, in aisles that were taught; success: within {NEAR_M} m at the end.",
+        setup.length_m,
+        100.0 * REARRANGED
+    );
+    Ok(Run { metrics, figures: vec![quantiles(title, courses).draw()?], notes: vec![note], ..Run::default() })
+}
+
+fn quantiles(title: &str, courses: &[TripResult]) -> LinesPlot {
+    let n_steps = courses.iter().map(|course| course.errors.len()).min().unwrap_or(0);
+    let quantile = |share: f64| {
+        let at = |step: usize| {
+            let mut errors: Vec<f64> = courses.iter().map(|course| course.errors[step]).collect();
+            errors.sort_by(f64::total_cmp);
+            let index = (share * errors.len().saturating_sub(1) as f64).round() as usize;
+            (VIEW_M * step as f64, errors[index].min(99.0))
+        };
+        (0..n_steps).map(at).collect()
+    };
+    LinesPlot {
+        title: title.to_owned(),
+        x_label: "travelled, m".to_owned(),
+        y_label: "position error, m".to_owned(),
+        series: vec![
+            Series::new("median", quantile(0.5)),
+            Series::new("90 % of the runs are below", quantile(0.9)),
+            Series::new("95 %", quantile(0.95)),
+        ],
+        ..LinesPlot::default()
+    }
+}

@@ -1,0 +1,115 @@
+use std::hint::black_box;
+
+use anyhow::Result;
+use wayfix_appearance_cml::{Learning, LocalizerParams, PanoramaDescriptor, Start};
+use wayfix_estimation_traits::Pose2;
+use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
+
+use super::localize_trip::{known_start, surveyed, taught};
+use super::worlds::{Draw, robot, tour};
+use super::{Setup, Trip, TripStep, localize_trip};
+use wayfix_evaluation::plot::{LinesPlot, Scale, Series, statistics::quantile};
+use wayfix_evaluation::report::{Metric, Run};
+use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
+use wayfix_systems::system::Stopwatch;
+
+/// Numbers of references.
+const N_REFERENCES: [usize; 7] = [1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000];
+/// Steps that are timed in each map.
+const N_STEPS: usize = 200;
+/// Share of the steps that are not dearer than what is told of a robot in doubt, whose steps are not alike.
+const KIDNAPPED_QUANTILE: f64 = 0.95;
+
+/// Computing time against the number of references: of a step of a robot that knows where it is, of one that is elsewhere than it believes and follows two
+/// beliefs at once, and of the search of the whole map that one needs who knows nothing.
+/// Times change from call to call, and other runs of a report go on beside this one.
+///
+/// # Errors
+/// When a drive cannot be simulated or followed, or the picture not be drawn.
+pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
+    let seed = setup.seeds(seed).start;
+    let shape = StoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..StoreParams::home_store() };
+    let building = Store::draw(shape, &mut Draw::World.rng(seed))?.building();
+    let params = IndoorParams { drive: robot(seed), n_people: 20, ..IndoorParams::default() };
+    let learned = tour(&building, setup.length_m, params, (seed, 0))?;
+    let mut again = tour(&building, 0.25 * N_STEPS as f64, params, (seed, 1))?;
+    again.steps.truncate(N_STEPS);
+
+    // What the limit of a match is learned from needs no more than the first of them.
+    let first = learned.steps.len().min(N_REFERENCES[0]);
+    let mut map = taught(&Trip { steps: learned.steps[..first].to_vec() })?;
+    let mut more = between(&learned).skip(first);
+    // Half way along what every map knows, where the drive is not.
+    let elsewhere = Start::Known(surveyed(learned.steps[first / 2].pose)?);
+    let astray = LocalizerParams { learning: Learning::Static, ..setup.localizer };
+    let (mut steps, mut doubts, mut searches) = (Vec::new(), Vec::new(), Vec::new());
+    let median_ms = |seconds| quantile_ms(seconds, 0.5);
+    for n in N_REFERENCES {
+        while map.len() < n
+            && let Some((view, pose)) = more.next()
+        {
+            map.teach(view, &surveyed(pose)?)?;
+        }
+        let n = map.len() as f64;
+        searches.push((n, median_ms(search_s(&map, &again, &setup.localizer))));
+        for (start, params, share, times) in [
+            (elsewhere.clone(), astray, KIDNAPPED_QUANTILE, &mut doubts),
+            (known_start(&again)?, setup.localizer, 0.5, &mut steps),
+        ] {
+            let mut localizer = PanoramaLocalizer::with_map(params, map, start)?;
+            times.push((n, quantile_ms(localize_trip(&mut localizer, &again)?.step_s, share)));
+            map = localizer.into_map();
+        }
+    }
+    let plot = LinesPlot {
+        title: "Computing time of a step".to_owned(),
+        x_label: "references".to_owned(),
+        y_label: "ms".to_owned(),
+        series: vec![
+            Series::new(format!("a robot that knows where it is: median of {N_STEPS} steps"), steps.clone()),
+            Series::new("one that is elsewhere: 95 % of the steps", doubts.clone()),
+            Series::new("a search of the whole map, for one that does not", searches.clone()),
+        ],
+        x_scale: Scale::Log10,
+        y_scale: Scale::Log10,
+        ..LinesPlot::default()
+    };
+    let of = |(what, times): (&str, &[(f64, f64)])| {
+        let named = |(n, (_, ms)): (&usize, &(f64, f64))| Metric::new(format!("{what}_ms_{n}"), *ms, "ms");
+        N_REFERENCES.iter().zip(times).map(named).collect::<Vec<_>>()
+    };
+    let timings = [("step_median", &steps[..]), ("kidnapped_p95", &doubts), ("search_median", &searches)]
+        .map(of)
+        .concat();
+    Ok(Run { timings, figures: vec![plot.draw()?], ..Run::default() })
+}
+
+/// The views of a trip, and then, round by round, views between successive ones.
+fn between(trip: &Trip) -> impl Iterator<Item = (PanoramaDescriptor, Pose2<f64>)> {
+    // Each round gives one at least, or none ever will.
+    (0..N_REFERENCES[6] as u32).flat_map(|round| {
+        // Multiples of the golden section spread evenly; the first round is of the views themselves.
+        let share = (f64::from(round) * 0.618_034).fract();
+        let view = move |pair: &[TripStep]| {
+            let view = pair[0].view.as_ref()?.blend(pair[1].view.as_ref()?, share)?;
+            Some((view, pair[0].pose))
+        };
+        trip.steps.windows(2).filter_map(view)
+    })
+}
+
+/// Seconds of searches without a belief.
+fn search_s(map: &PanoramaMap, trip: &Trip, params: &LocalizerParams) -> Vec<f64> {
+    let limit = map.match_limit(&params.map);
+    let views = trip.steps.iter().filter_map(|step| step.view.as_ref());
+    let search = |view: &PanoramaDescriptor| {
+        let stopwatch = Stopwatch::start();
+        black_box(map.place_matches_anywhere(view, &[], params.most_matches, limit));
+        stopwatch.elapsed().as_secs_f64()
+    };
+    views.map(search).collect()
+}
+
+fn quantile_ms(seconds: Vec<f64>, share: f64) -> f64 {
+    quantile(seconds, share).map_or(f64::NAN, |seconds| 1e3 * seconds)
+}

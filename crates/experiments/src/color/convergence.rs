@@ -1,0 +1,191 @@
+use std::sync::Arc;
+
+use anyhow::Result;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use rayon::prelude::*;
+use wayfix_color_map::ColorMap;
+use wayfix_color_model::LightingBank;
+use wayfix_scene_sim::league::{LeagueParams, Lighting};
+use wayfix_scene_sim::random::Streams;
+
+use wayfix_evaluation::{
+    errors::proportion_interval,
+    plot::{LinesPlot, PlotError, Series},
+    report::{Metric, Run},
+};
+use wayfix_systems::color::{ColorRun, ColorSystemParams, StartPose, run};
+
+/// A run that has not come this near within its frames has failed, metres.
+const NEAR_M: f64 = 0.2;
+/// Frames that a run has: to find out where it is, or to notice that it was carried away and find out anew.
+const FRAMES: usize = 60;
+/// Frames that count as the end: a single lucky one is no success.
+const LAST_FRAMES: usize = 5;
+
+/// How many of many runs, each in a hall of its own under light that nobody has seen, end near the truth.
+#[derive(Clone, Debug)]
+pub struct Convergence {
+    /// Whether the start is anywhere, or known and the robot is carried away later.
+    pub kidnapped: bool,
+    /// One a seed, in their order.
+    pub trials: Vec<Trial>,
+}
+
+/// One run.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// Its seed, also of its hall.
+    pub seed: u64,
+    /// Position error frame by frame, metres.
+    pub errors: Vec<f64>,
+    /// Whether the estimate said of itself that it is worth something at the end.
+    pub reported_tracking: bool,
+}
+
+/// Starts anywhere, light unknown.
+///
+/// # Errors
+/// When a log cannot be simulated or no image used.
+pub fn global_start(
+    seeds: impl IntoIterator<Item = u64>,
+    map: &Arc<ColorMap>,
+    bank: &LightingBank,
+    params: &ColorSystemParams,
+) -> Result<Convergence> {
+    let trials = trials(seeds, |seed| {
+        let drive =
+            LeagueParams { n_frames: FRAMES, lights: vec![(0, lighting(seed))], ..LeagueParams::default() };
+        trial(seed, drive, Some(StartPose::Anywhere), map, bank, params)
+    })?;
+    Ok(Convergence { kidnapped: false, trials })
+}
+
+/// Starts near the truth, and is carried away after 40 frames.
+///
+/// # Errors
+/// As [`global_start`].
+pub fn kidnapped(
+    seeds: impl IntoIterator<Item = u64>,
+    map: &Arc<ColorMap>,
+    bank: &LightingBank,
+    params: &ColorSystemParams,
+) -> Result<Convergence> {
+    const BEFORE: usize = 40;
+    let trials = trials(seeds, |seed| {
+        let drive = LeagueParams {
+            n_frames: BEFORE + FRAMES,
+            kidnaps: vec![BEFORE],
+            lights: vec![(0, lighting(seed))],
+            ..LeagueParams::default()
+        };
+        trial(seed, drive, None, map, bank, params)
+    })?;
+    Ok(Convergence { kidnapped: true, trials })
+}
+
+/// Every other hall is dark.
+fn lighting(seed: u64) -> Lighting {
+    if seed.is_multiple_of(2) { Lighting::Dark } else { Lighting::Bright }
+}
+
+fn trials(
+    seeds: impl IntoIterator<Item = u64>,
+    trial: impl Fn(u64) -> Result<Trial> + Sync,
+) -> Result<Vec<Trial>> {
+    seeds.into_iter().collect::<Vec<u64>>().into_par_iter().map(&trial).collect()
+}
+
+fn trial(
+    seed: u64,
+    drive: LeagueParams,
+    start: Option<StartPose>,
+    map: &Arc<ColorMap>,
+    bank: &LightingBank,
+    params: &ColorSystemParams,
+) -> Result<Trial> {
+    let records = drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?;
+    let run: ColorRun = run(&records, Arc::clone(map), bank.clone(), params, start, seed, |_| {})?;
+    let errors = run.samples().iter().map(|(_, sample)| sample.position_error()).collect();
+    let reported_tracking =
+        run.samples().last().is_some_and(|(frame, _)| frame.fix == wayfix_color_model::Fix::Tracking);
+    Ok(Trial { seed, errors, reported_tracking })
+}
+
+impl Trial {
+    /// Whether the last frame is near the truth.
+    pub fn is_near_at_end(&self) -> bool {
+        self.errors.last().is_some_and(|error| *error <= NEAR_M)
+    }
+
+    /// Whether the last frames are all near the truth.
+    pub fn succeeded(&self) -> bool {
+        let from = self.errors.len().saturating_sub(LAST_FRAMES);
+        !self.errors.is_empty() && self.errors[from..].iter().all(|error| *error <= NEAR_M)
+    }
+}
+
+impl Convergence {
+    /// Counts, their interval, and the errors of every frame over the runs.
+    ///
+    /// # Errors
+    /// When the picture cannot be drawn.
+    pub fn report(&self) -> Result<Run, PlotError> {
+        let n = self.trials.len();
+        let n_succeeded = self.trials.iter().filter(|trial| trial.succeeded()).count();
+        let n_near_at_end = self.trials.iter().filter(|trial| trial.is_near_at_end()).count();
+        let n_deceived =
+            self.trials.iter().filter(|trial| trial.reported_tracking && !trial.succeeded()).count();
+        let (low, high) = proportion_interval(n_succeeded as u64, n as u64);
+        let mut notes = vec![format!(
+            "{n} halls of their own, every other one dark; success: within {NEAR_M} m in each of the last {LAST_FRAMES} of {FRAMES} frames; near at the end: in the last one."
+        )];
+        let failed: Vec<String> =
+            self.trials.iter().filter(|t| !t.succeeded()).map(|t| t.seed.to_string()).collect();
+        if !failed.is_empty() {
+            notes.push(format!("Failed: seeds {}.", failed.join(", ")));
+        }
+        Ok(Run {
+            metrics: vec![
+                Metric::new("trials", n as f64, ""),
+                Metric::new("success_share", n_succeeded as f64 / n.max(1) as f64, ""),
+                Metric::new("success_share_low95", low, ""),
+                Metric::new("success_share_high95", high, ""),
+                Metric::new("near_at_end_share", n_near_at_end as f64 / n.max(1) as f64, ""),
+                Metric::new("n_confident_failures", n_deceived as f64, ""),
+            ],
+            figures: vec![self.plot().draw()?],
+            notes,
+            ..Run::default()
+        })
+    }
+
+    fn plot(&self) -> LinesPlot {
+        let n_frames = self.trials.iter().map(|trial| trial.errors.len()).max().unwrap_or(0);
+        let quantile = |share: f64| {
+            let at = |frame: usize| {
+                let mut errors: Vec<f64> =
+                    self.trials.iter().filter_map(|trial| trial.errors.get(frame).copied()).collect();
+                errors.sort_by(f64::total_cmp);
+                let index = (share * errors.len().saturating_sub(1) as f64).round() as usize;
+                (frame as f64, errors.get(index).copied().unwrap_or(f64::NAN))
+            };
+            (0..n_frames).map(at).collect()
+        };
+        LinesPlot {
+            title: if self.kidnapped {
+                "Carried away at frame 40"
+            } else {
+                "From anywhere, in unknown light"
+            }
+            .to_owned(),
+            x_label: "frame".to_owned(),
+            y_label: "position error, m".to_owned(),
+            series: vec![
+                Series::new("median", quantile(0.5)),
+                Series::new("90 % of the runs are below", quantile(0.9)),
+                Series::new("95 %", quantile(0.95)),
+            ],
+            ..LinesPlot::default()
+        }
+    }
+}

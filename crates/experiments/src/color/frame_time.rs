@@ -1,0 +1,57 @@
+use std::sync::Arc;
+
+use anyhow::Result;
+use wayfix_color_map::ColorMap;
+use wayfix_color_model::LightingBank;
+use wayfix_sensor_log::{Data, Record};
+
+use wayfix_evaluation::{
+    plot::{LinesPlot, Scale, Series, statistics::median},
+    report::{Metric, Run},
+};
+use wayfix_systems::color::{ColorSystemParams, run};
+
+/// Numbers of particles, each held fixed.
+const N_PARTICLES: [usize; 5] = [100, 300, 1000, 3000, 10_000];
+/// Frames of the log that are used.
+const N_FRAMES: usize = 40;
+
+/// Computing time of a frame against the number of particles. Times change from call to call, and other runs of a report go on beside this one.
+///
+/// # Errors
+/// When no image of the log can be used, or the picture not be drawn.
+pub fn frame_time(
+    records: &[Record],
+    map: &Arc<ColorMap>,
+    bank: &LightingBank,
+    params: &ColorSystemParams,
+    seed: u64,
+) -> Result<Run> {
+    let mut images = records.iter().enumerate().filter(|(_, r)| matches!(r.data, Data::Image(_)));
+    let end = images.nth(N_FRAMES).map_or(records.len(), |(at, _)| at);
+    let mut points = Vec::new();
+    for n_particles in N_PARTICLES {
+        let mut params = params.clone();
+        params.localizer.min_particles = n_particles;
+        params.localizer.max_particles = n_particles;
+        params.localizer.max_particles_lost = n_particles;
+        let run = run(&records[..end], Arc::clone(map), bank.clone(), &params, None, seed, |_| {})?;
+        let steps = run.system.frames().iter().map(|frame| 1e3 * frame.step.as_secs_f64());
+        points.push((n_particles as f64, median(steps).unwrap_or(f64::NAN)));
+    }
+    let timings = points
+        .iter()
+        .map(|(n, ms)| Metric::new(format!("frame_median_ms_{n}"), *ms, "ms"))
+        .chain(points.iter().map(|(n, ms)| Metric::new(format!("us_per_particle_{n}"), 1e3 * ms / n, "µs")))
+        .collect();
+    let plot = LinesPlot {
+        title: "Computing time of a frame".to_owned(),
+        x_label: "particles".to_owned(),
+        y_label: "ms".to_owned(),
+        series: vec![Series::new("median of 40 frames", points)],
+        x_scale: Scale::Log10,
+        y_scale: Scale::Log10,
+        ..LinesPlot::default()
+    };
+    Ok(Run { timings, figures: vec![plot.draw()?], ..Run::default() })
+}

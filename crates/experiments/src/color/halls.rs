@@ -1,0 +1,59 @@
+use std::sync::Arc;
+
+use anyhow::Result;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use rayon::prelude::*;
+use wayfix_color_map::ColorMap;
+use wayfix_color_model::LightingBank;
+use wayfix_scene_sim::league::{LeagueParams, Lighting};
+use wayfix_scene_sim::random::Streams;
+use wayfix_sensor_log::Record;
+
+use wayfix_evaluation::{
+    errors::MeanInterval,
+    report::{Metric, Run},
+};
+use wayfix_systems::color::{ColorSystemParams, run, summarize};
+
+/// The drive of the stored logs in halls that were not picked: means over halls with 95 % intervals.
+///
+/// # Errors
+/// When a log cannot be simulated or no image used.
+pub fn other_halls(
+    seeds: impl IntoIterator<Item = u64>,
+    lighting: Lighting,
+    map: &Arc<ColorMap>,
+    bank: &LightingBank,
+    params: &ColorSystemParams,
+) -> Result<Run> {
+    let seeds: Vec<u64> = seeds.into_iter().collect();
+    let runs: Vec<Run> = seeds
+        .par_iter()
+        .map(|&seed| {
+            let mut run =
+                run(&drive(seed, lighting)?, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
+            Ok(summarize(&mut run))
+        })
+        .collect::<Result<_>>()?;
+    let value = |run: &Run, name: &str| run.metrics.iter().find(|m| m.name == name).map(|m| m.value);
+    let mut metrics = vec![Metric::new("n_halls", seeds.len() as f64, "")];
+    let rates = map.colors().iter().map(|color| (format!("rate_{color}"), ""));
+    let errors = [("position_mean_m", "m"), ("heading_mean_deg", "°"), ("odometry_position_mean_m", "m")];
+    let overall = [("classification_rate", "")];
+    let named = overall.into_iter().chain(errors).map(|(name, unit)| (name.to_owned(), unit));
+    for (name, unit) in named.chain(rates) {
+        let values: Vec<f64> = runs.iter().filter_map(|run| value(run, &name)).collect();
+        if let Some(mean) = MeanInterval::of(&values) {
+            metrics.extend(Metric::of_mean(&name, &mean, unit));
+        }
+    }
+    let worst = runs.iter().filter_map(|run| value(run, "position_mean_m")).fold(0.0, f64::max);
+    metrics.push(Metric::new("worst_hall_position_mean_m", worst, "m"));
+    Ok(Run { metrics, ..Run::default() })
+}
+
+/// The drive of the stored logs in a hall of its own.
+pub(super) fn drive(seed: u64, lighting: Lighting) -> Result<Vec<Record>> {
+    let drive = LeagueParams { lights: vec![(0, lighting)], ..LeagueParams::default() };
+    Ok(drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?)
+}

@@ -1,0 +1,13 @@
+//! The experiments of the paper, and those that it leaves out, for `wayfix-experiments regress color`.
+
+mod convergence;
+mod frame_time;
+mod halls;
+mod switching;
+mod withheld;
+
+pub use convergence::{Convergence, Trial, global_start, kidnapped};
+pub use frame_time::frame_time;
+pub use halls::other_halls;
+pub use switching::switching;
+pub use withheld::{withheld, withheld_in_halls};

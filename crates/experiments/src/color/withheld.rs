@@ -1,0 +1,107 @@
+use std::sync::Arc;
+
+use anyhow::{Result, ensure};
+use rayon::prelude::*;
+use wayfix_color_map::{ColorId, ColorMap};
+use wayfix_color_model::LightingPriors;
+use wayfix_scene_sim::league::Lighting;
+use wayfix_sensor_log::Record;
+
+use super::halls::drive;
+use wayfix_evaluation::{
+    errors::MeanInterval,
+    report::{Metric, Run},
+};
+use wayfix_systems::color::{ColorSystemParams, priors, rate_of, run};
+
+/// Fewer labelled pixels of a colour in an image give no rate of their own.
+const MIN_PIXELS: u64 = 20;
+
+/// How well a withheld colour is recognized in each image that shows it: with the joint prior and with the independent one.
+type Rates = [Vec<f64>; 2];
+
+/// Table 1 of [Schulz & Fox 2004], its lower half: each colour withheld from the lighting filter in turn, and how well it is recognized all the same,
+/// from what the other colours tell (joint prior) or from its prior alone (independent: all correlations between colours set to zero). Means over the
+/// images of the log with 95 % intervals, the gain of the joint prior from differences in the same image.
+///
+/// # Errors
+/// When no image of the log can be used.
+pub fn withheld(
+    records: &[Record],
+    map: &Arc<ColorMap>,
+    learned: &LightingPriors,
+    params: &ColorSystemParams,
+    seed: u64,
+) -> Result<Run> {
+    let rates = rates(records, map, learned, params, seed)?;
+    let metrics = map.colors().iter().zip(&rates).flat_map(|(name, rates)| compared(name, rates)).collect();
+    Ok(Run { metrics, ..Run::default() })
+}
+
+/// The same in halls that were not picked: means over halls with 95 % intervals, the gain of the joint prior from differences in the same hall.
+///
+/// # Errors
+/// When a log cannot be simulated or no image used.
+pub fn withheld_in_halls(
+    seeds: impl IntoIterator<Item = u64>,
+    lighting: Lighting,
+    map: &Arc<ColorMap>,
+    learned: &LightingPriors,
+    params: &ColorSystemParams,
+) -> Result<Run> {
+    let halls: Vec<Vec<Rates>> = seeds
+        .into_iter()
+        .map(|seed| rates(&drive(seed, lighting)?, map, learned, params, seed))
+        .collect::<Result<_>>()?;
+    let mut metrics = vec![Metric::new("n_halls", halls.len() as f64, "")];
+    for (color, name) in map.colors().iter().enumerate() {
+        let mean_of = |rates: &Vec<f64>| MeanInterval::of(rates).map(|interval| interval.mean);
+        let means = |hall: &Vec<Rates>| Some((mean_of(&hall[color][0])?, mean_of(&hall[color][1])?));
+        let (joint, independent) = halls.iter().filter_map(means).unzip();
+        metrics.extend(compared(name, &[joint, independent]));
+    }
+    Ok(Run { metrics, ..Run::default() })
+}
+
+/// Both rates and their difference pair by pair, each a mean with its interval; nothing of a colour that is hardly shown.
+fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
+    let gain = joint.iter().zip(independent).map(|(joint, alone)| joint - alone).collect::<Vec<f64>>();
+    let mean_of = |what: &str, values: &[f64]| {
+        MeanInterval::of(values).map(|mean| (Metric::of_mean(&format!("{name}_{what}"), &mean, ""), mean))
+    };
+    let all = [mean_of("joint", joint), mean_of("independent", independent), mean_of("gain", &gain)];
+    let [Some((joint, _)), Some((independent, _)), Some((gain, mean))] = all else { return Vec::new() };
+    let low = Metric::new(format!("{name}_gain_low95"), mean.mean - mean.half_width, "");
+    joint.into_iter().chain(independent).chain(gain).chain([low]).collect()
+}
+
+fn rates(
+    records: &[Record],
+    map: &Arc<ColorMap>,
+    learned: &LightingPriors,
+    params: &ColorSystemParams,
+    seed: u64,
+) -> Result<Vec<Rates>> {
+    let kinds = [learned.clone(), learned.independent()];
+    let cases: Vec<(usize, usize)> =
+        (0..map.colors().len()).flat_map(|color| [(color, 0), (color, 1)]).collect();
+    let rates: Vec<Vec<f64>> = cases
+        .par_iter()
+        .map(|&(color, kind)| {
+            let mut params = params.clone();
+            params.localizer.withheld = Some(color);
+            let bank = priors::bank(&kinds[kind], &params)?;
+            let run = run(records, Arc::clone(map), bank, &params, None, seed, |_| {})?;
+            let labelled = run.system.frames().iter().filter_map(|frame| frame.labelled.as_ref());
+            Ok(rate_of(labelled, ColorId(color as u8), MIN_PIXELS))
+        })
+        .collect::<Result<_>>()?;
+    let mut rates = rates.into_iter();
+    let pairs: Vec<Rates> = std::iter::from_fn(|| Some([rates.next()?, rates.next()?])).collect();
+    // Images are paired by their order: one that only one of the two could use would shift all others.
+    ensure!(
+        pairs.iter().all(|[joint, independent]| joint.len() == independent.len()),
+        "an image was used with one prior only"
+    );
+    Ok(pairs)
+}

@@ -1,0 +1,148 @@
+use anyhow::{Result, ensure};
+use wayfix_gaussian_core::ChiSquaredBand;
+
+use super::{ConsistencySample, FilterKind, Laps, drive};
+use wayfix_evaluation::report::Metric;
+
+/// One filter over all logs, look by look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilterHistory {
+    /// Which filter.
+    pub kind: FilterKind,
+    /// Averages over the logs: of NEES and heading deviation the mean, of the position error the root mean square.
+    pub samples: Vec<ConsistencySample>,
+}
+
+/// All filters over the same logs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MonteCarlo {
+    /// One a filter, in the order of [`FilterKind::ALL`].
+    pub courses: Vec<FilterHistory>,
+    /// Where the average NEES of a consistent filter is at any one look with 95 % probability.
+    pub band: ChiSquaredBand,
+    /// Where it is at all samples at once with at least 95 %, however they hang together.
+    pub whole_run_band: ChiSquaredBand,
+    /// How many logs.
+    pub n_runs: u32,
+}
+
+/// Degrees of freedom of a pose in the plane.
+const POSE: usize = 3;
+
+/// Runs the filters over `n_runs` logs that differ in everything that is drawn.
+///
+/// ```
+/// use wayfix_experiments::consistency::{Laps, monte_carlo};
+/// let laps = Laps { length_m: 20.0, width_m: 10.0, n_laps: 1, ..Laps::default() };
+/// let all = monte_carlo(&laps, 2, 1)?;
+/// assert_eq!(all.courses.len(), 4);
+/// assert!(all.whole_run_band.low < all.band.low && all.band.high < all.whole_run_band.high);
+/// assert!(monte_carlo(&laps, 0, 1).is_err());
+/// # Ok::<(), anyhow::Error>(())
+/// ```
+///
+/// # Errors
+/// When a parameter has no meaning or a filter refuses.
+pub fn monte_carlo(laps: &Laps, n_runs: u32, seed: u64) -> Result<MonteCarlo> {
+    ensure!(n_runs >= 1, "an average needs a run");
+    let mut runs: [Vec<Vec<ConsistencySample>>; 4] = Default::default();
+    for k in 0..n_runs {
+        let seed = seed.wrapping_mul(1_000_003).wrapping_add(u64::from(k)); // no two of a call share one
+        let records = laps.simulate(seed)?;
+        for (runs, kind) in runs.iter_mut().zip(FilterKind::ALL) {
+            runs.push(drive(laps, &records, kind)?);
+        }
+    }
+    let courses: Vec<FilterHistory> = runs
+        .iter()
+        .zip(FilterKind::ALL)
+        .map(|(runs, kind)| FilterHistory { kind, samples: average(runs) })
+        .collect();
+    let n_samples = courses.iter().map(|course| course.samples.len()).min().unwrap_or(0);
+    ensure!(n_samples > 0, "the robot never moved");
+    let band = |probability| ChiSquaredBand::for_average(POSE, n_runs as usize, probability);
+    Ok(MonteCarlo {
+        courses,
+        band: band(0.95)?,
+        whole_run_band: band(1.0 - 0.05 / n_samples as f64)?, // Bonferroni
+        n_runs,
+    })
+}
+
+impl MonteCarlo {
+    /// The figures of all filters, their names before them.
+    ///
+    /// `share_outside` is of samples outside the pointwise band, `n_outside_whole_run` of samples outside the one for the whole run.
+    pub fn metrics(&self) -> Vec<Metric> {
+        let mut metrics = vec![
+            Metric::new("n_runs", f64::from(self.n_runs), ""),
+            Metric::new("heading_sigma_at_closure_rad", self.heading_sigma_at_closure(), "rad"),
+        ];
+        for course in &self.courses {
+            let name = |figure: &str| format!("{}_{figure}", course.kind.name());
+            metrics.push(Metric::new(name("nees_mean"), course.mean(|look| look.nees), ""));
+            metrics.push(Metric::new(name("share_outside"), course.share_outside(&self.band), ""));
+            let n_outside = course.share_outside(&self.whole_run_band) * course.samples.len() as f64;
+            metrics.push(Metric::new(name("n_outside_whole_run"), n_outside.round(), ""));
+            let rmse = course.mean(|look| look.position_error.powi(2)).sqrt();
+            metrics.push(Metric::new(name("rmse_m"), rmse, "m"));
+        }
+        metrics
+    }
+
+    /// The heading is least certain just before the first loop closes; as the filter says that is surest to say it right.
+    fn heading_sigma_at_closure(&self) -> f64 {
+        let invariant = self.courses.iter().filter(|course| course.kind == FilterKind::Invariant);
+        invariant.flat_map(|course| &course.samples).map(|look| look.heading_sigma).fold(0.0, f64::max)
+    }
+}
+
+impl FilterHistory {
+    fn mean(&self, value: impl Fn(&ConsistencySample) -> f64) -> f64 {
+        self.samples.iter().map(value).sum::<f64>() / self.samples.len() as f64
+    }
+
+    /// Share of the samples at which the average NEES is outside a band.
+    pub fn share_outside(&self, band: &ChiSquaredBand) -> f64 {
+        self.mean(|look| f64::from(u8::from(!band.contains(look.nees))))
+    }
+}
+
+/// Over runs, look by look, as far as all runs go.
+fn average(runs: &[Vec<ConsistencySample>]) -> Vec<ConsistencySample> {
+    let n_samples = runs.iter().map(Vec::len).min().unwrap_or(0);
+    let at = |k: usize| {
+        let mean = |value: fn(&ConsistencySample) -> f64| {
+            runs.iter().map(|samples| value(&samples[k])).sum::<f64>() / runs.len() as f64
+        };
+        ConsistencySample {
+            seconds: mean(|look| look.seconds),
+            nees: mean(|look| look.nees),
+            position_error: mean(|look| look.position_error.powi(2)).sqrt(),
+            heading_sigma: mean(|look| look.heading_sigma),
+        }
+    };
+    (0..n_samples).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn averages_are_per_scan_and_end_with_the_shortest_run() {
+        let look = |nees, position_error| ConsistencySample {
+            seconds: 1.0,
+            nees,
+            position_error,
+            heading_sigma: 0.1,
+        };
+        let runs = [vec![look(1.0, 3.0), look(5.0, 1.0)], vec![look(3.0, 4.0)]];
+        let averages = average(&runs);
+        assert_eq!(averages.len(), 1);
+        assert_eq!((averages[0].nees, averages[0].position_error), (2.0, 12.5_f64.sqrt()));
+        let course =
+            FilterHistory { kind: FilterKind::Standard, samples: vec![look(1.0, 0.0), look(f64::NAN, 0.0)] };
+        assert_eq!(course.share_outside(&ChiSquaredBand { low: 0.0, high: 2.0 }), 0.5);
+    }
+}

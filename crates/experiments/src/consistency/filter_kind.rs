@@ -1,0 +1,59 @@
+use nalgebra::Vector3;
+use wayfix_evaluation::errors::Sample;
+use wayfix_slam_ekf::Linearization;
+
+/// The filters that are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilterKind {
+    /// Every derivative at the newest estimate, and nothing ties the map to the world.
+    Standard,
+    /// The same, with some landmarks whose places are known. [Andrade-Cetto 2005, Eq. 20]
+    Anchored,
+    /// First-estimates Jacobians. [Huang et al. 2010]
+    FirstEstimates,
+    /// The right-invariant filter. [Barrau & Bonnabel 2015]
+    Invariant,
+}
+
+impl FilterKind {
+    /// All of them, in the order of the report.
+    pub const ALL: [Self; 4] = [Self::Standard, Self::Anchored, Self::FirstEstimates, Self::Invariant];
+
+    /// Its name in figures.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Standard => "standard",
+            Self::Anchored => "anchored",
+            Self::FirstEstimates => "first_estimates",
+            Self::Invariant => "invariant",
+        }
+    }
+
+    /// Where it linearizes.
+    pub fn linearization(self) -> Linearization {
+        match self {
+            Self::Standard | Self::Anchored => Linearization::Newest,
+            Self::FirstEstimates => Linearization::FirstEstimates,
+            Self::Invariant => Linearization::Invariant,
+        }
+    }
+
+    /// The error in the coordinates in which the filter takes it for Gaussian: exponential ones for the invariant filter.
+    ///
+    /// ```
+    /// use wayfix_evaluation::errors::Sample;
+    /// use wayfix_experiments::consistency::FilterKind;
+    /// use nalgebra::Matrix3;
+    /// use wayfix_estimation_traits::Pose2;
+    /// let (estimate, truth) = (Pose2::new(0.0, 0.0, 0.0), Pose2::new(1.0, 0.0, 0.2));
+    /// let sample = Sample { estimate, covariance: Matrix3::identity(), truth };
+    /// assert!(FilterKind::Standard.error(&sample).y.abs() < 1e-12);
+    /// assert!((FilterKind::Invariant.error(&sample).y + 0.1).abs() < 1e-12); // half the turn, over one metre
+    /// ```
+    pub fn error(self, sample: &Sample) -> Vector3<f64> {
+        match self {
+            Self::Invariant => sample.exponential_error(),
+            _ => sample.error(),
+        }
+    }
+}

@@ -1,0 +1,24 @@
+use super::MonteCarlo;
+use wayfix_evaluation::plot::{LinesPlot, NamedBand, Picture, PlotError, Scale, Series};
+
+/// Average NEES of all filters against time, with the band at any one look.
+///
+/// # Errors
+/// When the picture cannot be drawn.
+pub fn picture(runs: &MonteCarlo) -> Result<Picture, PlotError> {
+    let series = runs.courses.iter().map(|course| {
+        let points = course.samples.iter().map(|look| (look.seconds, look.nees)).collect();
+        Series::new(course.kind.name().replace('_', " "), points)
+    });
+    let (low, high) = (runs.band.low, runs.band.high);
+    let plot = LinesPlot {
+        title: format!("NEES of the pose, average of {} logs", runs.n_runs),
+        x_label: "time, s".to_owned(),
+        y_label: "NEES, 3 expected".to_owned(),
+        series: series.collect(),
+        y_scale: Scale::Log10,
+        band: Some(NamedBand { name: format!("95 % band {low:.2} to {high:.2}"), low, high }),
+        ..LinesPlot::default()
+    };
+    plot.draw()
+}

@@ -1,0 +1,86 @@
+use anyhow::Result;
+use wayfix_sensor_log::EncodedImage;
+
+use super::{
+    figures::Variants,
+    localize::LocalizationRun,
+    traverses::{Frame, Traverses},
+};
+use wayfix_evaluation::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, Series};
+use wayfix_systems::views::{FeatureKind, shade};
+
+/// Pixels a frame and a place of a belief map.
+const CELL: usize = 4;
+/// Frames between the marks of the truth.
+const MARK_EVERY: usize = 10;
+/// Columns of the film strip.
+const FILM_FRAMES: usize = 6;
+const TRUTH: [u8; 3] = [214, 39, 40];
+
+/// Where belief is frame by frame, how far off the best place is, and what robot and map see.
+pub(super) fn pictures(traverses: &Traverses, variants: &[(FeatureKind, Variants)]) -> Result<Vec<Picture>> {
+    let mut pictures = vec![beliefs(variants)?, errors(variants).draw()?];
+    if let Some((kind, best)) = variants.last() {
+        pictures.push(film(traverses, *kind, &best.filtered)?);
+    }
+    Ok(pictures)
+}
+
+fn beliefs(variants: &[(FeatureKind, Variants)]) -> Result<Picture> {
+    let mut film = FilmStrip { title: "Belief along the corridor".to_owned(), ..FilmStrip::default() };
+    let mut frames = Vec::new();
+    for (kind, variants) in variants {
+        let (size, pixels) = belief_map(&variants.filtered.beliefs);
+        film.frame_size = size;
+        let image = EncodedImage::png_rgb(size.0, size.1, &pixels)?;
+        frames.push(FilmFrame { image, caption: kind.title().to_owned() });
+    }
+    film.rows = vec![("frames to the right, places up; dark: believed, red: true".to_owned(), frames)];
+    Ok(film.draw()?)
+}
+
+/// A column a frame, a row a place, the first at the bottom; every tenth true place is marked.
+fn belief_map(beliefs: &[Vec<f64>]) -> ((u32, u32), Vec<u8>) {
+    let n_places = beliefs.first().map_or(0, Vec::len);
+    let (width, height) = (beliefs.len() * CELL, n_places * CELL);
+    let pixel = |i: usize| {
+        let (frame, place) = (i % width / CELL, n_places - 1 - i / width / CELL);
+        let most = beliefs[frame].iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let is_near = |at: usize| at.abs_diff((frame + 1) / MARK_EVERY * MARK_EVERY) <= 1;
+        let is_marked = is_near(frame) && is_near(place);
+        if is_marked { TRUTH } else { shade(beliefs[frame][place] / most) }
+    };
+    ((width as u32, height as u32), (0..width * height).flat_map(pixel).collect())
+}
+
+fn errors(variants: &[(FeatureKind, Variants)]) -> LinesPlot {
+    let series = |(kind, variants): &(FeatureKind, Variants)| {
+        let points = variants.filtered.errors().enumerate().map(|(frame, off)| (frame as f64, off as f64));
+        Series::new(kind.title(), points.collect())
+    };
+    LinesPlot {
+        title: "How far off the best place is".to_owned(),
+        x_label: "frame".to_owned(),
+        y_label: "places".to_owned(),
+        series: variants.iter().map(series).collect(),
+        ..LinesPlot::default()
+    }
+}
+
+fn film(traverses: &Traverses, kind: FeatureKind, journey: &LocalizationRun) -> Result<Picture> {
+    let (mut seen, mut believed) = (Vec::new(), Vec::new());
+    let film_frame = |frame: &Frame, caption| FilmFrame { image: frame.image.clone(), caption };
+    for k in 0..FILM_FRAMES {
+        let at = traverses.seen.len() * k / FILM_FRAMES;
+        let place = journey.best[at];
+        seen.push(film_frame(&traverses.seen[at], format!("frame {at}")));
+        believed.push(film_frame(&traverses.learned[place], format!("place {place}")));
+    }
+    let size = &traverses.seen[0].picture;
+    let film = FilmStrip {
+        title: format!("What the robot sees, and the place it believes in ({})", kind.title()),
+        rows: vec![("seen".to_owned(), seen), ("learned there".to_owned(), believed)],
+        frame_size: (size.width() as u32, size.height() as u32),
+    };
+    Ok(film.draw()?)
+}

@@ -1,0 +1,37 @@
+use std::{collections::BTreeMap, path::Path};
+
+use anyhow::Result;
+
+use super::{
+    figures::{Variants, metrics},
+    pictures::pictures,
+    traverses::{Traverses, features},
+};
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{system::Stopwatch, views::FeatureKind};
+
+/// Learns one traverse, goes along the other; see the [module](super) for what is counted.
+///
+/// # Errors
+/// When a folder cannot be read, a frame not be decoded, or there are too few.
+pub fn run(folder: &Path) -> Result<Run> {
+    let stopwatch = Stopwatch::start();
+    let traverses = Traverses::read(folder)?;
+    let variants = |kind: FeatureKind| {
+        let (learned, seen) = (features(&traverses.learned, kind)?, features(&traverses.seen, kind)?);
+        Ok((kind, Variants::of(&learned, &seen)?))
+    };
+    let variants: Vec<(FeatureKind, Variants)> =
+        FeatureKind::ALL.into_iter().map(variants).collect::<Result<_>>()?;
+    Ok(Run {
+        name: "corridor".to_owned(),
+        metrics: metrics(&variants),
+        events: BTreeMap::from([
+            ("place".to_owned(), traverses.learned.len() as u64),
+            ("frame".to_owned(), traverses.seen.len() as u64),
+        ]),
+        figures: pictures(&traverses, &variants)?,
+        seconds: stopwatch.elapsed().as_secs_f64(),
+        ..Run::default()
+    })
+}

@@ -1,0 +1,65 @@
+use std::path::Path;
+
+use anyhow::{Context, Result, ensure};
+use wayfix_condensation::{Dominance, FeatureTable, Picture};
+use wayfix_sensor_log::{Data, EncodedImage, OpenOptions};
+
+use wayfix_systems::views::{FeatureKind, ViewsError};
+
+/// Fewer frames leave nothing to learn noise from.
+const MIN_FRAMES: usize = 10;
+
+/// The frames of both, in the order in which they were passed.
+pub(super) struct Traverses {
+    pub(super) learned: Vec<Frame>,
+    pub(super) seen: Vec<Frame>,
+}
+
+/// A picture as it is stored and as pixels.
+pub(super) struct Frame {
+    pub(super) image: EncodedImage,
+    pub(super) picture: Picture,
+}
+
+impl Traverses {
+    /// Reads `ref` and `query` below `folder`.
+    pub(super) fn read(folder: &Path) -> Result<Self> {
+        let (learned, seen) = (read(&folder.join("ref"))?, read(&folder.join("query"))?);
+        if learned.len().min(seen.len()) < MIN_FRAMES {
+            return Err(ViewsError::TooFewPictures {
+                folder: folder.into(),
+                n_learned: learned.len(),
+                n_seen: seen.len(),
+                min: MIN_FRAMES,
+            }
+            .into());
+        }
+        Ok(Self { learned, seen })
+    }
+}
+
+/// The features of every frame.
+pub(super) fn features(frames: &[Frame], kind: FeatureKind) -> Result<FeatureTable> {
+    let feature = kind.feature(Dominance::default());
+    let row = |frame: &Frame| {
+        let mut row = vec![0.0; feature.n_components()];
+        feature.extract(&frame.picture.whole(), &mut row);
+        row
+    };
+    Ok(FeatureTable::from_rows(&frames.iter().map(row).collect::<Vec<_>>())?)
+}
+
+fn read(folder: &Path) -> Result<Vec<Frame>> {
+    let (records, report) = wayfix_sensor_log::open(folder, &OpenOptions::default())?.read_all();
+    ensure!(report.is_clean(), "{}: {report}", folder.display());
+    let images = records.into_iter().filter_map(|record| match record.data {
+        Data::Image(image) => Some(image),
+        _ => None,
+    });
+    let frame = |image: EncodedImage| -> Result<Frame> {
+        let decoded = image.decode_rgb().with_context(|| folder.display().to_string())?;
+        let picture = Picture::from_rgb(decoded.width as usize, decoded.height as usize, decoded.pixels)?;
+        Ok(Frame { image, picture })
+    };
+    images.map(frame).collect()
+}

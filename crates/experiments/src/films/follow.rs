@@ -1,0 +1,64 @@
+use anyhow::{Context, Result};
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use wayfix_scene_sim::film::{Film, Frame};
+use wayfix_sensor_log::Stamp;
+use wayfix_visual_tracking::RgbImage;
+
+use super::{
+    FilmScore,
+    score::{bounds, mask},
+};
+use wayfix_systems::{
+    system::Stopwatch,
+    track::{FrameResult, Method, Start, TrackParams, Truth},
+};
+
+/// Shows a film to trackers of several methods, each with the true mask of the first frame to begin with, and scores the frames after it.
+///
+/// `observe` sees every frame of the first method.
+///
+/// # Errors
+/// When a tracker cannot begin, or refuses a frame.
+pub fn follow(
+    film: &Film,
+    methods: &[Method],
+    params: &TrackParams,
+    mut observe: impl FnMut(&FrameResult) -> Result<()>,
+) -> Result<Vec<FilmScore>> {
+    let mut frames = film.frames()?;
+    let first = frames.next().context("a film without frames")?;
+    let (picture, start) = (pixels(&first)?, Start::Mask(mask(&first.target)?));
+    let begin = |method: &Method| method.begin(params, &picture, &start);
+    let mut trackers = methods.iter().map(begin).collect::<Result<Vec<_>, _>>()?;
+    let mut rngs = vec![ChaCha8Rng::seed_from_u64(film.seed); methods.len()];
+    let mut scores = vec![FilmScore::default(); methods.len()];
+    for (index, frame) in (1..).zip(frames) {
+        let picture = pixels(&frame)?;
+        for (k, tracker) in trackers.iter_mut().enumerate() {
+            let stopwatch = Stopwatch::start();
+            let target = tracker.track_frame(&picture, &mut rngs[k])?;
+            let step = stopwatch.elapsed();
+            let n_frames_with_truth = scores[k].iou.len();
+            scores[k].add(&target, &frame)?;
+            if k == 0 {
+                observe(&FrameResult {
+                    index,
+                    stamp: Stamp::from_nanoseconds((1e9 * index as f64 / Film::RATE_HZ) as u64),
+                    picture: picture.clone(),
+                    target,
+                    truth: bounds(&frame.target).map_or(Truth::Absent, Truth::At),
+                    iou: scores[0].iou.get(n_frames_with_truth).copied(),
+                    colors: tracker.colors(),
+                    step,
+                })?;
+            }
+        }
+    }
+    Ok(scores)
+}
+
+fn pixels(frame: &Frame) -> Result<RgbImage> {
+    let picture = &frame.picture;
+    RgbImage::from_raw(picture.width as u32, picture.height as u32, picture.rgb.clone())
+        .context("a frame of the film has not three bytes a pixel")
+}

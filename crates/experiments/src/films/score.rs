@@ -1,0 +1,111 @@
+use anyhow::{Context, Result};
+use wayfix_scene_sim::film::{Frame, Silhouette};
+use wayfix_visual_tracking::{BitMask, BoundingBox, Target, TrackStatus};
+
+use wayfix_systems::track::StatusScore;
+
+/// Overlap of an outline from which on it is right. [Everingham et al. 2010, for detections]
+const RIGHT: f64 = 0.5;
+/// Distance of the centre of a box in pixels up to which it is right. [Wu, Lim & Yang 2013, "precision"]
+const NEAR: f64 = 20.0;
+/// Fewer pixels of a neck in a frame say nothing of where it is.
+const MIN_DISTRACTOR_PX: usize = 100;
+
+/// How well one tracker followed the target of one film, after the frame it began with.
+///
+/// An outline is judged by the pixels in it and the whole target, hidden parts included; a target without an outline by its box and the true
+/// one.
+#[derive(Clone, Debug, Default)]
+pub struct FilmScore {
+    /// Overlap of each frame in which something of the target is visible; 0 when the tracker says that it is lost.
+    pub iou: Vec<f64>,
+    /// Distance of the centres in pixels, of those frames in which it is not lost.
+    pub center_error: Vec<f64>,
+    /// Whether each frame in which something of the target is visible is right: the outline covers it, or the centre of the box is near. The
+    /// overlap of a box is no measure for a target that turns in it.
+    pub right: Vec<bool>,
+    /// Share of the neck that is inside the outline, of the frames with enough of a neck.
+    pub distractor_share: Vec<f64>,
+    /// How often the tracker is wrong about whether it has the target.
+    pub status: StatusScore,
+    /// In how many frames with a visible target the tracker says that it is lost.
+    pub n_lost: usize,
+    /// How many frames show nothing of the target.
+    pub n_hidden: usize,
+    /// In how many of these the tracker says so.
+    pub n_hidden_and_lost: usize,
+}
+
+impl FilmScore {
+    /// Takes the next frame in.
+    ///
+    /// # Errors
+    /// When an outline cannot be compared with the truth.
+    pub fn add(&mut self, target: &Target, frame: &Frame) -> Result<()> {
+        let lost = target.status == TrackStatus::Lost;
+        if frame.visible.area() == 0 {
+            self.status.add(0.0, lost);
+            self.n_hidden += 1;
+            self.n_hidden_and_lost += usize::from(lost);
+            return Ok(());
+        }
+        if lost {
+            self.status.add(target.bounding_box.iou(&bounds(&frame.target)?), lost);
+            self.n_lost += 1;
+            self.iou.push(0.0);
+            self.right.push(false);
+            return Ok(());
+        }
+        let (iou, [du, dv]) = if target.outline.is_empty() {
+            let truth = bounds(&frame.target)?;
+            (target.bounding_box.iou(&truth), apart(target.bounding_box.center(), truth.center()))
+        } else {
+            let estimate = inside(target, &frame.target)?;
+            let truth = mask(&frame.target)?;
+            if frame.distractor.area() >= MIN_DISTRACTOR_PX {
+                let share =
+                    estimate.overlap(&mask(&frame.distractor)?)? as f64 / frame.distractor.area() as f64;
+                self.distractor_share.push(share);
+            }
+            let centers = estimate.centroid().zip(truth.centroid());
+            (estimate.iou(&truth)?, centers.map_or([f64::NAN; 2], |(one, other)| apart(one, other)))
+        };
+        self.status.add(iou, lost);
+        let off = du.hypot(dv);
+        self.right.push(if target.outline.is_empty() { off <= NEAR } else { iou > RIGHT });
+        self.iou.push(iou);
+        self.center_error.push(off);
+        Ok(())
+    }
+
+    /// Whether most of the last frames are right.
+    pub fn is_correct_at_end(&self, n_frames: usize) -> bool {
+        let last = &self.right[self.right.len().saturating_sub(n_frames)..];
+        2 * last.iter().filter(|right| **right).count() > last.len()
+    }
+}
+
+/// The mean; not a number when there is nothing.
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// A silhouette as the library's mask.
+pub(super) fn mask(silhouette: &Silhouette) -> Result<BitMask> {
+    let (width, pixels) = (silhouette.width(), silhouette.pixels());
+    Ok(BitMask::from_fn(width, silhouette.height(), |u, v| pixels[v * width + u])?)
+}
+
+/// The true box.
+pub(super) fn bounds(silhouette: &Silhouette) -> Result<BoundingBox> {
+    let [x, y, width, height] = silhouette.bounding_box().context("the target is out of the picture")?;
+    Ok(BoundingBox::from_corner(x, y, width, height)?)
+}
+
+fn inside(target: &Target, like: &Silhouette) -> Result<BitMask> {
+    Ok(BitMask::from_polygon(like.width(), like.height(), &target.outline)?)
+}
+
+fn apart(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    [one[0] - other[0], one[1] - other[1]]
+}

@@ -1,0 +1,18 @@
+//! What reproduces the papers: plans of runs on stored logs and on public recordings, their bounds, and the report of all.
+//!
+//! [`regress`] runs the suites; [`fixtures`] are the stored logs. [`monobot`] and [`consistency`] are experiments with simulated robots, [`color`], [`cml`], [`films`], [`corridor`] and [`venues`]
+//! those of one system each.
+
+pub mod cli;
+pub mod cml;
+pub mod color;
+pub mod consistency;
+pub mod corridor;
+pub mod films;
+pub mod fixtures;
+pub mod monobot;
+pub mod regress;
+pub mod venues;
+mod views_paper;
+
+pub use views_paper::PaperScene;

@@ -1,0 +1,77 @@
+use anyhow::{Result, ensure};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use wayfix_scene_sim::{monobot::MonobotParams, random::Streams};
+
+use super::{Drive, Reference, drive};
+use wayfix_evaluation::{errors::MeanInterval, report::Metric};
+
+/// Many drives with the same parameters and different noise.
+#[derive(Clone, Debug)]
+pub struct MonteCarlo {
+    /// One a seed.
+    pub drives: Vec<Drive>,
+}
+
+/// Runs `n_runs` drives.
+///
+/// # Errors
+/// When a parameter has no meaning or the filter refuses.
+pub fn monte_carlo(
+    params: &MonobotParams,
+    reference: Reference,
+    n_runs: u64,
+    seed: u64,
+) -> Result<MonteCarlo> {
+    ensure!(n_runs >= 2, "an interval needs two runs or more, not {n_runs}");
+    let one = |k: u64| {
+        let seed = seed.wrapping_mul(1_000_003).wrapping_add(k); // no two of a call share one
+        let run = params.simulate(&mut Streams::new(ChaCha8Rng::seed_from_u64(seed)))?;
+        drive(params, &run, reference)
+    };
+    Ok(MonteCarlo { drives: (0..n_runs).map(one).collect::<Result<_>>()? })
+}
+
+impl MonteCarlo {
+    /// Root mean square of the mean landmark error at the end, m.
+    pub fn end_rms(&self) -> f64 {
+        root_mean_square(&self.errors(|drive| drive.steps.len() - 1))
+    }
+
+    /// The figures of the paper's Figs. 4-6.
+    pub fn metrics(&self) -> Vec<Metric> {
+        let (first, end) = (self.errors(|_| 0), self.errors(|drive| drive.steps.len() - 1));
+        let claimed: Vec<f64> =
+            self.drives.iter().filter_map(|drive| Some(drive.steps.last()?.landmark_sigma)).collect();
+        let bias = MeanInterval::of(&end).map_or(f64::NAN, |mean| mean.mean.abs() / mean.half_width);
+        let gain = |steps: &[super::Step]| steps.last().map_or(f64::NAN, |step| step.gains[1]);
+        let gains: Vec<f64> = self.drives.iter().map(|drive| gain(&drive.steps)).collect();
+        let rank =
+            |drive: &Drive| (drive.observability.rank() as f64, drive.observability.dimension() as f64);
+        let (rank, dimension) = self.drives.first().map_or((f64::NAN, f64::NAN), rank);
+        vec![
+            Metric::new("first_landmark_rms_m", root_mean_square(&first), "m"),
+            Metric::new("end_landmark_rms_m", root_mean_square(&end), "m"),
+            Metric::new("end_landmark_sigma_m", root_mean_square(&claimed), "m"),
+            Metric::new("end_on_first_slope", slope(&first, &end), ""),
+            Metric::new("bias_in_half_widths", bias, ""),
+            Metric::new("end_landmark_gain", root_mean_square(&gains), ""),
+            Metric::new("fisher_rank", rank, ""),
+            Metric::new("state_dimension", dimension, ""),
+        ]
+    }
+
+    fn errors(&self, at: impl Fn(&Drive) -> usize) -> Vec<f64> {
+        self.drives.iter().map(|drive| drive.steps[at(drive)].mean_landmark_error).collect()
+    }
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Of the line through the origin that fits best: 1 when the last error is the first, 0 when it has nothing to do with it.
+fn slope(first: &[f64], end: &[f64]) -> f64 {
+    let products: f64 = first.iter().zip(end).map(|(first, end)| first * end).sum();
+    products / first.iter().map(|first| first * first).sum::<f64>()
+}

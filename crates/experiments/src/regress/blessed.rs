@@ -1,0 +1,71 @@
+use std::{collections::BTreeMap, fs, path::Path};
+
+use anyhow::{Context, Result};
+
+use wayfix_evaluation::report::{Metric, Run};
+
+/// Figures of the stored logs as they were when somebody last looked at them and said they are right.
+///
+/// They are no bounds: they tell that a change of the code changed a figure at all. `--bless` writes them anew.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Blessed(BTreeMap<String, BTreeMap<String, f64>>);
+
+/// Another machine may round the last digits differently; a change of the mathematics shows far above this.
+const RELATIVE_TOLERANCE: f64 = 1e-6;
+
+impl Blessed {
+    /// Reads the figures; none when there is no such file yet.
+    ///
+    /// # Errors
+    /// When the file is there and cannot be read.
+    pub fn read(path: &Path) -> Result<Self> {
+        if !path.exists() {
+            return Ok(Self::default());
+        }
+        let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        Ok(Self(serde_json::from_str(&text).with_context(|| format!("{} is not usable", path.display()))?))
+    }
+
+    /// Writes the figures of these runs.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn write<'a>(path: &Path, runs: impl Iterator<Item = &'a Run>) -> Result<()> {
+        let figures =
+            |run: &Run| run.metrics.iter().map(|metric| (metric.name.clone(), metric.value)).collect();
+        let all: BTreeMap<String, BTreeMap<String, f64>> =
+            runs.map(|run| (run.name.clone(), figures(run))).collect();
+        let text = serde_json::to_string_pretty(&all)? + "\n";
+        fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
+    }
+
+    /// How many figures of a run differ from the blessed ones, as a figure of its own that must be 0.
+    pub fn compare(&self, run: &Run) -> Option<Metric> {
+        let blessed = self.0.get(&run.name)?;
+        let differs = |metric: &&Metric| match blessed.get(&metric.name) {
+            Some(value) => (metric.value - value).abs() > RELATIVE_TOLERANCE * value.abs().max(1e-9),
+            None => false,
+        };
+        let n_changed = run.metrics.iter().filter(differs).count();
+        let source = "figures of the stored logs, blessed in the tree; `--bless` after looking at the change";
+        Some(Metric::new("n_figures_changed", n_changed as f64, "").at_most(0.0).bound_from(source))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_that_moves_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("figures.json");
+        let run =
+            |value| Run { name: "r".into(), metrics: vec![Metric::new("a", value, "m")], ..Run::default() };
+        Blessed::write(&path, [run(1.0)].iter()).unwrap();
+        let blessed = Blessed::read(&path).unwrap();
+        assert!(blessed.compare(&run(1.0 + 1e-9)).unwrap().passes());
+        assert!(!blessed.compare(&run(1.0 + 1e-5)).unwrap().passes());
+        assert_eq!(Blessed::read(&folder.path().join("none.json")).unwrap().compare(&run(1.0)), None);
+    }
+}

@@ -1,0 +1,24 @@
+//! `wayfix-experiments regress`: every system on stored logs, and on public recordings where they are, against stated bounds.
+//!
+//! [`cells`] lists the work, run by run and seed by seed; [`run_shard`] does some or all of it; [`assemble`] makes the report. Shards on other
+//! machines leave a [`Part`] each, and [`join`] puts them together.
+
+mod assemble;
+mod blessed;
+mod campaign;
+mod job;
+mod over_seeds;
+mod part;
+mod plan;
+mod runner;
+mod shard;
+pub mod suites;
+
+pub use assemble::assemble;
+pub use blessed::Blessed;
+pub use campaign::{Cell, cells};
+pub use job::Job;
+pub use part::{Part, join};
+pub use plan::{Bound, Plan, PlannedMean, PlannedRun};
+pub use runner::{Done, Options, run_shard};
+pub use shard::Shard;

@@ -1,0 +1,146 @@
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result, bail, ensure};
+use serde::{Deserialize, Serialize};
+
+use super::{Cell, Done, Options, Shard, cells};
+use wayfix_evaluation::report::{Run, commit};
+
+/// What one shard did, as a file: `part.json` in its output folder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    /// What was asked of all shards together; the same in all of them.
+    campaign: Campaign,
+    /// What this one did.
+    runs: Vec<PartRun>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Campaign {
+    version: String,
+    commit: Option<String>,
+    n_shards: usize,
+    suites: Vec<String>,
+    seed: u64,
+    n_seeds: u64,
+    quick: bool,
+    cells: Vec<Cell>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct PartRun {
+    cell: Cell,
+    run: Run,
+    /// The drawings, which a report keeps in its page only.
+    svgs: Vec<String>,
+}
+
+const FILE: &str = "part.json";
+
+impl Part {
+    /// What `shard` did.
+    ///
+    /// # Errors
+    /// When a plan cannot be read.
+    pub fn new(options: &Options, shard: Shard, done: Vec<Done>) -> Result<Self> {
+        let campaign = Campaign {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: commit(&options.fixtures),
+            n_shards: shard.total(),
+            suites: options.suites.clone(),
+            seed: options.seed,
+            n_seeds: options.n_seeds,
+            quick: options.quick,
+            cells: cells(options)?,
+        };
+        let svgs = |run: &Run| run.figures.iter().map(|figure| figure.svg.clone()).collect();
+        let runs =
+            done.into_iter().map(|Done { cell, run }| PartRun { svgs: svgs(&run), cell, run }).collect();
+        Ok(Self { campaign, runs })
+    }
+
+    /// Writes `part.json` into `folder`.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<PathBuf> {
+        let path = folder.join(FILE);
+        fs::write(&path, serde_json::to_string(self)?)
+            .with_context(|| format!("cannot write {}", path.display()))?;
+        Ok(path)
+    }
+
+    /// Reads the `part.json` of a folder.
+    ///
+    /// # Errors
+    /// When it is missing or is no part.
+    pub fn read(folder: &Path) -> Result<Self> {
+        let path = folder.join(FILE);
+        let text = fs::read(&path).with_context(|| {
+            format!(
+                "cannot read {}: is it the output folder of `wayfix-experiments regress --shard`?",
+                path.display()
+            )
+        })?;
+        let mut part: Self =
+            serde_json::from_slice(&text).with_context(|| format!("{} is not usable", path.display()))?;
+        for PartRun { run, svgs, .. } in &mut part.runs {
+            ensure!(run.figures.len() == svgs.len(), "{}: a picture without a drawing", path.display());
+            for (figure, svg) in run.figures.iter_mut().zip(std::mem::take(svgs)) {
+                figure.svg = svg;
+            }
+        }
+        Ok(part)
+    }
+}
+
+/// Puts the parts of all shards together: the options of the whole campaign, and all that was done.
+///
+/// # Errors
+/// When the parts are of different campaigns, one is missing, or the same work was done twice. The message says which.
+pub fn join(parts: Vec<(PathBuf, Part)>, fixtures: &Path, out: &Path) -> Result<(Options, Vec<Done>)> {
+    let Some(campaign) = parts.first().map(|(_, part)| part.campaign.clone()) else {
+        bail!("no parts: give the output folders of all shards");
+    };
+    let mut done: BTreeMap<Cell, Run> = BTreeMap::new();
+    for (path, part) in parts {
+        ensure!(
+            part.campaign == campaign,
+            "{} is of another campaign than the first: the same version, commit, suites, seeds, data and number of shards are needed",
+            path.display()
+        );
+        for PartRun { cell, run, .. } in part.runs {
+            let Cell { suite, run: name, seed } = cell.clone();
+            ensure!(
+                done.insert(cell, run).is_none(),
+                "{suite} / {name} with seed {seed} was done twice, again in {}",
+                path.display()
+            );
+        }
+    }
+    let wanted: BTreeSet<&Cell> = campaign.cells.iter().collect();
+    if let Some(Cell { suite, run, seed }) = wanted.iter().find(|cell| !done.contains_key(**cell)) {
+        let n_missing = wanted.len() - done.len();
+        bail!(
+            "{n_missing} of {} runs are missing, the first is {suite} / {run} with seed {seed}: there were {} shards",
+            wanted.len(),
+            campaign.n_shards
+        );
+    }
+    let options = Options {
+        suites: campaign.suites,
+        fixtures: fixtures.to_owned(),
+        data: None,
+        out: out.to_owned(),
+        seed: campaign.seed,
+        n_seeds: campaign.n_seeds,
+        quick: campaign.quick,
+        bless: false,
+    };
+    Ok((options, done.into_iter().map(|(cell, run)| Done { cell, run }).collect()))
+}

@@ -1,0 +1,58 @@
+use anyhow::Result;
+use serde::Deserialize;
+
+use super::super::Job;
+use crate::cml::{self as experiments, Setup};
+use wayfix_evaluation::report::Run;
+
+/// What the plan says of a run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    experiment: Experiment,
+    /// How large it is.
+    full: Setup,
+    /// The same with `--quick`, where that is something else.
+    quick: Option<Setup>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Experiment {
+    /// Table 1.
+    ChangingLab,
+    /// Fig. 4.
+    Laps,
+    /// Fig. 5.
+    FourWeeks,
+    /// Fig. 6.
+    ThreeDays,
+    /// From anywhere in a known map.
+    GlobalStart,
+    /// Carried elsewhere.
+    Kidnapped,
+    /// Carried elsewhere, and what becomes of it.
+    AfterRelocalization,
+    /// People before the camera.
+    Crowded,
+    /// Time of a step against the number of references.
+    StepTime,
+}
+
+/// An experiment with the localizer.
+pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+    let settings: Settings = job.planned.settings()?;
+    let setup = settings.quick.filter(|_| job.options.quick).unwrap_or(settings.full);
+    let experiment = match settings.experiment {
+        Experiment::ChangingLab => experiments::changing_lab,
+        Experiment::Laps => experiments::laps,
+        Experiment::FourWeeks => experiments::four_weeks,
+        Experiment::ThreeDays => experiments::three_days,
+        Experiment::GlobalStart => experiments::global_start,
+        Experiment::Kidnapped => experiments::kidnapped,
+        Experiment::AfterRelocalization => experiments::after_relocalization,
+        Experiment::Crowded => experiments::crowded,
+        Experiment::StepTime => experiments::step_time,
+    };
+    experiment(&setup, job.options.seed)
+}

@@ -1,0 +1,166 @@
+use std::{ops::Range, path::PathBuf, sync::Arc};
+
+use crate::color as experiments;
+use anyhow::Result;
+use serde::Deserialize;
+use wayfix_color_map::ColorMap;
+use wayfix_scene_sim::{Scenario, ScenarioParams, league::Lighting};
+use wayfix_sensor_log::{OpenOptions, Record};
+
+use super::super::Job;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
+    color::{self, ColorEstimateLog, ColorSystemParams, ParticleFilm, priors},
+    system::System,
+};
+
+/// What the plan says of a run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    /// What is done.
+    #[serde(default)]
+    experiment: Experiment,
+    /// The map, relative to the folder of the plan.
+    #[serde(default = "field")]
+    map: PathBuf,
+    /// A file of parameters, relative to the folder of the plan.
+    params: Option<PathBuf>,
+    /// Kinds of light to learn priors for, one Gaussian each; the built-in priors, of two, where nothing is said.
+    lights: Option<usize>,
+    /// How many halls, for experiments over many.
+    #[serde(default = "hundred")]
+    n_seeds: u64,
+    /// The same with `--quick`.
+    #[serde(default = "ten")]
+    n_seeds_quick: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Experiment {
+    /// A log through the localizer.
+    #[default]
+    Localize,
+    /// Each colour withheld in turn, joint prior against independent.
+    Withheld,
+    /// Jump Markov, IMM, GPB2 and a single filter while lights are switched.
+    Switching,
+    /// From anywhere, in many halls.
+    GlobalStart,
+    /// Carried away, in many halls.
+    Kidnapped,
+    /// The drive of the log in halls that were not picked.
+    OtherHallsDark,
+    /// The same in bright light.
+    OtherHallsBright,
+    /// Each colour withheld in turn in dark halls that were not picked.
+    WithheldHallsDark,
+    /// The same in bright light.
+    WithheldHallsBright,
+    /// Frame time against the number of particles.
+    FrameTime,
+    /// Recorded images of the middle-size league.
+    Venues,
+}
+
+fn field() -> PathBuf {
+    "four-legged-field.toml".into()
+}
+
+fn hundred() -> u64 {
+    100
+}
+
+fn ten() -> u64 {
+    10
+}
+
+/// An experiment with the localizer.
+pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+    let settings: Settings = job.planned.settings()?;
+    if let Experiment::Venues = settings.experiment {
+        return crate::venues::run(job.log()?);
+    }
+    let map = Arc::new(color::read_map(&job.options.fixtures.join(&settings.map))?);
+    let params: ColorSystemParams = match &settings.params {
+        Some(file) => toml::from_str(&job.read(file)?)?,
+        None => ColorSystemParams::default(),
+    };
+    let learned = settings.lights.map_or_else(priors::built_in, priors::learn_from_simulation)?;
+    let seed = job.options.seed;
+    let bank = priors::bank(&learned, &params)?;
+    let seeds = settings.seeds(job);
+    match settings.experiment {
+        Experiment::Localize => localize(job, map, &params),
+        Experiment::Withheld => experiments::withheld(&records(job)?, &map, &learned, &params, seed),
+        Experiment::Switching => {
+            let single = priors::bank(&priors::learn_from_simulation(1)?, &params)?;
+            experiments::switching(&records(job)?, &switches(job), &map, &bank, &single, &params, seed)
+        }
+        Experiment::GlobalStart => Ok(experiments::global_start(seeds, &map, &bank, &params)?.report()?),
+        Experiment::Kidnapped => Ok(experiments::kidnapped(seeds, &map, &bank, &params)?.report()?),
+        Experiment::OtherHallsDark => experiments::other_halls(seeds, Lighting::Dark, &map, &bank, &params),
+        Experiment::OtherHallsBright => {
+            experiments::other_halls(seeds, Lighting::Bright, &map, &bank, &params)
+        }
+        Experiment::WithheldHallsDark => {
+            experiments::withheld_in_halls(seeds, Lighting::Dark, &map, &learned, &params)
+        }
+        Experiment::WithheldHallsBright => {
+            experiments::withheld_in_halls(seeds, Lighting::Bright, &map, &learned, &params)
+        }
+        Experiment::FrameTime => experiments::frame_time(&records(job)?, &map, &bank, &params, seed),
+        Experiment::Venues => crate::venues::run(job.log()?),
+    }
+}
+
+impl Settings {
+    /// Seeds beside those of the stored logs and of the training venues.
+    fn seeds(&self, job: &Job<'_>) -> Range<u64> {
+        const FIRST: u64 = 10_000;
+        let n = if job.options.quick { self.n_seeds_quick } else { self.n_seeds };
+        let first = FIRST + 1000 * job.options.seed;
+        first..first + n
+    }
+}
+
+fn records(job: &Job<'_>) -> Result<Vec<Record>> {
+    Ok(wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all().0)
+}
+
+/// The frames at which the light of a stored log changes.
+fn switches(job: &Job<'_>) -> Vec<usize> {
+    let name = job.planned.log.as_ref().and_then(|log| log.file_stem()).and_then(|stem| stem.to_str());
+    match name.and_then(|name| Scenario::named(name).ok()).map(|scenario| scenario.params) {
+        Some(ScenarioParams::League(drive)) => {
+            drive.lights.iter().map(|(frame, _)| *frame).filter(|frame| *frame > 0).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn localize(job: &Job<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Result<Run> {
+    let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
+    let (name, path) = job.estimates();
+    let mut estimates = ColorEstimateLog::create(&path, log.meta().first_format())?;
+    let (records, read) = log.read_all();
+    let bank = priors::bank(&priors::built_in()?, params)?;
+    let mut particles = ParticleFilm::new(color::n_images(&records));
+    let mut remaining = records.iter();
+    let mut run = color::run(&records, map, bank, params, None, job.options.seed, |system| {
+        if let Some(record) = remaining.next() {
+            estimates.observe(record, system);
+        }
+        particles.observe(system);
+    })?;
+    estimates.finish()?;
+    run.system.events().add("log_problem", read.n_problems());
+    let mut figures = color::pictures(&run)?;
+    figures.push(particles.draw(&run)?);
+    figures.push(color::film(&mut run, &records, FILM_FRAMES)?);
+    Ok(Run { log: Some(name), figures, ..color::summarize(&mut run) })
+}
+
+/// Frames of the film strip.
+const FILM_FRAMES: usize = 5;

@@ -1,0 +1,76 @@
+use std::path::PathBuf;
+
+use anyhow::Result;
+use serde::Deserialize;
+use wayfix_sensor_log::{OpenOptions, read_relations};
+
+use super::super::Job;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
+    slam::{self, AssociationRule, Profile, SlamEstimateLog, SlamSystemParams},
+    walls::{self, WallSlamParams},
+};
+
+/// What the plan says of a run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    /// Which robot, in sets of several.
+    robot: Option<u32>,
+    /// How detections find their landmarks.
+    association: Option<AssociationRule>,
+    /// The robot's defaults, when they are not those of the log's format.
+    profile: Option<Profile>,
+    /// A file of parameters, relative to the folder of the plan.
+    params: Option<PathBuf>,
+    /// Whether the landmarks are walls in laser scans.
+    #[serde(default)]
+    walls: bool,
+    /// Relations between poses that are known from elsewhere, relative to the folder of recordings.
+    relations: Option<PathBuf>,
+}
+
+/// A log through EKF-SLAM.
+pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+    let settings: Settings = job.planned.settings()?;
+    if settings.walls {
+        return with_walls(job, &settings);
+    }
+    let options = OpenOptions { robot: settings.robot, ..OpenOptions::default() };
+    let log = wayfix_sensor_log::open(job.log()?, &options)?;
+    let profile = settings.profile.unwrap_or(Profile::of_log(log.meta()));
+    let mut params = match &settings.params {
+        Some(file) => SlamSystemParams::from_toml(&job.read(file)?, profile)?,
+        None => SlamSystemParams::of(profile),
+    };
+    params.association = settings.association.or(params.association);
+
+    let (name, path) = job.estimates();
+    let mut estimates = SlamEstimateLog::create(&path, log.meta().first_format())?;
+    let (records, read) = log.read_all();
+    let mut index = 0;
+    let mut slam = slam::run(&records, &params, |system| {
+        estimates.observe(&records[index], system);
+        index += 1;
+    })?;
+    estimates.finish()?;
+    slam.events().add("log_problem", read.n_problems());
+    Ok(Run { log: Some(name), figures: slam::pictures(&slam)?, ..slam::summarize(&mut slam) })
+}
+
+/// A log of laser scans through EKF-SLAM with walls.
+fn with_walls(job: &Job<'_>, settings: &Settings) -> Result<Run> {
+    let params = match &settings.params {
+        Some(file) => WallSlamParams::from_toml(&job.read(file)?)?,
+        None => WallSlamParams::default(),
+    };
+    let (records, read) = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all();
+    let mut slam = walls::run(&records, &params, |_| ())?;
+    slam.events().add("log_problem", read.n_problems());
+    let mut run = Run { figures: walls::pictures(&slam)?, ..walls::summarize(&mut slam) };
+    if let Some(relations) = &settings.relations {
+        let (relations, _) = read_relations(job.recording(relations)?)?;
+        run.metrics.extend(walls::relation_metrics(&slam, &relations));
+    }
+    Ok(run)
+}

@@ -1,0 +1,81 @@
+use std::path::PathBuf;
+
+use crate::films;
+use anyhow::{Context, Result};
+use serde::Deserialize;
+use wayfix_scene_sim::film::{Film, Incident};
+use wayfix_sensor_log::{Format, OpenOptions};
+
+use super::super::Job;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::track::{self, Method, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes};
+
+/// What the plan says of a run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Settings {
+    /// A simulated film, instead of `data`.
+    film: Option<String>,
+    /// What happens to its target.
+    incident: Option<String>,
+    /// How many seeds it has.
+    #[serde(default = "twenty")]
+    n_seeds: u64,
+    /// The same with `--quick`, and how many frames.
+    #[serde(default = "two")]
+    n_seeds_quick: u64,
+    #[serde(default = "fifty")]
+    n_frames_quick: usize,
+    /// The trackers.
+    methods: Vec<Method>,
+    /// True boxes of a recording, relative to the folder given by `--data`.
+    truth: Option<PathBuf>,
+}
+
+fn twenty() -> u64 {
+    20
+}
+
+fn two() -> u64 {
+    2
+}
+
+fn fifty() -> usize {
+    50
+}
+
+/// A film or a recording through its trackers.
+pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+    let settings: Settings = job.planned.settings()?;
+    match &settings.film {
+        Some(name) => film(job, &settings, name),
+        None => recording(job, &settings),
+    }
+}
+
+fn film(job: &Job<'_>, settings: &Settings, name: &str) -> Result<Run> {
+    let incident = settings.incident.as_deref().map(Incident::named).transpose()?.unwrap_or_default();
+    let mut film = Film { incident, ..Film::named(name)? };
+    let mut n_seeds = settings.n_seeds;
+    if job.options.quick {
+        (film.n_frames, n_seeds) = (settings.n_frames_quick, settings.n_seeds_quick);
+    }
+    let first = 1000 * job.options.seed;
+    films::table(&film, first..first + n_seeds, &settings.methods, &TrackParams::default())
+}
+
+fn recording(job: &Job<'_>, settings: &Settings) -> Result<Run> {
+    let options = OpenOptions { format: Some(Format::Images), ..OpenOptions::default() };
+    let mut log = wayfix_sensor_log::open(job.log()?, &options)?;
+    let truth = settings.truth.as_ref().context("a recording needs `truth`")?;
+    let truth = TrueBoxes::read(&job.recording(truth)?)?;
+    let method = *settings.methods.first().context("give `methods`")?;
+    let rate_hz = Some(options.frame_rate_hz);
+    let setup = TrackSetup { method, truth, rate_hz, ..TrackSetup::default() };
+    let system = TrackSystem::new(setup, job.options.seed);
+    let (name, path) = job.estimates();
+    let mut estimates = TrackLog::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
+    let mut run = track::run(system, &mut log, |system, record| estimates.observe(record, system))?;
+    estimates.finish(run.system.n_frames())?;
+    Ok(Run { log: Some(name), figures: track::pictures(&run.run_history)?, ..track::summarize(&mut run) })
+}

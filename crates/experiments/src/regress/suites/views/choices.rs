@@ -1,0 +1,36 @@
+use anyhow::Result;
+
+use super::{scenes::Scenes, settings::Settings};
+use crate::regress::Job;
+use wayfix_evaluation::report::{Metric, Run};
+use wayfix_systems::views::{self, FeatureKind, ViewsParams};
+
+/// Greedy and informed actions on the same drives through a composed scene.
+pub(super) fn choices(job: &Job<'_>, settings: &Settings) -> Result<Run> {
+    let scenes = Scenes::compose(settings)?;
+    let greedy = ViewsParams::default();
+    let mut informed = greedy.clone();
+    informed.navigator.choice = views::INFORMED;
+    let mut metrics = Vec::new();
+    for &normalization in &settings.normalization {
+        for feature in FeatureKind::OF_THE_PAPER {
+            let setup = scenes.setup(feature, normalization);
+            let drive = |params| {
+                views::run(
+                    &scenes.learned,
+                    &scenes.real,
+                    &setup,
+                    params,
+                    settings.trials,
+                    job.options.seed,
+                    &|| (),
+                )
+            };
+            let prefix = format!("{}_{}", feature.name(), normalization.name());
+            let named = |metric: Metric| Metric { name: format!("{prefix}_{}", metric.name), ..metric };
+            metrics
+                .extend(views::compare_choices(&drive(&greedy)?, &drive(&informed)?).into_iter().map(named));
+        }
+    }
+    Ok(Run { metrics, ..Run::default() })
+}

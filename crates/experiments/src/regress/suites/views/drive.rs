@@ -1,0 +1,49 @@
+use anyhow::Result;
+
+use super::{scenes::Scenes, settings::Settings};
+use crate::regress::Job;
+use wayfix_evaluation::report::{Metric, Run};
+use wayfix_systems::views::{self, FeatureKind, Setup, ViewSystem, ViewsParams};
+
+/// The paper's features with every normalization, on one scene. Figures are named after both; pictures are those of the last.
+pub(super) fn drive(
+    job: &Job<'_>,
+    settings: &Settings,
+    scenes: &Scenes,
+    statistics: impl Fn(&Setup, &ViewSystem) -> Result<Vec<Metric>>,
+    beside: impl Fn(&Setup, Metric) -> Metric,
+) -> Result<Run> {
+    let (params, seed) = (ViewsParams::default(), job.options.seed);
+    let mut all = Run {
+        notes: vec!["The pictures are of the last feature and normalization.".to_owned()],
+        ..Run::default()
+    };
+    let mut last = None;
+    for &normalization in &settings.normalization {
+        for feature in FeatureKind::OF_THE_PAPER {
+            let setup = scenes.setup(feature, normalization);
+            let run =
+                views::run(&scenes.learned, &scenes.real, &setup, &params, settings.trials, seed, &|| ())?;
+            let prefix = format!("{}_{}", feature.name(), normalization.name());
+            let summary = views::summarize(&run);
+            let named = |metric: Metric| {
+                let metric = beside(&setup, metric);
+                Metric { name: format!("{prefix}_{}", metric.name), ..metric }
+            };
+            let is_told = |metric: &Metric| TOLD.contains(&metric.name.as_str());
+            all.metrics.extend(summary.metrics.into_iter().filter(is_told).map(named));
+            all.metrics.extend(statistics(&setup, &run.system)?.into_iter().map(named));
+            let events = summary.events.into_iter().filter(|(name, n)| name != "arrived" && *n > 0);
+            all.events.extend(events.map(|(name, n)| (format!("{prefix}_{name}"), n)));
+            all.notes.extend(summary.notes.into_iter().map(|note| format!("{prefix}: {note}")));
+            last = Some(run);
+        }
+    }
+    if let Some(run) = last {
+        all.figures = views::pictures(&run, &scenes.learned, &scenes.real, seed)?;
+    }
+    Ok(all)
+}
+
+/// Figures of a drive that the report shows.
+const TOLD: [&str; 3] = ["successes", "steps_mean", "steps_to_certainty_mean"];

@@ -1,0 +1,80 @@
+use super::{CmlRun, FrameResult, Task};
+use crate::system::System;
+use wayfix_evaluation::{
+    errors::Sample,
+    report::{Metric, Run},
+};
+
+/// The figures and events of a run, ready for the report. Names as in the contract of `docs/architecture.md`.
+pub fn summarize(run: &mut CmlRun) -> Run {
+    let mut metrics = errors(run);
+    let frames = run.system.frames();
+    let n = frames.len() as f64;
+    let certain = frames.iter().filter(|frame| frame.is_certain).count() as f64;
+    metrics.push(Metric::new("n_references", run.system.localizer().map().len() as f64, ""));
+    metrics.push(Metric::new("n_views", n, ""));
+    metrics.push(Metric::new("certain_share", certain / n.max(1.0), ""));
+    let micros = |frame: &FrameResult| 1e6 * frame.step.as_secs_f64();
+    let timings = vec![
+        Metric::new("step_mean_us", frames.iter().map(micros).sum::<f64>() / n.max(1.0), "µs"),
+        Metric::new("step_max_us", frames.iter().map(micros).fold(0.0, f64::max), "µs"),
+    ];
+    let mut notes = vec![task(run.task).to_owned()];
+    notes.extend(run.notes.iter().cloned());
+    Run { metrics, timings, events: run.system.events().counts(), notes, ..Run::default() }
+}
+
+/// What was done, in a sentence.
+pub fn task(task: Task) -> &'static str {
+    match task {
+        Task::ConcurrentMapBuilding => {
+            "concurrent map building and localization: the map grew from nothing, the start was known"
+        }
+        Task::LearnThenLocalize => "learn, then localize: the map was taught with known poses first",
+        Task::LocalizeInSavedMap => "localization in a saved map",
+    }
+}
+
+fn errors(run: &CmlRun) -> Vec<Metric> {
+    let samples = run.samples();
+    let errors = sorted(samples.iter().map(|(_, sample)| sample.position_error()));
+    let Some(last) = errors.len().checked_sub(1) else { return Vec::new() };
+    let n = errors.len() as f64;
+    let mut metrics = vec![
+        Metric::new("error_mean_m", errors.iter().sum::<f64>() / n, "m"),
+        Metric::new("error_median_m", errors[last / 2], "m"),
+        Metric::new("error_max_m", errors[last], "m"),
+    ];
+    if run.headings_are_measured {
+        let heading = samples.iter().map(|(_, sample)| sample.heading_error()).sum::<f64>() / n;
+        metrics.push(Metric::new("heading_mean_deg", heading.to_degrees(), "°"));
+    }
+    metrics.extend(mean(
+        samples.iter().filter_map(|(frame, sample)| {
+            Some((frame.odometry?.translation - sample.truth.translation).norm())
+        }),
+        "odometry_error_mean_m",
+    ));
+    if run.task != Task::ConcurrentMapBuilding {
+        metrics.extend(mean(samples.iter().filter_map(nearest_error), "nearest_view_error_mean_m"));
+    }
+    metrics
+}
+
+/// How far off the place of the view is that looks most like it: without a filter, without odometry.
+fn nearest_error((frame, sample): &(&FrameResult, Sample)) -> Option<f64> {
+    let (_, [x, y]) = frame.nearest?;
+    Some((x - sample.truth.x()).hypot(y - sample.truth.y()))
+}
+
+fn mean(values: impl Iterator<Item = f64>, name: &str) -> Option<Metric> {
+    let values: Vec<f64> = values.collect();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    (!values.is_empty()).then(|| Metric::new(name, mean, "m"))
+}
+
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values
+}

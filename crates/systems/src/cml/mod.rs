@@ -1,0 +1,30 @@
+//! Appearance maps: places that are learned, recognized and forgotten by their looks, with
+//! [`AppearanceLocalizer`](wayfix_appearance_cml::AppearanceLocalizer).
+//!
+//! A [`Plan`] of a log or of a [`Recording`](recording::Recording) says what is taught and what is localized, [`run`] does it with a [`CmlSystem`];
+//! [`summarize`] gives the figures, [`pictures`] the pictures; [`experiments`] are those of the paper, for `wayfix-experiments regress cml`.
+
+mod estimates;
+mod figures;
+mod histogram;
+pub use histogram::histogram;
+mod odometry;
+mod params;
+mod pictures;
+mod plan;
+mod reader;
+pub mod recording;
+mod run;
+mod saved;
+mod system;
+
+pub use estimates::{CmlDrawing, CmlEstimateLog};
+pub use figures::{summarize, task};
+pub use odometry::synthetic_odometry;
+pub use params::{CmlParams, PoseSigmas, SyntheticOdometry};
+pub use pictures::pictures;
+pub use plan::{CameraChoice, Plan};
+pub use reader::ViewReader;
+pub use run::{CmlRun, StartPlace, Task, first_true_pose, run};
+pub use saved::{MapSaver, SavedViewsError, end_note, read_map};
+pub use system::{CmlSystem, FrameResult, PanoramaLocalizer, PanoramaMap};

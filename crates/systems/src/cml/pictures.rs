@@ -1,0 +1,58 @@
+use super::{CmlRun, FrameResult, histogram::histogram};
+use wayfix_evaluation::plot::{LinesPlot, MapPlot, Picture, PlotError, Series};
+
+/// Path and references, errors as a histogram and over time, how alike the best reference was, how many there were.
+///
+/// # Errors
+/// When a picture cannot be drawn.
+pub fn pictures(run: &CmlRun) -> Result<Vec<Picture>, PlotError> {
+    let samples = run.samples();
+    let mut pictures = vec![map(run).draw()?];
+    let errors: Vec<f64> = samples.iter().map(|(_, sample)| sample.position_error()).collect();
+    if !errors.is_empty() {
+        let most = errors.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        pictures.push(histogram("Errors of the position", most, vec![("views".to_owned(), errors)]).draw()?);
+        let series = Series::new(
+            "error",
+            samples.iter().map(|(frame, sample)| (run.seconds(frame), sample.position_error())).collect(),
+        );
+        pictures.push(over_time("Error over time", "position error, m", vec![series]).draw()?);
+    }
+    let alike = |frame: &FrameResult| Some((run.seconds(frame), frame.nearest?.0));
+    let frames = run.system.frames();
+    let distance = Series::new("nearest reference", frames.iter().filter_map(alike).collect());
+    pictures.push(
+        over_time("How much the most alike reference differs", "distance of the views", vec![distance])
+            .draw()?,
+    );
+    let count = |frame: &FrameResult| (run.seconds(frame), frame.n_references as f64);
+    let references = Series::new("references", frames.iter().map(count).collect());
+    pictures.push(over_time("References in the map", "number", vec![references]).draw()?);
+    Ok(pictures)
+}
+
+fn map(run: &CmlRun) -> MapPlot {
+    let frames = run.system.frames();
+    let places = run.system.localizer().map().references().values().flat_map(|reference| &reference.places);
+    MapPlot {
+        title: "Path, and where the references were seen".to_owned(),
+        truth: run.samples().iter().map(|(_, sample)| (sample.truth.x(), sample.truth.y())).collect(),
+        estimate: frames
+            .iter()
+            .filter_map(|frame| frame.pose.as_ref().map(|pose| (pose.mean().x(), pose.mean().y())))
+            .collect(),
+        dead_reckoning: frames.iter().filter_map(|f| f.odometry.map(|pose| (pose.x(), pose.y()))).collect(),
+        references: places.map(|place| (place.gaussian.mean().x(), place.gaussian.mean().y())).collect(),
+        ..MapPlot::default()
+    }
+}
+
+fn over_time(title: &str, y_label: &str, series: Vec<Series>) -> LinesPlot {
+    LinesPlot {
+        title: title.to_owned(),
+        x_label: "t, s".to_owned(),
+        y_label: y_label.to_owned(),
+        series,
+        ..LinesPlot::default()
+    }
+}

@@ -1,0 +1,259 @@
+use anyhow::{Result, ensure};
+use wayfix_appearance_cml::{Donut, Learning, PanoramaParams, TurnSense};
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
+
+use super::{
+    CmlParams, ViewReader,
+    recording::{Frame, Heading, Recording, TurnEvidence, path, turn_evidence},
+    synthetic_odometry,
+};
+use crate::system::{HeldVelocity, PlausibleIncrement, check_velocity};
+use wayfix_evaluation::errors::TrueTrack;
+
+/// What a run is made of: what the map is taught before it, and the records that it then goes through.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// Views with their poses.
+    pub training_views: Vec<(EncodedImage, Pose2<f64>)>,
+    /// In time order.
+    pub records: Vec<Record>,
+    /// Remarks for the user.
+    pub notes: Vec<String>,
+    /// Whether the headings of the truth were measured, not taken from the path.
+    pub headings_are_measured: bool,
+}
+
+/// How the camera is read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CameraChoice {
+    /// The ring of raw omnidirectional images.
+    pub donut: Option<Donut>,
+    /// Which way columns go; found from the turns when not given.
+    pub sense: Option<TurnSense>,
+}
+
+/// σ of a heading that nobody knows, rad.
+const ANY_HEADING: f64 = 3.0;
+
+/// Frames that are compared to find which way columns go: enough to hold some turns.
+const N_EVIDENCE: usize = 400;
+
+impl Plan {
+    /// From folders of frames. Every `withhold`-th frame is localized and the others are taught; with `learn_from`, its frames are taught and all
+    /// others localized; with `withhold` 0, nothing is taught. Sets which way the columns go.
+    ///
+    /// # Errors
+    /// When no frame can be read.
+    pub fn of_recording(
+        recording: &Recording,
+        learn_from: Option<&Recording>,
+        withhold: usize,
+        params: &mut CmlParams,
+        camera: &CameraChoice,
+        seed: u64,
+    ) -> Result<Self> {
+        let mut notes = Vec::new();
+        let taught = learn_from.unwrap_or(recording);
+        let mut heading = Heading::of(&recording.frames);
+        if Heading::of(&taught.frames) != heading {
+            heading = Heading::AlongPath;
+            notes.push(
+                "only one of the two tables has headings: those of the paths are taken for both".to_owned(),
+            );
+        }
+        let smoothing = params.synthetic_odometry.smoothing_frames;
+        let (_, along) = path::poses(&taught.frames, heading, smoothing);
+        let images = taught.frames.iter().map(|frame| &frame.image);
+        let evidence = evidence(images.zip(along.iter().map(Pose2::heading)), params, camera);
+        if let (Heading::AlongPath, Some(evidence)) = (heading, evidence) {
+            heading = match evidence {
+                _ if evidence.is_fixed() => Heading::Fixed,
+                _ if evidence.is_unrelated() => Heading::Unknown,
+                _ => heading,
+            };
+        }
+        if heading == Heading::Unknown {
+            params.taught_pose.heading = ANY_HEADING;
+            // A map that grows on the way has nothing else to learn from.
+            if learn_from.is_some() || withhold > 0 {
+                params.localizer.learning = Learning::Static;
+            }
+        }
+        notes.push(describe_heading(heading).to_owned());
+        notes.push(choose_sense(evidence, heading, params, camera));
+
+        let (measured, smooth) = path::poses(&recording.frames, heading, smoothing);
+        let increments = synthetic_odometry(&smooth, &params.synthetic_odometry.noise, seed);
+        let is_taught =
+            |index: usize| learn_from.is_none() && withhold > 0 && index % withhold != withhold - 1;
+        let training_views = match learn_from {
+            Some(other) => {
+                let (poses, _) = path::poses(&other.frames, heading, smoothing);
+                other.frames.iter().map(|frame| frame.image.clone()).zip(poses).collect()
+            }
+            None => {
+                let chosen = (0..recording.frames.len()).filter(|index| is_taught(*index));
+                chosen.map(|index| (recording.frames[index].image.clone(), measured[index])).collect()
+            }
+        };
+        let records = records(&recording.frames, &measured, &increments, |index| !is_taught(index));
+        Ok(Self { training_views, records, notes, headings_are_measured: heading == Heading::Given })
+    }
+
+    /// Columns and rows of the first view that shows something, as a reader makes panoramas.
+    pub fn first_size(&self, reader: &mut ViewReader) -> Option<(usize, usize)> {
+        let images = self.records.iter().filter_map(|record| match &record.data {
+            Data::Image(image) => Some(image),
+            _ => None,
+        });
+        let mut described = images.filter_map(|image| reader.describe(image).ok());
+        described.next()?;
+        drop(described);
+        reader.size()
+    }
+
+    /// From the records of a log: every `withhold`-th image is localized and the others are taught where the log has true poses; with 0 nothing
+    /// is taught. Sets which way the columns go.
+    ///
+    /// # Errors
+    /// When views are to be taught and the log has no true poses.
+    pub fn of_log(
+        records: Vec<Record>,
+        withhold: usize,
+        params: &mut CmlParams,
+        camera: &CameraChoice,
+    ) -> Result<Self> {
+        let turns = image_headings(&records, params.velocity_hold);
+        let evidence = evidence(turns.iter().map(|(image, heading)| (*image, *heading)), params, camera);
+        let mut plan = Self { headings_are_measured: true, ..Self::default() };
+        plan.notes.push(choose_sense(evidence, Heading::Given, params, camera));
+        if withhold == 0 {
+            plan.records = records;
+            return Ok(plan);
+        }
+        let truth = TrueTrack::from_records(&records);
+        ensure!(
+            truth.last_stamp().is_some(),
+            "nothing can be taught: the log has no true poses (without --withhold the map is built as the robot goes)"
+        );
+        let mut n_images = 0;
+        for record in records {
+            if let Data::Image(image) = &record.data {
+                n_images += 1;
+                if n_images % withhold != 0 {
+                    if let Some(pose) = truth.at(record.stamp) {
+                        plan.training_views.push((image.clone(), pose));
+                    }
+                    continue;
+                }
+            }
+            plan.records.push(record);
+        }
+        Ok(plan)
+    }
+}
+
+fn records(
+    frames: &[Frame],
+    poses: &[Pose2<f64>],
+    increments: &[Pose2<f64>],
+    is_seen: impl Fn(usize) -> bool,
+) -> Vec<Record> {
+    let origin = frames.first().map_or(0.0, |frame| frame.seconds);
+    let mut records = Vec::new();
+    for (index, (frame, pose)) in frames.iter().zip(poses).enumerate() {
+        let stamp = Stamp::from_seconds(frame.seconds - origin).unwrap_or_default();
+        let mut push = |data| records.push(Record { stamp, data });
+        if let Some(increment) = index.checked_sub(1).and_then(|before| increments.get(before)) {
+            push(Data::OdometryIncrement(*increment));
+        }
+        push(Data::TruePose(*pose));
+        if is_seen(index) {
+            push(Data::Image(frame.image.clone()));
+        }
+    }
+    records
+}
+
+/// The images of a log with the heading that odometry has at them; impossible odometry is passed over, and the system refuses it.
+fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage, f64)> {
+    let (mut held, mut plausible) = (HeldVelocity::default(), PlausibleIncrement::default());
+    let mut pose = Pose2::new(0.0, 0.0, 0.0);
+    let mut headings = Vec::new();
+    for record in records {
+        let mut advance = || {
+            let motion = held.until(record.stamp, velocity_hold);
+            pose = motion.map_or(pose, |motion| pose.compose(&motion.increment));
+        };
+        match &record.data {
+            Data::OdometryIncrement(increment) if plausible.check(record.stamp, increment).is_ok() => {
+                pose = pose.compose(increment);
+            }
+            Data::Velocity(velocity) if check_velocity(*velocity).is_ok() => {
+                advance();
+                let _: Result<(), String> = held.hold(record.stamp, *velocity);
+            }
+            Data::Image(image) => {
+                advance();
+                headings.push((image, pose.heading()));
+            }
+            _ => {}
+        }
+    }
+    headings
+}
+
+/// What the turns of the first views say; those that show nothing are passed over.
+fn evidence<'a>(
+    images: impl Iterator<Item = (&'a EncodedImage, f64)>,
+    params: &CmlParams,
+    camera: &CameraChoice,
+) -> Option<TurnEvidence> {
+    let views = PanoramaParams { sense: TurnSense::Clockwise, ..params.views };
+    let mut reader = ViewReader::new(views, camera.donut);
+    let (views, headings): (Vec<_>, Vec<f64>) = images
+        .take(N_EVIDENCE)
+        .filter_map(|(image, heading)| Some((reader.describe(image).ok()?, heading)))
+        .unzip();
+    turn_evidence(&views, &headings)
+}
+
+fn choose_sense(
+    evidence: Option<TurnEvidence>,
+    heading: Heading,
+    params: &mut CmlParams,
+    camera: &CameraChoice,
+) -> String {
+    let told = match (camera.sense, evidence) {
+        (Some(sense), _) => {
+            params.views.sense = sense;
+            "as told"
+        }
+        (None, Some(evidence)) if !matches!(heading, Heading::Fixed | Heading::Unknown) => {
+            let counterclockwise = evidence.is_counterclockwise();
+            params.views.sense =
+                if counterclockwise { TurnSense::Counterclockwise } else { TurnSense::Clockwise };
+            "as the turns of the robot show"
+        }
+        _ => "by default",
+    };
+    let sense = match params.views.sense {
+        TurnSense::Clockwise => "clockwise, left to right",
+        TurnSense::Counterclockwise => "counterclockwise",
+    };
+    format!("columns go {sense}, {told}")
+}
+
+fn describe_heading(heading: Heading) -> &'static str {
+    match heading {
+        Heading::Given => "headings are those of the table",
+        Heading::AlongPath => "the table has no headings: the robot is taken to look along its path",
+        Heading::Unknown => {
+            "the table has no headings, and the views turn otherwise than the path: their headings are not used, and a taught map stays as it is"
+        }
+        Heading::Fixed => {
+            "the table has no headings, and the views do not turn: the camera is taken to look the same way always"
+        }
+    }
+}

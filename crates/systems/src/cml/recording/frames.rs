@@ -1,0 +1,280 @@
+use std::{collections::BTreeMap, fs, path::Path};
+
+use wayfix_sensor_log::{EncodedImage, ImageFormat, Problem, ProblemKind, ReadReport, image_files};
+
+use wayfix_evaluation::errors::LONGEST_GAP;
+
+use super::{
+    RecordingError,
+    columns::ColumnNames,
+    poses::{self, PoseRow},
+    stamps::{self, Stamps, file_name},
+};
+
+/// A frame, and where it was taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Name of its file.
+    pub name: String,
+    /// When, s.
+    pub seconds: f64,
+    /// Where, m.
+    pub position: [f64; 2],
+    /// The camera's heading, rad, where the table has it.
+    pub heading: Option<f64>,
+    /// The picture.
+    pub image: EncodedImage,
+}
+
+/// A folder of frames with their poses, in the order in which they were taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Those with a pose.
+    pub frames: Vec<Frame>,
+    /// How many images of the folder have none.
+    pub n_without_pose: usize,
+    /// Which rows and images were left out, and what was assumed.
+    pub read: ReadReport,
+    /// What the tables say of their units.
+    pub notes: Vec<String>,
+}
+
+/// The tables of a folder of frames.
+#[derive(Clone, Copy, Debug)]
+pub struct Tables<'a> {
+    /// Poses.
+    pub poses: &'a Path,
+    /// Names of its columns, where it has none.
+    pub columns: Option<&'a ColumnNames>,
+    /// Times of the frames; `None` is the table beside them.
+    pub stamps: Option<&'a Path>,
+    /// Names of its columns, where it has none.
+    pub stamp_columns: Option<&'a ColumnNames>,
+}
+
+impl Recording {
+    /// Reads the images of a folder and the tables that say when and where they were taken. Rows and images that cannot be used are left out.
+    ///
+    /// # Errors
+    /// When a table cannot be understood, or fewer than two frames have an image and a pose.
+    pub fn read(folder: &Path, tables: &Tables<'_>) -> Result<Self, RecordingError> {
+        let files = image_files(folder)?;
+        let names: Vec<String> = files.iter().map(|path| name_of(path)).collect();
+        let Some(first) = names.first() else {
+            return Err(RecordingError::Nothing { path: folder.to_owned(), what: "PNG or JPEG images" });
+        };
+        let (mut read, mut notes) = (ReadReport::default(), Vec::new());
+        let rows = poses::read(tables.poses, tables.columns, &mut read, &mut notes)?;
+        let found = match tables.stamps {
+            Some(path) => Some(path.to_owned()),
+            None => stamps::find(folder, tables.poses, first),
+        };
+        let stamps = match found.map(|path| stamps::read(&path, tables.stamp_columns, &mut read, &mut notes))
+        {
+            // Poses by file need no times.
+            Some(Err(_)) if tables.stamps.is_none() && is_by_file(&rows) => None,
+            stamps => stamps.transpose()?,
+        };
+        let placed = place(&names, &rows, stamps.as_ref())?;
+
+        let mut frames = Vec::new();
+        for (index, (path, placed)) in files.iter().zip(&placed).enumerate() {
+            let Some(Placed { seconds, position, heading }) = *placed else { continue };
+            match read_image(path) {
+                Ok(image) => {
+                    read.warn_of_orientation(&image);
+                    frames.push(Frame { name: name_of(path), seconds, position, heading, image });
+                }
+                Err(reason) => read.add(Problem {
+                    file: name_of(path),
+                    row: index as u64 + 1,
+                    kind: ProblemKind::UnreadableImage,
+                    reason,
+                }),
+            }
+        }
+        frames.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        let n_without_pose = placed.iter().filter(|placed| placed.is_none()).count();
+        if n_without_pose > 0 {
+            let text = format!(
+                "{n_without_pose} of {} frames in {} have no pose and are left out; poses are interpolated over at most {:.2} s",
+                files.len(),
+                folder.display(),
+                longest_gap(&times(&rows))
+            );
+            read.warn("frame_without_pose", text);
+        }
+        if frames.len() < 2 {
+            let reason = "fewer than two frames have an image and a pose";
+            return Err(RecordingError::Unmatched { n_frames: names.len(), n_poses: rows.len(), reason });
+        }
+        Ok(Self { frames, n_without_pose, read, notes })
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Placed {
+    seconds: f64,
+    position: [f64; 2],
+    heading: Option<f64>,
+}
+
+/// Frames without a clock are taken to be so far apart, s.
+const STEP: f64 = 0.1;
+
+/// The pose of each frame that has one: by the file that its row names, else by time, else row by row.
+fn place(
+    names: &[String],
+    rows: &[Option<PoseRow>],
+    stamps: Option<&Stamps>,
+) -> Result<Vec<Option<Placed>>, RecordingError> {
+    let unmatched = |reason| RecordingError::Unmatched { n_frames: names.len(), n_poses: rows.len(), reason };
+    let stamp = |name: &String| stamps.and_then(|stamps| stamps.get(name)).copied();
+    let at = |index: usize, row: &PoseRow| Placed {
+        seconds: stamp(&names[index]).or(row.time).unwrap_or(STEP * index as f64),
+        position: [row.x, row.y],
+        heading: row.heading,
+    };
+    let usable = || rows.iter().flatten();
+    let have_times = usable().all(|row| row.time.is_some());
+    let placed: Vec<Option<Placed>> = if is_by_file(rows) {
+        let by_file = by_file(usable());
+        let find = |name: &String| keys(name).into_iter().find_map(|key| by_file.get(&key).copied());
+        names.iter().enumerate().map(|(index, name)| Some(at(index, find(name)?))).collect()
+    } else if stamps.is_some() && have_times {
+        let mut rows: Vec<PoseRow> = usable().cloned().collect();
+        rows.sort_by(|a, b| a.time.unwrap_or(0.0).total_cmp(&b.time.unwrap_or(0.0)));
+        let gap = longest_gap(&rows.iter().filter_map(|row| row.time).collect::<Vec<_>>());
+        names.iter().map(|name| interpolated(&rows, stamp(name)?, gap)).collect()
+    } else if rows.len() == names.len() {
+        rows.iter().enumerate().map(|(index, row)| Some(at(index, row.as_ref()?))).collect()
+    } else if have_times {
+        return Err(unmatched(
+            "the poses are by time, and nothing tells when the frames were taken (--stamps FILE: rows of time, file)",
+        ));
+    } else {
+        return Err(unmatched("a row for each frame is needed, or a column of file names"));
+    };
+    match placed.iter().flatten().count() {
+        0 | 1 => Err(unmatched("fewer than two frames have a pose")),
+        _ => Ok(placed),
+    }
+}
+
+fn is_by_file(rows: &[Option<PoseRow>]) -> bool {
+    rows.iter().flatten().any(|row| row.file.is_some())
+}
+
+fn times(rows: &[Option<PoseRow>]) -> Vec<f64> {
+    let mut times: Vec<f64> = rows.iter().flatten().filter_map(|row| row.time).collect();
+    times.sort_by(f64::total_cmp);
+    times
+}
+
+/// The longest time between two poses over which they are interpolated, s: as with truth, or where the table is slower, its own period and a half,
+/// so that one missing row is a gap.
+fn longest_gap(times: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).map_or(LONGEST_GAP, |period| LONGEST_GAP.max(1.5 * period))
+}
+
+fn by_file<'a>(rows: impl Iterator<Item = &'a PoseRow>) -> BTreeMap<String, &'a PoseRow> {
+    let named = rows.filter_map(|row| Some((file_name(row.file.as_ref()?), row)));
+    named.flat_map(|(name, row)| keys(&name).into_iter().map(move |key| (key, row))).collect()
+}
+
+/// What a file may be called: by its name, without its extension, by the number in it.
+fn keys(name: &str) -> Vec<String> {
+    // In `1.05` the dot is a decimal point.
+    let is_extension = |end: &str| end.bytes().any(|byte| byte.is_ascii_alphabetic());
+    let stem = name.rsplit_once('.').filter(|(_, end)| is_extension(end)).map_or(name, |(stem, _)| stem);
+    let digits = stem.trim_start_matches(|c: char| !c.is_ascii_digit());
+    let mut keys = vec![name.to_owned(), stem.to_owned()];
+    // `view_010` and a row that says `10`.
+    keys.extend(digits.parse::<u64>().ok().map(|number| number.to_string()));
+    keys
+}
+
+/// Along a straight line between the two rows around a time, headings along the shorter arc.
+fn interpolated(rows: &[PoseRow], seconds: f64, longest_gap: f64) -> Option<Placed> {
+    let after = rows.partition_point(|row| row.time < Some(seconds));
+    let late = rows.get(after)?;
+    if late.time == Some(seconds) {
+        return Some(Placed { seconds, position: [late.x, late.y], heading: late.heading });
+    }
+    let early = rows.get(after.checked_sub(1)?)?;
+    if late.time? - early.time? > longest_gap {
+        return None;
+    }
+    let share = (seconds - early.time?) / (late.time? - early.time?);
+    let between = |early: f64, late: f64| early + share * (late - early);
+    let heading = match (early.heading, late.heading) {
+        (Some(early), Some(late)) => {
+            let turn = wayfix_estimation_traits::wrap_angle(late - early);
+            Some(wayfix_estimation_traits::wrap_angle(early + share * turn))
+        }
+        _ => None,
+    };
+    Some(Placed { seconds, position: [between(early.x, late.x), between(early.y, late.y)], heading })
+}
+
+fn read_image(path: &Path) -> Result<EncodedImage, String> {
+    let bytes = fs::read(path).map_err(|error| error.to_string())?;
+    let format = ImageFormat::of_bytes(&bytes).ok_or("neither PNG nor JPEG")?;
+    let image = EncodedImage::new(format, bytes);
+    image.size().map_err(|error| error.to_string())?;
+    Ok(image)
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(file: Option<&str>, time: Option<f64>, x: f64) -> Option<PoseRow> {
+        Some(PoseRow { file: file.map(str::to_owned), time, x, y: 0.0, heading: Some(3.0 * x) })
+    }
+
+    fn names() -> Vec<String> {
+        ["view_8.png", "view_9.png", "view_10.png"].map(str::to_owned).to_vec()
+    }
+
+    fn xs(placed: Vec<Option<Placed>>) -> Vec<Option<f64>> {
+        placed.iter().map(|placed| placed.map(|placed| placed.position[0])).collect()
+    }
+
+    #[test]
+    fn frames_are_placed_by_file_by_time_or_by_row() {
+        let files = [row(Some("10"), None, 3.0), row(Some("a/view_8.png"), None, 1.0)];
+        assert_eq!(xs(place(&names(), &files, None).unwrap()), [Some(1.0), None, Some(3.0)]);
+        let stamps: Stamps = names().into_iter().zip([0.5, 1.0, 9.0]).collect();
+        let times = [row(None, Some(0.0), 0.0), row(None, Some(1.0), 1.0), row(None, Some(2.0), 4.0)];
+        let placed = place(&names(), &times, Some(&stamps)).unwrap();
+        assert_eq!(placed[0].unwrap().heading, Some(1.5));
+        assert_eq!(xs(placed), [Some(0.5), Some(1.0), None]);
+        assert_eq!(xs(place(&names(), &times, None).unwrap()), [Some(0.0), Some(1.0), Some(4.0)]);
+        assert!(place(&names(), &times[..2], None).unwrap_err().to_string().contains("--stamps"));
+        let untimed = [row(None, None, 0.0), row(None, None, 1.0)];
+        assert!(place(&names(), &untimed, None).is_err());
+    }
+
+    #[test]
+    fn a_gap_between_poses_gives_no_pose() {
+        let stamps: Stamps = names().into_iter().zip([0.05, 5.0, 20.05]).collect();
+        let rows = [0.0, 0.1, 0.2, 20.0, 20.1].map(|time| row(None, Some(time), time));
+        let placed = xs(place(&names(), &rows, Some(&stamps)).unwrap());
+        assert!(placed[0].is_some() && placed[1].is_none() && placed[2].is_some(), "{placed:?}");
+        assert_eq!(longest_gap(&[0.0, 0.1, 0.2]), 0.5);
+        assert_eq!(longest_gap(&[0.0, 1.0, 2.0]), 1.5);
+    }
+
+    #[test]
+    fn a_bad_row_leaves_its_own_frame_without_pose() {
+        let rows = [row(None, None, 1.0), None, row(None, None, 3.0)];
+        assert_eq!(xs(place(&names(), &rows, None).unwrap()), [Some(1.0), None, Some(3.0)]);
+    }
+}

@@ -1,0 +1,25 @@
+//! Adaptive colour localization on logs: where the robot stands on a coloured field, and what today's light does to the colours.
+//!
+//! [`run`] takes the records of a log, a map and priors through a [`ColorSystem`]; [`summarize`] gives the figures, [`pictures`] the pictures;
+//! [`experiments`] are those of the paper, for `wayfix-experiments regress color`.
+
+mod estimates;
+mod figures;
+mod labels;
+mod map;
+mod params;
+mod particle_film;
+mod pictures;
+pub mod priors;
+mod run;
+mod system;
+
+pub use estimates::{ColorDrawing, ColorEstimateLog};
+pub use figures::summarize;
+pub use labels::{LabelCounts, rate_of, tally};
+pub use map::{field_lines, read_map};
+pub use params::{ColorSystemParams, StartParams};
+pub use particle_film::ParticleFilm;
+pub use pictures::{film, pictures, uv_ellipses};
+pub use run::{ColorRun, n_images, run};
+pub use system::{ColorSystem, FrameResult, StartPose};

@@ -1,0 +1,140 @@
+use anyhow::Result;
+use wayfix_color_map::{ColorId, ColorMap};
+use wayfix_color_model::{LightingFilter, YuvImage};
+use wayfix_sensor_log::{Data, EncodedImage, Record};
+
+use super::{ColorRun, FrameResult, field_lines};
+use wayfix_evaluation::{
+    errors::Sample,
+    plot::{
+        EllipsesPlot, ErrorPlot, ErrorSample, FilmFrame, FilmStrip, LinesPlot, MapPlot, NamedEllipse,
+        Picture, PlotError, Series,
+    },
+};
+
+/// Path on the field, errors with their 3σ bands, the colours' UV ellipses, the light over time.
+///
+/// # Errors
+/// When a picture cannot be drawn.
+pub fn pictures(run: &ColorRun) -> Result<Vec<Picture>, PlotError> {
+    let samples = run.samples();
+    let mut pictures = vec![path(run, &samples).draw()?];
+    if !samples.is_empty() {
+        pictures.push(errors(run, &samples).draw()?);
+    }
+    let light = run.system.light();
+    let member = |k: usize| (format!("light {k}, V"), uv_ellipses(run.system.map(), light.member(k)));
+    let ellipses = EllipsesPlot {
+        title: "What the colours look like at the end (1σ in U and V)".to_owned(),
+        x_label: "U".to_owned(),
+        sigmas: 1.0,
+        groups: (0..light.n_members()).map(member).collect(),
+    };
+    pictures.push(ellipses.draw()?);
+    pictures.push(particles(run).draw()?);
+    Ok(pictures)
+}
+
+/// The UV part of every colour's density (Eq. 9).
+pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> {
+    let ellipse = |(at, name): (usize, &String)| {
+        let density = light.color(ColorId(at as u8));
+        let c = density.covariance;
+        NamedEllipse {
+            name: name.clone(),
+            center: (density.mean.y, density.mean.z),
+            covariance: [[c.m22, c.m23], [c.m32, c.m33]],
+        }
+    };
+    map.colors().iter().enumerate().map(ellipse).collect()
+}
+
+/// Camera frames beside what they were classified as, evenly over the log.
+///
+/// # Errors
+/// When an image cannot be decoded or a picture not be drawn.
+pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<Picture> {
+    let images: Vec<(f64, &EncodedImage)> = records
+        .iter()
+        .filter_map(|record| match &record.data {
+            Data::Image(image) => Some((run.seconds(record.stamp), image)),
+            _ => None,
+        })
+        .collect();
+    let mut film = FilmStrip {
+        title: "What the camera saw, and what it was classified as".to_owned(),
+        ..FilmStrip::default()
+    };
+    let (mut seen, mut classified) = (Vec::new(), Vec::new());
+    // The light is that at the end of the log: frames near it show how the run ended.
+    for k in 0..n_frames.min(images.len()) {
+        let (seconds, image) = images[images.len() * (k + 1) / (n_frames.min(images.len()) + 1)];
+        let decoded = image.decode_rgb()?;
+        film.frame_size = (decoded.width, decoded.height);
+        let yuv =
+            YuvImage::from_rgb(decoded.width, decoded.height, &decoded.pixels, run.system.params().yuv)?;
+        let labels = run.system.classified(&yuv).map_err(anyhow::Error::msg)?;
+        let pixels: Vec<u8> = labels.iter().flat_map(|label| paint(*label)).collect();
+        let caption = format!("{seconds:.1} s");
+        seen.push(FilmFrame { image: image.to_browser_format()?, caption: caption.clone() });
+        let painted = EncodedImage::png_rgb(decoded.width, decoded.height, &pixels)?;
+        classified.push(FilmFrame { image: painted, caption });
+    }
+    film.rows = vec![("camera".to_owned(), seen), ("classified, grey for background".to_owned(), classified)];
+    Ok(film.draw()?)
+}
+
+/// What a label is drawn with: the first colours as those of the four-legged league, others in a circle of hues.
+fn paint(label: u8) -> [u8; 3] {
+    const PAINTS: [[u8; 3]; 8] = [
+        [40, 140, 60],
+        [245, 245, 245],
+        [250, 210, 40],
+        [60, 190, 235],
+        [245, 120, 180],
+        [245, 130, 30],
+        [200, 40, 40],
+        [50, 70, 200],
+    ];
+    if label == u8::MAX { [96, 96, 100] } else { PAINTS[usize::from(label) % PAINTS.len()] }
+}
+
+fn path(run: &ColorRun, samples: &[(&FrameResult, Sample)]) -> MapPlot {
+    let frames = run.system.frames();
+    MapPlot {
+        title: "Path on the field".to_owned(),
+        truth: samples.iter().map(|(_, sample)| (sample.truth.x(), sample.truth.y())).collect(),
+        estimate: frames.iter().map(|frame| (frame.pose.mean().x(), frame.pose.mean().y())).collect(),
+        dead_reckoning: frames.iter().filter_map(|f| f.odometry.map(|pose| (pose.x(), pose.y()))).collect(),
+        surroundings: field_lines(run.system.map()),
+        ..MapPlot::default()
+    }
+}
+
+fn errors(run: &ColorRun, samples: &[(&FrameResult, Sample)]) -> ErrorPlot {
+    let error_sample = |(frame, sample): &(&FrameResult, Sample)| {
+        let sigma = sample.covariance.diagonal().map(f64::sqrt);
+        ErrorSample { t: run.seconds(frame.stamp), error: sample.error().into(), sigma: sigma.into() }
+    };
+    ErrorPlot {
+        title: "Pose error in the robot frame".to_owned(),
+        samples: samples.iter().map(error_sample).collect(),
+    }
+}
+
+fn particles(run: &ColorRun) -> LinesPlot {
+    let series = |name: &str, value: &dyn Fn(&FrameResult) -> f64| {
+        let points = run.system.frames().iter().map(|frame| (run.seconds(frame.stamp), value(frame)));
+        Series::new(name, points.collect())
+    };
+    LinesPlot {
+        title: "Particles".to_owned(),
+        x_label: "t, s".to_owned(),
+        y_label: "number".to_owned(),
+        series: vec![
+            series("particles", &|frame| frame.n_particles as f64),
+            series("effective particles", &|frame| frame.effective_particles),
+        ],
+        ..LinesPlot::default()
+    }
+}

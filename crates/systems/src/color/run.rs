@@ -1,0 +1,99 @@
+use std::sync::Arc;
+
+use anyhow::{Result, bail};
+use rand::RngExt;
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+use rand_distr::StandardNormal;
+use wayfix_color_map::ColorMap;
+use wayfix_color_model::LightingBank;
+use wayfix_estimation_traits::{Manifold, Pose2};
+use wayfix_sensor_log::{Data, Record, Stamp};
+
+use super::{ColorSystem, ColorSystemParams, FrameResult, StartPose};
+use crate::system::KnownStart;
+use crate::{
+    slam::{warn_of_no_overlap, warn_of_start},
+    system::{ODOMETRY, System, check_overlap, drive, without_odometry_delay},
+};
+use wayfix_evaluation::errors::{Sample, TrueTrack};
+
+/// A log that went through colour localization, beside the truth that the log holds.
+pub struct ColorRun {
+    /// The system in its last state.
+    pub system: ColorSystem,
+    /// True poses, where the log has them.
+    pub truth: TrueTrack,
+}
+
+/// Takes the records of a log through the localizer and shows the system to `observe` after each.
+///
+/// `start` is where the search begins; `None` is near the first true pose, a draw of the stated uncertainty away from it, or anywhere when
+/// the log has no truth.
+///
+/// # Errors
+/// When there is no image, or none that could be used.
+pub fn run(
+    records: &[Record],
+    map: Arc<ColorMap>,
+    bank: LightingBank,
+    params: &ColorSystemParams,
+    start: Option<StartPose>,
+    seed: u64,
+    observe: impl FnMut(&ColorSystem),
+) -> Result<ColorRun> {
+    let Some(first_image) = records.iter().find(|record| matches!(record.data, Data::Image(_))) else {
+        bail!("the log has no camera images (`wayfix info` shows what a log holds)");
+    };
+    check_overlap(records, ODOMETRY, ("images", |data| matches!(data, Data::Image(_))))?;
+    let truth = TrueTrack::from_records(records);
+    let known = KnownStart::at(first_image.stamp, &truth, records).filter(|_| start.is_none());
+    let start = start.unwrap_or_else(|| match known {
+        Some(known) => StartPose::Near(guess(&known.pose, params, seed)),
+        None => StartPose::Anywhere,
+    });
+    let mut system = ColorSystem::new(map, bank, params.clone(), start, seed);
+    let records = &without_odometry_delay(records, params.odometry_delay);
+    if known.is_some() {
+        warn_of_start(system.events(), known, &truth);
+    }
+    drive(&mut system, records, observe);
+    if system.frames().is_empty() {
+        let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
+        bail!("no image could be used{why}");
+    }
+    let frames = system.frames();
+    let estimated = frames.first().zip(frames.last()).map(|(first, last)| (first.stamp, last.stamp));
+    warn_of_no_overlap(system.events(), &truth, estimated);
+    Ok(ColorRun { system, truth })
+}
+
+/// How many camera frames a log has.
+pub fn n_images(records: &[Record]) -> usize {
+    records.iter().filter(|record| matches!(record.data, Data::Image(_))).count()
+}
+
+/// A start as far off the truth as it is said to be.
+fn guess(truth: &Pose2<f64>, params: &ColorSystemParams, seed: u64) -> Pose2<f64> {
+    // Not the stream that the particles are drawn from.
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(1);
+    let mut normal = |sigma: f64| sigma * rng.sample::<f64, _>(StandardNormal);
+    let (position, heading) = (params.start.position_sigma, params.start.heading_sigma);
+    truth.retract(&nalgebra::Vector3::new(normal(position), normal(position), normal(heading)))
+}
+
+impl ColorRun {
+    /// Frames with the true pose at their stamp.
+    pub fn samples(&self) -> Vec<(&FrameResult, Sample)> {
+        let sample = |frame: &FrameResult| {
+            let truth = self.truth.at(frame.stamp)?;
+            Some(Sample { estimate: *frame.pose.mean(), covariance: *frame.pose.covariance(), truth })
+        };
+        self.system.frames().iter().filter_map(|frame| Some((frame, sample(frame)?))).collect()
+    }
+
+    /// Seconds since the first frame.
+    pub fn seconds(&self, stamp: Stamp) -> f64 {
+        self.system.frames().first().map_or(0.0, |first| stamp.seconds_since(first.stamp))
+    }
+}

@@ -1,0 +1,24 @@
+//! The estimators of Wayfix behind one trait: records of a log go into a [`system::System`], estimates, events and figures come out.
+//!
+//! | module | system |
+//! | --- | --- |
+//! | [`slam`] | EKF-SLAM with point landmarks |
+//! | [`walls`] | EKF-SLAM with walls from laser scans |
+//! | [`lines`] | walls of single scans |
+//! | [`color`] | localization in a coloured map |
+//! | [`cml`] | localization and mapping by appearance |
+//! | [`views`] | which view of a scene a camera sees |
+//! | [`track`] | a target in pictures |
+//!
+//! No terminal, and no files but saved maps.
+
+pub mod cml;
+pub mod color;
+pub mod lines;
+pub mod saved;
+pub mod settings;
+pub mod slam;
+pub mod system;
+pub mod track;
+pub mod views;
+pub mod walls;

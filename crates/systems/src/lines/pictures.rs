@@ -1,0 +1,57 @@
+use nalgebra::Vector2;
+
+use super::{LineSystem, ScanWalls};
+use wayfix_evaluation::plot::{MapPlot, Picture, PlotError};
+
+/// So many scans are drawn, evenly over the log.
+const N_SCANS: usize = 3;
+
+/// All walls where the log says that they were seen from, and some scans with their walls.
+///
+/// # Errors
+/// When a picture cannot be drawn.
+pub fn pictures(system: &LineSystem) -> Result<Vec<Picture>, PlotError> {
+    let scans = system.scans();
+    let mut pictures = Vec::new();
+    if scans.iter().any(|scan| scan.pose.is_some()) {
+        pictures.push(map(system).draw()?);
+    }
+    let n_drawn = N_SCANS.min(scans.len());
+    for k in 0..n_drawn {
+        pictures.push(one(&scans[scans.len() * (k + 1) / (n_drawn + 1)]).draw()?);
+    }
+    Ok(pictures)
+}
+
+fn map(system: &LineSystem) -> MapPlot {
+    let placed = || system.scans().iter().filter_map(|scan| Some((scan.pose?, scan)));
+    let path = placed().map(|(pose, _)| (pose.x(), pose.y())).collect();
+    let walls = placed().flat_map(|(pose, scan)| {
+        scan.segments.iter().map(move |s| line(pose.transform(&s.start), pose.transform(&s.end)))
+    });
+    let plot = MapPlot {
+        title: "The walls of all scans, from the poses of the log".to_owned(),
+        walls: walls.collect(),
+        ..MapPlot::default()
+    };
+    if system.true_walls().is_empty() {
+        return MapPlot { estimate: path, ..plot };
+    }
+    let title = format!("{}; grey: the true ones", plot.title);
+    let surroundings = system.true_walls().iter().map(|wall| line(wall.start, wall.end)).collect();
+    MapPlot { title, truth: path, surroundings, ..plot }
+}
+
+fn one(scan: &ScanWalls) -> MapPlot {
+    let echoes = scan.echoes.iter().map(|(bearing, range)| (range * bearing.cos(), range * bearing.sin()));
+    MapPlot {
+        title: format!("Scan at {:.1} s: {} walls", scan.stamp.seconds(), scan.segments.len()),
+        walls: scan.segments.iter().map(|segment| line(segment.start, segment.end)).collect(),
+        echoes: echoes.collect(),
+        ..MapPlot::default()
+    }
+}
+
+fn line(start: Vector2<f64>, end: Vector2<f64>) -> Vec<(f64, f64)> {
+    vec![(start.x, start.y), (end.x, end.y)]
+}

@@ -1,0 +1,336 @@
+use clap::ValueEnum;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use wayfix_sensor_log::{Format, LogMeta};
+use wayfix_slam_ekf::{
+    AckermannVehicle, ConfirmationParams, CorrelatedNoise, IncrementMotion, JointCompatibilityParams,
+    MergingParams, NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
+};
+
+use crate::{settings::over_defaults, system::VELOCITY_HOLD};
+
+/// Everything that can be set for EKF-SLAM on a log.
+///
+/// ```
+/// use wayfix_systems::slam::{Profile, SlamSystemParams};
+/// let params = SlamSystemParams::from_toml("profile = 'utias'\n[filter]\ngate_probability = 0.99", Profile::Generic)?;
+/// assert_eq!(params.filter.gate_probability, 0.99);
+/// assert_eq!(params.velocity, SlamSystemParams::of(Profile::Utias).velocity); // not named in the file
+/// # Ok::<(), toml::de::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SlamSystemParams {
+    /// The robot whose defaults these are.
+    pub profile: Profile,
+    /// How detections find their landmarks; when not given, by identity where the log has identities, else joint compatibility.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub association: Option<AssociationRule>,
+    /// Start pose, m and rad; when not given, the truth where odometry starts, a fit to the first true positions, or the origin.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub start: Option<[f64; 3]>,
+    /// Timing and calibration of the robot.
+    pub robot: RobotParams,
+    /// Where things sit on the robot.
+    pub mounting: MountingParams,
+    /// Measures of a car-like vehicle.
+    pub vehicle: AckermannVehicle,
+    /// Noise of the range-bearing sensor.
+    pub sensor: RangeBearingSensor,
+    /// Noise of velocity odometry.
+    pub velocity: VelocityMotion,
+    /// Noise of odometry increments.
+    pub increment: IncrementMotion,
+    /// Gate and outliers; its `merging` is for landmarks that were found without identities.
+    pub filter: SlamParams,
+    /// Thresholds of nearest neighbour.
+    pub nearest_neighbour: NearestNeighbourParams,
+    /// Thresholds of joint compatibility.
+    pub joint_compatibility: JointCompatibilityParams,
+    /// What a landmark must show that was found without an identity; takes the place of the filter's `confirmation` then.
+    pub unlabelled_confirmation: ConfirmationParams,
+    /// Whether to record what the run observes; asked for on the command line, since it is no property of the robot.
+    #[serde(skip)]
+    pub record_observability: bool,
+}
+
+/// Where sensor and antenna sit on the robot: x forward and y left of the point whose motion odometry tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MountingParams {
+    /// The range-bearing sensor, m.
+    pub sensor_x: f64,
+    /// The range-bearing sensor, m.
+    pub sensor_y: f64,
+    /// Which way it looks, rad; 0 ahead, counter-clockwise.
+    pub sensor_heading: f64,
+    /// The antenna whose true positions the log has, m.
+    pub antenna_x: f64,
+    /// The antenna, m.
+    pub antenna_y: f64,
+}
+
+/// Timing and calibration of a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotParams {
+    /// Time from the exposure of the sensor to the stamp of what it saw, s.
+    pub sensor_latency: f64,
+    /// Time from the stamp of a velocity command to the motion it makes, s.
+    pub command_delay: f64,
+    /// By how much a commanded turn is shorter than the log says, s.
+    pub turn_command_shortening: f64,
+    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
+    /// navigation.
+    pub velocity_hold: f64,
+    /// Whether the sensor gives depth along its axis instead of distance.
+    pub range_is_depth: bool,
+    /// Standard deviation of the logarithm of the sensor's range scale, which is estimated; 0 when the scale is exact.
+    pub range_scale_sigma: f64,
+}
+
+impl Default for RobotParams {
+    fn default() -> Self {
+        Self {
+            sensor_latency: 0.0,
+            command_delay: 0.0,
+            turn_command_shortening: 0.0,
+            velocity_hold: VELOCITY_HOLD,
+            range_is_depth: false,
+            range_scale_sigma: 0.0,
+        }
+    }
+}
+
+/// A kind of robot and its defaults.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Profile {
+    /// Nothing is known of the robot: a good sensor (5 cm, 0.01 rad), odometry as it comes.
+    Generic,
+    /// The simulated range-bearing logs for comparing programs: 0.02 m and 0.005 rad for every increment, 0.05 m and 0.01 rad
+    /// for every detection.
+    RangeBearing,
+    /// The truck of the Victoria Park set: a car with a laser that finds tree trunks.
+    VictoriaPark,
+    /// The robots of the UTIAS set: iRobot Create with a monocular camera that reads bar codes.
+    Utias,
+}
+
+impl Profile {
+    /// The robot that recorded a log, as far as the format tells that it was first stored in.
+    pub fn of_log(meta: &LogMeta) -> Self {
+        match meta.first_format() {
+            Format::Utias => Self::Utias,
+            Format::RangeBearing => Self::RangeBearing,
+            Format::VictoriaPark => Self::VictoriaPark,
+            _ => Self::Generic,
+        }
+    }
+}
+
+/// How detections find their landmarks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum AssociationRule {
+    /// By the identity that the sensor reads.
+    Known,
+    /// Individual-compatibility nearest neighbour with two thresholds.
+    Nn,
+    /// Joint compatibility branch and bound.
+    Jcbb,
+}
+
+impl SlamSystemParams {
+    /// The defaults of a kind of robot.
+    pub fn of(profile: Profile) -> Self {
+        match profile {
+            Profile::Generic => Self {
+                profile,
+                association: None,
+                start: None,
+                robot: RobotParams::default(),
+                mounting: MountingParams::default(),
+                vehicle: AckermannVehicle::default(),
+                sensor: RangeBearingSensor::default(),
+                velocity: VelocityMotion::default(),
+                increment: IncrementMotion::default(),
+                filter: SlamParams::default(),
+                nearest_neighbour: NearestNeighbourParams::default(),
+                joint_compatibility: JointCompatibilityParams::default(),
+                unlabelled_confirmation: ConfirmationParams {
+                    n_detections: 3,
+                    max_missed: Some(20),
+                    ..ConfirmationParams::default()
+                },
+                record_observability: false,
+            },
+            Profile::RangeBearing => Self {
+                increment: IncrementMotion {
+                    translation_variance_per_meter: 0.0,
+                    heading_variance_per_meter: 0.0,
+                    heading_variance_per_radian: 0.0,
+                    translation_variance_per_step: 0.02 * 0.02,
+                    heading_variance_per_step: 0.005 * 0.005,
+                },
+                ..Self::of(Profile::Generic)
+            }
+            .named(profile),
+            Profile::VictoriaPark => Self {
+                mounting: MountingParams {
+                    sensor_x: 3.78,
+                    sensor_y: 0.5,
+                    sensor_heading: 0.0,
+                    antenna_x: 3.78,
+                    antenna_y: 0.5,
+                },
+                sensor: RangeBearingSensor {
+                    range_sigma: 1.0,
+                    range_sigma_per_meter: 0.0,
+                    bearing_sigma: 0.05,
+                    sensor_range: 30.0,
+                    half_field_of_view: 1.3,
+                    correlated_noise: None,
+                },
+                velocity: VelocityMotion {
+                    linear_sigma: 0.0,
+                    angular_sigma: 0.0,
+                    turning_sigma: 0.05,
+                    linear_sigma_per_meter: 0.1,
+                    angular_sigma_per_meter: 0.01,
+                    ..VelocityMotion::default()
+                },
+                nearest_neighbour: NearestNeighbourParams {
+                    certainly_new: 60.0,
+                    ..NearestNeighbourParams::default()
+                },
+                joint_compatibility: JointCompatibilityParams {
+                    probability: 0.99,
+                    certainly_new: 60.0,
+                    ..JointCompatibilityParams::default()
+                },
+                unlabelled_confirmation: ConfirmationParams {
+                    n_detections: 8,
+                    max_missed: Some(5),
+                    min_detection_rate: 0.4,
+                    ..ConfirmationParams::default()
+                },
+                ..Self::of(Profile::Generic)
+            }
+            .named(profile),
+            // Measured as residuals against truth on set 7, robots 1-3; `docs/accuracy.md` has the figures behind each.
+            Profile::Utias => Self {
+                robot: RobotParams {
+                    sensor_latency: 0.04,
+                    command_delay: 0.15,
+                    turn_command_shortening: 0.04,
+                    velocity_hold: VELOCITY_HOLD,
+                    range_is_depth: true,
+                    range_scale_sigma: 0.04,
+                },
+                sensor: RangeBearingSensor {
+                    range_sigma: 0.01,
+                    range_sigma_per_meter: 0.03,
+                    bearing_sigma: 0.035,
+                    sensor_range: 5.0,
+                    half_field_of_view: 0.45,
+                    // By the differences of detections in one frame and the next, set 7: 0.004-0.006 rad and 0.02-0.04 m within a frame;
+                    // in common what is left against the truth, 0.006-0.018 rad, and 0.8 % once the scale is estimated.
+                    correlated_noise: Some(CorrelatedNoise {
+                        independent_range_sigma: 0.02,
+                        independent_range_sigma_per_meter: 0.0,
+                        independent_bearing_sigma: 0.006,
+                        common_range_sigma_per_meter: 0.01,
+                        common_bearing_sigma: 0.018,
+                    }),
+                },
+                velocity: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
+                filter: SlamParams {
+                    // Errors hang together in time and have heavy tails: doubt begins at the average misfit, d² = 2.
+                    outliers: OutlierRule::Downweight,
+                    gate_probability: 0.632,
+                    // The tubes of a group stand 0.18-0.3 m apart.
+                    merging: Some(MergingParams { separation: 0.13, n_sigmas: 2.0 }),
+                    ..SlamParams::default()
+                },
+                joint_compatibility: JointCompatibilityParams {
+                    certainly_new: 20.0,
+                    one_detection_per_landmark: true,
+                    ..JointCompatibilityParams::default()
+                },
+                unlabelled_confirmation: ConfirmationParams {
+                    n_detections: 8,
+                    max_missed: Some(20),
+                    ..ConfirmationParams::default()
+                },
+                ..Self::of(Profile::Generic)
+            }
+            .named(profile),
+        }
+    }
+
+    /// Parameters from TOML text; what it does not name keeps the default of the profile it names, else of `profile`.
+    ///
+    /// # Errors
+    /// When the text is not TOML, a key is unknown or a value has the wrong type. Ranges are checked by
+    /// [`validated`](Self::validated).
+    pub fn from_toml(text: &str, profile: Profile) -> Result<Self, toml::de::Error> {
+        #[derive(Deserialize)]
+        struct Named {
+            profile: Option<Profile>,
+        }
+        let named: Named = toml::from_str(text)?;
+        let defaults = Self::of(named.profile.unwrap_or(profile));
+        over_defaults(&defaults, text)
+    }
+
+    fn named(self, profile: Profile) -> Self {
+        Self { profile, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_changes_what_it_names_and_nothing_else() {
+        let text = "association = 'nn'\n[robot]\ncommand_delay = 0.2\n[filter.confirmation]\nmax_missed = 7";
+        let params = SlamSystemParams::from_toml(text, Profile::Utias).unwrap();
+        let mut expected = SlamSystemParams::of(Profile::Utias);
+        expected.association = Some(AssociationRule::Nn);
+        expected.robot.command_delay = 0.2;
+        expected.filter.confirmation.max_missed = Some(7);
+        assert_eq!(params, expected);
+    }
+
+    #[test]
+    fn the_profile_of_the_file_goes_before_that_of_the_log() {
+        let params = SlamSystemParams::from_toml("profile = 'range-bearing'", Profile::Utias).unwrap();
+        assert_eq!(params, SlamSystemParams::of(Profile::RangeBearing));
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named() {
+        let error = |text| SlamSystemParams::from_toml(text, Profile::Generic).unwrap_err().to_string();
+        for (text, named) in [
+            ("[sensor]\nrange_sigm = 1.0", "`range_sigm`"),
+            ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
+            ("sensor = 3", "`sensor`"),
+            ("[filter]\noutliers = 'ignore'", "`filter.outliers`"),
+            ("[filter.confirmation]\nn_detections = -1", "`filter.confirmation.n_detections`"),
+            ("[sensor", "line 1"),
+        ] {
+            assert!(error(text).contains(named), "{text}: {}", error(text));
+        }
+    }
+
+    #[test]
+    fn parameters_survive_being_written() {
+        for profile in [Profile::Generic, Profile::RangeBearing, Profile::VictoriaPark, Profile::Utias] {
+            let params = SlamSystemParams::of(profile);
+            let text = toml::to_string(&params).unwrap();
+            assert_eq!(SlamSystemParams::from_toml(&text, Profile::Generic).unwrap(), params);
+        }
+    }
+}

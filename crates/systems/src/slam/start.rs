@@ -1,0 +1,60 @@
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::Stamp;
+
+use crate::system::Events;
+use crate::system::KnownStart;
+use wayfix_evaluation::errors::TrueTrack;
+
+/// Says where the start pose comes from, unless it is the truth at the start.
+pub(crate) fn warn_of_start(events: &mut Events, known: Option<KnownStart>, truth: &TrueTrack) {
+    match known {
+        Some(KnownStart { seconds_late, .. }) if seconds_late > 0.0 => events.warn(
+            "truth_begins_late",
+            format!(
+                "the truth begins {seconds_late:.2} s after the first observation: odometry leads the start pose back from there (`start` sets it)"
+            ),
+        ),
+        None if !truth.is_empty() => events.warn(
+            "start_pose_unknown",
+            "no true pose tells where the run starts: it starts at (0, 0, 0), and figures are aligned ones only (`start` sets it)",
+        ),
+        _ => {}
+    }
+}
+
+/// Says when a run has made no map.
+pub(crate) fn warn_of_an_empty_map(events: &mut Events, n_landmarks: usize) {
+    if n_landmarks == 0 {
+        events.warn(
+            "map_is_empty",
+            "no landmark was seen often enough to be in the map: the path is that of odometry and scan matching alone",
+        );
+    }
+}
+
+/// Says when errors are differences from the poses of another program.
+pub(crate) fn warn_of_reference(events: &mut Events, truth: &TrueTrack) {
+    if truth.is_estimate() {
+        events.warn(
+            "reference_is_another_estimate",
+            "the log has no true poses: errors are differences from the poses of another program, whose own errors are unknown (--truth FILE gives true ones)",
+        );
+    }
+}
+
+/// Says when true poses have no time in common with the estimates.
+pub(crate) fn warn_of_no_overlap(events: &mut Events, truth: &TrueTrack, estimated: Option<(Stamp, Stamp)>) {
+    let (Some((first, last)), Some((begin, end))) = (truth.span(), estimated) else { return };
+    if end < first || last < begin {
+        events.warn(
+            "truth_does_not_overlap",
+            format!("true poses ({first} to {last}) and estimates ({begin} to {end}) have no time in common: there are no figures of accuracy"),
+        );
+    }
+}
+
+/// The pose of parameters, else the known one, else the origin.
+pub(crate) fn start_pose(given: Option<[f64; 3]>, known: Option<KnownStart>) -> Pose2<f64> {
+    let given = given.map(|[x, y, heading]| Pose2::new(x, y, heading));
+    given.or(known.map(|known| known.pose)).unwrap_or(Pose2::new(0.0, 0.0, 0.0))
+}

@@ -1,0 +1,96 @@
+use std::{collections::BTreeMap, fmt};
+
+use wayfix_sensor_log::{Stamp, Warning};
+
+/// How often each kind of event happened, and the first records that could not be used.
+///
+/// ```
+/// use wayfix_systems::system::Events;
+/// use wayfix_sensor_log::Stamp;
+/// let mut events = Events::default();
+/// events.at_record(7, Stamp::from_nanoseconds(5_000_000_000));
+/// events.count("accepted");
+/// events.refuse("unusable", "range 0 m".to_owned());
+/// assert_eq!((events.get("accepted"), events.get("unusable")), (1, 1));
+/// assert_eq!(events.refusals()[0].to_string(), "record 7 at 5.000000000 s: range 0 m");
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Events {
+    counts: BTreeMap<&'static str, u64>,
+    refusals: Vec<Refusal>,
+    n_refusals: u64,
+    warnings: Vec<Warning>,
+    record: (usize, Stamp),
+}
+
+/// A record, or one of its detections, that the system could not use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// Its place among the log's records, from 0.
+    pub index: usize,
+    /// Its stamp.
+    pub stamp: Stamp,
+    /// Why.
+    pub reason: String,
+}
+
+/// More than this many refusals are counted, not listed.
+const MOST_LISTED: usize = 20;
+
+impl Events {
+    /// Tells which record the events from now on belong to.
+    pub fn at_record(&mut self, index: usize, stamp: Stamp) {
+        self.record = (index, stamp);
+    }
+    /// Counts an event.
+    pub fn count(&mut self, name: &'static str) {
+        self.add(name, 1);
+    }
+    /// Counts `n` events of a kind; 0 makes the kind known.
+    pub fn add(&mut self, name: &'static str, n: u64) {
+        *self.counts.entry(name).or_default() += n;
+    }
+    /// Counts an event, and lists the record with the reason why it, or a part of it, could not be used.
+    pub fn refuse(&mut self, name: &'static str, reason: String) {
+        self.count(name);
+        self.n_refusals += 1;
+        if self.refusals.len() < MOST_LISTED {
+            let (index, stamp) = self.record;
+            self.refusals.push(Refusal { index, stamp, reason });
+        }
+    }
+    /// Counts an event, and tells the user what was assumed or is doubtful; each text once.
+    pub fn warn(&mut self, name: &'static str, text: impl Into<String>) {
+        self.count(name);
+        let warning = Warning { name, text: text.into() };
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
+    }
+    /// What the user should know, in the order in which it came up.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+    /// How often a kind of event happened.
+    pub fn get(&self, name: &str) -> u64 {
+        self.counts.get(name).copied().unwrap_or(0)
+    }
+    /// All kinds with their counts.
+    pub fn counts(&self) -> BTreeMap<String, u64> {
+        self.counts.iter().map(|(name, n)| ((*name).to_owned(), *n)).collect()
+    }
+    /// The first refusals.
+    pub fn refusals(&self) -> &[Refusal] {
+        &self.refusals
+    }
+    /// How many refusals there were, listed or not.
+    pub fn n_refusals(&self) -> u64 {
+        self.n_refusals
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "record {} at {}: {}", self.index, self.stamp, self.reason)
+    }
+}

@@ -1,0 +1,50 @@
+use std::time::Duration;
+
+use super::TrackRun;
+use crate::system::System;
+use wayfix_evaluation::report::{Metric, Run};
+
+/// The figures and events of a run, ready for the report. Names as in the contract of `docs/architecture.md`.
+pub fn summarize(run: &mut TrackRun) -> Run {
+    let (score, totals) = (run.system.score(), *run.system.totals());
+    let judged = [
+        ("iou_mean", score.iou_mean(), ""),
+        ("success_auc", score.success_auc(), ""),
+        ("precision_20px", score.precision(), ""),
+        ("center_error_mean_px", score.center_error_mean(), "px"),
+    ];
+    let mut metrics: Vec<Metric> =
+        judged.into_iter().filter_map(|(name, value, unit)| Some(Metric::new(name, value?, unit))).collect();
+    if score.n_frames() > 0 {
+        let status = run.system.status_score();
+        metrics.extend([
+            Metric::new("false_tracked_share", status.false_tracked_share(), ""),
+            Metric::new("false_lost_share", status.false_lost_share(), ""),
+            Metric::new("n_frames_with_truth", score.n_frames() as f64, ""),
+        ]);
+    }
+    metrics.extend([
+        Metric::new("n_frames", run.system.n_frames() as f64, ""),
+        Metric::new("n_lost", totals.n_lost as f64, ""),
+        Metric::new("n_without_estimate", totals.n_without_estimate as f64, ""),
+    ]);
+    let ms = |time: Duration| 1e3 * time.as_secs_f64();
+    let timings = vec![
+        Metric::new("frame_mean_ms", ms(totals.time) / totals.n_steps.max(1) as f64, "ms"),
+        Metric::new("frame_max_ms", ms(totals.longest), "ms"),
+    ];
+    let notes = coverage(run.system.truth().len(), run.system.n_frames()).into_iter().collect();
+    Run { metrics, timings, events: run.system.events().counts(), notes, ..Run::default() }
+}
+
+/// What a list of true boxes of another length means.
+fn coverage(n_true: usize, n_frames: usize) -> Option<String> {
+    match n_true {
+        0 => None,
+        n if n < n_frames => {
+            Some(format!("The truth speaks of {n} of {n_frames} frames; the others are not judged."))
+        }
+        n if n > n_frames => Some(format!("The truth speaks of {n} frames and there are {n_frames}.")),
+        _ => None,
+    }
+}

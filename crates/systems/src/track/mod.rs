@@ -1,0 +1,49 @@
+//! A target followed through pictures: the command `wayfix run track`.
+//!
+//! A [`TrackSystem`] takes the images of a log one by one through the tracker of a [`Method`]; [`TrueBoxes`] say where the target truly
+//! was, and a [`Score`] how well it was followed; [`summarize`] gives the figures and [`pictures`] the pictures. Nothing grows with the
+//! number of frames. [`films`] are the experiments of `wayfix-experiments regress track`.
+//!
+//! ```
+//! use wayfix_systems::track::{Score, TrueBoxes};
+//! let truth = TrueBoxes::parse("10,10,20,20\n11,10,20,20\n0,0,0,0\n")?;
+//! let mut score = Score::default();
+//! for (index, estimate) in [(0, truth.at(0).target()), (1, None)] {
+//!     score.add(estimate.as_ref(), &truth.at(index).target().expect("in sight"));
+//! }
+//! assert_eq!(score.iou_mean(), Some(0.5)); // the second frame was lost
+//! assert!(truth.at(2).is_absent() && truth.at(3).is_unknown());
+//! # Ok::<(), wayfix_systems::track::TrackError>(())
+//! ```
+
+mod decimated;
+mod error;
+mod estimates;
+mod figures;
+mod frame_tracker;
+mod method;
+mod overlay;
+mod params;
+mod pictures;
+mod run;
+mod run_history;
+mod score;
+mod start;
+mod status_score;
+mod system;
+mod truth;
+
+pub use error::TrackError;
+pub use estimates::TrackLog;
+pub use figures::summarize;
+pub use frame_tracker::{FrameTracker, TargetColors};
+pub use method::Method;
+pub use params::TrackParams;
+pub use pictures::pictures;
+pub use run::{TrackRun, run};
+pub use run_history::RunHistory;
+pub use score::Score;
+pub use start::Start;
+pub use status_score::StatusScore;
+pub use system::{FrameResult, TrackSetup, TrackSystem};
+pub use truth::{TrueBoxes, Truth, parse_box};

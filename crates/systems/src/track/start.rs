@@ -1,0 +1,84 @@
+use std::{fs, path::Path};
+
+use wayfix_sensor_log::{EncodedImage, ImageFormat};
+use wayfix_visual_tracking::{BitMask, BoundingBox, RgbImage, TrackingError};
+
+use super::TrackError;
+
+/// Where a target is in the first picture.
+///
+/// ```
+/// use wayfix_systems::track::Start;
+/// use wayfix_visual_tracking::{BitMask, BoundingBox};
+/// let mask = BitMask::from_fn(20, 10, |u, v| (4..9).contains(&u) && v > 6)?;
+/// assert_eq!(Start::Mask(mask).bounding_box()?, BoundingBox::from_corner(4.0, 7.0, 5.0, 3.0)?);
+/// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub enum Start {
+    /// In this box.
+    Box(BoundingBox),
+    /// These pixels are it.
+    Mask(BitMask),
+}
+
+impl Start {
+    /// The mask in a picture file: every pixel that is not black is of the target.
+    ///
+    /// # Errors
+    /// [`TrackError::Read`], and [`TrackError::NotAMask`] for a file that is no picture or one too large.
+    pub fn read_mask(path: &Path) -> Result<Self, TrackError> {
+        let bytes = fs::read(path).map_err(|source| TrackError::Read { path: path.to_owned(), source })?;
+        let wrong = |reason: String| TrackError::NotAMask { path: path.to_owned(), reason };
+        let format = ImageFormat::of_bytes(&bytes).ok_or_else(|| wrong("it is no picture".to_owned()))?;
+        let decoded =
+            EncodedImage::new(format, bytes).decode_rgb().map_err(|error| wrong(error.to_string()))?;
+        let (width, height) = (decoded.width as usize, decoded.height as usize);
+        let is_on = |u: usize, v: usize| decoded.pixels[3 * (v * width + u)..][..3] != [0; 3];
+        BitMask::from_fn(width, height, is_on).map(Self::Mask).map_err(|error| wrong(error.to_string()))
+    }
+
+    /// The box around the target.
+    ///
+    /// # Errors
+    /// When a mask is empty.
+    pub fn bounding_box(&self) -> Result<BoundingBox, TrackingError> {
+        match self {
+            Self::Box(bounds) => Ok(*bounds),
+            Self::Mask(mask) => {
+                let rect = mask.bounding_rect().ok_or(TrackingError::Empty { what: "target in the mask" })?;
+                rect.to_box()
+            }
+        }
+    }
+
+    /// The box around the target in a picture.
+    ///
+    /// # Errors
+    /// When a mask is empty or not as large as the picture.
+    pub(super) fn box_in(&self, picture: &RgbImage) -> Result<BoundingBox, TrackingError> {
+        if let Self::Mask(mask) = self {
+            let sizes = [
+                ("width of the mask", picture.width() as usize, mask.width()),
+                ("height of the mask", picture.height() as usize, mask.height()),
+            ];
+            for (what, expected, got) in sizes {
+                if expected != got {
+                    return Err(TrackingError::Dimension { what, expected, got });
+                }
+            }
+        }
+        self.bounding_box()
+    }
+
+    /// In a few words.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Box(bounds) => {
+                let [x, y] = bounds.corner();
+                format!("box {x},{y},{},{}", bounds.width(), bounds.height())
+            }
+            Self::Mask(mask) => format!("mask of {} pixels", mask.area()),
+        }
+    }
+}

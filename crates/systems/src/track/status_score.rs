@@ -1,0 +1,57 @@
+/// Overlap below which a box is off its target.
+const OFF_BELOW: f64 = 0.2;
+/// Overlap from which on a box is on its target. [Everingham et al. 2010]
+const ON_FROM: f64 = 0.5;
+
+/// How often a tracker is wrong about whether it has its target.
+///
+/// Overlap is intersection over union of the true box and the box that the tracker gives, also while it says that the target is lost. A target that
+/// is out of the picture has overlap 0.
+///
+/// ```
+/// use wayfix_systems::track::StatusScore;
+/// let mut score = StatusScore::default();
+/// score.add(0.9, false); // on the target and tracked
+/// score.add(0.6, true); // on the target, called lost
+/// score.add(0.1, false); // off the target, called tracked
+/// score.add(0.3, false); // in between: not judged
+/// assert_eq!((score.false_tracked_share(), score.false_lost_share()), (1.0, 0.5));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StatusScore {
+    n_off: u64,
+    n_off_tracked: u64,
+    n_on: u64,
+    n_on_lost: u64,
+}
+
+impl StatusScore {
+    /// Counts a frame with an estimate.
+    pub fn add(&mut self, iou: f64, is_lost: bool) {
+        if iou < OFF_BELOW {
+            self.n_off += 1;
+            self.n_off_tracked += u64::from(!is_lost);
+        } else if iou >= ON_FROM {
+            self.n_on += 1;
+            self.n_on_lost += u64::from(is_lost);
+        }
+    }
+
+    /// Takes in the counts of another run.
+    pub fn merge(&mut self, other: &Self) {
+        self.n_off += other.n_off;
+        self.n_off_tracked += other.n_off_tracked;
+        self.n_on += other.n_on;
+        self.n_on_lost += other.n_on_lost;
+    }
+
+    /// Share of the frames with overlap below 0.2 that are called tracked; 0 when there are none.
+    pub fn false_tracked_share(&self) -> f64 {
+        self.n_off_tracked as f64 / self.n_off.max(1) as f64
+    }
+
+    /// Share of the frames with overlap 0.5 or more that are called lost; 0 when there are none.
+    pub fn false_lost_share(&self) -> f64 {
+        self.n_on_lost as f64 / self.n_on.max(1) as f64
+    }
+}

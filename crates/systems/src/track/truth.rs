@@ -1,0 +1,206 @@
+use std::{fs, path::Path};
+
+use wayfix_visual_tracking::BoundingBox;
+
+use super::TrackError;
+
+/// Where the target truly was, frame by frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TrueBoxes {
+    frames: Vec<Truth>,
+    n_unusable: usize,
+    /// The first lines that are no box.
+    unusable: Vec<String>,
+}
+
+/// So many unusable lines are named.
+const MOST_NAMED: usize = 3;
+
+/// What is known of one frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Truth {
+    /// The target is here.
+    At(BoundingBox),
+    /// It is not in the picture.
+    Absent,
+    /// Nothing.
+    Unknown,
+}
+
+impl Truth {
+    /// Where the target is, if it is known and in the picture.
+    pub fn target(self) -> Option<BoundingBox> {
+        match self {
+            Self::At(target) => Some(target),
+            Self::Absent | Self::Unknown => None,
+        }
+    }
+
+    /// Whether the target is known to be out of the picture.
+    pub fn is_absent(self) -> bool {
+        self == Self::Absent
+    }
+
+    /// Whether nothing is known.
+    pub fn is_unknown(self) -> bool {
+        self == Self::Unknown
+    }
+}
+
+impl TrueBoxes {
+    /// One box a line, line k being frame k, each as [`parse_box`] takes it. Nothing is known of the frame of a line that is blank or no box.
+    /// A first line without a number is a header. Empty lines at the end do not count.
+    ///
+    /// # Errors
+    /// [`TrackError::Read`], and [`TrackError::Line`] for the first line when no line is a box.
+    pub fn read(path: &Path) -> Result<Self, TrackError> {
+        let read = fs::read(path).map_err(|source| TrackError::Read { path: path.into(), source })?;
+        Self::parse(&String::from_utf8_lossy(&read))
+    }
+
+    /// The same from a text.
+    ///
+    /// # Errors
+    /// [`TrackError::Line`].
+    pub fn parse(text: &str) -> Result<Self, TrackError> {
+        let text = text.trim_start_matches('\u{feff}').trim_end();
+        let mut found = Self::default();
+        let mut first_error = None;
+        let n_header = usize::from(text.lines().next().is_some_and(is_header) && text.lines().count() > 1);
+        for (index, line) in text.lines().enumerate().skip(n_header) {
+            found.frames.push(match parse_box(line) {
+                Ok(Some(target)) => Truth::At(target),
+                Ok(None) => Truth::Absent,
+                Err(source) => {
+                    let error = TrackError::Line { line: index + 1, source: Box::new(source) };
+                    if found.unusable.len() < MOST_NAMED {
+                        let line: String = line.chars().take(80).collect();
+                        found.unusable.push(format!("line {} {line:?}", index + 1));
+                    }
+                    found.n_unusable += 1;
+                    first_error.get_or_insert(error);
+                    Truth::Unknown
+                }
+            });
+        }
+        match first_error {
+            Some(error) if found.n_unusable == found.frames.len() => Err(error),
+            _ => Ok(found),
+        }
+    }
+
+    /// What is wrong with lines that are no box.
+    pub(super) fn unusable_lines_message(&self) -> Option<String> {
+        (self.n_unusable > 0).then(|| {
+            let (n, named) = (self.n_unusable, self.unusable.join(", "));
+            format!(
+                "{n} of {} lines of the truth are no box ({named}): their frames are not judged",
+                self.len()
+            )
+        })
+    }
+
+    /// What is known of a frame, counted from 0.
+    pub fn at(&self, frame: usize) -> Truth {
+        self.frames.get(frame).copied().unwrap_or(Truth::Unknown)
+    }
+
+    /// How many frames are spoken of.
+    pub fn len(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Whether none is.
+    pub fn is_empty(&self) -> bool {
+        self.frames.is_empty()
+    }
+}
+
+/// A box from four numbers `x,y,w,h` or from eight, the corners `x1,y1 … x4,y4` of a quadrangle, whose upright bounding box it is; with
+/// commas, semicolons, tabs or blanks between them. `None` where the target is not in the picture: not a number, or without an extent.
+///
+/// ```
+/// use wayfix_systems::track::parse_box;
+/// assert_eq!(parse_box("10 20 30 40")?, parse_box("40,20,40,60,10,60,10,20")?);
+/// assert_eq!(parse_box("NaN,NaN,NaN,NaN")?, None);
+/// assert!(parse_box("10,20,30").is_err() && parse_box("10,20,30,high").is_err());
+/// # Ok::<(), wayfix_systems::track::TrackError>(())
+/// ```
+///
+/// # Errors
+/// [`TrackError::NotABox`] for other counts, for what is no number, and for a negative extent.
+pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackError> {
+    let wrong = |reason: String| TrackError::NotABox { text: text.chars().take(80).collect(), reason };
+    let words = text.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty());
+    let number = |word: &str| word.parse::<f64>().map_err(|_| wrong(format!("{word:?} is no number")));
+    let numbers: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
+    let [x, y, width, height] = match numbers[..] {
+        [x, y, width, height] => [x, y, width, height],
+        [x1, y1, x2, y2, x3, y3, x4, y4] => around([[x1, y1], [x2, y2], [x3, y3], [x4, y4]]),
+        _ => return Err(wrong(format!("{} numbers, neither 4 nor 8", numbers.len()))),
+    };
+    if numbers.iter().any(|number| !number.is_finite()) || width == 0.0 || height == 0.0 {
+        return Ok(None);
+    }
+    BoundingBox::from_corner(x, y, width, height).map(Some).map_err(|error| wrong(error.to_string()))
+}
+
+/// A line of words, as `x,y,w,h`.
+fn is_header(line: &str) -> bool {
+    let mut words =
+        line.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty()).peekable();
+    words.peek().is_some() && words.all(|word| word.parse::<f64>().is_err())
+}
+
+/// Left, top, width and height of the upright box around points.
+fn around(corners: [[f64; 2]; 4]) -> [f64; 4] {
+    let least = |k: usize| corners.iter().map(|corner| corner[k]).fold(f64::INFINITY, f64::min);
+    let most = |k: usize| corners.iter().map(|corner| corner[k]).fold(f64::NEG_INFINITY, f64::max);
+    [least(0), least(1), most(0) - least(0), most(1) - least(1)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_separator_is_understood() {
+        let expected = BoundingBox::from_corner(1.5, 2.0, 30.0, 40.0).unwrap();
+        for text in ["1.5,2,30,40", "1.5\t2\t30\t40", " 1.5  2 30 40 \r", "1.5, 2; 30, 40"] {
+            assert_eq!(parse_box(text).unwrap(), Some(expected), "{text:?}");
+        }
+        let tilted = parse_box("5,0 10,5 5,10 0,5").unwrap().unwrap();
+        assert_eq!((tilted.corner(), tilted.width(), tilted.height()), ([0.0, 0.0], 10.0, 10.0));
+    }
+
+    #[test]
+    fn absent_target_is_valid_and_inverted_box_is_an_error() {
+        for text in ["0,0,0,0", "nan nan nan nan", "NaN,1,2,3", "inf,0,1,1", "3,3,3,3,3,3,3,3"] {
+            assert_eq!(parse_box(text).unwrap(), None, "{text:?}");
+        }
+        for text in ["", "1,2,-3,4", "1,2,3,4,5", "one,2,3,4", "x"] {
+            assert!(matches!(parse_box(text), Err(TrackError::NotABox { .. })), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_no_box_leaves_its_frame_unknown() {
+        let truth = TrueBoxes::parse("1,2,3,4\n\n5,6,3,4\n160,1\n").unwrap();
+        assert_eq!(truth.len(), 4);
+        assert!(truth.at(1).is_unknown() && truth.at(3).is_unknown());
+        assert_eq!(truth.at(2).target().unwrap().corner(), [5.0, 6.0]);
+        let doubt = truth.unusable_lines_message().unwrap();
+        assert!(doubt.contains("2 of 4") && doubt.contains("line 2") && doubt.contains("line 4"), "{doubt}");
+        let error = TrueBoxes::parse("1,2,3\n4,5,6\n").unwrap_err();
+        assert!(matches!(error, TrackError::Line { line: 1, .. }), "{error}");
+        assert!(TrueBoxes::parse("x,y,w,h\n1,2,3,4").unwrap().at(0).target().is_some());
+    }
+
+    #[test]
+    fn what_lies_beyond_the_list_is_unknown() {
+        let truth = TrueBoxes::parse("\u{feff}1,2,3,4\r\n0,0,0,0\r\n\r\n").unwrap();
+        assert_eq!((truth.len(), truth.unusable_lines_message()), (2, None));
+        assert!(truth.at(0).target().is_some() && truth.at(1).is_absent() && truth.at(2).is_unknown());
+        assert!(TrueBoxes::parse("").unwrap().is_empty());
+    }
+}

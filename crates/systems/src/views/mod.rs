@@ -1,0 +1,54 @@
+//! State condensation on pictures: in which of the views of a scene the robot is, from what the whole view looks like.
+//!
+//! A [`ViewSystem`] learns one picture of a scene and drives in another one, seen on another day; [`run`] makes many drives between random
+//! places, [`summarize`] gives their figures and [`pictures`] shows them. [`corridor`] does the same along a corridor that was driven twice.
+//! [`composed`] makes scenes that need no file, [`PaperScene`] has the paper's figures for scenes of these names, [`p_value_metrics`] and
+//! [`compare_choices`] make ours.
+//!
+//! ```
+//! use wayfix_systems::views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams};
+//! use wayfix_condensation::Picture;
+//! let pixel = |i: usize| {
+//!     let (x, y) = ((i % 160) as f64, (i / 160) as f64);
+//!     [x / 23.0 + (y / 31.0).sin(), x * y / 3000.0, y / 19.0].map(|phase| (60.0 * phase.sin() + 120.0) as u8)
+//! };
+//! let learned = Picture::from_rgb(160, 120, (0..160 * 120).flat_map(pixel).collect())?;
+//! let real = RealScene::default().of(&learned)?; // other light, some pixels aside
+//! let setup = Setup { view: 64, step: 16, feature: FeatureKind::Joined, normalization: Normalization::WholeScene };
+//! let run = views::run(&learned, &real, &setup, &ViewsParams::default(), 10, 1, &|| ())?;
+//! assert!(run.trials.iter().filter(|trial| trial.succeeded()).count() >= 9);
+//! # Ok::<(), views::ViewsError>(())
+//! ```
+
+mod choices;
+mod composed;
+mod error;
+mod estimates;
+mod feature;
+mod figures;
+mod normalization;
+mod params;
+mod pictures;
+mod real_scene;
+mod register;
+mod run;
+mod scene;
+mod statistics;
+mod system;
+
+pub use choices::{INFORMED, compare_choices};
+pub use composed::composed;
+pub use error::ViewsError;
+pub use estimates::draw_drive;
+pub use feature::FeatureKind;
+pub use figures::summarize;
+pub use normalization::Normalization;
+pub use params::ViewsParams;
+pub use pictures::shade;
+pub use pictures::{belief_film, pictures};
+pub use real_scene::RealScene;
+pub use register::mean_shift;
+pub use run::{ViewsRun, run};
+pub use scene::{Scene, read_scene};
+pub use statistics::p_value_metrics;
+pub use system::{Setup, Step, Trial, ViewSystem};

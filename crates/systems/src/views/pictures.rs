@@ -1,0 +1,145 @@
+use std::cmp::Reverse;
+
+use anyhow::Result;
+use wayfix_condensation::{Grid, Picture as Pixels};
+use wayfix_sensor_log::{EncodedImage, ImageError};
+
+use super::{Step, Trial, ViewSystem, ViewsRun};
+use wayfix_evaluation::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, Series};
+
+/// Moves after which the belief is shown, beside the last.
+const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];
+/// Frames of a film beside each other; two rows hold all.
+const FRAMES_A_ROW: usize = 3;
+/// Pixels a place of a belief map.
+const CELL: usize = 12;
+pub(super) const TRUTH: [u8; 3] = [214, 39, 40];
+pub(super) const GOAL: [u8; 3] = [24, 140, 60];
+pub(super) const BEST: [u8; 3] = [240, 160, 0];
+pub(super) const JPEG_QUALITY: u8 = 85;
+
+/// The scene learned and seen, the belief in the drive that was unsure for longest, and how fast all of them became certain.
+///
+/// # Errors
+/// When a picture cannot be encoded or drawn.
+pub fn pictures(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> Result<Vec<Picture>> {
+    Ok(vec![
+        scenes(learned, real)?,
+        belief_film(&run.system, seed, slowest(&run.trials))?,
+        certainty(&run.trials).draw()?,
+    ])
+}
+
+/// Belief over the places after 0, 1, 2, 6 and 16 moves and at the end of a trial. [Kasprzak & Szynkiewicz, Fig. 6]
+///
+/// # Errors
+/// When the trial cannot be driven or a picture not be encoded.
+pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture> {
+    let grid = *system.views().grid();
+    let mut maps = Vec::new();
+    let mut last = None;
+    system.trial(seed, trial, |step| {
+        let map = belief_image(&grid, &step);
+        if SHOWN.contains(&step.number) {
+            maps.push((step.number, map));
+            last = None;
+        } else {
+            last = Some((step.number, map));
+        }
+    })?;
+    maps.extend(last);
+    let size = ((grid.columns() * CELL) as u32, (grid.rows() * CELL) as u32);
+    let frame = |(number, image): (usize, Result<EncodedImage, ImageError>)| {
+        Ok(FilmFrame { image: image?, caption: format!("{number} moves") })
+    };
+    let frames: Vec<FilmFrame> = maps.into_iter().map(frame).collect::<Result<_, ImageError>>()?;
+    let legends =
+        ["red: true place, orange: best, green: goal", "dark: believed, by the logarithm to a millionth"];
+    let rows =
+        frames.chunks(FRAMES_A_ROW).zip(legends).map(|(frames, legend)| (legend.to_owned(), frames.to_vec()));
+    let film = FilmStrip {
+        title: format!("Belief over the places, trial {trial}"),
+        rows: rows.collect(),
+        frame_size: size,
+    };
+    Ok(film.draw()?)
+}
+
+/// What is believed at a moment, with the true place, the best and the goal.
+pub(super) fn belief_image(grid: &Grid, step: &Step<'_>) -> Result<EncodedImage, ImageError> {
+    let marks = [(step.goal, GOAL), (step.localizer.best().state, BEST), (step.at, TRUTH)];
+    let pixels = belief_map(grid, step.localizer.belief(), &marks);
+    EncodedImage::png_rgb((grid.columns() * CELL) as u32, (grid.rows() * CELL) as u32, &pixels)
+}
+
+/// A square a place, darker where belief is larger. The marks of one place lie inside each other, the last outermost.
+fn belief_map(grid: &Grid, belief: &[f64], marks: &[(usize, [u8; 3])]) -> Vec<u8> {
+    let most = belief.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let width = grid.columns() * CELL;
+    let pixel = |i: usize| {
+        let (x, y) = (i % width, i / width);
+        let place = grid.state(x / CELL, y / CELL).unwrap_or(0);
+        let border = [x % CELL, y % CELL].into_iter().map(|at| at.min(CELL - 1 - at)).min().unwrap_or(0);
+        let mark = marks.iter().rev().filter(|mark| mark.0 == place).nth(border / 2);
+        mark.map_or_else(|| shade(belief[place] / most), |mark| mark.1)
+    };
+    (0..width * grid.rows() * CELL).flat_map(pixel).collect()
+}
+
+/// White for nothing, dark blue for 1, and in between by the logarithm down to a millionth.
+pub fn shade(share: f64) -> [u8; 3] {
+    const PAPER: [f64; 3] = [246.0, 247.0, 249.0];
+    const INK: [f64; 3] = [8.0, 48.0, 107.0];
+    let depth = (1.0 + share.max(f64::MIN_POSITIVE).log10() / 6.0).clamp(0.0, 1.0);
+    std::array::from_fn(|c| (PAPER[c] + depth * (INK[c] - PAPER[c])).round() as u8)
+}
+
+/// The trial that became certain last; one that never did is the slowest of all.
+pub(super) fn slowest(trials: &[Trial]) -> u64 {
+    let steps = |trial: &Trial| trial.report.steps_to_certainty.unwrap_or(usize::MAX);
+    let slowest = (0_u64..).zip(trials).max_by_key(|(index, trial)| (steps(trial), Reverse(*index)));
+    slowest.map_or(0, |(index, _)| index)
+}
+
+fn scenes(learned: &Pixels, real: &Pixels) -> Result<Picture> {
+    let size = (learned.width() as u32, learned.height() as u32);
+    let frame = |picture: &Pixels, caption: &str| -> Result<FilmFrame> {
+        let image = EncodedImage::jpeg(size.0, size.1, picture.pixels().as_flattened(), JPEG_QUALITY)?;
+        Ok(FilmFrame { image, caption: caption.to_owned() })
+    };
+    let frames = vec![frame(learned, "learned")?, frame(real, "seen")?];
+    let film = FilmStrip {
+        title: "The scene".to_owned(),
+        rows: vec![("the robot sees a window of it at a time".to_owned(), frames)],
+        frame_size: size,
+    };
+    Ok(film.draw()?)
+}
+
+/// How belief in the true place grows over the drives.
+fn certainty(trials: &[Trial]) -> LinesPlot {
+    let n_moves = trials.iter().map(|trial| trial.belief_in_truth.len()).max().unwrap_or(0);
+    // A drive that is over keeps what it ended with.
+    let at = |trial: &Trial, moves: usize| {
+        let last = trial.belief_in_truth.len().saturating_sub(1);
+        trial.belief_in_truth.get(moves.min(last)).copied().unwrap_or(f64::NAN)
+    };
+    let share = |belief: f64| {
+        let of = |moves: usize| {
+            let n = trials.iter().filter(|trial| at(trial, moves) >= belief).count();
+            (moves as f64, n as f64 / trials.len().max(1) as f64)
+        };
+        (0..n_moves).map(of).collect()
+    };
+    LinesPlot {
+        title: "How many drives believe in the true place".to_owned(),
+        x_label: "moves".to_owned(),
+        y_label: "share of the drives".to_owned(),
+        series: vec![
+            Series::new("belief above 0.5", share(0.5)),
+            Series::new("above 0.9", share(0.9)),
+            Series::new("above 0.999", share(0.999)),
+        ],
+        ..LinesPlot::default()
+    }
+}

@@ -1,0 +1,62 @@
+use rayon::prelude::*;
+use wayfix_condensation::Picture;
+
+/// Every so many pixels each way are compared.
+const STRIDE: usize = 4;
+
+/// By how much a camera moved between two pictures of one size, on the whole: `real` shows at `(x, y)` what `learned` shows at
+/// `(x + dx, y + dy)`. The shift, in whole pixels up to `reach` each way, at which the grey values correlate most.
+///
+/// ```
+/// use wayfix_systems::views::mean_shift;
+/// use wayfix_condensation::{Light, Picture};
+/// let wave = |i: usize| (120.0 + 60.0 * ((i % 90) as f64 / 9.0).sin() + 40.0 * ((i / 90) as f64 / 7.0).cos()) as u8;
+/// let learned = Picture::from_rgb(90, 80, (0..90 * 80).flat_map(|i| [wave(i); 3]).collect())?;
+/// let real = Light { gain: 0.8, offset: 10.0, gamma: 1.0 }.apply(&learned)?.shifted(5, -3);
+/// assert_eq!(mean_shift(&learned, &real, 8), (5, -3));
+/// # Ok::<(), wayfix_condensation::CondensationError>(())
+/// ```
+pub fn mean_shift(learned: &Picture, real: &Picture, reach: usize) -> (i32, i32) {
+    let (width, height) = (learned.width().min(real.width()), learned.height().min(real.height()));
+    // Less than half of the picture in common says nothing.
+    let reach = |length: usize| reach.min(length / 2) as i32;
+    let best_of_row = |dy: i32| {
+        let alike = |dx: i32| (correlation(learned, real, (width, height), (dx, dy)), (dx, dy));
+        (-reach(width)..=reach(width)).map(alike).max_by(better)
+    };
+    let rows: Vec<i32> = (-reach(height)..=reach(height)).collect();
+    let best = rows.into_par_iter().filter_map(best_of_row).collect::<Vec<_>>().into_iter().max_by(better);
+    best.map_or((0, 0), |(_, shift)| shift)
+}
+
+type Scored = (f64, (i32, i32));
+
+/// The higher correlation, or the shorter of two shifts that are as good.
+fn better(a: &Scored, b: &Scored) -> std::cmp::Ordering {
+    let length = |(dx, dy): (i32, i32)| dx * dx + dy * dy;
+    a.0.total_cmp(&b.0).then(length(b.1).cmp(&length(a.1)))
+}
+
+/// Pearson's correlation over the overlap; −1 where one of the two has no contrast.
+fn correlation(learned: &Picture, real: &Picture, size: (usize, usize), (dx, dy): (i32, i32)) -> f64 {
+    let inside = |by: i32, length: usize| {
+        let (start, end) = ((-by).max(0) as usize, length - by.max(0) as usize);
+        (start..end).step_by(STRIDE)
+    };
+    let (mut n, mut a, mut b, mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for y in inside(dy, size.1) {
+        let there = y.saturating_add_signed(dy as isize) * learned.width();
+        for x in inside(dx, size.0) {
+            let from = f64::from(learned.grey()[there + x.saturating_add_signed(dx as isize)]);
+            let to = f64::from(real.grey()[y * real.width() + x]);
+            n += 1.0;
+            a += from;
+            b += to;
+            aa += from * from;
+            bb += to * to;
+            ab += from * to;
+        }
+    }
+    let variances = (n * aa - a * a) * (n * bb - b * b);
+    if variances > 0.0 { (n * ab - a * b) / variances.sqrt() } else { -1.0 }
+}

@@ -1,0 +1,20 @@
+use super::{ViewSystem, ViewsError};
+use wayfix_evaluation::report::Metric;
+
+/// How distinct the learned views are and how alike the views of one place: the paper's Tables 1 and 2, with our test in the place of its
+/// unnamed one ([`Appearance::p_value`](wayfix_condensation::Appearance::p_value)).
+///
+/// # Errors
+/// [`ViewsError::Condensation`].
+pub fn p_value_metrics(system: &ViewSystem) -> Result<Vec<Metric>, ViewsError> {
+    let appearance = system.appearance();
+    let between = appearance.p_values_between_states().map_or(f64::NAN, |p| p.mean);
+    let same = appearance.p_values_of(system.seen())?;
+    let figures = [
+        ("p_between_mean", between),
+        ("p_same_min", same.min),
+        ("p_same_max", same.max),
+        ("p_same_mean", same.mean),
+    ];
+    Ok(figures.map(|(name, value)| Metric::new(name, value, "")).into())
+}

@@ -1,0 +1,106 @@
+use wayfix_estimation_traits::{LieGroup, wrap_angle};
+use wayfix_sensor_log::{Relation, Stamp};
+
+use super::WallRun;
+use crate::slam::{StampedEstimate, timings, unobservable_directions};
+use wayfix_evaluation::{
+    errors::{Sample, trajectory_errors},
+    report::{Metric, Run},
+};
+
+/// The figures and events of a run, ready for the report.
+pub fn summarize(run: &mut WallRun) -> Run {
+    let samples: Vec<(StampedEstimate, Sample)> = run.samples();
+    let errors_of = |samples: Vec<Sample>| trajectory_errors(&samples);
+    let mut metrics = Vec::new();
+    if let Some(errors) = errors_of(samples.iter().map(|(_, sample)| *sample).collect()) {
+        metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
+        metrics.push(Metric::new("ate_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
+        metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
+        let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
+        metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
+    }
+    let reckoned = |(stamped_estimate, sample): &(StampedEstimate, Sample)| Sample {
+        estimate: stamped_estimate.dead_reckoning,
+        ..*sample
+    };
+    if let Some(errors) = errors_of(samples.iter().map(reckoned).collect()) {
+        metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
+    }
+    if let Some((_, last)) = samples.last() {
+        metrics.push(Metric::new("end_error_m", last.position_error(), "m"));
+    }
+    metrics.extend(wall_metrics(&run.wall_nees()));
+    let events = run.events();
+    let n_rejected =
+        ["gated", "duplicate", "unusable", "record_refused"].map(|name| events.get(name)).iter().sum::<u64>();
+    metrics.push(Metric::new("n_landmarks", run.system.filter().n_landmarks() as f64, ""));
+    metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
+    let events = run.events().counts();
+    let timings = timings(run.system.stamped_estimates());
+    let mut summary = Run { metrics, timings, events, ..Run::default() };
+    unobservable_directions(run.system.observability(), &mut summary);
+    summary
+}
+
+/// How many walls of the map are walls of the world, and which share of them is within two standard deviations (in two dimensions: the ellipse
+/// of 95.45 %).
+fn wall_metrics(nees: &[f64]) -> Vec<Metric> {
+    const TWO_SIGMA: f64 = 6.18; // chi-squared quantile, two degrees of freedom
+    if nees.is_empty() {
+        return Vec::new();
+    }
+    let n_within = nees.iter().filter(|nees| **nees <= TWO_SIGMA).count();
+    vec![
+        Metric::new("n_true_walls_found", nees.len() as f64, ""),
+        Metric::new("walls_within_2_sigma", n_within as f64 / nees.len() as f64, ""),
+    ]
+}
+
+/// How well the path keeps relations between poses that are known from elsewhere: the mean translational and rotational error, and the
+/// same of dead reckoning. [Kümmerle et al. 2009, Eq. 2]
+///
+/// Relations count whose stamps both have a stamped_estimate within 10 ms.
+pub fn relation_metrics(run: &WallRun, relations: &[Relation]) -> Vec<Metric> {
+    let stamped_estimates = run.system.stamped_estimates();
+    let pairs: Vec<(&Relation, &StampedEstimate, &StampedEstimate)> = relations
+        .iter()
+        .filter_map(|relation| {
+            Some((relation, near(stamped_estimates, relation.from)?, near(stamped_estimates, relation.to)?))
+        })
+        .collect();
+    if pairs.is_empty() {
+        return Vec::new();
+    }
+    let mean = |error: &dyn Fn(&(&Relation, &StampedEstimate, &StampedEstimate)) -> f64| {
+        pairs.iter().map(error).sum::<f64>() / pairs.len() as f64
+    };
+    let translation = mean(&|(relation, from, to)| {
+        (from.pose.inverse().compose(&to.pose).translation - relation.pose.translation).norm()
+    });
+    let rotation = mean(&|(relation, from, to)| {
+        wrap_angle(from.pose.inverse().compose(&to.pose).heading() - relation.pose.heading()).abs()
+    });
+    let reckoned = mean(&|(relation, from, to)| {
+        let moved = from.dead_reckoning.inverse().compose(&to.dead_reckoning);
+        (moved.translation - relation.pose.translation).norm()
+    });
+    vec![
+        Metric::new("relation_translation_mean_m", translation, "m"),
+        Metric::new("relation_rotation_mean_deg", rotation.to_degrees(), "°"),
+        Metric::new("relation_dead_reckoning_mean_m", reckoned, "m"),
+        Metric::new("n_relations", pairs.len() as f64, ""),
+    ]
+}
+
+/// The stamped_estimate nearest in time, when it is within 10 ms.
+fn near(stamped_estimates: &[StampedEstimate], stamp: Stamp) -> Option<&StampedEstimate> {
+    const LONGEST_WAIT: f64 = 0.01;
+    let distance = |stamped_estimate: &StampedEstimate| stamped_estimate.stamp.seconds_since(stamp).abs();
+    let after = stamped_estimates.partition_point(|stamped_estimate| stamped_estimate.stamp < stamp);
+    let neighbours =
+        stamped_estimates[after.saturating_sub(1)..stamped_estimates.len().min(after + 1)].iter();
+    neighbours
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .filter(|stamped_estimate| distance(stamped_estimate) <= LONGEST_WAIT)
+}

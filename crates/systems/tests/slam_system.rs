@@ -1,0 +1,112 @@
+//! What the SLAM system makes of records: timing, calibration, and refusals that leave no trace.
+
+use std::f64::consts::FRAC_PI_3;
+
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Data, Detection, Record, Stamp, Target, Velocity};
+use wayfix_systems::slam::{Profile, RobotParams, SlamRun, SlamSystemParams, run};
+
+fn at(seconds: f64, data: Data) -> Record {
+    Record { stamp: Stamp::from_seconds(seconds).expect("a time"), data }
+}
+
+fn velocity(seconds: f64, linear: f64, angular: f64) -> Record {
+    at(seconds, Data::Velocity(Velocity { linear, angular }))
+}
+
+fn detection(seconds: f64, id: u32, range: f64, bearing: f64) -> Record {
+    at(seconds, Data::Detections(vec![Detection { target: Target::Landmark(id), range, bearing }]))
+}
+
+fn slam(records: &[Record], robot: RobotParams) -> SlamRun {
+    let params = SlamSystemParams { robot, ..SlamSystemParams::of(Profile::Generic) };
+    run(records, &params, |_| {}).expect("a usable log")
+}
+
+#[test]
+fn delayed_detection_corrects_the_past_pose() {
+    let robot = RobotParams { sensor_latency: 0.25, ..RobotParams::default() };
+    let slam = slam(&[velocity(0.0, 1.0, 0.0), detection(1.0, 7, 2.0, 0.0)], robot);
+    let stamped_estimate = slam.system.stamped_estimates()[0];
+    assert!((slam.system.filter().robot().pose.x() - 0.75).abs() < 1e-12, "at the exposure");
+    assert!((stamped_estimate.pose.x() - 1.0).abs() < 1e-12, "at the stamp");
+    // One second of a random walk of 0.02 m/√s, a quarter of it after the exposure.
+    assert!((stamped_estimate.covariance.m11.sqrt() - 0.02).abs() < 1e-9);
+}
+
+#[test]
+fn a_delayed_command_moves_the_robot_later() {
+    let robot = RobotParams { command_delay: 0.5, ..RobotParams::default() };
+    let records = [velocity(0.0, 1.0, 0.0), velocity(1.0, 1.0, 0.0), detection(2.0, 7, 2.0, 0.0)];
+    let slam = slam(&records, robot);
+    assert!((slam.system.stamped_estimates()[0].pose.x() - 1.5).abs() < 1e-12);
+}
+
+#[test]
+fn depth_becomes_distance() {
+    let robot = RobotParams { range_is_depth: true, ..RobotParams::default() };
+    let looks =
+        [velocity(0.0, 0.0, 0.0), detection(0.1, 7, 1.0, FRAC_PI_3), detection(0.2, 7, 1.0, FRAC_PI_3)];
+    let slam = slam(&looks, robot);
+    let position = slam.landmarks()[&7];
+    assert!((position.x - 1.0).abs() < 1e-9 && (position.y - 3.0_f64.sqrt()).abs() < 1e-9, "{position}");
+}
+
+#[test]
+fn a_refused_record_leaves_no_trace() {
+    let good = [
+        velocity(0.0, 0.5, 0.1),
+        detection(0.5, 7, 2.0, 0.3),
+        velocity(1.0, 0.4, -0.2),
+        detection(1.5, 7, 1.5, 0.4),
+        detection(2.0, 7, 1.3, 0.5),
+    ];
+    let bad = [
+        velocity(1.2, f64::NAN, 0.0),
+        velocity(1.2, 0.1, f64::INFINITY),
+        velocity(1.2, 1e300, 0.0),
+        velocity(0.2, 0.5, 0.0), // back in time
+    ];
+    let clean = slam(&good, RobotParams::default());
+    for record in bad {
+        let mut records = good.to_vec();
+        records.insert(3, record.clone());
+        let mut slam = slam(&records, RobotParams::default());
+        assert_eq!(slam.events().get("record_refused"), 1, "{record:?}");
+        assert_eq!(slam.events().refusals()[0].index, 3);
+        assert_eq!(slam.system.filter().robot(), clean.system.filter().robot(), "{record:?}");
+        assert_eq!(slam.system.filter().covariance(), clean.system.filter().covariance(), "{record:?}");
+    }
+}
+
+#[test]
+fn non_finite_measurement_is_counted_and_changes_nothing() {
+    let look = |more: &[Detection]| {
+        let first = Detection { target: Target::Landmark(7), range: 2.0, bearing: 0.3 };
+        at(0.5, Data::Detections([&[first], more].concat()))
+    };
+    let detection = |id, range, bearing| Detection { target: Target::Landmark(id), range, bearing };
+    let bad = [
+        detection(8, f64::NAN, 0.0),
+        detection(8, 1.0, f64::NAN),
+        detection(8, f64::INFINITY, 0.0),
+        detection(8, 0.0, 0.0),
+        detection(8, -1.0, 0.0),
+        detection(8, 1.0, f64::NEG_INFINITY),
+    ];
+    let clean = slam(&[velocity(0.0, 0.5, 0.1), look(&[])], RobotParams::default());
+    let mut slam = slam(&[velocity(0.0, 0.5, 0.1), look(&bad)], RobotParams::default());
+    assert_eq!(slam.events().get("unusable"), bad.len() as u64);
+    assert_eq!(slam.system.filter().robot(), clean.system.filter().robot());
+    assert_eq!(slam.system.filter().covariance(), clean.system.filter().covariance());
+}
+
+#[test]
+fn the_run_starts_at_the_truth_where_odometry_starts() {
+    let truth = |seconds: f64, x: f64| at(seconds, Data::TruePose(Pose2::new(x, 0.0, 0.0)));
+    let records = [truth(0.0, 5.0), truth(0.2, 6.0), velocity(0.1, 0.0, 0.0), detection(0.2, 7, 1.0, 0.0)];
+    let mut records = records.to_vec();
+    records.sort_by_key(|record| record.stamp);
+    let slam = slam(&records, RobotParams::default());
+    assert!((slam.system.stamped_estimates()[0].dead_reckoning.x() - 5.5).abs() < 1e-12);
+}
