@@ -27,10 +27,18 @@ pub(crate) fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
     command
 }
 
+/// The command line, built for speed; arguments follow.
+pub(crate) fn wayfix(args: &[&str]) -> Command {
+    program("wayfix", args)
+}
+
 /// The experiments, built for speed; arguments follow.
 pub(crate) fn experiments(args: &[&str]) -> Command {
-    let mut command =
-        command("cargo", &["run", "--quiet", "--release", "--package", "wayfix-experiments", "--"]);
+    program("wayfix-experiments", args)
+}
+
+fn program(package: &str, args: &[&str]) -> Command {
+    let mut command = command("cargo", &["run", "--quiet", "--release", "--package", package, "--"]);
     command.args(args);
     command
 }
