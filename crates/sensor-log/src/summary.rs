@@ -102,7 +102,7 @@ impl LogSummary {
         match data {
             Data::TrueLandmark(landmark) => drop(self.landmarks_surveyed.insert(landmark.id)),
             Data::Detections(detections) => {
-                detections.iter().for_each(|detection| self.add_detection(detection.target))
+                detections.iter().for_each(|detection| self.add_detection(detection.target));
             }
             Data::Scan(scan) => self.scans.add(scan),
             Data::Image(image) | Data::TrueLabels(image) => {

@@ -31,7 +31,7 @@ impl ScanChannel {
             match key {
                 INCREMENT => channel.increment = value.parse().ok().filter(|value: &f64| value.is_finite()),
                 BEAM_PERIOD => {
-                    channel.beam_period = value.parse().ok().filter(|value: &f64| value.is_finite())
+                    channel.beam_period = value.parse().ok().filter(|value: &f64| value.is_finite());
                 }
                 RANGE_MAX => channel.range_max = value.parse().ok().filter(|value: &f64| !value.is_nan()),
                 _ => {}

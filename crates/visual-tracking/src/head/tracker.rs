@@ -111,7 +111,7 @@ impl HeadTracker {
             checked("semi-axis of the head", semi_axis, semi_axis >= MIN_SEMI_AXIS, "at least 3 pixels")?;
         }
         let quantizer = ColorQuantizer::new(ColorSpace::Opponent, params.bins)?;
-        let bins = BinImage::new(&quantizer, &picture)?;
+        let bins = BinImage::new(&quantizer, picture)?;
         let center = head.center().map(|c| c.floor() as i64);
         let histogram = histogram(&bins, RowSpans::ellipse(base)?, center)?;
         let own = own_colors(&bins, &histogram, center, base)?;
@@ -213,7 +213,7 @@ impl<S: ScaleSource> Tracker for HeadTracker<S> {
         check_size("width of a picture", self.picture_size.0, picture.width() as usize)?;
         check_size("height of a picture", self.picture_size.1, picture.height() as usize)?;
         let scales = self.scales(picture)?;
-        let bins = BinImage::new(&self.quantizer, &picture)?;
+        let bins = BinImage::new(&self.quantizer, picture)?;
         let candidate = self.found(&bins, &GradientField::new(picture), &scales)?;
         let Some(candidate) = candidate else { return self.target(0.0) };
         self.accept(&bins, candidate)?;
