@@ -35,10 +35,7 @@ mod mixture;
 mod product;
 #[cfg(feature = "sampling")]
 mod sampling;
-mod sigma_points;
-mod transform;
-mod unscented;
-mod weighted_mean;
+mod sigma;
 
 pub use chi_squared::{ChiSquaredBand, ChiSquaredGate};
 pub use circular::CircularMoments;
@@ -55,6 +52,6 @@ pub use merge::moment_matched;
 pub use mixture::{Mixture, log_sum_exp};
 #[cfg(feature = "sampling")]
 pub use sampling::{GaussianMotion, Sampler};
-pub use sigma_points::{SigmaPoints, UnscentedParams};
-pub use unscented::{UnscentedTransform, weighted_moments};
-pub use weighted_mean::weighted_mean;
+pub use sigma::sigma_points::{SigmaPoints, UnscentedParams};
+pub use sigma::unscented::{UnscentedTransform, weighted_moments};
+pub use sigma::weighted_mean::weighted_mean;

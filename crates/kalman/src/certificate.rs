@@ -115,9 +115,9 @@ where
 mod tests {
     use super::*;
     use crate::{
+        algebra::ldl::Ldl,
+        algebra::product::{joseph, plain_difference, propagated_covariance},
         check,
-        ldl::Ldl,
-        product::{joseph, plain_difference, propagated_covariance},
     };
     use nalgebra::Matrix2;
     use rand::{RngExt, SeedableRng};

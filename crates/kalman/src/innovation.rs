@@ -3,10 +3,10 @@ use wayfix_estimation_traits::{LogWeight, Manifold, Tangent, TangentMatrix, Upda
 use wayfix_gaussian_core::check_covariance;
 
 use crate::{
+    algebra::ldl::Ldl,
+    algebra::product::{times, times_transpose},
     check,
     error::Checked,
-    ldl::Ldl,
-    product::{times, times_transpose},
 };
 
 /// What a measurement said beyond what was expected: everything a gate, a plot, a likelihood or a test needs.

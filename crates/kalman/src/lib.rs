@@ -30,6 +30,7 @@
 //! # Ok::<(), wayfix_kalman::KalmanError>(())
 //! ```
 
+mod algebra;
 mod certificate;
 mod check;
 mod consistency;
@@ -40,14 +41,11 @@ mod form;
 mod forms;
 mod gating;
 mod innovation;
-mod ldl;
 mod linear;
 mod linearize;
-mod product;
 mod smoother;
 mod stacked;
 mod switching;
-mod transport;
 mod update;
 
 pub use consistency::{Consistency, nees};

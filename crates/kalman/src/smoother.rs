@@ -3,8 +3,8 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::{
-    Extended, Form, Innovation, KalmanError, check, error::Checked, linearize::linearize_motion,
-    product::propagated_covariance, transport::transported,
+    Extended, Form, Innovation, KalmanError, algebra::product::propagated_covariance,
+    algebra::transport::transported, check, error::Checked, linearize::linearize_motion,
 };
 
 /// The Rauch-Tung-Striebel smoother: filters forward in [`Extended`] form, then sends what came later back.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::words::EXCEPT;
+use super::text::words::EXCEPT;
 use super::{Finding, Source};
 
 const MOST_FILES: usize = 15;

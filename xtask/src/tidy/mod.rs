@@ -4,20 +4,16 @@
 
 mod code;
 mod direction;
-mod figures;
 mod files;
 mod folders;
 mod graph;
-mod leftovers;
-mod links;
 mod manifest;
 mod members;
 mod msrv;
 mod names;
-mod pages;
 mod purity;
 mod size;
-mod words;
+mod text;
 
 use std::fmt;
 use std::process::ExitCode;
@@ -27,7 +23,7 @@ use anyhow::{Context, Result, bail};
 use crate::shell;
 
 pub(crate) use files::tracked;
-pub(crate) use links::{link_targets, resolve};
+pub(crate) use text::links::{link_targets, resolve};
 
 /// A tracked text file.
 pub(crate) struct Source {
@@ -73,12 +69,12 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     findings.extend(direction::check(&sources));
     findings.extend(members::check(&sources));
     findings.extend(graph::check(&sources, &tree));
-    findings.extend(leftovers::check(&sources));
-    findings.extend(links::check(&sources, &paths));
+    findings.extend(text::leftovers::check(&sources));
+    findings.extend(text::links::check(&sources, &paths));
     findings.extend(names::check(&sources));
-    findings.extend(words::check(&sources));
-    findings.extend(pages::check(&sources));
-    findings.extend(figures::check(&sources));
+    findings.extend(text::words::check(&sources));
+    findings.extend(text::pages::check(&sources));
+    findings.extend(text::figures::check(&sources));
     findings.extend(folders::check(&sources));
     findings.extend(size::lengths(&sources));
     findings.extend(size::weights(&files::weights(&paths)));

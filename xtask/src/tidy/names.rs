@@ -1,6 +1,6 @@
 //! Names that a reader can take in: functions and tests of at most sixty characters.
 
-use super::words::EXCEPT;
+use super::text::words::EXCEPT;
 use super::{Finding, Source};
 
 const TOO_LONG: usize = 60;

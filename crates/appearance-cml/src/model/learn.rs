@@ -3,8 +3,8 @@ use std::collections::BTreeMap;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
+use super::comparing::place_match::turned;
 use super::merge::merge_places;
-use super::place_match::turned;
 use super::residual::Residual;
 use super::weigh::{weight_when_missed, weight_when_seen};
 use super::{

@@ -2,8 +2,8 @@ use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
+use super::comparing::place_match::turned;
 use super::merge::merged;
-use super::place_match::turned;
 use super::{MapParams, PlaceComponent};
 use crate::{AppearanceError, Match};
 

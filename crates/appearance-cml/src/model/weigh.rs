@@ -2,7 +2,7 @@ use nalgebra::Matrix3;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
-use super::place_match::turned;
+use super::comparing::place_match::turned;
 use super::{ForgettingParams, ForgettingUncertainty, MapParams, PlaceComponent, PlaceUpdate, ViewScale};
 use crate::{AppearanceError, Match, separation_squared, similarity};
 

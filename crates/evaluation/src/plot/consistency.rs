@@ -1,8 +1,8 @@
-use super::axis::{Axis, Scale};
-use super::ink::Ink;
-use super::layout::{Frame, Plate, no_data};
-use super::legend::{Legend, Mark};
 use super::statistics::moving_mean;
+use super::svg::axis::{Axis, Scale};
+use super::svg::ink::Ink;
+use super::svg::layout::{Frame, Plate, no_data};
+use super::svg::legend::{Legend, Mark};
 use super::{Picture, PlotError};
 
 /// NEES or NIS against time, with the band in which a consistent filter keeps 95 % of the samples, and the moving mean.

@@ -1,8 +1,8 @@
-use super::axis::{Axis, Scale};
-use super::ellipse::ellipse;
-use super::ink::Ink;
-use super::layout::{Frame, Plate, no_data};
-use super::legend::{Legend, Mark};
+use super::svg::axis::{Axis, Scale};
+use super::svg::ellipse::ellipse;
+use super::svg::ink::Ink;
+use super::svg::layout::{Frame, Plate, no_data};
+use super::svg::legend::{Legend, Mark};
 use super::{Picture, PlotError};
 
 /// Covariance ellipses in the plane, one panel a group, all panels with the same axes.

@@ -1,8 +1,8 @@
-use super::axis::{Axis, Scale};
-use super::ink::Ink;
-use super::layout::{Frame, Plate, no_data};
-use super::legend::{Legend, Mark};
 use super::statistics::quantile;
+use super::svg::axis::{Axis, Scale};
+use super::svg::ink::Ink;
+use super::svg::layout::{Frame, Plate, no_data};
+use super::svg::legend::{Legend, Mark};
 use super::{Picture, PlotError};
 
 /// Error of a planar pose against time, inside the ±3σ band that the filter claims: x, y and heading.

@@ -4,9 +4,9 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use wayfix_sensor_log::EncodedImage;
 
-use super::canvas::FONT_SIZE;
-use super::layout::{WIDTH, no_data};
-use super::markup::escape;
+use super::svg::canvas::FONT_SIZE;
+use super::svg::layout::{WIDTH, no_data};
+use super::svg::markup::escape;
 use super::{Picture, PlotError};
 
 /// Rows of pictures of one size: what a camera saw, and what a program made of it.

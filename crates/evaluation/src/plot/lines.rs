@@ -1,7 +1,7 @@
-use super::axis::{Axis, Scale};
-use super::ink::Ink;
-use super::layout::{Frame, Plate, no_data};
-use super::legend::{Legend, Mark};
+use super::svg::axis::{Axis, Scale};
+use super::svg::ink::Ink;
+use super::svg::layout::{Frame, Plate, no_data};
+use super::svg::legend::{Legend, Mark};
 use super::{Picture, PlotError};
 
 /// Several named series against one abscissa.

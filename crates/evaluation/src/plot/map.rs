@@ -1,9 +1,9 @@
-use super::axis::{Axis, Scale};
-use super::ellipse::ellipse;
-use super::ink::Ink;
-use super::layout::{Frame, PANEL_WIDTH, Plate, no_data};
-use super::legend::{Legend, Mark};
-use super::panel::Panel;
+use super::svg::axis::{Axis, Scale};
+use super::svg::ellipse::ellipse;
+use super::svg::ink::Ink;
+use super::svg::layout::{Frame, PANEL_WIDTH, Plate, no_data};
+use super::svg::legend::{Legend, Mark};
+use super::svg::panel::Panel;
 use super::{Picture, PlotError};
 
 /// Paths and landmarks of a planar run; one metre is as long on both axes.

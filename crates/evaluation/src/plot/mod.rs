@@ -15,35 +15,27 @@
 //! Numbers that are not finite leave a gap; a plot without a single drawable number says "no data". Long series are thinned to what the
 //! picture can show: the lowest and highest value of every pixel column stay.
 
-mod axis;
-mod canvas;
 mod consistency;
-mod decimate;
-mod ellipse;
 mod ellipses;
 mod error;
 mod error_plot;
 mod film_strip;
-mod ink;
-mod layout;
-mod legend;
 mod lines;
 mod map;
-mod markup;
-mod panel;
 mod picture;
 pub mod statistics;
+mod svg;
 mod times;
 
-pub use axis::Scale;
 pub use consistency::ConsistencyPlot;
 pub use ellipses::{EllipsesPlot, NamedEllipse};
 pub use error::PlotError;
 pub use error_plot::{ErrorPlot, ErrorSample};
 pub use film_strip::{FilmFrame, FilmStrip};
-pub(crate) use ink::{DARK_PALETTE, LIGHT_PALETTE};
 pub use lines::{LinesPlot, NamedBand, Series};
 pub use map::{EstimatedLandmark, MapPlot};
-pub(crate) use markup::escape;
 pub use picture::Picture;
+pub use svg::axis::Scale;
+pub(crate) use svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
+pub(crate) use svg::markup::escape;
 pub use times::TimesPlot;

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::ink::{DARK_PALETTE, LIGHT_PALETTE};
+use super::svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
 
 /// A drawn plot: an inline `<svg>` element whose colours are the CSS variables of the page around it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,10 +1,10 @@
 use std::collections::BTreeMap;
 
-use super::axis::{Axis, Scale};
-use super::ink::Ink;
-use super::layout::{Frame, Plate, no_data};
-use super::legend::{Legend, Mark};
 use super::statistics::{median, quantile};
+use super::svg::axis::{Axis, Scale};
+use super::svg::ink::Ink;
+use super::svg::layout::{Frame, Plate, no_data};
+use super::svg::legend::{Legend, Mark};
 use super::{Picture, PlotError};
 
 /// What each step cost, against the number of the step or the size of the state, with the median.

@@ -3,11 +3,12 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, U
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Form, Innovation, check,
+    Form, Innovation,
+    algebra::product::{joseph, propagated_covariance},
+    algebra::transport::transported,
+    check,
     error::Checked,
     linearize::{linearize_motion, linearize_sensor},
-    product::{joseph, propagated_covariance},
-    transport::transported,
 };
 
 /// The extended Kalman filter in the form of Joseph, on any manifold.

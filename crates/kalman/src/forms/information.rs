@@ -3,10 +3,11 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::{
-    Form, Innovation, check,
+    Form, Innovation,
+    algebra::transport::transport,
+    check,
     error::Checked,
     linearize::{linearize_motion, linearize_sensor},
-    transport::transport,
 };
 
 /// The information form: carries $`Λ = P^{-1}`$, so that measurements add up.

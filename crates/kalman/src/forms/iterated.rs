@@ -5,8 +5,8 @@ use wayfix_estimation_traits::{
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Extended, Form, Innovation, KalmanError, check, error::Checked, linearize::linearize_sensor,
-    product::joseph, transport::transported,
+    Extended, Form, Innovation, KalmanError, algebra::product::joseph, algebra::transport::transported,
+    check, error::Checked, linearize::linearize_sensor,
 };
 
 /// The iterated extended filter: the update relinearizes at its own result until it settles, which is Gauss-Newton on

@@ -3,8 +3,8 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, U
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Extended, Form, Innovation, check, error::Checked, linearize::linearize_sensor,
-    product::plain_difference, transport::transported,
+    Extended, Form, Innovation, algebra::product::plain_difference, algebra::transport::transported, check,
+    error::Checked, linearize::linearize_sensor,
 };
 
 /// The faster sibling of [`Extended`]: $`P = P - K C^T`$ instead of the form of Joseph.

@@ -3,10 +3,11 @@ use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, T
 use wayfix_gaussian_core::{Gaussian, cholesky};
 
 use crate::{
-    Extended, Form, Innovation, check,
+    Extended, Form, Innovation,
+    algebra::transport::transported,
+    check,
     error::Checked,
     linearize::{LinearizedSensor, linearize_sensor},
-    transport::transported,
 };
 
 /// The extended filter that uses a measurement one scalar at a time.

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{
 };
 use wayfix_gaussian_core::{Gaussian, SigmaPoints, UnscentedParams, symmetrize, weighted_mean};
 
-use crate::{Extended, Form, Innovation, check, error::Checked, transport::transported};
+use crate::{Extended, Form, Innovation, algebra::transport::transported, check, error::Checked};
 
 /// The unscented filter with additive noise, on any manifold: sigma points instead of Jacobians.
 ///

@@ -5,10 +5,10 @@ use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 use super::{LinearMotion, LinearSensor};
 use crate::{
     Innovation, KalmanError, Update,
+    algebra::product::{joseph, plain_difference, propagated_covariance},
     certificate::Floor,
     check,
     error::Checked,
-    product::{joseph, plain_difference, propagated_covariance},
 };
 
 /// What a linear sensor says to a [`KalmanFilter`].

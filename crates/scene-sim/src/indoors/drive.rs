@@ -2,9 +2,9 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::Data;
 
 use super::ambient_light::AmbientLight;
-use super::building::Building;
-use super::crowd::Crowd;
 use super::params::IndoorParams;
+use super::rooms::building::Building;
+use super::rooms::crowd::Crowd;
 use super::view::ViewRenderer;
 use crate::drive::{DifferentialDrive, Pursuit};
 use crate::random::{Source, Streams};

@@ -6,36 +6,29 @@
 //! A view is drawn panel by panel into a buffer of depths, one ray for each quarter of a pixel; each ray looks its colour up in a texture
 //! that is as coarse as the ray is wide, so that nothing flickers when the robot moves, and 120 × 20 pixels cost less than half a millisecond.
 
-mod aisles;
 mod ambient_light;
-mod building;
 mod camera;
 mod canvas;
 mod color;
-mod crowd;
-mod decor;
 mod depths;
 mod drive;
 mod image_pipeline;
-mod lab;
 mod light;
 mod mirror;
 mod panel;
 mod params;
+mod rooms;
 mod rounded;
-mod shelf;
-mod store;
-mod store_params;
 mod texture;
 mod view;
 
-pub use aisles::{Aisles, Crossing};
 pub use ambient_light::AmbientLightParams;
-pub use building::Building;
 pub use camera::OmniCameraParams;
 pub use drive::{IndoorDrive, IndoorStep};
-pub use lab::Lab;
 pub use mirror::Mirror;
 pub use params::{IndoorParams, calibrated_robot};
-pub use store::Store;
-pub use store_params::StoreParams;
+pub use rooms::aisles::{Aisles, Crossing};
+pub use rooms::building::Building;
+pub use rooms::lab::Lab;
+pub use rooms::store::Store;
+pub use rooms::store_params::StoreParams;

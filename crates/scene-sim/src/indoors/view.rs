@@ -3,14 +3,14 @@ use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
 use super::ambient_light::AmbientLight;
-use super::building::Building;
 use super::camera::OmniCameraParams;
 use super::color::Rgb8;
-use super::crowd::{HALF_WIDTH_M, HEIGHTS_M};
 use super::depths::{Depths, PanelHit};
 use super::image_pipeline::ImagePipeline;
 use super::light::MixedLight;
 use super::panel::{Material, Panel};
+use super::rooms::building::Building;
+use super::rooms::crowd::{HALF_WIDTH_M, HEIGHTS_M};
 use crate::scenery::RgbPicture;
 use crate::{SimError, plane};
 

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose3;
 use super::transforms::last_part;
 use crate::CameraInfo;
 use crate::fault::{Fault, finite, inconsistent};
-use crate::format::shortened;
+use crate::formats::format::shortened;
 use crate::ros;
 
 /// The pinhole camera of a message.

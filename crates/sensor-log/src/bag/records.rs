@@ -9,7 +9,7 @@ use super::scan::Mount;
 use super::transforms::{Transforms, is_body, last_part};
 use super::{Choice, camera, scan};
 use crate::fault::{Fault, finite, inconsistent, spatial};
-use crate::format::shortened;
+use crate::formats::format::shortened;
 use crate::image::picture;
 use crate::planar::heading_of;
 use crate::ros::{self, Header, RosMessage, Twist};

@@ -1,7 +1,7 @@
 use super::{EncodedImage, ImageFormat};
 use crate::ProblemKind;
 use crate::fault::Fault;
-use crate::format::shortened;
+use crate::formats::format::shortened;
 
 /// The picture in a message with an image file, of ROS 2 or of Foxglove, and what the sender calls its format.
 ///

@@ -1,5 +1,5 @@
 use crate::fault::Fault;
-use crate::format::shortened;
+use crate::formats::format::shortened;
 use crate::{EncodedImage, ProblemKind};
 
 /// Pixels as messages have them, of ROS 2 and of Foxglove.

@@ -4,10 +4,10 @@ use foxglove::bytes::Bytes;
 use foxglove::messages::{self, CameraCalibration, CompressedImage, FrameTransform, RawImage, Timestamp};
 use wayfix_estimation_traits::Pose3;
 
-use super::decode::{decode, stamp};
+use super::reading::decode::{decode, stamp};
 use super::topics;
 use crate::fault::{Fault, finite, inconsistent, spatial};
-use crate::format::shortened;
+use crate::formats::format::shortened;
 use crate::image::{Anymap, Pixels, picture};
 use crate::{CameraInfo, Data, EncodedImage, ImageFormat, LogError, Record, Stamp};
 

@@ -4,7 +4,7 @@ use foxglove::bytes::Bytes;
 use foxglove::messages::packed_element_field::NumericType;
 use foxglove::messages::{PackedElementField, PointCloud, Timestamp};
 
-use super::encode;
+use super::writing::encode;
 
 /// Name and type of one column; columns are packed without gaps.
 pub(super) type Column = (&'static str, NumericType);

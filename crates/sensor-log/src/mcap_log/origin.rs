@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use mcap::records::Metadata;
 
-use super::fields::Fields;
+use super::reading::fields::Fields;
 use crate::Format;
 
 const NAME: &str = "wayfix";

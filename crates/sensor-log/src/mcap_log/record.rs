@@ -1,4 +1,4 @@
-use super::{MessageSink, MessageWriter, camera, encode, scan, topics, vehicle};
+use super::{MessageSink, MessageWriter, camera, scan, topics, vehicle, writing::encode};
 use crate::{Data, ImageFormat, LogError, Record};
 
 impl<S: MessageSink> MessageWriter<S> {

@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use foxglove::messages::{self, FrameTransform, PointCloud, Timestamp};
 use wayfix_estimation_traits::Pose2;
 
-use super::decode::{decode, planar, stamp};
-use super::{encode, topics};
+use super::reading::decode::{decode, planar, stamp};
+use super::{topics, writing::encode};
 use crate::fault::{Fault, finite, inconsistent};
 use crate::{Data, LaserScan, Record, Stamp};
 

@@ -4,8 +4,8 @@ use foxglove::messages::packed_element_field::NumericType::{Float32, Float64};
 use foxglove::messages::{JointState, JointStates, PointCloud, Timestamp};
 
 use super::cloud::{self, Column};
-use super::decode::{decode, point_fields, read_points, stamp};
-use super::{encode, topics};
+use super::reading::decode::{decode, point_fields, read_points, stamp};
+use super::{topics, writing::encode};
 use crate::fault::{Fault, finite, inconsistent};
 use crate::{AckermannDrive, Data, Record, Stamp, TruePosition};
 

@@ -2,7 +2,7 @@ use std::io::{self, BufRead};
 use std::path::{Path, PathBuf};
 
 use super::row::RowError;
-use crate::compressed::{TextReader, end_of_damaged, open_text};
+use crate::formats::compressed::{TextReader, end_of_damaged, open_text};
 use crate::{LogEnd, LogError, Problem, ProblemKind, ReadReport};
 
 /// No row of a known format comes near: scanners of 1,440 beams print some 20 kB with their remissions. What is longer is garbage and must

@@ -10,7 +10,7 @@ use wayfix_estimation_traits::Pose2;
 
 use super::Lines;
 use super::row::{RowError, columns, id, number};
-use crate::format::shortened;
+use crate::formats::format::shortened;
 use crate::{Data, Detection, LogError, ProblemKind, ReadReport, Record, Stamp, Target, TrueLandmark};
 
 /// Time between two steps, nanoseconds.

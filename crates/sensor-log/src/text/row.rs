@@ -1,6 +1,6 @@
 use std::str::FromStr;
 
-use crate::format::shortened;
+use crate::formats::format::shortened;
 use crate::{ProblemKind, Stamp};
 
 /// Why a row is not used.

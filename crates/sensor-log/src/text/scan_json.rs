@@ -14,8 +14,8 @@ use super::half_circle::{half_circle, warn_of_assumed_field_of_view};
 use super::row::{RowError, stamp};
 use super::scan_odometry::ScanOdometry;
 use super::time_order::{Timed, in_time_order};
-use crate::compressed::{end_of_damaged, open_text};
-use crate::format::shortened;
+use crate::formats::compressed::{end_of_damaged, open_text};
+use crate::formats::format::shortened;
 use crate::{Data, Format, LaserScan, LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record, Stamp};
 
 /// No log in this form is larger; what is must not fill the memory.

@@ -11,7 +11,7 @@ use wayfix_estimation_traits::Pose2;
 use super::Lines;
 use super::row::{RowError, exactly, number, stamp};
 use super::time_order::{Timed, in_time_order};
-use crate::compressed::open_text;
+use crate::formats::compressed::open_text;
 use crate::planar::{NORM_TOLERANCE, heading_of, quaternion_of};
 use crate::{Data, LogError, PoseKind, ProblemKind, ReadReport, Record, WriteReport};
 

@@ -17,7 +17,7 @@ use super::Lines;
 use super::gps::drop_jumps;
 use super::row::{RowError, comma_columns, id, number, stamp};
 use super::time_order::{Timed, in_time_order};
-use crate::format::shortened;
+use crate::formats::format::shortened;
 use crate::{
     AckermannDrive, Data, Detection, Format, LogError, ReadReport, Record, Stamp, Target, TruePosition,
 };

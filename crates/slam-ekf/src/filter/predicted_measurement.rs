@@ -1,7 +1,9 @@
 use nalgebra::{DefaultAllocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
-use super::{EkfSlam, Linearization, retire::Retired, search_region::SearchRegion, state::Slot};
+use super::{
+    EkfSlam, Linearization, map_management::retire::Retired, search_region::SearchRegion, state::Slot,
+};
 use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
 /// How a landmark of the map should look from here: what associations compare measurements with.

@@ -4,8 +4,8 @@ use wayfix_estimation_traits::{Manifold, TangentMatrix};
 use super::{
     EkfSlam, SlamParams,
     map::check_finite,
+    map_management::retire::Retired,
     predict::{LARGEST_VARIANCE, check_covariance},
-    retire::Retired,
     state::Slot,
 };
 use crate::{

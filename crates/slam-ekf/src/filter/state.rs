@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{DMatrix, DefaultAllocator, DimName};
 use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
-use super::{Linearization, MapForm, SlamParams, gates::Gates, retire::Retired};
+use super::{Linearization, MapForm, SlamParams, gates::Gates, map_management::retire::Retired};
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
     covariance::MapCovariance,

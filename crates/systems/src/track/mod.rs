@@ -16,17 +16,13 @@
 //! # Ok::<(), wayfix_systems::track::TrackError>(())
 //! ```
 
-mod decimated;
 mod error;
-mod estimates;
 mod figures;
 mod frame_tracker;
 mod method;
-mod overlay;
+mod output;
 mod params;
-mod pictures;
 mod run;
-mod run_history;
 mod score;
 mod start;
 mod status_score;
@@ -34,14 +30,14 @@ mod system;
 mod truth;
 
 pub use error::TrackError;
-pub use estimates::TrackLog;
 pub use figures::summarize;
 pub use frame_tracker::{FrameTracker, TargetColors};
 pub use method::Method;
+pub use output::estimates::TrackLog;
+pub use output::pictures::pictures;
+pub use output::run_history::RunHistory;
 pub use params::TrackParams;
-pub use pictures::pictures;
 pub use run::{TrackRun, run};
-pub use run_history::RunHistory;
 pub use score::Score;
 pub use start::Start;
 pub use status_score::StatusScore;

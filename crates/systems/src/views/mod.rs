@@ -21,7 +21,6 @@
 //! ```
 
 mod choices;
-mod composed;
 mod error;
 mod estimates;
 mod feature;
@@ -29,15 +28,12 @@ mod figures;
 mod normalization;
 mod params;
 mod pictures;
-mod real_scene;
-mod register;
 mod run;
-mod scene;
+mod scenes;
 mod statistics;
 mod system;
 
 pub use choices::{INFORMED, compare_choices};
-pub use composed::composed;
 pub use error::ViewsError;
 pub use estimates::draw_drive;
 pub use feature::FeatureKind;
@@ -46,9 +42,10 @@ pub use normalization::Normalization;
 pub use params::ViewsParams;
 pub use pictures::shade;
 pub use pictures::{belief_film, pictures};
-pub use real_scene::RealScene;
-pub use register::mean_shift;
 pub use run::{ViewsRun, run};
-pub use scene::{Scene, read_scene};
+pub use scenes::composed::composed;
+pub use scenes::real_scene::RealScene;
+pub use scenes::register::mean_shift;
+pub use scenes::scene::{Scene, read_scene};
 pub use statistics::p_value_metrics;
 pub use system::{Setup, Step, Trial, ViewSystem};

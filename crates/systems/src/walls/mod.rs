@@ -2,6 +2,7 @@
 
 mod estimates;
 mod figures;
+mod match_to_keyframe;
 mod odometry;
 mod params;
 mod pictures;

@@ -1,9 +1,9 @@
 use std::{collections::VecDeque, time::Duration};
 
-use nalgebra::{Matrix1x4, Matrix3, Vector1};
+use nalgebra::Matrix3;
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2, wrap_angle};
 use wayfix_line_extract::Extractor;
-use wayfix_scan_match::{Cloud, Guess, Matcher};
+use wayfix_scan_match::Matcher;
 use wayfix_sensor_log::{Data, LaserScan, Record, Stamp};
 use wayfix_slam_ekf::{
     DriftingPose, DriftingPoseSensor, EkfSlam, JointCompatibility, LandmarkId, MountedSensor,
@@ -14,7 +14,7 @@ use wayfix_slam_ekf::{
 use super::{
     KeyframeThreshold, WallSlamParams,
     odometry::{Motion, Odometry},
-    relative_motion::{DriftMeasurement, RelativeMotion},
+    relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::{
@@ -30,7 +30,7 @@ pub struct WallSystem {
     pub(super) params: WallSlamParams,
     pub(super) moves_by_velocity: bool,
     extractor: Extractor,
-    matcher: Option<Matcher>,
+    pub(super) matcher: Option<Matcher>,
     /// The scan that was looked at last, which those after it are laid on.
     pub(super) last_keyframe: Option<KeyframeScan>,
     /// The way since.
@@ -50,13 +50,13 @@ pub struct WallSystem {
     /// Scans that wait for the odometry that leads up to them, oldest first.
     pub(super) waiting: VecDeque<WaitingScan>,
     pub(super) dead_reckoning: Pose2<f64>,
-    observability: Option<ObservabilityRecorder>,
+    pub(super) observability: Option<ObservabilityRecorder>,
     stamped_estimates: Vec<StampedEstimate>,
     /// Heading by the points of the last scan alone, seen from the last look, rad.
     laser_heading: Option<f64>,
     /// By how much the robot has turned to each stamped_estimate from the one before, by the scans alone, rad.
     seen_turns: Vec<Option<f64>>,
-    events: Events,
+    pub(super) events: Events,
     step: Duration,
 }
 
@@ -64,9 +64,6 @@ pub(super) enum Rule {
     NearestNeighbour(NearestNeighbour),
     JointCompatibility(JointCompatibility),
 }
-
-/// Scans that have less in common are not laid on one another, share of points.
-const LEAST_OVERLAP: f64 = 0.15;
 
 impl WallSystem {
     /// A robot at `start` among walls that it does not know; its motion is told by velocities, else by increments.
@@ -258,45 +255,6 @@ impl WallSystem {
             self.events.count("scan_deskewed");
         }
         PlacedScan { scan: scan.clone(), laser: *laser, beam_step: step.unwrap_or(None) }
-    }
-
-    /// Corrects the way since the last look, and the drift, by how a scan lies on that of the last look. Returns the heading that
-    /// the points alone ask for, seen from there.
-    fn match_to_keyframe(&mut self, cloud: &Cloud) -> Option<f64> {
-        let mut laser_heading = None;
-        self.relative_motion =
-            self.relative_motion.with_odometry_scan_noise(&self.params.odometry_scan_noise);
-        if let (Some(look), Some(matcher)) = (&self.last_keyframe, self.matcher) {
-            let drift_variance = self.filter.robot_covariance()[(3, 3)];
-            let covariance = self.relative_motion.total_covariance(drift_variance);
-            let others = self.relative_motion.guesses_without_odometry();
-            let guess = Guess { pose: self.relative_motion.motion, covariance, alternative_poses: &others };
-            let found = matcher.align(&look.cloud, cloud, &guess);
-            if let Some(found) = found.ok().filter(|found| found.overlap >= LEAST_OVERLAP) {
-                self.events.count("scan_matched");
-                laser_heading = self.relative_motion.heading_from_match(&found);
-                let relative_motion = self.relative_motion.with_scaled_covariance(found.guess_scale);
-                let drift_change =
-                    relative_motion.drift_from_match(&found).map_or(0.0, |seen| self.correct_drift(seen));
-                self.relative_motion =
-                    relative_motion.corrected_by(&found, drift_change).unwrap_or(relative_motion);
-            } else {
-                self.events.count("scan_unmatched");
-            }
-        }
-        self.relative_motion = self.relative_motion.after_scan();
-        laser_heading
-    }
-
-    /// Corrects the drift by a change and its variance, and says by how much. A look that the filter refuses leaves it as it is.
-    fn correct_drift(&mut self, (change, variance): (f64, f64)) -> f64 {
-        let before = self.filter.robot().heading_drift;
-        let seen = self.filter.update_robot(&DriftMeasurement(variance), &Vector1::new(before + change));
-        if let (Ok(innovation), Some(recorder)) = (seen, &mut self.observability) {
-            let jacobian = Matrix1x4::new(0.0, 0.0, 0.0, 1.0);
-            recorder.record_robot(&self.filter, &jacobian, &innovation.covariance);
-        }
-        self.filter.robot().heading_drift - before
     }
 
     /// Moves the robot on by the way since the last look.

@@ -1,8 +1,8 @@
 use rand::Rng;
 
-use super::candidate::Candidate;
-use super::each::map_each;
-use super::samples::Samples;
+use super::hypotheses::candidate::Candidate;
+use super::hypotheses::each::map_each;
+use super::hypotheses::samples::Samples;
 use super::scene::Scene;
 use super::search::in_other_light;
 use super::{ContourTracker, TrackingCues};

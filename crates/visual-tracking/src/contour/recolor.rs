@@ -1,4 +1,4 @@
-use super::{TrackingCues, candidate::Candidate, scene::Scene};
+use super::{TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
 use crate::Element;
 use crate::picture::rgb_pixels;
 use crate::{BinSet, BitMask, ColorCloud, TrackingError};

@@ -1,4 +1,4 @@
-use super::{Agreement, TrackingCues, candidate::Candidate, scene::Scene};
+use super::{Agreement, TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
 use crate::Element;
 use crate::{BitMask, ColorEdges, SnakeParams, TrackingError};
 

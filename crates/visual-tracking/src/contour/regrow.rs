@@ -1,4 +1,6 @@
-use super::{TrackingCues, candidate::Candidate, recolor::SEEN_ALL_ROUND, refine::COVERED, scene::Scene};
+use super::{
+    TrackingCues, hypotheses::candidate::Candidate, recolor::SEEN_ALL_ROUND, refine::COVERED, scene::Scene,
+};
 use crate::{BitMask, TrackingError};
 
 /// Support and overlap from which on a larger contour is beyond doubt.

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::scene::{LEAST_PIXELS, Scene};
-use super::{ContourTrackerParams, candidate::Candidate, reference::Reference, region::Region};
+use super::{ContourTrackerParams, hypotheses::candidate::Candidate, reference::Reference, region::Region};
 use crate::{
     AffineMap, AffineSnake, BitMask, ColorQuantizer, ColorSpace, ColorState, Connectivity, PrincipalColors,
     RgbImage, TrackingError,

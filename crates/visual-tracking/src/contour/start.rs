@@ -1,7 +1,7 @@
 use super::history::History;
+use super::hypotheses::samples::Samples;
 use super::reference::Reference;
 use super::region::Region;
-use super::samples::Samples;
 use super::{ContourTracker, ContourTrackerParams};
 use crate::Element;
 use crate::error::check_size;

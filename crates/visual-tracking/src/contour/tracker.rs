@@ -1,11 +1,11 @@
 use rand::Rng;
 
 use super::ContourTrackerParams;
-use super::candidate::Candidate;
 use super::follow::Found;
 use super::history::History;
+use super::hypotheses::candidate::Candidate;
+use super::hypotheses::samples::Samples;
 use super::reference::Reference;
-use super::samples::Samples;
 use crate::error::check_size;
 use crate::{
     AffineSnake, ColorDynamics, ColorQuantizer, Outline, PrincipalColors, RgbImage, Target, TrackStatus,

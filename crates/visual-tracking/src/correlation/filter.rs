@@ -1,5 +1,5 @@
-use super::lane::ComplexLane;
-use super::planes::{PlaneFourier, Planes, Spectrum};
+use super::channels::lane::ComplexLane;
+use super::channels::planes::{PlaneFourier, Planes, Spectrum};
 
 /// A correlation filter whose support is the target: what lies around it is only there to be told apart.
 ///

@@ -1,4 +1,4 @@
-use super::planes::Spectrum;
+use super::channels::planes::Spectrum;
 use super::recenter::N_RECENTERING_FRAMES;
 use super::recognizer::{FilterResponse, WindowSample};
 use super::response::Peak;

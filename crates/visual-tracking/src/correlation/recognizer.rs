@@ -1,8 +1,8 @@
-use super::features::{Shares, features};
+use super::channels::features::{Shares, features};
+use super::channels::patch::Patch;
+use super::channels::planes::Spectrum;
 use super::filter::CorrelationFilter;
 use super::params::CorrelationTrackerParams;
-use super::patch::Patch;
-use super::planes::Spectrum;
 use super::response::Peak;
 use super::window::{Pose, SIDE, Window};
 use crate::RgbImage;

@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
-use super::gradient_channels::{N_GRADIENT, gradient_channels};
-use super::patch::Patch;
+use super::channels::gradient_channels::{N_GRADIENT, gradient_channels};
+use super::channels::patch::Patch;
 use super::response::vertex;
 use crate::RgbImage;
 

@@ -1,10 +1,10 @@
 use rand::Rng;
 
-use super::color_ratio::ColorRatio;
+use super::channels::color_ratio::ColorRatio;
+use super::channels::patch::Patch;
+use super::channels::planes::Spectrum;
 use super::filter::Learning;
 use super::params::CorrelationTrackerParams;
-use super::patch::Patch;
-use super::planes::Spectrum;
 use super::recognizer::{FilterResponse, Recognizer, WindowSample};
 use super::response::Peak;
 use super::scale_filter::ScaleFilter;

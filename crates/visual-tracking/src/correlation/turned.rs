@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
+use super::channels::patch::Patch;
 use super::filter::Learning;
-use super::patch::Patch;
 use super::recognizer::WindowSample;
 use super::response::Peak;
 use super::tracker::CorrelationTracker;

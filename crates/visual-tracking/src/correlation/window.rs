@@ -1,7 +1,7 @@
 use std::f64::consts::{SQRT_2, TAU};
 
-use super::features::CELL;
-use super::patch::Patch;
+use super::channels::features::CELL;
+use super::channels::patch::Patch;
 use crate::RgbImage;
 
 /// Cells along the window.

@@ -11,13 +11,7 @@ mod outputs;
 mod params;
 mod read_problems;
 mod renamed;
-mod run_cml;
-mod run_color;
-mod run_lines;
-mod run_slam;
-mod run_track;
-mod run_views;
-mod run_walls;
+mod run;
 mod simulate;
 mod truth;
 
@@ -63,12 +57,12 @@ enum Command {
 
 #[derive(Subcommand)]
 enum Run {
-    Slam(run_slam::Arguments),
-    Lines(run_lines::Arguments),
-    Color(run_color::Arguments),
-    Views(run_views::Arguments),
-    Track(run_track::Arguments),
-    Cml(Box<run_cml::Arguments>),
+    Slam(run::run_slam::Arguments),
+    Lines(run::run_lines::Arguments),
+    Color(run::run_color::Arguments),
+    Views(run::run_views::Arguments),
+    Track(run::run_track::Arguments),
+    Cml(Box<run::run_cml::Arguments>),
 }
 
 /// Whether a command line, with the name of the program first, is one that the program takes. For tests of what is documented.
@@ -109,11 +103,11 @@ pub fn main() -> ExitCode {
 
 fn run(system: Run) -> Result<ExitCode> {
     match system {
-        Run::Slam(arguments) => run_slam::main(arguments),
-        Run::Lines(arguments) => run_lines::main(arguments),
-        Run::Color(arguments) => run_color::main(arguments),
-        Run::Views(arguments) => run_views::main(arguments),
-        Run::Track(arguments) => run_track::main(arguments),
-        Run::Cml(arguments) => run_cml::main(*arguments),
+        Run::Slam(arguments) => run::run_slam::main(arguments),
+        Run::Lines(arguments) => run::run_lines::main(arguments),
+        Run::Color(arguments) => run::run_color::main(arguments),
+        Run::Views(arguments) => run::run_views::main(arguments),
+        Run::Track(arguments) => run::run_track::main(arguments),
+        Run::Cml(arguments) => run::run_cml::main(*arguments),
     }
 }

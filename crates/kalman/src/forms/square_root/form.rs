@@ -7,10 +7,11 @@ use super::{
     rotation::{Rotation, triangle, triangle_of_sum, turn_columns},
 };
 use crate::{
-    Form, Innovation, check,
+    Form, Innovation,
+    algebra::transport::transport,
+    check,
     error::Checked,
     linearize::{linearize_motion, linearize_sensor},
-    transport::transport,
 };
 
 /// The square-root (array) form: carries the Cholesky factor $`L`$ of $`P`$ and rotates arrays into triangles.
@@ -153,6 +154,11 @@ where
         let transposed = innovation_factor.transpose();
         let cross_covariance = scaled_gain * &transposed;
         let covariance = &innovation_factor * transposed;
-        Self::factored(residual, covariance, cross_covariance, crate::ldl::Ldl::from_root(&innovation_factor))
+        Self::factored(
+            residual,
+            covariance,
+            cross_covariance,
+            crate::algebra::ldl::Ldl::from_root(&innovation_factor),
+        )
     }
 }

@@ -25,7 +25,7 @@ use super::clock_faults::ClockFault;
 use super::half_circle::is_half_circle;
 use super::row::{RowError, stamp_of};
 use super::scan_odometry::ScanOdometry;
-use crate::compressed::TextReader;
+use crate::formats::compressed::TextReader;
 use crate::{Data, LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record};
 
 pub(crate) fn looks_like(row: &str) -> bool {

@@ -2,7 +2,7 @@ use std::str::SplitAsciiWhitespace;
 
 use wayfix_estimation_traits::Pose2;
 
-use crate::format::shortened;
+use crate::formats::format::shortened;
 use crate::text::half_circle::half_circle;
 use crate::text::row::{RowError, columns, number, range};
 use crate::{LaserScan, ProblemKind};

@@ -1,0 +1,104 @@
+use nalgebra::Vector2;
+use rand::Rng;
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Target, TrueLandmark};
+
+use super::super::ambient_light::AmbientLight;
+use super::super::camera::OmniCameraParams;
+use super::super::color::Rgb8;
+use super::super::light::LightField;
+use super::super::panel::{Material, Panel};
+use super::super::texture::Texture;
+use super::super::view::ViewRenderer;
+use super::aisles::Aisles;
+use crate::scenery::RgbPicture;
+use crate::world::{Wall, World};
+use crate::{SimError, check};
+
+/// Rooms with everything that stands in them, ready to be looked at: what [`Store`](super::Store) and [`Lab`](super::Lab) build.
+///
+/// The origin is in the middle of the floor, x along its length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Building {
+    pub(in crate::indoors) size: Vector2<f64>,
+    pub(in crate::indoors) ceiling_m: f64,
+    pub(in crate::indoors) floor: Rgb8,
+    pub(in crate::indoors) ceiling: Rgb8,
+    pub(in crate::indoors) panels: Vec<Panel>,
+    pub(in crate::indoors) textures: Vec<Texture>,
+    pub(in crate::indoors) light: LightField,
+    pub(in crate::indoors) n_lamps: usize,
+    pub(in crate::indoors) n_curtains: usize,
+    pub(in crate::indoors) aisles: Aisles,
+}
+
+impl Building {
+    /// Extent along x and y, metres.
+    pub fn size_m(&self) -> Vector2<f64> {
+        self.size
+    }
+
+    /// Where one can drive.
+    pub fn aisles(&self) -> &Aisles {
+        &self.aisles
+    }
+
+    /// The view from `pose` by the light of a usual day, when nobody is about.
+    ///
+    /// # Errors
+    /// When the numbers do not make a camera, or the pose is not finite.
+    ///
+    /// ```
+    /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    /// use wayfix_estimation_traits::Pose2;
+    /// use wayfix_scene_sim::indoors::{Lab, OmniCameraParams};
+    /// let mut rng = ChaCha8Rng::seed_from_u64(1);
+    /// let lab = Lab::draw(&mut rng).building();
+    /// let view = lab.render_view(&Pose2::new(0.0, -3.7, 0.0), OmniCameraParams::default(), &mut rng)?;
+    /// assert_eq!((view.width, view.height), (120, 20));
+    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// ```
+    pub fn render_view<R: Rng + ?Sized>(
+        &self,
+        pose: &Pose2<f64>,
+        camera: OmniCameraParams,
+        rng: &mut R,
+    ) -> Result<RgbPicture, SimError> {
+        check::finite("pose of the camera", pose.x() + pose.y() + pose.heading())?;
+        let ambient_light = AmbientLight::nominal(self.n_lamps, self.n_curtains);
+        Ok(ViewRenderer::new(camera)?.render_view(self, &ambient_light, &[], pose, rng))
+    }
+
+    /// Puts up a panel with a texture of its own between two heights.
+    pub(in crate::indoors) fn put(
+        &mut self,
+        left: Vector2<f64>,
+        right: Vector2<f64>,
+        [bottom_m, top_m]: [f64; 2],
+        texture: Texture,
+    ) {
+        self.panels.push(Panel {
+            left,
+            right,
+            bottom_m,
+            top_m,
+            material: Material::Lit(self.textures.len()),
+        });
+        self.textures.push(texture);
+    }
+}
+
+/// Its walls and fronts as a plan, for a laser or a map; there are no landmarks.
+impl World for Building {
+    fn landmarks(&self) -> Vec<TrueLandmark> {
+        Vec::new()
+    }
+
+    fn walls(&self) -> Vec<Wall> {
+        self.panels.iter().map(|panel| Wall { from: panel.left, to: panel.right }).collect()
+    }
+
+    fn targets(&self, _seconds: f64) -> Vec<(Target, Vector2<f64>)> {
+        Vec::new()
+    }
+}

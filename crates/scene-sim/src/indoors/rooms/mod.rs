@@ -1,0 +1,10 @@
+//! Rooms, halls and stores, and what stands and walks in them.
+
+pub(super) mod aisles;
+pub(super) mod building;
+pub(super) mod crowd;
+pub(super) mod decor;
+pub(super) mod lab;
+pub(super) mod shelf;
+pub(super) mod store;
+pub(super) mod store_params;

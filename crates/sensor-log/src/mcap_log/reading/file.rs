@@ -1,0 +1,90 @@
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::fs::File;
+use std::io::{BufWriter, Seek, Write};
+use std::path::Path;
+
+use mcap::WriteOptions;
+use mcap::records::MessageHeader;
+
+use super::super::origin;
+use super::super::writing::sink::{ChannelKey, Message, MessageSink};
+use crate::{Format, LogError};
+
+/// Messages are flushed in chunks of about this size: a crash loses no more.
+const CHUNK_BYTES: u64 = 256 << 10;
+
+/// An MCAP file that messages go into. The same messages give the same bytes: no compression, no clock, no library version.
+pub struct McapFile<W: Write + Seek> {
+    writer: mcap::Writer<W>,
+    channels: BTreeMap<ChannelKey, Channel>,
+}
+
+struct Channel {
+    id: u16,
+    sequence: u32,
+}
+
+impl McapFile<BufWriter<File>> {
+    /// Creates the file, or replaces the one that is there.
+    ///
+    /// # Errors
+    /// When it cannot be created.
+    pub fn create(path: impl AsRef<Path>) -> Result<Self, LogError> {
+        let path = path.as_ref();
+        let file = File::create(path).map_err(|source| LogError::NotCreated { path: path.into(), source })?;
+        Self::new(BufWriter::new(file))
+    }
+}
+
+impl<W: Write + Seek> McapFile<W> {
+    /// Writes to `out`.
+    ///
+    /// # Errors
+    /// When `out` fails.
+    pub fn new(out: W) -> Result<Self, LogError> {
+        let writer = WriteOptions::new()
+            .compression(None)
+            .library("wayfix")
+            .chunk_size(Some(CHUNK_BYTES))
+            .create(out)?;
+        Ok(Self { writer, channels: BTreeMap::new() })
+    }
+}
+
+impl<W: Write + Seek> MessageSink for McapFile<W> {
+    fn message(&mut self, message: &Message<'_>) -> Result<(), LogError> {
+        let &Message { topic, schema, descriptors, metadata, stamp, data } = message;
+        let channel = match self.channels.entry(message.channel()) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => {
+                let schema_id = self.writer.add_schema(schema, Message::ENCODING, descriptors)?;
+                let id = self.writer.add_channel(schema_id, topic, Message::ENCODING, metadata)?;
+                entry.insert(Channel { id, sequence: 0 })
+            }
+        };
+        let time = stamp.nanoseconds();
+        let header = MessageHeader {
+            channel_id: channel.id,
+            sequence: channel.sequence,
+            log_time: time,
+            publish_time: time,
+        };
+        channel.sequence = channel.sequence.wrapping_add(1);
+        self.writer.write_to_known_channel(&header, data)?;
+        Ok(())
+    }
+
+    fn origin(&mut self, origin: Format) -> Result<(), LogError> {
+        if origin != Format::Mcap {
+            self.writer.write_metadata(&origin::encode(origin))?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), LogError> {
+        self.writer.finish()?;
+        self.writer.into_inner().flush().map_err(mcap::McapError::from)?;
+        Ok(())
+    }
+}

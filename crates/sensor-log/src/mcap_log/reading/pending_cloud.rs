@@ -1,0 +1,49 @@
+use foxglove::messages::PointCloud;
+
+use super::super::{topics, writing::encode};
+use crate::{Data, LogError, Record, Stamp, TrueLandmark, TrueWall};
+
+/// Landmarks, or walls, in a row at one stamp: they become one cloud, so that viewers draw them together.
+#[derive(Default)]
+pub(in crate::mcap_log) struct PendingCloud {
+    stamp: Stamp,
+    landmarks: Vec<TrueLandmark>,
+    walls: Vec<TrueWall>,
+}
+
+impl PendingCloud {
+    /// Whether a landmark or a wall belongs into the same cloud as those before it.
+    pub(in crate::mcap_log) fn is_of_same_cloud(&self, record: &Record) -> bool {
+        let same_kind = match record.data {
+            Data::TrueWall(_) => self.landmarks.is_empty(),
+            _ => self.walls.is_empty(),
+        };
+        same_kind && record.stamp == self.stamp
+    }
+
+    /// Takes a landmark or a wall; leaves out what is neither.
+    pub(in crate::mcap_log) fn push(&mut self, record: &Record) {
+        self.stamp = record.stamp;
+        match record.data {
+            Data::TrueLandmark(landmark) => self.landmarks.push(landmark),
+            Data::TrueWall(wall) => self.walls.push(wall),
+            _ => {}
+        }
+    }
+
+    /// The cloud with its topic and stamp; nothing when there is none.
+    pub(in crate::mcap_log) fn into_cloud(
+        self,
+    ) -> Result<Option<(&'static str, Stamp, PointCloud)>, LogError> {
+        if self.landmarks.is_empty() && self.walls.is_empty() {
+            return Ok(None);
+        }
+        let timestamp = encode::timestamp(self.stamp)?;
+        let (topic, cloud) = if self.walls.is_empty() {
+            (topics::TRUE_LANDMARKS, encode::landmarks(timestamp, &self.landmarks))
+        } else {
+            (topics::TRUE_WALLS, encode::walls(timestamp, &self.walls))
+        };
+        Ok(Some((topic, self.stamp, cloud)))
+    }
+}

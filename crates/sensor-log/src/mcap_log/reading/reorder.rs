@@ -1,0 +1,63 @@
+use std::collections::BTreeMap;
+
+use crate::{Data, Record, Stamp};
+
+/// Records held back so that one that comes late still finds its place.
+const WINDOW_RECORDS: usize = 256;
+/// Bytes of detections and images held back at most, so that large messages do not fill the memory.
+const WINDOW_BYTES: usize = 32 << 20;
+
+/// Puts records that come slightly out of order back into it, with bounded memory.
+///
+/// Recorders write messages as they arrive; a camera's are older than an encoder's. Equal stamps keep the order of the file.
+#[derive(Debug, Default)]
+pub(in crate::mcap_log) struct Reorder {
+    held: BTreeMap<(Stamp, u64), Record>,
+    n_bytes: usize,
+    n_pushed: u64,
+    last_out: Stamp,
+}
+
+/// A record so late that later ones are already out; it is dropped.
+pub(in crate::mcap_log) struct TooLate {
+    pub(in crate::mcap_log) stamp: Stamp,
+    pub(in crate::mcap_log) last_out: Stamp,
+}
+
+impl Reorder {
+    pub(in crate::mcap_log) fn push(&mut self, record: Record) -> Result<(), TooLate> {
+        let stamp = record.stamp;
+        if stamp < self.last_out {
+            return Err(TooLate { stamp, last_out: self.last_out });
+        }
+        self.n_bytes += n_bytes(&record);
+        self.n_pushed += 1;
+        self.held.insert((stamp, self.n_pushed), record);
+        Ok(())
+    }
+
+    /// The earliest record once enough others are known.
+    pub(in crate::mcap_log) fn pop_ready(&mut self) -> Option<Record> {
+        let is_ready = self.held.len() > WINDOW_RECORDS || self.n_bytes > WINDOW_BYTES;
+        if is_ready { self.pop() } else { None }
+    }
+
+    /// The earliest record.
+    pub(in crate::mcap_log) fn pop(&mut self) -> Option<Record> {
+        let ((stamp, _), record) = self.held.pop_first()?;
+        self.last_out = stamp;
+        self.n_bytes -= n_bytes(&record);
+        Some(record)
+    }
+}
+
+/// What a record holds besides itself.
+fn n_bytes(record: &Record) -> usize {
+    match &record.data {
+        Data::Detections(detections) => size_of_val(detections.as_slice()),
+        Data::DetectionWidths(widths) => size_of_val(widths.as_slice()),
+        Data::Scan(scan) => size_of_val(scan.ranges.as_slice()),
+        Data::Image(image) | Data::TrueLabels(image) => image.bytes.len(),
+        _ => 0,
+    }
+}

@@ -1,0 +1,181 @@
+use foxglove::messages::{
+    Color, ImageAnnotations, LinePrimitive, Point2, Point3, PointsAnnotation, Pose, SceneEntity, SceneUpdate,
+    SpherePrimitive, TextPrimitive, Timestamp, Vector3, line_primitive, points_annotation,
+};
+use wayfix_estimation_traits::Pose2;
+
+use super::encode;
+
+/// Points on the outline of an ellipse.
+const ELLIPSE_POINTS: usize = 48;
+/// Width of lines and size of letters, screen pixels.
+const LINE_PIXELS: f64 = 2.0;
+const TEXT_PIXELS: f64 = 12.0;
+
+/// Something to draw in a viewer; a later one with the same `id` replaces it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// Its identity within the topic.
+    pub id: String,
+    /// Red, green, blue and alpha in [0, 1].
+    pub color: [f64; 4],
+    /// What it looks like.
+    pub shape: Shape,
+}
+
+/// Planar shapes; metres and radians.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Shape {
+    /// The outline of an ellipse, for instance of a covariance.
+    Ellipse {
+        /// Centre.
+        center: [f64; 2],
+        /// Half the lengths of its axes.
+        semi_axes: [f64; 2],
+        /// Direction of the first axis.
+        angle: f64,
+    },
+    /// A line through points.
+    Path(Vec<[f64; 2]>),
+    /// A ball with a text beside it, for instance a landmark and its number.
+    Marker {
+        /// Centre.
+        position: [f64; 2],
+        /// Radius of the ball.
+        radius: f64,
+        /// The text; may be empty.
+        text: String,
+    },
+}
+
+/// A closed line in an image, in pixels from the upper left corner of the upper left pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageOutline {
+    /// Red, green, blue and alpha in [0, 1].
+    pub color: [f64; 4],
+    /// Its corners, column and row.
+    pub points: Vec<[f64; 2]>,
+}
+
+pub(in crate::mcap_log) fn image_annotations(
+    timestamp: Timestamp,
+    outlines: &[ImageOutline],
+) -> ImageAnnotations {
+    let annotation = |outline: &ImageOutline| {
+        let [r, g, b, a] = outline.color;
+        PointsAnnotation {
+            timestamp: Some(timestamp),
+            r#type: points_annotation::Type::LineLoop.into(),
+            points: outline.points.iter().map(|[x, y]| Point2 { x: *x, y: *y }).collect(),
+            outline_color: Some(Color { r, g, b, a }),
+            thickness: LINE_PIXELS,
+            ..Default::default()
+        }
+    };
+    let points = outlines.iter().map(annotation).collect();
+    ImageAnnotations { timestamp: Some(timestamp), points, ..Default::default() }
+}
+
+pub(in crate::mcap_log) fn scene_update(
+    timestamp: Timestamp,
+    frame: &str,
+    drawings: &[Drawing],
+) -> SceneUpdate {
+    let entities = drawings.iter().map(|drawing| entity(timestamp, frame, drawing)).collect();
+    SceneUpdate { entities, ..Default::default() }
+}
+
+fn entity(timestamp: Timestamp, frame: &str, drawing: &Drawing) -> SceneEntity {
+    let [r, g, b, a] = drawing.color;
+    let color = Color { r, g, b, a };
+    let mut entity = SceneEntity {
+        timestamp: Some(timestamp),
+        frame_id: frame.to_owned(),
+        id: drawing.id.clone(),
+        ..Default::default()
+    };
+    match &drawing.shape {
+        Shape::Ellipse { center, semi_axes, angle } => {
+            let outline = ellipse_outline(*center, *semi_axes, *angle);
+            entity.lines.push(line(line_primitive::Type::LineLoop, &outline, color));
+        }
+        Shape::Path(points) => entity.lines.push(line(line_primitive::Type::LineStrip, points, color)),
+        Shape::Marker { position: [x, y], radius, text } => {
+            let pose = Some(encode::pose(&Pose2::new(*x, *y, 0.0)));
+            let size = Some(Vector3 { x: 2.0 * radius, y: 2.0 * radius, z: 2.0 * radius });
+            entity.spheres.push(SpherePrimitive { pose, size, color: Some(color) });
+            if !text.is_empty() {
+                entity.texts.push(label(pose, text, color));
+            }
+        }
+    }
+    entity
+}
+
+fn ellipse_outline([x, y]: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Vec<[f64; 2]> {
+    let (sin, cos) = angle.sin_cos();
+    let point = |i: usize| {
+        let (s, c) = (std::f64::consts::TAU * i as f64 / ELLIPSE_POINTS as f64).sin_cos();
+        [x + cos * a * c - sin * b * s, y + sin * a * c + cos * b * s]
+    };
+    (0..ELLIPSE_POINTS).map(point).collect()
+}
+
+fn line(kind: line_primitive::Type, points: &[[f64; 2]], color: Color) -> LinePrimitive {
+    LinePrimitive {
+        r#type: kind.into(),
+        pose: Some(encode::identity()),
+        thickness: LINE_PIXELS,
+        scale_invariant: true,
+        points: points.iter().map(|[x, y]| Point3 { x: *x, y: *y, z: 0.0 }).collect(),
+        color: Some(color),
+        ..Default::default()
+    }
+}
+
+fn label(pose: Option<Pose>, text: &str, color: Color) -> TextPrimitive {
+    TextPrimitive {
+        pose,
+        billboard: true,
+        font_size: TEXT_PIXELS,
+        scale_invariant: true,
+        color: Some(color),
+        text: text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outline_lies_on_the_ellipse_from_the_first_axis() {
+        let (center, [a, b], angle) = ([1.0, -2.0], [3.0, 0.5], 2.0_f64);
+        let outline = ellipse_outline(center, [a, b], angle);
+        for [x, y] in &outline {
+            let (dx, dy) = (x - center[0], y - center[1]);
+            let along = dx * angle.cos() + dy * angle.sin();
+            let across = dy * angle.cos() - dx * angle.sin();
+            assert!(((along / a).powi(2) + (across / b).powi(2) - 1.0).abs() < 1e-12);
+        }
+        assert!((outline[0][0] - (center[0] + a * angle.cos())).abs() < 1e-12);
+        assert!((outline[0][1] - (center[1] + a * angle.sin())).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_outline_in_an_image_is_closed_and_keeps_its_pixels() {
+        let points = vec![[0.0, 0.0], [320.0, 0.0], [160.5, 240.0]];
+        let outline = ImageOutline { color: [1.0, 0.5, 0.0, 1.0], points: points.clone() };
+        let message = image_annotations(Timestamp::new(1, 5), &[outline]);
+        let [annotation] = &message.points[..] else { panic!("one outline") };
+        assert_eq!(annotation.r#type, points_annotation::Type::LineLoop as i32);
+        let corners: Vec<[f64; 2]> = annotation.points.iter().map(|point| [point.x, point.y]).collect();
+        assert_eq!(corners, points);
+        assert_eq!(message.timestamp, annotation.timestamp);
+        assert!(
+            image_annotations(Timestamp::new(1, 5), &[]).points.is_empty(),
+            "nothing to draw is a message too"
+        );
+    }
+}

@@ -1,0 +1,9 @@
+//! ROS 2 bags: messages, transforms, split bags, and what robots in the field record.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod field_bags;
+mod ros_bags;
+mod ros_messages;
+mod split_bags;

@@ -1,0 +1,76 @@
+use std::convert::Infallible;
+
+/// Values at even distances of a stream whose length is not known: when there are too many, every second one goes.
+#[derive(Clone, Debug)]
+pub(in crate::track) struct Decimated<T> {
+    most: usize,
+    stride: usize,
+    n_seen: usize,
+    kept: Vec<T>,
+}
+
+impl<T> Decimated<T> {
+    /// Keeps at most `most` of them, and from then on at least half as many.
+    pub(in crate::track) fn new(most: usize) -> Self {
+        Self { most: most.max(2), stride: 1, n_seen: 0, kept: Vec::new() }
+    }
+
+    /// Offers the next value.
+    pub(in crate::track) fn push(&mut self, value: T) {
+        let Ok(()) = self.offer(|| Ok::<_, Infallible>(value));
+    }
+
+    /// Offers the next value, which is made only when it is kept.
+    ///
+    /// # Errors
+    /// What `make` says.
+    pub(in crate::track) fn offer<E>(&mut self, make: impl FnOnce() -> Result<T, E>) -> Result<(), E> {
+        let wanted = self.n_seen.is_multiple_of(self.stride);
+        self.n_seen += 1;
+        if !wanted {
+            return Ok(());
+        }
+        let value = make()?;
+        if self.kept.len() == self.most {
+            let mut index = 0;
+            self.kept.retain(|_| {
+                index += 1;
+                index % 2 == 1
+            });
+            self.stride *= 2;
+            if !(self.n_seen - 1).is_multiple_of(self.stride) {
+                return Ok(());
+            }
+        }
+        self.kept.push(value);
+        Ok(())
+    }
+
+    /// What was kept, in order.
+    pub(in crate::track) fn kept(&self) -> &[T] {
+        &self.kept
+    }
+
+    /// One in so many was kept.
+    pub(in crate::track) fn stride(&self) -> usize {
+        self.stride
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Decimated;
+
+    #[test]
+    fn what_is_kept_is_evenly_spaced_and_never_too_much() {
+        let mut decimated = Decimated::new(10);
+        for value in 0..1000_usize {
+            decimated.push(value);
+            let (kept, stride) = (decimated.kept(), decimated.stride());
+            assert!(kept.len() <= 10);
+            assert!(kept.iter().enumerate().all(|(k, v)| *v == k * stride), "{kept:?}");
+            assert!((kept.len() + 1) * stride > value, "the newest are there: {kept:?} of {value}");
+        }
+        assert!(decimated.kept().len() >= 5);
+    }
+}

@@ -1,0 +1,101 @@
+use std::{
+    fs::File,
+    io::{BufWriter, Write},
+    path::Path,
+};
+
+use anyhow::{Context, Result};
+use wayfix_sensor_log::{Data, Format, ImageOutline, McapFile, MessageWriter, Record, Sinks, topics};
+use wayfix_visual_tracking::TrackStatus;
+
+use super::super::{FrameResult, TrackSystem, Truth};
+use super::{overlay, run_history::outline};
+use crate::system::EstimateWriter;
+
+/// Writes the images and the outlines in them to an MCAP file or to viewers, and the boxes to a text of the form that truth has.
+pub struct TrackLog {
+    writer: EstimateWriter,
+    boxes: Box<dyn Write>,
+    n_lines: usize,
+    failure: Option<anyhow::Error>,
+}
+
+impl TrackLog {
+    /// Creates both files; `origin` is the format that the records come from.
+    ///
+    /// # Errors
+    /// When one cannot be created.
+    pub fn create(log: &Path, boxes: &Path, origin: Format) -> Result<Self> {
+        let file = File::create(boxes).with_context(|| format!("cannot create {}", boxes.display()))?;
+        Self::new(vec![Box::new(McapFile::create(log)?)], Box::new(BufWriter::new(file)), origin)
+    }
+
+    /// Writes images and outlines into all of `sinks`.
+    ///
+    /// # Errors
+    /// When one of them fails.
+    pub fn new(sinks: Sinks, boxes: Box<dyn Write>, origin: Format) -> Result<Self> {
+        let mut writer = MessageWriter::into_sink(sinks);
+        writer.origin(origin)?;
+        Ok(Self { writer, boxes, n_lines: 0, failure: None })
+    }
+
+    /// Writes an image of the log and what the tracker made of it. A failure is kept until [`finish`](Self::finish).
+    pub fn observe(&mut self, record: &Record, system: &TrackSystem) {
+        if self.failure.is_none() {
+            self.failure = self.write(record, system).err();
+        }
+    }
+
+    /// Completes both; so many frames there were.
+    ///
+    /// # Errors
+    /// When anything could not be written.
+    pub fn finish(mut self, n_frames: usize) -> Result<()> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        self.fill_up(n_frames)?;
+        self.boxes.flush()?;
+        Ok(self.writer.finish()?)
+    }
+
+    fn write(&mut self, record: &Record, system: &TrackSystem) -> Result<()> {
+        if !matches!(record.data, Data::Image(_)) {
+            return Ok(());
+        }
+        self.writer.record(record)?;
+        let Some(frame) = system.frame() else { return Ok(()) };
+        self.writer.image_outlines(topics::TARGET, frame.stamp, &outlines(frame))?;
+        self.fill_up(frame.index)?;
+        self.n_lines += 1;
+        match frame.target.status {
+            TrackStatus::Lost => writeln!(self.boxes, "NaN,NaN,NaN,NaN")?,
+            TrackStatus::Tracked => {
+                let target = &frame.target.bounding_box;
+                let [x, y] = target.corner();
+                writeln!(self.boxes, "{x:.2},{y:.2},{:.2},{:.2}", target.width(), target.height())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Lines for the frames before `index` that had no estimate.
+    fn fill_up(&mut self, index: usize) -> Result<()> {
+        while self.n_lines < index {
+            self.n_lines += 1;
+            writeln!(self.boxes, "NaN,NaN,NaN,NaN")?;
+        }
+        Ok(())
+    }
+}
+
+fn outlines(frame: &FrameResult) -> Vec<ImageOutline> {
+    let ink = |[r, g, b]: [u8; 3]| [r, g, b, 255].map(|value| f64::from(value) / 255.0);
+    let color = if frame.target.status == TrackStatus::Lost { overlay::LOST } else { overlay::ESTIMATE };
+    let mut outlines = vec![ImageOutline { color: ink(color), points: outline(&frame.target) }];
+    if let Truth::At(truth) = &frame.truth {
+        outlines.push(ImageOutline { color: ink(overlay::TRUTH), points: overlay::corners(truth).to_vec() });
+    }
+    outlines
+}

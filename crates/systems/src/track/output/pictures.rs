@@ -1,0 +1,97 @@
+use super::super::{RunHistory, TargetColors, frame_tracker::axis_names};
+use super::run_history::Point;
+use wayfix_evaluation::plot::{
+    EllipsesPlot, FilmFrame, FilmStrip, LinesPlot, NamedEllipse, Picture, PlotError, Series,
+};
+
+/// Frames of the film beside each other.
+const FRAMES_A_ROW: usize = 3;
+
+/// Frames with the target drawn in, the overlap with the truth over the frames, and the path of the target's colour where it is known.
+///
+/// # Errors
+/// When a picture cannot be drawn.
+pub fn pictures(run_history: &RunHistory) -> Result<Vec<Picture>, PlotError> {
+    let mut pictures = vec![film(run_history).draw()?, overlap(run_history).draw()?];
+    if let Some(colors) = run_history.points.kept().iter().find_map(|point| point.colors) {
+        let names = axis_names(colors.space);
+        pictures.push(clouds(run_history, names).draw()?);
+        pictures.push(color_path(run_history, names).draw()?);
+    }
+    Ok(pictures)
+}
+
+fn film(run_history: &RunHistory) -> FilmStrip {
+    let frame = |(index, image): &(usize, _)| FilmFrame {
+        image: wayfix_sensor_log::EncodedImage::clone(image),
+        caption: format!("frame {index}"),
+    };
+    let frames: Vec<FilmFrame> = run_history.film.kept().iter().map(frame).collect();
+    let legend = |row: usize| match row {
+        0 => "yellow: tracked, red: lost, green: true box".to_owned(),
+        _ => String::new(),
+    };
+    FilmStrip {
+        title: "The target in the pictures".to_owned(),
+        rows: frames
+            .chunks(FRAMES_A_ROW)
+            .enumerate()
+            .map(|(row, frames)| (legend(row), frames.to_vec()))
+            .collect(),
+        frame_size: run_history.frame_size,
+    }
+}
+
+fn overlap(run_history: &RunHistory) -> LinesPlot {
+    let points = run_history.points.kept();
+    let iou = points.iter().filter_map(|point| Some((point.index as f64, point.iou?))).collect();
+    let quality = points.iter().map(|point| (point.index as f64, point.quality)).collect();
+    let series = [Series::new("overlap with the truth", iou), Series::new("the tracker's quality", quality)];
+    LinesPlot {
+        title: "Overlap over the frames".to_owned(),
+        x_label: frames(run_history),
+        y_label: "intersection over union; quality".to_owned(),
+        series: series.into_iter().filter(|series| !series.points.is_empty()).collect(),
+        ..LinesPlot::default()
+    }
+}
+
+/// The colour distribution along its path, as ellipses over two planes of the space. [Andrade-Cetto, Figs. 8 and 13]
+fn clouds(run_history: &RunHistory, names: [&str; 3]) -> EllipsesPlot {
+    let plane = |v: usize| {
+        let ellipse = |(index, colors): &(usize, TargetColors)| NamedEllipse {
+            name: format!("frame {index}"),
+            center: (colors.mean[0], colors.mean[v]),
+            covariance: [0, v].map(|i| [0, v].map(|j| colors.covariance[(i, j)])),
+        };
+        (format!("{} over {}", names[v], names[0]), run_history.clouds.kept().iter().map(ellipse).collect())
+    };
+    EllipsesPlot {
+        title: "Path of the colour distribution (1σ)".to_owned(),
+        x_label: names[0].to_owned(),
+        sigmas: 1.0,
+        groups: [1, 2].map(plane).to_vec(),
+    }
+}
+
+/// Where the mean of the target's colours was.
+fn color_path(run_history: &RunHistory, names: [&str; 3]) -> LinesPlot {
+    let axis = |c: usize| {
+        let point = |point: &Point| Some((point.index as f64, point.colors?.mean[c]));
+        Series::new(names[c], run_history.points.kept().iter().filter_map(point).collect())
+    };
+    LinesPlot {
+        title: "Mean colour of the target".to_owned(),
+        x_label: frames(run_history),
+        y_label: "share of the axis".to_owned(),
+        series: [0, 1, 2].map(axis).to_vec(),
+        ..LinesPlot::default()
+    }
+}
+
+fn frames(run_history: &RunHistory) -> String {
+    match run_history.points.stride() {
+        1 => "frame".to_owned(),
+        stride => format!("frame, one in {stride}"),
+    }
+}

@@ -1,0 +1,78 @@
+use wayfix_sensor_log::{EncodedImage, ImageError};
+use wayfix_visual_tracking::{Target, TrackStatus};
+
+use super::super::{FrameResult, TargetColors, Truth};
+use super::{decimated::Decimated, overlay};
+
+/// Frames of the film, and points of the curves, at most.
+const MOST_FRAMES: usize = 12;
+const MOST_POINTS: usize = 4000;
+/// Colour distributions along their path, at most: each has an ink of its own.
+const MOST_CLOUDS: usize = 6;
+const JPEG_QUALITY: u8 = 85;
+
+/// What is kept of a run to be drawn, of even a very long one.
+pub struct RunHistory {
+    pub(in crate::track) film: Decimated<(usize, EncodedImage)>,
+    pub(in crate::track) points: Decimated<Point>,
+    pub(in crate::track) clouds: Decimated<(usize, TargetColors)>,
+    pub(in crate::track) frame_size: (u32, u32),
+}
+
+/// One frame in the curves.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::track) struct Point {
+    pub(in crate::track) index: usize,
+    pub(in crate::track) iou: Option<f64>,
+    pub(in crate::track) quality: f64,
+    pub(in crate::track) colors: Option<TargetColors>,
+}
+
+impl Default for RunHistory {
+    fn default() -> Self {
+        Self {
+            film: Decimated::new(MOST_FRAMES),
+            points: Decimated::new(MOST_POINTS),
+            clouds: Decimated::new(MOST_CLOUDS),
+            frame_size: (0, 0),
+        }
+    }
+}
+
+impl RunHistory {
+    /// Takes the next frame in.
+    ///
+    /// # Errors
+    /// When its picture cannot be encoded.
+    pub fn observe(&mut self, frame: &FrameResult) -> Result<(), ImageError> {
+        let (index, colors) = (frame.index, frame.colors);
+        let point = Point { index, iou: frame.iou, quality: frame.target.quality, colors };
+        self.points.push(point);
+        if let Some(colors) = colors {
+            self.clouds.push((index, colors));
+        }
+        let (width, height) = (frame.picture.width(), frame.picture.height());
+        if self.frame_size == (0, 0) {
+            self.frame_size = (width, height);
+        }
+        self.film.offer(|| {
+            let mut picture = frame.picture.clone();
+            if let Truth::At(truth) = frame.truth {
+                overlay::draw(&mut picture, &overlay::corners(&truth), overlay::TRUTH);
+            }
+            let color =
+                if frame.target.status == TrackStatus::Lost { overlay::LOST } else { overlay::ESTIMATE };
+            overlay::draw(&mut picture, &outline(&frame.target), color);
+            Ok((frame.index, EncodedImage::jpeg(width, height, picture.as_raw(), JPEG_QUALITY)?))
+        })
+    }
+}
+
+/// The outline of a target, or its box when it has none.
+pub(in crate::track) fn outline(target: &Target) -> Vec<[f64; 2]> {
+    if target.outline.is_empty() {
+        overlay::corners(&target.bounding_box).to_vec()
+    } else {
+        target.outline.clone()
+    }
+}

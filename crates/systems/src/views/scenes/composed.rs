@@ -1,0 +1,18 @@
+use wayfix_condensation::Picture;
+use wayfix_scene_sim::scenery::{ImagingConditions, RgbPicture, Scenery};
+
+use super::super::ViewsError;
+
+/// A composed scene as it is learned, and as it looks on a visit.
+///
+/// # Errors
+/// [`ViewsError::Scenery`] when the visit is no camera.
+pub fn composed(
+    scenery: &Scenery,
+    imaging_conditions: &ImagingConditions,
+) -> Result<(Picture, Picture), ViewsError> {
+    let learned = scenery.compose();
+    let real = imaging_conditions.picture_of(&learned, scenery.seed)?;
+    let picture = |RgbPicture { width, height, rgb }| Picture::from_rgb(width, height, rgb);
+    Ok((picture(learned)?, picture(real)?))
+}

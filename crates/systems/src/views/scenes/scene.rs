@@ -1,0 +1,38 @@
+use std::{fs, path::Path};
+
+use wayfix_condensation::Picture;
+use wayfix_sensor_log::{EncodedImage, ImageFormat};
+
+use super::super::ViewsError;
+
+/// A picture from a file, and what reading it as eight bits of red, green and blue changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Scene {
+    /// The picture.
+    pub picture: Picture,
+    /// What was lost or made up, a phrase each.
+    pub remarks: Vec<&'static str>,
+}
+
+/// Reads a JPEG or PNG file. Grey becomes colour, deeper channels are rounded to eight bits, transparency is dropped; the remarks say so.
+///
+/// # Errors
+/// [`ViewsError::Read`], [`ViewsError::NotAPicture`], [`ViewsError::Image`].
+pub fn read_scene(path: &Path) -> Result<Scene, ViewsError> {
+    let bytes = fs::read(path).map_err(|source| ViewsError::Read { path: path.into(), source })?;
+    let format =
+        ImageFormat::of_bytes(&bytes).ok_or_else(|| ViewsError::NotAPicture { path: path.into() })?;
+    let image = EncodedImage::new(format, bytes);
+    let damaged = |source| ViewsError::Image { path: path.into(), source };
+    let layout = image.layout().map_err(damaged)?;
+    let decoded = image.decode_rgb().map_err(damaged)?;
+    let remarks = [
+        (layout.channels <= 2, "is grey: red, green and blue are the same"),
+        (layout.bits_per_channel > 8, "has more than eight bits a channel: rounded to eight"),
+        (layout.has_alpha(), "has transparency: left out"),
+    ];
+    Ok(Scene {
+        picture: Picture::from_rgb(decoded.width as usize, decoded.height as usize, decoded.pixels)?,
+        remarks: remarks.into_iter().filter_map(|(applies, remark)| applies.then_some(remark)).collect(),
+    })
+}

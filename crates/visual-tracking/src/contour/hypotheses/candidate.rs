@@ -1,0 +1,78 @@
+use super::super::{Agreement, scene::Scene};
+use crate::{AffineMap, BitMask, ColorEdges, ColorState, Connectivity, MaskEdges, TrackingCues};
+
+/// Where the target would be if a hypothesis about its colours were true.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::contour) struct Candidate {
+    pub(in crate::contour) map: AffineMap,
+    pub(in crate::contour) area: f64,
+    pub(in crate::contour) agreement: Agreement,
+}
+
+impl Candidate {
+    /// Weighs a hypothesis: histogram, segmentation, morphology, blob, snake, agreement.
+    pub(in crate::contour) fn of_colors(scene: &Scene<'_>, state: &ColorState) -> Self {
+        match scene.target_mask(&scene.bin_set(state)) {
+            Some(mask) => Self::of_mask(scene, &scene.start, &mask),
+            None => Self { map: scene.start, area: 0.0, agreement: Agreement::NONE },
+        }
+    }
+
+    /// Weighs a segmentation of the target, with the snake laid on a start.
+    pub(in crate::contour) fn of_mask(scene: &Scene<'_>, start: &AffineMap, mask: &BitMask) -> Self {
+        let params = scene.params;
+        let (map, area, affine) = match params.cues {
+            TrackingCues::Color => {
+                let area = mask.area() as f64;
+                (blob_map(scene, mask, area), area, 1.0)
+            }
+            _ => {
+                let snake = &scene.reference.snake;
+                let edges = MaskEdges::new(mask, scene.region.rect.corner());
+                let fit = snake.fit(start, &edges, &params.snake);
+                (fit.map, snake.area_at(&fit.map), fit.support * in_sight(fit.visible))
+            }
+        };
+        let agreement = Agreement {
+            affine,
+            area: Agreement::of_areas(scene.expected_area, area),
+            quality: Agreement::of_euler_number(mask.euler_number(Connectivity::Eight), params.euler_range),
+        };
+        Self { map, area, agreement }
+    }
+
+    /// Without colours: the snake on the edges of the picture.
+    pub(in crate::contour) fn of_edges(scene: &Scene<'_>) -> Self {
+        let (params, snake) = (scene.params, &scene.reference.snake);
+        let edges = ColorEdges::new(scene.picture, params.edge_contrast);
+        let fit = snake.fit(&scene.start, &edges, &params.snake);
+        let area = snake.area_at(&fit.map);
+        let agreement = Agreement {
+            affine: fit.support * in_sight(fit.visible),
+            area: Agreement::of_areas(scene.expected_area, area),
+            quality: 1.0,
+        };
+        Self { map: fit.map, area, agreement }
+    }
+}
+
+/// What is out of the picture supports nothing: from half of the contour in sight on it costs nothing, below that everything, gradually.
+fn in_sight(visible: f64) -> f64 {
+    (2.0 * visible).min(1.0)
+}
+
+/// The last place, moved to the middle of a blob and scaled to its area.
+fn blob_map(scene: &Scene<'_>, mask: &BitMask, area: f64) -> AffineMap {
+    let last = scene.reference.snake.map();
+    let scale = (area / scene.reference.snake.area_at(last)).sqrt();
+    match mask.centroid() {
+        Some([u, v]) if scale > 0.0 => {
+            let corner = scene.region.rect.corner();
+            AffineMap {
+                linear: last.linear * scale,
+                translation: [u + corner.0 as f64, v + corner.1 as f64].into(),
+            }
+        }
+        _ => *last,
+    }
+}

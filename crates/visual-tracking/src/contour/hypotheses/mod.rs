@@ -1,0 +1,7 @@
+//! Hypotheses about the colours, and how well each agrees with the contour.
+
+pub(super) mod agreement;
+pub(super) mod candidate;
+pub(super) mod color_similarity;
+pub(super) mod each;
+pub(super) mod samples;

@@ -1,0 +1,192 @@
+//! `wayfix run cml`.
+
+mod arguments;
+
+use std::{path::Path, process::ExitCode};
+use wayfix_evaluation::terminal::{self, print, print_message};
+
+use anyhow::{Context, Result, bail, ensure};
+use wayfix_appearance_cml::{ArchiveParams, Forgetting, Learning, MapArchive, Start, TurnSense};
+use wayfix_estimation_traits::Pose2;
+use wayfix_sensor_log::{Format, OpenOptions, ReadReport};
+
+pub(in crate::cli) use arguments::Arguments;
+use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
+
+use super::super::{
+    input::read_toml,
+    outputs::Outputs,
+    read_problems::{add_read_problems, read_all},
+};
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
+    cml::{
+        self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
+        Task, ViewReader,
+        recording::{Recording, Tables},
+    },
+    system::{Stopwatch, System},
+};
+
+pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let mut params = match &arguments.common.params {
+        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        None => CmlParams::default(),
+    };
+    arguments.set_forgetting(&mut params);
+    if arguments.common.print_params {
+        print(commented(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let saved = arguments.map.as_deref().map(cml::read_map).transpose()?;
+    let stopwatch = Stopwatch::start();
+    let Input { mut plan, read, origin } = arguments.input(&mut params, saved.as_ref())?;
+    let task = arguments.task();
+    let reader = ViewReader::new(params.views, arguments.donut());
+    let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
+
+    let mut outputs = Outputs::open("cml", &arguments.common)?;
+    let mut estimates: Option<CmlEstimateLog> = outputs.estimates(origin)?;
+    let mut saver = arguments.save_map.clone().map(|path| MapSaver::new(path, arguments.save_every));
+    let bar = terminal::bar(plan.records.len(), "appearance map");
+    let mut remaining = plan.records.iter();
+    let run = cml::run(system, &plan, task, start, &params, arguments.common.seed, |system| {
+        if let Some(record) = remaining.next() {
+            estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
+            saver.iter_mut().for_each(|saver| saver.observe(record, system));
+        }
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    let mut run = run?;
+    let warnings = add_read_problems(run.system.events(), &read);
+    if let Some(saver) = saver {
+        saver.finish(&run.system).context("cannot save the map")?;
+    }
+
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let summary = Run { name: arguments.name(), seconds, warnings, ..cml::summarize(&mut run) };
+    print_message(summary.notes.join("\n"));
+    if let Some(estimates) = estimates {
+        estimates.finish()?;
+    }
+    outputs.show(summary, || Ok(cml::pictures(&run)?))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is to be done, and how reading it went.
+struct Input {
+    plan: Plan,
+    read: ReadReport,
+    origin: Format,
+}
+
+impl Arguments {
+    fn set_forgetting(&self, params: &mut CmlParams) {
+        match self.forgetting {
+            None => {}
+            Some(ForgettingArgument::None) => params.localizer.learning = Learning::Static,
+            Some(ForgettingArgument::Active) => params.localizer.map.forgetting = Forgetting::Active,
+            Some(ForgettingArgument::Passive) => params.localizer.map.forgetting = Forgetting::Passive,
+        }
+    }
+
+    fn input(&self, params: &mut CmlParams, saved: Option<&MapArchive>) -> Result<Input> {
+        ensure!(
+            self.withhold() != 1,
+            "--withhold 1 localizes every view and teaches none: give 0 to build the map on the way, or 2 and more"
+        );
+        let is_static = params.localizer.learning == Learning::Static;
+        if is_static && self.task() == Task::ConcurrentMapBuilding {
+            bail!(
+                "--forgetting none keeps the map as it is, and there is none: teach one (--withhold, --learn-from) or give one (--map)"
+            );
+        }
+        // A saved map knows which way its columns go.
+        let saved_sense = saved.map(|archive| archive.params().views.sense);
+        let told = self.column_order.map(|columns| match columns {
+            ColumnsArgument::Clockwise => TurnSense::Clockwise,
+            ColumnsArgument::Counterclockwise => TurnSense::Counterclockwise,
+        });
+        let camera = CameraChoice { donut: self.donut(), sense: told.or(saved_sense) };
+        if !self.log.is_empty() {
+            let options = OpenOptions { topics: self.topics.topics.clone(), ..OpenOptions::default() };
+            let log = wayfix_sensor_log::open_all(&self.log, &options)?;
+            let origin = log.meta().first_format();
+            let (records, read) = read_all(log);
+            return Ok(Input {
+                plan: Plan::of_log(records, self.withhold(), params, &camera)?,
+                read,
+                origin,
+            });
+        }
+        let (Some(frames), Some(poses)) = (&self.frames, &self.poses) else {
+            bail!("neither a log nor frames")
+        };
+        let recording = self.recording(frames, poses, self.stamps.as_deref())?;
+        let taught = match (&self.learn_from, &self.learn_poses) {
+            (Some(frames), Some(poses)) => {
+                Some(self.recording(frames, poses, self.learn_stamps.as_deref())?)
+            }
+            _ => None,
+        };
+        let plan = Plan::of_recording(
+            &recording,
+            taught.as_ref(),
+            self.withhold(),
+            params,
+            &camera,
+            self.common.seed,
+        )?;
+        let mut read = ReadReport::default();
+        for recording in taught.iter().chain([&recording]) {
+            read.join(&recording.read);
+        }
+        Ok(Input { plan, read, origin: Format::Images })
+    }
+
+    fn begin(
+        &self,
+        task: Task,
+        params: &CmlParams,
+        mut reader: ViewReader,
+        saved: Option<MapArchive>,
+        plan: &mut Plan,
+    ) -> Result<(CmlSystem, StartPlace)> {
+        let first = cml::first_true_pose(&plan.records);
+        let mut state = None;
+        let mut map = PanoramaMap::default();
+        if let Some(archive) = saved {
+            plan.notes.extend(cml::end_note(&archive));
+            let size = plan.first_size(&mut reader).unwrap_or(archive.params().size);
+            let params = ArchiveParams { views: *reader.params(), size };
+            (map, state) = archive.into_map(&params).context("the saved map cannot be used here")?;
+        }
+        let start = match (self.start, task, first) {
+            (Some(StartArgument::Anywhere), ..) => StartPlace::Anywhere,
+            (Some(StartArgument::Saved), ..) => {
+                let state = state.context("no saved map says where the robot is (--map)")?;
+                StartPlace::Saved(Start::Among(state))
+            }
+            (Some(StartArgument::At(pose)), Task::ConcurrentMapBuilding, _) => StartPlace::Exactly(pose),
+            (Some(StartArgument::At(pose)), ..) => StartPlace::Near(pose),
+            (None, Task::ConcurrentMapBuilding, first) => {
+                StartPlace::Exactly(first.unwrap_or(Pose2::new(0.0, 0.0, 0.0)))
+            }
+            (None, _, Some(first)) => StartPlace::Near(first),
+            (None, _, None) => StartPlace::Anywhere,
+        };
+        Ok((CmlSystem::new(params, reader, map)?, start))
+    }
+
+    fn recording(&self, frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<Recording> {
+        let (columns, stamp_columns) = (self.columns.as_ref(), self.stamp_columns.as_ref());
+        let recording = Recording::read(frames, &Tables { poses, columns, stamps, stamp_columns })?;
+        if !recording.read.is_clean() {
+            print_message(&recording.read);
+        }
+        recording.notes.iter().for_each(|note| print_message(format!("note: {note}")));
+        Ok(recording)
+    }
+}

@@ -1,0 +1,157 @@
+use std::{fs, path::PathBuf, process::ExitCode, str::FromStr, sync::Arc};
+
+use anyhow::{Context, Result, ensure};
+use wayfix_estimation_traits::Pose2;
+use wayfix_evaluation::terminal::{self, print};
+use wayfix_sensor_log::{OpenOptions, Record};
+
+use super::super::{
+    common::Common,
+    input::{Topics, name_of, read_toml},
+    outputs::Outputs,
+    read_problems::{add_read_problems, read_all},
+    truth::TruthFile,
+};
+use crate::commented::commented;
+use wayfix_evaluation::{plot::Picture, report::Run};
+use wayfix_systems::{
+    color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleFilm, StartPose, priors},
+    system::{Stopwatch, System},
+};
+
+/// Adaptive colour localization: where the robot stands on a coloured field, and what today's light does to the colours.
+///
+/// The log holds camera images, the camera's calibration, where the joints say the camera is, and odometry; the map says which surfaces
+/// have which colour. No colour is calibrated: priors say what colours may look like, dark or bright, and the filter finds out.
+///
+/// Where the log holds true poses, the search starts near the first one (0.5 m and 17° in standard deviation) and the figures tell how far the
+/// estimate is off: `position_mean_m`, `heading_mean_deg`, beside `odometry_position_mean_m` for odometry alone from the same start. Where it
+/// holds true labels, `classification_rate` is the share of labelled pixels that are recognized. Without truth these figures are absent.
+///
+/// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(in crate::cli) struct Arguments {
+    /// The log, an MCAP file; it may be a ROS 2 bag with rectified images and the transforms from the robot to its camera.
+    ///
+    /// Given several times, the files of one recording; of a ROS 2 bag that was split, the folder does.
+    #[arg(long, value_name = "PATH", required_unless_present_any = ["write_priors", "print_params"])]
+    log: Vec<PathBuf>,
+    #[command(flatten)]
+    topics: Topics,
+    #[command(flatten)]
+    truth: TruthFile,
+    /// The map: coloured polygons and posts, TOML or JSON.
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["write_priors", "print_params"])]
+    map: Option<PathBuf>,
+    /// What the colours may look like, one Gaussian a kind of light, as JSON [default: dark and bright light on the colours of the
+    /// four-legged league].
+    #[arg(long, value_name = "FILE")]
+    priors: Option<PathBuf>,
+    /// Write the built-in priors to a file, and end: the form of one's own.
+    #[arg(long, value_name = "FILE")]
+    write_priors: Option<PathBuf>,
+    /// Where the robot is at the first image: `anywhere`, or x,y,heading in metres and degrees [default: near the first true pose, else
+    /// anywhere].
+    #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
+    start: Option<StartArgument>,
+    #[command(flatten)]
+    common: Common,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run color --log fixtures/color_dark.mcap --map fixtures/four-legged-field.toml
+  wayfix run color --log my.mcap --map my-field.toml --start anywhere --out results
+  wayfix run color --print-params > my.toml
+  wayfix run color --write-priors priors.json";
+
+#[derive(Clone, Copy, Debug)]
+struct StartArgument(StartPose);
+
+impl FromStr for StartArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "anywhere" {
+            return Ok(Self(StartPose::Anywhere));
+        }
+        let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+        match numbers[..] {
+            [x, y, heading] if numbers.iter().all(|number| number.is_finite()) => {
+                Ok(Self(StartPose::Near(Pose2::new(x, y, heading.to_radians()))))
+            }
+            _ => {
+                Err("give `anywhere`, or x,y,heading in metres and degrees, for instance -1.5,0.3,90"
+                    .to_owned())
+            }
+        }
+    }
+}
+
+pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
+    if let Some(path) = &arguments.write_priors {
+        let text = serde_json::to_string_pretty(&priors::built_in()?)? + "\n";
+        fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let params = match &arguments.common.params {
+        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        None => ColorSystemParams::default(),
+    };
+    if arguments.common.print_params {
+        print(commented(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let map = Arc::new(color::read_map(arguments.map.as_deref().context("give --map")?)?);
+    let priors = arguments.priors.as_deref().map_or_else(priors::built_in, priors::read)?;
+    ensure!(
+        priors.colors() == map.colors(),
+        "the map has the colours {:?}, the priors {:?}: they must be the same, in the same order",
+        map.colors(),
+        priors.colors()
+    );
+    let bank = priors::bank(&priors, &params)?;
+    let options = OpenOptions { topics: arguments.topics.topics, ..OpenOptions::default() };
+    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
+    let origin = log.meta().first_format();
+    let (records, read) = read_all(log);
+    let records = arguments.truth.put_into(records)?;
+
+    let mut outputs = Outputs::open("color", &arguments.common)?;
+    let mut estimates: Option<ColorEstimateLog> = outputs.estimates(origin)?;
+    let stopwatch = Stopwatch::start();
+    let mut particles = ParticleFilm::new(color::n_images(&records));
+    let bar = terminal::bar(records.len(), "colour localization");
+    let mut remaining = records.iter();
+    let start = arguments.start.map(|start| start.0);
+    let color = color::run(&records, map, bank, &params, start, arguments.common.seed, |system| {
+        if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
+            estimates.observe(record, system);
+        }
+        particles.observe(system);
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    let mut color = color?;
+    let warnings = add_read_problems(color.system.events(), &read);
+
+    let name = name_of(&arguments.log);
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let run = Run { name, seconds, warnings, ..color::summarize(&mut color) };
+    if let Some(estimates) = estimates {
+        estimates.finish()?;
+    }
+    outputs.show(run, || pictures(&mut color, &records, &particles))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Frames of the film strip.
+const FILM_FRAMES: usize = 5;
+
+fn pictures(color: &mut ColorRun, records: &[Record], particles: &ParticleFilm) -> Result<Vec<Picture>> {
+    let mut pictures = color::pictures(color)?;
+    pictures.push(particles.draw(color)?);
+    pictures.push(color::film(color, records, FILM_FRAMES)?);
+    Ok(pictures)
+}

@@ -1,0 +1,89 @@
+use std::{path::PathBuf, process::ExitCode};
+
+use anyhow::{Result, ensure};
+use wayfix_evaluation::terminal::{self, print};
+use wayfix_line_extract::Params;
+use wayfix_sensor_log::{Format, OpenOptions};
+
+use super::super::{
+    common::Common,
+    input::{Topics, name_of, read_toml},
+    outputs::Outputs,
+    read_problems::{add_read_problems, read_all},
+};
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
+    lines::{self, LineLog, LineSystem},
+    system::{Stopwatch, System, drive},
+};
+
+/// Walls: the straight pieces in every laser scan of a log, with their ends.
+///
+/// The figures are how many scans there are, how many could not be used (`n_skipped`, the events and standard error say why), walls per scan,
+/// how far the echoes are off their walls (root mean square), and the time that the search takes. Where the log has true walls, also how many walls
+/// are within 2σ of the true ones, how many are false, and how many true ones were found.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(in crate::cli) struct Arguments {
+    /// The log: CARMEN, scans as JSON, or MCAP, which may be a ROS 2 bag; text may be compressed with gzip.
+    ///
+    /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
+    #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
+    log: Vec<PathBuf>,
+    /// How the log is stored: carmen, scan-json or mcap [default: found out by looking].
+    #[arg(long)]
+    format: Option<Format>,
+    #[command(flatten)]
+    topics: Topics,
+    #[command(flatten)]
+    common: Common,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run lines --log intel-corrected.log.gz
+  wayfix run lines --log my.mcap --out results
+  wayfix run lines --log rosbag2_0.mcap --topic /scan_rear";
+
+pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let params = match &arguments.common.params {
+        Some(path) => read_toml(path, |text| toml::from_str(text))?,
+        None => Params::default(),
+    };
+    if arguments.common.print_params {
+        print(commented(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut system = LineSystem::new(params)?;
+    let options =
+        OpenOptions { format: arguments.format, topics: arguments.topics.topics, ..OpenOptions::default() };
+    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
+    let origin = log.meta().first_format();
+    let (records, read) = read_all(log);
+
+    let mut outputs = Outputs::open("lines", &arguments.common)?;
+    let mut walls: Option<LineLog> = outputs.estimates(origin)?;
+    let stopwatch = Stopwatch::start();
+    let bar = terminal::bar(records.len(), "walls");
+    let mut remaining = records.iter();
+    drive(&mut system, &records, |system| {
+        if let (Some(walls), Some(record)) = (&mut walls, remaining.next()) {
+            walls.observe(record, system);
+        }
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    ensure!(system.n_scans() > 0, "{}: no laser scan in the log", name_of(&arguments.log));
+    let warnings = add_read_problems(system.events(), &read);
+    ensure!(!system.scans().is_empty(), "{}: no laser scan could be used", name_of(&arguments.log));
+
+    let name = name_of(&arguments.log);
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let run = Run { name, seconds, warnings, ..lines::summarize(&mut system) };
+    if let Some(walls) = walls {
+        walls.finish()?;
+    }
+    outputs.show(run, || Ok(lines::pictures(&system)?))?;
+    Ok(ExitCode::SUCCESS)
+}

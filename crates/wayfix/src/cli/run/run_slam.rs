@@ -1,0 +1,207 @@
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use anyhow::{Context, Result};
+use wayfix_evaluation::terminal::{self, print, print_message};
+use wayfix_sensor_log::{Format, OpenOptions, Record};
+
+use super::super::{
+    common::Common,
+    input::{Topics, name_of, read_toml},
+    outputs::Outputs,
+    read_problems::{add_read_problems, read_all},
+    truth::TruthFile,
+};
+use super::run_walls;
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
+    slam::{
+        self, AssociationRule, Profile, SavedMap, Saver, SlamEstimateLog, SlamRun, SlamSystem,
+        SlamSystemParams,
+    },
+    system::Stopwatch,
+};
+
+/// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing detections or laser scans.
+///
+/// Where the log holds true poses, the run starts at the true pose where odometry starts, and the figures tell how far it strays:
+/// `ate_rmse_m` as it is, `ate_aligned_rmse_m` after the best rigid fit of the path, `landmark_…` the same for the map, `nees_mean`
+/// how sure the filter is (3 when it is honest; far above: too sure of itself). Without truth these figures are absent.
+///
+/// `n_rejected` counts what the filter refused: outside the gate, twice in one look, not usable, back in time. `step_…_us` is computing
+/// time a look of the sensor.
+///
+/// In logs of laser scans the landmarks are walls; the parameters are others then (`--print-params` with the log shows them). What another program
+/// estimated stands in for the truth there, when the log has no true poses. Where a ROS 2 bag has the transform from the robot to its laser, the laser is
+/// there, unless the parameters place it. `--relations` adds the errors of known relations.
+///
+/// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
+/// It ends with 1 when nothing could be done, with 2 when the command line is wrong.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(in crate::cli) struct Arguments {
+    /// The log: an MCAP file, which may be a ROS 2 bag, the folder of a UTIAS or Victoria Park set, a text file of range-bearing lines, or laser scans of CARMEN or JSON.
+    ///
+    /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
+    #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
+    pub(in crate::cli) log: Vec<PathBuf>,
+    /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: found out by looking].
+    #[arg(long)]
+    pub(in crate::cli) format: Option<Format>,
+    /// Which robot, in sets of several.
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) robot: Option<u32>,
+    #[command(flatten)]
+    pub(in crate::cli) topics: Topics,
+    #[command(flatten)]
+    pub(in crate::cli) truth: TruthFile,
+    /// How detections find their landmarks [default: known where the log has identities, else jcbb].
+    #[arg(long, value_name = "RULE")]
+    pub(in crate::cli) association: Option<AssociationRule>,
+    /// The kind of robot whose noise and timing are the defaults [default: by the format of the log, else generic].
+    #[arg(long)]
+    pub(in crate::cli) profile: Option<Profile>,
+    /// A file of relations between poses that are known from elsewhere, for logs of scans: `t1 t2 x y z roll pitch yaw` lines of the Freiburg
+    /// SLAM benchmark.
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) relations: Option<PathBuf>,
+    /// File to save map and filter to, at the end and every `--save-every` seconds.
+    ///
+    /// The file is replaced as a whole: losing power leaves the old or the new one.
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) save: Option<PathBuf>,
+    /// Seconds of the log's time between two saves.
+    #[arg(long, value_name = "SECONDS", requires = "save", value_parser = not_negative)]
+    pub(in crate::cli) save_every: Option<f64>,
+    /// Go on from a saved map with what the log holds after it.
+    ///
+    /// Records up to the stamp it was saved at are left out; figures and events are those of the rest.
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) resume: Option<PathBuf>,
+    /// Tell which directions of the map nothing has ever constrained.
+    ///
+    /// Detections never tell where the map as a whole lies and how it is turned; anchors and external sensors do.
+    #[arg(long)]
+    pub(in crate::cli) observability: bool,
+    #[command(flatten)]
+    pub(in crate::cli) common: Common,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run slam --log slam_100.txt                                    figures as a table
+  wayfix run slam --log slam_100.txt --association nn --json            identities not used
+  wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results         results/index.html
+  wayfix run slam --log my.mcap --print-params > my.toml                a file to edit, for
+  wayfix run slam --log my.mcap --params my.toml
+  wayfix run slam --log monday.mcap --save floor.map --save-every 10
+  wayfix run slam --log rosbag2_0.mcap --topic /scan_front              walls, from the laser and /odom
+  wayfix run slam --log tuesday.mcap --resume floor.map --save floor.map
+
+A file of parameters names what differs from the defaults, for instance
+  [sensor]
+  range_sigma = 0.10      # m
+  bearing_sigma = 0.03    # rad";
+
+pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
+    if arguments.log.is_empty() {
+        print(commented(&params(&arguments, Profile::Generic)?)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let options = OpenOptions {
+        format: arguments.format,
+        robot: arguments.robot,
+        topics: arguments.topics.topics.clone(),
+        ..OpenOptions::default()
+    };
+    let log = wayfix_sensor_log::open_all(&arguments.log, &options)?;
+    let meta = log.meta().clone();
+    let (records, read) = read_all(log);
+    let records = arguments.truth.put_into(records)?;
+    if run_walls::is_for(&records) {
+        return run_walls::main(&arguments, &records, meta.first_format(), &read);
+    }
+    let params = params(&arguments, Profile::of_log(&meta))?;
+    if arguments.common.print_params {
+        print(commented(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let origin = meta.first_format();
+
+    let mut outputs = Outputs::open("slam", &arguments.common)?;
+    let mut estimates = outputs.estimates(origin)?;
+    let stopwatch = Stopwatch::start();
+    let saved = arguments.resume.as_deref().map(saved_map).transpose()?;
+    let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
+    let mut slam = run(&records, &params, saved, estimates.as_mut(), saver.as_mut())?;
+    if let Some(saver) = saver {
+        saver.finish(&slam.system).context("cannot save the map")?;
+    }
+    let warnings = add_read_problems(slam.events(), &read);
+
+    let run = Run {
+        name: name_of(&arguments.log),
+        seconds: stopwatch.elapsed().as_secs_f64(),
+        warnings,
+        ..slam::summarize(&mut slam)
+    };
+    run.notes.iter().for_each(print_message);
+    if let Some(estimates) = estimates {
+        estimates.finish()?;
+    }
+    outputs.show(run, || Ok(slam::pictures(&slam)?))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The parameters; `usual` is the profile unless the command line names one.
+fn params(arguments: &Arguments, usual: Profile) -> Result<SlamSystemParams> {
+    let profile = arguments.profile.unwrap_or(usual);
+    let mut params = match &arguments.common.params {
+        Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?
+            .validated()
+            .with_context(|| format!("parameters in {} are not usable", path.display()))?,
+        None => SlamSystemParams::of(profile),
+    };
+    params.association = arguments.association.or(params.association);
+    params.record_observability = arguments.observability;
+    Ok(params)
+}
+
+fn run(
+    records: &[Record],
+    params: &SlamSystemParams,
+    saved: Option<SavedMap>,
+    mut estimates: Option<&mut SlamEstimateLog>,
+    mut saver: Option<&mut Saver>,
+) -> Result<SlamRun> {
+    let bar = terminal::bar(records.len(), "EKF-SLAM");
+    let mut remaining = records.iter();
+    let observe = |system: &SlamSystem| {
+        let Some(record) = remaining.next() else { return };
+        if let Some(estimates) = &mut estimates {
+            estimates.observe(record, system);
+        }
+        if let Some(saver) = &mut saver {
+            saver.observe(record, remaining.as_slice().first(), system);
+        }
+        bar.inc(1);
+    };
+    let slam = match saved {
+        Some(saved) => slam::run_on(saved, records, params, observe),
+        None => slam::run(records, params, observe),
+    };
+    bar.finish_and_clear();
+    slam
+}
+
+fn saved_map(path: &Path) -> Result<SavedMap> {
+    SavedMap::read(path).with_context(|| format!("cannot go on from {}", path.display()))
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if seconds >= 0.0 { Ok(seconds) } else { Err("must be 0 or more".to_owned()) }
+}

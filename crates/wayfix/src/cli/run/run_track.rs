@@ -1,0 +1,161 @@
+use std::{
+    fs::File,
+    io::{self, BufWriter, Write},
+    path::PathBuf,
+    process::ExitCode,
+    str::FromStr,
+};
+
+use anyhow::{Context, Result};
+use wayfix_evaluation::terminal::{self, print, print_message};
+use wayfix_sensor_log::{Format, Log, OpenOptions};
+use wayfix_visual_tracking::BoundingBox;
+
+use super::super::{common::Common, input::read_toml, outputs::Outputs, read_problems::add_read_problems};
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
+    system::{Stopwatch, System},
+    track::{self, Method, Start, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
+};
+
+/// Tracking: where a target is in every picture, from where it is in the first one.
+///
+/// A box is four numbers, left, top, width and height in pixels, or eight, the corners of a quadrangle, whose upright bounding box counts;
+/// commas, tabs or blanks between them. In a file of true boxes line k is frame k; where the target is out of the picture the line says
+/// 0,0,0,0 or NaN; if there are fewer lines than frames, nothing is known of the rest.
+///
+/// `iou_mean` is the mean overlap (intersection over union) with the true boxes over all frames from the first one on, `success_auc` the
+/// share of frames with more overlap than each of 0, 0.05, …, 1, averaged, `precision_20px` the share of those whose centre is at most 20
+/// pixels off. A frame counts with overlap 0 when the tracker says that the target is lost (`n_lost`), and when it cannot be read or is
+/// refused (`n_without_estimate`). `false_tracked_share` is the share of the frames with overlap below 0.2 that the tracker calls tracked,
+/// `false_lost_share` that of the frames with overlap 0.5 or more that it calls lost. Frames without a true box are not judged. Without --truth these figures are absent. `frame_mean_ms` is
+/// the time of the tracker, without decoding.
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(in crate::cli) struct Arguments {
+    /// A folder of pictures, JPEG or PNG, in the order of their names.
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["log", "print_params"], conflicts_with = "log")]
+    frames: Option<PathBuf>,
+    /// A log with images, an MCAP file, instead of --frames; several are the files of one recording.
+    #[arg(long, value_name = "PATH")]
+    log: Vec<PathBuf>,
+    /// Where the target is in the first frame: x,y,w,h or eight numbers [default: the first true box].
+    #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["init_mask", "truth", "print_params"])]
+    init: Option<BoxArgument>,
+    /// The same as a picture of the size of the frames, in which the target is not black: its outline, which `contour` needs not guess.
+    #[arg(long, value_name = "FILE", conflicts_with = "init")]
+    init_mask: Option<PathBuf>,
+    /// True boxes, one line a frame.
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+    /// Which tracker.
+    #[arg(long, value_enum, value_name = "NAME", default_value = "box")]
+    method: Method,
+    #[command(flatten)]
+    common: Common,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run track --frames David/img --truth David/groundtruth_rect.txt
+  wayfix run track --frames holiday --init 120,80,40,56 --out results
+  wayfix run track --frames snail --init-mask snail.png --method contour
+  wayfix run track --log camera.mcap --init 120,80,40,56 --json";
+
+/// The boxes beside the report, in the form of true ones.
+const BOXES: &str = "boxes.txt";
+
+#[derive(Clone, Copy, Debug)]
+struct BoxArgument(BoundingBox);
+
+impl FromStr for BoxArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = parse_box(text).map_err(|error| error.to_string())?;
+        found.map(Self).ok_or_else(|| "a box at the beginning needs an extent".to_owned())
+    }
+}
+
+pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let params = match &arguments.common.params {
+        Some(path) => read_toml(path, TrackParams::from_toml)?,
+        None => TrackParams::default(),
+    };
+    if arguments.common.print_params {
+        print(commented(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let truth = match &arguments.truth {
+        Some(path) => TrueBoxes::read(path)
+            .with_context(|| format!("true boxes in {} are not usable", path.display()))?,
+        None => TrueBoxes::default(),
+    };
+    let (mut log, rate_hz) = arguments.open()?;
+    let origin = log.meta().first_format();
+    let mut outputs = Outputs::open("track", &arguments.common)?;
+    let mut estimates = open_estimates(&mut outputs, origin)?;
+
+    let stopwatch = Stopwatch::start();
+    let init = match &arguments.init_mask {
+        Some(path) => Some(Start::read_mask(path)?),
+        None => arguments.init.map(|init| Start::Box(init.0)),
+    };
+    let setup = TrackSetup { method: arguments.method, params, init, truth, rate_hz };
+    let system = TrackSystem::new(setup, arguments.common.seed);
+    let bar = terminal::counter("tracking");
+    let track = track::run(system, &mut log, |system, record| {
+        if let Some(estimates) = &mut estimates {
+            estimates.observe(record, system);
+        }
+        bar.set_position(system.n_frames() as u64);
+    });
+    bar.finish_and_clear();
+    if !log.report().is_clean() {
+        print_message(log.report());
+    }
+    let mut track = track?;
+    let warnings = add_read_problems(track.system.events(), log.report());
+
+    let name = log.meta().source.display().to_string();
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let run = Run { name, seconds, warnings, ..track::summarize(&mut track) };
+    run.notes.iter().for_each(|note| print_message(format!("note: {note}")));
+    if let Some(estimates) = estimates {
+        estimates.finish(track.system.n_frames())?;
+    }
+    outputs.show(run, || Ok(track::pictures(&track.run_history)?))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    /// The log, and the frames a second of a folder.
+    fn open(&self) -> Result<(Log, Option<f64>)> {
+        let mut options = OpenOptions::default();
+        match (&self.frames, self.log.as_slice()) {
+            (Some(folder), _) => {
+                options.format = Some(Format::Images);
+                let rate_hz = Some(options.frame_rate_hz);
+                Ok((wayfix_sensor_log::open(folder, &options)?, rate_hz))
+            }
+            (None, []) => anyhow::bail!("give --frames or --log"),
+            (None, paths) => Ok((wayfix_sensor_log::open_all(paths, &options)?, None)),
+        }
+    }
+}
+
+fn open_estimates(outputs: &mut Outputs<'_>, origin: Format) -> Result<Option<TrackLog>> {
+    let sinks = outputs.sinks()?;
+    if sinks.is_empty() {
+        return Ok(None);
+    }
+    let boxes: Box<dyn Write> = match outputs.file(BOXES) {
+        Some(path) => {
+            let file = File::create(&path).with_context(|| format!("cannot create {}", path.display()))?;
+            Box::new(BufWriter::new(file))
+        }
+        None => Box::new(io::sink()),
+    };
+    Ok(Some(TrackLog::new(sinks, boxes, origin)?))
+}

@@ -1,0 +1,172 @@
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    str::FromStr,
+};
+
+use anyhow::{Context, Result};
+use clap::builder::RangedU64ValueParser;
+use wayfix_condensation::{ActionChoice, Light};
+use wayfix_evaluation::terminal::{self, print, print_message};
+
+use super::super::{common::Common, input::read_toml, outputs::Outputs};
+use crate::commented::commented;
+use wayfix_evaluation::report::Run;
+use wayfix_systems::{
+    system::Stopwatch,
+    views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams},
+};
+
+/// State condensation: in which of the views of a scene a robot is, from what the whole view looks like.
+///
+/// A picture is divided into overlapping views, one every --step pixels; each is a place. The robot learns a few numbers of every view, is
+/// put somewhere in the same scene on another day (other light, some pixels aside), and drives to a goal one view a move until it believes
+/// that it is there. This is repeated --trials times with random starts and goals.
+///
+/// Without --learn-from the other day is made of the picture itself: gain 0.7, offset 20, gamma 1.3, a shift of 4,3 pixels, unless options
+/// say otherwise. With --learn-from both pictures are taken as they are, and the options come on top where given.
+///
+/// `successes` counts the drives that say "I am at the goal" and are; one that stays unsure is none. `steps_mean` are the moves of a drive,
+/// `steps_to_certainty_mean` those until confidence is first as high as a robot asks for that stops (0.999).
+#[derive(clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub(in crate::cli) struct Arguments {
+    /// The scene that the robot drives in, JPEG or PNG.
+    #[arg(long, value_name = "IMAGE", required_unless_present = "print_params")]
+    scene: Option<PathBuf>,
+    /// The scene as it was learned, of the same size [default: --scene].
+    #[arg(long, value_name = "IMAGE")]
+    learn_from: Option<PathBuf>,
+    /// Width and height of a view, pixels.
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = positive())]
+    view: u64,
+    /// Pixels between neighbouring views.
+    #[arg(long, value_name = "N", default_value_t = 32, value_parser = positive())]
+    step: u64,
+    /// What is measured of a view.
+    #[arg(long, value_enum, value_name = "NAME", default_value = "mean-var")]
+    feature: FeatureKind,
+    /// How today's light is made that of learning.
+    #[arg(long, value_enum, value_name = "HOW", default_value = "whole-scene")]
+    normalization: Normalization,
+    /// Drives with random start and goal.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = positive())]
+    trials: u64,
+    /// Contrast of the real scene [default: 0.7, or 1 with --learn-from].
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true)]
+    gain: Option<f64>,
+    /// Brightness of the real scene, grey levels [default: 20, or 0 with --learn-from].
+    #[arg(long, value_name = "LEVELS", allow_hyphen_values = true)]
+    offset: Option<f64>,
+    /// Bend of the real scene's tone curve [default: 1.3, or 1 with --learn-from].
+    #[arg(long, value_name = "EXPONENT", allow_hyphen_values = true)]
+    gamma: Option<f64>,
+    /// Pixels that the real camera stands to the right and down [default: 4,3, or 0,0 with --learn-from].
+    #[arg(long, value_name = "DX,DY", allow_hyphen_values = true)]
+    shift: Option<Shift>,
+    /// Look by how much the camera of --scene stood aside of that of --learn-from on the whole, up to N pixels each way, and take that out.
+    #[arg(long, value_name = "N", value_parser = positive(), requires = "learn_from")]
+    register: Option<u64>,
+    /// Of moves that lead equally near to the goal take the one that is expected to show most, comparing the N best places.
+    #[arg(long, value_name = "N")]
+    informed: Option<usize>,
+    #[command(flatten)]
+    common: Common,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  wayfix run views --scene china.jpg --out results
+  wayfix run views --scene china.jpg --view 256 --step 16 --feature hist6 --normalization online
+  wayfix run views --scene right.png --learn-from left.png --register 64 --feature joined
+  wayfix run views --scene china.jpg --gain 1 --offset -30 --gamma 1 --shift -5,0 --json";
+
+fn positive() -> RangedU64ValueParser {
+    RangedU64ValueParser::new().range(1..=1_000_000)
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Shift((i32, i32));
+
+impl FromStr for Shift {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<Option<i32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+        match numbers[..] {
+            [Some(dx), Some(dy)] => Ok(Self((dx, dy))),
+            _ => Err("give two whole numbers of pixels, right and down, for instance 4,-3".to_owned()),
+        }
+    }
+}
+
+pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
+    let mut params = match &arguments.common.params {
+        Some(path) => read_toml(path, ViewsParams::from_toml)?,
+        None => ViewsParams::default(),
+    };
+    if let Some(hypotheses) = arguments.informed {
+        params.navigator.choice = ActionChoice::Informed { hypotheses };
+    }
+    if arguments.common.print_params {
+        print(commented(&params)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let scene_path = arguments.scene.as_deref().context("give --scene")?;
+    let scene = read(scene_path)?;
+    let learned = arguments.learn_from.as_deref().map(read).transpose()?;
+    let mut real = arguments.real_scene().of(&scene)?;
+    let learned = learned.as_ref().unwrap_or(&scene);
+    if let Some(reach) = arguments.register {
+        let (dx, dy) = views::mean_shift(learned, &real, reach as usize);
+        print_message(format!(
+            "note: the real camera stood {dx} pixels to the right and {dy} down of the learned one"
+        ));
+        real = real.shifted(-dx, -dy);
+    }
+
+    let mut outputs = Outputs::open("views", &arguments.common)?;
+    let stopwatch = Stopwatch::start();
+    let setup = Setup {
+        view: arguments.view as usize,
+        step: arguments.step as usize,
+        feature: arguments.feature,
+        normalization: arguments.normalization,
+    };
+    let bar = terminal::bar(arguments.trials as usize, "drives");
+    let run =
+        views::run(learned, &real, &setup, &params, arguments.trials, arguments.common.seed, &|| bar.inc(1));
+    bar.finish_and_clear();
+    let views = run?;
+
+    let name = scene_path.display().to_string();
+    let seconds = stopwatch.elapsed().as_secs_f64();
+    let run = Run { name, seconds, ..views::summarize(&views) };
+    let sinks = outputs.sinks()?;
+    if !sinks.is_empty() {
+        views::draw_drive(&views, &real, arguments.common.seed, sinks)?;
+    }
+    outputs.show(run, || views::pictures(&views, learned, &real, arguments.common.seed))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    fn real_scene(&self) -> RealScene {
+        let default = if self.learn_from.is_some() { RealScene::UNCHANGED } else { RealScene::default() };
+        let light = Light {
+            gain: self.gain.unwrap_or(default.light.gain),
+            offset: self.offset.unwrap_or(default.light.offset),
+            gamma: self.gamma.unwrap_or(default.light.gamma),
+        };
+        RealScene { light, shift: self.shift.map_or(default.shift, |shift| shift.0) }
+    }
+}
+
+/// A picture; what reading it changed is told.
+fn read(path: &Path) -> Result<wayfix_condensation::Picture> {
+    let scene = views::read_scene(path)?;
+    for remark in scene.remarks {
+        print_message(format!("note: {} {remark}", path.display()));
+    }
+    Ok(scene.picture)
+}

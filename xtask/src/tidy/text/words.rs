@@ -1,0 +1,75 @@
+//! Words that make a text hard to read: personification, inversion, a diary's tone, private words.
+
+use super::super::{Finding, Source};
+
+/// What is not written, in lower case, and what is written in its place. In two halves, so that this file does not find itself.
+const WORDS: [(&str, &str); 14] = [
+    (concat!("who", "ever"), "name the subject: the robot, the filter, the caller"),
+    (concat!("ous", "ted"), "previous hypothesis"),
+    (concat!("the usual", " sins"), "realistic error sources, by name"),
+    (concat!("has no", " meaning"), "say what is refused: `OutOfRange` if …"),
+    (concat!("have no", " meaning"), "say what is refused: `OutOfRange` if …"),
+    (concat!("without", " meaning"), "invalid"),
+    (concat!("earlier", " build"), "a guide tells what is, an ADR what was tried"),
+    (concat!("tried and", " dropped"), "a guide tells what is, an ADR what was tried"),
+    (concat!("just", " so"), "the figure and the target"),
+    (concat!("led", "_away"), "diverged after relocalization"),
+    (concat!("said", "_lost"), "reported lost"),
+    (concat!("per_", "metre"), "per_meter"),
+    (concat!("never", "_twice"), "one detection per landmark"),
+    (concat!("last", "_look"), "keyframe"),
+];
+/// Where old names stand beside the new ones.
+const OLD_NAMES: [&str; 2] = ["CHANGELOG.md", "crates/wayfix/src/cli/renamed.rs"];
+/// Folders whose contents are about to be rewritten.
+pub(in crate::tidy) const EXCEPT: [&str; 2] =
+    ["crates/appearance-cml/src/localizer/", "crates/color-model/src/localizer/"];
+
+pub(in crate::tidy) fn check(sources: &[Source]) -> Vec<Finding> {
+    let is_checked = |path: &str| {
+        (path.ends_with(".rs") || path.ends_with(".md"))
+            && !OLD_NAMES.contains(&path)
+            && !EXCEPT.iter().any(|folder| path.starts_with(folder))
+    };
+    let checked = sources.iter().filter(|source| is_checked(&source.path));
+    checked
+        .flat_map(|source| source.text.lines().enumerate().flat_map(move |line| in_line(source, line)))
+        .collect()
+}
+
+fn in_line<'a>(source: &'a Source, (index, line): (usize, &str)) -> impl Iterator<Item = Finding> + use<'a> {
+    let line = line.to_lowercase();
+    WORDS
+        .iter()
+        .filter(move |(word, _)| is_word(&line, word))
+        .map(move |(word, instead)| Finding::new(&source.path, index + 1, format!("`{word}`"), instead))
+}
+
+/// Whether `word` stands in `line`, not as a part of a longer word.
+fn is_word(line: &str, word: &str) -> bool {
+    line.match_indices(word).any(|(start, _)| {
+        let before = line[..start].chars().next_back();
+        let after = line[start + word.len()..].chars().next();
+        ![before, after].into_iter().flatten().any(char::is_alphanumeric)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::source;
+    use super::*;
+
+    #[test]
+    fn listed_word_is_found_with_its_line() {
+        let text = format!("fine\nFor {} is lost.\n", WORDS[0].0);
+        let findings = check(&[source("docs/x.md", &text)]);
+        assert_eq!(findings.iter().map(|finding| finding.line).collect::<Vec<_>>(), [2]);
+    }
+
+    #[test]
+    fn part_of_a_longer_word_and_exempt_folders_are_passed_over() {
+        let longer = format!("un{}x\n", WORDS[1].0);
+        let exempt = format!("{}localizer.rs", EXCEPT[0]);
+        assert!(check(&[source("docs/x.md", &longer), source(&exempt, WORDS[0].0)]).is_empty());
+    }
+}
