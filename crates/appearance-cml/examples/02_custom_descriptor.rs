@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
-use wayfix_appearance_cml::{AppearanceLocalizer, Comparison, Descriptor, LocalizerParams, Start};
+use wayfix_appearance_cml::{AppearanceLocalizer, Descriptor, LocalizerParams, Start, ViewDifference};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
@@ -17,14 +17,14 @@ struct Ring([f64; BEAMS]);
 
 impl Descriptor for Ring {
     /// Root mean square difference at the best rotation by whole beams: who has turned left by `n` beams sees the old beam `n` first.
-    fn compare(&self, reference: &Self) -> Comparison {
+    fn compare(&self, reference: &Self) -> ViewDifference {
         let squared = |turn: usize| -> f64 {
             (0..BEAMS).map(|beam| (self.0[beam] - reference.0[(beam + turn) % BEAMS]).powi(2)).sum()
         };
         let best = (0..BEAMS).min_by(|a, b| squared(*a).total_cmp(&squared(*b))).unwrap_or_default();
         let signed = if 2 * best > BEAMS { best as f64 - BEAMS as f64 } else { best as f64 };
         let distance = (squared(best) / BEAMS as f64).sqrt();
-        Comparison { distance, rotation: signed * TAU / BEAMS as f64 }
+        ViewDifference { distance, rotation: signed * TAU / BEAMS as f64 }
     }
 }
 

@@ -27,12 +27,12 @@ pub use model::{
     PlaceComponent, PlaceMatch, PlaceUpdate, Reference, ViewScale, interpolate, similarity, superpose,
 };
 pub use search::{
-    AppearanceIndex, BoundTable, Bounded, Comparison, Descriptor, LinearSearch, Match, NoTable, ReferenceId,
-    ReferenceSearch, SearchCost,
+    AppearanceIndex, BoundTable, Bounded, Descriptor, LinearSearch, Match, NoTable, ReferenceId,
+    ReferenceSearch, SearchCost, ViewDifference,
 };
 pub use state::{
-    OdometryNoise, PoseHypothesis, SimplifyParams, UnimodalParams, propagate, separation_squared, simplify,
-    unimodal,
+    MixtureReductionParams, OdometryNoise, PoseHypothesis, UnimodalParams, propagate, separation_squared,
+    simplify, unimodal,
 };
 pub use views::{
     Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceMap, Comparison, Descriptor, Forgetting, ForgettingParams, ForgettingUncertainty, MapParams,
-    PlaceUpdate, similarity,
+    AppearanceMap, Descriptor, Forgetting, ForgettingParams, ForgettingUncertainty, MapParams, PlaceUpdate,
+    ViewDifference, similarity,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
@@ -13,8 +13,8 @@ use wayfix_gaussian_core::Gaussian;
 struct Tone(f64);
 
 impl Descriptor for Tone {
-    fn compare(&self, reference: &Self) -> Comparison {
-        Comparison { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
+    fn compare(&self, reference: &Self) -> ViewDifference {
+        ViewDifference { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
     }
 }
 
@@ -30,11 +30,11 @@ fn printed() -> MapParams {
         match_limit: Some(1.0),
         learning_rate: 0.5,
         min_weight: 0.01,
-        active: ForgettingParams {
+        active_forgetting: ForgettingParams {
             rate: 0.4,
             radius: Some(2.0),
             gain: Some(0.1),
-            ..MapParams::as_published().active
+            ..MapParams::as_published().active_forgetting
         },
         ..MapParams::as_published()
     }
@@ -103,7 +103,10 @@ fn what_is_not_seen_any_more_is_forgotten_only_actively() {
 #[test]
 fn what_a_place_errs_by_does_not_slow_forgetting() {
     let uncertainty = ForgettingUncertainty::AgainstPlace;
-    let params = MapParams { active: ForgettingParams { uncertainty, ..printed().active }, ..printed() };
+    let params = MapParams {
+        active_forgetting: ForgettingParams { uncertainty, ..printed().active_forgetting },
+        ..printed()
+    };
     // As uncertain as the place itself: at full rate, b = 0.4 · (1 − 1/2).
     let alike = map_of(&[(0.0, 0.0), (3.0, 1.0)], &params);
     assert!((weights(&alike)[0][0] - 0.5 * 0.8).abs() < 1e-12);
@@ -119,7 +122,7 @@ fn what_a_place_errs_by_does_not_slow_forgetting() {
 #[test]
 fn forgotten_references_go_and_the_map_stays_bounded() {
     let params = MapParams {
-        active: ForgettingParams { rate: 1.0, gain: Some(10.0), ..printed().active },
+        active_forgetting: ForgettingParams { rate: 1.0, gain: Some(10.0), ..printed().active_forgetting },
         ..printed()
     };
     let map = map_of(&[(0.0, 0.0), (3.0, 0.0)], &params);

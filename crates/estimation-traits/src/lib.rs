@@ -52,9 +52,7 @@ pub use derivative::numerical_jacobian;
 pub use lie_group::LieGroup;
 pub use manifold::{Jacobian, Manifold, Tangent, TangentMatrix};
 pub use motion::MotionModel;
-pub use policy::{
-    Always, And, EveryN, Never, Not, Or, Policy, PolicyExt, When, always, every_n, never, when,
-};
+pub use policy::Policy;
 pub use pose2::Pose2;
 pub use pose3::Pose3;
 #[cfg(feature = "sampling")]

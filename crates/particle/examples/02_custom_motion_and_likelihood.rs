@@ -5,7 +5,7 @@
 use nalgebra::Vector2;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_estimation_traits::{LikelihoodModel, Manifold, Policy, PolicyExt, Pose2, SampleMotion, every_n};
+use wayfix_estimation_traits::{LikelihoodModel, Manifold, Policy, Pose2, SampleMotion};
 use wayfix_particle::{BootstrapFilter, ParticleSet, Stratified, ess_below};
 
 /// Speed through the water and rudder are known; gusts turn the boat now and then.
@@ -78,11 +78,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .collect();
 
     let mut filter = BootstrapFilter::new(prior, Boat, receiver);
-    let mut due = ess_below(0.5).and(every_n(2));
-    for measurement in &measurements {
+    for (step, measurement) in measurements.iter().enumerate() {
         filter.predict(&(3.0, 0.01), &mut rng)?;
         let evidence = filter.update(measurement)?;
-        if due.fires(&evidence) {
+        if step % 2 == 1 && ess_below(0.5).fires(&evidence) {
             filter.particles_mut().resample(&Stratified, 2000, &mut rng)?;
         }
     }

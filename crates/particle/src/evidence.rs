@@ -25,12 +25,10 @@ pub struct EssBelow(f64);
 /// Acts when the effective sample size is below `share` of the particles; one half is customary. [Liu & Chen 1998]
 ///
 /// ```
-/// use wayfix_estimation_traits::{Policy, PolicyExt, every_n};
+/// use wayfix_estimation_traits::Policy;
 /// use wayfix_particle::{NormalizationReport, ess_below};
 /// let evidence = NormalizationReport { log_likelihood: -2.0, effective_sample_size: 40.0, n_particles: 100 };
-/// let mut resample = ess_below(0.5).and(every_n(2));
-/// assert!(!resample.fires(&evidence)); // few enough, but the first step
-/// assert!(resample.fires(&evidence));
+/// assert!(ess_below(0.5).fires(&evidence) && !ess_below(0.3).fires(&evidence));
 /// ```
 pub fn ess_below(share: f64) -> EssBelow {
     EssBelow(share)

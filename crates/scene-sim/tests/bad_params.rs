@@ -6,7 +6,7 @@ use support::{streams, world};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::drive::{DriveParams, SlipParams};
 use wayfix_scene_sim::monobot::MonobotParams;
-use wayfix_scene_sim::random::{Source, Tail};
+use wayfix_scene_sim::random::{NoiseShape, Source};
 use wayfix_scene_sim::route::{Circle, LawnMower, Piece, RoundedRectangle, Route, Waypoints};
 use wayfix_scene_sim::sensor::laser::People;
 use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
@@ -46,7 +46,7 @@ fn sensor_parameters() {
             RangeBearingParams { range_noise: sigma, ..honest },
             RangeBearingParams { range_noise: growth, ..honest },
             RangeBearingParams { bearing_sigma_rad: bad, ..honest },
-            RangeBearingParams { tail: Tail::StudentT { degrees_of_freedom: bad }, ..honest },
+            RangeBearingParams { noise_shape: NoiseShape::StudentT { degrees_of_freedom: bad }, ..honest },
             RangeBearingParams { range_scale: bad, ..honest },
             RangeBearingParams { drift: drift(bad, 0.0), ..honest },
             RangeBearingParams { drift: drift(1.0, bad), ..honest },
@@ -63,8 +63,8 @@ fn sensor_parameters() {
     assert_refused(RangeBearingParams { bearing_bias_rad: f64::NAN, ..honest }.validate(), f64::NAN);
     assert_refused(RangeBearingParams { outlier_share: 1.5, ..honest }.validate(), 1.5);
     assert_refused(RangeBearingParams { period_ms: 0, ..honest }.validate(), 0.0);
-    let tail = Tail::StudentT { degrees_of_freedom: 2.0 };
-    assert_refused(RangeBearingParams { tail, ..honest }.validate(), 2.0);
+    let tail = NoiseShape::StudentT { degrees_of_freedom: 2.0 };
+    assert_refused(RangeBearingParams { noise_shape: tail, ..honest }.validate(), 2.0);
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn laser_parameters() {
             LaserParams { max_range_m: bad, ..honest },
             LaserParams { no_echo_m: bad, ..honest },
             LaserParams { range_noise: RangeSigma { constant_m: bad, per_meter: 0.0 }, ..honest },
-            LaserParams { tail: Tail::StudentT { degrees_of_freedom: bad }, ..honest },
+            LaserParams { noise_shape: NoiseShape::StudentT { degrees_of_freedom: bad }, ..honest },
             LaserParams { bearing_sigma_rad: bad, ..honest },
             LaserParams { quantum_m: bad, ..honest },
             LaserParams { beam_width_rad: bad, ..honest },

@@ -5,7 +5,7 @@ mod support;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use support::{assert_near, assert_share, detections, deviation, looks, mean, streams, world};
-use wayfix_scene_sim::random::Tail;
+use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
 use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
 use wayfix_scene_sim::world::{PlanarWorld, Wall};
@@ -47,10 +47,13 @@ fn the_default_noise_is_that_of_the_shared_logs() {
 #[test]
 fn heavy_tails_keep_sigma_and_have_the_stated_kurtosis() {
     // Standard error of σ is σ √((κ − 1) / 4n); κ is 6 for Laplace and 3 + 6/(ν − 4) for Student's t.
-    for (tail, kurtosis) in
-        [(Tail::Laplace, 6.0), (Tail::StudentT { degrees_of_freedom: 10.0 }, 4.0), (Tail::Gaussian, 3.0)]
-    {
-        let seen = ranges(&detections(RangeBearingParams { tail, ..honest() }, &ahead(), N, SEED));
+    for (tail, kurtosis) in [
+        (NoiseShape::Laplace, 6.0),
+        (NoiseShape::StudentT { degrees_of_freedom: 10.0 }, 4.0),
+        (NoiseShape::Gaussian, 3.0),
+    ] {
+        let seen =
+            ranges(&detections(RangeBearingParams { noise_shape: tail, ..honest() }, &ahead(), N, SEED));
         let standard_error = 0.05 * ((kurtosis - 1.0) / (4.0 * N as f64)).sqrt();
         assert_near("σ", deviation(&seen), 0.05, standard_error);
         let fourth = mean(&seen.iter().map(|r| ((r - 5.0) / 0.05).powi(4)).collect::<Vec<_>>());

@@ -3,7 +3,7 @@
 mod support;
 
 use support::{looks, run, streams, world};
-use wayfix_scene_sim::random::Tail;
+use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
 use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
 use wayfix_scene_sim::{Scenario, ScenarioParams};
@@ -58,7 +58,7 @@ fn drift_and_tails_leave_the_other_draws_too() {
     assert_eq!(bearings(honest), bearings(RangeBearingParams { drift, ..honest }));
     let missed = |params| -> Vec<bool> { of_the_landmark(params).iter().map(Option::is_none).collect() };
     let missing = RangeBearingParams { missed_share: 0.3, ..honest };
-    assert_eq!(missed(missing), missed(RangeBearingParams { tail: Tail::Laplace, ..missing }));
+    assert_eq!(missed(missing), missed(RangeBearingParams { noise_shape: NoiseShape::Laplace, ..missing }));
 }
 
 #[test]

@@ -162,6 +162,15 @@ fn named<'a>(words: &[String], commands: &'a Command) -> (&'a Command, usize) {
 }
 
 fn check_wayfix(words: &[String], commands: &Command) -> Result<(), String> {
+    check_words(words, commands, |line| cli::parses(line))
+}
+
+/// Whether a program that has these commands and parses lines like this takes these words.
+fn check_words(
+    words: &[String],
+    commands: &Command,
+    parses: impl Fn(Vec<String>) -> Result<(), clap::Error>,
+) -> Result<(), String> {
     let is_synopsis = words.iter().any(|word| word.contains(['[', '|']));
     let (needed, options) = if is_synopsis { synopsis(words) } else { (words.to_vec(), Vec::new()) };
     let (command, n_named) = named(&needed, commands);
@@ -186,17 +195,13 @@ fn check_wayfix(words: &[String], commands: &Command) -> Result<(), String> {
     }
     let is_without = |word: &&String| cfg!(feature = "live") || *word != "--live";
     let filled = needed.iter().filter(is_without).map(|word| filled_in(word));
-    cli::parses(std::iter::once("wayfix".to_owned()).chain(filled))
+    parses(std::iter::once(String::new()).chain(filled).collect())
         .map_err(|error| error.to_string().lines().next().unwrap_or_default().to_owned())
 }
 
 fn check_experiments(words: &[String]) -> Result<(), String> {
-    if words.len() < 2 {
-        return Ok(()); // a command that is spoken of, not one to type
-    }
-    let filled = words.iter().map(|word| filled_in(word));
-    wayfix_experiments::cli::parses(std::iter::once("wayfix-experiments".to_owned()).chain(filled))
-        .map_err(|error| error.to_string().lines().next().unwrap_or_default().to_owned())
+    use wayfix_experiments::cli;
+    check_words(words, &cli::commands(), |line| cli::parses(line))
 }
 
 fn check_xtask(words: &[String]) -> Result<(), String> {

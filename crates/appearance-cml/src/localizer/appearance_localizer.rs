@@ -19,12 +19,12 @@ use crate::{
 /// map is built as the robot goes; [`teach`](Self::teach) builds one from known poses.
 ///
 /// ```
-/// # use wayfix_appearance_cml::{Comparison, Descriptor};
+/// # use wayfix_appearance_cml::{ViewDifference, Descriptor};
 /// # #[derive(Clone, Debug)]
 /// # struct Brightness(f64);
 /// # impl Descriptor for Brightness {
-/// #     fn compare(&self, other: &Self) -> Comparison {
-/// #         Comparison { distance: (self.0 - other.0).abs(), rotation: 0.0 }
+/// #     fn compare(&self, other: &Self) -> ViewDifference {
+/// #         ViewDifference { distance: (self.0 - other.0).abs(), rotation: 0.0 }
 /// #     }
 /// # }
 /// use nalgebra::Vector3;

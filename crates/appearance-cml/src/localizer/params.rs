@@ -1,5 +1,7 @@
 use super::RelocationParams;
-use crate::{AppearanceError, FusionParams, MapParams, OdometryNoise, SimplifyParams, UnimodalParams, check};
+use crate::{
+    AppearanceError, FusionParams, MapParams, MixtureReductionParams, OdometryNoise, UnimodalParams, check,
+};
 
 /// What happens to the map while the robot drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -43,7 +45,7 @@ pub struct LocalizerParams {
     /// How odometry, view and other sources are fused.
     pub fusion: FusionParams,
     /// How the mixture is kept small.
-    pub simplify: SimplifyParams,
+    pub simplify: MixtureReductionParams,
     /// When the robot doubts where it is, and how it finds itself again.
     pub relocation: RelocationParams,
     /// When the mixture counts as one place.
@@ -75,7 +77,7 @@ impl Default for LocalizerParams {
             observation: Observation::default(),
             most_matches: 40,
             fusion: FusionParams::default(),
-            simplify: SimplifyParams::default(),
+            simplify: MixtureReductionParams::default(),
             relocation: RelocationParams::default(),
             unimodal: UnimodalParams::default(),
             learning: Learning::default(),
@@ -95,7 +97,7 @@ impl LocalizerParams {
         Self {
             observation: Observation::Superposition,
             fusion: FusionParams::as_published(),
-            simplify: SimplifyParams { min_weight: 0.005, ..SimplifyParams::default() },
+            simplify: MixtureReductionParams { min_weight: 0.005, ..MixtureReductionParams::default() },
             map: MapParams::as_published(),
             relocation: RelocationParams { doubt: 1.0, ..RelocationParams::default() },
             corroboration: None,

@@ -14,12 +14,12 @@ use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, Refer
 /// [`from_parts`](Self::from_parts) takes them back.
 ///
 /// ```
-/// # use wayfix_appearance_cml::{Comparison, Descriptor};
+/// # use wayfix_appearance_cml::{ViewDifference, Descriptor};
 /// # #[derive(Clone, Debug)]
 /// # struct Brightness(f64);
 /// # impl Descriptor for Brightness {
-/// #     fn compare(&self, other: &Self) -> Comparison {
-/// #         Comparison { distance: (self.0 - other.0).abs(), rotation: 0.0 }
+/// #     fn compare(&self, other: &Self) -> ViewDifference {
+/// #         ViewDifference { distance: (self.0 - other.0).abs(), rotation: 0.0 }
 /// #     }
 /// # }
 /// use nalgebra::Vector3;

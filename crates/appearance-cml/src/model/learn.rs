@@ -44,7 +44,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     ) -> Result<MapUpdate, AppearanceError> {
         let pose = &Gaussian::new(*pose.mean(), *pose.covariance())?;
         let limit = self.match_limit(params);
-        let radius = self.search_radius(pose, limit).max(params.active.radius.unwrap_or(0.0));
+        let radius = self.search_radius(pose, limit).max(params.active_forgetting.radius.unwrap_or(0.0));
         let compared = self.compare_within(&view, pose, radius);
         let (here, missed): (Vec<Match>, Vec<Match>) =
             compared.into_iter().partition(|m| m.comparison.distance < limit);
@@ -173,12 +173,16 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         pose: &Gaussian<Pose2<f64>>,
         (limit, params): (f64, &MapParams),
     ) {
-        let radius = params.active.radius.unwrap_or_else(|| FORGOTTEN_SHARE * self.scale().to_meters(limit));
+        let radius = params
+            .active_forgetting
+            .radius
+            .unwrap_or_else(|| FORGOTTEN_SHARE * self.scale().to_meters(limit));
         for id in missed {
             let Some(reference) = self.reference(id) else { continue };
             let mut reference = reference.clone();
             for place in &mut reference.places {
-                place.weight = weight_when_missed(place, pose, radius, (self.scale(), &params.active));
+                place.weight =
+                    weight_when_missed(place, pose, radius, (self.scale(), &params.active_forgetting));
             }
             changed.insert(id, reference);
         }

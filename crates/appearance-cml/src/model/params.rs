@@ -94,7 +94,7 @@ pub struct MapParams {
     /// Default [`Forgetting::Active`].
     pub forgetting: Forgetting,
     /// How active forgetting works.
-    pub active: ForgettingParams,
+    pub active_forgetting: ForgettingParams,
     /// Weight below which a place is removed. Default 0.05: what was seen once goes after five misses or so.
     pub min_weight: f64,
     /// Observations after which a place no longer gets more rigid. Default 20.
@@ -114,7 +114,7 @@ impl Default for MapParams {
             place_gate: 16.3,
             place_update: PlaceUpdate::default(),
             forgetting: Forgetting::default(),
-            active: ForgettingParams::default(),
+            active_forgetting: ForgettingParams::default(),
             min_weight: 0.05,
             max_count: 20.0,
             max_references: 1_000_000,
@@ -128,7 +128,7 @@ impl MapParams {
         Self {
             place_update: PlaceUpdate::Pose,
             max_count: f64::MAX,
-            active: ForgettingParams {
+            active_forgetting: ForgettingParams {
                 uncertainty: ForgettingUncertainty::Pose,
                 ..ForgettingParams::default()
             },
@@ -147,9 +147,9 @@ impl MapParams {
         check::share("learning rate", self.learning_rate)?;
         check::not_negative("merge distance of places", self.merge_distance)?;
         check::positive("gate of places", self.place_gate)?;
-        check::share("rate of forgetting", self.active.rate)?;
-        check::positive("radius of forgetting (m)", self.active.radius.unwrap_or(1.0))?;
-        check::positive("gain of forgetting (m)", self.active.gain.unwrap_or(1.0))?;
+        check::share("rate of forgetting", self.active_forgetting.rate)?;
+        check::positive("radius of forgetting (m)", self.active_forgetting.radius.unwrap_or(1.0))?;
+        check::positive("gain of forgetting (m)", self.active_forgetting.gain.unwrap_or(1.0))?;
         check::share("least weight of a place", self.min_weight)?;
         check::positive("greatest count of a place", self.max_count)?;
         check::count("references to keep", self.max_references)

@@ -1,4 +1,4 @@
-use super::{BoundTable, Comparison, Descriptor};
+use super::{BoundTable, Descriptor, ViewDifference};
 
 /// A descriptor whose distance can be bounded from below for less than it costs: what an exact index needs.
 ///
@@ -7,13 +7,13 @@ use super::{BoundTable, Comparison, Descriptor};
 /// `r.compare_with(&v.probe())` is `v.compare(&r)` to the bit; descriptors that are not comparable have infinite distance.
 ///
 /// ```
-/// use wayfix_appearance_cml::{Bounded, Comparison, Descriptor, NoTable};
+/// use wayfix_appearance_cml::{Bounded, ViewDifference, Descriptor, NoTable};
 /// /// A colour that looks the same from everywhere.
 /// #[derive(Clone)]
 /// struct Grey(f64);
 /// impl Descriptor for Grey {
-///     fn compare(&self, reference: &Self) -> Comparison {
-///         Comparison { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
+///     fn compare(&self, reference: &Self) -> ViewDifference {
+///         ViewDifference { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
 ///     }
 /// }
 /// impl Bounded for Grey {
@@ -28,7 +28,7 @@ use super::{BoundTable, Comparison, Descriptor};
 ///     fn bound(&self, view: &Grey, _enough: f64) -> f64 {
 ///         self.compare(view).distance
 ///     }
-///     fn compare_with(&self, view: &Grey) -> Comparison {
+///     fn compare_with(&self, view: &Grey) -> ViewDifference {
 ///         view.compare(self)
 ///     }
 ///     fn is_comparable(&self, _: &Self) -> bool {
@@ -53,7 +53,7 @@ pub trait Bounded: Descriptor + Sized {
     fn bound(&self, view: &Self::Probe, enough: f64) -> f64;
 
     /// Compares a view with this reference.
-    fn compare_with(&self, view: &Self::Probe) -> Comparison;
+    fn compare_with(&self, view: &Self::Probe) -> ViewDifference;
 
     /// Whether the distance to another descriptor is finite.
     fn is_comparable(&self, other: &Self) -> bool;

@@ -1,6 +1,6 @@
 /// How far a view is from a reference, and by how much the robot has turned between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comparison {
+pub struct ViewDifference {
     /// Distance at the best rotation, 0 for the same view; never negative, never NaN.
     pub distance: f64,
     /// Heading of the view less heading of the reference, rad in $`(-π, π]`$.
@@ -13,5 +13,5 @@ pub struct Comparison {
 /// `a.compare(&b).rotation` is the opposite of `b.compare(&a).rotation`.
 pub trait Descriptor {
     /// Compares a view with a reference.
-    fn compare(&self, reference: &Self) -> Comparison;
+    fn compare(&self, reference: &Self) -> ViewDifference;
 }

@@ -13,7 +13,7 @@ mod slot_set;
 
 pub use bound_table::{BoundTable, NoTable};
 pub use bounded::Bounded;
-pub use descriptor::{Comparison, Descriptor};
+pub use descriptor::{Descriptor, ViewDifference};
 pub use index::{AppearanceIndex, SearchCost};
 pub use linear::LinearSearch;
 pub use reference_search::{Match, ReferenceId, ReferenceSearch};

@@ -1,4 +1,4 @@
-use super::{Comparison, Descriptor};
+use super::{Descriptor, ViewDifference};
 use crate::AppearanceError;
 
 /// Names a reference view for as long as the map lives.
@@ -11,7 +11,7 @@ pub struct Match {
     /// Which one.
     pub id: ReferenceId,
     /// How it compares with the view that was asked for.
-    pub comparison: Comparison,
+    pub comparison: ViewDifference,
 }
 
 /// Holds the descriptors of all reference views and finds those that are near a view.

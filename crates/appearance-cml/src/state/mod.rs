@@ -12,5 +12,5 @@ pub use odometry_noise::OdometryNoise;
 pub use propagate::propagate;
 pub(crate) use propagate::transition;
 pub use separation::separation_squared;
-pub use simplify::{SimplifyParams, simplify};
+pub use simplify::{MixtureReductionParams, simplify};
 pub use unimodal::{UnimodalParams, unimodal};

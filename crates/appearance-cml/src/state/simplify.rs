@@ -11,7 +11,7 @@ use crate::{AppearanceError, check};
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct SimplifyParams {
+pub struct MixtureReductionParams {
     /// Squared Mahalanobis distance below which two components are one. Default 2: they overlap by more than half.
     pub merge_distance: f64,
     /// Share of the whole weight below which a component goes. Default 1e-7: what appears elsewhere starts light.
@@ -20,13 +20,13 @@ pub struct SimplifyParams {
     pub max_components: usize,
 }
 
-impl Default for SimplifyParams {
+impl Default for MixtureReductionParams {
     fn default() -> Self {
         Self { merge_distance: 2.0, min_weight: 1e-7, max_components: 30 }
     }
 }
 
-impl SimplifyParams {
+impl MixtureReductionParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
@@ -44,14 +44,14 @@ impl SimplifyParams {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{PoseHypothesis, SimplifyParams, simplify};
+/// use wayfix_appearance_cml::{PoseHypothesis, MixtureReductionParams, simplify};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
 /// let at = |x: f64, weight: f64| -> Result<_, wayfix_appearance_cml::AppearanceError> {
 ///     let gaussian = Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
 ///     Ok(PoseHypothesis::new(weight, gaussian))
 /// };
-/// let few = simplify(vec![at(0.0, 1.0)?, at(5.0, 1.5)?, at(0.1, 1.0)?, at(9.0, 1e-8)?], &SimplifyParams::default())?;
+/// let few = simplify(vec![at(0.0, 1.0)?, at(5.0, 1.5)?, at(0.1, 1.0)?, at(9.0, 1e-8)?], &MixtureReductionParams::default())?;
 /// assert_eq!(few.iter().map(|h| h.weight).collect::<Vec<_>>(), [2.0, 1.5]);
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
@@ -60,7 +60,7 @@ impl SimplifyParams {
 /// When a weight is not finite or negative, all are zero, or a covariance is singular.
 pub fn simplify(
     mut hypotheses: Vec<PoseHypothesis>,
-    params: &SimplifyParams,
+    params: &MixtureReductionParams,
 ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
     let total = total_weight(&hypotheses)?;
     hypotheses.retain(|h| h.weight >= params.min_weight * total && h.weight > 0.0);

@@ -1,6 +1,6 @@
 use super::lanes::HARMONICS;
 use super::probe::{N_LOW_HARMONICS, compare_once};
-use crate::{AppearanceError, Comparison, Descriptor};
+use crate::{AppearanceError, Descriptor, ViewDifference};
 
 /// Harmonics beside the constant one, in groups.
 pub(super) const MOST_GROUPS: usize = 8;
@@ -155,7 +155,7 @@ impl PanoramaDescriptor {
 }
 
 impl Descriptor for PanoramaDescriptor {
-    fn compare(&self, reference: &Self) -> Comparison {
+    fn compare(&self, reference: &Self) -> ViewDifference {
         compare_once(self, reference)
     }
 }

@@ -1,5 +1,5 @@
 use super::{PanoramaDescriptor, PanoramaProbe, PanoramaTable};
-use crate::{Bounded, Comparison};
+use crate::{Bounded, ViewDifference};
 
 /// Harmonics whose phases between rings count; of the others only how strong they are.
 const PHASED_HARMONICS: usize = 8;
@@ -43,7 +43,7 @@ impl Bounded for PanoramaDescriptor {
         probe.bound(self, enough)
     }
 
-    fn compare_with(&self, probe: &PanoramaProbe) -> Comparison {
+    fn compare_with(&self, probe: &PanoramaProbe) -> ViewDifference {
         probe.compare(self)
     }
 

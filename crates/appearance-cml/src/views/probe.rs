@@ -4,7 +4,7 @@ use super::{
     lanes::{HARMONICS, Pairs, Sums},
     low_harmonics::LowHarmonicsProbe,
 };
-use crate::Comparison;
+use crate::ViewDifference;
 
 /// Cosines of the first group after which a comparison may be given up.
 pub(super) const N_LOW_HARMONICS: usize = 8;
@@ -86,7 +86,7 @@ impl PanoramaProbe {
         bound
     }
 
-    pub(super) fn compare(&self, reference: &PanoramaDescriptor) -> Comparison {
+    pub(super) fn compare(&self, reference: &PanoramaDescriptor) -> ViewDifference {
         if !self.fits(reference) {
             return INCOMPARABLE;
         }
@@ -96,7 +96,7 @@ impl PanoramaProbe {
             sums
         });
         let (rotation, maximum) = best_rotation(self.constant_product(reference), products, self.n_harmonics);
-        Comparison { distance: self.distance(reference, maximum), rotation }
+        ViewDifference { distance: self.distance(reference, maximum), rotation }
     }
 
     fn constant_product(&self, reference: &PanoramaDescriptor) -> f64 {
@@ -119,7 +119,7 @@ impl PanoramaProbe {
 }
 
 /// Compares two views once, where making one of them ready is not worth it: the same bits.
-pub(super) fn compare_once(view: &PanoramaDescriptor, reference: &PanoramaDescriptor) -> Comparison {
+pub(super) fn compare_once(view: &PanoramaDescriptor, reference: &PanoramaDescriptor) -> ViewDifference {
     if !view.has_shape_of(reference) {
         return INCOMPARABLE;
     }
@@ -134,10 +134,10 @@ pub(super) fn compare_once(view: &PanoramaDescriptor, reference: &PanoramaDescri
     });
     let (rotation, maximum) = best_rotation(f64::from(constant), products, view.n_harmonics());
     let scales = f64::from(view.scale()) * f64::from(reference.scale());
-    Comparison { distance: distance(scales, view.energy() + reference.energy(), maximum), rotation }
+    ViewDifference { distance: distance(scales, view.energy() + reference.energy(), maximum), rotation }
 }
 
-const INCOMPARABLE: Comparison = Comparison { distance: f64::INFINITY, rotation: 0.0 };
+const INCOMPARABLE: ViewDifference = ViewDifference { distance: f64::INFINITY, rotation: 0.0 };
 
 /// Where the correlation is largest, and how large.
 fn best_rotation(constant: f64, products: impl Iterator<Item = Sums>, n_harmonics: usize) -> (f64, f64) {

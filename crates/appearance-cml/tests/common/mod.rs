@@ -6,7 +6,7 @@
 use nalgebra::Vector3;
 use rand::{Rng, RngExt};
 use rand_distr::{Distribution, StandardNormal};
-use wayfix_appearance_cml::{Comparison, Descriptor};
+use wayfix_appearance_cml::{Descriptor, ViewDifference};
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
 use wayfix_gaussian_core::Gaussian;
 
@@ -18,9 +18,9 @@ pub struct FieldView {
 }
 
 impl Descriptor for FieldView {
-    fn compare(&self, reference: &Self) -> Comparison {
+    fn compare(&self, reference: &Self) -> ViewDifference {
         let squared: f64 = self.features.iter().zip(&reference.features).map(|(a, b)| (a - b).powi(2)).sum();
-        Comparison {
+        ViewDifference {
             distance: (squared / self.features.len() as f64).sqrt(),
             rotation: wrap_angle(self.heading - reference.heading),
         }

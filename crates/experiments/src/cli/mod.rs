@@ -6,7 +6,7 @@ mod regress;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use wayfix_evaluation::terminal::print_message;
 
 /// The experiments of Wayfix: every system on stored logs and public recordings, with the figures of papers and other programs beside ours.
@@ -41,6 +41,12 @@ pub fn parses<T: Into<std::ffi::OsString> + Clone>(
     command_line: impl IntoIterator<Item = T>,
 ) -> Result<(), clap::Error> {
     Arguments::try_parse_from(command_line).map(|_| ())
+}
+
+/// The commands and their options as `clap` knows them. For tests of what is documented.
+#[doc(hidden)]
+pub fn commands() -> clap::Command {
+    Arguments::command()
 }
 
 /// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).

@@ -2,9 +2,9 @@
 
 pub mod deviate;
 mod gauss_markov;
+mod noise_shape;
 mod streams;
-mod tail;
 
 pub use gauss_markov::GaussMarkov;
+pub use noise_shape::NoiseShape;
 pub use streams::{Source, Streams};
-pub use tail::Tail;

@@ -4,7 +4,7 @@ use super::laser::office_laser;
 use super::{OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams};
 use crate::drive::{DriveParams, SlipParams};
 use crate::monobot::MonobotParams;
-use crate::random::Tail;
+use crate::random::NoiseShape;
 use crate::route::{Circle, RoundedRectangle, RouteParams, Waypoints};
 use crate::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
 use crate::sensor::{GaussianOdometryParams, OdometryKind, RangeBearingParams, WheelOdometryParams};
@@ -75,7 +75,7 @@ fn office_velocity() -> PlanarParams {
             field_of_view_rad: FRAC_PI_3,
             range_noise: RangeSigma { constant_m: 0.01, per_meter: 0.02 },
             bearing_sigma_rad: 0.01,
-            tail: Tail::StudentT { degrees_of_freedom: 5.0 },
+            noise_shape: NoiseShape::StudentT { degrees_of_freedom: 5.0 },
             range_bias_m: 0.02,
             drift: DriftParams {
                 range: RangeSigma { constant_m: 0.02, per_meter: 0.03 },
@@ -125,7 +125,7 @@ fn rough_known() -> PlanarParams {
             field_of_view_rad: 4.0 * FRAC_PI_3,
             range_noise: RangeSigma { constant_m: 0.03, per_meter: 0.01 },
             bearing_sigma_rad: 0.015,
-            tail: Tail::Laplace,
+            noise_shape: NoiseShape::Laplace,
             range_bias_m: 0.04,
             range_scale: 1.005,
             bearing_bias_rad: 0.01,

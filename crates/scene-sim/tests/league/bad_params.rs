@@ -8,7 +8,7 @@ use wayfix_scene_sim::league::{
     CameraParams, CameraSimulator, GaitOdometryParams, HeadParams, LeagueDrive, LeagueParams, Rgb,
     RobotParams, SwayParams, TrainingParams, WalkParams,
 };
-use wayfix_scene_sim::random::Tail;
+use wayfix_scene_sim::random::NoiseShape;
 
 use crate::support::{honest, streams};
 
@@ -83,7 +83,10 @@ fn robots() {
             GaitOdometryParams { step_scale: [bad, 1.0], ..default.odometry },
             GaitOdometryParams { turn_scale: [1.0, bad], ..default.odometry },
             GaitOdometryParams { noise: bad, ..default.odometry },
-            GaitOdometryParams { tail: Tail::StudentT { degrees_of_freedom: bad }, ..default.odometry },
+            GaitOdometryParams {
+                noise_shape: NoiseShape::StudentT { degrees_of_freedom: bad },
+                ..default.odometry
+            },
             GaitOdometryParams { drift_rad_per_m: bad, ..default.odometry },
             GaitOdometryParams { drift_correlation_s: bad, ..default.odometry },
         ];

@@ -13,7 +13,7 @@ impl WallSystem {
     pub(super) fn match_to_keyframe(&mut self, cloud: &Cloud) -> Option<f64> {
         let mut laser_heading = None;
         self.relative_motion =
-            self.relative_motion.with_odometry_scan_noise(&self.params.odometry_scan_noise);
+            self.relative_motion.with_odometry_noise_per_scan(&self.params.odometry_noise_per_scan);
         if let (Some(look), Some(matcher)) = (&self.last_keyframe, self.matcher) {
             let drift_variance = self.filter.robot_covariance()[(3, 3)];
             let covariance = self.relative_motion.total_covariance(drift_variance);

@@ -16,7 +16,7 @@ mod truth;
 pub use estimates::{WallDrawing, WallEstimateLog};
 pub use figures::{relation_metrics, summarize};
 pub use odometry::Odometry;
-pub use params::{KeyframeThreshold, OdometryScanNoise, WallSlamParams};
+pub use params::{KeyframeThreshold, OdometryNoisePerScan, WallSlamParams};
 pub use pictures::pictures;
 pub use relative_motion::RelativeMotion;
 pub use run::{WallRun, run, run_on};

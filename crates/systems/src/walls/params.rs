@@ -37,7 +37,7 @@ pub struct WallSlamParams {
     /// Which scans are looked at.
     pub keyframes: KeyframeThreshold,
     /// What odometry and scans disagree by.
-    pub odometry_scan_noise: OdometryScanNoise,
+    pub odometry_noise_per_scan: OdometryNoisePerScan,
     /// Whether each scan is laid on the one before, to tell the motion between them better than wheels do.
     pub match_scans: bool,
     /// How that is done.
@@ -73,14 +73,14 @@ pub struct WallSlamParams {
 /// What odometry and scans disagree by at every scan, since their stamps do and wheels slip.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct OdometryScanNoise {
+pub struct OdometryNoisePerScan {
     /// Along either axis, m.
     pub translation_sigma: f64,
     /// Of the heading, rad.
     pub heading_sigma: f64,
 }
 
-impl Default for OdometryScanNoise {
+impl Default for OdometryNoisePerScan {
     /// A tenth of a second at walking pace, less what odometry at the scan's own stamp saves.
     fn default() -> Self {
         Self { translation_sigma: 0.02, heading_sigma: 0.01 }
@@ -111,7 +111,7 @@ impl Default for WallSlamParams {
             laser: None,
             n_anchors: 0,
             keyframes: KeyframeThreshold::default(),
-            odometry_scan_noise: OdometryScanNoise::default(),
+            odometry_noise_per_scan: OdometryNoisePerScan::default(),
             match_scans: true,
             scan_match: ScanMatchParams::default(),
             lines: LineParams::default(),
@@ -195,11 +195,15 @@ impl WallSlamParams {
             ("keyframes.min_distance", self.keyframes.min_distance, NOT_NEGATIVE),
             ("keyframes.min_rotation", self.keyframes.min_rotation, NOT_NEGATIVE),
             (
-                "odometry_scan_noise.translation_sigma",
-                self.odometry_scan_noise.translation_sigma,
+                "odometry_noise_per_scan.translation_sigma",
+                self.odometry_noise_per_scan.translation_sigma,
                 NOT_NEGATIVE,
             ),
-            ("odometry_scan_noise.heading_sigma", self.odometry_scan_noise.heading_sigma, NOT_NEGATIVE),
+            (
+                "odometry_noise_per_scan.heading_sigma",
+                self.odometry_noise_per_scan.heading_sigma,
+                NOT_NEGATIVE,
+            ),
             ("heading_drift_sigma", self.heading_drift_sigma, NOT_NEGATIVE),
             ("velocity_hold", self.velocity_hold, NOT_NEGATIVE),
             (

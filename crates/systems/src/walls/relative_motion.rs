@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorMod
 use wayfix_scan_match::Alignment;
 use wayfix_slam_ekf::{DriftingPose, IncrementMotion};
 
-use super::OdometryScanNoise;
+use super::OdometryNoisePerScan;
 
 /// What odometry says of the way since the last scan, and how sure that is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -69,8 +69,8 @@ impl RelativeMotion {
 
     /// The same at the time of a scan, with what odometry and scan disagree by. Odometry that stands still may disagree as well: wheels
     /// slip, and records are lost.
-    pub(super) fn with_odometry_scan_noise(self, odometry_scan_noise: &OdometryScanNoise) -> Self {
-        let OdometryScanNoise { translation_sigma, heading_sigma } = *odometry_scan_noise;
+    pub(super) fn with_odometry_noise_per_scan(self, odometry_noise_per_scan: &OdometryNoisePerScan) -> Self {
+        let OdometryNoisePerScan { translation_sigma, heading_sigma } = *odometry_noise_per_scan;
         let sigmas = Vector3::new(translation_sigma, translation_sigma, heading_sigma);
         self.with_added_covariance(&Matrix3::from_diagonal(&sigmas.map(|sigma| sigma * sigma)))
     }
@@ -229,8 +229,8 @@ mod tests {
     #[test]
     fn standstill_of_odometry_is_no_certain_standstill() {
         let still = RelativeMotion::default().then(&IncrementMotion::default(), 0.1, &Pose2::identity());
-        let OdometryScanNoise { translation_sigma, heading_sigma } = OdometryScanNoise::default();
-        let covariance = still.with_odometry_scan_noise(&OdometryScanNoise::default()).covariance;
+        let OdometryNoisePerScan { translation_sigma, heading_sigma } = OdometryNoisePerScan::default();
+        let covariance = still.with_odometry_noise_per_scan(&OdometryNoisePerScan::default()).covariance;
         assert!(covariance.m11 >= translation_sigma.powi(2) && covariance.m33 >= heading_sigma.powi(2));
     }
 }

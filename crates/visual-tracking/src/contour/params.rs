@@ -62,7 +62,7 @@ pub struct ContourTrackerParams {
     /// the paper's. Default 0.3.
     pub area_memory: f64,
     /// An Euler number this far from 1 makes a segmentation worthless. Default 10.
-    pub euler_range: f64,
+    pub euler_number_range: f64,
     /// Radius of closing and opening in pixels; 0 leaves the segmentation as it is. Default 1.
     pub morphology_radius: usize,
     /// How the snake is fitted.
@@ -98,7 +98,7 @@ impl Default for ContourTrackerParams {
             sigma: 0.15,
             area_gain: 0.5,
             area_memory: 0.3,
-            euler_range: 10.0,
+            euler_number_range: 10.0,
             morphology_radius: 1,
             snake: SnakeParams::default(),
             band_radius: 2,
@@ -150,9 +150,11 @@ impl ContourTrackerParams {
         ] {
             checked(what, value, value.is_finite() && value >= 0.0, "finite, not negative")?;
         }
-        for (what, value) in
-            [("sigma", self.sigma), ("euler_range", self.euler_range), ("sum of mu", self.mu.iter().sum())]
-        {
+        for (what, value) in [
+            ("sigma", self.sigma),
+            ("euler_number_range", self.euler_number_range),
+            ("sum of mu", self.mu.iter().sum()),
+        ] {
             checked(what, value, value.is_finite() && value > 0.0, "finite, positive")?;
         }
         for value in self.mu {

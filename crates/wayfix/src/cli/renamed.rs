@@ -1,7 +1,8 @@
 //! Parameters that had another name: an old file of parameters is told the new one.
 
 /// Old name, new name. An old name may have become several.
-const RENAMED: [(&str, &str); 42] = [
+const RENAMED: [(&str, &str); 44] = [
+    ("active", "active_forgetting"),
     ("alike_share", "color_agreement_share"),
     ("bearing", "bearing_sigma"),
     ("bearing_per_extent", "bearing_sigma_per_extent"),
@@ -9,8 +10,9 @@ const RENAMED: [(&str, &str); 42] = [
     ("command_erosion", "turn_command_shortening"),
     ("contradiction", "restart_nis"),
     ("detection", "detection_probability"),
-    ("disagreement", "odometry_scan_noise"),
+    ("disagreement", "odometry_noise_per_scan"),
     ("doubt_below", "no_evidence_below"),
+    ("euler_range", "euler_number_range"),
     ("first_kernel_m", "initial_kernel_m"),
     ("found_from", "found_above"),
     ("greatest_count", "max_count"),

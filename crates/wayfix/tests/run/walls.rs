@@ -90,7 +90,7 @@ fn what_makes_no_sense_is_refused_by_name() {
         ("laser = [0.0, inf, 0.0]", "laser"),
         ("[scan_match]\nkernel_m = 0.0", "kernel_m"),
         ("[keyframes]\nmin_distance = -1.0", "keyframes.min_distance"),
-        ("[odometry_scan_noise]\nheading_sigma = nan", "odometry_scan_noise.heading_sigma"),
+        ("[odometry_noise_per_scan]\nheading_sigma = nan", "odometry_noise_per_scan.heading_sigma"),
     ] {
         let path = folder.path().join("params.toml");
         fs::write(&path, text).unwrap();

@@ -61,9 +61,13 @@ fn fisher(n_landmarks: &[u32], n_steps: usize) -> Result<Run> {
     let mut metrics = Vec::new();
     for n in n_landmarks {
         let entry = monobot::first_entry(*n, n_steps)?.last().copied().unwrap_or(f64::NAN);
-        metrics.push(Metric::new(format!("fisher_entry_n{n}"), entry, "1/m²"));
+        metrics.push(Metric::new(format!("fisher_information_{n}_landmarks"), entry, "1/m²"));
         let expected = monobot::expected_rate(*n) * n_steps as f64;
-        metrics.push(Metric::new(format!("fisher_over_expected_n{n}"), entry / expected, ""));
+        metrics.push(Metric::new(
+            format!("fisher_information_over_expected_{n}_landmarks"),
+            entry / expected,
+            "",
+        ));
     }
     Ok(Run { metrics, figures: vec![monobot::fisher_picture(n_landmarks, n_steps)?], ..Run::default() })
 }

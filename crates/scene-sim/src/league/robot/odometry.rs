@@ -35,7 +35,7 @@ impl GaitOdometry {
         self.moved = [0.0; 3];
         let mut said = [0.0; 3];
         for ((said, truth), scale) in said.iter_mut().zip(truth).zip(self.scales) {
-            *said = truth / scale * (1.0 + self.params.noise * self.params.tail.draw(rng));
+            *said = truth / scale * (1.0 + self.params.noise * self.params.noise_shape.draw(rng));
         }
         Pose2::new(said[0], said[1], said[2])
     }

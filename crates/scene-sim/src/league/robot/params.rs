@@ -1,4 +1,4 @@
-use crate::random::Tail;
+use crate::random::NoiseShape;
 use crate::{SimError, check};
 
 /// A four-legged robot: how it walks, sways and turns its head, and what it knows of that.
@@ -75,7 +75,7 @@ pub struct GaitOdometryParams {
     /// σ of the relative error of an increment. Default 0.1.
     pub noise: f64,
     /// Shape of that error. Default Student's t with 4 degrees of freedom.
-    pub tail: Tail,
+    pub noise_shape: NoiseShape,
     /// σ of the turning that goes unnoticed with each metre, rad/m. Default 0.08.
     pub drift_rad_per_m: f64,
     /// Correlation time of that drift, seconds. Default 8.
@@ -114,7 +114,7 @@ impl Default for RobotParams {
                 step_scale: [0.8, 1.1],
                 turn_scale: [0.9, 1.1],
                 noise: 0.1,
-                tail: Tail::StudentT { degrees_of_freedom: 4.0 },
+                noise_shape: NoiseShape::StudentT { degrees_of_freedom: 4.0 },
                 drift_rad_per_m: 0.08,
                 drift_correlation_s: 8.0,
             },
@@ -152,7 +152,7 @@ impl RobotParams {
             check::positive("scale of the odometry", scale)?;
         }
         check::not_negative("error of the odometry", odometry.noise)?;
-        odometry.tail.validate()?;
+        odometry.noise_shape.validate()?;
         check::not_negative("drift of the odometry (rad/m)", odometry.drift_rad_per_m)?;
         check::not_negative("correlation time of the drift (s)", odometry.drift_correlation_s)
     }

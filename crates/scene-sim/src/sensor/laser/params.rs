@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::People;
-use crate::random::Tail;
+use crate::random::NoiseShape;
 use crate::sensor::range_bearing::RangeSigma;
 use crate::{SimError, check};
 
@@ -34,7 +34,7 @@ pub struct LaserParams {
     /// Standard deviation of the white range error. Default 0.005 m, not growing.
     pub range_noise: RangeSigma,
     /// Shape of the white range error. Default Gaussian.
-    pub tail: Tail,
+    pub noise_shape: NoiseShape,
     /// Added to every range, metres. Default 0.
     pub range_bias_m: f64,
     /// Standard deviation of each beam's true direction about its stated one, radians. Default 0.0005.
@@ -63,7 +63,7 @@ impl Default for LaserParams {
             max_range_m: 30.0,
             no_echo_m: 81.91,
             range_noise: RangeSigma { constant_m: 0.005, per_meter: 0.0 },
-            tail: Tail::Gaussian,
+            noise_shape: NoiseShape::Gaussian,
             range_bias_m: 0.0,
             bearing_sigma_rad: 0.0005,
             quantum_m: 0.01,
@@ -92,7 +92,7 @@ impl LaserParams {
         let must = "finite and above the farthest range";
         check::above("range of a beam without echo (m)", self.no_echo_m, self.max_range_m, must)?;
         self.range_noise.validate()?;
-        self.tail.validate()?;
+        self.noise_shape.validate()?;
         check::finite("range bias of the laser (m)", self.range_bias_m)?;
         check::not_negative("σ of a beam's direction (rad)", self.bearing_sigma_rad)?;
         check::not_negative("quantum of the ranges (m)", self.quantum_m)?;

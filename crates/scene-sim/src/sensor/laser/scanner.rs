@@ -132,7 +132,7 @@ struct Errors {
 impl Errors {
     fn draw(params: &LaserParams, streams: &mut Streams) -> Self {
         let direction = deviate::normal(streams.of(Source::BearingNoise));
-        let range = params.tail.draw(streams.of(Source::RangeNoise));
+        let range = params.noise_shape.draw(streams.of(Source::RangeNoise));
         let lost = deviate::chance(params.dropout_share, streams.of(Source::Dropout));
         let mut share_if = |share, source| {
             let rng = streams.of(source);

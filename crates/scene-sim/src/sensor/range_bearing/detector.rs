@@ -104,8 +104,8 @@ struct Errors {
 impl Errors {
     fn draw(params: &RangeBearingParams, drift: &mut Drift, streams: &mut Streams) -> Self {
         let white = (
-            params.tail.draw(streams.of(Source::RangeNoise)),
-            params.tail.draw(streams.of(Source::BearingNoise)),
+            params.noise_shape.draw(streams.of(Source::RangeNoise)),
+            params.noise_shape.draw(streams.of(Source::BearingNoise)),
         );
         let drift = drift.advance(f64::from(params.period_ms) * 1e-3, streams);
         let missed = deviate::chance(params.missed_share, streams.of(Source::Missed));

@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use super::{Clutter, DriftParams};
-use crate::random::Tail;
+use crate::random::NoiseShape;
 use crate::{SimError, check};
 
 /// Everything about a range-bearing sensor. The default is honest: Gaussian noise of the shared range-bearing logs, no sins.
@@ -26,7 +26,7 @@ pub struct RangeBearingParams {
     /// Standard deviation of the white bearing error, radians. Default 0.01.
     pub bearing_sigma_rad: f64,
     /// Shape of the white errors. Default Gaussian.
-    pub tail: Tail,
+    pub noise_shape: NoiseShape,
     /// Added to every range, metres. Default 0.
     pub range_bias_m: f64,
     /// What every true range is multiplied with. Default 1.
@@ -81,7 +81,7 @@ impl Default for RangeBearingParams {
             field_of_view_rad: TAU,
             range_noise: RangeSigma { constant_m: 0.05, per_meter: 0.0 },
             bearing_sigma_rad: 0.01,
-            tail: Tail::Gaussian,
+            noise_shape: NoiseShape::Gaussian,
             range_bias_m: 0.0,
             range_scale: 1.0,
             bearing_bias_rad: 0.0,
@@ -114,7 +114,7 @@ impl RangeBearingParams {
         check::positive("field of view (rad)", self.field_of_view_rad)?;
         self.range_noise.validate()?;
         check::not_negative("σ of bearing (rad)", self.bearing_sigma_rad)?;
-        self.tail.validate()?;
+        self.noise_shape.validate()?;
         check::finite("range bias (m)", self.range_bias_m)?;
         check::positive("range scale", self.range_scale)?;
         check::finite("bearing bias (rad)", self.bearing_bias_rad)?;

@@ -36,7 +36,10 @@ impl Candidate {
         let agreement = Agreement {
             affine,
             area: Agreement::of_areas(scene.expected_area, area),
-            quality: Agreement::of_euler_number(mask.euler_number(Connectivity::Eight), params.euler_range),
+            quality: Agreement::of_euler_number(
+                mask.euler_number(Connectivity::Eight),
+                params.euler_number_range,
+            ),
         };
         Self { map, area, agreement }
     }

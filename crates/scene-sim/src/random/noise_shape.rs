@@ -9,13 +9,13 @@ use crate::{SimError, check};
 ///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::random::Tail;
+/// use wayfix_scene_sim::random::NoiseShape;
 /// let mut rng = ChaCha8Rng::seed_from_u64(7);
-/// let mut far = |tail: Tail| (0..10_000).filter(|_| tail.draw(&mut rng).abs() > 4.0).count();
-/// assert!(far(Tail::Laplace) > 10 * far(Tail::Gaussian).max(1)); // 35 and 0.6 expected
+/// let mut far = |shape: NoiseShape| (0..10_000).filter(|_| shape.draw(&mut rng).abs() > 4.0).count();
+/// assert!(far(NoiseShape::Laplace) > 10 * far(NoiseShape::Gaussian).max(1)); // 35 and 0.6 expected
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum Tail {
+pub enum NoiseShape {
     /// $`e^{-x^2/2}`$.
     #[default]
     Gaussian,
@@ -28,7 +28,7 @@ pub enum Tail {
     },
 }
 
-impl Tail {
+impl NoiseShape {
     /// One error; two draws whatever the shape. Student's t by [Bailey 1994, Eq. 2].
     pub fn draw<R: Rng + ?Sized>(self, rng: &mut R) -> f64 {
         match self {
