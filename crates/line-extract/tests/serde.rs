@@ -14,8 +14,10 @@ fn a_file_names_only_what_it_changes() {
 
 #[test]
 fn what_was_found_survives() -> Result<(), LineError> {
-    let scan = Scan { angle_min: -0.3, angle_increment: 0.01, ranges: &[2.0; 61], max_range: 8.0 };
-    let seen = extract(&scan, &Params { split_distance_m: 0.2, ..Params::default() })?;
+    // A wall at x = 2.
+    let ranges: Vec<f64> = (0..61).map(|i| 2.0 / (-0.3 + 0.01 * f64::from(i)).cos()).collect();
+    let scan = Scan { angle_min: -0.3, angle_increment: 0.01, ranges: &ranges, max_range: 8.0 };
+    let seen = extract(&scan, &Params::default())?;
     assert!(!seen.segments.is_empty());
     let text = serde_json::to_string(&seen).expect("serializable");
     let back: Extraction = serde_json::from_str(&text).expect("what was written");

@@ -145,7 +145,7 @@ fn track_and_views_show_what_they_write() {
 
 #[test]
 fn every_layout_belongs_to_a_system() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../evaluation/layouts");
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let system = path.file_stem().unwrap().to_str().unwrap().to_owned();
