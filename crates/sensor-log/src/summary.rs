@@ -193,7 +193,7 @@ mod tests {
         let text = LogSummary::of(open(&path, &OpenOptions::default()).unwrap()).to_string();
         let lines: Vec<&str> = text.lines().map(str::trim).collect();
         assert!(lines[0].ends_with("walk.txt: range-bearing, 0.1 s"), "{text}");
-        assert_eq!(lines[1], "odometry increment         2 records     10.0 Hz");
+        assert!(lines[1..4].contains(&"odometry increment         2 records     10.0 Hz"), "{text}");
         let seen = "seen 3 times: 2 landmarks with identity, 1 of them with true position; 1 times something without identity";
         assert_eq!(lines[4], seen);
         assert_eq!(
