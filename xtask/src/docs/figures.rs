@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn table_of_a_suite_is_written_between_its_marks_again_and_again() {
+    fn table_of_a_suite_is_written_between_its_marks() {
         let report = json!({"suites": [{"name": "slam", "runs": [{"name": "loop", "metrics": [
             {"name": "ate_rmse_m", "value": 0.050_61, "unit": "m", "low": 0.0496, "high": 0.0516, "paper": null, "pass": true,
              "peer": {"name": "numpy EKF", "value": 0.0506}},
