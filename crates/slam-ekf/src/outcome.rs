@@ -14,7 +14,7 @@ where
     Accepted {
         /// Its landmark.
         landmark: LandmarkId,
-        /// What it said.
+        /// Its innovation.
         innovation: Innovation<Z>,
         /// Factor on its noise because it is outside the gate; 1 inside.
         noise_scale: f64,
@@ -23,7 +23,7 @@ where
     Rejected {
         /// The associated landmark.
         landmark: LandmarkId,
-        /// What it said.
+        /// Its innovation.
         innovation: Innovation<Z>,
         /// The gate.
         threshold: f64,
