@@ -5,7 +5,7 @@ pub enum LineError {
     /// A tolerance is negative or not finite.
     #[error("the tolerance is {value:?}, must be finite and not negative")]
     Epsilon {
-        /// What came.
+        /// The value given.
         value: f64,
     },
     /// A point is not finite, or so far away that areas overflow.

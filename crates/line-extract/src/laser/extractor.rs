@@ -39,7 +39,7 @@ pub fn extract(scan: &Scan, params: &Params) -> Result<Extraction, LineError> {
     Extractor::new(*params)?.extract(scan)
 }
 
-/// Walls of scan after scan, with memory that is used again and directions computed once.
+/// Extracts the walls of a sequence of scans, with reused memory and directions computed once.
 ///
 /// ```
 /// use wayfix_line_extract::{Extractor, Params, Scan};
