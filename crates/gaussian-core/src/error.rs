@@ -71,7 +71,7 @@ pub enum GaussianError {
         "a sigma point {length:.2} out goes more than half round a circle: the unscented transform needs a smaller covariance or alpha"
     )]
     SigmaPointWraps {
-        /// Distance of the point from the mean, rad.
+        /// Length of the tangent vector from the mean to the point.
         length: f64,
     },
     /// A parameter is outside its range.

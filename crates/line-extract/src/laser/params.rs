@@ -34,8 +34,8 @@ pub struct Params {
     pub end_gate_sigma: f64,
     /// Pieces are one wall up to this squared Mahalanobis distance of their lines. Default: 13.8, which 99.9 % of equal lines pass (chi-squared, 2).
     pub merge_gate: f64,
-    /// Standard deviation of the bulge of a straight wall, metres. Neighbouring pieces that share a curvature beyond that and the noise (99.9 % of chi-squared, 1)
-    /// are chords of an arc and no walls. Default: 0.01, what DIN 18202 allows a finished wall over 4 m.
+    /// Standard deviation of the bulge of a straight wall, metres. Neighbouring pieces with a common curvature beyond that and the noise
+    /// (99.9 % of chi-squared, 1) are chords of an arc and no walls. Default: 0.01, the tolerance of DIN 18202 for a finished wall over 4 m.
     pub bulge_sigma_m: f64,
     /// Pieces farther apart than this along the wall, metres, stay two. Default: 0.3.
     pub merge_gap_m: f64,
