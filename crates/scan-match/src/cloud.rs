@@ -25,7 +25,7 @@ const SPACING: f64 = 0.0174;
 const MOST_BEAMS: usize = 1 << 20;
 
 impl Cloud {
-    /// The cloud of a scan: beam $`i`$ has the direction `angle_min` $`+ i\,`$`angle_increment`, radians; `ranges` in metres. What is not in (0, `max_range`] is
+    /// The cloud of a scan: beam $`i`$ points along `angle_min` $`+ i\,`$`angle_increment`, radians; `ranges` in metres. What is not in (0, `max_range`] is
     /// no echo.
     ///
     /// # Errors

@@ -15,8 +15,8 @@
 //! P_{ba} = B P_{va}, \qquad P_{bb} = P_{bb,0} - B (I - P_{vv}) B^T, \qquad x_b = x_{b,0} + B \, δv .
 //! ```
 //!
-//! These are the $`Φ, Ψ, θ`$ of the paper in other coordinates: $`Φ = P_{av} L^{-1}`$, $`Ψ = L^{-T} (I - P_{vv}) L^{-1}`$, $`θ = L^{-T} δv`$. In these nothing is larger
-//! than the covariances themselves, however nearly singular $`P_{aa,0}`$ is.
+//! These are the $`Φ, Ψ, θ`$ of the paper in other coordinates: $`Φ = P_{av} L^{-1}`$, $`Ψ = L^{-T} (I - P_{vv}) L^{-1}`$, $`θ = L^{-T} δv`$.
+//! In these nothing is larger than the covariances themselves, however nearly singular $`P_{aa,0}`$ is.
 //!
 //! From time to time a new area is chosen near the robot. The deferred update of the rest of the map is a product, $`-W W^T`$, which is
 //! subtracted a few columns per scan; until then every read access includes it.
