@@ -74,7 +74,7 @@ pub enum AppearanceError {
         /// Its number.
         id: u32,
     },
-    /// A distribution over poses has no meaning.
+    /// A distribution over poses is invalid.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),
     /// Something is NaN or infinite.

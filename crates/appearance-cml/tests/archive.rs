@@ -154,7 +154,7 @@ fn another_version_and_other_parameters_are_named() {
     }
 }
 
-/// Whoever writes the checksums anew gets as far as the checks of the parts: an error or a map, never a panic.
+/// With recomputed checksums, the checks of the parts decide: an error or a map, never a panic.
 #[test]
 fn forged_entries_never_panic() {
     let whole = bytes();

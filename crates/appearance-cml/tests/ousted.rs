@@ -1,4 +1,4 @@
-//! A robot that is led away by an aisle that looks like another, and what becomes of what it knew.
+//! A robot that is localized in the wrong one of two similar aisles, and the recovery with the previous hypothesis.
 
 mod common;
 
@@ -80,7 +80,7 @@ fn robot_in_a_similar_aisle_learns_nothing_and_returns() {
         |ousted_way: f64| -> Vec<Drive> { (0..N_SEEDS).map(|seed| drive(seed, ousted_way)).collect() };
     let astray = |drives: &[Drive]| -> usize { drives.iter().map(|drive| drive.n_learned_astray).sum() };
     let (kept, forgotten) = (drives(RelocationParams::default().ousted_way), drives(0.0));
-    // It learns again when the belief that was ousted has gone along for its way.
+    // It learns again after the previous hypothesis has been kept for its distance.
     assert!(astray(&drives(3.0)) > 0, "the other aisle goes on for 15 m");
     assert!(kept.iter().all(|drive| drive.was_led_away), "an aisle that looks the same for 15 m");
     assert_eq!(astray(&kept), 0);

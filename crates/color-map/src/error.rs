@@ -32,7 +32,7 @@ pub enum MapError {
         /// The name.
         name: String,
     },
-    /// A length or coordinate has no meaning.
+    /// A length or coordinate is out of range.
     #[error("shape {shape}: {what} is {value}, must be {must}")]
     Value {
         /// Which shape.
@@ -128,7 +128,7 @@ pub enum MapError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
-    /// A number of the camera has no meaning.
+    /// A parameter of the camera is out of range.
     #[error("camera: {what} is {value}, must be {must}")]
     Camera {
         /// Which number, with its unit.
@@ -138,7 +138,7 @@ pub enum ViewError {
         /// What it must be.
         must: &'static str,
     },
-    /// A number of the pose has no meaning.
+    /// A number of the camera pose is out of range.
     #[error("camera pose: {what} is {value}, must be {must}")]
     Pose {
         /// Which number, with its unit.

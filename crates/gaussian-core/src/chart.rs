@@ -9,7 +9,7 @@ where
 {
     /// This Gaussian as a vector Gaussian in the tangent space at `at`, to first order.
     ///
-    /// $`N(μ ⊟ y,\; J Σ J^T)`$ with $`J = ∂((μ ⊞ δ) ⊟ y)/∂δ`$. Gaussians seen from one point add, fuse and compare like vectors.
+    /// $`N(μ ⊟ y,\; J Σ J^T)`$ with $`J = ∂((μ ⊞ δ) ⊟ y)/∂δ`$. Gaussians in one tangent space add, fuse and compare like vectors.
     ///
     /// ```
     /// use nalgebra::Vector3;
@@ -24,7 +24,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When dimensions differ.
+    /// Returns an error if dimensions differ.
     pub fn in_chart_at(&self, at: &X) -> Result<Gaussian<Tangent<X>>, GaussianError> {
         use nalgebra::Dim;
         check_dimension("chart", self.dim().value(), at.dim().value())?;

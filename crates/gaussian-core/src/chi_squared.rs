@@ -18,10 +18,10 @@ pub struct ChiSquaredGate {
 }
 
 impl ChiSquaredGate {
-    /// The gate that lets `probability` of the true measurements of dimension `dof` through.
+    /// The gate that accepts the share `probability` of the true measurements of dimension `dof`.
     ///
     /// # Errors
-    /// When `dof` is 0 or `probability` is not between 0 and 1 (both excluded).
+    /// Returns an error if `dof` is 0 or `probability` is not between 0 and 1 (both excluded).
     pub fn from_probability(dof: usize, probability: f64) -> Result<Self, GaussianError> {
         Ok(Self { threshold: quantile(dof, probability)? })
     }
@@ -35,7 +35,7 @@ impl ChiSquaredGate {
     }
 }
 
-/// Where the average of chi-squared values over several runs falls, if the filter is consistent.
+/// The interval of the average of chi-squared values over several runs of a consistent filter.
 ///
 /// Two-sided: $`[\,χ^2_{N n}(\tfrac{1-p}{2}),\; χ^2_{N n}(\tfrac{1+p}{2})\,] / N`$ for NEES or NIS of $`n`$ degrees of freedom averaged over
 /// $`N`$ **independent** runs. [Bar-Shalom et al. 2001, Sec. 5.4.2]
@@ -60,7 +60,7 @@ impl ChiSquaredBand {
     /// The band that holds the average of `runs` values of `dof` degrees of freedom with `probability`.
     ///
     /// # Errors
-    /// When `dof` or `runs` is 0 or `probability` is not between 0 and 1 (both excluded).
+    /// Returns an error if `dof` or `runs` is 0 or `probability` is not between 0 and 1 (both excluded).
     pub fn for_average(dof: usize, runs: usize, probability: f64) -> Result<Self, GaussianError> {
         check_probability(probability)?;
         let total = dof.saturating_mul(runs);
@@ -74,7 +74,7 @@ impl ChiSquaredBand {
     }
 }
 
-/// The value that a chi-squared variable of `dof` degrees of freedom stays below with `probability`.
+/// The quantile `probability` of a chi-squared variable with `dof` degrees of freedom.
 fn quantile(dof: usize, probability: f64) -> Result<f64, GaussianError> {
     check_probability(probability)?;
     let out_of_range =

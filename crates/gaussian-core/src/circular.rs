@@ -21,10 +21,10 @@ pub struct CircularMoments {
 }
 
 impl CircularMoments {
-    /// Of directions that weigh the same.
+    /// Of directions with equal weights.
     ///
     /// # Errors
-    /// When there are none or one is not finite.
+    /// Returns an error if there are none or one is not finite.
     pub fn from_angles<T: RealField + Copy>(angles: &[Angle<T>]) -> Result<Self, GaussianError> {
         Self::of(angles.iter().map(|&angle| (angle, 1.0)))
     }
@@ -32,7 +32,7 @@ impl CircularMoments {
     /// Of weighted directions; weights need not be normalized.
     ///
     /// # Errors
-    /// When lists are empty or uneven, an angle is not finite, a weight is negative or not finite, or all are zero.
+    /// Returns an error if lists are empty or uneven, an angle is not finite, a weight is negative or not finite, or all are zero.
     pub fn from_weighted<T: RealField + Copy>(
         angles: &[Angle<T>],
         weights: &[f64],
@@ -81,7 +81,7 @@ impl CircularMoments {
     pub fn standard_deviation(&self) -> f64 {
         (-2.0 * self.resultant_length().min(1.0).ln()).sqrt()
     }
-    /// The mean direction; `None` when the directions cancel to within rounding and it says nothing.
+    /// The mean direction; `None` if the directions cancel to within rounding.
     pub fn mean_direction(&self) -> Option<Angle<f64>> {
         (self.resultant_length() > 4.0 * f64::EPSILON).then(|| Angle::new(self.sin.atan2(self.cos)))
     }

@@ -3,10 +3,10 @@ use wayfix_estimation_traits::to_f64;
 
 use crate::GaussianError;
 
-/// The Cholesky factorization of `covariance`, or which pivot fails.
+/// The Cholesky factorization of `covariance`, or the pivot that fails.
 ///
 /// Solve with it; an explicit inverse is neither needed nor accurate.
-/// Only the lower triangle is read: symmetry is [`check_covariance`]'s business.
+/// Only the lower triangle is read: [`check_covariance`] checks the symmetry.
 ///
 /// ```
 /// use nalgebra::{Matrix2, Vector2};
@@ -125,7 +125,7 @@ where
     }
 }
 
-/// Eliminates once more, slowly, to tell which pivot stops it.
+/// Repeats the elimination, slowly, to find the pivot that fails.
 fn failing_pivot<T, D>(what: &'static str, covariance: &OMatrix<T, D, D>) -> GaussianError
 where
     T: RealField + Copy,

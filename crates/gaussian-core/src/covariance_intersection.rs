@@ -5,7 +5,7 @@ use crate::{
     Gaussian, GaussianError, IterationError, check_covariance, cholesky, product::relinearized, symmetrize,
 };
 
-/// What the weights of covariance intersection make small.
+/// The criterion that the weights of covariance intersection minimize.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum IntersectionCriterion {
     /// The sum of the variances. Mixes units: scale the state first.
@@ -15,7 +15,7 @@ pub enum IntersectionCriterion {
     Determinant,
 }
 
-/// A fused estimate that is never overconfident, whatever the estimates share.
+/// A fused estimate that is never overconfident, for any correlation of the estimates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intersection<X: Manifold>
 where
@@ -25,8 +25,8 @@ where
     pub gaussian: Gaussian<X>,
     /// The share of each estimate, adding up to one.
     pub weights: Vec<f64>,
-    /// How far the criterion is from its least value: relative for the trace, in nats a dimension for the determinant.
-    /// Any weights are consistent, so a gap costs sharpness and nothing else.
+    /// Distance of the criterion from its minimum: relative for the trace, in nats per dimension for the determinant.
+    /// Any weights are consistent, so a gap only makes the covariance larger than necessary.
     pub optimality_gap: f64,
 }
 
@@ -48,14 +48,14 @@ const GAP: f64 = 1e-7;
 /// let tall = Gaussian::from_sigmas(Vector2::new(1.0, 1.0), &Vector2::new(1.0, 2.0))?;
 /// let fused = covariance_intersection(&[wide, tall], IntersectionCriterion::Determinant)?;
 /// assert!((fused.weights[0] - 0.5).abs() < 1e-3); // by symmetry
-/// // An estimate fused with itself gains nothing: it may be the same news twice.
+/// // An estimate fused with itself gains nothing: it may be the same information.
 /// let same = covariance_intersection(&[fused.gaussian.clone(), fused.gaussian.clone()], IntersectionCriterion::Trace)?;
 /// assert!((same.gaussian.covariance() - fused.gaussian.covariance()).norm() < 1e-12_f64);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// When there are no estimates, dimensions differ, or a covariance (unchecked) is not positive definite.
+/// Returns an error if there are no estimates, dimensions differ, or a covariance (unchecked) is not positive definite.
 pub fn covariance_intersection<X: Manifold>(
     estimates: &[Gaussian<X>],
     criterion: IntersectionCriterion,

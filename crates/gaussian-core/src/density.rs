@@ -21,7 +21,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When `point` is not finite or of another dimension, or the covariance (unchecked) is not positive definite.
+    /// Returns an error if `point` is not finite or of another dimension, or the covariance (unchecked) is not positive definite.
     pub fn mahalanobis_squared(&self, point: &X) -> Result<f64, GaussianError> {
         Ok(self.normal_terms(point)?.squared_distance)
     }
@@ -59,7 +59,7 @@ where
     }
 }
 
-/// What every Gaussian formula is made of, from one factorization.
+/// The common terms of all Gaussian formulas, from one factorization.
 pub(crate) struct NormalTerms {
     pub(crate) squared_distance: f64,
     pub(crate) log_determinant: f64,

@@ -22,7 +22,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When dimensions differ or a covariance (unchecked) is not positive definite.
+    /// Returns an error if dimensions differ or a covariance (unchecked) is not positive definite.
     pub fn kl_divergence(&self, other: &Self) -> Result<f64, GaussianError> {
         let (deviation, own) = self.in_chart_at(other.mean())?.into_parts();
         let theirs = NormalTerms::new("other", &deviation, other.covariance())?;

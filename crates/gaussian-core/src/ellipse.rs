@@ -27,7 +27,7 @@ impl<T: RealField + Copy> CovarianceEllipse<T> {
     /// The ellipse `sigmas` standard deviations out.
     ///
     /// # Errors
-    /// When the covariance is not symmetric positive definite or `sigmas` is not positive and finite.
+    /// Returns an error if the covariance is not symmetric positive definite or `sigmas` is not positive and finite.
     pub fn at_sigmas(covariance: &Matrix2<T>, sigmas: f64) -> Result<Self, GaussianError> {
         check_covariance("ellipse", covariance)?;
         if !(sigmas > 0.0 && sigmas.is_finite()) {
@@ -52,7 +52,7 @@ impl<T: RealField + Copy> CovarianceEllipse<T> {
     /// The ellipse that holds `probability` of the mass: $`\sqrt{-2 \log(1 - p)}`$ sigmas out.
     ///
     /// # Errors
-    /// When the covariance is not symmetric positive definite or `probability` is not between 0 and 1 (both excluded).
+    /// Returns an error if the covariance is not symmetric positive definite or `probability` is not between 0 and 1 (both excluded).
     pub fn at_probability(covariance: &Matrix2<T>, probability: f64) -> Result<Self, GaussianError> {
         check_probability(probability)?;
         Self::at_sigmas(covariance, (-2.0 * (-probability).ln_1p()).sqrt())

@@ -1,4 +1,4 @@
-/// Why an operation on Gaussians failed. The operands are as they were.
+/// Why an operation on Gaussians failed. The operands are unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GaussianError {
@@ -26,17 +26,17 @@ pub enum GaussianError {
         /// What it is.
         what: &'static str,
     },
-    /// Sizes do not fit.
+    /// A dimension does not match.
     #[error("{what} has dimension {got}, expected {expected}")]
     Dimension {
         /// What has the wrong size.
         what: &'static str,
-        /// The size that fits.
+        /// The expected size.
         expected: usize,
-        /// The size that came.
+        /// The size given.
         got: usize,
     },
-    /// An index set names a coordinate that does not exist, or one twice.
+    /// An index set contains a coordinate that does not exist, or a repeated one.
     #[error("index {index} is out of range or repeated (dimension {dimension})")]
     Index {
         /// The index.
@@ -47,20 +47,20 @@ pub enum GaussianError {
     /// A list that must hold something is empty.
     #[error("no {what}")]
     Empty {
-        /// What there should be some of.
+        /// The missing elements.
         what: &'static str,
     },
-    /// A list is too short for what is to be learned from it.
+    /// A list is too short for the estimation.
     #[error("{got} {what}, need at least {needed}")]
     TooFew {
-        /// What there should be more of.
+        /// The elements of the list.
         what: &'static str,
         /// How many are enough.
         needed: usize,
         /// How many there are.
         got: usize,
     },
-    /// Nothing is known of a coordinate.
+    /// A coordinate is never observed.
     #[error("coordinate {coordinate} is never observed")]
     Unobserved {
         /// Which one.
@@ -71,7 +71,7 @@ pub enum GaussianError {
         "a sigma point {length:.2} out goes more than half round a circle: the unscented transform needs a smaller covariance or alpha"
     )]
     SigmaPointWraps {
-        /// How far out the point lies.
+        /// Length of the tangent vector from the mean to the point.
         length: f64,
     },
     /// A parameter is outside its range.
@@ -92,13 +92,13 @@ pub enum GaussianError {
         /// Its value.
         value: f64,
     },
-    /// The weights are all zero: every hypothesis is dead, and nothing is left to normalize.
+    /// The weights are all zero and cannot be normalized.
     #[error("all {count} weights are zero")]
     NoWeight {
         /// How many there are.
         count: usize,
     },
-    /// An iteration stopped short; [`IterationError`] holds how far it came.
+    /// An iteration did not converge; [`IterationError`] holds its last estimate.
     #[error("{what} did not converge in {iterations} iterations (last step {step:e})")]
     NotConverged {
         /// Which iteration.
@@ -110,7 +110,7 @@ pub enum GaussianError {
     },
 }
 
-/// Why an iteration on a manifold failed; with its last estimate when it came that far.
+/// Why an iteration on a manifold failed, with its last estimate if there is one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IterationError<X> {
@@ -131,7 +131,7 @@ pub enum IterationError<X> {
     },
 }
 
-/// Forgets the last estimate.
+/// Drops the last estimate.
 impl<X> From<IterationError<X>> for GaussianError {
     fn from(error: IterationError<X>) -> Self {
         match error {

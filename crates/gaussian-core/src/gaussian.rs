@@ -5,8 +5,8 @@ use crate::{GaussianError, check_covariance, cholesky, symmetrize};
 
 /// A normal distribution over any manifold: $`x ∼ μ ⊞ N(0, Σ)`$.
 ///
-/// The covariance lives in the tangent space at the mean (body frame for poses).
-/// Covariances are symmetric positive definite when they come in; singular ones are refused.
+/// The covariance is in the tangent space at the mean (body frame for poses).
+/// Constructors refuse covariances that are not symmetric positive definite, singular ones included.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -33,7 +33,7 @@ where
     /// $`N(\text{mean}, \text{covariance})`$, checked by [`check_covariance`] and made exactly symmetric.
     ///
     /// # Errors
-    /// When the mean is not finite, or the covariance has the wrong size, is not finite, not symmetric or not positive definite.
+    /// Returns an error if the mean is not finite, or the covariance has the wrong size, is not finite, not symmetric or not positive definite.
     pub fn new(mean: X, mut covariance: TangentMatrix<X>) -> Result<Self, GaussianError> {
         check_dimension("covariance", mean.dim().value(), covariance.nrows())?;
         check_mean(&mean)?;
@@ -44,8 +44,8 @@ where
 
     /// $`N(\text{mean}, \text{covariance})`$, unchecked: for inner loops whose algebra keeps covariances symmetric positive definite.
     ///
-    /// The caller guarantees what [`new`](Self::new) checks. Nothing is unsafe or panics when that is broken: later operations that
-    /// factor the covariance answer with an error, and samples come from its positive part.
+    /// The caller guarantees the conditions of [`new`](Self::new). If they are violated, nothing is unsafe or panics: later operations that
+    /// factor the covariance return an error, and samples are drawn from its positive part.
     pub fn from_parts_unchecked(mean: X, covariance: TangentMatrix<X>) -> Self {
         Self { mean, covariance }
     }
@@ -53,7 +53,7 @@ where
     /// Independent standard deviations, in the units of the tangent space.
     ///
     /// # Errors
-    /// When the mean is not finite, or a sigma is not finite or not positive.
+    /// Returns an error if the mean is not finite, or a sigma is not finite or not positive.
     pub fn from_sigmas(mean: X, sigmas: &Tangent<X>) -> Result<Self, GaussianError> {
         check_dimension("sigmas", mean.dim().value(), sigmas.nrows())?;
         // A negative sigma squares to a valid variance, so it has to be caught here.
@@ -107,7 +107,7 @@ pub(crate) fn check_dimension(what: &'static str, expected: usize, got: usize) -
     if expected == got { Ok(()) } else { Err(GaussianError::Dimension { what, expected, got }) }
 }
 
-/// A point that is not finite is not where it is: its distance to itself is NaN.
+/// The distance of a non-finite point to itself is NaN.
 fn check_mean<X: Manifold>(mean: &X) -> Result<(), GaussianError>
 where
     DefaultAllocator: StateAlloc<X::Dim>,

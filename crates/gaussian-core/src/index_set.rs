@@ -23,7 +23,7 @@ impl<T: RealField + Copy> Gaussian<DVector<T>> {
     /// ```
     ///
     /// # Errors
-    /// When `keep` is empty, or names a coordinate twice or one that does not exist.
+    /// Returns an error if `keep` is empty, or names a coordinate twice or one that does not exist.
     pub fn marginal(&self, keep: &[usize]) -> Result<Self, GaussianError> {
         complement(keep, self.mean().len())?;
         if keep.is_empty() {

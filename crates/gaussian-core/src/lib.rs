@@ -1,18 +1,18 @@
-//! Gaussians over manifolds and what one does with them: fuse, transform, compare, mix, gate, draw.
+//! Gaussians over manifolds and operations on them: fuse, transform, compare, mix, gate, draw.
 //!
 //! [`Gaussian<X>`](Gaussian) holds any [`Manifold`](wayfix_estimation_traits::Manifold): vectors of static or dynamic size, angles, poses,
 //! `f32` or `f64`. Numbers about distributions (distances, densities, divergences) are `f64`, logarithms in nats.
 //!
 //! | to | use |
 //! | --- | --- |
-//! | fuse independent estimates, or ones that may share news | [`Gaussian::product`], [`covariance_intersection`] |
-//! | send one through a function | [`Gaussian::affine`], [`Gaussian::linearized`], [`UnscentedTransform`] |
+//! | fuse independent estimates, or ones that may share information | [`Gaussian::product`], [`covariance_intersection`] |
+//! | transform one by a function | [`Gaussian::affine`], [`Gaussian::linearized`], [`UnscentedTransform`] |
 //! | compare | [`Gaussian::mahalanobis_squared`], [`Gaussian::kl_divergence`], [`Gaussian::bhattacharyya_distance`] |
 //! | take parts | [`Gaussian::marginal`], [`Gaussian::conditional`] |
 //! | keep several hypotheses | [`Mixture`], [`moment_matched`] |
 //! | learn one from groups, each seen in part | [`fit_hierarchical`] |
 //! | decide | [`ChiSquaredGate`], [`ChiSquaredBand`] |
-//! | draw random points, or pictures | [`Gaussian::sampler`], [`CovarianceEllipse`] |
+//! | draw random points or an ellipse | [`Gaussian::sampler`], [`CovarianceEllipse`] |
 //! | turn models for Kalman filters into models for particles | [`GaussianMotion`], [`GaussianLikelihood`] |
 //!
 //! Covariances are checked where they come in ([`Gaussian::new`]) and solved by Cholesky factors.

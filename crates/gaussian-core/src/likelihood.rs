@@ -5,7 +5,7 @@ use crate::{covariance::check_symmetric, density::NormalTerms};
 
 /// Any [`SensorModel`] as a likelihood: $`\log N(z ⊟ h(x); 0, R(x))`$.
 ///
-/// $`-∞`$ where the sensor sees nothing: a prediction that is not finite or a noise that is not positive definite.
+/// $`-∞`$ where the sensor gives no measurement: a prediction that is not finite or a noise that is not positive definite.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1, Vector2};

@@ -19,7 +19,7 @@ use crate::{Gaussian, GaussianError, IterationError, symmetrize, weighted_mean};
 /// ```
 ///
 /// # Errors
-/// When lists are empty or uneven, a weight is negative or not finite, all are zero, or the mean is not found.
+/// Returns an error if lists are empty or uneven, a weight is negative or not finite, all are zero, or the mean is not found.
 pub fn moment_matched<X: Manifold>(
     weights: &[f64],
     components: &[Gaussian<X>],

@@ -26,7 +26,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When dimensions differ, a covariance (unchecked) is not positive definite, or two estimates contradict each other across
+    /// Returns an error if dimensions differ, a covariance (unchecked) is not positive definite, or two estimates contradict each other across
     /// half the manifold so that no mode is found.
     pub fn product(&self, other: &Self) -> Result<Self, IterationError<X>> {
         relinearized("product", self.mean().clone(), |at| {

@@ -3,10 +3,10 @@
 //! In exact arithmetic a prediction leaves $`λ_{\min}(F P F^T + Q) \ge λ_{\min}(Q)`$ and a correction leaves
 //! $`λ_{\min}(P^+) \ge 1 / (1/λ_{\min}(P) + ‖H^T R^{-1} H‖)`$, since information adds. Rounding moves an eigenvalue by no more than the norm of
 //! the error matrix (Weyl), which for products of $`n`$-vectors is a multiple of $`nε`$ times the norms of the factors
-//! [Higham 2002, section 3.5]. Where the first is larger than the second with room to spare, nothing has to be eliminated.
+//! [Higham 2002, section 3.5]. If the first is sufficiently larger than the second, no elimination is needed.
 //!
 //! The bounds hold for exactly symmetric noises and without underflow, so models mirror their noises when they are built, and models of
-//! extreme scale prove nothing. Comparisons are written so that NaN and overflow prove nothing. What is not proved is eliminated, as ever.
+//! extreme scale prove nothing. Comparisons are written so that NaN and overflow prove nothing. Without a proof the elimination is done.
 
 use nalgebra::{DMatrix, DefaultAllocator, Dim, OMatrix, RealField, allocator::Allocator};
 
@@ -15,7 +15,7 @@ use crate::check::is_moderate;
 /// A lower bound of the smallest eigenvalue; 0 when none is known.
 pub(crate) type Floor<T> = T;
 
-/// What a linear motion does to the bound.
+/// Terms of the bound for a linear motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MotionCertificate<T> {
     /// Lower bound of $`λ_{\min}(Q)`$.
@@ -25,7 +25,7 @@ pub(crate) struct MotionCertificate<T> {
     constant: T,
 }
 
-/// What a linear sensor does to the bound.
+/// Terms of the bound for a linear sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SensorCertificate<T> {
     /// Upper bound of $`‖H^T R^{-1} H‖`$; infinite when none is known.
@@ -57,7 +57,7 @@ impl<T: RealField + Copy> MotionCertificate<T> {
         }
     }
 
-    /// The bound after a prediction from a covariance of this trace; `None` when it proves nothing.
+    /// The bound after a prediction from a covariance of this trace; `None` if it proves nothing.
     #[inline(always)]
     pub(crate) fn after(&self, trace: T) -> Option<Floor<T>> {
         let error = self.growth * trace + self.constant;
@@ -80,7 +80,7 @@ impl<T: RealField + Copy> SensorCertificate<T> {
         }
     }
 
-    /// The bound after a correction of a covariance of this trace; `None` when it proves nothing.
+    /// The bound after a correction of a covariance of this trace; `None` if it proves nothing.
     ///
     /// With $`h = ‖H^T R^{-1} H‖`$ and $`τ = \operatorname{tr} P`$: $`K S K^T \le P`$ gives $`‖K‖^2 \le τ/λ_{\min}(R)`$, so errors of
     /// $`S`$ and $`C`$ enter with $`(1 + \sqrt{hτ})^2 τ \le 2 (1 + hτ) τ`$.

@@ -1,4 +1,4 @@
-//! Checks that every step makes before it touches a state.
+//! Checks of every step before it changes a state.
 
 use nalgebra::{ComplexField, DefaultAllocator, Dim, OMatrix, RealField, allocator::Allocator};
 use wayfix_estimation_traits::{Manifold, Tangent, to_f64};
@@ -65,8 +65,8 @@ where
 
 /// Positive definite beyond rounding: every pivot of the elimination exceeds $`2 n ε`$ of its own diagonal entry.
 ///
-/// The strict test of a Cholesky factorization passes or fails by chance when a pivot is rounding; asking for a little more makes
-/// every other order of elimination agree. Only the lower triangle is read. NaN and infinities fail.
+/// If a pivot is rounding, the strict test of a Cholesky factorization passes or fails by chance. With this margin every other order of
+/// elimination agrees. Only the lower triangle is read. NaN and infinities fail.
 #[inline]
 pub(crate) fn positive_definite<T, D>(what: &'static str, matrix: &OMatrix<T, D, D>) -> Checked
 where
@@ -170,7 +170,7 @@ where
     Ok(l)
 }
 
-/// Why a covariance that no factorization takes is refused.
+/// The error of a covariance that cannot be factored.
 #[cold]
 pub(crate) fn refused<T, D>(what: &'static str, matrix: &OMatrix<T, D, D>) -> crate::KalmanError
 where

@@ -4,13 +4,13 @@ use wayfix_gaussian_core::{ChiSquaredBand, Gaussian};
 
 use crate::KalmanError;
 
-/// The normalized estimation error squared, $`(x ⊟ \hat x)^T P^{-1} (x ⊟ \hat x)`$, of an estimate whose truth is known.
+/// The normalized estimation error squared, $`(x ⊟ \hat x)^T P^{-1} (x ⊟ \hat x)`$, of an estimate with known truth.
 ///
-/// Chi-squared with as many degrees of freedom as the state has, when the filter is consistent. [Bar-Shalom et al. 2001, Eq. 5.4.2-1]
-/// Its sibling, the normalized innovation squared, needs no truth: [`Innovation::nis`](crate::Innovation::nis).
+/// Chi-squared with the dimension of the state as degrees of freedom if the filter is consistent. [Bar-Shalom et al. 2001, Eq. 5.4.2-1]
+/// The normalized innovation squared needs no truth: [`Innovation::nis`](crate::Innovation::nis).
 ///
 /// # Errors
-/// When the truth is not finite or of another dimension, or the covariance is not positive definite.
+/// Returns an error if the truth is not finite or of another dimension, or the covariance is not positive definite.
 pub fn nees<X: Manifold>(estimate: &Gaussian<X>, truth: &X) -> Result<f64, KalmanError>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
@@ -57,10 +57,10 @@ impl Consistency {
     pub fn average(&self) -> f64 {
         self.sum / self.count as f64
     }
-    /// Where the average of a consistent filter lies with `probability`.
+    /// The interval of the average of a consistent filter with `probability`.
     ///
     /// # Errors
-    /// When there are no values, `dof` is 0, or `probability` is not between 0 and 1.
+    /// Returns an error if there are no values, `dof` is 0, or `probability` is not between 0 and 1.
     pub fn band(&self, probability: f64) -> Result<ChiSquaredBand, KalmanError> {
         Ok(ChiSquaredBand::for_average(self.dof, self.count, probability)?)
     }

@@ -1,13 +1,13 @@
 use wayfix_gaussian_core::{GaussianError, IterationError};
 
-/// Why a filter refused a call. The filter is exactly as it was before.
+/// Why a filter refused a call. The filter is then unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KalmanError {
-    /// A vector or matrix is not what it must be: wrong size, not finite, not symmetric, not positive definite.
+    /// A vector or matrix is invalid: wrong size, not finite, not symmetric or not positive definite.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),
-    /// The iterated update did not settle.
+    /// The iterated update did not converge.
     #[error("no convergence after {iterations} iterations, last step {last_step:e} standard deviations")]
     NotConverged {
         /// Iterations made.
@@ -17,7 +17,7 @@ pub enum KalmanError {
         /// The last estimate, as tangent vector from the predicted mean: `mean.retract(&last_offset)` is the point.
         last_offset: Box<[f64]>,
     },
-    /// A number that has to lie in a range does not.
+    /// A parameter is out of range.
     #[error("{what} is {value:e}, out of range")]
     OutOfRange {
         /// Which number.
@@ -33,10 +33,10 @@ pub enum KalmanError {
         /// Its sum.
         sum: f64,
     },
-    /// A bank or chain without models.
+    /// A bank or chain has no models.
     #[error("a bank needs at least one model")]
     EmptyBank,
-    /// Every model of a bank calls the measurement impossible.
+    /// Under every model of a bank the measurement has zero likelihood.
     #[error("no model of the bank explains the measurement")]
     AllModelsImpossible,
 }

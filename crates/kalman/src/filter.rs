@@ -4,9 +4,9 @@ use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
 use crate::{Extended, Form, Innovation, KalmanError, Update, gating::gated};
 
-/// A Gaussian filter: a motion model, a [`Form`], and what is believed now.
+/// A Gaussian filter: a motion model, a [`Form`] and the present belief.
 ///
-/// Sensors come with the measurements, so that one filter serves many of them.
+/// The sensor is passed with each measurement, so one filter supports several sensors.
 ///
 /// ```
 /// use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
@@ -66,17 +66,17 @@ where
     /// A filter that starts from `prior`.
     ///
     /// # Errors
-    /// When the prior's covariance is not positive definite beyond rounding.
+    /// Returns an error if the prior's covariance is not positive definite beyond rounding.
     pub fn new(motion: M, form: F, prior: Gaussian<M::State>) -> Result<Self, KalmanError> {
         let belief = form.belief_from(&prior)?;
         Ok(Self { motion, form, belief })
     }
 
-    /// What is believed now, as a Gaussian.
+    /// The present belief as a Gaussian.
     pub fn estimate(&self) -> Gaussian<M::State> {
         self.form.gaussian(&self.belief)
     }
-    /// What is believed now, as the form carries it.
+    /// The present belief in the representation of the form.
     pub fn belief(&self) -> &F::Belief {
         &self.belief
     }
@@ -85,10 +85,10 @@ where
         &self.motion
     }
 
-    /// Moves the belief by `control`.
+    /// Predicts the belief with `control`.
     ///
     /// # Errors
-    /// When the model gives something unusable for this control; the filter is unchanged.
+    /// Returns an error if the model output for this control is invalid; the filter is then unchanged.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
         self.belief = self.form.predict(&self.belief, &self.motion, control)?;
         Ok(())
@@ -97,7 +97,7 @@ where
     /// Corrects the belief by `measurement`.
     ///
     /// # Errors
-    /// When model or measurement are unusable; the filter is unchanged.
+    /// Returns an error if model output or measurement are invalid; the filter is then unchanged.
     pub fn update<S>(
         &mut self,
         sensor: &S,
@@ -114,10 +114,10 @@ where
         Ok(innovation)
     }
 
-    /// Corrects the belief by `measurement` when there is one and `gate` lets it in.
+    /// Corrects the belief by `measurement`, if there is one and `gate` accepts it.
     ///
     /// # Errors
-    /// When model or measurement are unusable; the filter is unchanged.
+    /// Returns an error if model output or measurement are invalid; the filter is then unchanged.
     pub fn update_gated<S>(
         &mut self,
         sensor: &S,

@@ -4,9 +4,9 @@ use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
 use crate::{Form, GaussianFilter, KalmanError, Update};
 
-/// A [`GaussianFilter`] with the one sensor it listens to: a [`BayesFilter`].
+/// A [`GaussianFilter`] with one sensor: a [`BayesFilter`].
 ///
-/// For code that runs any filter. Measurements are `Option`s: `None` is a missed observation.
+/// For code that is generic over filters. Measurements are `Option`s: `None` is a missed observation.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1};

@@ -4,43 +4,43 @@ use wayfix_gaussian_core::Gaussian;
 
 use crate::{Innovation, error::Checked};
 
-/// One way to carry a Gaussian through models: extended, unscented, square-root, information, …
+/// A method of propagating a Gaussian through models: extended, unscented, square-root, information, …
 ///
-/// A form is a value without state; the [`Belief`](Self::Belief) it works on is what it likes to carry (a covariance, its factor, its
-/// inverse). [`GaussianFilter`](crate::GaussianFilter) keeps one belief; the switching filters keep many.
+/// A form is a value without state; its [`Belief`](Self::Belief) is the representation of the Gaussian (a covariance, its factor, its inverse).
+/// [`GaussianFilter`](crate::GaussianFilter) stores one belief; the switching filters store several.
 ///
 /// **Laws**, which the crate's tests check for every form here:
 /// 1. on linear Gaussian models every form gives the same Gaussian, up to rounding,
-/// 2. a belief that comes out is symmetric positive definite; what is not is an error,
-/// 3. `update` shows the innovation to `admits` before anything else and returns no belief when that says no.
+/// 2. a returned belief is symmetric positive definite; otherwise an error is returned,
+/// 3. `update` calls `admits` with the innovation first and returns no belief if it returns `false`.
 pub trait Form<X: Manifold>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
-    /// What the form carries from step to step.
+    /// The representation of the Gaussian from step to step.
     type Belief: Clone;
 
-    /// The belief that says the same as `gaussian`.
+    /// The belief equivalent to `gaussian`.
     ///
     /// # Errors
-    /// When its covariance is not positive definite.
+    /// Returns an error if its covariance is not positive definite.
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Self::Belief>;
 
-    /// The Gaussian that says the same as `belief`.
+    /// The Gaussian equivalent to `belief`.
     fn gaussian(&self, belief: &Self::Belief) -> Gaussian<X>;
 
     /// The belief after `control`.
     ///
     /// # Errors
-    /// When the model gives something unusable.
+    /// Returns an error if the model output is invalid.
     fn predict<M>(&self, belief: &Self::Belief, motion: &M, control: &M::Control) -> Checked<Self::Belief>
     where
         M: MotionModel<State = X>;
 
-    /// What `measurement` says, and the belief after it when `admits` lets it in.
+    /// The innovation of `measurement`, and the corrected belief if `admits` accepts it.
     ///
     /// # Errors
-    /// When the model or measurement is unusable.
+    /// Returns an error if the model output or measurement is invalid.
     #[allow(clippy::type_complexity, reason = "a pair of the two things the documentation names")]
     fn update<S>(
         &self,

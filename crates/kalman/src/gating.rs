@@ -6,7 +6,7 @@ use wayfix_gaussian_core::ChiSquaredGate;
 
 use crate::{Form, Update, error::Checked};
 
-/// Updates `belief` when there is a measurement and the gate lets it in.
+/// Updates `belief` if there is a measurement and the gate accepts it.
 #[allow(clippy::type_complexity, reason = "the outcome for the caller and the belief for the filter")]
 pub(crate) fn gated<X, F, S>(
     form: &F,

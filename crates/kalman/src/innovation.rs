@@ -9,7 +9,7 @@ use crate::{
     error::Checked,
 };
 
-/// What a measurement said beyond what was expected: everything a gate, a plot, a likelihood or a test needs.
+/// The innovation of a measurement: the input of gates, plots, likelihoods and consistency tests.
 ///
 /// $`y = z ⊟ h(x)`$ with covariance $`S`$ and cross-covariance $`C = \mathrm{cov}(x, z)`$ (which is $`P H^T`$ for a linearized sensor),
 /// always relative to the *predicted* state. [Bar-Shalom et al. 2001, §5.2.3]
@@ -46,7 +46,7 @@ where
     /// An innovation from its three parts.
     ///
     /// # Errors
-    /// When the sizes do not fit, a part is not finite, or the covariance is not positive definite.
+    /// Returns an error if the sizes do not match, a part is not finite, or the covariance is not positive definite.
     pub fn new(
         residual: Tangent<Z>,
         covariance: TangentMatrix<Z>,
@@ -101,7 +101,7 @@ where
         gain
     }
 
-    /// The normalized innovation squared $`y^T S^{-1} y`$, chi-squared with [`dim`](Self::dim) degrees of freedom when all is well.
+    /// The normalized innovation squared $`y^T S^{-1} y`$, chi-squared with [`dim`](Self::dim) degrees of freedom for a consistent filter.
     pub fn nis(&self) -> f64 {
         to_f64(self.whitened().norm_squared())
     }
@@ -112,7 +112,7 @@ where
         -0.5 * (self.nis() + self.dim() as f64 * std::f64::consts::TAU.ln() + log_determinant)
     }
 
-    /// $`D^{-1/2} L^{-1} y`$ with $`L D L^T = S`$: independent unit normal components when all is well.
+    /// $`D^{-1/2} L^{-1} y`$ with $`L D L^T = S`$: independent unit normal components for a consistent filter.
     pub fn whitened(&self) -> Tangent<Z> {
         let mut whitened = self.residual.clone();
         self.ldl.whiten(&mut whitened);

@@ -8,12 +8,12 @@
 //! | large measurements with little state, or small with much | the forms [`Information`], [`Sequential`] |
 //! | several measurements at once | [`StackedSensor`] sensors: the batch update |
 //! | a whole recording | [`RtsSmoother`] |
-//! | a target that switches behaviour | [`Imm`], [`Gpb2`] |
-//! | circumstances that switch, each with its own memory | [`ModelBank`], [`JumpMarkov`] |
-//! | doubts about your noise | [`Innovation::nis`], [`nees`], [`Consistency`] |
+//! | a target with several motion models | [`Imm`], [`Gpb2`] |
+//! | conditions that switch, each with its own filter | [`ModelBank`], [`JumpMarkov`] |
+//! | noise parameters to validate | [`Innovation::nis`], [`nees`], [`Consistency`] |
 //!
-//! Every update gives its [`Innovation`]; gated ones an [`Update`] that says what became of the measurement. After an error the filter is
-//! exactly as it was.
+//! Every update returns its [`Innovation`]; gated ones an [`Update`] with the outcome of the measurement. After an error the filter is
+//! unchanged.
 //!
 //! ```
 //! use nalgebra::{Matrix1, Matrix1x2, Matrix2, Vector1, Vector2};

@@ -64,7 +64,7 @@ where
     check::finite("sensor Jacobian", &jacobian)?;
     let mut noise = sensor.noise(state);
     check::sensor_noise(&noise, m)?;
-    // The form of Joseph wants it exactly symmetric; only this triangle was checked.
+    // The form of Joseph needs exact symmetry; only this triangle was checked.
     noise.fill_upper_triangle_with_lower_triangle();
     Ok(LinearizedSensor { residual, jacobian, noise })
 }

@@ -7,7 +7,7 @@ use crate::{
     algebra::transport::transported, check, error::Checked, linearize::linearize_motion,
 };
 
-/// The Rauch-Tung-Striebel smoother: filters forward in [`Extended`] form, then sends what came later back.
+/// The Rauch-Tung-Striebel smoother: a forward pass in [`Extended`] form, then a backward pass with the later measurements.
 ///
 /// $`G = P F^T P_-^{-1},\; x^s = x ⊞ G (x^s_+ ⊟ x_-),\; P^s = (I - GF) P (I - GF)^T + G (Q + P^s_+) G^T`$; the last is the form of Joseph
 /// of the textbook's $`P + G (P^s_+ - P_-) G^T`$ and subtracts nothing. [Särkkä 2013, Eq. 8.6]
@@ -55,7 +55,7 @@ where
     /// A smoother whose first state is distributed as `prior`.
     ///
     /// # Errors
-    /// When the prior's covariance is not positive definite beyond rounding.
+    /// Returns an error if the prior's covariance is not positive definite beyond rounding.
     pub fn new(prior: Gaussian<X>) -> Result<Self, KalmanError> {
         Ok(Self { transitions: Vec::new(), current: Extended.belief_from(&prior)? })
     }
@@ -65,10 +65,10 @@ where
         &self.current
     }
 
-    /// Adds a state after `control`.
+    /// Adds a state, predicted with `control`.
     ///
     /// # Errors
-    /// When the model gives something unusable; the smoother is unchanged.
+    /// Returns an error if the model output is invalid; the smoother is then unchanged.
     pub fn predict<M>(&mut self, motion: &M, control: &M::Control) -> Result<(), KalmanError>
     where
         M: MotionModel<State = X>,
@@ -90,7 +90,7 @@ where
     /// Corrects the last state by `measurement`; any number of times, or not at all.
     ///
     /// # Errors
-    /// When model or measurement are unusable; the smoother is unchanged.
+    /// Returns an error if model output or measurement are invalid; the smoother is then unchanged.
     pub fn update<S>(
         &mut self,
         sensor: &S,
@@ -107,10 +107,10 @@ where
         Ok(innovation)
     }
 
-    /// Every state given every measurement, first to last.
+    /// All states given all measurements, first to last.
     ///
     /// # Errors
-    /// When rounding makes a smoothed covariance indefinite.
+    /// Returns an error if rounding makes a smoothed covariance indefinite.
     pub fn smoothed(&self) -> Result<Vec<Gaussian<X>>, KalmanError> {
         let mut path = vec![self.current.clone()];
         let mut later = self.current.clone();
@@ -127,7 +127,7 @@ impl<X: Manifold> Transition<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
-    /// The state before this transition, given what is known of the state after it.
+    /// The state before this transition, given the smoothed state after it.
     fn smoothed(&self, later: &Gaussian<X>) -> Checked<Gaussian<X>> {
         let (filtered, f) = (self.filtered.covariance(), &self.jacobian);
         let gain = cholesky("predicted", self.predicted.covariance())?.solve(&(f * filtered)).transpose();

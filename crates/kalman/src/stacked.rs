@@ -50,7 +50,7 @@ where
 
     fn local(&self, other: &Self) -> OVector<Z::Scalar, Dyn> {
         let pieces = self.0.iter().zip(&other.0).map(|(from, to)| {
-            // Parts of unlike size have no difference; NaN tells a filter to refuse them.
+            // Parts of different size have no difference; a filter refuses the NaN.
             let nan = nalgebra::zero::<Z::Scalar>() / nalgebra::zero();
             if from.dim() == to.dim() {
                 from.local(to)

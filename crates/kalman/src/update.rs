@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, UpdateAlloc};
 
 use crate::Innovation;
 
-/// What became of a measurement. A gate never rejects silently.
+/// The outcome of a measurement. A gate never rejects silently.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
@@ -28,17 +28,17 @@ where
 {
     /// The measurement was used.
     Accepted {
-        /// What it said.
+        /// Its innovation.
         innovation: Innovation<X, Z>,
     },
-    /// The gate held the measurement to be an outlier; the filter is as it was.
+    /// The gate rejected the measurement as an outlier; the filter is unchanged.
     Rejected {
-        /// What it said.
+        /// Its innovation.
         innovation: Innovation<X, Z>,
         /// The largest normalized innovation squared that would have passed.
         threshold: f64,
     },
-    /// There was no measurement; the filter is as it was.
+    /// There was no measurement; the filter is unchanged.
     Missing,
 }
 
@@ -46,14 +46,14 @@ impl<X: Manifold, Z: Manifold<Scalar = X::Scalar>> Update<X, Z>
 where
     DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
 {
-    /// What the measurement said, used or not; `None` when there was none.
+    /// The innovation of the measurement, used or not; `None` if there was none.
     pub fn innovation(&self) -> Option<&Innovation<X, Z>> {
         match self {
             Self::Accepted { innovation } | Self::Rejected { innovation, .. } => Some(innovation),
             Self::Missing => None,
         }
     }
-    /// Whether the measurement moved the filter.
+    /// Whether the measurement corrected the filter.
     pub fn is_accepted(&self) -> bool {
         matches!(self, Self::Accepted { .. })
     }

@@ -2,13 +2,13 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineError {
-    /// A tolerance without meaning.
+    /// A tolerance is negative or not finite.
     #[error("the tolerance is {value:?}, must be finite and not negative")]
     Epsilon {
-        /// What came.
+        /// The value given.
         value: f64,
     },
-    /// A point that is nowhere, or so far away that areas overflow.
+    /// A point is not finite, or so far away that areas overflow.
     #[error("point {index} is ({x}, {y}), must be finite and within ±{largest:e}")]
     Point {
         /// Which point.
@@ -20,7 +20,7 @@ pub enum LineError {
         /// The largest coordinate allowed.
         largest: f64,
     },
-    /// A parameter without meaning.
+    /// A parameter is out of range.
     #[error("parameter {what} is {value:?}, must be {must}")]
     Param {
         /// Its name, with its unit.
@@ -30,7 +30,7 @@ pub enum LineError {
         /// What it must be.
         must: &'static str,
     },
-    /// A number of a scan's geometry without meaning.
+    /// A number of the scan geometry is out of range.
     #[error("scan: {what} is {value:?}, must be {must}")]
     Scan {
         /// Which number, with its unit.
@@ -40,7 +40,7 @@ pub enum LineError {
         /// What it must be.
         must: &'static str,
     },
-    /// Beams of one scan that go around more than once.
+    /// The beams of one scan cover more than a full turn.
     #[error("scan: {n_beams} beams of {increment_rad} rad go beyond a full turn")]
     MoreThanATurn {
         /// How many beams.
@@ -48,7 +48,7 @@ pub enum LineError {
         /// From one to the next.
         increment_rad: f64,
     },
-    /// Not one covariance for each point.
+    /// The number of covariances differs from the number of points.
     #[error("{covariances} covariances for {points} points")]
     Sizes {
         /// How many points.
@@ -64,7 +64,7 @@ pub enum LineError {
         /// How many it takes.
         needed: usize,
     },
-    /// Points that have no direction: all in one place, as far as their noise can tell.
+    /// The points have no direction: their extent is within their noise.
     #[error("{n_points} points of extent {extent_m:e} m have no direction")]
     NoDirection {
         /// How many points.
@@ -72,7 +72,7 @@ pub enum LineError {
         /// How far they spread (rms) along the line.
         extent_m: f64,
     },
-    /// A covariance that is not positive definite.
+    /// A covariance is not positive definite.
     #[error("the covariance of (ρ, α) is not positive definite: determinant {determinant:e}")]
     NotPositiveDefinite {
         /// Its determinant.

@@ -5,10 +5,10 @@
 //! | a chain of points | the indices of those that matter | [`simplify()`], [`douglas_peucker`] |
 //! | points with covariances | a line with its covariance | [`fit_line`] |
 //! | a range scan | walls with covariances and ends | [`extract`], [`Extractor`] |
-//! | a wall that should be there | where to look, and which segment it is | [`WallHypothesis`] |
+//! | a predicted wall | its search band and its segment | [`WallHypothesis`] |
 //!
-//! Metres and radians, x forward, y left. Scans, segments and hypotheses are in the sensor's frame; no filter and no pose is known here. What a method does with
-//! its parameters, and the figures measured, are in `docs/lines.md`.
+//! Metres and radians, x forward, y left. Scans, segments and hypotheses are in the sensor's frame; the crate has no filters and no poses. The methods, their
+//! parameters and measured figures are in `docs/lines.md`.
 //!
 //! ```
 //! use wayfix_line_extract::{Params, Scan, extract};

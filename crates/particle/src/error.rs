@@ -1,6 +1,6 @@
 use wayfix_gaussian_core::GaussianError;
 
-/// Why an operation on particles was refused. What it was called on is as it was.
+/// Why an operation on particles was refused. Its operand is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ParticleError {

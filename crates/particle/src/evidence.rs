@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::Policy;
 
-/// What a normalization tells: how well the particles explained what was measured, and how many of them still count.
+/// The result of a normalization: the likelihood of the measurement and the effective sample size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalizationReport {
     /// $`\log \sum_i w_i e^{l_i}`$ in nats: the filter's estimate of $`\log p(z_k | z_{1:k-1})`$ when the weights were normalized before.

@@ -18,7 +18,7 @@ impl Default for InjectionParams {
     }
 }
 
-/// Notices that the particles explain the measurements worse than they used to: how many of them to replace by random ones.
+/// Detects a decrease of the measurement likelihood and computes the share of particles to replace by random ones.
 /// [Thrun, Burgard & Fox 2005, Table 8.3]
 ///
 /// $`w_\text{slow} ← w_\text{slow} + α_\text{slow} (w - w_\text{slow})`$, likewise $`w_\text{fast}`$; injected is the share

@@ -25,7 +25,7 @@ impl Default for KldParams {
     }
 }
 
-/// KLD-sampling: as many particles as the spread of the posterior asks for. [Fox 2003]
+/// KLD-sampling: the number of particles from the spread of the posterior. [Fox 2003]
 ///
 /// ```
 /// use wayfix_particle::{KldParams, KldSampling};
@@ -110,7 +110,7 @@ impl KldSampling {
 }
 
 impl<X> ParticleSet<X> {
-    /// How many particles the posterior needs, by [`KldSampling::sample_size`].
+    /// The number of particles for the posterior, by [`KldSampling::sample_size`].
     ///
     /// `bin` says where a state belongs, for instance its [`grid_cell`]. The draws only count; [`resample`](Self::resample) with the result,
     /// by any scheme.

@@ -9,7 +9,7 @@ use crate::{
     tree::Tree,
 };
 
-/// A scan, ready to be matched: its points, and what they show of surfaces.
+/// A scan prepared for matching: its points and their surface normals.
 #[derive(Clone, Debug, Default)]
 pub struct Cloud {
     /// Every so many beams a point, at most one a degree: enough to be laid on another scan.
@@ -25,7 +25,7 @@ const SPACING: f64 = 0.0174;
 const MOST_BEAMS: usize = 1 << 20;
 
 impl Cloud {
-    /// The cloud of a scan: beam $`i`$ looks along `angle_min` $`+ i\,`$`angle_increment`, radians; `ranges` in metres. What is not in (0, `max_range`] is
+    /// The cloud of a scan: beam $`i`$ points along `angle_min` $`+ i\,`$`angle_increment`, radians; `ranges` in metres. What is not in (0, `max_range`] is
     /// no echo.
     ///
     /// # Errors
@@ -97,7 +97,7 @@ impl Cloud {
         Self { points, surfaces: Tree::new(self.surfaces.iter().map(carry).collect()), ..self }
     }
 
-    /// How many points of it lie on something straight.
+    /// Number of its points on straight surfaces.
     pub fn n_surface_points(&self) -> usize {
         self.surfaces.len()
     }

@@ -2,7 +2,7 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScanMatchError {
-    /// A parameter or a number of a scan's geometry without meaning.
+    /// A parameter or a number of the scan geometry is out of range.
     #[error("{what} is {value:?}, must be {must}")]
     Value {
         /// Which, with its unit.
@@ -12,7 +12,7 @@ pub enum ScanMatchError {
         /// What it must be.
         must: &'static str,
     },
-    /// Too little in a scan to find one's way by.
+    /// Too few points of a scan lie on surfaces.
     #[error("{got} points on surfaces, a match needs {needed}")]
     TooFewPoints {
         /// How many there are.
@@ -20,7 +20,7 @@ pub enum ScanMatchError {
         /// How many it takes.
         needed: usize,
     },
-    /// The covariance of the guess is none, or the guess is not finite.
+    /// The guess is not finite, or its covariance is not positive definite.
     #[error("the guess is not finite, or its covariance is not positive definite")]
     Guess,
 }

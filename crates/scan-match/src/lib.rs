@@ -1,7 +1,7 @@
-//! How a robot moved between two laser scans.
+//! Scan matching: the motion of a robot between two laser scans.
 //!
-//! Odometry says where the robot should be by now and how sure that is; the two scans say it much better in all directions in which they
-//! have walls. [`Matcher::align`] finds the motion that fits both best, and tells what the scans know of it by themselves, so that a filter can weigh them.
+//! Odometry predicts the motion with its covariance; the two scans measure it much better in all directions in which they have walls.
+//! [`Matcher::align`] finds the motion that fits both best, and returns the information of the scans alone, so a filter can weight them.
 //!
 //! ```
 //! use nalgebra::{Matrix3, Vector3};

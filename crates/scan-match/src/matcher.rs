@@ -9,7 +9,7 @@ pub struct Matcher {
     params: Params,
 }
 
-/// Where the second scan was taken, as far as is known before the scans are compared.
+/// The prior of the pose of the second scan.
 #[derive(Clone, Copy, Debug)]
 pub struct Guess<'a> {
     /// The most likely pose in the frame of the first scan.
@@ -21,14 +21,14 @@ pub struct Guess<'a> {
     pub alternative_poses: &'a [Pose2<f64>],
 }
 
-/// Where a scan was taken, seen from another one.
+/// The pose of a scan in the frame of another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
     /// The pose that fits guess and points best: `guess` ⊞ `correction`.
     pub pose: Pose2<f64>,
-    /// What that changes of the guess, in its frame: m, m, rad.
+    /// The correction of the guess, in its frame: m, m, rad.
     pub correction: Vector3<f64>,
-    /// What the points alone know of the correction, $`Λ`$: the inverse of a covariance, singular where they leave a direction open.
+    /// The information of the points alone about the correction, $`Λ`$: the inverse of a covariance, singular if a direction is undetermined.
     pub information: Matrix3<f64>,
     /// $`Λ z`$ with $`z`$ the correction that the points alone ask for.
     pub information_vector: Vector3<f64>,
@@ -55,20 +55,20 @@ impl Matcher {
     /// A matcher.
     ///
     /// # Errors
-    /// When a parameter is out of range.
+    /// Returns [`ScanMatchError::Value`] if a parameter is out of range.
     pub fn new(params: Params) -> Result<Self, ScanMatchError> {
         params.check()?;
         Ok(Self { params })
     }
 
-    /// Where `cloud` was taken in the frame of `reference`.
+    /// The pose of `cloud` in the frame of `reference`.
     ///
     /// Maximizes the posterior, the guess times a robust likelihood of the distances of points from the lines through their neighbours, by
     /// iteratively reweighted least squares with a kernel that narrows. The guess has the tails of a Student-t distribution, for wheels slip.
     /// Where its heading is in doubt, the search starts from several and the best posterior counts. [Censi 2008; Chen & Medioni 1992]
     ///
     /// # Errors
-    /// When either scan has fewer than ten points, or the guess is not a finite pose with a positive definite covariance.
+    /// Returns an error if either scan has fewer than ten points, or the guess is not a finite pose with a positive definite covariance.
     pub fn align(
         &self,
         reference: &Cloud,

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 
 use crate::{Cloud, Params};
 
-/// How badly a cloud fits another one at a pose, and how that changes with the pose, to second order.
+/// The misfit of a cloud to another one at a pose, with its derivatives by the pose to second order.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Misfit {
     /// Nats.

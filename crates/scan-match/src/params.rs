@@ -1,6 +1,6 @@
 use crate::ScanMatchError;
 
-/// How scans are matched; the defaults suit indoor lasers from 1 cm and beams 0.25° to 1° apart.
+/// Parameters of the matching; the defaults suit indoor lasers from 1 cm and beams 0.25° to 1° apart.
 ///
 /// ```
 /// use wayfix_scan_match::{Matcher, Params};

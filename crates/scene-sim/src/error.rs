@@ -2,7 +2,7 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// A parameter has no meaning.
+    /// A parameter is out of range.
     #[error("{what} is {value}, must be {must}")]
     Parameter {
         /// Which parameter, with its unit.
@@ -12,7 +12,7 @@ pub enum SimError {
         /// What it must be.
         must: &'static str,
     },
-    /// More was asked for than a simulation holds in memory.
+    /// More is requested than a simulation holds in memory.
     #[error("{what} is {got}, at most {limit} are possible")]
     TooMany {
         /// What there is too much of.

@@ -61,7 +61,7 @@ impl<'a> Simulation<'a> {
     /// Drives, and returns the log in time order; at the same stamp truth comes first, then `sensors` in their order.
     ///
     /// # Errors
-    /// When the parameters have no meaning; nothing is drawn from `streams` then.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range; nothing is then drawn from `streams`.
     pub fn run(
         &self,
         sensors: &mut [Box<dyn Sensor>],

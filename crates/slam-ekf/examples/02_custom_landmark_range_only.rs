@@ -34,7 +34,7 @@ impl LandmarkModel for BeaconReceiver {
         range.x > 0.0 && range.x.is_finite()
     }
 
-    /// One range does not place a beacon: whoever is not on the plan stays out, and the filter counts the observation as unusable.
+    /// One range does not place a beacon: a beacon that is not on the plan is not mapped, and the filter counts the observation as unusable.
     fn initialize(&self, _: &Pose2<f64>, _: &Vector1<f64>) -> NewLandmark<Vector2<f64>, Pose2<f64>> {
         NewLandmark {
             landmark: Vector2::repeat(f64::NAN),

@@ -1,6 +1,6 @@
 use crate::LandmarkId;
 
-/// Why the filter refused a call. The filter is as it was before it.
+/// Why the filter refused a call. The filter is then unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SlamError {
@@ -22,31 +22,31 @@ pub enum SlamError {
         /// Largest difference across the diagonal.
         asymmetry: f64,
     },
-    /// Sizes do not fit.
+    /// A dimension does not match.
     #[error("{what} has dimension {got}, expected {expected}")]
     Dimension {
         /// What has the wrong size.
         what: &'static str,
-        /// The size that fits.
+        /// The expected size.
         expected: usize,
-        /// The size that came.
+        /// The size given.
         got: usize,
     },
     /// A landmark with this identity is in the map already.
     #[error("landmark {0} is in the map already")]
     LandmarkExists(LandmarkId),
-    /// A measurement fits so badly that it is rejected.
+    /// A measurement is rejected as an outlier.
     #[error("an outlier: its NIS is {nis}, the gate is at {threshold}")]
     Outlier {
         /// Normalized innovation squared.
         nis: f64,
-        /// What would have passed.
+        /// The gate.
         threshold: f64,
     },
-    /// First-estimates and invariant filters need to know how robot and landmarks move together.
+    /// First-estimates and invariant filters need the symmetries of the landmark model.
     #[error("this linearization needs a landmark model that implements `symmetries`")]
     NoSymmetry,
-    /// The invariant filter moves the whole map with every correction; a compressed map defers just that.
+    /// The invariant filter moves the whole map with every correction, which a compressed map defers.
     #[error(
         "the invariant linearization moves the whole map at every correction: it needs the full form of the map"
     )]
@@ -58,7 +58,7 @@ pub enum SlamError {
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What it may be.
+        /// Its range.
         range: &'static str,
     },
 }

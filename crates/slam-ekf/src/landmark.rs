@@ -25,26 +25,26 @@ pub struct Observation<Z> {
     pub measurement: Z,
 }
 
-/// A kind of landmark and how a sensor sees it: the one trait to implement for a new kind.
+/// A kind of landmark and its measurement model: the one trait to implement for a new kind.
 ///
 /// $`z = h(x_r, m) ⊞ v,\; v ∼ N(0, R)`$, and backwards $`m = g(x_r, z)`$.
 ///
 /// **Laws**: the Jacobians are the derivatives of [`expected`](Self::expected) in tangent coordinates (body frame for the robot);
-/// [`noise`](Self::noise) is symmetric positive definite; `expected(robot, initialize(robot, z).landmark)` is `z` for every `z` the sensor can
-/// give; [`laws::landmark_model`](crate::laws::landmark_model) checks them. Where a model is undefined (a bearing to where the robot stands) it returns non-finite numbers and the filter counts the
-/// observation as rejected.
+/// [`noise`](Self::noise) is symmetric positive definite; `expected(robot, initialize(robot, z).landmark)` is `z` for every `z` of the
+/// sensor. [`laws::landmark_model`](crate::laws::landmark_model) checks them. Where a model is undefined (a bearing to the robot's own position) it returns
+/// non-finite numbers, and the filter counts the observation as rejected.
 pub trait LandmarkModel
 where
     DefaultAllocator: SlamAlloc<RobotDim<Self>, LandmarkDim<Self>, MeasurementDim<Self>>,
 {
-    /// What is estimated of the robot: `Pose2`, or more.
+    /// The robot state: `Pose2`, or more.
     type Robot: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
-    /// What is in the map: `Vector2` for points.
+    /// The landmark state: `Vector2` for points.
     type Landmark: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
-    /// What the sensor gives.
+    /// The measurement.
     type Measurement: Manifold<Scalar = f64, Dim: DimName> + fmt::Debug;
 
-    /// $`h(x_r, m)`$: the measurement to expect.
+    /// $`h(x_r, m)`$: the expected measurement.
     fn expected(&self, robot: &Self::Robot, landmark: &Self::Landmark) -> Self::Measurement;
 
     /// $`∂h/∂x_r`$. By default a central difference.
@@ -65,11 +65,11 @@ where
         numerical_jacobian(|landmark| self.expected(robot, landmark), landmark)
     }
 
-    /// $`R`$ at a measurement, where it grows with distance.
+    /// $`R`$ at a measurement; it may depend on the measured distance.
     fn noise(&self, measurement: &Self::Measurement) -> TangentMatrix<Self::Measurement>;
 
-    /// Covariance of a measurement where it only tells landmarks apart. By default [`noise`](Self::noise), which some robots inflate to correct no more
-    /// than their errors, which hang together in time, allow.
+    /// Covariance of a measurement for data association only. By default [`noise`](Self::noise), which may be inflated to account for
+    /// time-correlated errors.
     fn association_noise(&self, measurement: &Self::Measurement) -> TangentMatrix<Self::Measurement> {
         self.noise(measurement)
     }
@@ -85,9 +85,9 @@ where
         noise.clone()
     }
 
-    /// Covariance of what two measurements of one look err together, a share of their association noise. By default nothing.
+    /// Cross-covariance of the errors of two measurements in one scan, a part of their association noise. By default zero.
     ///
-    /// **Law**: the joint covariance of a look, with this off its diagonal blocks, is positive definite.
+    /// **Law**: the joint covariance of a scan, with this in its off-diagonal blocks, is positive definite.
     fn common_noise(
         &self,
         _a: &Self::Measurement,
@@ -101,14 +101,14 @@ where
         measurement.local(measurement).iter().all(|entry| entry.is_finite())
     }
 
-    /// Whether the landmark that should look like `expected` can be what was measured, beyond what the estimated coordinates tell: the stretch
-    /// of a wall, a colour. Association asks. By default: always.
+    /// Whether a landmark with the prediction `expected` is compatible with the measurement in attributes that are not estimated: the extent
+    /// of a wall, a colour. Used by data association. By default: always.
     fn is_compatible(&self, _expected: &Self::Measurement, _measurement: &Self::Measurement) -> bool {
         true
     }
 
-    /// The landmark after a look at it, with what the look tells beyond the estimated coordinates: the ends of a wall. It must be at the
-    /// same place. By default: as it was.
+    /// The landmark with the attributes that are not estimated updated by a measurement: the ends of a wall. Its estimated coordinates must
+    /// not change. By default: unchanged.
     fn extended(
         &self,
         _robot: &Self::Robot,
@@ -118,26 +118,26 @@ where
         landmark.clone()
     }
 
-    /// Whether a landmark that should look like this is within reach and view, so that not seeing it means something. By default: always.
+    /// Whether a landmark with this prediction is within range and field of view, so that no detection is a miss. By default: always.
     fn expects_detection(&self, _expected: &Self::Measurement) -> bool {
         true
     }
 
-    /// Names of the ways to move robot and map together that no measurement can see, such as "translation along x".
+    /// Names of the joint motions of robot and map that change no measurement, such as "translation along x".
     ///
-    /// None by default: then there is only the standard filter, and the observability toolbox names nothing.
+    /// None by default: then only the standard linearization is available, and the observability toolbox names no direction.
     fn symmetries(&self) -> &'static [&'static str] {
         &[]
     }
 
-    /// $`g_r`$: how the robot moves in its tangent space when the world moves, one column a symmetry, per metre or radian.
+    /// $`g_r`$: motion of the robot in its tangent space when the world moves, one column per symmetry, per metre or radian.
     ///
     /// **Law**: $`∂h/∂x_r \, g_r + ∂h/∂m \, g_m = 0`$, and the columns are independent.
     fn robot_symmetry(&self, _robot: &Self::Robot) -> DMatrix<f64> {
         DMatrix::zeros(RobotDim::<Self>::DIM, 0)
     }
 
-    /// $`g_m`$: how a landmark moves with it.
+    /// $`g_m`$: the same of a landmark.
     fn landmark_symmetry(&self, _landmark: &Self::Landmark) -> DMatrix<f64> {
         DMatrix::zeros(LandmarkDim::<Self>::DIM, 0)
     }
@@ -150,7 +150,7 @@ where
     ) -> NewLandmark<Self::Landmark, Self::Robot>;
 }
 
-/// A landmark at its start: where it is given the robot, and how that depends on the robot.
+/// A new landmark: its position given the robot, and the derivative with respect to the robot.
 ///
 /// $`m = g(x_r, z)`$, $`P_{mm} = G_r P_{rr} G_r^T + N`$, $`P_{mr} = G_r P_{rr}`$.
 #[derive(Clone, Debug)]
@@ -162,12 +162,12 @@ where
     pub landmark: L,
     /// $`G_r = ∂g/∂x_r`$.
     pub robot_jacobian: Jacobian<L, X>,
-    /// $`N`$: covariance of the landmark were the robot known. $`G_z R G_z^T`$ for a sensor that fixes the landmark at once; wider in
-    /// the directions a single measurement leaves open.
+    /// $`N`$: covariance of the landmark given the robot. $`G_z R G_z^T`$ if one measurement determines the landmark; larger in the
+    /// directions that a single measurement does not determine.
     pub covariance: TangentMatrix<L>,
 }
 
-/// What a measurement said beyond what was expected.
+/// The innovation of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Innovation<Z: Manifold<Scalar = f64>>
 where

@@ -1,4 +1,4 @@
-//! The law suite of [`LandmarkModel`]: run it on your own kinds of landmarks.
+//! The law suite of [`LandmarkModel`]: run it on a landmark model of your own.
 
 use nalgebra::{DefaultAllocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, SensorModel, TangentMatrix, laws};
@@ -7,14 +7,14 @@ pub use wayfix_estimation_traits::laws::Violation;
 
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
-/// The laws of [`LandmarkModel`], at every pair of a robot and a landmark that sees it.
+/// The laws of [`LandmarkModel`], at every pair of a robot and a landmark in view.
 ///
 /// 1. Both Jacobians are the derivatives of `expected`, and the noise is symmetric positive definite.
 /// 2. `expected(robot, initialize(robot, z).landmark)` is `z`.
 /// 3. The robot Jacobian of `initialize` is the derivative of its landmark, and its covariance is symmetric positive definite.
-/// 4. A new landmark is no surer than the measurement: $`H_m N H_m^T ⪰ R`$.
+/// 4. A new landmark is no more certain than the measurement: $`H_m N H_m^T ⪰ R`$.
 ///
-/// 5. Moving robot and landmark along a symmetry changes no measurement, and every symmetry moves the robot in a way of its own.
+/// 5. Moving robot and landmark along a symmetry changes no measurement, and the motions of the robot by the symmetries are independent.
 ///
 /// A model whose single measurement does not place a landmark says so by landmarks that are not finite; it is held to the first law only.
 ///

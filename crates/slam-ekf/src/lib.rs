@@ -1,22 +1,22 @@
-//! EKF-SLAM with honest uncertainty: where the robot is and where the landmarks are, estimated together.
+//! EKF-SLAM with consistent uncertainty: joint estimation of the robot pose and the landmark positions.
 //!
 //! The state is one robot pose and a growing number of landmarks,
 //! $`x = (x_r, m_1, …, m_n)`$, with one joint covariance. A step of the filter reads
 //!
 //! ```text
 //! predict      x_r ← f(x_r, u)                      O(n)      [predict]
-//! associate    which landmark is each sighting of   O(k n)    [DataAssociation]
-//! gate         is it compatible with it             O(k)      [Outcome::Rejected]
-//! correct      all accepted sightings together      O(k n²)   sparse H, lower triangle, never indefinite
-//! augment      certainly new ones enter the map     O(n)      tentative until confirmed
+//! associate    observations with landmarks          O(k n)    [DataAssociation]
+//! gate         chi-squared test of each innovation  O(k)      [Outcome::Rejected]
+//! correct      all accepted observations jointly    O(k n²)   sparse H, lower triangle, never indefinite
+//! augment      certainly new landmarks              O(n)      tentative until confirmed
 //! merge        duplicates                           O(n²)     [MergingParams]
-//! forget       tentative ones not seen again        O(n²)     [ConfirmationParams]
+//! remove       tentative ones not observed again    O(n²)     [ConfirmationParams]
 //! ```
 //!
 //! With [`MapForm::Compressed`] the `n` in predict and correct is the number of landmarks around the robot, with the same estimates.
 //!
-//! A robot meets new kinds of landmarks through [`LandmarkModel`]: what to expect, how noisy, how to start. Everything else
-//! is the same for points, walls or radio beacons (`examples/02_custom_landmark_range_only.rs`); [`laws`] checks a model of your own.
+//! A new kind of landmark implements [`LandmarkModel`]: expected measurement, noise, initialization. The rest is the same for
+//! points, walls or radio beacons (`examples/02_custom_landmark_range_only.rs`); [`laws`] checks a model of your own.
 //! `examples/01_slam_in_a_loop.rs` is a whole filter in six steps.
 //!
 //! [Andrade-Cetto 2003, section 2; Dissanayake et al. 2001]

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::Manifold;
 
 use crate::{Innovation, LandmarkId};
 
-/// What became of one observation.
+/// The outcome of one observation.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Outcome<Z: Manifold<Scalar = f64>>
@@ -12,20 +12,20 @@ where
 {
     /// It corrected the state.
     Accepted {
-        /// The landmark it was of.
+        /// Its landmark.
         landmark: LandmarkId,
-        /// What it said.
+        /// Its innovation.
         innovation: Innovation<Z>,
-        /// Factor by which its noise was enlarged because it fits badly; 1 when it fits.
+        /// Factor on its noise because it is outside the gate; 1 inside.
         noise_scale: f64,
     },
-    /// It was associated, but lies outside the gate: an outlier. The state is untouched.
+    /// It was associated, but lies outside the gate: an outlier. The state is unchanged.
     Rejected {
-        /// The landmark it was said to be of.
+        /// The associated landmark.
         landmark: LandmarkId,
-        /// What it said.
+        /// Its innovation.
         innovation: Innovation<Z>,
-        /// The NIS that would have passed.
+        /// The gate.
         threshold: f64,
     },
     /// It started a new landmark.
@@ -33,43 +33,43 @@ where
         /// The landmark it started.
         landmark: LandmarkId,
     },
-    /// It was so far from a tentative landmark that it started that landmark anew.
+    /// It contradicted a tentative landmark and restarted it.
     Restarted {
         /// The landmark it started.
         landmark: LandmarkId,
     },
-    /// It is neither certainly old nor certainly new, so nothing was done with it.
+    /// It is neither certainly old nor certainly new, and was ignored.
     Ambiguous,
     /// The sensor read no identity and the association needs one.
     Unlabelled,
-    /// The same landmark was observed before in this step.
+    /// An earlier observation of this step is of the same landmark.
     Duplicate {
         /// The landmark.
         landmark: LandmarkId,
     },
-    /// NaN, infinite, or a measurement the model cannot use (a range that is not positive, a noise that is no covariance, a landmark
-    /// that cannot start or cannot be seen from here).
+    /// NaN, infinite, or unusable for the model (a range that is not positive, an invalid noise covariance, a landmark that cannot start or
+    /// cannot be observed from here).
     Unusable,
 }
 
-/// What became of every observation of a step, in the order they came.
+/// The outcome of every observation of a step, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepReport<Z: Manifold<Scalar = f64>>
 where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
-    /// One outcome an observation.
+    /// One outcome per observation.
     pub outcomes: Vec<Outcome<Z>>,
-    /// Landmarks that were found to be one.
+    /// Merged landmarks.
     pub merges: Vec<Merge>,
 }
 
-/// Two landmarks of the map that were found to be one.
+/// Two landmarks of the map that were merged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Merge {
-    /// The one that stays.
+    /// The one that remains.
     pub kept: LandmarkId,
-    /// The one that left the map.
+    /// The one that was removed.
     pub removed: LandmarkId,
 }
 

@@ -1,13 +1,13 @@
 use crate::LandmarkId;
 
-/// All that a filter knows, as a plain value: what a robot saves to go on after a power cut.
+/// The complete state of a filter as a plain value, to be saved and resumed after a power cut.
 ///
-/// [`EkfSlam::snapshot`](crate::EkfSlam::snapshot) takes it, [`EkfSlam::resume`](crate::EkfSlam::resume) goes on from it. With the feature `serde` it can be
-/// stored in any format that keeps the bits of an `f64`. Model and parameters are not in it: they are the robot's, not the map's.
+/// [`EkfSlam::snapshot`](crate::EkfSlam::snapshot) takes it, [`EkfSlam::resume`](crate::EkfSlam::resume) continues from it. With the feature `serde` it can be
+/// stored in any format that keeps the bits of an `f64`. It does not contain model and parameters.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Snapshot<R, L> {
-    /// How many looks there were.
+    /// Number of updates.
     pub n_updates: usize,
     /// The robot's mean.
     pub robot: R,
@@ -29,15 +29,15 @@ pub struct SavedLandmark<L> {
     pub id: LandmarkId,
     /// Where it is.
     pub mean: L,
-    /// Where it was when it was placed first, which is where a first-estimates filter linearizes.
+    /// Its first estimate, at which a first-estimates filter linearizes.
     pub first: L,
-    /// Looks in which it was seen.
+    /// Number of scans with a detection.
     pub n_detections: usize,
-    /// Looks that should have shown it and did not.
+    /// Number of scans with it in view and no detection.
     pub n_missed: usize,
-    /// Of these, since it was seen last.
+    /// Of these, those since its last detection.
     pub n_missed_in_a_row: usize,
-    /// The look in which it was seen last.
+    /// The update of its last detection.
     pub last_seen: usize,
 }
 

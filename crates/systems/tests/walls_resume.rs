@@ -48,7 +48,7 @@ fn maps_of_points_and_other_rules_are_refused() {
     assert!(matches!(error.downcast_ref(), Some(SavedMapError::Kind { what: "association", .. })), "{error}");
 }
 
-/// Whoever writes the checksum anew after a change gets as far as the filter's own checks: an error or a filter, never a panic.
+/// With a recomputed checksum, the filter's own checks decide: an error or a filter, never a panic.
 #[test]
 fn a_forged_state_never_panics() {
     let (bytes, later) = (saved(&office(260)), office(280));

@@ -133,7 +133,7 @@ fn a_damaged_file_is_refused_with_its_reason() {
     }
 }
 
-/// Whoever writes the checksum anew after a change gets as far as the filter's own checks, and no further: an error or a filter, never a panic.
+/// With a recomputed checksum, the filter's own checks decide: an error or a filter, never a panic.
 #[test]
 fn a_forged_state_never_panics() {
     let scratch = Scratch::new();

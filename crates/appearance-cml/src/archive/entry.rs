@@ -52,7 +52,7 @@ impl Entry {
         writer.0
     }
 
-    /// `Err` with what has no meaning.
+    /// `Err` says what is wrong if the bytes cannot be decoded or are too long.
     pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, &'static str> {
         let mut reader = Reader(bytes);
         let entry = read(&mut reader).ok_or("it cannot be decoded")?;

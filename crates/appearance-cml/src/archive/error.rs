@@ -26,7 +26,7 @@ pub enum ArchiveError {
         /// Where it begins.
         offset: usize,
     },
-    /// The checksum holds, and yet an entry has no meaning.
+    /// The checksum of an entry is right, but its content is invalid.
     #[error("entry {index}: {what}")]
     Content {
         /// Its place, from 0.

@@ -73,8 +73,8 @@ impl MapArchive {
     /// The map in bytes.
     ///
     /// # Errors
-    /// When they are no map, of another version, damaged, or without meaning. An entry that is cut short at the very end is no error:
-    /// [`end`](Self::end) tells of it.
+    /// Returns an error if the bytes are not a map, of another version, damaged, or if an entry is invalid ([`ArchiveError::Content`]).
+    /// A last entry that is cut short is no error: [`end`](Self::end) reports it.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ArchiveError> {
         let (params, mut rest) = open(bytes)?;
         let mut archive = Self {

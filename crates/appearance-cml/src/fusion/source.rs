@@ -4,17 +4,17 @@ use wayfix_gaussian_core::{Gaussian, Mixture, check_covariance};
 
 use crate::{AppearanceError, PoseHypothesis};
 
-/// Anything that says where the robot may be: GPS, Wi-Fi, a laser, a person who points at the map.
+/// A source of pose hypotheses: GPS, Wi-Fi, a laser, a person who points at the map.
 ///
-/// **Law**: weights are finite, not negative and at most 1, where 1 says "here, if anywhere".
+/// **Law**: weights are in [0, 1]; 1 means that no other pose is possible.
 pub trait PoseSource {
-    /// What the source says of this moment; nothing at all is a fine answer.
+    /// The hypotheses of the source at this time; the list may be empty.
     ///
-    /// `predicted` is the belief that odometry has moved here, `None` before the first; a source that knows only a part of the pose takes
+    /// `predicted` is the belief after the odometry prediction, `None` before the first; a source that measures only a part of the pose takes
     /// the rest from it.
     ///
     /// # Errors
-    /// When what was measured has no meaning; the localizer then leaves its state as it is.
+    /// Returns an [`AppearanceError`] if the measurement is invalid; the localizer then keeps its state.
     fn hypotheses(
         &self,
         predicted: Option<&Mixture<Pose2<f64>>>,

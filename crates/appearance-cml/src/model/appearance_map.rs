@@ -59,7 +59,8 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// A map from its parts; `next` is the number of the next reference.
     ///
     /// # Errors
-    /// When a reference has no view, no place, or one that has no meaning, or the numbers do not fit.
+    /// Returns an error if a place is invalid ([`Reference::validate`]), and [`AppearanceError::NoSuchReference`] if a reference has no view,
+    /// no place, or a number that is not below `next`; [`AppearanceError::Parameter`] if there are more views than references.
     pub fn from_parts(
         search: S,
         references: BTreeMap<ReferenceId, Reference>,
@@ -130,7 +131,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Makes the view a reference of this place, whatever is there already: for a map that is taught with known poses.
     ///
     /// # Errors
-    /// When the pose has no meaning or all numbers are given out.
+    /// Returns [`AppearanceError::Gaussian`] if the pose is invalid, and [`AppearanceError::ReferenceIdsExhausted`] if no number is left.
     pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceError> {
         let gaussian = Gaussian::new(*pose.mean(), *pose.covariance())?;
         self.insert(view, Reference { places: vec![PlaceComponent { weight: 1.0, count: 1.0, gaussian }] })

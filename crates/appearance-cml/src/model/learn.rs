@@ -35,7 +35,8 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// adaptation of the weights, by which references are kept or forgotten.
     ///
     /// # Errors
-    /// When the pose has no meaning or all numbers are given out; the map is as before.
+    /// Returns [`AppearanceError::Gaussian`] if the pose is invalid, and [`AppearanceError::ReferenceIdsExhausted`] if no number is left;
+    /// the map is then unchanged.
     pub fn learn(
         &mut self,
         view: D,

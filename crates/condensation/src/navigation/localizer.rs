@@ -92,7 +92,7 @@ impl Localizer {
         Ok(())
     }
 
-    /// Belief after a look; `measurement` are the features of the view.
+    /// Belief after a view; `measurement` are the features of the view.
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] or [`CondensationError::NotFinite`]; the belief is as it was.

@@ -23,7 +23,7 @@ pub trait World<A> {
 pub struct NavigatorParams {
     /// Confidence at which the robot stops at the goal.
     pub confidence: f64,
-    /// For how many looks in a row it must be that confident: one look can mislead.
+    /// Number of consecutive views with that confidence: one view can mislead.
     pub confirmations: usize,
     /// Most moves of a run.
     pub max_steps: usize,

@@ -4,7 +4,7 @@ use crate::BestState;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Arrival {
-    /// The robot believes with the stated confidence that it is at the goal.
+    /// The robot is at the goal with the stated confidence.
     Reached,
     /// The steps are used up and it is not sure enough.
     Unsure,

@@ -27,7 +27,7 @@ impl Trip {
     /// Drives along `route` and describes every view with the default parameters.
     ///
     /// # Errors
-    /// When the parameters of the simulation have no meaning.
+    /// Returns an error if a parameter of the simulation is out of range.
     pub fn drive(building: &Building, route: Route, params: IndoorParams, streams: Streams) -> Result<Self> {
         let camera = params.camera;
         // As the simulated camera unrolls its views; everything else is the default.

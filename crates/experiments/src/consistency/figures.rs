@@ -42,7 +42,7 @@ const POSE: usize = 3;
 /// ```
 ///
 /// # Errors
-/// When a parameter has no meaning or a filter refuses.
+/// Returns an error if `n_runs` is 0, a parameter is out of range, the robot never moves or a filter fails.
 pub fn monte_carlo(laps: &Laps, n_runs: u32, seed: u64) -> Result<MonteCarlo> {
     ensure!(n_runs >= 1, "an average needs a run");
     let mut runs: [Vec<Vec<ConsistencySample>>; 4] = Default::default();

@@ -80,7 +80,7 @@ impl Laps {
     /// A log of the laps: other noise for every seed.
     ///
     /// # Errors
-    /// When a number has no meaning.
+    /// Returns an error if a parameter is out of range.
     pub fn simulate(&self, seed: u64) -> Result<Vec<Record>> {
         ensure!(self.n_laps <= MOST_LAPS, "{} laps are more than {MOST_LAPS}", self.n_laps);
         Ok(self.scene().simulate(&mut Streams::new(ChaCha8Rng::seed_from_u64(seed)))?)

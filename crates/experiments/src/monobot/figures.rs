@@ -16,7 +16,7 @@ pub struct MonteCarlo {
 /// Runs `n_runs` drives.
 ///
 /// # Errors
-/// When a parameter has no meaning or the filter refuses.
+/// Returns an error if `n_runs` is below 2, a parameter is out of range or the filter fails.
 pub fn monte_carlo(
     params: &MonobotParams,
     reference: Reference,

@@ -3,7 +3,7 @@ use anyhow::Result;
 use super::{Blessed, Bound, Done, Options, Plan, PlannedRun, over_seeds::over_seeds, plan::judge};
 use wayfix_evaluation::report::{Machine, Report, Run, Suite, commit};
 
-/// The report of everything that was done, in the order of the plans, whoever did it: figures over all seeds, judged.
+/// The report of all runs, in the order of the plans: figures over all seeds, with a verdict for each.
 ///
 /// # Errors
 /// When a plan or the blessed figures cannot be read or written.

@@ -8,7 +8,7 @@ use crate::{GaussianError, check_covariance, cholesky, gaussian::check_dimension
 ///
 /// $`p(Σ) ∝ |Σ|^{-(ν + d + 1)/2}\, e^{-\frac12 \mathrm{tr}(Ψ Σ^{-1})}`$
 ///
-/// Where a covariance is estimated it counts like $`ν + d + 1`$ earlier groups whose mean scatter is the mode, $`Ψ / (ν + d + 1)`$.
+/// In the estimation of a covariance it counts as $`ν + d + 1`$ prior groups whose mean scatter is the mode, $`Ψ / (ν + d + 1)`$.
 /// A density with an integral is worth at least $`2d`$ of them, which outvotes small collections; fewer are allowed: the estimate is proper
 /// all the same, only the constant in the density is then taken as 1.
 ///
@@ -32,7 +32,7 @@ impl InverseWishart {
     /// By its scale matrix $`Ψ`$ and degrees of freedom $`ν`$.
     ///
     /// # Errors
-    /// When the scale is not a covariance, or $`ν`$ is not above $`-(d + 1)`$ (there would be no mode) or not finite.
+    /// Returns an error if the scale is not a covariance, or $`ν`$ is not above $`-(d + 1)`$ (there would be no mode) or not finite.
     pub fn new(mut scale: DMatrix<f64>, degrees_of_freedom: f64) -> Result<Self, GaussianError> {
         check_covariance("scale", &scale)?;
         symmetrize(&mut scale);
@@ -45,7 +45,7 @@ impl InverseWishart {
         Ok(Self { scale, degrees_of_freedom, log_normalizer })
     }
 
-    /// By the covariance at which the density is highest, and how many groups it is worth, $`ν + d + 1`$.
+    /// From the mode of the covariance and its equivalent number of groups, $`ν + d + 1`$.
     ///
     /// # Errors
     /// As for [`new`](Self::new): `pseudo_groups` has to be positive and finite.
@@ -67,7 +67,7 @@ impl InverseWishart {
         self.degrees_of_freedom
     }
 
-    /// Where the density is highest: $`Ψ / (ν + d + 1)`$.
+    /// The mode: $`Ψ / (ν + d + 1)`$.
     pub fn mode(&self) -> DMatrix<f64> {
         &self.scale / self.pseudo_groups()
     }
@@ -75,7 +75,7 @@ impl InverseWishart {
     /// $`\log p(Σ)`$ in nats.
     ///
     /// # Errors
-    /// When `covariance` has another dimension or is not a covariance.
+    /// Returns an error if `covariance` has another dimension or is not a covariance.
     pub fn log_density(&self, covariance: &DMatrix<f64>) -> Result<LogWeight, GaussianError> {
         check_dimension("covariance", self.scale.nrows(), covariance.nrows())?;
         check_covariance("given", covariance)?;
@@ -84,7 +84,7 @@ impl InverseWishart {
         Ok(self.log_normalizer - 0.5 * (self.pseudo_groups() * factor.ln_determinant() + trace))
     }
 
-    /// How many groups the prior is worth where a covariance is estimated.
+    /// The equivalent number of groups of the prior in the estimation of a covariance.
     pub fn pseudo_groups(&self) -> f64 {
         self.degrees_of_freedom + self.scale.nrows() as f64 + 1.0
     }

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::LogWeight;
 use super::posterior::GroupPosterior;
 use crate::{Gaussian, GaussianError, GroupEvidence, HierarchicalParams, MeanPrior, cholesky, symmetrize};
 
-/// What the groups are expected to be like under $`(μ, Σ)`$, summed: all that the maximization needs. With it, $`\log p(μ, Σ, y)`$.
+/// The expected sufficient statistics of the groups under $`(μ, Σ)`$, summed, and $`\log p(μ, Σ, y)`$.
 pub(super) struct Expectation {
     n_groups: f64,
     /// $`\sum_j E[θ_j - μ]`$.

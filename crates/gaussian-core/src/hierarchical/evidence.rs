@@ -2,7 +2,7 @@ use wayfix_estimation_traits::LogWeight;
 
 use crate::{GaussianError, index_set::complement};
 
-/// All that a group's observations say about its own mean $`θ_j`$: per coordinate a mean and its variance.
+/// The sufficient statistics of a group's observations of its own mean $`θ_j`$: per coordinate a mean and its variance.
 ///
 /// An observation is some coordinates of $`θ_j`$ plus independent noise of known variance. Such observations pool without loss:
 /// precisions add, so a group of a thousand costs what a group of one does.
@@ -30,7 +30,7 @@ struct Estimate {
 }
 
 impl GroupEvidence {
-    /// A group of `dimension` coordinates of which nothing is seen yet.
+    /// A group of `dimension` coordinates without observations.
     pub fn new(dimension: usize) -> Self {
         Self { coordinates: vec![None; dimension], log_agreement: 0.0 }
     }

@@ -6,10 +6,10 @@ use crate::{
     Gaussian, GaussianError, GroupEvidence, HierarchicalParams, IterationError, gaussian::check_dimension,
 };
 
-/// A Gaussian learned from groups, and how it was found.
+/// A Gaussian estimated from groups, and the course of the iteration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HierarchicalFit {
-    /// $`N(μ, Σ)`$: where a new group's $`θ`$ is to be expected.
+    /// $`N(μ, Σ)`$: the distribution of a new group's $`θ`$.
     pub gaussian: Gaussian<DVector<f64>>,
     /// $`\log p(y, μ, Σ)`$ in nats, at the start and after every iteration; it never falls, but for rounding.
     pub objective: Vec<LogWeight>,
@@ -22,11 +22,11 @@ impl HierarchicalFit {
     }
 }
 
-/// Learns from groups what the next one will be like: the mode of $`p(μ, Σ \mid y)`$. [Schulz & Fox 2004, Eq. 10]
+/// Estimates the distribution of groups from their observations: the mode of $`p(μ, Σ \mid y)`$. [Schulz & Fox 2004, Eq. 10]
 ///
 /// Group $`j`$ has its own $`θ_j ∼ N(μ, Σ)`$ and shows some of its coordinates through noise. The $`θ_j`$ are integrated out in closed
 /// form, and $`\log p(y \mid μ, Σ) + \log p(μ, Σ)`$ climbs by expectation maximization [Dempster, Laird & Rubin 1977], every step of which
-/// is at least as high as the one before. Coordinates not seen are taken as missing at random. Groups without any observation say nothing.
+/// is at least as high as the one before. Coordinates not seen are taken as missing at random. Groups without any observation have no effect.
 /// Where much is missing there may be several optima; this finds the one above independent coordinates, from where it starts.
 ///
 /// ```
@@ -73,7 +73,7 @@ pub fn fit_hierarchical(
     }
 }
 
-/// The groups that say something, when they and the hyperpriors together determine a Gaussian.
+/// The groups with observations, if they and the hyperpriors together determine a Gaussian.
 fn check<'a>(
     groups: &'a [GroupEvidence],
     params: &HierarchicalParams,

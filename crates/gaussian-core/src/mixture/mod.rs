@@ -1,4 +1,4 @@
-//! Weighted sums of Gaussians, and ways to keep them small.
+//! Weighted sums of Gaussians, and methods to reduce them.
 
 mod density;
 mod log_sum_exp;

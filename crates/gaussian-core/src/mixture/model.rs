@@ -30,7 +30,7 @@ where
     /// A mixture of weighted components; weights need not be normalized.
     ///
     /// # Errors
-    /// When there are no components, dimensions differ, a weight is negative or not finite; [`GaussianError::NoWeight`] when all are zero.
+    /// Returns an error if there are no components, dimensions differ, a weight is negative or not finite; [`GaussianError::NoWeight`] when all are zero.
     pub fn from_weights(weighted: Vec<(f64, Gaussian<X>)>) -> Result<Self, GaussianError> {
         if let Some(index) = weighted.iter().position(|(weight, _)| !(*weight >= 0.0 && weight.is_finite())) {
             return Err(GaussianError::Weight { index, value: weighted[index].0 });

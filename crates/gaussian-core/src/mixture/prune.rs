@@ -32,7 +32,7 @@ where
     /// Keeps the `most` heaviest components, earlier ones among equals, in their order, and normalizes.
     ///
     /// # Errors
-    /// When `most` is 0.
+    /// Returns an error if `most` is 0.
     pub fn cap(self, most: usize) -> Result<Self, GaussianError> {
         check_max_components(most)?;
         let mut ranked: Vec<usize> = (0..self.len()).collect();

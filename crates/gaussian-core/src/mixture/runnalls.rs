@@ -24,7 +24,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When `most` is 0, a covariance (unchecked) is not positive definite or a merge finds no mean.
+    /// Returns an error if `most` is 0, a covariance (unchecked) is not positive definite or a merge finds no mean.
     pub fn reduce_runnalls(self, most: usize) -> Result<Self, IterationError<X>> {
         check_max_components(most)?;
         let mut hypotheses =
@@ -101,7 +101,7 @@ where
 {
     let log_weight = log_sum_exp(&[first_weight, second_weight]);
     if log_weight == f64::NEG_INFINITY {
-        return Ok((log_weight, first.clone())); // two dead hypotheses make a dead one
+        return Ok((log_weight, first.clone())); // two hypotheses of zero weight
     }
     let shares = [(first_weight - log_weight).exp(), (second_weight - log_weight).exp()];
     Ok((log_weight, moment_matched(&shares, &[first.clone(), second.clone()])?))

@@ -24,7 +24,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When `most` is 0, a covariance (unchecked) is not positive definite or a merge finds no mean.
+    /// Returns an error if `most` is 0, a covariance (unchecked) is not positive definite or a merge finds no mean.
     pub fn reduce_west(self, most: usize) -> Result<Self, IterationError<X>> {
         check_max_components(most)?;
         let mut weighted = self.into_log_weighted();

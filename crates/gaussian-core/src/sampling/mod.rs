@@ -1,4 +1,4 @@
-//! Random points, for those who have a generator: feature `sampling`.
+//! Random points from a given generator: feature `sampling`.
 
 mod gaussian;
 mod mixture;

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, StateAlloc, to_f64};
 
 use crate::{Gaussian, GaussianError, cholesky};
 
-/// How far out sigma points lie and how much the centre weighs. [Wan & van der Merwe 2000]
+/// Spread and weights of the sigma points. [Wan & van der Merwe 2000]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnscentedParams {
     /// Spread: the points lie $`α \sqrt{n + κ}`$ sigmas out. Positive.

@@ -19,7 +19,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When sizes differ, something is not finite, or $`A`$ has dependent rows so that the result is flat.
+    /// Returns an error if sizes differ, something is not finite, or $`A`$ has dependent rows so that the result is flat.
     pub fn affine<M: Dim>(
         &self,
         matrix: &OMatrix<T, M, D>,
@@ -52,7 +52,7 @@ where
     /// ```
     ///
     /// # Errors
-    /// When sizes differ, something is not finite, or the Jacobian has dependent rows so that the result is flat.
+    /// Returns an error if sizes differ, something is not finite, or the Jacobian has dependent rows so that the result is flat.
     pub fn linearized<Z>(
         &self,
         function: impl FnOnce(&X) -> Z,

@@ -6,7 +6,7 @@ use crate::{
     sigma::weighted_mean::weighted_mean_near, symmetrize, weighted_mean,
 };
 
-/// What becomes of a Gaussian under a function, by sigma points.
+/// The unscented transform of a Gaussian under a function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnscentedTransform<X: Manifold, Z: Manifold>
 where
@@ -63,7 +63,7 @@ where
     /// The transformed Gaussian.
     ///
     /// # Errors
-    /// When the covariance is singular.
+    /// Returns an error if the covariance is singular.
     pub fn into_gaussian(self) -> Result<Gaussian<Z>, GaussianError> {
         Gaussian::new(self.mean, self.covariance)
     }

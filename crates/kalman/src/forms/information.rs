@@ -10,7 +10,7 @@ use crate::{
     linearize::{linearize_motion, linearize_sensor},
 };
 
-/// The information form: carries $`Λ = P^{-1}`$, so that measurements add up.
+/// The information form: stores $`Λ = P^{-1}`$, so the information of measurements is additive.
 ///
 /// Update: $`Λ = Λ + H^T R^{-1} H`$; predict: $`Λ = (F Λ^{-1} F^T + Q)^{-1}`$. [Thrun et al. 2005, Table 3.5]
 /// Everything is solved with Cholesky factors.
@@ -31,7 +31,7 @@ impl<X: Manifold> InformationBelief<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
-    /// Only what has a covariance is a belief: [`Form::gaussian`] cannot fail.
+    /// The matrix is always invertible, so [`Form::gaussian`] cannot fail.
     fn checked(mean: X, information: TangentMatrix<X>) -> Checked<Self> {
         inverse("information", &mean, &information)?;
         Ok(Self { mean, information })
@@ -104,7 +104,7 @@ where
         let pull = weighted * noise.solve(innovation.residual());
         let offset = cholesky("posterior information", &information)?.solve(&pull);
         let mean = check::moved("posterior mean", &belief.mean, &offset)?;
-        // Information is carried by the inverse of what carries covariance: the chart the other way.
+        // Information is transported by the inverse of the Jacobian for covariances: the chart in the other direction.
         if let Some(back) = transport(&mean, &belief.mean) {
             information = back.tr_mul(&information) * back;
             symmetrize(&mut information);
@@ -113,7 +113,7 @@ where
     }
 }
 
-/// The inverse of a positive definite matrix: what this form is about, and the one place where it is formed.
+/// The inverse of a positive definite matrix; the only place where it is formed.
 fn inverse<X: Manifold>(what: &'static str, point: &X, matrix: &TangentMatrix<X>) -> Checked<TangentMatrix<X>>
 where
     DefaultAllocator: StateAlloc<X::Dim>,

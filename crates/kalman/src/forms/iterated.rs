@@ -9,15 +9,16 @@ use crate::{
     check, error::Checked, linearize::linearize_sensor,
 };
 
-/// The iterated extended filter: the update relinearizes at its own result until it settles, which is Gauss-Newton on
+/// The iterated extended filter: the update relinearizes at its own result until convergence, which is Gauss-Newton on
 /// $`\|x ⊟ \hat x\|^2_P + \|z ⊟ h(x)\|^2_R`$. [Bell & Cathey 1993]
 ///
-/// Each iteration works in the tangent space at its iterate, where the prior is seen to first order. [He et al. 2021, §IV] The reported innovation is that of the prediction, as for every other form.
+/// Each iteration works in the tangent space at its iterate, to which the prior is transformed to first order. [He et al. 2021, §IV]
+/// The reported innovation is that of the prediction, as for every other form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IteratedExtended {
-    /// Most relinearizations before giving up; default 20.
+    /// Maximum number of relinearizations; default 20.
     pub max_iterations: usize,
-    /// Settled when no component moves by more than this many prior standard deviations; default 1e-6 (never below $`\sqrt ε`$).
+    /// Converged when no component moves by more than this many prior standard deviations; default 1e-6 (never below $`\sqrt ε`$).
     pub tolerance: f64,
 }
 
@@ -70,7 +71,7 @@ where
         for _ in 0..self.max_iterations {
             let linear = linearize_sensor(sensor, &point, measurement)?;
             let (to_prior, prior) = belief.in_chart_at(&point)?.into_parts();
-            // What would remain of the residual at the prior mean, by this linearization.
+            // The residual at the prior mean by this linearization.
             let residual = &linear.residual - &linear.jacobian * &to_prior;
             let fit = Innovation::<X, S::Measurement>::of_linearized(
                 residual,

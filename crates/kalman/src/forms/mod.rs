@@ -1,4 +1,4 @@
-//! The forms a Gaussian filter can take.
+//! The forms of a Gaussian filter.
 
 mod extended;
 mod information;

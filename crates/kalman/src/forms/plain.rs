@@ -7,9 +7,9 @@ use crate::{
     error::Checked, linearize::linearize_sensor,
 };
 
-/// The faster sibling of [`Extended`]: $`P = P - K C^T`$ instead of the form of Joseph.
+/// A faster variant of [`Extended`]: $`P = P - K C^T`$ instead of the form of Joseph.
 ///
-/// For well-conditioned problems. Where rounding makes the difference indefinite it answers with an error, sooner than [`Extended`] would.
+/// For well-conditioned problems. If rounding makes the difference indefinite it returns an error, earlier than [`Extended`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlainExtended;
 

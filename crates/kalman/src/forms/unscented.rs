@@ -8,7 +8,7 @@ use crate::{Extended, Form, Innovation, algebra::transport::transported, check, 
 
 /// The unscented filter with additive noise, on any manifold: sigma points instead of Jacobians.
 ///
-/// The posterior covariance is summed from what the gain leaves of each sigma point,
+/// The posterior covariance is the sum over the corrected deviations of the sigma points,
 /// $`P = \sum_i w_i (χ_i - K ζ_i)(χ_i - K ζ_i)^T + K R K^T`$, the form of Joseph for sigma points, where the textbook's
 /// $`P - K S K^T`$ loses positive definiteness. [Wan & van der Merwe 2000]; means on manifolds as in [Hertzberg et al. 2013].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -79,7 +79,7 @@ where
     }
 }
 
-/// Sigma points and what a sensor sees of them, as deviations from their means.
+/// Sigma points and their predicted measurements, as deviations from their means.
 struct Spread<X: Manifold, Z: Manifold<Scalar = X::Scalar>>
 where
     DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,

@@ -11,10 +11,10 @@ use crate::{
     error::Checked,
 };
 
-/// What a linear sensor says to a [`KalmanFilter`].
+/// The innovation of a linear sensor in a [`KalmanFilter`].
 pub type LinearInnovation<T, D, M> = Innovation<OVector<T, D>, OVector<T, M>>;
 
-/// What becomes of a gated measurement in a [`KalmanFilter`].
+/// The outcome of a gated measurement in a [`KalmanFilter`].
 pub type LinearUpdate<T, D, M> = Update<OVector<T, D>, OVector<T, M>>;
 
 /// The Kalman filter: linear motion, linear sensors, a Gaussian.
@@ -54,7 +54,7 @@ where
     /// A filter that starts from `prior`.
     ///
     /// # Errors
-    /// When sizes do not fit or the prior's covariance is not positive definite beyond rounding.
+    /// Returns an error if sizes do not match or the prior's covariance is not positive definite beyond rounding.
     pub fn new(motion: LinearMotion<T, D>, prior: Gaussian<OVector<T, D>>) -> Result<Self, KalmanError> {
         let n = motion.transition().nrows();
         let (mean, mut covariance) = prior.into_parts();
@@ -66,7 +66,7 @@ where
         Ok(Self { motion, estimate: Gaussian::from_parts_unchecked(mean, covariance), floor: T::zero() })
     }
 
-    /// What is believed now.
+    /// The present belief.
     pub fn estimate(&self) -> &Gaussian<OVector<T, D>> {
         &self.estimate
     }
@@ -78,7 +78,7 @@ where
     /// $`x = F x + u,\; P = F P F^T + Q`$; `None` for free motion.
     ///
     /// # Errors
-    /// When the displacement has the wrong size or something overflows; the filter is unchanged.
+    /// Returns an error if the displacement has the wrong size or on overflow; the filter is then unchanged.
     #[inline(always)]
     pub fn predict(&mut self, displacement: Option<&OVector<T, D>>) -> Result<(), KalmanError> {
         let transition = self.motion.transition();
@@ -101,7 +101,7 @@ where
     /// Corrects by `measurement`, in the form of Joseph.
     ///
     /// # Errors
-    /// When the measurement is unusable; the filter is unchanged.
+    /// Returns an error if the measurement is invalid; the filter is then unchanged.
     #[inline(always)]
     pub fn update<M: Dim>(
         &mut self,
@@ -119,7 +119,7 @@ where
     /// Corrects by `measurement` with $`P = P - K C^T`$: half the work of [`update`](Self::update), for well-conditioned problems.
     ///
     /// # Errors
-    /// When the measurement is unusable or rounding makes the difference indefinite; the filter is unchanged.
+    /// Returns an error if the measurement is invalid or rounding makes the difference indefinite; the filter is then unchanged.
     #[inline(always)]
     pub fn update_plain<M: Dim>(
         &mut self,
@@ -136,10 +136,10 @@ where
         Ok(innovation)
     }
 
-    /// Corrects by `measurement` when there is one and `gate` lets it in, in the form of Joseph.
+    /// Corrects by `measurement` in the form of Joseph, if there is one and `gate` accepts it.
     ///
     /// # Errors
-    /// When the measurement is unusable; the filter is unchanged.
+    /// Returns an error if the measurement is invalid; the filter is then unchanged.
     pub fn update_gated<M: Dim>(
         &mut self,
         sensor: &LinearSensor<OVector<T, D>, OVector<T, M>>,
@@ -158,10 +158,10 @@ where
         Ok(Update::Accepted { innovation })
     }
 
-    /// What `measurement` would say, without using it.
+    /// The innovation of `measurement`, without a correction.
     ///
     /// # Errors
-    /// When the measurement is unusable.
+    /// Returns an error if the measurement is invalid.
     #[inline(always)]
     pub fn innovation<M: Dim>(
         &self,
@@ -216,7 +216,7 @@ where
     }
 }
 
-/// Positive definite, but by how much nobody knows.
+/// Positive definite, with an unknown smallest eigenvalue.
 #[cold]
 #[inline(never)]
 fn proved_by_elimination<T: RealField + Copy, D: Dim>(

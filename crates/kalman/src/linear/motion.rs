@@ -31,7 +31,7 @@ where
     /// Transition matrix $`F`$ and noise $`Q`$ (positive semidefinite).
     ///
     /// # Errors
-    /// When sizes do not fit, something is not finite, or $`Q`$ is not symmetric positive semidefinite.
+    /// Returns an error if sizes do not match, an entry is not finite, or $`Q`$ is not symmetric positive semidefinite.
     pub fn new(transition: OMatrix<T, D, D>, mut noise: OMatrix<T, D, D>) -> Result<Self, KalmanError> {
         let n = transition.nrows();
         check::dimension("transition matrix", n, transition.ncols())?;
@@ -74,7 +74,7 @@ where
     fn propagate(&self, state: &OVector<T, D>, control: &Option<OVector<T, D>>) -> OVector<T, D> {
         let moved = &self.transition * state;
         match control {
-            // A displacement of the wrong size cannot be added; NaN tells the filter to refuse it.
+            // A displacement of the wrong size cannot be added; the filter refuses the NaN.
             Some(displacement) if displacement.nrows() != moved.nrows() => moved * T::zero() / T::zero(),
             Some(displacement) => moved + displacement,
             None => moved,

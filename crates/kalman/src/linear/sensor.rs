@@ -32,7 +32,7 @@ where
     /// Measurement matrix $`H`$ and noise $`R`$ (positive definite).
     ///
     /// # Errors
-    /// When sizes do not fit, something is not finite, or $`R`$ is not symmetric positive definite.
+    /// Returns an error if sizes do not match, an entry is not finite, or $`R`$ is not symmetric positive definite.
     pub fn new(matrix: OMatrix<T, M, D>, mut noise: OMatrix<T, M, M>) -> Result<Self, KalmanError> {
         check::finite("measurement matrix", &matrix)?;
         check::sensor_noise(&noise, matrix.nrows())?;
@@ -66,7 +66,7 @@ where
         if state.nrows() == n.value() {
             &self.matrix * state
         } else {
-            // A state of another size is not what this sensor sees; NaN tells the filter to refuse it.
+            // A state of another size is invalid for this sensor; the filter refuses the NaN.
             OVector::from_element_generic(m, nalgebra::Const::<1>, T::zero() / T::zero())
         }
     }

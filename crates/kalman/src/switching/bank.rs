@@ -6,9 +6,9 @@ use wayfix_gaussian_core::Gaussian;
 
 use crate::{Form, Innovation, KalmanError, check, error::Checked};
 
-/// A bank of filters for one state under different circumstances, of which one is active at a time.
+/// A bank of filters for one state under different conditions, of which one is active at a time.
 ///
-/// Only the active filter moves; the others keep their state bit for bit. Which one that is, somebody else decides:
+/// Only the active filter changes; the others keep their state bit for bit. The caller selects the active one:
 /// [`JumpMarkov`](super::JumpMarkov) by the most probable histories, a particle filter by drawing an index for each particle.
 /// Clones share the models. [Schulz & Fox 2004, §III.A.3 and §V.B]
 ///
@@ -40,11 +40,11 @@ where
     predicted: Vec<F::Belief>,
 }
 
-/// What one filter of a bank makes of a measurement: its innovation `I`, whose likelihood is the evidence for it, and the belief `B` it
-/// would have.
+/// The result of a measurement in one filter of a bank: its innovation `I`, whose likelihood is the evidence for it, and the corrected
+/// belief `B`.
 #[derive(Clone, Debug)]
 pub struct Candidate<I, B> {
-    /// What the measurement says, seen from this model.
+    /// The innovation under this model.
     pub innovation: I,
     /// The belief after the measurement, if this model is the active one.
     pub belief: B,
@@ -71,7 +71,7 @@ where
     /// One filter per model, each with its own prior.
     ///
     /// # Errors
-    /// When there are no models, not as many priors, or a prior is not positive definite.
+    /// Returns an error if there are no models, their number differs from that of the priors, or a prior is not positive definite.
     pub fn new(models: Vec<M>, form: F, priors: &[Gaussian<M::State>]) -> Result<Self, KalmanError> {
         if models.is_empty() {
             return Err(KalmanError::EmptyBank);
@@ -86,20 +86,20 @@ where
         self.models.len()
     }
 
-    /// What filter `model` knew when it was last active; `None` when there is no such filter.
+    /// The belief of filter `model` when it was last active; `None` if there is no such filter.
     pub fn last_active_estimate(&self, model: usize) -> Option<Gaussian<M::State>> {
         self.settled.get(model).map(|belief| self.form.gaussian(belief))
     }
 
-    /// What filter `model` knows now if it has been active since the last measurement; `None` when there is no such filter.
+    /// The belief of filter `model` if it has been active since the last measurement; `None` if there is no such filter.
     pub fn predicted(&self, model: usize) -> Option<Gaussian<M::State>> {
         self.predicted.get(model).map(|belief| self.form.gaussian(belief))
     }
 
-    /// Prepares every filter for being the active one: moves its prediction by `control`.
+    /// Predicts the belief of every filter with `control`, as if it were the active one.
     ///
     /// # Errors
-    /// When a model gives something unusable; the bank is unchanged.
+    /// Returns an error if a model output is invalid; the bank is then unchanged.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
         let predict = |(belief, model)| self.form.predict(belief, model, control);
         self.predicted =
@@ -107,10 +107,10 @@ where
         Ok(())
     }
 
-    /// What each filter makes of `measurement`. Nothing changes.
+    /// The result of `measurement` in each filter. Changes nothing.
     ///
     /// # Errors
-    /// When model or measurement are unusable.
+    /// Returns an error if model output or measurement are invalid.
     #[allow(clippy::type_complexity, reason = "the two parts of a candidate")]
     pub fn candidates<S>(
         &self,
@@ -128,7 +128,7 @@ where
         self.predicted.iter().map(candidate).collect()
     }
 
-    /// Filter `model` has been the active one and knows `belief` now; the others fall back to what they knew.
+    /// Makes filter `model` the active one, with `belief`; the others return to their belief when last active.
     ///
     /// An index beyond the bank activates none.
     pub fn activate(&mut self, model: usize, belief: F::Belief) {

@@ -46,7 +46,7 @@ where
     /// A filter over `models`, all starting from `prior`.
     ///
     /// # Errors
-    /// When the chain is for another number of models or the prior is not positive definite.
+    /// Returns an error if the chain is for another number of models or the prior is not positive definite.
     pub fn new(
         models: Vec<M>,
         chain: MarkovChain,
@@ -60,15 +60,15 @@ where
         Ok(Self { models, chain, form, hypotheses })
     }
 
-    /// How probable each model is now.
+    /// The present probability of each model.
     pub fn model_probabilities(&self) -> Vec<f64> {
         model_probabilities(&self.hypotheses, self.models.len())
     }
 
-    /// What is believed whatever model is in force: all beliefs, moment-matched.
+    /// The belief over all models, moment-matched.
     ///
     /// # Errors
-    /// When the beliefs are spread so far over a manifold that they have no mean.
+    /// Returns an error if the beliefs are spread so far over a manifold that they have no mean.
     pub fn estimate(&self) -> Result<Gaussian<M::State>, KalmanError> {
         merged(&self.form, self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
     }
@@ -76,7 +76,7 @@ where
     /// Moves the belief of every model by `control` with every model.
     ///
     /// # Errors
-    /// When a model gives something unusable; the filter is unchanged.
+    /// Returns an error if a model output is invalid; the filter is then unchanged.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
         // Pairs are left from a prediction without a measurement after it.
         let mut pairs = Vec::with_capacity(self.models.len() * self.models.len());
@@ -93,10 +93,10 @@ where
         Ok(())
     }
 
-    /// Corrects every hypothesis by `measurement`, weighs, and merges by model. Gives one innovation per hypothesis.
+    /// Corrects every hypothesis by `measurement`, weights and merges by model. Returns one innovation per hypothesis.
     ///
     /// # Errors
-    /// When model or measurement are unusable; the filter is unchanged.
+    /// Returns an error if model output or measurement are invalid; the filter is then unchanged.
     #[allow(clippy::type_complexity, reason = "a list of innovations")]
     pub fn update<S>(
         &mut self,

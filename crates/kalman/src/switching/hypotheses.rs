@@ -1,4 +1,4 @@
-//! Weighted beliefs about which model is in force.
+//! Weighted hypotheses about the active model.
 
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{LogWeight, Manifold, StateAlloc};
@@ -6,7 +6,7 @@ use wayfix_gaussian_core::{Gaussian, moment_matched};
 
 use crate::{Form, KalmanError, error::Checked};
 
-/// A belief under the assumption that `model` is in force, and how probable that is.
+/// A belief under the assumption that `model` is active, and its probability.
 #[derive(Clone, Debug)]
 pub(super) struct Hypothesis<B> {
     pub(super) model: usize,
@@ -57,7 +57,7 @@ where
     F::Belief: 'a,
     DefaultAllocator: StateAlloc<X::Dim>,
 {
-    // What has no weight says nothing, and must not spoil the mean by lying far away.
+    // A hypothesis of zero weight must not affect the mean, even if it is far away.
     let (weights, components): (Vec<f64>, Vec<_>) = weighted
         .filter(|(weight, _)| *weight > 0.0)
         .map(|(weight, belief)| (weight, form.gaussian(belief)))

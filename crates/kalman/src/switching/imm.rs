@@ -47,7 +47,7 @@ where
     /// A filter over `models`, all starting from `prior`.
     ///
     /// # Errors
-    /// When the chain is for another number of models or the prior is not positive definite.
+    /// Returns an error if the chain is for another number of models or the prior is not positive definite.
     pub fn new(
         models: Vec<M>,
         chain: MarkovChain,
@@ -61,20 +61,20 @@ where
         Ok(Self { models, chain, form, hypotheses })
     }
 
-    /// How probable each model is now.
+    /// The present probability of each model.
     pub fn model_probabilities(&self) -> Vec<f64> {
         model_probabilities(&self.hypotheses, self.models.len())
     }
 
-    /// What is believed if `model` is in force; `None` when there is no such model.
+    /// The belief if `model` is active; `None` if there is no such model.
     pub fn model_estimate(&self, model: usize) -> Option<Gaussian<M::State>> {
         self.hypotheses.get(model).map(|hypothesis| self.form.gaussian(&hypothesis.belief))
     }
 
-    /// What is believed whatever model is in force: all beliefs, moment-matched.
+    /// The belief over all models, moment-matched.
     ///
     /// # Errors
-    /// When the beliefs are spread so far over a manifold that they have no mean.
+    /// Returns an error if the beliefs are spread so far over a manifold that they have no mean.
     pub fn estimate(&self) -> Result<Gaussian<M::State>, KalmanError> {
         merged(&self.form, self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
     }
@@ -82,7 +82,7 @@ where
     /// Mixes the beliefs and moves each by `control` with its own model.
     ///
     /// # Errors
-    /// When a model gives something unusable; the filter is unchanged.
+    /// Returns an error if a model output is invalid; the filter is then unchanged.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
         let probabilities = self.chain.predict_probabilities(&self.model_probabilities());
         let predict = |(model, &probability): (usize, &f64)| {
@@ -94,10 +94,10 @@ where
         Ok(())
     }
 
-    /// Corrects every belief by `measurement` and weighs the models. Gives one innovation per model.
+    /// Corrects every belief by `measurement` and weights the models. Returns one innovation per model.
     ///
     /// # Errors
-    /// When model or measurement are unusable; the filter is unchanged.
+    /// Returns an error if model output or measurement are invalid; the filter is then unchanged.
     #[allow(clippy::type_complexity, reason = "a list of innovations")]
     pub fn update<S>(
         &mut self,
@@ -113,7 +113,7 @@ where
         Ok(innovations)
     }
 
-    /// The belief model `to` starts from: all beliefs, weighed by how probable it is that they lead to it.
+    /// The belief model `to` starts from: all beliefs, weighted by the probability of the transition to it.
     fn mixed_for(&self, to: usize, probability: f64) -> Checked<F::Belief> {
         if probability == 0.0 {
             return Ok(self.hypotheses[to].belief.clone());

@@ -10,8 +10,8 @@ use crate::{Form, KalmanError, check, error::Checked};
 /// The posterior over which filter was active when is kept as its most probable histories, each with its own bank; every measurement
 /// extends each history by every model and the best [`n_histories`](JumpMarkovParams::n_histories) survive. With one history it selects
 /// greedily, with many it is the optimal filter as far as they reach. This is what the particles of [Schulz & Fox 2004, §III.A.3] sample,
-/// without the randomness: the number of models is small, so their optimal proposal is enumerated. Between measurements the chain goes on
-/// and nothing is learnt.
+/// without the randomness: the number of models is small, so their optimal proposal is enumerated. Between measurements only the chain
+/// is propagated.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
@@ -40,12 +40,12 @@ where
     log_evidence: Vec<LogWeight>,
 }
 
-/// How much a [`JumpMarkov`] remembers.
+/// Limits of the histories of a [`JumpMarkov`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JumpMarkovParams {
     /// Histories kept; default 8, 1 selects greedily.
     pub n_histories: usize,
-    /// Measurements a history remembers its models for; default 256.
+    /// Number of measurements for which a history stores its models; default 256.
     pub history_length: usize,
 }
 
@@ -55,7 +55,7 @@ impl Default for JumpMarkovParams {
     }
 }
 
-/// Which models were active at the measurements so far, and what is known under that assumption.
+/// The active models at the measurements so far, and the belief under that assumption.
 struct History<M: MotionModel, F: Form<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
@@ -110,7 +110,7 @@ where
     /// Selects among the filters of `bank`.
     ///
     /// # Errors
-    /// When the chain is for another number of models, or no history is to be kept.
+    /// Returns an error if the chain is for another number of models, or `n_histories` is 0.
     pub fn new(
         bank: ModelBank<M, F>,
         chain: MarkovChain,
@@ -125,10 +125,10 @@ where
         Ok(Self { chain, params, histories: vec![history], log_evidence })
     }
 
-    /// A time step: the chain may jump, and every filter prepares for being the active one.
+    /// A time step: propagates the chain and predicts every filter.
     ///
     /// # Errors
-    /// When a model gives something unusable; nothing is changed.
+    /// Returns an error if a model output is invalid; nothing is then changed.
     pub fn predict(&mut self, control: &M::Control) -> Result<(), KalmanError> {
         let mut histories = self.histories.clone();
         for history in &mut histories {
@@ -139,10 +139,10 @@ where
         Ok(())
     }
 
-    /// Weighs the models by `measurement` and corrects the active filter of each surviving history. `None`: nothing was seen.
+    /// Weights the models by `measurement` and corrects the active filter of each surviving history. `None`: no measurement.
     ///
     /// # Errors
-    /// When model or measurement are unusable, or no model explains the measurement; nothing is changed.
+    /// Returns an error if model output or measurement are invalid, or no model explains the measurement; nothing is then changed.
     pub fn update<S>(&mut self, sensor: &S, measurement: Option<&S::Measurement>) -> Result<(), KalmanError>
     where
         S: SensorModel<State = M::State>,
@@ -160,7 +160,7 @@ where
         Ok(())
     }
 
-    /// How probable it is that each model is active now.
+    /// The present probability of each model.
     pub fn model_probabilities(&self) -> Vec<f64> {
         (0..self.chain.n_models())
             .map(|model| {
@@ -190,7 +190,7 @@ where
         &self.log_evidence
     }
 
-    /// What the selected filter knows in the most probable history where it is active.
+    /// The belief of the selected filter in the most probable history in which it is active.
     pub fn estimate(&self) -> Gaussian<M::State> {
         let selected = self.selected();
         let weight = |history: &History<M, F>| history.probability * history.active[selected];
@@ -199,7 +199,7 @@ where
             .expect("invariant: there is a history, and its bank has every model of the chain")
     }
 
-    /// The bank of the most probable history: what every filter knows, active or not.
+    /// The bank of the most probable history: the belief of every filter, active or not.
     pub fn bank(&self) -> &ModelBank<M, F> {
         &self.histories.first().expect("invariant: there is a history").bank
     }
@@ -238,7 +238,7 @@ where
         Ok((extensions, evidence.collect()))
     }
 
-    /// The history that an extension makes of its parent.
+    /// The history of an extension and its parent.
     fn grown(&self, extension: Extension<F::Belief>, probability: f64) -> History<M, F> {
         let mut history = self.histories[extension.parent].clone();
         history.bank.activate(extension.model, extension.belief);

@@ -1,6 +1,6 @@
 use crate::KalmanError;
 
-/// Which model follows which: a first-order Markov chain over the models of a bank.
+/// A first-order Markov chain over the models of a bank.
 ///
 /// ```
 /// use wayfix_kalman::MarkovChain;
@@ -19,8 +19,8 @@ impl MarkovChain {
     /// `transition[i][j]` = probability that model `j` follows model `i`; `initial` = probabilities of the models at the start.
     ///
     /// # Errors
-    /// When there are no models, sizes do not fit, or a row (the initial one counts as the last) is not a probability distribution to
-    /// nine digits.
+    /// Returns an error if there are no models, sizes do not match, or a row (the initial one counts as the last) is not a probability
+    /// distribution to nine digits.
     pub fn new(transition: &[Vec<f64>], initial: &[f64]) -> Result<Self, KalmanError> {
         crate::check::dimension("transition matrix", initial.len(), transition.len())?;
         if initial.is_empty() {
@@ -37,10 +37,10 @@ impl MarkovChain {
         Ok(Self { transition: transition.to_vec(), initial: initial.to_vec() })
     }
 
-    /// `n_models` models, each of which stays with probability `stay` and else gives way to any other; all equally probable at the start.
+    /// `n_models` models, each of which stays active with probability `stay` and else changes to any other; all equally probable at the start.
     ///
     /// # Errors
-    /// When `stay` is not a probability or there are no models.
+    /// Returns an error if `stay` is not a probability or there are no models.
     pub fn sticky(n_models: usize, stay: f64) -> Result<Self, KalmanError> {
         if !(0.0..=1.0).contains(&stay) {
             return Err(KalmanError::OutOfRange { what: "probability of staying", value: stay });

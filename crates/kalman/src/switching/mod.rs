@@ -1,4 +1,4 @@
-//! Several models, one of which is in force at a time.
+//! Several models, one of which is active at a time.
 
 mod bank;
 mod gpb2;

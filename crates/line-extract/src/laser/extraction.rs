@@ -2,11 +2,11 @@ use nalgebra::Vector2;
 
 use crate::LineEstimate;
 
-/// What one scan shows.
+/// The result of one scan.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Extraction {
-    /// The walls, in the order of their first beams.
+    /// The walls in the order of their first beams.
     pub segments: Vec<Segment>,
     /// What became of the beams.
     pub counts: Counts,
@@ -18,11 +18,11 @@ pub struct Extraction {
 pub struct Segment {
     /// The line it is on, with its covariance.
     pub estimate: LineEstimate,
-    /// Where it is seen to begin, metres; from here to `end` the sensor is on the left.
+    /// Its observed start, metres; from here to `end` the sensor is on the left.
     pub start: Vector2<f64>,
-    /// Where it is seen to end, metres.
+    /// Its observed end, metres.
     pub end: Vector2<f64>,
-    /// How many echoes it was fitted to.
+    /// Number of echoes in the fit.
     pub n_points: usize,
     /// Weighted root mean square distance of these echoes from the line, metres.
     pub rms_m: f64,

@@ -33,13 +33,13 @@ use crate::simplify::Simplifier;
 /// ```
 ///
 /// # Errors
-/// [`LineError::Param`] for parameters and [`LineError::Scan`] or [`LineError::MoreThanATurn`] for a scan geometry without meaning. Ranges are never an
-/// error: beams without a valid one are skipped and counted.
+/// Returns [`LineError::Param`] if a parameter is out of range, and [`LineError::Scan`] or [`LineError::MoreThanATurn`] if the scan geometry is invalid.
+/// Invalid ranges are no error: their beams are skipped and counted.
 pub fn extract(scan: &Scan, params: &Params) -> Result<Extraction, LineError> {
     Extractor::new(*params)?.extract(scan)
 }
 
-/// Walls of scan after scan, with memory that is used again and directions computed once.
+/// Extracts the walls of a sequence of scans, with reused memory and directions computed once.
 ///
 /// ```
 /// use wayfix_line_extract::{Extractor, Params, Scan};
@@ -63,7 +63,7 @@ pub struct Extractor {
 
 impl Extractor {
     /// # Errors
-    /// [`LineError::Param`] with the first value that has no meaning.
+    /// Returns [`LineError::Param`] with the first value that is out of range.
     pub fn new(params: Params) -> Result<Self, LineError> {
         params.check()?;
         Ok(Self {
@@ -84,15 +84,15 @@ impl Extractor {
     /// Echoes to surfaces, surfaces to straight pieces, pieces to walls.
     ///
     /// # Errors
-    /// [`LineError::Scan`] or [`LineError::MoreThanATurn`] for a geometry without meaning.
+    /// Returns [`LineError::Scan`] or [`LineError::MoreThanATurn`] if the scan geometry is invalid.
     pub fn extract(&mut self, scan: &Scan) -> Result<Extraction, LineError> {
         self.extract_deskewed(scan, None)
     }
 
-    /// The same for a sensor that moves by `step` from one beam to the next, in its own frame; the walls are seen from where the first beam was sent.
+    /// The same for a sensor that moves by `step` from one beam to the next, in its own frame; walls are in the sensor frame at the first beam.
     ///
     /// # Errors
-    /// Those of [`extract`](Self::extract), and [`LineError::Scan`] for a step that is not finite.
+    /// Those of [`extract`](Self::extract), and [`LineError::Scan`] if the step is not finite.
     pub fn extract_deskewed(
         &mut self,
         scan: &Scan,

@@ -3,7 +3,7 @@ use nalgebra::Vector2;
 use super::Segment;
 use crate::{LineError, LineEstimate};
 
-/// A wall that should be seen: where to look for it, and which segment it may be [Andrade-Cetto, Fig. 1a].
+/// A predicted wall: its search band, and the segments compatible with it [Andrade-Cetto, Fig. 1a].
 ///
 /// Everything is in the sensor's frame; predicting a wall of a map there, with the robot's uncertainty in the covariance, is the caller's.
 ///
@@ -29,11 +29,11 @@ use crate::{LineError, LineEstimate};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WallHypothesis {
-    /// The line it should be on, with the covariance of the prediction.
+    /// The predicted line, with the covariance of the prediction.
     pub estimate: LineEstimate,
-    /// Where it should begin, metres.
+    /// Its predicted start, metres.
     pub start: Vector2<f64>,
-    /// Where it should end, metres.
+    /// Its predicted end, metres.
     pub end: Vector2<f64>,
     /// How many deviations off is still compatible; the paper has 2, which 86 % of the true ones pass.
     pub n_sigma: f64,
@@ -66,7 +66,7 @@ impl WallHypothesis {
         Ok(squared <= self.n_sigma * self.n_sigma)
     }
 
-    /// The most likely segment of those that are compatible and reach into the band; more of a wall may show than was known.
+    /// The most likely of the compatible segments that reach into the band; a segment may be longer than the predicted wall.
     ///
     /// # Errors
     /// [`LineError::NotPositiveDefinite`] if a sum of covariances is not.
@@ -82,7 +82,7 @@ impl WallHypothesis {
         Ok(best.map(|(k, _)| k))
     }
 
-    /// A compatible line is inside the band's width everywhere, so only the ends are left to look at.
+    /// A compatible line is inside the band's width everywhere, so only the ends remain to be checked.
     fn reaches_in(&self, segment: &Segment) -> bool {
         let direction = self.estimate.line.direction();
         let (a, b) = (direction.dot(&segment.start), direction.dot(&segment.end));

@@ -3,7 +3,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::RangeBearingNoise;
 use crate::LineError;
 
-/// How walls are found; the defaults suit a SICK LMS (σ about 1 cm, beams 0.25° to 1° apart) indoors.
+/// Parameters of the wall extraction; the defaults suit a SICK LMS (σ about 1 cm, beams 0.25° to 1° apart) indoors.
 ///
 /// ```
 /// use wayfix_line_extract::{Params, SplitMethod};
@@ -20,13 +20,13 @@ use crate::LineError;
     serde(default, deny_unknown_fields)
 )]
 pub struct Params {
-    /// What single beams are wrong by. Default: 1 cm and 0.002 rad.
+    /// Noise of single beams. Default: 1 cm and 0.002 rad.
     pub noise: RangeBearingNoise,
     /// The flattest angle, radians, between a beam and a surface that is still taken as one surface. Default: 10°.
     pub breakpoint_angle_rad: f64,
-    /// As many missing beams in a row do not end a surface. Default: 2.
+    /// Number of consecutive missing beams that do not end a surface. Default: 2.
     pub max_missing_beams: usize,
-    /// How pieces are told apart. Default: iterative end point fit.
+    /// Method of splitting a surface. Default: iterative end point fit.
     pub split: SplitMethod,
     /// A piece with a point farther off than this, metres, is split. Default: 0.05, five times the noise.
     pub split_distance_m: f64,
@@ -34,8 +34,8 @@ pub struct Params {
     pub end_gate_sigma: f64,
     /// Pieces are one wall up to this squared Mahalanobis distance of their lines. Default: 13.8, which 99.9 % of equal lines pass (chi-squared, 2).
     pub merge_gate: f64,
-    /// By how much a straight wall bulges, metres. Neighbouring pieces that share a curvature beyond that and the noise (99.9 % of chi-squared, 1)
-    /// are chords of an arc and no walls. Default: 0.01, what DIN 18202 allows a finished wall over 4 m.
+    /// Standard deviation of the bulge of a straight wall, metres. Neighbouring pieces with a common curvature beyond that and the noise
+    /// (99.9 % of chi-squared, 1) are chords of an arc and no walls. Default: 0.01, the tolerance of DIN 18202 for a finished wall over 4 m.
     pub bulge_sigma_m: f64,
     /// Pieces farther apart than this along the wall, metres, stay two. Default: 0.3.
     pub merge_gap_m: f64,
@@ -76,10 +76,10 @@ impl Default for Params {
 }
 
 impl Params {
-    /// Whether every value has a meaning; [`Extractor::new`](crate::Extractor::new) asks.
+    /// Checks the range of every value; called by [`Extractor::new`](crate::Extractor::new).
     ///
     /// # Errors
-    /// [`LineError::Param`] with the first that has none.
+    /// Returns [`LineError::Param`] with the first value that is out of range.
     pub fn check(&self) -> Result<(), LineError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let not_negative = |value: f64| value >= 0.0 && value.is_finite();

@@ -5,7 +5,7 @@ use crate::LineError;
 /// Far beyond any laser; up to here nothing overflows and no digit that matters is lost.
 const FARTHEST_M: f64 = 1e6;
 
-/// The ranges of one turn of a laser: beam $`i`$ looks along $`α_0 + i Δ`$ in the sensor's frame.
+/// The ranges of one turn of a laser: beam $`i`$ has the direction $`α_0 + i Δ`$ in the sensor's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scan<'a> {
     /// Bearing of the first beam, radians.

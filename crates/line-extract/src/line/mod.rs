@@ -1,4 +1,4 @@
-//! A straight line, how well it is known, and how it is fitted to points.
+//! A straight line, its covariance, and its fit to points.
 
 mod estimate;
 mod fit;

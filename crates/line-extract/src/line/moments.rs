@@ -3,7 +3,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::{HessianLine, LineEstimate};
 use crate::LineError;
 
-/// What a weighted fit has to know of points: their number, weight, mean and spread.
+/// The moments of points for a weighted fit: number, weight, mean and spread.
 ///
 /// Weights are inverse variances across the line, 1/m².
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,7 +52,7 @@ impl Moments {
         }
     }
 
-    /// The line of least weighted squares across it [Arras & Siegwart 1997], and the covariance that the weights say.
+    /// The line of least weighted squares across it [Arras & Siegwart 1997], and the covariance from the weights.
     ///
     /// At the mean point, place and direction are uncorrelated with variances $`1/\sum w`$ and $`1/\sum w s^2`$, $`s`$ along the line; the
     /// covariance is carried from there to the foot of the origin's perpendicular.

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{LikelihoodModel, SampleMotion};
 use super::LikelyMotion;
 use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet, Systematic};
 
-/// The auxiliary particle filter: ancestors are chosen by how well their likely future explains the new measurement.
+/// The auxiliary particle filter: ancestors are chosen by the likelihood of the new measurement at their predicted state.
 /// [Pitt & Shephard 1999]
 ///
 /// Better than the bootstrap filter where the measurement is sharp and the motion is not much blurred; worse where the likely future says
@@ -56,7 +56,7 @@ impl<M: SampleMotion, L> AuxiliaryFilter<M, L> {
     pub fn new(particles: ParticleSet<M::State>, motion: M, sensor: L) -> Self {
         Self { motion, sensor, particles }
     }
-    /// What is known of the state.
+    /// The particles.
     pub fn particles(&self) -> &ParticleSet<M::State> {
         &self.particles
     }

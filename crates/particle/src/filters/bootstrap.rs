@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{LikelihoodModel, Manifold, SampleMotion, StateAll
 
 use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet};
 
-/// The bootstrap filter (sampling importance resampling): particles move as the motion says and are weighed by the likelihood.
+/// The bootstrap filter (sampling importance resampling): particles are sampled from the motion model and weighted by the likelihood.
 /// [Gordon, Salmond & Smith 1993]
 ///
 /// When to resample, how, and to how many particles is said between the steps, on [`particles_mut`](Self::particles_mut).
@@ -60,7 +60,7 @@ impl<M: SampleMotion, L> BootstrapFilter<M, L> {
     pub fn new(particles: ParticleSet<M::State>, motion: M, sensor: L) -> Self {
         Self { motion, sensor, particles }
     }
-    /// What is known of the state.
+    /// The particles.
     pub fn particles(&self) -> &ParticleSet<M::State> {
         &self.particles
     }

@@ -2,7 +2,7 @@ use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, MotionModel, SampleMotion, StateAlloc};
 use wayfix_gaussian_core::GaussianMotion;
 
-/// A motion that also knows where it likely leads, as [`AuxiliaryFilter`](crate::AuxiliaryFilter) needs.
+/// A motion model with a predicted state, as [`AuxiliaryFilter`](crate::AuxiliaryFilter) needs.
 ///
 /// **Law**: mean, mode or any other likely value of $`p(x_k | x_{k-1}, u_k)`$; the better it stands for the whole distribution, the
 /// fewer particles the filter needs. [Pitt & Shephard 1999]

@@ -4,7 +4,7 @@ use super::ParticleSet;
 use crate::{NormalizationReport, ParticleError, Weights};
 
 impl<X> ParticleSet<X> {
-    /// Makes the weights add up to one, and tells what their sum was.
+    /// Normalizes the weights to a sum of one, and returns their previous sum.
     ///
     /// # Errors
     /// [`ParticleError::NoWeight`] when every particle is impossible. The weights stay as they are; whether to forget the measurement

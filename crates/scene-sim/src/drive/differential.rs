@@ -34,7 +34,7 @@ impl DifferentialDrive {
     /// A robot at rest at `start`.
     ///
     /// # Errors
-    /// When the parameters have no meaning.
+    /// Returns [`SimError::Parameter`] if a parameter is out of range.
     pub fn new(params: DriveParams, start: Pose2<f64>) -> Result<Self, SimError> {
         params.validate()?;
         let slip = GaussMarkov::new(params.slip.correlation_time_s);

@@ -62,7 +62,7 @@ impl<'a> IndoorDrive<'a> {
     /// The robot at the start of its route.
     ///
     /// # Errors
-    /// When a parameter has no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn new(
         building: &'a Building,
         route: Route,

@@ -63,7 +63,7 @@ impl LeagueDrive {
     /// The robot at its start, the camera ready.
     ///
     /// # Errors
-    /// When a parameter has no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn new(params: &LeagueParams, mut streams: Streams) -> Result<Self, SimError> {
         let venue = match params.venue_seed {
             Some(seed) => Venue::draw(Streams::new(ChaCha8Rng::seed_from_u64(seed)).of(Source::Venue))?,
@@ -75,7 +75,7 @@ impl LeagueDrive {
     /// The same in a venue of one's own.
     ///
     /// # Errors
-    /// When a parameter has no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn in_venue(params: &LeagueParams, venue: Venue, mut streams: Streams) -> Result<Self, SimError> {
         params.validate(&venue.camera)?;
         let robot = Legged::new(params.robot, params.start, landmarks(), &mut streams)?;

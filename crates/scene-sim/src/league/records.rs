@@ -17,7 +17,7 @@ impl LeagueParams {
     /// (40 pixels at least) gets labels: somebody who labels by hand takes pictures that show something.
     ///
     /// # Errors
-    /// When a parameter has no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn simulate(&self, streams: Streams) -> Result<Vec<Record>, SimError> {
         check::count("labelled frames", self.n_labelled, self.n_frames)?;
         let drive = LeagueDrive::new(self, streams)?;

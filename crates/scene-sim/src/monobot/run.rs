@@ -70,7 +70,7 @@ impl MonobotParams {
     /// ```
     ///
     /// # Errors
-    /// When a parameter has no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn simulate(&self, streams: &mut Streams) -> Result<MonobotRun, SimError> {
         self.validate()?;
         let controls: Vec<f64> = (0..self.n_steps).map(|k| self.planned(k + 1) - self.planned(k)).collect();

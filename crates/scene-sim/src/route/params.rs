@@ -30,7 +30,7 @@ impl RouteParams {
     /// Lays out the route; only random ones draw from `rng`.
     ///
     /// # Errors
-    /// When the parameters have no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range, and [`SimError::NoRoom`] if waypoints do not fit.
     pub fn build<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Route, SimError> {
         match self {
             Self::Circle(circle) => circle.route(),

@@ -110,7 +110,7 @@ impl Scenario {
     /// The log, in time order. Give it a generator seeded with [`seed`](Self::seed) for the log that goes by this name.
     ///
     /// # Errors
-    /// When the parameters have no meaning.
+    /// Returns an error if a parameter is out of range.
     pub fn simulate(&self, rng: ChaCha8Rng) -> Result<Vec<Record>, SimError> {
         let mut streams = Streams::new(rng);
         match &self.params {

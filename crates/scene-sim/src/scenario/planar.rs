@@ -58,7 +58,7 @@ impl PlanarParams {
     /// The log, in time order.
     ///
     /// # Errors
-    /// When a parameter has no meaning or something finds no room.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range, and [`SimError::NoRoom`] if objects do not fit.
     pub fn simulate(&self, streams: &mut Streams) -> Result<Vec<Record>, SimError> {
         let route = self.route.build(streams.of(Source::Route))?;
         let plan = self.layout.build(&route, streams.of(Source::Landmarks))?;

@@ -41,7 +41,7 @@ impl StoreLapsParams {
     /// The log in time order: before each view but the first an odometry increment, then true pose and view at its stamp.
     ///
     /// # Errors
-    /// When a parameter has no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn simulate(&self, streams: Streams) -> Result<Vec<Record>, SimError> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.store_seed);
         let building = Store::draw(self.store, &mut rng)?.building();

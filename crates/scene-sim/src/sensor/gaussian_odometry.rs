@@ -47,7 +47,7 @@ impl GaussianOdometry {
     /// Odometry that has not begun yet.
     ///
     /// # Errors
-    /// When the parameters have no meaning.
+    /// Returns [`SimError::Parameter`] if a parameter is out of range.
     pub fn new(params: GaussianOdometryParams) -> Result<Self, SimError> {
         params.validate()?;
         Ok(Self { params, last: None })

@@ -71,7 +71,7 @@ impl WheelOdometry {
     /// Encoders that have counted nothing yet.
     ///
     /// # Errors
-    /// When the parameters have no meaning.
+    /// Returns [`SimError::Parameter`] if a parameter is out of range.
     pub fn new(params: WheelOdometryParams) -> Result<Self, SimError> {
         params.validate()?;
         Ok(Self { params, last: None })

@@ -46,7 +46,7 @@ impl Layout {
     /// Places landmarks and walls; `route` is where the robot is going to drive.
     ///
     /// # Errors
-    /// When the parameters have no meaning or landmarks find no room.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range, and [`SimError::NoRoom`] if landmarks do not fit.
     pub fn build<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Result<Plan, SimError> {
         match self {
             Self::UniformField(field) => field.plan(rng),

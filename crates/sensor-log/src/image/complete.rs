@@ -25,7 +25,7 @@ fn is_complete_jpeg(bytes: &[u8]) -> Option<()> {
     }
 }
 
-/// Not so: zero (a stuffed byte), restarts, fill bytes and the marker without meaning.
+/// `false` for zero (a stuffed byte), restarts, fill bytes and the reserved marker 0x01.
 fn has_segment(marker: u8) -> bool {
     !matches!(marker, 0x00 | 0x01 | 0xD0..=0xD7 | 0xFF)
 }

@@ -12,13 +12,13 @@ pub(super) struct Candidate<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Which of the predicted predictions.
+    /// Index of the prediction.
     pub(super) prediction: usize,
     pub(super) measurement: M::Measurement,
     pub(super) innovation: Innovation<M::Measurement>,
 }
 
-/// How everything in the map should look from here, and for every observation what it may be of.
+/// The predicted measurements of all landmarks, and the candidates of every observation.
 pub(super) struct Candidates<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
@@ -65,7 +65,7 @@ where
         Self { predictions, of_observation }
     }
 
-    /// What every observation is of, given the prediction that it is paired with: what has no pairing and no candidate left is new.
+    /// The association of every observation, given the prediction that it is paired with: an observation without pairing and candidate is new.
     pub(super) fn settle(
         &self,
         pairings: &[Option<usize>],

@@ -21,18 +21,18 @@ use crate::{
     serde(default, deny_unknown_fields)
 )]
 pub struct JointCompatibilityParams {
-    /// Probability with which the right pairings pass, each by itself and all together: chi-squared quantiles with their degrees of freedom.
+    /// Probability with which correct pairings pass, individually and jointly: chi-squared quantiles with their degrees of freedom.
     pub probability: f64,
-    /// NIS above which an observation is certainly of no landmark. In between nothing happens with it.
+    /// NIS above which an observation is certainly of no landmark in the map. In between it is ignored.
     pub certainly_new: f64,
-    /// By how much the NIS of a pairing must be below that of every other landmark which the observation could be of, or it is ambiguous and
-    /// nothing happens with it; 0 takes the best whatever else there is. Parallel walls and hedges of trees ask for more.
+    /// By how much the NIS of a pairing must be below that of every other candidate of the observation; otherwise the observation is ambiguous
+    /// and ignored. 0 always takes the best. Parallel walls and rows of trees need more.
     pub ambiguity_margin: f64,
-    /// Pairings that one look may try. When they are used up the best set so far counts, and the next look starts afresh; a bound in
-    /// pairings, unlike one in milliseconds, gives the same result on every machine.
+    /// Maximum number of pairings tried per scan. When it is reached, the best set so far is used. Unlike a limit in milliseconds, it gives
+    /// the same result on every machine.
     pub n_trials: usize,
-    /// Whether the sensor never tells of one landmark twice in a look, as with bar codes: what lies beside a sighting that found its landmark is
-    /// then of another one. Detectors that break a trunk in two must say no.
+    /// Whether the sensor detects each landmark at most once per scan, as with bar codes: a detection beside an associated one then belongs to
+    /// another landmark. `false` for detectors that may split a trunk in two.
     pub one_detection_per_landmark: bool,
 }
 
@@ -54,7 +54,7 @@ impl Default for JointCompatibilityParams {
 /// largest set of pairings whose *joint* NIS passes, $`ν^T S^{-1} ν ≤ χ^2_{\dim ν}(p)`$, and among the largest the one of smallest NIS. A
 /// set grows by one pairing at a time, observations with the fewest candidates first, and must pass at every size. [Neira & Tardós 2001]
 ///
-/// What is left over starts a landmark when it is further than `certainly_new` from everything, as with
+/// An unpaired observation starts a landmark if its NIS to every landmark exceeds `certainly_new`, as with
 /// [`NearestNeighbour`](super::NearestNeighbour).
 ///
 /// ```
@@ -76,7 +76,7 @@ impl JointCompatibility {
     /// A rule that numbers new landmarks from 0.
     ///
     /// # Errors
-    /// When the probability is not between 0 and 1, or `certainly_new` is below the gate of one degree of freedom.
+    /// Returns [`SlamError::Parameter`] if a parameter is out of range.
     pub fn new(params: JointCompatibilityParams) -> Result<Self, SlamError> {
         let JointCompatibilityParams { probability, certainly_new, .. } = params;
         let Ok(first) = ChiSquaredGate::from_probability(1, probability) else {
@@ -94,23 +94,23 @@ impl JointCompatibility {
         Ok(Self { params, gates: vec![first.threshold()], ids: NewIds::default(), n_cut_short: 0 })
     }
 
-    /// The same rule, numbering new landmarks from here on: a rule that goes on where another one stopped.
+    /// The same rule, numbering new landmarks from `next_id` on: it continues another rule.
     pub fn numbering_from(self, next_id: u32) -> Self {
         Self { ids: NewIds::from(next_id), ..self }
     }
 
-    /// The smallest number that a new landmark can get. Saved with the map: numbers of landmarks that were forgotten are not
-    /// used again, and the map alone does not tell them.
+    /// The smallest number that a new landmark can get. Save it with the map: numbers of removed landmarks are not used again, and the map
+    /// does not contain them.
     pub fn next_id(&self) -> u32 {
         self.ids.next()
     }
 
-    /// In how many looks the trials were used up before the best set was certain.
+    /// Number of scans in which the trials were used up before the search was complete.
     pub fn n_cut_short(&self) -> usize {
         self.n_cut_short
     }
 
-    /// Makes the quantiles up to `dimension` degrees of freedom known.
+    /// Computes the quantiles up to `dimension` degrees of freedom.
     fn prepare_gates(&mut self, dimension: usize) {
         for degrees in self.gates.len() + 1..=dimension {
             let gate = ChiSquaredGate::from_probability(degrees, self.params.probability);

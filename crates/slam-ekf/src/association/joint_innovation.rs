@@ -1,4 +1,4 @@
-/// The innovation of several pairings together, one more or one less at a time.
+/// The joint innovation of several pairings; rows are added and removed at the end.
 ///
 /// Keeps the Cholesky factor of the joint innovation covariance and $`y = L^{-1} ν`$, so that a pairing more costs a forward substitution and
 /// the joint NIS is $`‖y‖^2`$.
@@ -18,7 +18,7 @@ impl JointInnovation {
         self.whitened.iter().map(|y| y * y).sum()
     }
 
-    /// Adds one scalar row: its covariances with all rows so far and, last, its own variance. `None`, and nothing changed, when the joint
+    /// Adds one scalar row: its covariances with all rows so far and, last, its own variance. Returns `None` and changes nothing if the joint
     /// covariance would not be positive definite.
     pub(super) fn push(&mut self, covariances: impl Iterator<Item = f64>, residual: f64) -> Option<()> {
         let (start, n) = (self.factor.len(), self.dimension());
@@ -43,7 +43,7 @@ impl JointInnovation {
         Some(())
     }
 
-    /// Takes the last rows away again, until `dimension` are left.
+    /// Removes the last rows until `dimension` are left.
     pub(super) fn truncate(&mut self, dimension: usize) {
         self.factor.truncate(dimension * (dimension + 1) / 2);
         self.whitened.truncate(dimension);

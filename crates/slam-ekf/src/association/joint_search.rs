@@ -13,12 +13,12 @@ where
 {
     filter: &'a EkfSlam<M>,
     predictions: &'a [PredictedMeasurement<M>],
-    /// Observations that may be of something, and what they may be of.
+    /// Observations with candidates, and their candidates.
     open: Vec<(usize, Vec<&'a Candidate<M>>)>,
     gates: &'a [f64],
     trials_left: usize,
     joint: JointInnovation,
-    /// For every open observation so far: which of its candidates it is paired with.
+    /// For every open observation so far: the candidate that it is paired with.
     chosen: Vec<Option<&'a Candidate<M>>>,
     n_paired: usize,
     /// For every observation, the prediction that it is paired with in the best set so far.
@@ -83,7 +83,7 @@ where
         }
     }
 
-    /// Whether a set at least as large as the best can still come of this one.
+    /// Whether this set can still grow as large as the best.
     fn can_improve(&self) -> bool {
         let most = self.n_paired + self.open.len() - self.chosen.len();
         (most, -self.joint.nis()) > (self.best_score.0, -self.best_score.1)
@@ -100,7 +100,7 @@ where
         }
     }
 
-    /// Pairs the next open observation with a candidate, or with none; `false` when that contradicts the pairings so far.
+    /// Pairs the next open observation with a candidate, or with none; `false` if that is incompatible with the pairings so far.
     fn step_down(&mut self, candidate: Option<&'a Candidate<M>>) -> bool {
         if let Some(candidate) = candidate {
             self.trials_left -= 1;

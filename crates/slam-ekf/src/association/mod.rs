@@ -1,4 +1,4 @@
-//! Which landmark is each observation of: one rule a file, all behind [`DataAssociation`].
+//! Data association: one rule per file, all behind [`DataAssociation`].
 
 mod candidates;
 mod joint_compatibility;
@@ -20,12 +20,12 @@ use crate::{
     EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, RobotDim, SlamAlloc,
 };
 
-/// What an observation is of.
+/// The association of an observation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Association {
     /// A landmark or anchor of the map.
     Matched(LandmarkId),
-    /// Certainly none of the map: starts a landmark with this identity.
+    /// Certainly not in the map: starts a landmark with this identity.
     New(LandmarkId),
     /// Neither certainly old nor certainly new.
     Ambiguous,
@@ -33,15 +33,15 @@ pub enum Association {
     Unlabelled,
 }
 
-/// A rule that tells which landmark each observation of one look is of.
+/// A rule that associates each observation of one scan with a landmark.
 ///
-/// **Laws**: one association an observation, in order; the filter's state decides, together with what the rule itself remembers; the
-/// filter gates afterwards, so a rule need not.
+/// **Laws**: one association per observation, in order; it depends only on the filter's state and the rule's own state; the filter gates
+/// afterwards, so a rule need not.
 pub trait DataAssociation<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Associates the usable observations of one look.
+    /// Associates the usable observations of one scan.
     fn associate(
         &mut self,
         filter: &EkfSlam<M>,

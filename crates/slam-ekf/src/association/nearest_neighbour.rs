@@ -17,12 +17,12 @@ use crate::{
     serde(default, deny_unknown_fields)
 )]
 pub struct NearestNeighbourParams {
-    /// NIS up to which an observation is of its nearest landmark. 13.8 is the 0.999 quantile for range and bearing.
+    /// NIS up to which an observation is associated with its nearest landmark. 13.8 is the 0.999 quantile for range and bearing.
     pub accept: f64,
-    /// NIS above which it is certainly of none. In between nothing happens with it: it neither corrects nor becomes a landmark.
+    /// NIS above which it is certainly of none. In between it is ignored: it neither corrects nor becomes a landmark.
     pub certainly_new: f64,
-    /// Whether the sensor never tells of one landmark twice in a look, as with bar codes: what lies beside a sighting that found its landmark is
-    /// then of another one. Detectors that break a trunk in two must say no.
+    /// Whether the sensor detects each landmark at most once per scan, as with bar codes: a detection beside an associated one then belongs to
+    /// another landmark. `false` for detectors that may split a trunk in two.
     pub one_detection_per_landmark: bool,
 }
 
@@ -35,8 +35,8 @@ impl Default for NearestNeighbourParams {
 /// Individual-compatibility nearest neighbour with two thresholds, for sensors that read no identity.
 ///
 /// An observation belongs to the landmark of smallest NIS if that is at most `accept`; it starts a new landmark if even the nearest
-/// is further than `certainly_new`; nothing in between becomes a landmark, which is what keeps duplicates out of the map.
-/// Each landmark takes at most one observation a look. [Dissanayake et al. 2001, section V]
+/// is further than `certainly_new`. Nothing in between becomes a landmark, which keeps duplicates out of the map.
+/// Each landmark takes at most one observation per scan. [Dissanayake et al. 2001, section V]
 #[derive(Clone, Debug)]
 pub struct NearestNeighbour {
     params: NearestNeighbourParams,
@@ -47,7 +47,7 @@ impl NearestNeighbour {
     /// A rule that numbers new landmarks from 0.
     ///
     /// # Errors
-    /// When the thresholds are not positive and ordered.
+    /// Returns [`SlamError::Parameter`] if the thresholds are not positive and ordered.
     pub fn new(params: NearestNeighbourParams) -> Result<Self, SlamError> {
         let NearestNeighbourParams { accept, certainly_new, .. } = params;
         if !(accept > 0.0 && accept.is_finite()) {
@@ -63,13 +63,13 @@ impl NearestNeighbour {
         Ok(Self { params, ids: NewIds::default() })
     }
 
-    /// The same rule, numbering new landmarks from here on: a rule that goes on where another one stopped.
+    /// The same rule, numbering new landmarks from `next_id` on: it continues another rule.
     pub fn numbering_from(self, next_id: u32) -> Self {
         Self { ids: NewIds::from(next_id), ..self }
     }
 
-    /// The smallest number that a new landmark can get. Saved with the map: numbers of landmarks that were forgotten are not
-    /// used again, and the map alone does not tell them.
+    /// The smallest number that a new landmark can get. Save it with the map: numbers of removed landmarks are not used again, and the map
+    /// does not contain them.
     pub fn next_id(&self) -> u32 {
         self.ids.next()
     }
@@ -103,7 +103,7 @@ where
     }
 }
 
-/// The nearest candidate of an observation, when it is near enough, and its NIS.
+/// The nearest candidate of an observation, if it is near enough, and its NIS.
 fn nearest_within<M: LandmarkModel>(accept: f64, of_one: &[Candidate<M>]) -> Option<(usize, f64)>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
@@ -112,7 +112,7 @@ where
     Some((nearest.prediction, nearest.innovation.nis))
 }
 
-/// Whether a rival observation is nearer to the same landmark; the earlier one wins a draw.
+/// Whether another observation is nearer to the same landmark; the earlier one wins a tie.
 fn is_closer(
     rival: Option<(usize, f64)>,
     rival_idx: usize,

@@ -2,19 +2,19 @@ use nalgebra::DefaultAllocator;
 
 use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
-/// Numbers for landmarks that a rule starts, each given once.
+/// Numbers for landmarks that a rule starts, each used once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NewIds {
     next: u32,
 }
 
 impl NewIds {
-    /// Numbers from here on.
+    /// Numbers from `next` on.
     pub(super) fn from(next: u32) -> Self {
         Self { next }
     }
 
-    /// The smallest number that can come.
+    /// The smallest number that is still unused.
     pub(super) fn next(&self) -> u32 {
         self.next
     }

@@ -10,10 +10,10 @@ impl JointCovariance {
     ///
     /// $`P' = P - W W^T`$ with $`W = P H^T L^{-T}`$ and $`L L^T = S`$, on the lower triangle: for the optimal gain the same matrix as Joseph's
     /// $`(I-KH) P (I-KH)^T + K R K^T`$. Joseph's form multiplies the rounding errors of `S` by the gain, twice, and where rows of `S` almost
-    /// repeat each other that makes variances negative. Here `S` is taken larger by what its own rounding may be, so that never too much is
-    /// subtracted, and the rounding of the subtraction is given back to the diagonal.
+    /// repeat each other that makes variances negative. Here `S` is enlarged by the bound of its own rounding, so that never too much is
+    /// subtracted, and the rounding of the subtraction is added to the diagonal.
     ///
-    /// Cost $`n^2 m / 2`$ multiply-adds for `m` rows. `None`, and nothing changed, when $`S`$ is not positive definite or something overflows.
+    /// Cost $`n^2 m / 2`$ multiply-adds for `m` rows. Returns `None` and changes nothing if $`S`$ is not positive definite or on overflow.
     pub(crate) fn correct(
         &mut self,
         jacobian: &SparseJacobian,
@@ -45,8 +45,8 @@ impl JointCovariance {
 
 /// The share of the variances that a predicted variance is the sum and difference of below which it counts as noise.
 ///
-/// Robot and landmark can each be uncertain by kilometres and certain by millimetres against each other; what a double leaves of the
-/// difference is rounding. Thousands of roundings, a share of ε each, are far below this share, and it is far below every real noise.
+/// Robot and landmark can each be uncertain by kilometres and their relative position certain to millimetres; the difference in `f64`
+/// is then rounding. Thousands of roundings, a share of ε each, are far below this share, and it is far below every real noise.
 const SMALLEST_SHARE: f64 = 1e-12;
 
 #[cfg(test)]

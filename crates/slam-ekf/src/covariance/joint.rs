@@ -7,7 +7,7 @@ use nalgebra::{
 
 use super::ROUNDING;
 
-/// A covariance that grows, in a storage that grows by half, so that a new landmark seldom moves the matrix. The robot comes first.
+/// A covariance that grows, in a storage that grows by half, so a new landmark seldom moves the matrix. The robot comes first.
 #[derive(Clone, Debug)]
 pub(crate) struct JointCovariance {
     storage: DMatrix<f64>,
@@ -148,7 +148,7 @@ impl JointCovariance {
         self.dimension = end;
     }
 
-    /// Takes a block out: what is left is the marginal of the rest.
+    /// Removes a block: the remainder is the marginal of the rest.
     pub(crate) fn remove(&mut self, block: Range<usize>) {
         let dimension = self.dimension - block.len();
         let (capacity, n) = (self.storage.nrows(), self.dimension);

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, DefaultAllocator, DimName, OMatrix, OVector, al
 use super::{JointCovariance, SparseJacobian, compressed::CompressedCovariance};
 use crate::MapForm;
 
-/// The joint covariance of robot and map in either form: what the filter works with.
+/// The joint covariance of robot and map in either form, as the filter uses it.
 #[derive(Clone, Debug)]
 pub(crate) enum MapCovariance {
     Full(JointCovariance),
@@ -41,7 +41,7 @@ impl MapCovariance {
         }
     }
 
-    /// [`JointCovariance::shear`]. A compressed map cannot lean as a whole; the filter refuses to be built so.
+    /// [`JointCovariance::shear`]. A compressed map does not support it; the filter refuses this combination.
     pub(crate) fn shear(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>) {
         if let Self::Full(full) = self {
             full.shear(a, b);
@@ -80,7 +80,7 @@ impl MapCovariance {
         }
     }
 
-    /// What the mean that the filter holds of the landmark block at `offset` lacks; `None` when nothing.
+    /// The deferred step of the filter's mean of the landmark block at `offset`; `None` if there is none.
     pub(crate) fn deferred_step<L: DimName>(&self, offset: usize) -> Option<OVector<f64, L>>
     where
         DefaultAllocator: Allocator<L>,
@@ -143,7 +143,7 @@ impl MapCovariance {
         }
     }
 
-    /// Says that a look of the sensor is done with: time for what was deferred. No value changes.
+    /// Marks the end of a scan: deferred work is done now. No value changes.
     pub(crate) fn end_update(&mut self) {
         if let Self::Compressed(compressed) = self {
             compressed.end_update();

@@ -1,8 +1,9 @@
-//! The joint covariance of robot and map, and the four things a filter does to it: move the robot, correct, grow, shrink.
+//! The joint covariance of robot and map, and the four operations of a filter on it: move the robot, correct, grow, shrink.
 //!
-//! It comes in two forms: one matrix, or compressed, which tells the same and defers what a robot in one corner of a large map does to the rest of it.
+//! It has two forms: one matrix, or compressed, with the same values and deferred updates of the map outside the area around the robot.
 //!
-//! Every operation keeps it exactly symmetric, and positive semidefinite: what rounding may have taken from a variance is given back. Dense `n × n` products with the sparse observation Jacobian are never formed.
+//! Every operation keeps it exactly symmetric and positive semidefinite: a rounding allowance is added to the variances. Dense `n × n` products with
+//! the sparse observation Jacobian are never formed.
 
 mod compressed;
 mod correct;
@@ -15,5 +16,5 @@ use joint::JointCovariance;
 pub(crate) use map::MapCovariance;
 pub(crate) use sparse::SparseJacobian;
 
-/// Share of a variance that one operation gives back for its rounding: some hundreds of ε. A million operations add a part in ten million.
+/// Rounding allowance of one operation as a share of a variance: some hundreds of ε. A million operations add a part in ten million.
 const ROUNDING: f64 = 1e-13;

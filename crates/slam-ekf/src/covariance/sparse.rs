@@ -15,11 +15,11 @@ struct Row {
     second: Block,
 }
 
-/// Where a block starts in the state, and which coefficients are its own.
+/// The offset of a block in the state, and the range of its coefficients.
 type Block = (usize, Range<usize>);
 
 impl SparseJacobian {
-    /// Adds one row: what it takes of the robot, and of the landmark block at `offset` (nothing, for an anchor).
+    /// Adds one row: coefficients of the robot, and of the landmark block at `offset` (none for an anchor).
     pub(crate) fn push_row(
         &mut self,
         robot: impl IntoIterator<Item = f64>,
@@ -29,7 +29,7 @@ impl SparseJacobian {
         self.push_blocks((0, robot), (offset, landmark));
     }
 
-    /// Adds one row: what it takes of two blocks that start at these offsets.
+    /// Adds one row: coefficients of two blocks that start at these offsets.
     pub(crate) fn push_blocks(
         &mut self,
         first: (usize, impl IntoIterator<Item = f64>),
@@ -50,7 +50,7 @@ impl SparseJacobian {
         self.rows.len()
     }
 
-    /// The landmark blocks that it touches, those of one row after those of another.
+    /// The landmark blocks that it touches, row by row.
     pub(super) fn landmarks(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let blocks = self.rows.iter().flat_map(|row| [&row.first, &row.second]);
         let touched = blocks.filter(|(offset, coefficients)| *offset > 0 && !coefficients.is_empty());
@@ -85,7 +85,7 @@ impl SparseJacobian {
         })
     }
 
-    /// $`(\sum_i |h_i| \sqrt{P_{ii}})^2`$ of each row: what its variance would be if nothing cancelled.
+    /// $`(\sum_i |h_i| \sqrt{P_{ii}})^2`$ of each row: its variance if nothing cancelled.
     pub(super) fn largest_variances(&self, p: &DMatrixView<'_, f64>) -> DVector<f64> {
         let deviation = |(state, coefficient): (usize, f64)| coefficient.abs() * p[(state, state)].sqrt();
         DVector::from_fn(self.nrows(), |row, _| {

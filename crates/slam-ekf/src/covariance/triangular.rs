@@ -1,4 +1,4 @@
-//! Blocked kernels on the lower triangle: the whole cost of a large map is in these loops.
+//! Blocked kernels on the lower triangle: nearly all of the cost of a large map.
 
 use std::ops::Range;
 

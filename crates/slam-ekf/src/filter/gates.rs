@@ -2,7 +2,7 @@ use wayfix_gaussian_core::{ChiSquaredGate, GaussianError};
 
 use crate::SlamError;
 
-/// Chi-squared quantiles of one probability, computed once: a filter asks for them with every observation.
+/// Chi-squared quantiles of one probability, computed once: every observation needs them.
 #[derive(Clone, Debug)]
 pub(super) struct Gates(Vec<f64>);
 
@@ -16,7 +16,7 @@ impl Gates {
         thresholds.map(Self).map_err(out_of_range)
     }
 
-    /// For measurements of this dimension; 0, which nothing passes, beyond those that were asked for.
+    /// For measurements of this dimension; 0, which nothing passes, beyond the largest dimension.
     pub(super) fn threshold(&self, dimension: usize) -> f64 {
         dimension.checked_sub(1).and_then(|index| self.0.get(index)).copied().unwrap_or(0.0)
     }

@@ -14,10 +14,10 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Puts a landmark into the map whose place is known from elsewhere, with the uncertainty it is known with.
+    /// Inserts a landmark with a prior position and its covariance.
     ///
     /// # Errors
-    /// When the identity is taken, the landmark is not finite or the covariance is not symmetric positive definite.
+    /// Returns an error if the identity is taken, the landmark is not finite or the covariance is not symmetric positive definite.
     pub fn insert(
         &mut self,
         id: LandmarkId,
@@ -32,14 +32,14 @@ where
         Ok(())
     }
 
-    /// Puts an anchor into the map: a landmark whose place in the world is known exactly.
+    /// Inserts an anchor: a landmark whose position in the world is known exactly.
     ///
     /// An anchor never enters the state; its observations correct robot and map, and tie both to the world. One anchor with
-    /// range and bearing fixes a planar map but for turning about the anchor; two make it fully observable. [Andrade-Cetto 2005,
-    /// Eqs. 20-25; a planar map turns freely about a single one, which the paper does not say]
+    /// range and bearing fixes a planar map except for the rotation about it; two make it fully observable. [Andrade-Cetto 2005,
+    /// Eqs. 20-25; the paper does not mention the rotation]
     ///
     /// # Errors
-    /// When the identity is taken or the landmark is not finite.
+    /// Returns an error if the identity is taken or the landmark is not finite.
     pub fn add_anchor(&mut self, id: LandmarkId, landmark: M::Landmark) -> Result<(), SlamError> {
         self.check_free(id)?;
         check_finite(&landmark)?;
@@ -47,7 +47,7 @@ where
         Ok(())
     }
 
-    /// Takes a landmark or an anchor out of the map; what it taught about everything else stays. `false` when it is not in the map.
+    /// Removes a landmark or an anchor; the rest of the map keeps its information. Returns `false` if it is not in the map.
     pub fn remove(&mut self, id: LandmarkId) -> bool {
         let Some(removed) = self.landmarks.remove(&id) else {
             return self.anchors.remove(&id).is_some() || self.retired.remove(&id).is_some();
@@ -60,7 +60,7 @@ where
         true
     }
 
-    /// Starts a landmark from one measurement, in place of a tentative one with the same identity. An error leaves that one as it was.
+    /// Starts a landmark from one measurement, in place of a tentative one with the same identity. On an error that one is unchanged.
     pub(super) fn start(&mut self, id: LandmarkId, measurement: &M::Measurement) -> Result<(), SlamError> {
         let new = self.model.initialize(&self.robot, measurement);
         self.check_start(&new)?;
@@ -84,7 +84,7 @@ where
         if self.contains(id) { Err(SlamError::LandmarkExists(id)) } else { Ok(()) }
     }
 
-    /// A landmark may start where nothing is certain, but must be somewhere, and its covariance must be one.
+    /// A new landmark may be very uncertain, but it must be finite and its covariance valid.
     fn check_start(&self, new: &NewLandmark<M::Landmark, M::Robot>) -> Result<(), SlamError> {
         let NewLandmark { landmark, robot_jacobian, covariance } = new;
         check_finite(landmark)?;

@@ -1,4 +1,4 @@
-//! The filter, one step of the algorithm a file.
+//! The filter, one step of the algorithm per file.
 
 mod gates;
 mod linearization;

@@ -10,44 +10,44 @@ use crate::SlamError;
     serde(default, deny_unknown_fields)
 )]
 pub struct SlamParams {
-    /// What happens to observations that fit badly.
+    /// Treatment of observations outside the gate.
     pub outliers: OutlierRule,
-    /// Probability with which a correct observation fits well: a chi-squared quantile with the measurement's degrees of freedom.
-    /// 0.9999 (18.4 for range and bearing) doubts one good observation in ten thousand.
+    /// Probability with which a correct observation passes the gate: a chi-squared quantile with the measurement's degrees of freedom.
+    /// At 0.9999 (18.4 for range and bearing) one correct observation in ten thousand fails.
     pub gate_probability: f64,
-    /// Degrees of freedom of the Student-t distribution that badly fitting observations are taken to follow; 4 has tails that a
-    /// gross outlier fits into.
+    /// Degrees of freedom of the Student-t distribution assumed for observations outside the gate; the tails of 4 are heavy enough for gross
+    /// outliers.
     pub student_t_degrees_of_freedom: f64,
-    /// Whether observations of one look correct together.
+    /// Joint or sequential correction with the observations of one scan.
     pub order: UpdateOrder,
-    /// Whether the covariance of a large map is kept up to date as a whole.
+    /// Storage of the joint covariance: full or compressed.
     pub map: MapForm,
-    /// Where derivatives are taken, and with that whether the filter stays consistent on long loops.
+    /// Linearization points, which decide whether the filter stays consistent on long loops.
     pub linearization: Linearization,
-    /// Revisions after which a landmark leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, when not given. The
+    /// Revisions after which a landmark leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, if not given. The
     /// paper: 50.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub retire_after: Option<usize>,
-    /// What a landmark must show before it counts.
+    /// Conditions for a landmark to be confirmed.
     pub confirmation: ConfirmationParams,
-    /// When two landmarks of the map are taken for one; never, when not given.
+    /// When two landmarks of the map are merged; never, if not given.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub merging: Option<MergingParams>,
 }
 
-/// What happens to observations that fit badly.
+/// Treatment of observations outside the gate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum OutlierRule {
-    /// They count less the worse they fit, and none is lost: the filter finds back when it was once too sure of itself.
+    /// Their weight decreases with their NIS, but none is rejected: the filter recovers after it was overconfident.
     #[default]
     Downweight,
-    /// They are rejected. A filter that is once too sure of itself can reject everything from then on.
+    /// They are rejected. An overconfident filter can then reject all later observations.
     Reject,
 }
 
-/// Whether observations of one look correct together.
+/// Joint or sequential correction with the observations of one scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
@@ -59,7 +59,7 @@ pub enum UpdateOrder {
     Sequential,
 }
 
-/// How the covariance of robot and map is kept. The estimates are the same.
+/// Storage of the joint covariance of robot and map. The estimates are the same.
 ///
 /// ```
 /// use wayfix_estimation_traits::Pose2;
@@ -84,8 +84,8 @@ pub enum MapForm {
     /// One matrix, up to date: a correction costs the square of the number of landmarks in the map.
     #[default]
     Full,
-    /// The area around the robot up to date, and for the rest what it has to be told later: a correction costs the square of the
-    /// number of landmarks around. Landmarks whose `retract` adds, as points do, get the same means but for rounding.
+    /// The area around the robot up to date, with deferred updates of the rest: a correction costs the square of the number of landmarks in the
+    /// area. Landmarks whose `retract` is an addition, such as points, get the same means up to rounding.
     /// [Guivant & Nebot 2001]
     Compressed,
 }
@@ -142,8 +142,8 @@ impl SlamParams {
     /// Factor on the noise of an observation whose NIS is beyond the threshold.
     ///
     /// The Student-t log-likelihood has the slope of a Gaussian whose covariance is larger by $`(ν + d^2) / (ν + m)`$
-    /// [Lange, Little & Taylor 1989, section 3]. Here it sets in at the threshold in place of $`m`$, so that observations that fit are
-    /// weighed as the Kalman filter does and nothing jumps.
+    /// [Lange, Little & Taylor 1989, section 3]. Here it starts at the threshold in place of $`m`$: observations inside the gate keep
+    /// the weight of the Kalman filter, and the weight is continuous.
     pub(super) fn noise_scale(&self, nis: f64, threshold: f64) -> f64 {
         let degrees = self.student_t_degrees_of_freedom;
         ((degrees + nis) / (degrees + threshold)).max(1.0)

@@ -11,7 +11,7 @@ where
     /// Moves the robot: $`x_r ← f(x_r, u),\; P_{rr} ← F P_{rr} F^T + Q,\; P_{rm} ← F P_{rm}`$. Cost O(n).
     ///
     /// # Errors
-    /// When the model gives anything that is not finite or a noise that is no covariance; nothing has changed then.
+    /// Returns an error if the model returns a non-finite value or an invalid noise covariance; the filter is then unchanged.
     pub fn predict<U: ?Sized>(
         &mut self,
         motion: &impl MotionModel<State = M::Robot, Control = U>,
@@ -40,8 +40,8 @@ where
 /// Beyond this a variance says nothing (1e15 km²) and its products would overflow.
 pub(super) const LARGEST_VARIANCE: f64 = 1e36;
 
-/// Refuses what is not symmetric positive semidefinite; zero variances are fine. Rounding is allowed for in correlations, so that a
-/// variance in square kilometres does not hide a negative one in square millimetres.
+/// Refuses matrices that are not symmetric positive semidefinite; zero variances are valid. The rounding tolerance applies to correlations:
+/// a variance in square kilometres does not hide a negative one in square millimetres.
 pub(super) fn check_covariance<D: DimName>(
     what: &'static str,
     matrix: &OMatrix<f64, D, D>,
@@ -60,7 +60,7 @@ where
     let correlations = correlations(matrix);
     let lopsided = (&correlations - correlations.transpose()).amax();
     let value = smallest_eigenvalue(&correlations);
-    // Infinite correlations, of what does not vary at all, fail both.
+    // Infinite correlations, of coordinates with zero variance, fail both.
     if lopsided <= 1e-9 && value >= -1e-12 {
         Ok(())
     } else {
@@ -80,7 +80,7 @@ where
     })
 }
 
-/// Nothing to iterate in the usual case of a diagonal matrix.
+/// A diagonal matrix, the most frequent case, needs no iteration.
 fn smallest_eigenvalue<D: DimName>(matrix: &OMatrix<f64, D, D>) -> f64
 where
     DefaultAllocator: Allocator<D, D>,

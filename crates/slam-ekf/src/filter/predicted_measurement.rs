@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
-/// How a landmark of the map should look from here: what associations compare measurements with.
+/// The predicted measurement of a landmark, for data association.
 #[derive(Clone, Debug)]
 pub struct PredictedMeasurement<M: LandmarkModel>
 where
@@ -16,12 +16,12 @@ where
     pub landmark: LandmarkId,
     /// $`h(x_r, m)`$.
     pub expected: M::Measurement,
-    /// $`H P H^T`$: how uncertain the expectation is, without the noise of the sensor.
+    /// $`H P H^T`$: covariance of the prediction, without the noise of the sensor.
     pub covariance: TangentMatrix<M::Measurement>,
     pub(super) robot_jacobian: Jacobian<M::Measurement, M::Robot>,
     /// Where the landmark's block starts and the derivative by it; `None` for anchors.
     pub(super) landmark_jacobian: Option<Block<Jacobian<M::Measurement, M::Landmark>>>,
-    /// What the place of a retired landmark errs, as noise of the look; zero for all others.
+    /// Contribution of a retired landmark's position error to the measurement noise; zero for all others.
     pub(super) landmark_noise: TangentMatrix<M::Measurement>,
 }
 
@@ -32,7 +32,7 @@ impl<M: LandmarkModel> PredictedMeasurement<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// What a measurement with noise $`R`$ says beyond the expectation; `None` when $`H P H^T + R`$ is not positive definite.
+    /// The innovation of a measurement with noise $`R`$; `None` if $`H P H^T + R`$ is not positive definite.
     pub fn innovation(
         &self,
         measurement: &M::Measurement,
@@ -41,9 +41,9 @@ where
         self.innovation_within(f64::INFINITY, measurement, noise)
     }
 
-    /// The innovation, when its NIS is at most `limit`. The noise is that at what is expected ([`LandmarkModel::noise_at_expected`]).
+    /// The innovation, if its NIS is at most `limit`. The noise is that at the expected measurement ([`LandmarkModel::noise_at_expected`]).
     ///
-    /// Most landmarks are far from most measurements in a single coordinate already, $`ν_i^2 / S_{ii} ≤ ν^T S^{-1} ν`$, and cost no more than that.
+    /// A single coordinate rejects most landmarks at low cost, because $`ν_i^2 / S_{ii} ≤ ν^T S^{-1} ν`$.
     pub fn innovation_within(
         &self,
         limit: f64,
@@ -65,8 +65,8 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// How a landmark or an anchor should look from here; `None` when it is not in the map, or cannot be seen from here (the model
-    /// gives no finite measurement).
+    /// The predicted measurement of a landmark or an anchor; `None` if it is not in the map or cannot be observed from here (the model returns
+    /// no finite measurement).
     pub fn predicted_measurement(&self, id: LandmarkId) -> Option<PredictedMeasurement<M>> {
         if let Some(slot) = self.landmarks.get(&id) {
             self.predict_measurement(id, &self.mean(slot), Some(slot))
@@ -77,7 +77,7 @@ where
         }
     }
 
-    /// $`H_a P H_b^T`$: how the expectations of two landmarks err together, without the noise of the sensor.
+    /// $`H_a P H_b^T`$: cross-covariance of the predictions of two landmarks, without the noise of the sensor.
     pub fn predicted_cross_covariance(
         &self,
         a: &PredictedMeasurement<M>,
@@ -101,12 +101,12 @@ where
         cross
     }
 
-    /// How everything in the map should look from here, anchors first.
+    /// The predicted measurements of all landmarks, anchors first.
     pub fn predicted_measurements(&self) -> impl Iterator<Item = PredictedMeasurement<M>> {
         self.predicted_measurements_within(None)
     }
 
-    /// How the landmarks within any of the reaches should look from here, anchors first; all of them without reaches.
+    /// The predicted measurements of the landmarks in any of the search regions, anchors first; of all landmarks if there are no regions.
     pub(crate) fn predicted_measurements_within<'a>(
         &'a self,
         reaches: Option<&'a [SearchRegion<M::Landmark>]>,
@@ -158,7 +158,7 @@ where
         })
     }
 
-    /// As of an anchor, but for the marginal that it left the state with.
+    /// As for an anchor, plus the marginal covariance with which it left the state.
     fn predict_retired(
         &self,
         id: LandmarkId,

@@ -17,7 +17,7 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// All that the filter knows, as a plain value. Cost O(n²).
+    /// The complete state of the filter as a plain value. Cost O(n²).
     pub fn snapshot(&self) -> Snapshot<M::Robot, M::Landmark> {
         let mut slots: Vec<(&LandmarkId, &Slot<M::Landmark>)> = self.landmarks.iter().collect();
         slots.sort_unstable_by_key(|(_, slot)| slot.offset);
@@ -40,10 +40,10 @@ where
         }
     }
 
-    /// The filter that a snapshot was taken of: from here on both do the same, bit for bit, when model and parameters are the same. A compressed
-    /// map is exact, but not to the last bit: what was deferred when the snapshot was taken is rounded once more.
+    /// The filter of a snapshot. With the same model and parameters it continues bit for bit as the original. A compressed map continues
+    /// up to rounding only: updates that were deferred at the snapshot are rounded once more.
     ///
-    /// The snapshot may come from anywhere; nothing of it is taken on trust. Cost O(n³), once.
+    /// The snapshot need not be trusted: all of it is checked. Cost O(n³), once.
     ///
     /// ```
     /// use wayfix_estimation_traits::Pose2;
@@ -65,8 +65,8 @@ where
     /// ```
     ///
     /// # Errors
-    /// When a parameter is out of range, a number is not finite, a count is absurd, an identity comes twice, or the covariance has another size or is not
-    /// positive semidefinite.
+    /// Returns an error if a parameter is out of range, a number is not finite, a count is invalid, an identity is repeated, or the covariance has another
+    /// size or is not positive semidefinite.
     pub fn resume(
         model: M,
         params: SlamParams,
@@ -182,7 +182,7 @@ fn from_lower(dimension: usize, lower: &[f64]) -> DMatrix<f64> {
     covariance
 }
 
-/// Whether the correlations are positive semidefinite up to what a long run may have lost by rounding.
+/// Whether the correlations are positive semidefinite up to the rounding errors of a long run.
 fn is_semidefinite(covariance: &DMatrix<f64>) -> bool {
     let deviations = covariance.diagonal().map(f64::sqrt);
     let correlations =

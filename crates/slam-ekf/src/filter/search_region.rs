@@ -4,16 +4,16 @@ use wayfix_estimation_traits::Manifold;
 use super::EkfSlam;
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
-/// Where a landmark must be, roughly, for a measurement to be of it: a bound that costs no derivative.
+/// The region in which a landmark must lie to be compatible with a measurement: a bound that needs no derivative at the landmark.
 ///
 /// With $`\hat m = g(x_r, z)`$ the difference $`m ⊟ \hat m`$ has, to first order, the same NIS as the innovation, and no variance of it is larger than
-/// $`(\sqrt{\operatorname{tr} P_{mm}} + \sqrt{\operatorname{tr} G_r P_{rr} G_r^T} + \sqrt{\operatorname{tr} N})^2`$. Where the two models bend, first order errs: a landmark is out of
-/// reach only beyond [`MARGIN`] times the bound.
+/// $`(\sqrt{\operatorname{tr} P_{mm}} + \sqrt{\operatorname{tr} G_r P_{rr} G_r^T} + \sqrt{\operatorname{tr} N})^2`$.
+/// The models are not linear, so a landmark is excluded only beyond [`MARGIN`] times the bound.
 #[derive(Clone, Debug)]
 pub(crate) struct SearchRegion<L> {
-    /// Where the measurement would start a landmark.
+    /// The landmark that the measurement would start.
     place: L,
-    /// Standard deviation of that place, m for points.
+    /// Standard deviation of its position, m for points.
     deviation: f64,
     /// Standard deviations that the limit on the NIS allows.
     n_sigmas: f64,
@@ -26,7 +26,7 @@ impl<L: Manifold<Scalar = f64>> SearchRegion<L>
 where
     DefaultAllocator: Allocator<L::Dim>,
 {
-    /// Whether a landmark with this trace of its covariance can be meant; always, where the measurement alone does not place it.
+    /// Whether a landmark with this trace of its covariance may be compatible; always `true` if the measurement alone does not place a landmark.
     pub(crate) fn contains(&self, landmark: &L, variance: f64) -> bool {
         let distance = self.place.local(landmark).norm();
         let most = MARGIN * self.n_sigmas * (self.deviation + variance.max(0.0).sqrt());
@@ -38,7 +38,7 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Where landmarks can be that have a NIS of at most `limit` with a measurement.
+    /// The region of the landmarks that have a NIS of at most `limit` with a measurement.
     pub(crate) fn search_region(
         &self,
         limit: f64,
@@ -62,7 +62,7 @@ mod tests {
 
     const SEED: u64 = 31;
 
-    /// Robot and landmarks as uncertain as after a long way: metres, and ten degrees.
+    /// Robot and landmarks as uncertain as after a long path: metres, and ten degrees.
     #[test]
     fn preselection_keeps_every_landmark_within_the_nis_limit() {
         let mut rng = ChaCha8Rng::seed_from_u64(SEED);

@@ -43,7 +43,7 @@ where
     pub(super) anchors: BTreeMap<LandmarkId, M::Landmark>,
     pub(super) retired: BTreeMap<LandmarkId, Retired<M::Landmark>>,
     pub(super) covariance: MapCovariance,
-    /// How many looks there were.
+    /// Number of updates.
     pub(super) n_updates: usize,
 }
 
@@ -51,19 +51,19 @@ where
 #[derive(Clone, Debug)]
 pub(super) struct Slot<L> {
     pub(super) mean: L,
-    /// Where it was when it was placed first.
+    /// Its first estimate.
     pub(super) first: L,
     pub(super) offset: usize,
     pub(super) n_detections: usize,
-    /// Looks that should have shown it and did not.
+    /// Scans with it in view and no detection.
     pub(super) n_missed: usize,
-    /// Of these, since it was seen last.
+    /// Of these, those since its last detection.
     pub(super) n_missed_in_a_row: usize,
-    /// The look in which it was seen last.
+    /// The update of its last detection.
     pub(super) last_seen: usize,
 }
 
-/// What is known of one landmark.
+/// The estimate of one landmark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LandmarkEstimate<L: Manifold<Scalar = f64>>
 where
@@ -71,9 +71,9 @@ where
 {
     /// Its identity.
     pub id: LandmarkId,
-    /// Where it is.
+    /// Estimated position.
     pub mean: L,
-    /// How sure that is, marginal over everything else.
+    /// Marginal covariance.
     pub covariance: TangentMatrix<L>,
 }
 
@@ -81,18 +81,18 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// An empty map around a robot whose pose is the origin of everything, known exactly.
+    /// An empty map and a robot whose pose is known exactly.
     ///
     /// # Errors
-    /// When a parameter is out of range, the pose is not finite, or the linearization needs a symmetry that the model does not tell.
+    /// Returns an error if a parameter is out of range, the pose is not finite, or the linearization needs symmetries that the model does not have.
     pub fn new(model: M, params: SlamParams, start: M::Robot) -> Result<Self, SlamError> {
         Self::with_start_covariance(model, params, start, TangentMatrix::<M::Robot>::zeros())
     }
 
-    /// An empty map around a robot whose pose in a given world is uncertain.
+    /// An empty map and a robot whose pose in a given world is uncertain.
     ///
     /// # Errors
-    /// As [`new`](Self::new), or when the covariance is not symmetric positive semidefinite.
+    /// As [`new`](Self::new), or if the covariance is not symmetric positive semidefinite.
     pub fn with_start_covariance(
         model: M,
         params: SlamParams,
@@ -122,7 +122,7 @@ where
         })
     }
 
-    /// The estimated pose and what else is estimated of the robot.
+    /// The estimated state of the robot: pose and further coordinates.
     pub fn robot(&self) -> &M::Robot {
         &self.robot
     }
@@ -130,16 +130,16 @@ where
     pub fn robot_covariance(&self) -> TangentMatrix<M::Robot> {
         self.covariance.robot()
     }
-    /// The joint covariance: robot first, then the landmarks in the order in which they came. A copy, with everything that a compressed
-    /// map defers worked in.
+    /// The joint covariance: robot first, then the landmarks in the order of insertion. A copy that includes the deferred updates of a compressed
+    /// map.
     pub fn covariance(&self) -> DMatrix<f64> {
         self.covariance.matrix()
     }
-    /// How many landmarks are confirmed; anchors are not among them.
+    /// Number of confirmed landmarks, without anchors.
     pub fn n_landmarks(&self) -> usize {
         self.landmarks.values().filter(|slot| self.is_confirmed(slot)).count() + self.retired.len()
     }
-    /// How many landmarks are in the state that still have to be confirmed.
+    /// Number of landmarks in the state that are not confirmed yet.
     pub fn n_tentative(&self) -> usize {
         self.landmarks.len() + self.retired.len() - self.n_landmarks()
     }
@@ -160,7 +160,7 @@ where
         let in_state = self.landmarks.get(&id).map(|slot| self.estimate(id, slot));
         in_state.or_else(|| self.retired.get(&id).map(|retired| retired.estimate(id)))
     }
-    /// All confirmed landmarks in the order of their identities, retired ones as they were when they left the state.
+    /// All confirmed landmarks in the order of their identities, retired ones with their last estimate in the state.
     pub fn landmarks(&self) -> impl Iterator<Item = LandmarkEstimate<M::Landmark>> {
         let confirmed = self.landmarks.iter().filter(|(_, slot)| self.is_confirmed(slot)).map(|(id, _)| *id);
         let ids: BTreeSet<LandmarkId> = confirmed.chain(self.retired.keys().copied()).collect();
@@ -175,13 +175,13 @@ where
         LandmarkEstimate { id, mean: self.mean(slot), covariance: self.landmark_covariance(slot) }
     }
 
-    /// The mean up to date: what a compressed map defers is added.
+    /// The current mean, including the deferred updates of a compressed map.
     pub(super) fn mean(&self, slot: &Slot<M::Landmark>) -> M::Landmark {
         let deferred = self.covariance.deferred_step::<LandmarkDim<M>>(slot.offset);
         deferred.map_or_else(|| slot.mean.clone(), |step| slot.mean.retract(&step))
     }
 
-    /// Where a landmark is, and where its block starts in the covariance; nowhere for an anchor.
+    /// The estimate of a landmark, and the offset of its block in the covariance; no offset for an anchor.
     pub(crate) fn place(&self, id: LandmarkId) -> Option<(M::Landmark, Option<usize>)> {
         let slot = self.landmarks.get(&id).map(|slot| (self.mean(slot), Some(slot.offset)));
         slot.or_else(|| self.anchors.get(&id).map(|mean| (mean.clone(), None)))

@@ -8,10 +8,10 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Steps all means by a correction and takes the covariance along to where they are then.
+    /// Adds a correction to all means and transports the covariance to the new means.
     ///
-    /// This is the whole difference between the kinds of filters. With $`g`$ the directions in which robot and landmarks move when the
-    /// world is moved ([`LandmarkModel::symmetries`]), and $`ξ = g_r^† e_r`$ how far the robot's error moves the world:
+    /// This is the only difference between the kinds of filters. With $`g`$ the directions in which robot and landmarks move when the
+    /// world is moved ([`LandmarkModel::symmetries`]), and $`ξ = g_r^† e_r`$ the displacement of the world by the robot's error:
     ///
     /// ```text
     /// newest            e_r keeps its direction in the world      e_m ← e_m
@@ -41,10 +41,10 @@ where
         }
     }
 
-    /// Steps the robot's mean and takes its covariance along into the tangent space there.
+    /// Adds the correction to the robot's mean and transports its covariance to the tangent space there.
     ///
-    /// Without the second half the covariance would stay in the frame of the old heading. With it the filter is the same, number for
-    /// number, as one that keeps the robot's error in world coordinates.
+    /// Without the transport the covariance would stay in the frame of the old heading. With it the filter is numerically identical to one that
+    /// keeps the robot's error in world coordinates.
     fn step_robot(&mut self, step: &Tangent<M::Robot>) {
         let corrected = self.robot.retract(step);
         let transport = self.robot.chart_jacobian(&corrected);

@@ -13,12 +13,12 @@ use crate::{
     covariance::SparseJacobian,
 };
 
-/// An observation that passed the gate, with what the correction needs of it.
+/// An observation that passed the gate, with its terms of the correction.
 struct Accepted<M: LandmarkModel>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Which of the look's observations.
+    /// Its index in the scan.
     index: usize,
     predicted: PredictedMeasurement<M>,
     innovation: Innovation<M::Measurement>,
@@ -29,15 +29,15 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Corrects robot and map with everything one look of the sensor saw.
+    /// Corrects robot and map with all observations of one scan.
     ///
-    /// Observations are associated at the predicted state, weighed one by one, and those that pass correct together; then new
-    /// landmarks start ([`UpdateOrder`](crate::UpdateOrder) can ask for one after the other). Each observation's fate is in the report,
-    /// in the order they came; one that cannot be used (not finite, twice the same landmark, outside the gate, a noise that is no
-    /// covariance) leaves the others alone.
+    /// Observations are associated at the predicted state and gated one by one, and those that pass correct jointly; then new landmarks
+    /// start ([`UpdateOrder`](crate::UpdateOrder) can select sequential corrections). The report has one outcome per observation, in their
+    /// order. An unusable one (not finite, a second one of the same landmark, outside the gate, an invalid noise covariance) does not affect
+    /// the others.
     ///
     /// # Errors
-    /// When the association breaks its law and does not say of every usable observation what it is of; nothing has changed then.
+    /// Returns an error if the association violates its law and does not return one association per usable observation; the filter is then unchanged.
     pub fn update(
         &mut self,
         observations: &[Observation<M::Measurement>],
@@ -66,7 +66,7 @@ where
         Ok(StepReport { outcomes, merges })
     }
 
-    /// Observations that are linearized at the same state: weigh each, correct with all, start new landmarks.
+    /// Observations that are linearized at the same state: gate each, correct with all, start new landmarks.
     fn update_batch(
         &mut self,
         observations: &[Observation<M::Measurement>],
@@ -136,13 +136,13 @@ where
         let noise_scale = self.params.noise_scale(innovation.nis, threshold);
         let noise = noise * noise_scale + &predicted.landmark_noise;
         if noise.amax() >= LARGEST_VARIANCE {
-            return Outcome::Rejected { landmark, innovation, threshold }; // so far out that it would weigh nothing
+            return Outcome::Rejected { landmark, innovation, threshold }; // so far out that its weight would be zero
         }
         accepted.push(Accepted { index, predicted, innovation: innovation.clone(), noise });
         Outcome::Accepted { landmark, innovation, noise_scale }
     }
 
-    /// All accepted observations at once: one joint linear correction, then the means step. `None`, and nothing changed, when their
+    /// All accepted observations at once: one joint linear correction of covariance and means. Returns `None` and changes nothing if their
     /// innovation covariance is not positive definite.
     fn correct(&mut self, accepted: &[Accepted<M>]) -> Option<()> {
         if accepted.is_empty() {

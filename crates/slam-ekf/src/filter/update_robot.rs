@@ -17,7 +17,7 @@ where
 {
     /// Corrects robot and map with a measurement of the robot alone: GPS, a compass, a camera at the ceiling.
     ///
-    /// It ties the map to the world as an anchor does. The rules for what fits badly are those of sightings.
+    /// It ties the map to the world as an anchor does. Outliers are treated as those of landmark observations.
     /// [Andrade-Cetto 2005, Eqs. 23, 26, 27]
     ///
     /// ```
@@ -25,7 +25,7 @@ where
     /// use wayfix_estimation_traits::SensorModel;
     /// use wayfix_slam_ekf::{EkfSlam, MonobotSensor, SlamParams};
     ///
-    /// /// Tells where the robot is on its line, with a standard deviation in metres.
+    /// /// Measures the position of the robot on its line, with a standard deviation in metres.
     /// struct Camera(f64);
     /// impl SensorModel for Camera {
     ///     type State = Vector1<f64>;
@@ -38,13 +38,13 @@ where
     /// let start = (Vector1::new(0.0), Matrix1::new(1.0));
     /// let mut slam = EkfSlam::with_start_covariance(sensor, SlamParams::default(), start.0, start.1)?;
     /// slam.update_robot(&Camera(1.0), &Vector1::new(1.0))?;
-    /// assert!((slam.robot().x - 0.5).abs() < 1e-6); // half way between two that are equally sure
+    /// assert!((slam.robot().x - 0.5).abs() < 1e-6); // half way between two of equal variance
     /// # Ok::<(), wayfix_slam_ekf::SlamError>(())
     /// ```
     ///
     /// # Errors
-    /// When the measurement, Jacobian or noise is not finite, the noise is no covariance, or the measurement is an outlier that is to be rejected;
-    /// nothing has changed then.
+    /// Returns an error if the measurement, Jacobian or noise is not finite, the noise is not a covariance, or the measurement is a rejected outlier;
+    /// the filter is then unchanged.
     pub fn update_robot<S>(
         &mut self,
         sensor: &S,
@@ -74,7 +74,7 @@ where
         }
         let noise = noise * self.params.noise_scale(innovation.nis, threshold);
         if noise.amax() >= LARGEST_VARIANCE {
-            return Err(SlamError::Outlier { nis: innovation.nis, threshold }); // so far out that it would weigh nothing
+            return Err(SlamError::Outlier { nis: innovation.nis, threshold }); // so far out that its weight would be zero
         }
 
         let mut rows = SparseJacobian::default();

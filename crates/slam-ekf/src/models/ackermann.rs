@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{MotionModel, Pose2};
 
 use super::{VelocityControl, VelocityMotion};
 
-/// A car whose encoder sits at one rear wheel, seen from the middle of the rear axle.
+/// A car with an encoder at one rear wheel; its reference point is the middle of the rear axle.
 ///
 /// $`v = \frac{v_e}{1 - \tan α \, H / L},\quad ω = \frac{v}{L} \tan α`$ [Guivant & Nebot 2001, Eqs. 1-3]
 ///
@@ -30,15 +30,15 @@ pub struct AckermannVehicle {
 }
 
 impl Default for AckermannVehicle {
-    /// The utility truck of the Victoria Park set.
+    /// The utility truck of the Victoria Park data set.
     fn default() -> Self {
         Self { wheel_base: 2.83, wheel_offset: 0.76 }
     }
 }
 
 impl AckermannVehicle {
-    /// The velocity of the middle of the rear axle: what the wheel at `wheel_speed` m/s and the front wheels at `steering` rad (left positive)
-    /// make of `duration` seconds.
+    /// The velocity of the middle of the rear axle, with the encoder's wheel at `wheel_speed` m/s and the front wheels at `steering` rad (left
+    /// positive) for `duration` seconds.
     pub fn velocity(&self, wheel_speed: f64, steering: f64, duration: f64) -> VelocityControl {
         let tangent = steering.tan();
         let linear = wheel_speed / (1.0 - tangent * self.wheel_offset / self.wheel_base);
@@ -46,14 +46,14 @@ impl AckermannVehicle {
     }
 }
 
-/// Speed of the encoder's wheel, m/s, and steering, rad, held for a time.
+/// Speed of the encoder's wheel, m/s, and steering angle, rad, constant for a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AckermannControl {
     /// Of the wheel with the encoder, m/s.
     pub wheel_speed: f64,
     /// Of the front wheels, rad, left positive.
     pub steering: f64,
-    /// How long, s.
+    /// Duration, s.
     pub duration: f64,
 }
 
@@ -66,9 +66,9 @@ pub struct AckermannControl {
     serde(default, deny_unknown_fields)
 )]
 pub struct AckermannMotion {
-    /// Measures of the car.
+    /// Dimensions of the car.
     pub vehicle: AckermannVehicle,
-    /// How well it does what its encoder and its steering say.
+    /// Noise of the motion.
     pub velocity: VelocityMotion,
 }
 

@@ -2,10 +2,11 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::RangeBearing;
 
-/// What the sightings of one look err each by itself, and what they all err together.
+/// Independent and shared noise of the detections in one scan.
 ///
-/// $`z_i = h_i ⊞ (v_i + c)`$: a turning robot, a late stamp or a tilted camera shifts all of a look alike, so that two neighbours can be told
-/// apart long before either of them is placed. Correction inflates its noise for errors that hang together in time; association must not, or neighbours melt into one.
+/// $`z_i = h_i ⊞ (v_i + c)`$: a turning robot, a late stamp or a tilted camera shifts all detections of a scan equally, so neighbours can be
+/// distinguished before their positions are certain. The correction inflates its noise for time-correlated errors; association must not, or it
+/// merges neighbours.
 ///
 /// ```
 /// use wayfix_slam_ekf::{LandmarkModel, CorrelatedNoise, RangeBearing, RangeBearingSensor};
@@ -23,20 +24,20 @@ use super::RangeBearing;
     serde(default, deny_unknown_fields)
 )]
 pub struct CorrelatedNoise {
-    /// Standard deviation of what a range errs by itself at distance zero, m.
+    /// Standard deviation of the independent range error at distance zero, m.
     pub independent_range_sigma: f64,
-    /// What it grows by, per metre.
+    /// Its increase per metre.
     pub independent_range_sigma_per_meter: f64,
-    /// Standard deviation of what a bearing errs by itself, rad.
+    /// Standard deviation of the independent bearing error, rad.
     pub independent_bearing_sigma: f64,
-    /// Standard deviation of what all ranges of a look err together, per metre: an error of their scale.
+    /// Standard deviation of the shared range error of a scan, per metre: a scale error.
     pub common_range_sigma_per_meter: f64,
-    /// Standard deviation of what all bearings of a look err together, rad.
+    /// Standard deviation of the shared bearing error of a scan, rad.
     pub common_bearing_sigma: f64,
 }
 
 impl Default for CorrelatedNoise {
-    /// 5 cm and 0.01 rad, and nothing in common.
+    /// 5 cm and 0.01 rad, no shared error.
     fn default() -> Self {
         Self {
             independent_range_sigma: 0.05,
@@ -49,7 +50,7 @@ impl Default for CorrelatedNoise {
 }
 
 impl CorrelatedNoise {
-    /// Covariance of one measurement: its own errors and the common ones.
+    /// Covariance of one measurement: independent and shared errors.
     pub(super) fn noise(&self, measurement: &RangeBearing) -> Matrix2<f64> {
         let range_sigma =
             self.independent_range_sigma + self.independent_range_sigma_per_meter * measurement.range;
@@ -57,7 +58,7 @@ impl CorrelatedNoise {
         Matrix2::from_diagonal(&own) + self.common_noise(measurement, measurement)
     }
 
-    /// Covariance of what two measurements of one look err together.
+    /// Cross-covariance of two measurements in one scan.
     pub(super) fn common_noise(&self, a: &RangeBearing, b: &RangeBearing) -> Matrix2<f64> {
         let range_variance = self.common_range_sigma_per_meter.powi(2) * a.range * b.range;
         Matrix2::from_diagonal(&Vector2::new(range_variance, self.common_bearing_sigma.powi(2)))

@@ -4,16 +4,16 @@ use wayfix_estimation_traits::{Jacobian, Manifold, MotionModel, Pose2, TangentMa
 use super::IncrementMotion;
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, SlamAlloc};
 
-/// A pose together with what its odometry turns by without turning.
+/// A pose and the heading drift of its odometry.
 ///
-/// Wheels of unequal size make a straight drive look like an arc, so that heading drifts in proportion to the way. Tangent order
+/// With wheels of unequal size, odometry reports a straight path as an arc: the heading drifts in proportion to the distance. Tangent order
 /// `(x, y, θ, κ)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct DriftingPose {
-    /// Where the robot is.
+    /// Pose of the robot.
     pub pose: Pose2<f64>,
-    /// κ: how much further than odometry says the robot turns on every metre, rad/m.
+    /// κ: rotation of the robot per metre beyond that of odometry, rad/m.
     pub heading_drift: f64,
 }
 
@@ -34,7 +34,7 @@ impl Manifold for DriftingPose {
     }
 }
 
-/// Odometry increments whose heading drifts: $`x' = x ∘ (u_x, u_y, u_θ + κ ‖u_{xy}‖)`$; κ stays what it is.
+/// Odometry increments whose heading drifts: $`x' = x ∘ (u_x, u_y, u_θ + κ ‖u_{xy}‖)`$; κ is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct DriftingMotion(pub IncrementMotion);
 
@@ -67,7 +67,7 @@ impl MotionModel for DriftingMotion {
     }
 }
 
-/// Any sensor of a pose on a robot whose odometry drifts: what it sees does not depend on the drift.
+/// Any sensor of a pose on a robot whose odometry drifts: its measurements do not depend on the drift.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct DriftingPoseSensor<S>(pub S);
 

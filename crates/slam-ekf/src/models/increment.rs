@@ -3,10 +3,10 @@ use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 
 /// Odometry increments: the control is the motion in the robot frame since the last one, $`x' = x ∘ u`$.
 ///
-/// The noise is a variance per metre and per radian travelled, so that the result does not depend on how finely a log
-/// cuts the path, and a robot that stands still stays certain.
+/// The noise is a variance per metre and per radian travelled: the result does not depend on the sampling of the log, and the covariance
+/// of a robot at rest does not grow.
 ///
-/// The defaults are what `σ = 0.02 m, 0.005 rad` over a step of a quarter of a metre means.
+/// The defaults correspond to `σ = 0.02 m, 0.005 rad` over a step of 0.25 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(

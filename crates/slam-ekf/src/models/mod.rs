@@ -1,4 +1,4 @@
-//! Motions and sensors of planar robots, and of one on a line.
+//! Motion and sensor models of planar robots, and of a robot on a line.
 
 mod ackermann;
 mod correlated_noise;

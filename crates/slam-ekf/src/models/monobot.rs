@@ -3,7 +3,7 @@ use wayfix_estimation_traits::MotionModel;
 
 use crate::{LandmarkModel, NewLandmark};
 
-/// A robot on a line that is told how far to go: $`x' = x + u + v`$ with $`σ_v = σ_0 + α |u|`$. [Andrade-Cetto 2005, Eq. 19]
+/// A robot on a line with a commanded displacement: $`x' = x + u + v`$ with $`σ_v = σ_0 + α |u|`$. [Andrade-Cetto 2005, Eq. 19]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MonobotMotion {
@@ -13,7 +13,7 @@ pub struct MonobotMotion {
     pub sigma_per_meter: f64,
 }
 
-/// Landmarks on the line, seen at their signed distance: $`z = m - x + w`$ with $`σ_w = σ_0 + β |z|`$. [Andrade-Cetto 2005, Sec. 2.2]
+/// Landmarks on the line, measured by their signed distance: $`z = m - x + w`$ with $`σ_w = σ_0 + β |z|`$. [Andrade-Cetto 2005, Sec. 2.2]
 ///
 /// ```
 /// use nalgebra::Vector1;
@@ -27,7 +27,7 @@ pub struct MonobotMotion {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MonobotSensor {
-    /// $`σ_0`$, m; above zero, or a landmark on top of the robot would be seen without error.
+    /// $`σ_0`$, m; above zero, or a landmark at the robot would be measured without error.
     pub sigma: f64,
     /// $`β`$: standard deviation as a share of the distance.
     pub sigma_per_meter: f64,

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Jacobian, LieGroup, Pose2, TangentMatrix};
 
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, SlamAlloc};
 
-/// A sensor that sits somewhere on the robot: $`h(x_r ∘ c, m)`$ with $`c`$ the sensor's pose in the robot frame.
+/// A sensor mounted on the robot: $`h(x_r ∘ c, m)`$ with $`c`$ the sensor's pose in the robot frame.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -15,9 +15,9 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, S
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MountedSensor<S> {
-    /// How the sensor sees, from where it is.
+    /// The sensor in its own frame.
     pub sensor: S,
-    /// Where it is in the robot frame: x forward, y left, metres and radians.
+    /// Its pose in the robot frame: x forward, y left, metres and radians.
     pub mount: Pose2<f64>,
 }
 
@@ -34,7 +34,7 @@ where
         self.sensor.expected(&robot.compose(&self.mount), landmark)
     }
 
-    /// The sensor moves by $`\mathrm{Ad}_{c^{-1}}`$ times what the robot moves by, each in its own frame.
+    /// The sensor moves by $`\mathrm{Ad}_{c^{-1}}`$ times the motion of the robot, each in its own frame.
     fn robot_jacobian(
         &self,
         robot: &Pose2<f64>,

@@ -1,11 +1,11 @@
 use nalgebra::{DMatrix, Vector2};
 use wayfix_estimation_traits::Pose2;
 
-/// What no sensor on a planar robot can see, in the order of the columns of the symmetries.
+/// Motions that no sensor on a planar robot can measure, in the order of the columns of the symmetries.
 pub const PLANAR_SYMMETRIES: &[&str] =
     &["translation of everything along x", "translation of everything along y", "rotation of everything"];
 
-/// How a pose moves in its body frame when the world moves along x, along y, and turns about the origin.
+/// Motion of a pose in its body frame when the world moves along x, along y, and turns about the origin.
 pub fn pose_symmetry(pose: &Pose2<f64>) -> DMatrix<f64> {
     let to_body = pose.rotation_matrix().transpose();
     let turned = to_body * Vector2::new(-pose.y(), pose.x());
@@ -26,7 +26,7 @@ pub fn pose_symmetry(pose: &Pose2<f64>) -> DMatrix<f64> {
     )
 }
 
-/// How a point of the plane moves when the world moves along x, along y, and turns about the origin.
+/// Motion of a point of the plane when the world moves along x, along y, and turns about the origin.
 pub fn point_symmetry(point: &Vector2<f64>) -> DMatrix<f64> {
     DMatrix::from_row_slice(2, 3, &[1.0, 0.0, -point.y, 0.0, 1.0, point.x])
 }

@@ -6,7 +6,7 @@ use wayfix_estimation_traits::{Angle, Manifold, Pose2, wrap_angle};
 use super::{CorrelatedNoise, PLANAR_SYMMETRIES, point_symmetry, pose_symmetry};
 use crate::{LandmarkModel, NewLandmark};
 
-/// Distance and direction of a point, seen from the robot.
+/// Range and bearing of a point from the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeBearing {
     /// Metres, positive.
@@ -42,10 +42,10 @@ impl Manifold for RangeBearing {
     }
 }
 
-/// Point landmarks seen in range and bearing.
+/// Point landmarks measured in range and bearing.
 ///
 /// $`r = ‖q‖,\; b = \operatorname{atan2}(q_y, q_x)`$ with $`q = R^T (m - t)`$, the point in the robot frame;
-/// $`σ_r = σ_0 + κ r`$, because range sensors of every kind grow worse with distance.
+/// $`σ_r = σ_0 + κ r`$, because the error of every range sensor grows with distance.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -65,15 +65,15 @@ impl Manifold for RangeBearing {
 pub struct RangeBearingSensor {
     /// Standard deviation of the range at distance zero, m.
     pub range_sigma: f64,
-    /// What it grows by, per metre.
+    /// Its increase per metre.
     pub range_sigma_per_meter: f64,
     /// Standard deviation of the bearing, rad.
     pub bearing_sigma: f64,
-    /// Range up to which a landmark in view is seen as a rule, m. It refuses no measurement: it tells which landmarks are missed.
+    /// Range up to which a landmark in view is normally detected, m. It rejects no measurement; it decides which landmarks count as missed.
     pub sensor_range: f64,
     /// The same for the bearing to either side, rad.
     pub half_field_of_view: f64,
-    /// What tells landmarks apart, where that is less than the noise that corrects; when not given, the noise that corrects.
+    /// Noise for data association; if not given, the noise of the correction.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub correlated_noise: Option<CorrelatedNoise>,
 }
@@ -129,7 +129,7 @@ impl LandmarkModel for RangeBearingSensor {
         self.correlated_noise.map_or_else(Matrix2::zeros, |errors| errors.common_noise(a, b))
     }
 
-    /// A range must be positive: a bearing alone does not place a point.
+    /// A range must be positive: a bearing alone does not determine a point.
     fn is_usable(&self, measurement: &RangeBearing) -> bool {
         measurement.range > 0.0 && measurement.range.is_finite() && measurement.bearing.radians().is_finite()
     }
@@ -158,7 +158,7 @@ impl LandmarkModel for RangeBearingSensor {
         let q = measurement.point();
         let rotation = robot.rotation_matrix();
         let by_measurement = placement_jacobian(robot, measurement);
-        let turned = by_measurement.column(1).into_owned(); // turning the robot moves the point as turning the bearing does
+        let turned = by_measurement.column(1).into_owned(); // a rotation of the robot moves the point like a change of the bearing
         NewLandmark {
             landmark: robot.transform(&q),
             robot_jacobian: Matrix2x3::from_columns(&[
@@ -171,7 +171,7 @@ impl LandmarkModel for RangeBearingSensor {
     }
 }
 
-/// $`∂m/∂(r, b)`$ of a point placed by one measurement.
+/// $`∂m/∂(r, b)`$ of a point initialized by one measurement.
 fn placement_jacobian(robot: &Pose2<f64>, measurement: &RangeBearing) -> Matrix2<f64> {
     let q = measurement.point();
     robot.rotation_matrix() * Matrix2::from_columns(&[q / measurement.range, Vector2::new(-q.y, q.x)])

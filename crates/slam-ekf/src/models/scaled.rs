@@ -4,15 +4,15 @@ use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
 use super::{RangeBearing, RangeBearingSensor};
 use crate::{LandmarkModel, NewLandmark};
 
-/// A pose together with the scale of the robot's range sensor, estimated on the way.
+/// A pose and the scale of the robot's range sensor, estimated online.
 ///
-/// Tangent order `(x, y, θ, a)`, with $`e^a`$ what the sensor multiplies every range with.
+/// Tangent order `(x, y, θ, a)`, with $`e^a`$ the factor of the sensor on every range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ScaledPose {
-    /// Where the robot is.
+    /// Pose of the robot.
     pub pose: Pose2<f64>,
-    /// $`a`$; 0 for a sensor that tells the truth.
+    /// $`a`$; 0 for a sensor without scale error.
     pub log_range_scale: f64,
 }
 
@@ -33,7 +33,7 @@ impl Manifold for ScaledPose {
     }
 }
 
-/// Any motion of a pose; the scale stays what it is.
+/// Any motion of a pose; the scale is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct ScaledMotion<M>(pub M);
 
@@ -54,9 +54,9 @@ impl<M: MotionModel<State = Pose2<f64>>> MotionModel for ScaledMotion<M> {
     }
 }
 
-/// A range-bearing sensor whose ranges are all too long or too short by one unknown factor: $`r = e^a ‖q‖`$.
+/// A range-bearing sensor whose ranges have one unknown scale factor: $`r = e^a ‖q‖`$.
 ///
-/// Triangulation by bearings along the path fixes the factor; with a start variance of zero it stays what it is.
+/// Triangulation by bearings along the path determines the factor; with a start variance of zero it is constant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct ScaledRangeBearingSensor<S = RangeBearingSensor>(pub S);
 

@@ -1,23 +1,23 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 
-/// A body velocity held for a time.
+/// A body velocity, constant for a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityControl {
     /// Forward, m/s.
     pub linear: f64,
     /// Counter-clockwise, rad/s.
     pub angular: f64,
-    /// How long, s.
+    /// Duration, s.
     pub duration: f64,
 }
 
 /// Velocity commands: $`x' = x ∘ \exp(f v Δt, 0, ω Δt)`$, an arc of constant curvature. [Thrun et al. 2005, section 5.3]
 ///
-/// $`f = \max(0.2, 1 - κ|ω|)`$ is what is left of the commanded speed in a turn; $`κ = 0`$ for a robot that drives as it is told.
+/// $`f = \max(0.2, 1 - κ|ω|)`$ is the share of the commanded speed that remains in a turn; $`κ = 0`$ for a robot without speed loss.
 ///
 /// The noise is a random walk, $`\mathrm{var}(Δs) = (σ_v^2 + σ_d^2 |v|) Δt`$ and $`\mathrm{var}(Δθ) = (σ_ω^2 + σ_t^2 |ω| + σ_s^2 |v|) Δt`$, so
-/// that the result does not depend on how finely a log cuts time. Turning errs in heading at the middle of the arc, hence a little sideways.
+/// the result does not depend on the sampling of the log. The heading error acts at the middle of the arc and causes a small lateral error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -36,7 +36,7 @@ pub struct VelocityMotion {
     pub linear_sigma_per_meter: f64,
     /// Standard deviation of the heading after driving one metre, rad/√m.
     pub angular_sigma_per_meter: f64,
-    /// What the first two are multiplied with while there is no command to move.
+    /// Factor on the first two while the commanded velocity is zero.
     pub standing_factor: f64,
     /// κ: share of the forward speed that is lost per rad/s of turning, s/rad.
     pub speed_loss_in_turns: f64,
@@ -57,7 +57,7 @@ impl Default for VelocityMotion {
 }
 
 impl VelocityMotion {
-    /// The motion that a command makes, without noise.
+    /// The motion of a command, without noise.
     pub fn increment(&self, control: &VelocityControl) -> Pose2<f64> {
         Pose2::exp(&Vector3::new(self.distance(control), 0.0, control.angular * control.duration))
     }

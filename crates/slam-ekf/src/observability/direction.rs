@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// A motion of the whole world that no measurement has noticed.
+/// A motion of the whole world that no measurement has observed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnobservableDirection {
     /// Named motions and how much of each, the largest first and 1; per metre and per radian.
@@ -16,7 +16,7 @@ impl UnobservableDirection {
     }
 }
 
-/// A share of a motion that is not worth telling.
+/// A share of a motion that is too small to report.
 const SMALLEST: f64 = 1e-6;
 
 impl fmt::Display for UnobservableDirection {

@@ -2,19 +2,19 @@ use nalgebra::{DMatrix, DefaultAllocator, DimName};
 
 use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
-/// One look, linearized at the filter's estimate: only the robot's and the seen landmarks' columns.
+/// One scan, linearized at the filter's estimate: only the columns of the robot and the observed landmarks.
 pub(super) struct LinearizedUpdate {
     /// $`H`$: robot first, then the landmarks of the state in the order of `landmarks`.
     pub(super) jacobian: DMatrix<f64>,
     pub(super) landmarks: Vec<LandmarkId>,
     /// $`S = H P H^T + W`$.
     pub(super) innovation_covariance: DMatrix<f64>,
-    /// How robot and landmarks move with the world, a column a named direction.
+    /// Motion of robot and landmarks with the world, one column per named direction.
     pub(super) motion: DMatrix<f64>,
 }
 
 impl LinearizedUpdate {
-    /// How these landmarks and anchors look from here; what is not in the map or cannot be seen is left out.
+    /// The predicted measurements of these landmarks and anchors, without those that are not in the map or not observable.
     pub(super) fn of<M: LandmarkModel>(slam: &EkfSlam<M>, seen: &[LandmarkId]) -> Self
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
@@ -52,7 +52,7 @@ impl LinearizedUpdate {
     }
 }
 
-/// One sighting's part of a look.
+/// The part of one observation in a scan.
 struct Linearized {
     id: LandmarkId,
     /// `None` for anchors.

@@ -1,7 +1,7 @@
-//! What the measurements of a run say about robot and map, and which directions of the map nothing has ever constrained.
+//! The information of a run's measurements about robot and map, and the directions of the map that no measurement constrains.
 //!
-//! SLAM sees distances between robot and landmarks, never places: whoever moves the whole world leaves every measurement as it was. Those directions
-//! stay as uncertain as the start was, however long the robot drives, unless an anchor or an external sensor ties the map to the world.
+//! SLAM measures relative positions of robot and landmarks: a common displacement of robot and map changes no measurement. Along those directions the
+//! uncertainty stays that of the start, however long the robot drives, unless an anchor or an external sensor ties the map to the world.
 //! [Andrade-Cetto 2005, Sec. 2.2]
 
 mod direction;

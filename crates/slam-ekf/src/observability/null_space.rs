@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Directions in which a symmetric positive semidefinite matrix is zero: an orthonormal basis as columns, after scaling by `scale`.
 ///
-/// Scaling with what each entry could be makes metres and radians comparable. An eigenvalue below `share` of 1 counts as zero.
+/// Scaling by the possible size of each entry makes metres and radians comparable. An eigenvalue below `share` of 1 counts as zero.
 pub(super) fn null_space(matrix: &DMatrix<f64>, scale: &DVector<f64>, share: f64) -> DMatrix<f64> {
     if matrix.nrows() == 0 {
         return DMatrix::zeros(0, 0);
@@ -18,7 +18,7 @@ pub(super) fn null_space(matrix: &DMatrix<f64>, scale: &DVector<f64>, share: f64
     if null.is_empty() { DMatrix::zeros(matrix.nrows(), 0) } else { DMatrix::from_columns(&null) }
 }
 
-/// The same space by a basis that people can read: each vector has a 1 where all others have a 0.
+/// The same space with a readable basis: each vector has a 1 where all others have a 0.
 pub(super) fn readable(mut basis: DMatrix<f64>) -> Vec<DVector<f64>> {
     for vector in 0..basis.ncols() {
         let pivot = basis.column(vector).icamax();

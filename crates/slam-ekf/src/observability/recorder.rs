@@ -9,14 +9,14 @@ use super::{
 };
 use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
-/// Adds up what a run's measurements say about the robot at its start and the landmarks, without any prior.
+/// Sums the information of a run's measurements about the robot at its start and the landmarks, without any prior.
 ///
 /// $`J = \sum_k O_k^T S_k^{-1} O_k`$ with $`O_k = \begin{pmatrix} H_{r,k} Φ_k & H_{m,k} \end{pmatrix}`$ and
 /// $`Φ_k = F_{k-1} ⋯ F_0`$: the rows of the local observability matrix, weighed as the total Fisher information of
 /// [Andrade-Cetto 2005, Eqs. 14-17]. Its rank is that of the observability matrix.
 ///
-/// An EKF linearizes each look somewhere else, and in the plane that alone makes `J` look as if the heading of the map were observed.
-/// [`unobservable_directions`](Self::unobservable_directions) is not deceived: it asks of every look, at its own linearization, whether it would notice that the world moved.
+/// An EKF linearizes each scan at a different point; in the plane this alone gives `J` spurious information about the heading of the map.
+/// [`unobservable_directions`](Self::unobservable_directions) avoids this: it tests every scan, at its own linearization, for the motion of the world.
 ///
 /// ```
 /// use nalgebra::Vector1;
@@ -48,17 +48,17 @@ pub struct ObservabilityRecorder {
     directions: &'static [&'static str],
     /// $`\sum (H N)^T S^{-1} H N`$ over the named directions $`N`$.
     constraint: DMatrix<f64>,
-    /// Its diagonal, were robot and landmark moved one without the other.
+    /// Its diagonal for separate motions of robot and landmark.
     uncancelled: DVector<f64>,
 }
 
-/// Information below this share of what it could be is rounding: analytic Jacobians leave 1e-32 of it, central differences 1e-18.
+/// Information below this share of its possible size is rounding: analytic Jacobians leave 1e-32 of it, central differences 1e-18.
 const NOTHING: f64 = 1e-12;
 /// Eigenvalue of the scaled information that counts as zero, in a rank: some thousand roundings.
 const SINGULAR: f64 = 1e-11;
 
 impl ObservabilityRecorder {
-    /// Nothing is known of the robot, and no landmark was seen.
+    /// No information about the robot, and no landmarks.
     pub fn new<M: LandmarkModel>(slam: &EkfSlam<M>) -> Self
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
@@ -74,7 +74,7 @@ impl ObservabilityRecorder {
         }
     }
 
-    /// The robot moved, with this Jacobian of the motion. What is not finite or of another size is left out.
+    /// Records a motion of the robot by its Jacobian. A Jacobian that is not finite or of another size is ignored.
     pub fn record_motion<'a>(&mut self, jacobian: impl Into<DMatrixView<'a, f64>>) {
         let jacobian = jacobian.into();
         if jacobian.shape() == self.transition.shape() && jacobian.iter().all(|entry| entry.is_finite()) {
@@ -82,8 +82,8 @@ impl ObservabilityRecorder {
         }
     }
 
-    /// One look at these landmarks and anchors, linearized at the filter's present estimate: before the update for the paper's $`S`$, or after it
-    /// to have new landmarks in. `false`, and nothing recorded, when none of them is in the map or $`S`$ is not positive definite.
+    /// Records a scan of these landmarks and anchors, linearized at the filter's present estimate: before the update for the paper's $`S`$, or
+    /// after it to include new landmarks. Returns `false` and records nothing if none of them is in the map or $`S`$ is not positive definite.
     pub fn record<M: LandmarkModel>(&mut self, slam: &EkfSlam<M>, seen: &[LandmarkId]) -> bool
     where
         DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
@@ -92,7 +92,7 @@ impl ObservabilityRecorder {
         look.jacobian.nrows() > 0 && self.add(&look, LandmarkDim::<M>::DIM)
     }
 
-    /// A measurement of the robot alone, with its Jacobian and innovation covariance, as of [`EkfSlam::update_robot`].
+    /// Records a measurement of the robot alone, with its Jacobian and innovation covariance, as of [`EkfSlam::update_robot`].
     pub fn record_robot<'a, M: LandmarkModel>(
         &mut self,
         slam: &EkfSlam<M>,
@@ -116,19 +116,19 @@ impl ObservabilityRecorder {
     pub fn information(&self) -> &DMatrix<f64> {
         &self.information
     }
-    /// How many numbers describe robot and recorded landmarks.
+    /// Dimension of the state of robot and recorded landmarks.
     pub fn dimension(&self) -> usize {
         self.information.nrows()
     }
-    /// How many of them, or combinations, the measurements determine: the rank of the local observability matrix. Cost O(n³).
+    /// Number of coordinates or combinations that the measurements determine: the rank of the local observability matrix. Cost O(n³).
     pub fn rank(&self) -> usize {
         self.dimension() - self.null_space().ncols()
     }
-    /// Directions of the state without information, a unit vector a column. [Andrade-Cetto 2005, Eq. 18] Cost O(n³).
+    /// Directions of the state without information, one unit vector per column. [Andrade-Cetto 2005, Eq. 18] Cost O(n³).
     pub fn null_space(&self) -> DMatrix<f64> {
         null_space(&self.information, &self.information.diagonal(), SINGULAR)
     }
-    /// Motions of the whole world that no measurement has ever noticed, among those that the model names ([`LandmarkModel::symmetries`]).
+    /// Motions of the whole world that no measurement has observed, among those that the model names ([`LandmarkModel::symmetries`]).
     pub fn unobservable_directions(&self) -> Vec<UnobservableDirection> {
         let basis = null_space(&self.constraint, &self.uncancelled, NOTHING);
         let named =
@@ -168,7 +168,7 @@ impl ObservabilityRecorder {
         true
     }
 
-    /// Where robot and landmarks are in $`J`$, which grows by those that are new.
+    /// Offsets of robot and landmarks in $`J`$, which grows by those that are new.
     fn places(&mut self, landmarks: &[LandmarkId], size: usize) -> Vec<usize> {
         let mut places: Vec<usize> = (0..self.transition.nrows()).collect();
         for id in landmarks {

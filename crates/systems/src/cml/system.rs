@@ -63,7 +63,7 @@ impl CmlSystem {
     /// A system with a map, which may be empty.
     ///
     /// # Errors
-    /// When a parameter has no meaning.
+    /// Returns an error if a parameter is out of range.
     pub fn new(params: &CmlParams, reader: ViewReader, map: PanoramaMap) -> anyhow::Result<Self> {
         Ok(Self {
             reader,
@@ -96,15 +96,15 @@ impl CmlSystem {
         &self.reader
     }
 
-    /// Says by how much odometry lags the views, where their turns tell; `delay` is what is corrected already, s.
+    /// Warns by how much odometry lags the views, if their turns determine it; `delay` is what is corrected already, s.
     pub(super) fn warn_of_lag(&mut self, delay: f64) {
         warn_of_lag(&mut self.events, &self.dead_reckoning, &self.seen_turns, delay);
     }
 
-    /// Teaches what a place looks like; a view that shows nothing is counted and left out.
+    /// Adds a reference view with a known pose; a refused view is counted and left out.
     ///
     /// # Errors
-    /// When the pose has no meaning or the map is full.
+    /// Returns an error if the pose or a sigma is invalid, or if no reference number is left.
     pub fn teach(
         &mut self,
         image: &EncodedImage,
@@ -121,10 +121,10 @@ impl CmlSystem {
         Ok(())
     }
 
-    /// Says where the robot is.
+    /// Restarts the localizer at `start`.
     ///
     /// # Errors
-    /// When the start has no meaning.
+    /// Returns an error if the start pose is invalid.
     pub fn start(&mut self, start: Start) -> anyhow::Result<()> {
         self.odometry = match &start {
             Start::Known(pose) => Some(*pose.mean()),

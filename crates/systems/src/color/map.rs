@@ -7,7 +7,7 @@ use wayfix_sensor_log::read_text;
 /// Reads a map of coloured surfaces, TOML or (with the ending .json) JSON.
 ///
 /// # Errors
-/// When the file cannot be read, is not of this form, or a surface has no meaning.
+/// Returns an error if the file cannot be read or parsed, or if a surface is invalid.
 pub fn read_map(path: &Path) -> Result<ColorMap> {
     let text = read_text(path).with_context(|| format!("cannot read the map {}", path.display()))?;
     let map = if path.extension().is_some_and(|extension| extension == "json") {

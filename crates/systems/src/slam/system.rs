@@ -15,7 +15,7 @@ use super::{
 };
 use crate::system::{Events, MotionStatistics, PlausibleIncrement, Stopwatch, System, check_velocity};
 
-/// The estimate at the stamp of one look of the sensor, from everything up to it.
+/// The estimate at the stamp of one scan of the sensor, from all records up to it.
 #[derive(Clone, Copy, Debug)]
 pub struct StampedEstimate {
     /// When.
@@ -182,7 +182,7 @@ impl SlamSystem {
         }
         let observations = self.observations(detections);
         if observations.is_empty() && !detections.is_empty() {
-            return Ok(()); // a look at other robots only says nothing about landmarks
+            return Ok(()); // a scan of other robots only has no information about landmarks
         }
         self.advance_to(self.exposure(stamp))?;
         let stopwatch = Stopwatch::start();
@@ -315,7 +315,7 @@ impl SlamSystem {
     }
 }
 
-/// Landmarks that corrected or started in a look.
+/// Landmarks that corrected or started in a scan.
 pub(crate) fn seen_landmarks<Z>(report: &StepReport<Z>) -> Vec<LandmarkId>
 where
     Z: Manifold<Scalar = f64>,

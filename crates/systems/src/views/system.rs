@@ -53,7 +53,7 @@ pub struct Trial {
     pub belief_in_truth: Vec<f64>,
 }
 
-/// A moment of a trial, after a look.
+/// The state of a trial after a view.
 pub struct Step<'a> {
     /// Moves so far.
     pub number: usize,
@@ -61,7 +61,7 @@ pub struct Step<'a> {
     pub at: usize,
     /// Where it wants to go.
     pub goal: usize,
-    /// What it believes.
+    /// The belief.
     pub localizer: &'a Localizer,
 }
 

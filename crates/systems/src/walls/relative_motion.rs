@@ -189,7 +189,7 @@ mod tests {
         let (drift_variance, asked) = (0.05_f64.powi(2), Vector3::new(0.03, -0.02, 0.06));
         let information = Matrix3::new(900.0, 100.0, 50.0, 100.0, 400.0, 20.0, 50.0, 20.0, 2500.0);
 
-        // (κ, δ) with δ = b κ + w, and a look at δ.
+        // (κ, δ) with δ = b κ + w, and a measurement of δ.
         let mut joint = Matrix4::zeros();
         joint.fixed_view_mut::<3, 3>(1, 1).copy_from(
             &(relative_motion.covariance

@@ -66,7 +66,7 @@ pub(super) enum Rule {
 }
 
 impl WallSystem {
-    /// A robot at `start` among walls that it does not know; its motion is told by velocities, else by increments.
+    /// A robot at `start` with an empty map; its motion is given by velocities or by increments.
     ///
     /// The covariance of the start is in its body frame, `(x, y, θ)`.
     ///

@@ -47,7 +47,7 @@ impl Store {
     /// A store of this size with random goods.
     ///
     /// # Errors
-    /// When the parameters have no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn draw<R: Rng + ?Sized>(params: StoreParams, rng: &mut R) -> Result<Self, SimError> {
         params.validate()?;
         let decor = rng.next_u64();
@@ -77,7 +77,7 @@ impl Store {
     /// (3) or cleared (1), a cleared one filled again; each stand comes or goes with half of it.
     ///
     /// # Errors
-    /// When the share is none.
+    /// Returns [`SimError::Parameter`] if `share` is not in [0, 1].
     pub fn rearranged<R: Rng + ?Sized>(&self, share: f64, rng: &mut R) -> Result<Self, SimError> {
         check::share("share of the sections that are rearranged", share)?;
         let mut later = self.clone();

@@ -54,7 +54,7 @@ impl CameraSimulator {
     /// With this camera.
     ///
     /// # Errors
-    /// When its parameters have no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn new(params: CameraParams) -> Result<Self, SimError> {
         params.validate()?;
         Ok(Self {

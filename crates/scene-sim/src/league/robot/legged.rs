@@ -52,7 +52,7 @@ impl Legged {
     /// A robot at rest at `start`, or anywhere; it looks at `landmarks`.
     ///
     /// # Errors
-    /// When a parameter has no meaning.
+    /// Returns [`SimError::Parameter`] if a parameter is out of range.
     pub fn new(
         params: RobotParams,
         start: Option<Pose2<f64>>,

@@ -42,7 +42,7 @@ impl Laser {
     /// A scanner.
     ///
     /// # Errors
-    /// When the parameters have no meaning.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
     pub fn new(params: LaserParams) -> Result<Self, SimError> {
         params.validate()?;
         Ok(Self { params })

@@ -34,10 +34,10 @@ pub struct RangeBearingDetector {
 }
 
 impl RangeBearingDetector {
-    /// A sensor that has not looked yet.
+    /// A sensor before its first scan.
     ///
     /// # Errors
-    /// When the parameters have no meaning.
+    /// Returns [`SimError::Parameter`] if a parameter is out of range.
     pub fn new(params: RangeBearingParams) -> Result<Self, SimError> {
         params.validate()?;
         Ok(Self { params, drifts: Vec::new() })

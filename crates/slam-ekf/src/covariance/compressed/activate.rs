@@ -3,7 +3,7 @@ use std::ops::Range;
 use super::{area::CompressedCovariance, passive::OutsideBlock};
 
 impl CompressedCovariance {
-    /// Takes a landmark block into the area. Its value does not change, only where it is kept.
+    /// Moves a landmark block into the area. Only its storage changes, not its value.
     pub(super) fn activate(&mut self, states: Range<usize>) {
         if self.rows[states.start].is_some() {
             return;

@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector, DefaultAllocator, DimName, OMatrix, allocator::
 use super::{deferred::DeferredCorrection, schedule::Schedule};
 use crate::covariance::{JointCovariance, ROUNDING, SparseJacobian};
 
-/// A covariance in two parts: the area around the robot, and the whole map as it was when the area was chosen.
+/// A covariance in two parts: the area around the robot, and the whole map at the time when the area was chosen.
 #[derive(Clone, Debug)]
 pub(crate) struct CompressedCovariance {
     /// Area and influences. The robot comes first.
@@ -13,12 +13,12 @@ pub(crate) struct CompressedCovariance {
     /// The states that have a row.
     pub(super) area: Vec<usize>,
     pub(super) influences: Vec<Influence>,
-    /// The whole map as it was when the area was chosen, for pairs outside the area; the backlog is still to be subtracted.
+    /// The whole map at the time when the area was chosen, for pairs outside the area; the backlog is still to be subtracted.
     pub(super) base: JointCovariance,
     pub(super) deferred: DeferredCorrection,
-    /// By how much the means that the filter holds lag behind, but for what the influences add outside the area.
+    /// Deferred steps of the filter's means, without the contribution of the influences outside the area.
     pub(super) lag: DVector<f64>,
-    /// Corrections since the area was chosen: each owes every variance a little for its rounding.
+    /// Corrections since the area was chosen: each adds a rounding allowance to every variance.
     pub(super) n_corrections: usize,
     pub(super) schedule: Schedule,
 }
@@ -28,14 +28,14 @@ pub(crate) struct CompressedCovariance {
 pub(super) struct Influence {
     /// Its row in `local`.
     pub(super) row: usize,
-    /// Its column of $`B`$, one entry a state of the map; those of the area mean nothing.
+    /// Its column of $`B`$, one entry per state of the map; those of the area are unused.
     pub(super) loadings: Vec<f64>,
-    /// By how much its mean has moved.
+    /// Displacement of its mean.
     pub(super) step: f64,
 }
 
 impl CompressedCovariance {
-    /// At first the area is the whole map: there is nothing to influence.
+    /// At first the area is the whole map: there are no influences.
     pub(in crate::covariance) fn from_robot<R: DimName>(robot: &OMatrix<f64, R, R>) -> Self
     where
         DefaultAllocator: Allocator<R, R>,
@@ -135,7 +135,7 @@ impl CompressedCovariance {
         }
         for (influence, lifted) in self.influences.iter_mut().zip(lifted) {
             influence.step += step[influence.row];
-            // What stands behind it gets this back, not the influence: it would correlate what it stands for.
+            // The states outside get the rounding allowance, not the influence: there it would correlate them.
             self.local.matrix_mut()[(influence.row, influence.row)] -= lifted;
         }
         self.n_corrections += 1;
@@ -148,8 +148,8 @@ impl CompressedCovariance {
         self.local.matrix()[(influence.row, influence.row)]
     }
 
-    /// What a full map would have given back to a variance outside for the rounding of every correction since the area was chosen, when the
-    /// variance was `first`, until now.
+    /// The sum of the rounding allowances that a full map would have added to a variance outside, from `first` when the area was chosen until
+    /// now.
     pub(super) fn rounding_allowance(&self, first: f64, now: f64) -> f64 {
         0.5 * (first + now) * ROUNDING * self.n_corrections as f64
     }

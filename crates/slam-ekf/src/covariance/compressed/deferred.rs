@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::covariance::JointCovariance;
 
-/// A square $`W W^T`$ that the map still has to lose. A row of `W` becomes zero as soon as its state is settled, with all others.
+/// A product $`W W^T`$ that is still to be subtracted from the map. A row of `W` becomes zero once its state is settled with all others.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DeferredCorrection {
     factor: DMatrix<f64>,
@@ -21,7 +21,7 @@ impl DeferredCorrection {
         self.factor.ncols() == 0 || self.next >= self.factor.nrows()
     }
 
-    /// What the entry of the map at two states has still to lose.
+    /// The amount still to be subtracted from the entry of two states.
     pub(super) fn pending(&self, one: usize, other: usize) -> f64 {
         let n = self.factor.nrows();
         if one.max(other) < n && !self.is_done() {
@@ -54,7 +54,7 @@ impl DeferredCorrection {
     pub(super) fn settle(&mut self, states: Range<usize>, map: &mut JointCovariance) {
         let states = states.start.max(self.next)..states.end;
         if self.is_done() || states.end > self.factor.nrows() || states.is_empty() {
-            return; // came after, or was settled before
+            return; // added later, or settled before
         }
         let (open, below) = (self.next, self.factor.nrows() - self.next);
         let own = self.factor.rows(states.start, states.len()).transpose();
@@ -83,7 +83,7 @@ impl DeferredCorrection {
     }
 }
 
-/// Columns at once when everything is settled: few enough to stay near the triangle.
+/// Number of columns per step when everything is settled: few enough to stay near the triangle.
 const PANEL: usize = 64;
 /// A product with fewer columns than this is no faster.
 const FEWEST_COLUMNS: usize = 8;

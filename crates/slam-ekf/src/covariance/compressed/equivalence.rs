@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::CompressedCovariance;
 use crate::covariance::{JointCovariance, SparseJacobian};
 
-/// Both forms go through the same, each with the means that a filter would hold.
+/// Both forms with the same operations, each with the means of a filter.
 struct FullAndCompressed {
     full: JointCovariance,
     full_mean: DVector<f64>,
@@ -64,7 +64,7 @@ impl FullAndCompressed {
         }
     }
 
-    /// Sees up to `n_seen` neighbours, all in one correction or one after the other.
+    /// Observes up to `n_seen` neighbours, in one correction or sequentially.
     fn look(&mut self, nearest: usize, n_seen: usize, together: bool) {
         let seen: Vec<usize> = (nearest..self.n_landmarks().min(nearest + n_seen)).collect();
         for group in seen.chunks(if together { n_seen } else { 1 }) {
@@ -141,7 +141,7 @@ fn both_forms_are_the_same_whatever_happens_to_them() {
         }
         n_restarts += twins.n_restarts;
     }
-    // The comparison says something only if the area changed now and then, and it shrinks only when it starts anew: five times a run.
+    // The comparison is valid only if the area changes, and it shrinks only when it restarts: five times a run.
     assert!(n_restarts >= 30, "{n_restarts}");
 }
 

@@ -1,9 +1,9 @@
 use nalgebra::DMatrix;
 
-/// A matrix $`C`$ of as few columns as it takes with $`C C^T = A`$ for a positive semidefinite $`A`$ whose entries are known to some ε.
+/// A matrix $`C`$ with the fewest columns such that $`C C^T = A`$ for a positive semidefinite $`A`$ whose entries are known to some ε.
 ///
-/// Cholesky's factorization, the largest pivot first: when the largest that is left is rounding, so is everything that is left. An entry
-/// beside a small pivot is not small, so without that order it could not end there. [Higham 2002, section 10.3]
+/// Cholesky's factorization, the largest pivot first: if the largest remaining pivot is rounding, so is the remainder. Without this order
+/// the factorization could not stop there, because the entries beside a small pivot are not small. [Higham 2002, section 10.3]
 pub(super) fn semidefinite_factor(a: &DMatrix<f64>) -> DMatrix<f64> {
     let n = a.nrows();
     let mut factor = DMatrix::zeros(n, n);

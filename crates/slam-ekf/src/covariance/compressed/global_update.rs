@@ -8,7 +8,7 @@ use super::{
 use crate::covariance::JointCovariance;
 
 impl CompressedCovariance {
-    /// Brings the base up to date, but for a new backlog: $`P_{ba} = B P_{va}`$, $`P_{bb} = P_{bb,0} - W W^T`$ with
+    /// Updates the base, up to a new backlog: $`P_{ba} = B P_{va}`$, $`P_{bb} = P_{bb,0} - W W^T`$ with
     /// $`W W^T = B (I - P_{vv}) B^T`$. There are no influences then.
     pub(super) fn global_update(&mut self) {
         self.deferred.finish(&mut self.base);
@@ -52,7 +52,7 @@ impl CompressedCovariance {
         }
     }
 
-    /// Notes down $`W`$, and gives back what rounding may have taken from the variances that it will be subtracted from.
+    /// Stores $`W`$, and adds the rounding allowance to the variances from which it will be subtracted.
     fn defer_correction(&mut self, outside: &[usize], square_root: &DMatrix<f64>) {
         let mut factor = DMatrix::zeros(self.rows.len(), square_root.ncols());
         for (&state, row) in outside.iter().zip(square_root.row_iter()) {

@@ -1,11 +1,11 @@
 use super::area::{CompressedCovariance, Influence};
 
 impl CompressedCovariance {
-    /// Makes the influences of states that have just come into the area: one step of a Cholesky factorization of the base each.
+    /// Creates the influences of states that have just entered the area: one step of a Cholesky factorization of the base each.
     ///
-    /// What earlier influences leave of a state, standardized, is the new one. That is correlated with no other and with no state of the
-    /// area but `new_states`. Where rounding alone is left of a variance it is lifted a little, and not taken for nothing: covariances
-    /// are of the size of its root.
+    /// The new influence is the standardized residual of a state given the earlier influences. It is correlated with no other and with no state
+    /// of the area except `new_states`. If only rounding is left of a variance, it is raised, not set to zero: covariances are of the size of
+    /// its root.
     pub(super) fn add_influences(&mut self, new_states: &[usize]) {
         for &state in new_states {
             let base = self.base.matrix();

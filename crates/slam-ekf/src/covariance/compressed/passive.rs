@@ -2,9 +2,9 @@ use nalgebra::{DMatrix, DefaultAllocator, DimName, OMatrix, OVector, allocator::
 
 use super::area::{CompressedCovariance, Influence};
 
-/// A landmark as seen from the area.
+/// The covariance of a landmark with the area.
 pub(super) struct OutsideBlock {
-    /// Covariance with all rows of the area and the influences: one column a state of the landmark.
+    /// Covariance with all rows of the area and the influences: one column per state of the landmark.
     pub(super) with_local: DMatrix<f64>,
     /// Its own covariance.
     pub(super) own: DMatrix<f64>,
@@ -43,7 +43,7 @@ impl CompressedCovariance {
         }
     }
 
-    /// What the mean that the filter holds of a landmark block still lacks; `None` when nothing.
+    /// The deferred step of the filter's mean of a landmark block; `None` if there is none.
     pub(in crate::covariance) fn deferred_step<L: DimName>(&self, offset: usize) -> Option<OVector<f64, L>>
     where
         DefaultAllocator: Allocator<L>,

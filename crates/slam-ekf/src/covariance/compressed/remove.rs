@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::area::CompressedCovariance;
 
 impl CompressedCovariance {
-    /// As [`JointCovariance::remove`](crate::covariance::JointCovariance::remove). The influences stay: what they carry is of the rest of the map too.
+    /// As [`JointCovariance::remove`](crate::covariance::JointCovariance::remove). The influences remain, because they also belong to the rest of the map.
     pub(in crate::covariance) fn remove(&mut self, block: Range<usize>) {
         if let Some(row) = self.rows[block.start] {
             let removed = row..row + block.len();

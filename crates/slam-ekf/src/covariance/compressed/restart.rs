@@ -14,7 +14,7 @@ impl CompressedCovariance {
         settled.base.matrix().into_owned()
     }
 
-    /// Takes the whole map for the area: nothing is outside, so nothing is deferred.
+    /// Makes the whole map the area: nothing is outside, so nothing is deferred.
     pub(super) fn activate_all(&mut self) {
         self.global_update();
         self.deferred.finish(&mut self.base);
@@ -24,7 +24,7 @@ impl CompressedCovariance {
         self.area = (0..n).collect();
     }
 
-    /// Hands on to the rest of the map what the area has learnt, and goes on with an area of these states only.
+    /// Propagates the information of the area to the rest of the map, and continues with an area of these states only.
     pub(super) fn restart(&mut self, area: &BTreeSet<usize>) {
         self.global_update();
         self.area = area.iter().copied().collect();

@@ -2,13 +2,13 @@ use std::{collections::BTreeSet, ops::Range};
 
 use super::{area::CompressedCovariance, work};
 
-/// What the current look needed, and what it cost so far to have an area that is larger than needed.
+/// The states that the current scan needs, and the cost so far of an area that is larger than needed.
 #[derive(Clone, Debug)]
 pub(super) struct Schedule {
-    /// States that this look observed, and those of the robot.
+    /// States observed by this scan, and those of the robot.
     needed: BTreeSet<usize>,
     n_robot_states: usize,
-    /// Rows that this look corrected with.
+    /// Rows of this scan's corrections.
     n_rows: usize,
     /// Multiply-adds that a smaller area would have saved since it was chosen.
     rent: f64,
@@ -35,13 +35,13 @@ impl Schedule {
 }
 
 impl CompressedCovariance {
-    /// Housekeeping after a look: works off some of the backlog, or starts the area anew when that pays.
+    /// Housekeeping after a scan: works off some of the backlog, or chooses a new area if that costs less.
     ///
-    /// With its influences an area is twice as large as what it covers, and a correction costs the square: it pays from a quarter of the map down.
+    /// With its influences an area has twice its number of states, and a correction costs the square: it pays up to a quarter of the map.
     ///
-    /// Rent or buy: a too large area costs a little in every look, a new one costs once. Changing when the rents have
-    /// added up to the price costs at most twice what is best, whatever comes. It waits for the backlog, which is worked off with
-    /// as much work a look as the look itself was, so that no look is much longer than others.
+    /// Rent or buy: a too large area costs a little in every scan, a new one costs once. A change when the sum of the rents reaches the
+    /// price costs at most twice the optimum. It waits for the backlog, which is worked off with as much work per scan as the scan itself
+    /// took, so no scan takes much longer than others.
     pub(in crate::covariance) fn end_update(&mut self) {
         let Schedule { n_rows, n_robot_states, .. } = self.schedule;
         let needed = std::mem::replace(&mut self.schedule.needed, (0..n_robot_states).collect());

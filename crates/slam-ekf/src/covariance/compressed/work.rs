@@ -1,4 +1,4 @@
-//! Multiply-adds of the two things that have to be weighed against each other.
+//! Multiply-adds of the two operations to be compared.
 
 /// One correction of `n` states by `m` rows.
 pub(super) fn correction(n: usize, m: usize) -> f64 {
@@ -6,7 +6,7 @@ pub(super) fn correction(n: usize, m: usize) -> f64 {
     0.5 * n * m * (n + m)
 }
 
-/// Handing on what an area of `area` states has learnt to the rest of a map of `n`, and choosing another.
+/// Propagating the information of an area of `area` states to the rest of a map of `n`, and choosing another.
 pub(super) fn global_update(n: usize, area: usize, n_influences: usize) -> f64 {
     let (outside, area, v) = ((n - area) as f64, area as f64, n_influences as f64);
     let copies = COPY * n as f64 * area;

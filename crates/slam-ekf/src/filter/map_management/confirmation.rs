@@ -3,11 +3,10 @@ use nalgebra::DefaultAllocator;
 use super::super::{EkfSlam, state::Slot};
 use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
-/// What a landmark must show before it counts.
+/// Conditions for a landmark to be confirmed.
 ///
-/// Until then it is tentative: it is in the state, so nothing that was seen is lost, but it does not count as part of the map, it can leave
-/// again when it is not seen in time, and it starts anew when a sighting says it is somewhere else. A false detection or a first
-/// sighting that was an outlier cannot stay.
+/// A new landmark is tentative: it is in the state, so no observation is lost, but it is not part of the map. It is removed if it is not
+/// observed in time, and it restarts if an observation contradicts its place. So false detections and outliers at the start do not remain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -16,22 +15,22 @@ use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, 
     serde(default, deny_unknown_fields)
 )]
 pub struct ConfirmationParams {
-    /// Looks in which it must be seen, the first included; 1 takes every landmark at first sight.
+    /// Scans in which it must be detected, the first included; 1 confirms every landmark at its first detection.
     pub n_detections: usize,
-    /// Looks in a row that should have shown a tentative landmark and did not after which it is forgotten; never, when not given.
-    /// Identities that are read need no such end, landmarks that association made up do.
+    /// Number of consecutive misses after which a tentative landmark is removed; never, if not given. Landmarks with an identity that the sensor
+    /// reads do not need it; landmarks that data association starts do.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub max_missed: Option<usize>,
-    /// NIS above which a sighting contradicts a tentative landmark, which then starts anew. 13.8 is the 0.999 quantile for range and
+    /// NIS above which an observation contradicts a tentative landmark, which then restarts. 13.8 is the 0.999 quantile for range and
     /// bearing.
     pub restart_nis: f64,
-    /// Share of the looks that should show it in which a confirmed landmark must be seen, or it leaves the map; 0 keeps all. Judged when
-    /// it was missed more than `max_missed` times.
+    /// Share of the scans with a confirmed landmark in view in which it must be detected, or it leaves the map; 0 keeps all. Tested after more
+    /// than `max_missed` misses.
     pub min_detection_rate: f64,
 }
 
 impl Default for ConfirmationParams {
-    /// Two sightings that agree.
+    /// Two observations that agree.
     fn default() -> Self {
         Self { n_detections: 2, max_missed: None, restart_nis: 13.8155, min_detection_rate: 0.0 }
     }
@@ -65,14 +64,14 @@ where
         }
     }
 
-    /// Takes from a look what it tells beyond the estimated coordinates.
+    /// Updates the landmark attributes that are not estimated, from one observation.
     pub(in crate::filter) fn extend(&mut self, id: LandmarkId, measurement: &M::Measurement) {
         if let Some(slot) = self.landmarks.get_mut(&id) {
             slot.mean = self.model.extended(&self.robot, &slot.mean, measurement);
         }
     }
 
-    /// Forgets what should have been seen and was not: tentative landmarks in time, confirmed ones that are seen too seldom.
+    /// Removes landmarks that were in view but not detected: tentative ones in time, confirmed ones with too low a detection rate.
     pub(in crate::filter) fn remove_undetected(&mut self) {
         let ConfirmationParams { n_detections, max_missed: Some(max_missed), min_detection_rate, .. } =
             self.params.confirmation

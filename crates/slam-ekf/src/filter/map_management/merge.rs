@@ -7,10 +7,10 @@ use crate::{
     covariance::SparseJacobian,
 };
 
-/// When two landmarks of the map are taken for one: when they are certainly nearer to each other than two landmarks stand.
+/// Condition for merging two landmarks of the map: they are certainly nearer to each other than the minimum separation.
 ///
-/// $`‖d‖ + k \sqrt{\operatorname{tr} P_d} ≤ s`$ with $`d = m_b ⊟ m_a`$ and $`P_d`$ its covariance. A test of $`d = 0`$ alone would take every two
-/// neighbours for one that are still uncertain, and keep duplicates that errors which hang together in time hold apart.
+/// $`‖d‖ + k \sqrt{\operatorname{tr} P_d} ≤ s`$ with $`d = m_b ⊟ m_a`$ and $`P_d`$ its covariance. A test of $`d = 0`$ alone would merge uncertain
+/// neighbours, and keep duplicates that time-correlated errors separate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -19,14 +19,14 @@ use crate::{
     serde(default, deny_unknown_fields)
 )]
 pub struct MergingParams {
-    /// Distance below which no two landmarks of this world stand, in units of the landmark's tangent space (m for points).
+    /// Minimum distance between two distinct landmarks, in units of the landmark's tangent space (m for points).
     pub separation: f64,
-    /// How many standard deviations of their difference must lie within that distance too.
+    /// Number of standard deviations of their difference that must also lie within that distance.
     pub n_sigmas: f64,
 }
 
 impl Default for MergingParams {
-    /// Points at least 0.1 m apart, doubted at two standard deviations.
+    /// Points at least 0.1 m apart, with two standard deviations.
     fn default() -> Self {
         Self { separation: 0.1, n_sigmas: 2.0 }
     }
@@ -47,11 +47,11 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Fuses two landmarks that are one: the map learns that they are at the same place, then `gone` leaves it. `false`, and nothing changed,
-    /// when either is not in the state or their difference has no finite covariance.
+    /// Merges two landmarks: corrects the map with the constraint that their positions are equal, then removes `removed`. Returns `false` and
+    /// changes nothing if either is not in the state or their difference has no finite covariance.
     ///
-    /// A measurement $`0 = m_{removed} ⊟ m_{kept} + v`$. The filter's covariance of the difference is often too small where errors hang together in time, so `v`
-    /// is as large as what the two differ by, $`σ_v^2 = ‖m_{removed} ⊟ m_{kept}‖^2`$: the map bends towards the truth and does not tear.
+    /// A measurement $`0 = m_{removed} ⊟ m_{kept} + v`$. Time-correlated errors often make the filter's covariance of the
+    /// difference too small, so `v` has the size of the difference, $`σ_v^2 = ‖m_{removed} ⊟ m_{kept}‖^2`$: the map is not distorted abruptly.
     ///
     /// ```
     /// use nalgebra::{Matrix2, Vector2};
@@ -95,7 +95,7 @@ where
         true
     }
 
-    /// Fuses what was seen in this look with landmarks that it cannot stand beside.
+    /// Merges the landmarks observed in this scan with landmarks nearer than the minimum separation.
     pub(in crate::filter) fn merge_duplicates(&mut self) -> Vec<Merge> {
         let Some(merging) = self.params.merging else { return Vec::new() };
         let seen: Vec<LandmarkId> = self
@@ -114,7 +114,7 @@ where
         merges
     }
 
-    /// The landmark that is certainly nearer to this one than two can stand, the one of more sightings first.
+    /// The landmark that is certainly nearer to this one than the minimum separation; the one with more observations first.
     fn duplicate_of(&self, id: LandmarkId, merging: &MergingParams) -> Option<(LandmarkId, LandmarkId)> {
         let own = self.landmarks.get(&id).filter(|slot| self.is_confirmed(slot))?;
         let is_one = |(other_id, other): &(&LandmarkId, &Slot<M::Landmark>)| {
@@ -138,5 +138,5 @@ where
     }
 }
 
-/// Variance of the constraint where the two agree to the last digit; it keeps the innovation covariance definite.
+/// Variance of the constraint if the two are exactly equal; it keeps the innovation covariance definite.
 const SMALLEST_SOFTNESS: f64 = 1e-12;

@@ -28,16 +28,15 @@ impl<M: LandmarkModel> EkfSlam<M>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
-    /// Takes a landmark out of the state while its observations go on correcting robot and map. `false` when it is not in the state.
+    /// Removes a landmark from the state; its observations still correct robot and map. Returns `false` if it is not in the state.
     ///
-    /// From then on it stands still where it is, and a look at it has the noise $`R + H_m P_{mm} H_m^T`$ with its marginal $`P_{mm}`$ of
-    /// that moment; its correlations with robot and map are dropped. The paper does the same after 50 revisions and is silent on
+    /// Its estimate is then fixed, and its observations have the noise $`R + H_m P_{mm} H_m^T`$ with its marginal $`P_{mm}`$ at that time;
+    /// its correlations with robot and map are dropped. The paper does the same after 50 revisions and does not state
     /// the variance. [Andrade-Cetto 2005, end of Sec. 2.2]
     ///
-    /// **This is cheaper, not more consistent.** The landmark's error is one and the same in every look, and the filter takes it for a fresh one each time: it
-    /// becomes surer of the robot's place than the map ever was: NEES 6.1 in place of 3.0 for 50 revisions, 4.9 for 5, over 60 runs of two laps
-    /// (`tests/retirement.rs`). An anchor whose place is known is the honest way
-    /// to tie a map to the world.
+    /// **This is cheaper, but less consistent.** The landmark's error is the same in every observation, but the filter treats it as independent noise and
+    /// becomes overconfident of the robot's pose: NEES 6.1 in place of 3.0 for 50 revisions, 4.9 for 5, over 60 runs of two laps
+    /// (`tests/retirement.rs`). To tie a map to the world, use an anchor with a known position.
     pub fn retire(&mut self, id: LandmarkId) -> bool {
         let Some(estimate) = self.landmark(id).filter(|_| self.landmarks.contains_key(&id)) else {
             return false;
@@ -47,15 +46,15 @@ where
         true
     }
 
-    /// How many landmarks have left the state and still correct it; they count as landmarks of the map.
+    /// Number of retired landmarks; they count as landmarks of the map.
     pub fn n_retired(&self) -> usize {
         self.retired.len()
     }
 
-    /// Retires what was revised often enough.
+    /// Retires the landmarks with enough revisions.
     pub(in crate::filter) fn retire_revised(&mut self) {
         let Some(most) = self.params.retire_after else { return };
-        let is_done = |n_detections: usize| n_detections > most; // the first sighting starts it and revises nothing
+        let is_done = |n_detections: usize| n_detections > most; // the first observation starts it and revises nothing
         let done: Vec<LandmarkId> = self
             .landmarks
             .iter()

@@ -5,8 +5,8 @@ use wayfix_estimation_traits::{Manifold, wrap_angle};
 
 /// A line of the plane, $`x \cos α + y \sin α = ρ`$, as a point of a manifold: $`(ρ, α)`$ and $`(-ρ, α + π)`$ are the same line.
 ///
-/// ρ has a sign, so that a line may pass through the origin while it is estimated; [`local`](Manifold::local) takes whichever of the two
-/// forms is nearer, so that a wall can be seen from either side and across the wrap of α.
+/// ρ has a sign, so a line may pass through the origin while it is estimated. [`local`](Manifold::local) uses the nearer of the two forms,
+/// so a wall can be observed from either side and across the wrap of α.
 ///
 /// ```
 /// use wayfix_estimation_traits::Manifold;
@@ -28,7 +28,7 @@ impl WallLine {
     pub fn new(rho: f64, alpha: f64) -> Self {
         Self { rho, alpha: wrap_angle(alpha) }
     }
-    /// The same line about another point, given from the one before.
+    /// The same line relative to another point, given relative to the current one.
     pub fn about(&self, point: &Vector2<f64>) -> Self {
         Self { rho: self.rho - self.normal().dot(point), ..*self }
     }
@@ -46,7 +46,7 @@ impl WallLine {
     pub fn point_at(&self, along: f64) -> Vector2<f64> {
         self.normal() * self.rho + self.direction() * along
     }
-    /// Where the nearest point of the line is, metres from the foot of the perpendicular.
+    /// Position of the nearest point of the line, metres from the foot of the perpendicular.
     pub fn along(&self, point: &Vector2<f64>) -> f64 {
         self.direction().dot(point)
     }

@@ -1,4 +1,4 @@
-//! Walls: lines of the plane with the stretch of them that was seen.
+//! Walls: lines of the plane with their observed extent.
 
 mod line;
 mod sensor;

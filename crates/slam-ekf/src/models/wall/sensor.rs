@@ -7,9 +7,9 @@ use crate::{
     models::planar::{PLANAR_SYMMETRIES, pose_symmetry},
 };
 
-/// Walls seen by a laser: $`ρ' = ρ - n^T t,\; α' = α - θ`$ with $`n = (\cos α, \sin α)`$, in the frame of the sensor.
+/// Walls measured by a laser: $`ρ' = ρ - n^T t,\; α' = α - θ`$ with $`n = (\cos α, \sin α)`$, in the frame of the sensor.
 ///
-/// The noise of a look is the covariance that its own points give the line, and what walls lack of being straight.
+/// The noise of a measurement is the covariance of the line fitted to its points, plus the deviation of walls from a straight line.
 /// [Andrade-Cetto 2005, Sec. 2.5; Garulli et al. 2005]
 ///
 /// ```
@@ -29,20 +29,20 @@ use crate::{
     serde(default, deny_unknown_fields)
 )]
 pub struct WallSensor {
-    /// What the distance of a wall errs by beyond the noise of the beams, m: skirting boards, door frames, walls that bulge.
+    /// Standard deviation of a wall's distance beyond the noise of the beams, m: skirting boards, door frames, walls that bulge.
     pub rho_sigma: f64,
     /// The same for its direction, rad.
     pub alpha_sigma: f64,
-    /// How far apart along a wall two pieces may be and still be taken for one, m.
+    /// Maximum gap along a wall between two pieces of the same wall, m.
     pub largest_gap: f64,
-    /// Distance up to which the middle of a wall is seen as a rule, m.
+    /// Distance up to which the middle of a wall is normally detected, m.
     pub sensor_range: f64,
     /// The same for its direction to either side, rad.
     pub half_field_of_view: f64,
 }
 
 impl Default for WallSensor {
-    /// A laser of half a turn in a building of plaster and doors.
+    /// A laser with a field of view of 180° in a building with plastered walls and doors.
     fn default() -> Self {
         Self {
             rho_sigma: 0.02,
@@ -131,7 +131,7 @@ impl LandmarkModel for WallSensor {
         pose_symmetry(robot)
     }
 
-    /// Turning the world about its origin turns the normal, and moves the line past the point that it is given about.
+    /// Turning the world about its origin turns the normal, and moves the line relative to its reference point.
     fn landmark_symmetry(&self, wall: &Wall) -> DMatrix<f64> {
         let normal = wall.line.normal();
         DMatrix::from_row_slice(2, 3, &[normal.x, normal.y, -wall.line.along(&wall.origin), 0.0, 0.0, 1.0])

@@ -4,10 +4,10 @@ use wayfix_line_extract::Segment;
 
 use super::WallLine;
 
-/// A piece of a wall as one scan shows it, in the frame of the sensor, with the covariance that its points give it.
+/// A piece of a wall in one scan, in the sensor frame, with the covariance from its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallMeasurement {
-    /// The line it is on.
+    /// Its line.
     pub line: WallLine,
     /// Covariance of $`(ρ, α)`$.
     pub covariance: Matrix2<f64>,
@@ -27,7 +27,7 @@ impl From<&Segment> for WallMeasurement {
 }
 
 impl WallMeasurement {
-    /// The same piece in another frame, in which the sensor that saw it is at `sensor`.
+    /// The same piece in another frame, in which the sensor is at `sensor`.
     pub fn transformed(&self, sensor: &Pose2<f64>) -> Self {
         let turned = WallLine::new(0.0, self.line.alpha + sensor.heading());
         let lever = turned.along(&sensor.translation);
