@@ -77,7 +77,9 @@ fn of_suite(suite: &Value) -> String {
 }
 
 fn is_compared(metric: &Value) -> bool {
-    ["low", "high", "paper"].iter().any(|key| metric[*key].is_number()) || metric["peer"].is_object()
+    let counts_changes = metric["name"] == "n_figures_changed"; // of this report against an earlier one
+    let has_bound = ["low", "high", "paper"].iter().any(|key| metric[*key].is_number());
+    !counts_changes && (has_bound || metric["peer"].is_object())
 }
 
 fn text(value: &Value) -> String {
