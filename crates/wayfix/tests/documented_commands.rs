@@ -162,7 +162,7 @@ fn named<'a>(words: &[String], commands: &'a Command) -> (&'a Command, usize) {
 }
 
 fn check_wayfix(words: &[String], commands: &Command) -> Result<(), String> {
-    check_words(words, commands, |line| cli::parses(line))
+    check_words(words, commands, cli::parses::<String>)
 }
 
 /// Whether a program that has these commands and parses lines like this takes these words.
@@ -201,7 +201,7 @@ fn check_words(
 
 fn check_experiments(words: &[String]) -> Result<(), String> {
     use wayfix_experiments::cli;
-    check_words(words, &cli::commands(), |line| cli::parses(line))
+    check_words(words, &cli::commands(), cli::parses::<String>)
 }
 
 fn check_xtask(words: &[String]) -> Result<(), String> {
