@@ -175,7 +175,7 @@ mod tests {
         let text = commented(&SlamSystemParams::of(Profile::Generic)).unwrap();
         for part in [
             "# Time from the exposure of the sensor to the stamp of what it saw, s.",
-            "\"downweight\": They count less",
+            "\"downweight\": Their weight decreases",
             "# start = not set",
         ] {
             assert!(text.contains(part), "{part} in\n{text}");

@@ -27,7 +27,7 @@ pub struct SurfaceHit {
 /// use wayfix_estimation_traits::nalgebra::Vector3;
 /// use wayfix_scene_sim::league::{Backdrop, Hall};
 /// let hall = Hall::default();
-/// let seen = hall.seen(&Vector3::new(0.0, 0.0, 0.2), &Vector3::x());
+/// let seen = hall.surface_hit(&Vector3::new(0.0, 0.0, 0.2), &Vector3::x());
 /// assert_eq!((seen.point.x, seen.normal), (hall.half_length_m, -Vector3::x()));
 /// ```
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 //! [`AppearanceLocalizer`](wayfix_appearance_cml::AppearanceLocalizer).
 //!
 //! A [`Plan`] of a log or of a [`Recording`](recording::Recording) says what is taught and what is localized, [`run`] does it with a [`CmlSystem`];
-//! [`summarize`] gives the figures, [`pictures`] the pictures; [`experiments`] are those of the paper, for `wayfix-experiments regress cml`.
+//! [`summarize`] gives the figures, [`pictures`] the pictures.
 
 mod estimates;
 mod figures;

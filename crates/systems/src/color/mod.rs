@@ -1,7 +1,6 @@
 //! Adaptive colour localization on logs: where the robot stands on a coloured field, and what today's light does to the colours.
 //!
-//! [`run`] takes the records of a log, a map and priors through a [`ColorSystem`]; [`summarize`] gives the figures, [`pictures`] the pictures;
-//! [`experiments`] are those of the paper, for `wayfix-experiments regress color`.
+//! [`run`] takes the records of a log, a map and priors through a [`ColorSystem`]; [`summarize`] gives the figures, [`pictures`] the pictures.
 
 mod estimates;
 mod figures;

@@ -2,7 +2,7 @@
 //!
 //! A [`TrackSystem`] takes the images of a log one by one through the tracker of a [`Method`]; [`TrueBoxes`] say where the target truly
 //! was, and a [`Score`] how well it was followed; [`summarize`] gives the figures and [`pictures`] the pictures. Nothing grows with the
-//! number of frames. [`films`] are the experiments of `wayfix-experiments regress track`.
+//! number of frames.
 //!
 //! ```
 //! use wayfix_systems::track::{Score, TrueBoxes};

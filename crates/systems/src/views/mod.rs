@@ -1,8 +1,8 @@
 //! State condensation on pictures: in which of the views of a scene the robot is, from what the whole view looks like.
 //!
 //! A [`ViewSystem`] learns one picture of a scene and drives in another one, seen on another day; [`run`] makes many drives between random
-//! places, [`summarize`] gives their figures and [`pictures`] shows them. [`corridor`] does the same along a corridor that was driven twice.
-//! [`composed`] makes scenes that need no file, [`PaperScene`] has the paper's figures for scenes of these names, [`p_value_metrics`] and
+//! places, [`summarize`] gives their figures and [`pictures`] shows them.
+//! [`composed`] makes scenes that need no file, [`p_value_metrics`] and
 //! [`compare_choices`] make ours.
 //!
 //! ```

@@ -30,11 +30,11 @@ use crate::{
 ///     let bytes = (0..80 * 60).flat_map(|i| if inside(i) { color } else { [90, 120, 90] }).collect();
 ///     RgbImage::from_raw(80, 60, bytes).expect("3 bytes a pixel")
 /// };
-/// let first = disk(30.0, [200, 60, 60])?;
+/// let first = disk(30.0, [200, 60, 60]);
 /// let start = BoundingBox::from_corner(18.0, 18.0, 24.0, 24.0)?;
 /// let mut tracker = ContourTracker::from_box(&first, &start, ContourTrackerParams::default())?;
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
-/// let target = tracker.track(&disk(33.0, [190, 62, 64])?, &mut rng)?;
+/// let target = tracker.track(&disk(33.0, [190, 62, 64]), &mut rng)?;
 /// assert_eq!(target.status, TrackStatus::Tracked);
 /// assert!(target.bounding_box.iou(&BoundingBox::from_corner(21.5, 18.5, 24.0, 24.0)?) > 0.8);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())

@@ -53,8 +53,8 @@ const TYPICAL_RATE: f64 = 0.05;
 ///     RgbImage::from_raw(80, 60, (0..80 * 60).flat_map(|i| [value(i % 80, i / 80); 3]).collect()).expect("3 bytes a pixel")
 /// };
 /// let first = BoundingBox::from_corner(30.0, 20.0, 16.0, 16.0)?;
-/// let mut tracker = CorrelationTracker::new(&picture(30)?, first, CorrelationTrackerParams::default())?;
-/// let target = tracker.track(&picture(33)?, &mut ChaCha8Rng::seed_from_u64(0))?;
+/// let mut tracker = CorrelationTracker::new(&picture(30), first, CorrelationTrackerParams::default())?;
+/// let target = tracker.track(&picture(33), &mut ChaCha8Rng::seed_from_u64(0))?;
 /// assert_eq!(target.status, TrackStatus::Tracked);
 /// assert!(target.bounding_box.iou(&BoundingBox::from_corner(33.0, 20.0, 16.0, 16.0)?) > 0.8);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())

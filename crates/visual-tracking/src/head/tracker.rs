@@ -41,8 +41,8 @@ const N_OUTLINE: usize = 48;
 ///     RgbImage::from_raw(100, 60, bytes.collect()).expect("3 bytes a pixel")
 /// };
 /// let head = BoundingBox::from_center([40.0, 30.0], 24.0, 30.0)?;
-/// let mut tracker = HeadTracker::new(&picture(40.0)?, head, HeadTrackerParams::default())?;
-/// let target = tracker.track(&picture(44.0)?, &mut ChaCha8Rng::seed_from_u64(0))?;
+/// let mut tracker = HeadTracker::new(&picture(40.0), head, HeadTrackerParams::default())?;
+/// let target = tracker.track(&picture(44.0), &mut ChaCha8Rng::seed_from_u64(0))?;
 /// assert!((target.bounding_box.center()[0] - 44.0).abs() < 1.5);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```

@@ -15,7 +15,7 @@ use crate::scenery::RgbPicture;
 use crate::world::{Wall, World};
 use crate::{SimError, check};
 
-/// Rooms with everything that stands in them, ready to be looked at: what [`Store`](super::Store) and [`Lab`](super::Lab) build.
+/// Rooms with everything that stands in them, ready to be looked at: what [`Store`](crate::indoors::Store) and [`Lab`](crate::indoors::Lab) build.
 ///
 /// The origin is in the middle of the floor, x along its length.
 #[derive(Clone, Debug, PartialEq)]

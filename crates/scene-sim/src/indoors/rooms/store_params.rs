@@ -8,7 +8,7 @@ const DEPTH_M: f64 = 1.0;
 /// The longest side of a store, metres.
 const LONGEST_M: f64 = 500.0;
 
-/// Size and furnishing of a [`Store`](super::Store): shelves in rows along x, cut into blocks by aisles along y.
+/// Size and furnishing of a [`Store`](crate::indoors::Store): shelves in rows along x, cut into blocks by aisles along y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoreParams {
     /// Extent along x, metres.

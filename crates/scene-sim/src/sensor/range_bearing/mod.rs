@@ -2,7 +2,7 @@
 //!
 //! | error source | parameter | unit | draws from |
 //! | --- | --- | --- | --- |
-//! | white noise, growing with range, of any [`Tail`](crate::random::Tail) | `range_noise`, `bearing_sigma_rad`, `tail` | m, rad | `RangeNoise`, `BearingNoise` |
+//! | white noise, growing with range, of any [`NoiseShape`](crate::random::NoiseShape) | `range_noise`, `bearing_sigma_rad`, `noise_shape` | m, rad | `RangeNoise`, `BearingNoise` |
 //! | range scale and bias, bearing bias | `range_scale`, `range_bias_m`, `bearing_bias_rad` | 1, m, rad | – |
 //! | time-correlated error, separate for each target | `drift` | m, rad, s | `Drift` |
 //! | stamped late | `latency_ms` | ms | – |
