@@ -218,7 +218,7 @@ impl SlamSystemParams {
                 ..Self::of(Profile::Generic)
             }
             .named(profile),
-            // Measured as residuals against truth on set 7, robots 1-3; `docs/accuracy.md` has the figures behind each.
+            // Measured as residuals against truth on set 7, robots 1-3 (docs/adr/0019-parameters-of-the-utias-profile.md).
             Profile::Utias => Self {
                 robot: RobotParams {
                     sensor_latency: 0.04,
