@@ -64,8 +64,9 @@ impl Cloud {
         if !(turn <= TAU * 1.001 && angle_increment != 0.0) {
             return refuse("angle_increment (rad)", angle_increment, "not zero, and within one turn");
         }
-        if step.is_some_and(|step| !step.is_finite()) {
-            return refuse("motion from beam to beam", f64::NAN, "finite");
+        let numbers = step.map(|step| [step.x(), step.y(), step.heading()]).into_iter().flatten();
+        if let Some(value) = numbers.into_iter().find(|number| !number.is_finite()) {
+            return refuse("motion from beam to beam", value, "finite");
         }
         let mut laser = Pose2::identity();
         let point = |(beam, range): (usize, &f64)| {

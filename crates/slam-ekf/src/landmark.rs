@@ -130,7 +130,7 @@ where
         &[]
     }
 
-    /// $`g_r`$: motion of the robot in its tangent space when the world moves, one column per symmetry, per metre or radian.
+    /// $`g_r`$: motion of the robot in its tangent space when the world moves, one column per symmetry, per m or rad.
     ///
     /// **Law**: $`∂h/∂x_r \, g_r + ∂h/∂m \, g_m = 0`$, and the columns are independent.
     fn robot_symmetry(&self, _robot: &Self::Robot) -> DMatrix<f64> {

@@ -5,7 +5,7 @@
 
 #[path = "../tests/common/films.rs"]
 mod films;
-#[path = "support/harness.rs"]
+#[path = "../../condensation/benches/support/harness.rs"]
 mod harness;
 
 use films::{mask_of, picture_of};

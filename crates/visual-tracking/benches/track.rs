@@ -2,7 +2,7 @@
 //!
 //! Prints `bench<TAB>job<TAB>program<TAB>nanoseconds`. `peers/opencv_tracking.py` makes the same frame and does the same jobs.
 
-#[path = "support/harness.rs"]
+#[path = "../../condensation/benches/support/harness.rs"]
 mod harness;
 
 use std::hint::black_box;

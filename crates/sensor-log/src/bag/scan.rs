@@ -68,6 +68,14 @@ mod tests {
 
     use super::*;
 
+    #[test]
+    fn time_from_beam_to_beam_is_kept_and_nonsense_is_unknown() {
+        for (stated, kept) in [(0.25, 0.25), (0.0, 0.0), (-1.0, 0.0), (f32::NAN, 0.0), (f32::INFINITY, 0.0)] {
+            let message = ros::LaserScan { time_increment: stated, ..message(vec![1.0]) };
+            assert_eq!(scan(&message, None).unwrap().beam_period, kept, "{stated}");
+        }
+    }
+
     fn message(ranges: Vec<f32>) -> ros::LaserScan<'static> {
         ros::LaserScan {
             header: ros::Header::default(),

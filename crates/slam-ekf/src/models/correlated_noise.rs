@@ -26,11 +26,11 @@ use super::RangeBearing;
 pub struct CorrelatedNoise {
     /// Standard deviation of the independent range error at distance zero, m.
     pub independent_range_sigma: f64,
-    /// Its increase per metre.
+    /// Its increase per m.
     pub independent_range_sigma_per_meter: f64,
     /// Standard deviation of the independent bearing error, rad.
     pub independent_bearing_sigma: f64,
-    /// Standard deviation of the shared range error of a scan, per metre: a scale error.
+    /// Standard deviation of the shared range error of a scan, per m: a scale error.
     pub common_range_sigma_per_meter: f64,
     /// Standard deviation of the shared bearing error of a scan, rad.
     pub common_bearing_sigma: f64,

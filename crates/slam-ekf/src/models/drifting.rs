@@ -13,7 +13,7 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, NewLandmark, RobotDim, S
 pub struct DriftingPose {
     /// Pose of the robot.
     pub pose: Pose2<f64>,
-    /// κ: rotation of the robot per metre beyond that of odometry, rad/m.
+    /// κ: rotation of the robot per m beyond that of odometry, rad/m.
     pub heading_drift: f64,
 }
 

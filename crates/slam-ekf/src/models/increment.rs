@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
 
 /// Odometry increments: the control is the motion in the robot frame since the last one, $`x' = x ∘ u`$.
 ///
-/// The noise is a variance per metre and per radian travelled: the result does not depend on the sampling of the log, and the covariance
+/// The noise is a variance per m and per rad travelled: the result does not depend on the sampling of the log, and the covariance
 /// of a robot at rest does not grow.
 ///
 /// The defaults correspond to `σ = 0.02 m, 0.005 rad` over a step of 0.25 m.
@@ -15,9 +15,9 @@ use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
     serde(default, deny_unknown_fields)
 )]
 pub struct IncrementMotion {
-    /// Variance along and across the motion per metre, m²/m.
+    /// Variance along and across the motion per m, m²/m.
     pub translation_variance_per_meter: f64,
-    /// Heading variance per metre, rad²/m.
+    /// Heading variance per m, rad²/m.
     pub heading_variance_per_meter: f64,
     /// Heading variance per radian turned, rad²/rad.
     pub heading_variance_per_radian: f64,

@@ -65,7 +65,7 @@ impl Manifold for RangeBearing {
 pub struct RangeBearingSensor {
     /// Standard deviation of the range at distance zero, m.
     pub range_sigma: f64,
-    /// Its increase per metre.
+    /// Its increase per m.
     pub range_sigma_per_meter: f64,
     /// Standard deviation of the bearing, rad.
     pub bearing_sigma: f64,

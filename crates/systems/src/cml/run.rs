@@ -50,7 +50,7 @@ pub struct CmlRun {
     pub notes: Vec<String>,
 }
 
-/// Teaches the training_views of a plan, puts the robot at its start and takes the records through, showing the system to `observe` after each.
+/// Teaches the training views of a plan, puts the robot at its start and takes the records through, showing the system to `observe` after each.
 ///
 /// # Errors
 /// When there is no image, or none that could be used.

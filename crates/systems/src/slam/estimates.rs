@@ -16,7 +16,7 @@ pub struct SlamDrawing {
     path: Vec<Pose2<f64>>,
 }
 
-/// The map and the whole path are written with every so many stamped_estimates: they change slowly and are long.
+/// The map and the whole path are written with every so many estimates: they change slowly and are long.
 const MAP_PERIOD: usize = 20;
 /// Ellipses are drawn at two standard deviations.
 const SIGMAS: f64 = 2.0;

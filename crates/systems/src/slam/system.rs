@@ -30,7 +30,7 @@ pub struct StampedEstimate {
     pub n_landmarks: usize,
     /// Sum and number of the NIS of what corrected.
     pub nis: (f64, usize),
-    /// Computing time since the last stamped_estimate.
+    /// Computing time since the last estimate.
     pub step: Duration,
 }
 
@@ -255,7 +255,7 @@ impl SlamSystem {
         self.filter.predict(&unknown, &()).map_err(|error| error.to_string())
     }
 
-    /// The filter is at the exposure of the last look; the stamped_estimate says where the robot is at its stamp.
+    /// The filter is at the exposure of the last look; the estimate says where the robot is at its stamp.
     fn add_stamped_estimate(&mut self, stamp: Stamp, report: &StepReport<RangeBearing>) {
         let state = self.filter.robot();
         let motion = ScaledMotion(SequentialMotion(self.params.velocity));

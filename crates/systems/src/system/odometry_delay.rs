@@ -22,7 +22,8 @@ pub fn without_odometry_delay(records: &[Record], delay: f64) -> Cow<'_, [Record
         record
     };
     let mut records: Vec<Record> = records.iter().map(shifted).collect();
-    records.sort_by_key(|record| record.stamp);
+    // What is seen at a stamp is seen after the motion up to it.
+    records.sort_by_key(|record| (record.stamp, !is_odometry(&record.data)));
     Cow::Owned(records)
 }
 

@@ -17,7 +17,7 @@ pub struct WallDrawing {
     path: Vec<Pose2<f64>>,
 }
 
-/// The map and the whole path are written with every so many stamped_estimates: they change slowly and are long.
+/// The map and the whole path are written with every so many estimates: they change slowly and are long.
 const MAP_PERIOD: usize = 20;
 const WALL_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 

@@ -60,7 +60,7 @@ fn wall_metrics(nees: &[f64]) -> Vec<Metric> {
 /// How well the path keeps relations between poses that are known from elsewhere: the mean translational and rotational error, and the
 /// same of dead reckoning. [Kümmerle et al. 2009, Eq. 2]
 ///
-/// Relations count whose stamps both have a stamped_estimate within 10 ms.
+/// Relations count whose stamps both have a estimate within 10 ms.
 pub fn relation_metrics(run: &WallRun, relations: &[Relation]) -> Vec<Metric> {
     let stamped_estimates = run.system.stamped_estimates();
     let pairs: Vec<(&Relation, &StampedEstimate, &StampedEstimate)> = relations
@@ -93,7 +93,7 @@ pub fn relation_metrics(run: &WallRun, relations: &[Relation]) -> Vec<Metric> {
     ]
 }
 
-/// The stamped_estimate nearest in time, when it is within 10 ms.
+/// The estimate nearest in time, when it is within 10 ms.
 fn near(stamped_estimates: &[StampedEstimate], stamp: Stamp) -> Option<&StampedEstimate> {
     const LONGEST_WAIT: f64 = 0.01;
     let distance = |stamped_estimate: &StampedEstimate| stamped_estimate.stamp.seconds_since(stamp).abs();

@@ -90,6 +90,7 @@ impl Odometry {
         let seconds = now.saturating_sub(self.used_until.unwrap_or(now)) as f64 * 1e-9;
         self.used_until = Some(now.max(self.used_until.unwrap_or(now)));
         let error = self.statistics.unknown_motion(seconds);
+        self.twist = None;
         Motion { increment: Pose2::identity(), error, unknown_seconds: seconds }
     }
 
@@ -98,6 +99,9 @@ impl Odometry {
         let held = self.velocity.until(stamp, longest)?;
         self.statistics.add(&held.increment, held.seconds);
         let error = self.statistics.unknown_motion(held.unknown_seconds);
+        if held.unknown_seconds > 0.0 {
+            self.twist = None;
+        }
         Some(Motion { increment: held.increment, error, unknown_seconds: held.unknown_seconds })
     }
 

@@ -54,7 +54,7 @@ pub struct WallSystem {
     stamped_estimates: Vec<StampedEstimate>,
     /// Heading by the points of the last scan alone, seen from the last look, rad.
     laser_heading: Option<f64>,
-    /// By how much the robot has turned to each stamped_estimate from the one before, by the scans alone, rad.
+    /// By how much the robot has turned to each estimate from the one before, by the scans alone, rad.
     seen_turns: Vec<Option<f64>>,
     pub(super) events: Events,
     step: Duration,
@@ -128,7 +128,7 @@ impl WallSystem {
     pub fn stamped_estimates(&self) -> &[StampedEstimate] {
         &self.stamped_estimates
     }
-    /// By how much the robot has turned to each stamped_estimate from the one before, by the scans alone, where they tell.
+    /// By how much the robot has turned to each estimate from the one before, by the scans alone, where they tell.
     pub(super) fn seen_turns(&self) -> &[Option<f64>] {
         &self.seen_turns
     }
@@ -286,7 +286,7 @@ impl WallSystem {
         Ok(report.innovations().fold((0.0, 0), |(sum, n), innovation| (sum + innovation.nis, n + 1)))
     }
 
-    /// The filter is at the last scan that was looked at; the stamped_estimate says where the robot is by now.
+    /// The filter is at the last scan that was looked at; the estimate says where the robot is by now.
     fn add_stamped_estimate(&mut self, stamp: Stamp, nis: (f64, usize)) {
         let (state, relative_motion) = (self.filter.robot(), &self.relative_motion);
         let jacobian = relative_motion.jacobian(state, &relative_motion.motion);

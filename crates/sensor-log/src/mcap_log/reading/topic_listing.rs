@@ -54,7 +54,7 @@ pub(in crate::mcap_log) fn passed(
     Ok(passed)
 }
 
-/// Answers the topic_probes that the file has an answer to.
+/// Answers the probes of topics that the file has an answer to.
 fn run_probes(
     path: &Path,
     topics: &[TopicInfo],
