@@ -19,6 +19,7 @@ use wayfix_sensor_log::{OpenOptions, Record};
 use wayfix_systems::slam::{
     AssociationRule, Profile, SavedMap, SavedMapError, SlamSystemParams, run, run_on,
 };
+use wayfix_systems::system::DriveStep;
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const KILL_SEED: u64 = 9;
@@ -35,7 +36,7 @@ fn nearest_neighbour() -> SlamSystemParams {
 /// The bytes that a run without a break saves after each stamp of its log.
 fn saved_after_each_stamp(records: &[Record], params: &SlamSystemParams) -> BTreeMap<u64, Vec<u8>> {
     let mut saved = BTreeMap::new();
-    run(records, params, |system| {
+    run(records, params, |DriveStep { system, .. }| {
         let map = system.save();
         saved.insert(map.state.taken_until, map.to_bytes().unwrap());
     })
@@ -56,7 +57,7 @@ fn a_resumed_run_goes_on_bit_for_bit_through_a_file() {
         let records = records(&log);
         let mut halves = Vec::new();
         let stop = records[records.len() / 2].stamp;
-        let whole = run(&records, &params, |system| {
+        let whole = run(&records, &params, |DriveStep { system, .. }| {
             let map = system.save();
             if map.state.taken_until <= stop.nanoseconds() {
                 halves = vec![map];

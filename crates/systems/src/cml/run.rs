@@ -9,7 +9,7 @@ use wayfix_sensor_log::{Data, Record};
 
 use super::{CmlParams, CmlSystem, FrameResult, Plan, PoseSigmas, system::gaussian};
 use crate::system::KnownStart;
-use crate::system::{ODOMETRY, System, check_overlap, drive, without_odometry_delay};
+use crate::system::{DriveStep, ODOMETRY, System, check_overlap, drive, without_odometry_delay};
 use wayfix_evaluation::errors::{Sample, TrueTrack};
 
 /// What a run does with its views.
@@ -50,7 +50,7 @@ pub struct CmlRun {
     pub notes: Vec<String>,
 }
 
-/// Teaches the training views of a plan, puts the robot at its start and takes the records through, showing the system to `observe` after each.
+/// Teaches the training views of a plan, puts the robot at its start and takes the records through, showing each step to `observe`.
 ///
 /// # Errors
 /// When there is no image, or none that could be used.
@@ -61,7 +61,7 @@ pub fn run(
     start: StartPlace,
     params: &CmlParams,
     seed: u64,
-    observe: impl FnMut(&CmlSystem),
+    observe: impl FnMut(DriveStep<'_, CmlSystem>),
 ) -> Result<CmlRun> {
     if !plan.records.iter().any(|record| matches!(record.data, Data::Image(_))) {
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
@@ -72,7 +72,7 @@ pub fn run(
     }
     system.start(begin(start, &params.start, seed)?)?;
     let records = without_odometry_delay(&plan.records, params.odometry_delay);
-    drive(&mut system, &records, observe);
+    drive(&mut system, records.iter(), observe);
     if system.frames().is_empty() {
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");

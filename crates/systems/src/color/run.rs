@@ -13,7 +13,7 @@ use super::{ColorSystem, ColorSystemParams, FrameResult, StartPose};
 use crate::system::KnownStart;
 use crate::{
     slam::{warn_of_no_overlap, warn_of_start},
-    system::{ODOMETRY, System, check_overlap, drive, without_odometry_delay},
+    system::{DriveStep, ODOMETRY, System, check_overlap, drive, without_odometry_delay},
 };
 use wayfix_evaluation::errors::{Sample, TrueTrack};
 
@@ -25,7 +25,7 @@ pub struct ColorRun {
     pub truth: TrueTrack,
 }
 
-/// Takes the records of a log through the localizer and shows the system to `observe` after each.
+/// Takes the records of a log through the localizer and shows each step to `observe`.
 ///
 /// `start` is where the search begins; `None` is near the first true pose, a draw of the stated uncertainty away from it, or anywhere when
 /// the log has no truth.
@@ -39,7 +39,7 @@ pub fn run(
     params: &ColorSystemParams,
     start: Option<StartPose>,
     seed: u64,
-    observe: impl FnMut(&ColorSystem),
+    observe: impl FnMut(DriveStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
     let Some(first_image) = records.iter().find(|record| matches!(record.data, Data::Image(_))) else {
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
@@ -56,7 +56,7 @@ pub fn run(
     if known.is_some() {
         warn_of_start(system.events(), known, &truth);
     }
-    drive(&mut system, records, observe);
+    drive(&mut system, records.iter(), observe);
     if system.frames().is_empty() {
         let why = system.events().refusals().first().map_or(String::new(), |first| format!(": {first}"));
         bail!("no image could be used{why}");

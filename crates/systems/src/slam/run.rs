@@ -10,7 +10,7 @@ use super::{
     warn_of_an_empty_map, warn_of_no_overlap, warn_of_start,
 };
 use crate::system::KnownStart;
-use crate::system::{Events, ODOMETRY, System, check_overlap, drive};
+use crate::system::{DriveStep, Events, ODOMETRY, System, check_overlap, drive};
 use wayfix_evaluation::errors::{Correspondence, Sample, TruePositions, TrueTrack, align};
 
 /// A log that went through EKF-SLAM, beside the truth that the log holds.
@@ -29,7 +29,7 @@ pub struct SlamRun {
     pub evaluated_until: Stamp,
 }
 
-/// Runs EKF-SLAM over the records of a log and shows the system to `observe` after each.
+/// Runs EKF-SLAM over the records of a log and shows each step to `observe`.
 ///
 /// The start pose is the truth where odometry starts, or led back to there by odometry from the first true pose after it. Where the log has positions only, it is the pose from which the first metres of the
 /// path fit them best; else the origin. Nothing else ties the run to the truth.
@@ -39,7 +39,7 @@ pub struct SlamRun {
 pub fn run(
     records: &[Record],
     params: &SlamSystemParams,
-    observe: impl FnMut(&SlamSystem),
+    observe: impl FnMut(DriveStep<'_, SlamSystem>),
 ) -> Result<SlamRun> {
     let Some(start_stamp) = start_stamp(records) else {
         bail!(
@@ -64,7 +64,7 @@ pub fn run(
     drive_through(system, association, truth, records, observe)
 }
 
-/// Goes on from a saved map with the records of a log that are later than it, and shows the system to `observe` after each.
+/// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`.
 ///
 /// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
 ///
@@ -74,7 +74,7 @@ pub fn run_on(
     saved: SavedMap,
     records: &[Record],
     params: &SlamSystemParams,
-    observe: impl FnMut(&SlamSystem),
+    observe: impl FnMut(DriveStep<'_, SlamSystem>),
 ) -> Result<SlamRun> {
     let association = saved.state.association;
     let system = SlamSystem::resume(params.clone(), saved)?;
@@ -87,7 +87,7 @@ fn drive_through(
     association: AssociationRule,
     truth: TrueTrack,
     records: &[Record],
-    observe: impl FnMut(&SlamSystem),
+    observe: impl FnMut(DriveStep<'_, SlamSystem>),
 ) -> Result<SlamRun> {
     drive(&mut system, records, observe);
     if !has_used_a_detection(system.events()) {

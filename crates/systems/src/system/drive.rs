@@ -4,19 +4,28 @@ use wayfix_sensor_log::{Record, Stamp};
 
 use super::System;
 
-/// Passes all records through a system and shows it to `observe` after each; records that go back in time are refused and counted.
-pub fn drive<S: System>(system: &mut S, records: &[Record], mut observe: impl FnMut(&S)) {
-    stream(system, records, |system, _| observe(system));
+/// What an observer of [`drive`] sees after each record.
+#[derive(Clone, Copy, Debug)]
+pub struct DriveStep<'a, S> {
+    /// The system after the record.
+    pub system: &'a S,
+    /// The record, at the stamp at which the system took it.
+    pub record: &'a Record,
+    /// The record after it.
+    pub next: Option<&'a Record>,
 }
 
-/// As [`drive`], for records that are read one by one and not kept; `observe` sees each of them too.
-pub fn stream<S: System, R: Borrow<Record>>(
+/// Passes records through a system and shows it to `observe` after each; records that go back in time are refused and counted.
+///
+/// Records may be read one by one: no more than two are kept.
+pub fn drive<S: System, R: Borrow<Record>>(
     system: &mut S,
     records: impl IntoIterator<Item = R>,
-    mut observe: impl FnMut(&S, &Record),
+    mut observe: impl FnMut(DriveStep<'_, S>),
 ) {
     let mut latest = Stamp::default();
-    for (index, record) in records.into_iter().enumerate() {
+    let mut records = records.into_iter().enumerate().peekable();
+    while let Some((index, record)) = records.next() {
         let record = record.borrow();
         system.events().at_record(index, record.stamp);
         let taken = if record.stamp < latest {
@@ -28,7 +37,7 @@ pub fn stream<S: System, R: Borrow<Record>>(
         if let Err(reason) = taken {
             system.events().refuse("record_refused", reason);
         }
-        observe(system, record);
+        observe(DriveStep { system, record, next: records.peek().map(|(_, next)| next.borrow()) });
     }
     if let Err(reason) = system.finish() {
         system.events().refuse("record_refused", reason);

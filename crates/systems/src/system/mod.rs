@@ -13,7 +13,7 @@ mod overlap;
 mod plausible_increment;
 mod stopwatch;
 
-pub use drive::{drive, stream};
+pub use drive::{DriveStep, drive};
 pub use estimate_log::{Drawing, EstimateLog, EstimateWriter, OTHER_POSES};
 pub use events::{Events, Refusal};
 pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, check_velocity};

@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{Data, Log, ProblemKind, Record};
 
 use super::{RunHistory, TrackError, TrackSystem};
-use crate::system::{System, stream};
+use crate::system::{DriveStep, System, drive};
 
 /// A log that went through a tracker.
 pub struct TrackRun {
@@ -22,7 +22,7 @@ pub fn run(
 ) -> Result<TrackRun, TrackError> {
     let mut run_history = RunHistory::default();
     let mut kept = Ok(());
-    stream(&mut system, log.by_ref(), |system, record| {
+    drive(&mut system, log.by_ref(), |DriveStep { system, record, .. }| {
         // Other records leave the frame as it was.
         if let (Ok(()), Data::Image(_), Some(frame)) = (&kept, &record.data, system.frame()) {
             kept = run_history.observe(frame);

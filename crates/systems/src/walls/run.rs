@@ -10,7 +10,9 @@ use crate::{
         AssociationRule, Saved, StampedEstimate, start_pose, warn_of_an_empty_map, warn_of_no_overlap,
         warn_of_reference, warn_of_start,
     },
-    system::{Events, ODOMETRY, System, check_overlap, drive, warn_of_lag, without_odometry_delay},
+    system::{
+        DriveStep, Events, ODOMETRY, System, check_overlap, drive, warn_of_lag, without_odometry_delay,
+    },
 };
 use wayfix_evaluation::errors::{Sample, TrueTrack};
 
@@ -24,14 +26,18 @@ pub struct WallRun {
     pub true_walls: Vec<TrueWall>,
 }
 
-/// Runs EKF-SLAM with walls over the records of a log and shows the system to `observe` after each.
+/// Runs EKF-SLAM with walls over the records of a log and shows each step to `observe`.
 ///
 /// The start pose is the true pose at the first scan, or led back to it by odometry from the first true pose after it, else the origin.
 /// Nothing else ties the run to the truth.
 ///
 /// # Errors
 /// When there is no odometry, no scan, or a parameter is out of range.
-pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&WallSystem)) -> Result<WallRun> {
+pub fn run(
+    records: &[Record],
+    params: &WallSlamParams,
+    observe: impl FnMut(DriveStep<'_, WallSystem>),
+) -> Result<WallRun> {
     let first = |is: fn(&Data) -> bool| records.iter().find(|record| is(&record.data));
     let Some(scan) = first(|data| matches!(data, Data::Scan(_))) else {
         bail!("the log has no laser scans (`wayfix info` shows what a log holds)");
@@ -62,7 +68,7 @@ pub fn run(records: &[Record], params: &WallSlamParams, observe: impl FnMut(&Wal
     drive_through(system, track, true_walls, records, observe)
 }
 
-/// Goes on from a saved map with the records of a log that are later than it, and shows the system to `observe` after each. `association` is the rule
+/// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`. `association` is the rule
 /// that was asked for, if any.
 ///
 /// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
@@ -74,7 +80,7 @@ pub fn run_on(
     records: &[Record],
     params: &WallSlamParams,
     association: Option<AssociationRule>,
-    observe: impl FnMut(&WallSystem),
+    observe: impl FnMut(DriveStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let system = WallSystem::resume(params.clone(), saved, association)?;
     let track = TrueTrack::from_records_or_estimates(records);
@@ -86,10 +92,10 @@ fn drive_through(
     track: TrueTrack,
     true_walls: Vec<TrueWall>,
     records: &[Record],
-    observe: impl FnMut(&WallSystem),
+    observe: impl FnMut(DriveStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let records = without_odometry_delay(records, system.params.odometry_delay);
-    drive(&mut system, &records, observe);
+    drive(&mut system, records.iter(), observe);
     if system.stamped_estimates().is_empty() {
         let n_before = system.events().get("before_resume");
         bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");

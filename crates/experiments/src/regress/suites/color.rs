@@ -11,7 +11,7 @@ use super::super::Job;
 use wayfix_evaluation::report::Run;
 use wayfix_systems::{
     color::{self, ColorEstimateLog, ColorSystemParams, ParticleFilm, priors},
-    system::System,
+    system::{DriveStep, System},
 };
 
 /// What the plan says of a run.
@@ -147,13 +147,18 @@ fn localize(job: &Job<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Re
     let (records, read) = log.read_all();
     let bank = priors::bank(&priors::built_in()?, params)?;
     let mut particles = ParticleFilm::new(color::n_images(&records));
-    let mut remaining = records.iter();
-    let mut run = color::run(&records, map, bank, params, None, job.options.seed, |system| {
-        if let Some(record) = remaining.next() {
+    let mut run = color::run(
+        &records,
+        map,
+        bank,
+        params,
+        None,
+        job.options.seed,
+        |DriveStep { system, record, .. }| {
             estimates.observe(record, system);
-        }
-        particles.observe(system);
-    })?;
+            particles.observe(system);
+        },
+    )?;
     estimates.finish()?;
     run.system.events().add("log_problem", read.n_problems());
     let mut figures = color::pictures(&run)?;

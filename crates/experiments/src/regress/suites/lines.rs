@@ -7,7 +7,7 @@ use super::super::Job;
 use wayfix_evaluation::report::Run;
 use wayfix_systems::{
     lines::{self, LineLog, LineSystem},
-    system::{System, drive},
+    system::{DriveStep, System, drive},
 };
 
 /// What the plan says of a run.
@@ -36,12 +36,7 @@ fn walls(job: &Job<'_>, params: Params) -> Result<Run> {
     let mut walls = LineLog::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let mut system = LineSystem::new(params)?;
-    let mut remaining = records.iter();
-    drive(&mut system, &records, |system| {
-        if let Some(record) = remaining.next() {
-            walls.observe(record, system);
-        }
-    });
+    drive(&mut system, &records, |DriveStep { system, record, .. }| walls.observe(record, system));
     walls.finish()?;
     ensure!(system.n_scans() > 0, "no laser scan in the log");
     system.events().add("log_problem", read.n_problems());

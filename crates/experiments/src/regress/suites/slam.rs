@@ -7,7 +7,8 @@ use wayfix_sensor_log::{OpenOptions, read_relations};
 use super::super::Job;
 use wayfix_evaluation::report::Run;
 use wayfix_systems::{
-    slam::{self, AssociationRule, Profile, SlamEstimateLog, SlamSystemParams},
+    slam::{self, AssociationRule, Profile, SlamEstimateLog, SlamSystem, SlamSystemParams},
+    system::DriveStep,
     walls::{self, WallSlamParams},
 };
 
@@ -48,11 +49,9 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     let (name, path) = job.estimates();
     let mut estimates = SlamEstimateLog::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
-    let mut index = 0;
-    let mut slam = slam::run(&records, &params, |system| {
-        estimates.observe(&records[index], system);
-        index += 1;
-    })?;
+    let observe =
+        |DriveStep { system, record, .. }: DriveStep<'_, SlamSystem>| estimates.observe(record, system);
+    let mut slam = slam::run(&records, &params, observe)?;
     estimates.finish()?;
     slam.events().add("log_problem", read.n_problems());
     Ok(Run { log: Some(name), figures: slam::pictures(&slam)?, ..slam::summarize(&mut slam) })

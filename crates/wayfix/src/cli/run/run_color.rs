@@ -16,7 +16,7 @@ use crate::commented::commented;
 use wayfix_evaluation::{plot::Picture, report::Run};
 use wayfix_systems::{
     color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleFilm, StartPose, priors},
-    system::{Stopwatch, System},
+    system::{DriveStep, Stopwatch, System},
 };
 
 /// Adaptive colour localization: where the robot stands on a coloured field, and what today's light does to the colours.
@@ -123,15 +123,22 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let stopwatch = Stopwatch::start();
     let mut particles = ParticleFilm::new(color::n_images(&records));
     let bar = terminal::bar(records.len(), "colour localization");
-    let mut remaining = records.iter();
     let start = arguments.start.map(|start| start.0);
-    let color = color::run(&records, map, bank, &params, start, arguments.common.seed, |system| {
-        if let (Some(estimates), Some(record)) = (&mut estimates, remaining.next()) {
-            estimates.observe(record, system);
-        }
-        particles.observe(system);
-        bar.inc(1);
-    });
+    let color = color::run(
+        &records,
+        map,
+        bank,
+        &params,
+        start,
+        arguments.common.seed,
+        |DriveStep { system, record, .. }| {
+            if let Some(estimates) = &mut estimates {
+                estimates.observe(record, system);
+            }
+            particles.observe(system);
+            bar.inc(1);
+        },
+    );
     bar.finish_and_clear();
     let mut color = color?;
     let warnings = add_read_problems(color.system.events(), &read);

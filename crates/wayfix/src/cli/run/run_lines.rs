@@ -15,7 +15,7 @@ use crate::commented::commented;
 use wayfix_evaluation::report::Run;
 use wayfix_systems::{
     lines::{self, LineLog, LineSystem},
-    system::{Stopwatch, System, drive},
+    system::{DriveStep, Stopwatch, System, drive},
 };
 
 /// Walls: the straight pieces in every laser scan of a log, with their ends.
@@ -66,9 +66,8 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut walls: Option<LineLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let bar = terminal::bar(records.len(), "walls");
-    let mut remaining = records.iter();
-    drive(&mut system, &records, |system| {
-        if let (Some(walls), Some(record)) = (&mut walls, remaining.next()) {
+    drive(&mut system, &records, |DriveStep { system, record, .. }| {
+        if let Some(walls) = &mut walls {
             walls.observe(record, system);
         }
         bar.inc(1);

@@ -22,7 +22,7 @@ use wayfix_systems::{
         self, AssociationRule, Profile, SavedMap, Saver, SlamEstimateLog, SlamRun, SlamSystem,
         SlamSystemParams,
     },
-    system::Stopwatch,
+    system::{DriveStep, Stopwatch},
 };
 
 /// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing detections or laser scans.
@@ -178,14 +178,12 @@ fn run(
     mut saver: Option<&mut Saver>,
 ) -> Result<SlamRun> {
     let bar = terminal::bar(records.len(), "EKF-SLAM");
-    let mut remaining = records.iter();
-    let observe = |system: &SlamSystem| {
-        let Some(record) = remaining.next() else { return };
+    let observe = |DriveStep { system, record, next }: DriveStep<'_, SlamSystem>| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
         if let Some(saver) = &mut saver {
-            saver.observe(record, remaining.as_slice().first(), system);
+            saver.observe(record, next, system);
         }
         bar.inc(1);
     };

@@ -14,7 +14,7 @@ use crate::commented::commented;
 use wayfix_evaluation::report::Run;
 use wayfix_systems::{
     slam::{AssociationRule, Saved, Saver},
-    system::Stopwatch,
+    system::{DriveStep, Stopwatch},
     walls::{self, WallEstimateLog, WallSlamParams, WallState, WallSystem},
 };
 
@@ -45,14 +45,12 @@ pub(in crate::cli) fn main(
     let stopwatch = Stopwatch::start();
     let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
     let bar = terminal::bar(records.len(), "EKF-SLAM with walls");
-    let mut remaining = records.iter();
-    let observe = |system: &WallSystem| {
-        let Some(record) = remaining.next() else { return };
+    let observe = |DriveStep { system, record, next }: DriveStep<'_, WallSystem>| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
         if let Some(saver) = &mut saver {
-            saver.observe(record, remaining.as_slice().first(), system);
+            saver.observe(record, next, system);
         }
         bar.inc(1);
     };

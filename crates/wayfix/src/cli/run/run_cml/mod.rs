@@ -26,7 +26,7 @@ use wayfix_systems::{
         Task, ViewReader,
         recording::{Recording, Tables},
     },
-    system::{Stopwatch, System},
+    system::{DriveStep, Stopwatch, System},
 };
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
@@ -50,14 +50,19 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut estimates: Option<CmlEstimateLog> = outputs.estimates(origin)?;
     let mut saver = arguments.save_map.clone().map(|path| MapSaver::new(path, arguments.save_every));
     let bar = terminal::bar(plan.records.len(), "appearance map");
-    let mut remaining = plan.records.iter();
-    let run = cml::run(system, &plan, task, start, &params, arguments.common.seed, |system| {
-        if let Some(record) = remaining.next() {
+    let run = cml::run(
+        system,
+        &plan,
+        task,
+        start,
+        &params,
+        arguments.common.seed,
+        |DriveStep { system, record, .. }| {
             estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
             saver.iter_mut().for_each(|saver| saver.observe(record, system));
-        }
-        bar.inc(1);
-    });
+            bar.inc(1);
+        },
+    );
     bar.finish_and_clear();
     let mut run = run?;
     let warnings = add_read_problems(run.system.events(), &read);
