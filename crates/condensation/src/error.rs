@@ -1,4 +1,5 @@
 use wayfix_gaussian_core::GaussianError;
+use wayfix_integrity::IntegrityError;
 use wayfix_particle::ParticleError;
 
 /// Why an operation was refused. Whatever it was called on is as it was before.
@@ -95,6 +96,9 @@ pub enum CondensationError {
     /// A covariance cannot be used.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),
+    /// A change test cannot be made.
+    #[error(transparent)]
+    Integrity(#[from] IntegrityError),
     /// Samples cannot be drawn or weighed.
     #[error(transparent)]
     Particle(#[from] ParticleError),

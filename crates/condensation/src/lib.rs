@@ -20,8 +20,7 @@ mod normalization;
 
 pub use discrete::{
     Axis, BestState, DenseTransition, DiffusionKernel, DiscreteFilter, Graph, GraphAction, Grid, HeadingGrid,
-    KidnapMonitor, Lattice, Maneuver, MeasurementEvidence, Move, Outcome, Slip, SparseTransition, StateSpace,
-    Transition,
+    Lattice, Maneuver, MeasurementEvidence, Move, Outcome, Slip, SparseTransition, StateSpace, Transition,
 };
 pub use error::CondensationError;
 pub use features::{

@@ -4,9 +4,10 @@
 
 use proptest::prelude::*;
 use wayfix_condensation::{
-    CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, Graph, Grid, HeadingGrid,
-    KidnapMonitor, Lattice, Move, Outcome, Slip, StateSpace, Transition,
+    CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, Graph, Grid, HeadingGrid, Lattice,
+    Move, Outcome, Slip, StateSpace, Transition,
 };
+use wayfix_integrity::Cusum;
 
 fn predicted(transition: &dyn Transition, belief: &[f64]) -> Vec<f64> {
     let mut to = vec![f64::NAN; belief.len()];
@@ -176,18 +177,18 @@ fn bad_input_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn a_kidnapping_is_noticed_and_survived() {
+fn kidnapped_robot_raises_one_alarm_and_is_found() {
     let grid = Grid::new(20, 1).unwrap();
     let stand = Slip::default().transition(&grid, Move::STAY).unwrap();
     let mut filter = DiscreteFilter::uniform(20).unwrap();
-    let mut monitor = KidnapMonitor::from_false_alarm_rate(1e-4).unwrap();
+    let mut monitor = Cusum::from_false_alarm_rate(1e-4).unwrap();
     let mut alarms = Vec::new();
     for step in 0..20 {
         let place = if step < 10 { 3 } else { 15 };
         filter.predict(&stand).unwrap();
         filter.leak(1e-6).unwrap();
         let look: Vec<f64> = (0..20).map(|s: usize| -0.5 * (s.abs_diff(place) as f64).powi(2)).collect();
-        if monitor.observe(&filter.update(&look).unwrap()) {
+        if monitor.observe(filter.update(&look).unwrap().log_likelihood_ratio()).unwrap() {
             alarms.push(step);
         }
     }

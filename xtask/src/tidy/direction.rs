@@ -4,17 +4,18 @@ use super::manifest::{entries, member};
 use super::{Finding, Source};
 
 /// Crate folder, and the crates of ours that it may depend on.
-const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 16] = [
+const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 17] = [
     ("estimation-traits", &[]),
     ("gaussian-core", &["estimation-traits"]),
     ("kalman", &["estimation-traits", "gaussian-core"]),
     ("particle", &["estimation-traits", "gaussian-core"]),
+    ("integrity", &[]),
     ("line-extract", &[]),
     ("scan-match", &["estimation-traits"]),
     ("slam-ekf", &["estimation-traits", "gaussian-core", "kalman", "line-extract"]),
     ("color-map", &["estimation-traits"]),
     ("color-model", &["estimation-traits", "gaussian-core", "kalman", "particle", "color-map"]),
-    ("condensation", &["estimation-traits", "gaussian-core", "particle"]),
+    ("condensation", &["estimation-traits", "gaussian-core", "integrity", "particle"]),
     ("visual-tracking", &["gaussian-core", "particle"]),
     ("appearance-cml", &["estimation-traits", "gaussian-core"]),
     ("sensor-log", &["estimation-traits"]),
@@ -45,8 +46,16 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 16] = [
 const UNRESTRICTED: [&str; 3] = ["wayfix", "experiments", "xtask"];
 
 /// Crates that must not learn what an image is.
-const IMAGE_FREE: [&str; 7] =
-    ["estimation-traits", "gaussian-core", "kalman", "particle", "line-extract", "scan-match", "slam-ekf"];
+const IMAGE_FREE: [&str; 8] = [
+    "estimation-traits",
+    "integrity",
+    "gaussian-core",
+    "kalman",
+    "particle",
+    "line-extract",
+    "scan-match",
+    "slam-ekf",
+];
 
 const WHY_TABLE: &str = "see the direction table in docs/architecture.md and xtask/src/tidy/direction.rs";
 

@@ -27,4 +27,10 @@ impl Outcome {
             Self::Impossible => None,
         }
     }
+
+    /// $`\log \frac{1}{n} \sum_s p(m \mid s) - \log \sum_s p(m \mid s)\, \hat b(s)`$, in nats: how much better a robot anywhere explains the
+    /// measurement. Infinite for an impossible measurement. A [`Cusum`](wayfix_integrity::Cusum) of it detects a kidnapped robot.
+    pub fn log_likelihood_ratio(&self) -> f64 {
+        self.evidence().map_or(f64::INFINITY, |evidence| evidence.log_uniform - evidence.log_predicted)
+    }
 }

@@ -1,10 +1,10 @@
 use rand::Rng;
+use wayfix_integrity::Cusum;
 
 use crate::error::{check_size, checked};
 use crate::navigation::report::{Arrival, RunReport};
 use crate::{
-    ActionChoice, CondensationError, KidnapMonitor, Localizer, Outcome, Routes, Slip, SparseTransition,
-    StateSpace,
+    ActionChoice, CondensationError, Localizer, Outcome, Routes, Slip, SparseTransition, StateSpace,
 };
 
 /// Where a robot moves and looks: a simulation, or the robot itself.
@@ -31,7 +31,7 @@ pub struct NavigatorParams {
     pub choice: ActionChoice,
     /// How moves go wrong.
     pub slip: Slip,
-    /// Probability of a false alarm of the kidnapping monitor.
+    /// Mean number of false alarms per view of the test for a kidnapped robot.
     pub false_alarm_rate: f64,
 }
 
@@ -85,7 +85,7 @@ impl<S: StateSpace> Navigator<S> {
             confidence > 0.0 && confidence < 1.0,
             "between 0 and 1, both excluded",
         )?;
-        KidnapMonitor::from_false_alarm_rate(params.false_alarm_rate)?;
+        Cusum::from_false_alarm_rate(params.false_alarm_rate)?;
         Ok(Self { space, transitions, params })
     }
 
@@ -109,7 +109,7 @@ impl<S: StateSpace> Navigator<S> {
     ) -> Result<RunReport, CondensationError> {
         check_size("localizer", self.space.n_states(), localizer.belief().len())?;
         let routes = Routes::to_goal(&self.space, goal)?;
-        let mut monitor = KidnapMonitor::from_false_alarm_rate(self.params.false_alarm_rate)?;
+        let mut monitor = Cusum::from_false_alarm_rate(self.params.false_alarm_rate)?;
         let mut features = vec![0.0; localizer.appearance().n_components()];
         let (mut confirmed, mut steps_to_certainty, mut kidnappings) = (0, None, 0);
         let mut steps = 0;
@@ -150,12 +150,12 @@ impl<S: StateSpace> Navigator<S> {
 
 /// Forgets place and light when the measurements say that the robot is elsewhere, and begins again with this one.
 fn start_over_if_elsewhere(
-    monitor: &mut KidnapMonitor,
+    monitor: &mut Cusum,
     outcome: &Outcome,
     localizer: &mut Localizer,
     features: &[f64],
 ) -> Result<bool, CondensationError> {
-    let elsewhere = monitor.observe(outcome);
+    let elsewhere = monitor.observe(outcome.log_likelihood_ratio())?;
     if elsewhere {
         localizer.reset();
         let _ = localizer.update(features)?; // impossible even from scratch: the next look decides

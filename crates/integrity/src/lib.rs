@@ -1,0 +1,21 @@
+//! Integrity monitoring: is the robot where it believes to be?
+//!
+//! | question | type |
+//! | --- | --- |
+//! | Have the measurements changed? | [`Cusum`]: Page's cumulative sum |
+//! | Has somebody moved the robot? | [`ChangeTest`]: Shiryaev–Roberts over distance |
+//! | Where is it then? | [`Relocalization`]: the present hypothesis against the alternatives of a search |
+//!
+//! The crate knows no sensor. A localizer gives log-likelihoods and the distance that it drives.
+
+mod change_test;
+mod cusum;
+mod error;
+mod params;
+mod relocalization;
+
+pub use change_test::ChangeTest;
+pub use cusum::Cusum;
+pub use error::IntegrityError;
+pub use params::RelocalizationParams;
+pub use relocalization::{Alternative, Proposal, Relocalization};

@@ -1,0 +1,69 @@
+use crate::error::{IntegrityError, check};
+
+/// Parameters of [`ChangeTest`](crate::ChangeTest) and [`Relocalization`](crate::Relocalization).
+///
+/// ```
+/// use wayfix_integrity::RelocalizationParams;
+/// let params = RelocalizationParams { false_alarms_per_km: 0.01, moved_per_km: 1.0, ..Default::default() };
+/// assert_eq!(params.threshold(), 1e5); // m
+/// assert!((params.probability(params.threshold()) - 100.0 / 101.0).abs() < 1e-12); // at an alarm
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
+pub struct RelocalizationParams {
+    /// Largest mean number of false alarms per km of driving. Default 0.01: a robot that drives 10 km a day has one in ten days.
+    pub false_alarms_per_km: f64,
+    /// Prior mean number of times that somebody moves the robot, per km of driving; above `false_alarms_per_km`. Default 1.
+    pub moved_per_km: f64,
+    /// Distance for which a replaced hypothesis remains an alternative, m. Default 20.
+    pub kept_distance: f64,
+}
+
+impl Default for RelocalizationParams {
+    fn default() -> Self {
+        Self { false_alarms_per_km: 0.01, moved_per_km: 1.0, kept_distance: 20.0 }
+    }
+}
+
+const METERS_PER_KM: f64 = 1000.0;
+
+impl RelocalizationParams {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// Returns an error that names the first number outside its range.
+    pub fn validate(&self) -> Result<(), IntegrityError> {
+        let Self { false_alarms_per_km, moved_per_km, kept_distance } = *self;
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        check(
+            "false_alarms_per_km",
+            false_alarms_per_km,
+            positive(false_alarms_per_km),
+            "positive and finite",
+        )?;
+        let is_above = positive(moved_per_km) && moved_per_km > false_alarms_per_km;
+        check("moved_per_km", moved_per_km, is_above, "finite and above false_alarms_per_km")?;
+        check("kept_distance (m)", kept_distance, kept_distance >= 0.0, "0 or more")
+    }
+
+    /// The statistic at which a change is decided: the mean distance between false alarms, m.
+    pub fn threshold(&self) -> f64 {
+        METERS_PER_KM / self.false_alarms_per_km
+    }
+
+    /// The probability of a change at a value of the statistic.
+    pub fn probability(&self, statistic: f64) -> f64 {
+        let odds = self.prior() * statistic;
+        if odds.is_infinite() { 1.0 } else { odds / (1.0 + odds) }
+    }
+
+    /// Prior probability of being moved, per m.
+    pub(crate) fn prior(&self) -> f64 {
+        self.moved_per_km / METERS_PER_KM
+    }
+}

@@ -1,0 +1,202 @@
+use crate::{
+    RelocalizationParams,
+    change_test::times,
+    error::{IntegrityError, check, check_distance, check_ratio},
+};
+
+/// A place that a global search proposes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Proposal<H> {
+    /// The hypothesis: a pose, a mixture component, a particle set.
+    pub hypothesis: H,
+    /// Prior probability that a moved robot is there, above 0: one over the number of distinguishable places.
+    pub prior: f64,
+    /// Log-likelihood ratio of the measurements of the search, against the present hypothesis, in nats.
+    pub log_likelihood_ratio: f64,
+}
+
+/// An alternative to the present hypothesis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alternative<H> {
+    /// The hypothesis.
+    pub hypothesis: H,
+    /// Its Shiryaev–Roberts statistic, m.
+    statistic: f64,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// Of a search, with its prior.
+    Proposed { prior: f64 },
+    /// It was the present hypothesis; the distance driven since, m.
+    Previous { distance: f64 },
+}
+
+/// Relocalization as a sequential test between the present hypothesis and alternatives. [Shiryaev 1963; Pollak 1985]
+///
+/// An alternative $`j`$ with prior $`π_j`$ starts at $`R_j = π_j\, d\, Λ_j`$, where $`d`$ is the distance since the last search (at least 1 m) and
+/// $`Λ_j`$ the likelihood ratio of its measurements. Each measurement multiplies $`R_j`$ by its likelihood ratio. The robot has been moved when the
+/// largest statistic reaches $`A`$: the mean distance to a false alarm is at least $`A`$, since $`\sum_j π_j ≤ 1`$.
+///
+/// The replaced hypothesis remains an alternative for a distance, with the odds that it has: $`p R = (p R_j)^{-1}`$.
+/// An alternative whose statistic is less than what a new search would give it, $`π_j d`$, is removed.
+///
+/// ```
+/// use wayfix_integrity::{Proposal, Relocalization, RelocalizationParams};
+/// let mut present = 0.0; // m along a corridor of 100 m
+/// let mut relocalization = Relocalization::new(RelocalizationParams::default())?;
+/// relocalization.propose([Proposal { hypothesis: 40.0, prior: 0.01, log_likelihood_ratio: 3.0 }])?;
+/// for (measured, is_decided) in [(40.1, false), (39.8, false), (40.3, true)] {
+///     let log_likelihood = |x: &f64| -0.5 * f64::min((measured - x).powi(2), 10.0);
+///     relocalization.observe(log_likelihood(&present), |x| log_likelihood(x))?;
+///     assert_eq!(relocalization.decide(&mut present), is_decided);
+/// }
+/// assert_eq!(present, 40.0);
+/// assert_eq!(relocalization.alternatives()[0].hypothesis, 0.0); // kept for 20 m
+/// # Ok::<(), wayfix_integrity::IntegrityError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Relocalization<H> {
+    params: RelocalizationParams,
+    alternatives: Vec<Alternative<H>>,
+    /// Distance since the last search, m.
+    distance: f64,
+}
+
+/// A search counts as at least this distance, m: a standing robot can be moved too.
+const MIN_DISTANCE: f64 = 1.0;
+
+impl<H> Relocalization<H> {
+    /// No alternatives.
+    ///
+    /// # Errors
+    /// Returns an error if a parameter is out of range.
+    pub fn new(params: RelocalizationParams) -> Result<Self, IntegrityError> {
+        params.validate()?;
+        Ok(Self { params, alternatives: Vec::new(), distance: 0.0 })
+    }
+
+    /// The alternatives, in the order of their arrival.
+    pub fn alternatives(&self) -> &[Alternative<H>] {
+        &self.alternatives
+    }
+    /// The same, to move their hypotheses with the robot.
+    pub fn alternatives_mut(&mut self) -> &mut [Alternative<H>] {
+        &mut self.alternatives
+    }
+    /// Posterior probability that the robot is at one of the alternatives.
+    pub fn probability(&self) -> f64 {
+        self.params.probability(self.alternatives.iter().map(Alternative::statistic).sum())
+    }
+    /// Removes all alternatives.
+    pub fn clear(&mut self) {
+        self.alternatives.clear();
+    }
+
+    /// Adds driven distance, in m.
+    ///
+    /// # Errors
+    /// Returns an error if the distance is negative or not finite.
+    pub fn drive(&mut self, distance: f64) -> Result<(), IntegrityError> {
+        check_distance(distance)?;
+        self.distance += distance;
+        let kept_distance = self.params.kept_distance;
+        self.alternatives.retain_mut(|alternative| match &mut alternative.kind {
+            Kind::Previous { distance: since } => {
+                *since += distance;
+                *since <= kept_distance
+            }
+            Kind::Proposed { .. } => true,
+        });
+        Ok(())
+    }
+
+    /// Adds the result of a global search.
+    ///
+    /// # Errors
+    /// Returns an error if a prior is not in (0, 1], or a ratio is NaN; no proposal is added then.
+    pub fn propose(
+        &mut self,
+        proposals: impl IntoIterator<Item = Proposal<H>>,
+    ) -> Result<(), IntegrityError> {
+        let distance = self.search_distance();
+        let start = |Proposal { hypothesis, prior, log_likelihood_ratio }| {
+            check("prior", prior, prior > 0.0 && prior <= 1.0, "above 0, at most 1")?;
+            check_ratio(log_likelihood_ratio)?;
+            let statistic = times(prior * distance, log_likelihood_ratio);
+            Ok(Alternative { hypothesis, statistic, kind: Kind::Proposed { prior } })
+        };
+        let started = proposals.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
+        self.alternatives.extend(started);
+        self.distance = 0.0;
+        self.remove_hopeless();
+        Ok(())
+    }
+
+    /// Takes a measurement: its log-likelihood under the present hypothesis and under each alternative, in nats.
+    ///
+    /// # Errors
+    /// Returns an error if a log-likelihood is NaN, or infinite under both; the statistics are unchanged then.
+    pub fn observe(
+        &mut self,
+        present: f64,
+        mut log_likelihood: impl FnMut(&mut H) -> f64,
+    ) -> Result<(), IntegrityError> {
+        let ratios = self.alternatives.iter_mut().map(|a| log_likelihood(&mut a.hypothesis) - present);
+        let ratios = ratios.map(|ratio| check_ratio(ratio).map(|()| ratio));
+        let ratios = ratios.collect::<Result<Vec<f64>, _>>()?;
+        for (alternative, ratio) in self.alternatives.iter_mut().zip(ratios) {
+            alternative.statistic = times(alternative.statistic, ratio);
+        }
+        self.remove_hopeless();
+        Ok(())
+    }
+
+    /// Replaces `present` by the best alternative if its statistic reaches the threshold. Returns whether it did.
+    pub fn decide(&mut self, present: &mut H) -> bool {
+        let by_statistic = |a: &(usize, &Alternative<H>), b: &(usize, &Alternative<H>)| {
+            a.1.statistic.total_cmp(&b.1.statistic)
+        };
+        let best = self.alternatives.iter().enumerate().max_by(by_statistic);
+        let Some((index, _)) = best.filter(|(_, best)| best.statistic >= self.params.threshold()) else {
+            return false;
+        };
+        let best = self.alternatives.remove(index);
+        // Odds against the present hypothesis become odds against the one that replaces it.
+        let prior = self.params.prior();
+        for rival in &mut self.alternatives {
+            rival.statistic /= prior * best.statistic;
+        }
+        let previous = Alternative {
+            hypothesis: std::mem::replace(present, best.hypothesis),
+            statistic: 1.0 / (prior * prior * best.statistic),
+            kind: Kind::Previous { distance: 0.0 },
+        };
+        self.alternatives.push(previous);
+        true
+    }
+
+    fn search_distance(&self) -> f64 {
+        self.distance.max(MIN_DISTANCE)
+    }
+
+    fn remove_hopeless(&mut self) {
+        let distance = self.search_distance();
+        self.alternatives.retain(|alternative| match alternative.kind {
+            Kind::Proposed { prior } => alternative.statistic >= prior * distance,
+            Kind::Previous { .. } => true,
+        });
+    }
+}
+
+impl<H> Alternative<H> {
+    /// The Shiryaev–Roberts statistic, m.
+    pub fn statistic(&self) -> f64 {
+        self.statistic
+    }
+    /// Whether it was the present hypothesis before.
+    pub fn is_previous(&self) -> bool {
+        matches!(self.kind, Kind::Previous { .. })
+    }
+}

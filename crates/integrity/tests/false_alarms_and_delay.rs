@@ -1,0 +1,100 @@
+//! False alarms and delays over Gaussian measurements, beside the known values of the tests.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+use wayfix_integrity::{ChangeTest, Cusum, RelocalizationParams};
+
+const SEED: u64 = 41;
+const N_RUNS: usize = 1000;
+/// The mean of the measurements after the change; it is 0 before. Variance 1.
+const SHIFT: f64 = 1.0;
+
+/// Mean number of measurements to an alarm, and the half-width of its 95 % interval.
+fn mean_run_length(mean: f64, mut alarm: impl FnMut(usize, f64) -> bool) -> (f64, f64) {
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let normal = Normal::new(mean, 1.0).unwrap();
+    let lengths: Vec<f64> = (0..N_RUNS)
+        .map(|run| {
+            (1..).find(|_| alarm(run, normal.sample(&mut rng) * SHIFT - SHIFT * SHIFT / 2.0)).unwrap() as f64
+        })
+        .collect();
+    let n = N_RUNS as f64;
+    let average = lengths.iter().sum::<f64>() / n;
+    let variance = lengths.iter().map(|length| (length - average).powi(2)).sum::<f64>() / (n - 1.0);
+    (average, 1.96 * (variance / n).sqrt())
+}
+
+fn cusum(mean: f64, threshold: f64) -> (f64, f64) {
+    let fresh = Cusum::from_false_alarm_rate((-threshold).exp()).unwrap();
+    let (mut sum, mut current) = (fresh, 0);
+    mean_run_length(mean, |run, ratio| {
+        if run != current {
+            (sum, current) = (fresh, run);
+        }
+        sum.observe(ratio).unwrap()
+    })
+}
+
+fn shiryaev_roberts(mean: f64, distance: f64, false_alarms_per_km: f64) -> (f64, f64) {
+    let params = RelocalizationParams { false_alarms_per_km, moved_per_km: 1e3, ..Default::default() };
+    let fresh = ChangeTest::new(params).unwrap();
+    let (mut test, mut current) = (fresh, 0);
+    mean_run_length(mean, |run, ratio| {
+        if run != current {
+            (test, current) = (fresh, run);
+        }
+        test.observe(distance, ratio).unwrap();
+        test.is_change()
+    })
+}
+
+/// [Siegmund 1985, Eq. 2.57]: the mean run length of a cumulative sum of increments with mean `drift` and variance 1.
+fn siegmund(drift: f64, threshold: f64) -> f64 {
+    const OVERSHOOT: f64 = 2.0 * 0.583;
+    let limit = threshold + OVERSHOOT;
+    ((-2.0 * drift * limit).exp() + 2.0 * drift * limit - 1.0) / (2.0 * drift * drift)
+}
+
+#[test]
+fn cusum_has_the_run_lengths_of_siegmund() {
+    for (mean, threshold) in [(0.0, 3.0), (0.0, 4.0), (SHIFT, 4.0), (SHIFT, 5.0)] {
+        let (measured, interval) = cusum(mean, threshold);
+        let known = siegmund(mean - SHIFT / 2.0, threshold);
+        // Siegmund's approximation is good to a few per cent.
+        assert!((measured - known).abs() < interval + 0.03 * known, "{measured} ± {interval}, known {known}");
+    }
+}
+
+#[test]
+fn cusum_keeps_the_bound_of_lorden() {
+    for threshold in [2.0_f64, 3.0, 4.0] {
+        let (measured, interval) = cusum(0.0, threshold);
+        assert!(measured - interval > threshold.exp(), "{measured} ± {interval}");
+    }
+}
+
+#[test]
+fn distance_between_false_alarms_keeps_its_bound() {
+    for (distance, false_alarms_per_km) in [(1.0, 10.0), (0.5, 10.0), (0.1, 50.0)] {
+        let threshold = 1000.0 / false_alarms_per_km;
+        let (n, interval) = shiryaev_roberts(0.0, distance, false_alarms_per_km);
+        let (measured, interval) = (n * distance, interval * distance);
+        assert!(measured + interval > threshold, "{measured} ± {interval} m, bound {threshold} m");
+        // Without overshoot the bound is exact; the overshoot of normal increments is exp(0.583 δ). [Pollak 1987]
+        let known = threshold * (0.583 * SHIFT).exp();
+        assert!(
+            (measured - known).abs() < interval + 0.05 * known,
+            "{measured} ± {interval} m, known {known} m"
+        );
+    }
+}
+
+#[test]
+fn delay_grows_with_the_logarithm_of_the_threshold() {
+    // To first order the delay is ln(A) / I, with I = δ²/2 nats per measurement. [Lorden 1971]
+    let delays = [1.0, 0.01].map(|rate| shiryaev_roberts(SHIFT, 1.0, rate));
+    let [(short, a), (long, b)] = delays;
+    let known = 100_f64.ln() / (SHIFT * SHIFT / 2.0);
+    assert!((long - short - known).abs() < a + b, "{short} ± {a} and {long} ± {b} measurements");
+}

@@ -1,0 +1,137 @@
+//! A robot in a corridor of cells that is moved, and one that is not.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+use wayfix_integrity::{IntegrityError, Proposal, Relocalization, RelocalizationParams};
+
+const SEED: u64 = 43;
+const N_CELLS: usize = 20;
+/// The measurement of a cell: the value of a map, with noise of variance 1.
+const N_STEPS: usize = 3000;
+
+fn map(rng: &mut ChaCha8Rng) -> Vec<f64> {
+    (0..N_CELLS).map(|_| rng.random_range(-2.0..2.0)).collect()
+}
+
+/// Drives on the spot, 1 m a step, and searches all cells at each step. Returns the steps at which the hypothesis was replaced.
+fn drive(
+    params: RelocalizationParams,
+    map: &[f64],
+    truth: impl Fn(usize) -> usize,
+    rng: &mut ChaCha8Rng,
+) -> (Vec<usize>, usize) {
+    let normal = Normal::new(0.0, 1.0).unwrap();
+    let mut relocalization = Relocalization::new(params).unwrap();
+    let (mut present, mut replaced) = (truth(0), Vec::new());
+    for step in 0..N_STEPS {
+        let measured = map[truth(step)] + normal.sample(rng);
+        let log_likelihood = |cell: usize| -0.5 * (measured - map[cell]).powi(2);
+        relocalization.drive(1.0).unwrap();
+        let at_present = log_likelihood(present);
+        relocalization.observe(at_present, |cell| log_likelihood(*cell)).unwrap();
+        let proposal = |cell: usize| Proposal {
+            hypothesis: cell,
+            prior: 1.0 / N_CELLS as f64,
+            log_likelihood_ratio: log_likelihood(cell) - at_present,
+        };
+        let is_new = |cell: &usize| {
+            *cell != present && relocalization.alternatives().iter().all(|a| a.hypothesis != *cell)
+        };
+        let proposals: Vec<_> = (0..N_CELLS).filter(is_new).map(proposal).collect();
+        relocalization.propose(proposals).unwrap();
+        if relocalization.decide(&mut present) {
+            replaced.push(step);
+        }
+    }
+    (replaced, present)
+}
+
+#[test]
+fn robot_that_is_not_moved_has_few_false_alarms() {
+    let params = RelocalizationParams { false_alarms_per_km: 1.0, moved_per_km: 10.0, ..Default::default() };
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    const N_RUNS: usize = 100;
+    let n_alarms: usize = (0..N_RUNS)
+        .map(|_| {
+            let map = map(&mut rng);
+            drive(params, &map, |_| 3, &mut rng).0.len().min(1)
+        })
+        .sum();
+    // At most one a km: in 3 km of each run. 95 % of Poisson counts lie below the mean plus two deviations.
+    let most = (N_RUNS * N_STEPS) as f64 / 1000.0;
+    assert!((n_alarms as f64) < most + 2.0 * most.sqrt(), "{n_alarms} of {N_RUNS}");
+}
+
+#[test]
+fn moved_robot_is_found() {
+    let params = RelocalizationParams::default();
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED + 1);
+    let n_found = (0..100)
+        .filter(|_| {
+            let map = map(&mut rng);
+            let (_, present) = drive(params, &map, |step| if step < 500 { 3 } else { 11 }, &mut rng);
+            // Cells that look alike are alike.
+            (map[present] - map[11]).abs() < 0.2
+        })
+        .count();
+    assert!(n_found >= 95, "{n_found} of 100");
+}
+
+#[test]
+fn previous_hypothesis_returns_within_its_distance() {
+    let params = RelocalizationParams { kept_distance: 20.0, ..Default::default() };
+    for (distance, is_kept) in [(19.0, true), (21.0, false)] {
+        let mut present = "here";
+        let mut relocalization = Relocalization::new(params).unwrap();
+        relocalization
+            .propose([Proposal { hypothesis: "there", prior: 0.5, log_likelihood_ratio: 20.0 }])
+            .unwrap();
+        assert!(relocalization.decide(&mut present));
+        assert!(relocalization.alternatives()[0].is_previous());
+        relocalization.drive(distance).unwrap();
+        relocalization.observe(-100.0, |_| 0.0).unwrap();
+        assert_eq!(relocalization.decide(&mut present), is_kept);
+        assert_eq!(present, if is_kept { "here" } else { "there" });
+    }
+}
+
+#[test]
+fn odds_are_inverted_when_hypotheses_change_places() {
+    let mut present = 0;
+    let mut relocalization = Relocalization::new(RelocalizationParams::default()).unwrap();
+    relocalization.propose([Proposal { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 15.0 }]).unwrap();
+    let moved = relocalization.probability();
+    assert!(relocalization.decide(&mut present));
+    assert!((relocalization.probability() - (1.0 - moved)).abs() < 1e-12);
+}
+
+#[test]
+fn equal_alternatives_do_not_take_turns() {
+    let mut present = 0;
+    let mut relocalization = Relocalization::new(RelocalizationParams::default()).unwrap();
+    let proposal = |hypothesis| Proposal { hypothesis, prior: 0.5, log_likelihood_ratio: 20.0 };
+    relocalization.propose([proposal(1), proposal(2)]).unwrap();
+    assert!(relocalization.decide(&mut present));
+    assert!(!relocalization.decide(&mut present));
+    assert!(relocalization.probability() > 0.49, "two places are equally probable");
+}
+
+#[test]
+fn invalid_numbers_change_nothing() {
+    let mut relocalization = Relocalization::new(RelocalizationParams::default()).unwrap();
+    relocalization.propose([Proposal { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 2.0 }]).unwrap();
+    let before = relocalization.clone();
+    assert!(matches!(relocalization.drive(-1.0), Err(IntegrityError::OutOfRange { .. })));
+    assert!(relocalization.drive(f64::NAN).is_err());
+    assert!(relocalization.observe(f64::NAN, |_| 0.0).is_err());
+    assert!(relocalization.observe(f64::NEG_INFINITY, |_| f64::NEG_INFINITY).is_err());
+    for prior in [0.0, -1.0, 1.5, f64::NAN] {
+        assert!(
+            relocalization.propose([Proposal { hypothesis: 2, prior, log_likelihood_ratio: 2.0 }]).is_err()
+        );
+    }
+    assert_eq!(relocalization, before);
+    let params = RelocalizationParams { moved_per_km: 0.001, ..Default::default() };
+    assert!(Relocalization::<u8>::new(params).is_err(), "alarms would be wrong more often than right");
+}
