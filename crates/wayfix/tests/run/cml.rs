@@ -1,106 +1,15 @@
 //! `wayfix run cml` on frames with poses and on logs, as its users call it, with bad input too.
 #![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
-use std::{ffi::OsStr, fmt::Write, fs, path::PathBuf};
+use std::{ffi::OsStr, fs, path::PathBuf};
 
-use crate::common::{Outcome, Scratch, wayfix};
+use crate::common::{Scratch, wayfix};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_scene_sim::{
-    indoors::{IndoorDrive, IndoorParams, Store, StoreParams, calibrated_robot},
-    random::Streams,
-};
-use wayfix_sensor_log::{Data, EncodedImage, Format, Record, Stamp};
+use wayfix_estimation_traits::LieGroup;
+use wayfix_sensor_log::{Data, EncodedImage, Format};
 
-const WORLD_SEED: u64 = 5;
-const LAPS: usize = 2;
-
-/// What a drive round the shelves of the area gives: pictures and true poses 0.25 m apart.
-struct Drive {
-    frames: Vec<(EncodedImage, Pose2<f64>, Option<Pose2<f64>>)>,
-}
-
-impl Drive {
-    fn new() -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(WORLD_SEED);
-        let building = Store::draw(StoreParams::area(), &mut rng).unwrap().building();
-        let route = building.aisles().laps(LAPS, &mut rng).unwrap();
-        let params = IndoorParams { drive: calibrated_robot(&mut rng), ..IndoorParams::default() };
-        let steps = IndoorDrive::new(&building, route, params, Streams::new(rng)).unwrap();
-        let frame = |step: wayfix_scene_sim::indoors::IndoorStep| {
-            let view = &step.view;
-            let image = EncodedImage::png_rgb(view.width as u32, view.height as u32, &view.rgb).unwrap();
-            (image, step.pose, step.odometry)
-        };
-        Self { frames: steps.take(260).map(frame).collect() }
-    }
-
-    /// The frames as `0001.png …` in a folder.
-    fn folder(&self, scratch: &Scratch) -> PathBuf {
-        let folder = scratch.path("frames");
-        fs::create_dir_all(&folder).unwrap();
-        for (index, (image, ..)) in self.frames.iter().enumerate() {
-            fs::write(folder.join(format!("view_{index}.png")), &image.bytes).unwrap();
-        }
-        folder
-    }
-
-    fn table(&self, row: impl Fn(usize, &Pose2<f64>) -> String) -> String {
-        let mut text = String::new();
-        for (index, (_, pose, _)) in self.frames.iter().enumerate() {
-            writeln!(text, "{}", row(index, pose)).unwrap();
-        }
-        text
-    }
-
-    fn records(&self) -> Vec<Record> {
-        let mut records = Vec::new();
-        for (index, (image, pose, odometry)) in self.frames.iter().enumerate() {
-            let stamp = Stamp::from_nanoseconds(500_000_000 * index as u64);
-            let mut push = |data| records.push(Record { stamp, data });
-            push(Data::TruePose(*pose));
-            odometry.iter().for_each(|odometry| push(Data::OdometryIncrement(*odometry)));
-            push(Data::Image(image.clone()));
-        }
-        records
-    }
-
-    fn log(&self, scratch: &Scratch) -> PathBuf {
-        let path = scratch.path("area.mcap");
-        wayfix_sensor_log::write(&path, Format::Mcap, self.records()).unwrap();
-        path
-    }
-}
-
-/// The log with odometry that comes `seconds` later than what the camera shows.
-fn with_late_odometry(drive: &Drive, scratch: &Scratch, seconds: f64) -> PathBuf {
-    let mut records = drive.records();
-    for record in records.iter_mut().filter(|record| matches!(record.data, Data::OdometryIncrement(_))) {
-        record.stamp = Stamp::from_nanoseconds(record.stamp.nanoseconds() + (seconds * 1e9) as u64);
-    }
-    records.sort_by_key(|record| record.stamp);
-    let path = scratch.path("late.mcap");
-    wayfix_sensor_log::write(&path, Format::Mcap, records).unwrap();
-    path
-}
-
-fn run_cml(arguments: &[&OsStr]) -> Outcome {
-    let first = ["run", "cml", "--json"].map(OsStr::new);
-    wayfix(first.into_iter().chain(arguments.iter().copied()))
-}
-
-fn frames_run(folder: &PathBuf, poses: &PathBuf, more: &[&str]) -> Outcome {
-    let mut arguments = vec![OsStr::new("--frames"), folder.as_ref(), OsStr::new("--poses"), poses.as_ref()];
-    arguments.extend(more.iter().map(OsStr::new));
-    run_cml(&arguments)
-}
-
-fn log_run(log: &PathBuf, more: &[&str]) -> Outcome {
-    let mut arguments = vec![OsStr::new("--log"), log.as_ref()];
-    arguments.extend(more.iter().map(OsStr::new));
-    run_cml(&arguments)
-}
+use super::cml_drive::{Drive, frames_run, log_run, run_cml};
 
 #[test]
 fn every_kind_of_table_gives_the_same_run() {
@@ -176,7 +85,7 @@ fn a_log_builds_its_map_and_a_saved_map_is_gone_on_with() {
     let log = drive.log(&scratch);
     let map = scratch.path("area.map");
     let map_name = map.to_str().unwrap();
-    let built = log_run(&log, &["--save-map", map_name, "--save-every", "10"]);
+    let built = log_run(&log, &["--save", map_name, "--save-every", "10"]);
     assert!(built.stderr.contains("concurrent map building"), "{}", built.stderr);
     assert!(built.metric("n_references") > 20.0 && built.metric("error_mean_m") < 1.0, "{}", built.stdout);
     assert_eq!(
@@ -193,8 +102,11 @@ fn a_log_builds_its_map_and_a_saved_map_is_gone_on_with() {
         "nothing was learned or forgotten"
     );
     assert!(again.metric("error_median_m") < 1.0, "{}", again.stdout);
-    let saved = log_run(&log, &["--map", map_name, "--start", "saved"]);
-    assert_eq!(saved.code, 0, "{}", saved.stderr);
+    let made = scratch.path("made.map");
+    let resumed = log_run(&log, &["--resume", map_name, "--map-out", made.to_str().unwrap()]);
+    assert_eq!(resumed.code, 0, "{}", resumed.stderr);
+    let with_made_map = log_run(&log, &["--map", made.to_str().unwrap(), "--forgetting", "none"]);
+    assert_eq!(with_made_map.metric("n_references"), resumed.metric("n_references"));
 
     let taught = log_run(&log, &["--withhold", "4"]);
     assert!(
@@ -218,12 +130,12 @@ fn a_log_builds_its_map_and_a_saved_map_is_gone_on_with() {
     refused(&["--map", newer.to_str().unwrap()], 1, "version 9");
     refused(&["--map", log.to_str().unwrap()], 1, "not an appearance map");
     refused(&["--map", "/no/such/file"], 1, "/no/such/file");
-    refused(&["--save-map", "/no/such/folder/x.map"], 1, "cannot save the map");
+    refused(&["--save", "/no/such/folder/x.map"], 1, "cannot save the map");
     refused(&["--forgetting", "none"], 1, "there is none");
     refused(&["--withhold", "1"], 1, "teaches none");
-    refused(&["--start", "saved"], 1, "no saved map");
+    refused(&["--resume", map_name, "--start", "anywhere"], 2, "cannot be used");
     refused(&["--start", "here"], 2, "anywhere");
-    refused(&["--save-every", "1"], 2, "--save-map");
+    refused(&["--save-every", "1"], 2, "--save");
     refused(&["--map", map_name, "--withhold", "5"], 2, "cannot be used");
 }
 
@@ -349,7 +261,7 @@ fn kill_while_saving(n: usize) {
         command
             .args(["run", "cml", "--json", "--save-every", "0", "--log"])
             .arg(&log)
-            .arg("--save-map")
+            .arg("--save")
             .arg(&map);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         thread::sleep(Duration::from_micros(rng.random_range(20_000..600_000)));
@@ -368,7 +280,7 @@ fn kill_while_saving(n: usize) {
         "{n_killed} of {n} were killed while they ran, {n_loaded} maps"
     );
     println!("{n_killed} of {n} killed while they ran, {n_loaded} maps loaded, of {} sizes", sizes.len());
-    let resumed = log_run(&log, &["--map", map.to_str().unwrap(), "--start", "saved"]);
+    let resumed = log_run(&log, &["--resume", map.to_str().unwrap()]);
     assert_eq!(resumed.code, 0, "{}", resumed.stderr);
 }
 
@@ -395,19 +307,4 @@ fn increments_of_the_log_add_up() {
     }
     let truth = drive.frames.last().unwrap().1;
     assert!((pose.translation - truth.translation).norm() < 3.0, "{pose:?} {truth:?}");
-}
-
-/// Turns of panoramas and of odometry agree best one image later; with the delay that is said the run is that of the log without it.
-#[test]
-fn lag_of_odometry_behind_panoramas_is_said() {
-    let (scratch, drive) = (Scratch::new(), Drive::new());
-    let right = log_run(&drive.log(&scratch), &[]);
-    assert_eq!(right.event("odometry_lags"), 0, "{}", right.stderr);
-    let log = with_late_odometry(&drive, &scratch, 0.5);
-    let late = log_run(&log, &[]);
-    assert_eq!(late.event("odometry_lags"), 1, "{}", late.stderr);
-    assert!(late.stderr.contains("`odometry_delay = 0.50`"), "{}", late.stderr);
-    let params = scratch.file("delay.toml", "odometry_delay = 0.5");
-    let corrected = log_run(&log, &["--params", params.to_str().unwrap()]);
-    assert_eq!(corrected.figures(), right.figures());
 }

@@ -4,6 +4,8 @@
 mod common;
 
 mod cml;
+mod cml_drive;
+mod cml_lag;
 mod lines;
 mod track;
 mod views;

@@ -1,4 +1,7 @@
-use std::{path::PathBuf, str::FromStr};
+use std::{
+    path::{Path, PathBuf},
+    str::FromStr,
+};
 
 use wayfix_appearance_cml::{Donut, RingOrder, TurnSense};
 use wayfix_estimation_traits::Pose2;
@@ -20,7 +23,7 @@ use wayfix_systems::cml::{Task, recording::ColumnNames};
 /// * **Learn, then localize**: a folder of frames with poses, or `--withhold N`: every N-th view is localized and never taught, the others are
 ///   taught with their poses before. With `--learn-from`, another traverse is taught and all views of this one are localized.
 ///
-/// * **Localize in a saved map**: `--map`.
+/// * **Localize in a saved map**: `--map`, or `--resume` to go on where the robot was.
 ///
 /// Poses come as a table, with comma, semicolon, tab or blanks between the columns. Its first row names them: file or frame, t or time, x, y,
 /// heading or theta or yaw, with units as in t_ms, x_cm, yaw_deg (else s, m, rad). `--columns` names those of a table without such a row. Poses
@@ -73,17 +76,25 @@ pub(crate) struct Arguments {
     /// [default: 5 for frames, 0 for a log].
     #[arg(long, value_name = "N")]
     pub(super) withhold: Option<usize>,
-    /// Start with a map that was saved.
+    /// The map that is given: one of `--map-out` or `--save`.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["withhold", "learn_from"])]
     pub(super) map: Option<PathBuf>,
-    /// Save the map, and where the robot is in it, at the end: whole or not at all.
+    /// File for the map that was made, at the end.
     #[arg(long, value_name = "FILE")]
-    pub(super) save_map: Option<PathBuf>,
-    /// Save it every so many seconds of the log as well.
-    #[arg(long, value_name = "SECONDS", requires = "save_map", value_parser = seconds)]
+    pub(super) map_out: Option<PathBuf>,
+    /// File to save map and belief to, at the end and every `--save-every` seconds.
+    ///
+    /// Losing power leaves a whole map.
+    #[arg(long, value_name = "FILE")]
+    pub(super) save: Option<PathBuf>,
+    /// Seconds of the log's time between two saves.
+    #[arg(long, value_name = "SECONDS", requires = "save", value_parser = seconds)]
     pub(super) save_every: Option<f64>,
-    /// Where the robot is at the first view: `anywhere`, `saved` (as the map has it), or x,y,heading in metres and degrees [default: near the first
-    /// true pose, else anywhere; for a new map the first true pose, else 0,0,0].
+    /// Go on from a file of `--save`: with its map, and where the robot was.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["map", "start", "withhold", "learn_from"])]
+    pub(super) resume: Option<PathBuf>,
+    /// Where the robot is at the first view: `anywhere`, or x,y,heading in metres and degrees [default: near the first true pose, else
+    /// anywhere; for a new map the first true pose, else 0,0,0].
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
     pub(super) start: Option<StartArgument>,
     /// What is forgotten: `active` also what is not seen where it should be, `passive` what is not seen any more, `none` keeps a learned map as it is
@@ -109,7 +120,7 @@ pub(crate) struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   wayfix run cml --log store.mcap                                            build a map and localize in it
-  wayfix run cml --log monday.mcap --save-map store.map                      and keep it
+  wayfix run cml --log monday.mcap --save store.map                          and keep it
   wayfix run cml --log tuesday.mcap --map store.map --start anywhere
   wayfix run cml --frames route --poses route.csv --columns t_ms,x_cm,y_cm   every fifth frame withheld
   wayfix run cml --frames tuesday --poses tuesday.csv --learn-from monday --learn-poses monday.csv --forgetting none
@@ -131,7 +142,6 @@ pub(super) enum ColumnsArgument {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum StartArgument {
     Anywhere,
-    Saved,
     At(Pose2<f64>),
 }
 
@@ -142,14 +152,13 @@ impl FromStr for StartArgument {
         let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
         match (text, &numbers[..]) {
             ("anywhere", _) => Ok(Self::Anywhere),
-            ("saved", _) => Ok(Self::Saved),
             (_, [x, y, heading]) if numbers.iter().all(|number| number.is_finite()) => {
                 Ok(Self::At(Pose2::new(*x, *y, heading.to_radians())))
             }
-            _ => Err(
-                "give `anywhere`, `saved`, or x,y,heading in metres and degrees, for instance -1.5,0.3,90"
-                    .to_owned(),
-            ),
+            _ => {
+                Err("give `anywhere`, or x,y,heading in metres and degrees, for instance -1.5,0.3,90"
+                    .to_owned())
+            }
         }
     }
 }
@@ -162,13 +171,18 @@ impl Arguments {
         name_of(self.frames.as_ref().map_or(self.log.as_slice(), std::slice::from_ref))
     }
 
+    /// The map that the run starts with.
+    pub(super) fn given_map(&self) -> Option<&Path> {
+        self.map.as_deref().or(self.resume.as_deref())
+    }
+
     pub(super) fn withhold(&self) -> usize {
-        let default = if self.frames.is_some() && self.map.is_none() { WITHHOLD } else { 0 };
+        let default = if self.frames.is_some() && self.given_map().is_none() { WITHHOLD } else { 0 };
         self.withhold.unwrap_or(default)
     }
 
     pub(super) fn task(&self) -> Task {
-        match (&self.map, &self.learn_from, self.withhold()) {
+        match (self.given_map(), &self.learn_from, self.withhold()) {
             (Some(_), ..) => Task::LocalizeInSavedMap,
             (None, None, 0) => Task::ConcurrentMapBuilding,
             _ => Task::LearnThenLocalize,

@@ -39,7 +39,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let saved = arguments.map.as_deref().map(cml::read_map).transpose()?;
+    let saved = arguments.given_map().map(cml::read_map).transpose()?;
     let stopwatch = Stopwatch::start();
     let Input { mut plan, read, origin } = arguments.input(&mut params, saved.as_ref())?;
     let task = arguments.task();
@@ -48,7 +48,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let mut outputs = Outputs::open("cml", &arguments.common)?;
     let mut estimates: Option<CmlEstimateLog> = outputs.estimates(origin)?;
-    let mut saver = arguments.save_map.clone().map(|path| MapSaver::new(path, arguments.save_every));
+    let mut saver = arguments.save.clone().map(|path| MapSaver::new(path, arguments.save_every));
     let bar = terminal::bar(plan.records.len(), "appearance map");
     let run = cml::run(
         system,
@@ -68,6 +68,9 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let warnings = add_read_problems(run.system.events(), &read);
     if let Some(saver) = saver {
         saver.finish(&run.system).context("cannot save the map")?;
+    }
+    if let Some(path) = &arguments.map_out {
+        MapSaver::new(path.clone(), None).finish(&run.system).context("cannot write the map")?;
     }
 
     let seconds = stopwatch.elapsed().as_secs_f64();
@@ -169,11 +172,11 @@ impl Arguments {
             (map, state) = archive.into_map(&params).context("the saved map cannot be used here")?;
         }
         let start = match (self.start, task, first) {
-            (Some(StartArgument::Anywhere), ..) => StartPlace::Anywhere,
-            (Some(StartArgument::Saved), ..) => {
-                let state = state.context("no saved map says where the robot is (--map)")?;
+            _ if self.resume.is_some() => {
+                let state = state.context("the file does not say where the robot was: give it as --map")?;
                 StartPlace::Saved(Start::Among(state))
             }
+            (Some(StartArgument::Anywhere), ..) => StartPlace::Anywhere,
             (Some(StartArgument::At(pose)), Task::ConcurrentMapBuilding, _) => StartPlace::Exactly(pose),
             (Some(StartArgument::At(pose)), ..) => StartPlace::Near(pose),
             (None, Task::ConcurrentMapBuilding, first) => {
