@@ -6,7 +6,10 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use wayfix_sensor_log::OpenOptions;
-use wayfix_systems::slam::{self, AssociationRule, Profile, SlamSystemParams};
+use wayfix_systems::{
+    points::{self, PointSlamParams, Profile},
+    slam::AssociationRule,
+};
 
 const N_RUNS: usize = 6;
 
@@ -18,13 +21,11 @@ fn main() -> Result<()> {
     }
     let (records, _) = wayfix_sensor_log::open(&folder, &OpenOptions::default())?.read_all();
     for (association, name) in [(AssociationRule::Nn, "nn"), (AssociationRule::Jcbb, "jcbb")] {
-        let params = SlamSystemParams {
-            association: Some(association),
-            ..SlamSystemParams::of(Profile::VictoriaPark)
-        };
+        let params =
+            PointSlamParams { association: Some(association), ..PointSlamParams::of(Profile::VictoriaPark) };
         let mut best: Vec<f64> = Vec::new();
         for _ in 0..N_RUNS {
-            let run = slam::run(&records, &params, |_| {})?;
+            let run = points::run(&records, &params, |_| {})?;
             let steps = run
                 .system
                 .stamped_estimates()

@@ -2,8 +2,7 @@
 //!
 //! | module | system |
 //! | --- | --- |
-//! | [`slam`] | EKF-SLAM with point landmarks |
-//! | [`walls`] | EKF-SLAM with walls from laser scans |
+//! | [`slam`] | EKF-SLAM; [`points`] from range-bearing detections, [`walls`] from laser scans |
 //! | [`lines`] | walls of single scans |
 //! | [`color`] | localization in a coloured map |
 //! | [`cml`] | localization and mapping by appearance |
@@ -15,6 +14,7 @@
 pub mod cml;
 pub mod color;
 pub mod lines;
+pub mod points;
 pub mod saved;
 pub mod settings;
 pub mod slam;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Data, Detection, LaserScan, Record, Stamp, Target, Velocity};
 use wayfix_systems::{
-    slam::{self, Profile, SlamSystemParams},
+    points::{self, PointSlamParams, Profile},
     walls::{self, WallRun, WallSlamParams},
 };
 
@@ -187,8 +187,8 @@ fn velocity_holds_for_a_limited_time() {
     let velocity = |linear| Data::Velocity(Velocity { linear, angular: 0.0 });
     let log =
         [at(0.0, velocity(1.0)), at(1e8, velocity(0.5)), at(1e8 + 0.5, look), at(1e8 + 0.6, velocity(0.5))];
-    let params = SlamSystemParams::of(Profile::Generic);
-    let mut run = slam::run(&log, &params, |_| {}).expect("a usable log");
+    let params = PointSlamParams::of(Profile::Generic);
+    let mut run = points::run(&log, &params, |_| {}).expect("a usable log");
     let x = run.system.filter().robot().pose.x();
     assert!((x - params.robot.velocity_hold - 0.3).abs() < 1e-9, "{x} m");
     assert_eq!(run.events().get("motion_unknown"), 1);

@@ -2,9 +2,10 @@
 
 use std::f64::consts::FRAC_PI_3;
 
-use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Detection, Record, Stamp, Target, Velocity};
-use wayfix_systems::slam::{Profile, RobotParams, SlamRun, SlamSystemParams, run};
+use nalgebra::Vector2;
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_sensor_log::{Data, Detection, Record, Stamp, Target, TrueLandmark, Velocity};
+use wayfix_systems::points::{PointRun, PointSlamParams, Profile, RobotParams, run};
 
 fn at(seconds: f64, data: Data) -> Record {
     Record { stamp: Stamp::from_seconds(seconds).expect("a time"), data }
@@ -18,8 +19,8 @@ fn detection(seconds: f64, id: u32, range: f64, bearing: f64) -> Record {
     at(seconds, Data::Detections(vec![Detection { target: Target::Landmark(id), range, bearing }]))
 }
 
-fn slam(records: &[Record], robot: RobotParams) -> SlamRun {
-    let params = SlamSystemParams { robot, ..SlamSystemParams::of(Profile::Generic) };
+fn slam(records: &[Record], robot: RobotParams) -> PointRun {
+    let params = PointSlamParams { robot, ..PointSlamParams::of(Profile::Generic) };
     run(records, &params, |_| {}).expect("a usable log")
 }
 
@@ -109,4 +110,30 @@ fn the_run_starts_at_the_truth_where_odometry_starts() {
     records.sort_by_key(|record| record.stamp);
     let slam = slam(&records, RobotParams::default());
     assert!((slam.system.stamped_estimates()[0].dead_reckoning.x() - 5.5).abs() < 1e-12);
+}
+
+#[test]
+fn two_anchors_tie_the_map_to_the_world() {
+    let landmark = |id, x, y| at(0.0, Data::TrueLandmark(TrueLandmark { id, x, y }));
+    let mut records = vec![landmark(7, 2.0, 0.5), landmark(8, 1.5, -1.0), landmark(9, 9.0, 4.0)];
+    records.push(velocity(0.0, 0.5, 0.1));
+    for step in 1..10 {
+        let pose = Pose2::new(0.05 * f64::from(step), 0.0, 0.01 * f64::from(step));
+        let detections = [(7, 2.0, 0.5), (8, 1.5, -1.0), (9, 9.0, 4.0)].map(|(id, x, y)| {
+            let seen = pose.inverse().transform(&Vector2::new(x, y));
+            Detection { target: Target::Landmark(id), range: seen.norm(), bearing: seen.y.atan2(seen.x) }
+        });
+        records.push(at(0.1 * f64::from(step), Data::Detections(detections.to_vec())));
+    }
+    for (n_anchors, n_free) in [(0, 3), (1, 1), (2, 0)] {
+        let params = PointSlamParams {
+            n_anchors,
+            record_observability: true,
+            ..PointSlamParams::of(Profile::Generic)
+        };
+        let run = run(&records, &params, |_| {}).expect("a usable log");
+        assert_eq!(run.system.filter().anchors().count(), n_anchors);
+        let recorder = run.system.observability().expect("recorded");
+        assert_eq!(recorder.unobservable_directions().len(), n_free, "{n_anchors} anchors");
+    }
 }

@@ -16,9 +16,8 @@ use common::{Outcome, Scratch, run_slam, utias_walk, walk};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{OpenOptions, Record};
-use wayfix_systems::slam::{
-    AssociationRule, Profile, SavedMap, SavedMapError, SlamSystemParams, run, run_on,
-};
+use wayfix_systems::points::{PointSlamParams, Profile, SavedMap, run, run_on};
+use wayfix_systems::slam::{AssociationRule, Save, SavedMapError};
 use wayfix_systems::system::DriveStep;
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
@@ -28,13 +27,13 @@ fn records(log: &Path) -> Vec<Record> {
     wayfix_sensor_log::open(log, &OpenOptions::default()).unwrap().read_all().0
 }
 
-fn nearest_neighbour() -> SlamSystemParams {
+fn nearest_neighbour() -> PointSlamParams {
     let association = Some(AssociationRule::Nn);
-    SlamSystemParams { association, ..SlamSystemParams::of(Profile::RangeBearing) }
+    PointSlamParams { association, ..PointSlamParams::of(Profile::RangeBearing) }
 }
 
 /// The bytes that a run without a break saves after each stamp of its log.
-fn saved_after_each_stamp(records: &[Record], params: &SlamSystemParams) -> BTreeMap<u64, Vec<u8>> {
+fn saved_after_each_stamp(records: &[Record], params: &PointSlamParams) -> BTreeMap<u64, Vec<u8>> {
     let mut saved = BTreeMap::new();
     run(records, params, |DriveStep { system, .. }| {
         let map = system.save();
@@ -51,8 +50,8 @@ fn a_resumed_run_goes_on_bit_for_bit_through_a_file() {
     let stored = |name: &str| Path::new(FIXTURES).join(name);
     for (log, params) in [
         (stored("loop_unlabelled.mcap"), nearest_neighbour()),
-        (stored("loop_known.mcap"), SlamSystemParams::of(Profile::RangeBearing)),
-        (utias, SlamSystemParams::of(Profile::Utias)), // commands and looks that act late
+        (stored("loop_known.mcap"), PointSlamParams::of(Profile::RangeBearing)),
+        (utias, PointSlamParams::of(Profile::Utias)), // commands and looks that act late
     ] {
         let records = records(&log);
         let mut halves = Vec::new();
@@ -107,7 +106,7 @@ fn the_command_saves_and_goes_on() {
 #[test]
 fn a_damaged_file_is_refused_with_its_reason() {
     let scratch = Scratch::new();
-    let params = SlamSystemParams::of(Profile::RangeBearing);
+    let params = PointSlamParams::of(Profile::RangeBearing);
     let system = run(&records(&scratch.file("walk.txt", walk(12))), &params, |_| {}).unwrap().system;
     let bytes = system.save().to_bytes().unwrap();
     assert_eq!(SavedMap::from_bytes(&bytes).unwrap(), system.save());
@@ -138,7 +137,7 @@ fn a_damaged_file_is_refused_with_its_reason() {
 #[test]
 fn a_forged_state_never_panics() {
     let scratch = Scratch::new();
-    let params = SlamSystemParams::of(Profile::RangeBearing);
+    let params = PointSlamParams::of(Profile::RangeBearing);
     let log = records(&scratch.file("walk.txt", walk(12)));
     let bytes = run(&log, &params, |_| {}).unwrap().system.save().to_bytes().unwrap();
     let later = records(&scratch.file("later.txt", walk(20)));

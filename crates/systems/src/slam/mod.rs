@@ -1,31 +1,37 @@
 //! EKF-SLAM on a log: records → trajectory, map, figures, pictures, MCAP.
+//!
+//! [`SlamSystem`] is generic over a [`FrontEnd`]: [`points`](crate::points) for range-bearing detections, [`walls`](crate::walls) for laser scans.
+//! Filter, association, observability, saved maps, figures and pictures are the same for both.
 
-mod commands;
+mod association;
 mod estimates;
+mod estimator;
 mod event_name;
 mod figures;
-mod params;
+mod front_end;
 mod pictures;
-mod ranges;
+mod rule;
 mod run;
 mod saved;
-mod sequential_motion;
 mod start;
 mod system;
-mod unknown_motion;
 
-pub(crate) use estimates::draw_stamped_estimate;
+pub(crate) use association::ChosenRule;
+pub(crate) use estimates::ellipse;
 pub use estimates::{SlamDrawing, SlamEstimateLog};
-pub(crate) use event_name::event_name;
-pub use figures::summarize;
-pub(crate) use figures::{timings, unobservable_directions};
-pub use params::{AssociationRule, MountingParams, Profile, RobotParams, SlamSystemParams};
-pub use pictures::pictures;
-pub use run::{SlamRun, run, run_on};
+pub(crate) use estimator::nis;
+pub use estimator::{Estimator, StampedEstimate};
+use event_name::event_name;
+pub(crate) use figures::summary;
+pub use front_end::{FrontEnd, FrontEndMemory};
+pub(crate) use pictures::pictures_with;
+pub use rule::AssociationRule;
+pub use run::SlamRun;
+pub(crate) use run::{Truth, run_through};
 pub(crate) use saved::check_association;
-pub use saved::{Odometry, Save, Saved, SavedMap, SavedMapError, SavedState, Saver, SystemState};
+pub use saved::{Save, Saved, SavedMapError, SavedState, Saver};
 pub(crate) use start::{
     start_pose, warn_of_an_empty_map, warn_of_no_overlap, warn_of_reference, warn_of_start,
 };
-pub(crate) use system::seen_landmarks;
-pub use system::{PointSensor, SlamSystem, StampedEstimate};
+pub(crate) use system::FIRST_ANCHOR;
+pub use system::{SlamState, SlamSystem, StateOf};

@@ -1,60 +1,47 @@
-use nalgebra::Matrix2;
-use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::ChiSquaredBand;
-
-use super::{SlamRun, StampedEstimate};
+use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
     errors::Sample,
-    plot::{
-        ConsistencyPlot, ErrorPlot, ErrorSample, EstimatedLandmark, MapPlot, Picture, PlotError, Scale,
-        TimesPlot,
-    },
+    plot::{ConsistencyPlot, ErrorPlot, ErrorSample, MapPlot, Picture, PlotError, Scale, TimesPlot},
 };
+use wayfix_gaussian_core::ChiSquaredBand;
+use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
+
+use super::{FrontEnd, SlamRun, StampedEstimate};
 
 /// x, y, θ.
 const POSE_DIMENSION: usize = 3;
-/// Keyframes in the running mean of the consistency picture.
+/// Estimates in the running mean of the consistency picture.
 const WINDOW: usize = 100;
 
-/// Map and path, errors with their 3σ bands and NEES where there is truth, and step times.
-///
-/// # Errors
-/// When a picture cannot be drawn.
-pub fn pictures(run: &SlamRun) -> Result<Vec<Picture>, PlotError> {
+/// Path and `map`, errors with their 3σ bands and NEES where there is truth, and step times.
+pub(crate) fn pictures_with<F: FrontEnd, T>(
+    run: &SlamRun<F, T>,
+    map: MapPlot,
+) -> Result<Vec<Picture>, PlotError>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
+{
     let samples = run.samples();
-    let mut pictures = vec![map(run, &samples).draw()?];
+    let estimates = run.system.stamped_estimates();
+    let path = MapPlot {
+        truth: samples
+            .iter()
+            .map(|(_, sample)| (sample.truth.x(), sample.truth.y()))
+            .chain(map.truth)
+            .collect(),
+        estimate: estimates.iter().map(|at| (at.pose.x(), at.pose.y())).collect(),
+        dead_reckoning: estimates.iter().map(|at| (at.dead_reckoning.x(), at.dead_reckoning.y())).collect(),
+        ..map
+    };
+    let mut pictures = vec![path.draw()?];
     if !samples.is_empty() {
         pictures.push(errors(&samples).draw()?);
-        pictures.extend(consistency(&samples).map(|plot| plot.draw()).transpose()?);
+        let has_nees = !run.truth.is_estimate();
+        let consistency = has_nees.then(|| consistency(&samples)).flatten();
+        pictures.extend(consistency.map(|plot| plot.draw()).transpose()?);
     }
-    pictures.push(times(run.system.stamped_estimates()).draw()?);
+    pictures.push(times(estimates).draw()?);
     Ok(pictures)
-}
-
-fn map(run: &SlamRun, samples: &[(StampedEstimate, Sample)]) -> MapPlot {
-    let point = |pose: &Pose2<f64>| (pose.x(), pose.y());
-    let stamped_estimates = run.system.stamped_estimates();
-    let landmark =
-        |covariance: Matrix2<f64>| [[covariance.m11, covariance.m12], [covariance.m21, covariance.m22]];
-    let landmarks = run.system.filter().landmarks();
-    let fixes = run.true_positions.fixes().iter().map(|(_, fix)| (fix.x, fix.y));
-    MapPlot {
-        title: "Path and map with 2σ ellipses".to_owned(),
-        truth: samples.iter().map(|(_, sample)| point(&sample.truth)).chain(fixes).collect(),
-        estimate: stamped_estimates.iter().map(|stamped_estimate| point(&stamped_estimate.pose)).collect(),
-        dead_reckoning: stamped_estimates
-            .iter()
-            .map(|stamped_estimate| point(&stamped_estimate.dead_reckoning))
-            .collect(),
-        landmarks: landmarks
-            .map(|estimate| EstimatedLandmark {
-                position: (estimate.mean.x, estimate.mean.y),
-                covariance: landmark(estimate.covariance),
-            })
-            .collect(),
-        true_landmarks: run.true_landmarks.values().map(|position| (position.x, position.y)).collect(),
-        ..MapPlot::default()
-    }
 }
 
 fn errors(samples: &[(StampedEstimate, Sample)]) -> ErrorPlot {

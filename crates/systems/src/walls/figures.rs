@@ -1,46 +1,18 @@
 use wayfix_estimation_traits::{LieGroup, wrap_angle};
+use wayfix_evaluation::report::{Metric, Run};
 use wayfix_sensor_log::{Relation, Stamp};
 
 use super::WallRun;
-use crate::slam::{StampedEstimate, timings, unobservable_directions};
-use wayfix_evaluation::{
-    errors::{Sample, trajectory_errors},
-    report::{Metric, Run},
-};
+use crate::slam::{StampedEstimate, summary};
 
 /// The figures and events of a run, ready for the report.
 pub fn summarize(run: &mut WallRun) -> Run {
-    let samples: Vec<(StampedEstimate, Sample)> = run.samples();
-    let errors_of = |samples: Vec<Sample>| trajectory_errors(&samples);
-    let mut metrics = Vec::new();
-    if let Some(errors) = errors_of(samples.iter().map(|(_, sample)| *sample).collect()) {
-        metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
-        metrics.push(Metric::new("ate_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
-        metrics.push(Metric::new("heading_rmse_deg", errors.heading_rmse.to_degrees(), "°"));
-        let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
-        metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
+    let mut of_map = Vec::new();
+    if let Some((_, last)) = run.samples().last() {
+        of_map.push(Metric::new("end_error_m", last.position_error(), "m"));
     }
-    let reckoned = |(stamped_estimate, sample): &(StampedEstimate, Sample)| Sample {
-        estimate: stamped_estimate.dead_reckoning,
-        ..*sample
-    };
-    if let Some(errors) = errors_of(samples.iter().map(reckoned).collect()) {
-        metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
-    }
-    if let Some((_, last)) = samples.last() {
-        metrics.push(Metric::new("end_error_m", last.position_error(), "m"));
-    }
-    metrics.extend(wall_metrics(&run.wall_nees()));
-    let events = run.events();
-    let n_rejected =
-        ["gated", "duplicate", "unusable", "record_refused"].map(|name| events.get(name)).iter().sum::<u64>();
-    metrics.push(Metric::new("n_landmarks", run.system.filter().n_landmarks() as f64, ""));
-    metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
-    let events = run.events().counts();
-    let timings = timings(run.system.stamped_estimates());
-    let mut summary = Run { metrics, timings, events, ..Run::default() };
-    unobservable_directions(run.system.observability(), &mut summary);
-    summary
+    of_map.extend(wall_metrics(&run.wall_nees()));
+    summary(run, of_map)
 }
 
 /// How many walls of the map are walls of the world, and which share of them is within two standard deviations (in two dimensions: the ellipse

@@ -1,49 +1,53 @@
-use nalgebra::{Matrix1x4, Vector1};
+use nalgebra::{DMatrix, Vector1};
 use wayfix_scan_match::{Cloud, Guess};
 
-use super::WallSystem;
-use super::relative_motion::DriftMeasurement;
+use super::{
+    front_end::{WallFrontEnd, Walls},
+    relative_motion::DriftMeasurement,
+};
 
 /// Scans that have less in common are not laid on one another, share of points.
 const LEAST_OVERLAP: f64 = 0.15;
 
-impl WallSystem {
+impl WallFrontEnd {
     /// Corrects the motion since the last keyframe, and the drift, by matching a scan to that of the keyframe. Returns the heading of
     /// the match alone, relative to the keyframe.
-    pub(super) fn match_to_keyframe(&mut self, cloud: &Cloud) -> Option<f64> {
+    pub(super) fn match_to_keyframe(&mut self, cloud: &Cloud, estimator: &mut Walls) -> Option<f64> {
         let mut laser_heading = None;
         self.relative_motion =
             self.relative_motion.with_odometry_noise_per_scan(&self.params.odometry_noise_per_scan);
         if let (Some(look), Some(matcher)) = (&self.last_keyframe, self.matcher) {
-            let drift_variance = self.filter.robot_covariance()[(3, 3)];
+            let drift_variance = estimator.filter.robot_covariance()[(3, 3)];
             let covariance = self.relative_motion.total_covariance(drift_variance);
             let others = self.relative_motion.guesses_without_odometry();
             let guess = Guess { pose: self.relative_motion.motion, covariance, alternative_poses: &others };
             let found = matcher.align(&look.cloud, cloud, &guess);
             if let Some(found) = found.ok().filter(|found| found.overlap >= LEAST_OVERLAP) {
-                self.events.count("scan_matched");
+                estimator.events.count("scan_matched");
                 laser_heading = self.relative_motion.heading_from_match(&found);
                 let relative_motion = self.relative_motion.with_scaled_covariance(found.guess_scale);
-                let drift_change =
-                    relative_motion.drift_from_match(&found).map_or(0.0, |seen| self.correct_drift(seen));
+                let drift_change = relative_motion
+                    .drift_from_match(&found)
+                    .map_or(0.0, |seen| correct_drift(seen, estimator));
                 self.relative_motion =
                     relative_motion.corrected_by(&found, drift_change).unwrap_or(relative_motion);
             } else {
-                self.events.count("scan_unmatched");
+                estimator.events.count("scan_unmatched");
             }
         }
         self.relative_motion = self.relative_motion.after_scan();
         laser_heading
     }
+}
 
-    /// Corrects the drift by a change and its variance, and says by how much. A look that the filter refuses leaves it as it is.
-    fn correct_drift(&mut self, (change, variance): (f64, f64)) -> f64 {
-        let before = self.filter.robot().heading_drift;
-        let seen = self.filter.update_robot(&DriftMeasurement(variance), &Vector1::new(before + change));
-        if let (Ok(innovation), Some(recorder)) = (seen, &mut self.observability) {
-            let jacobian = Matrix1x4::new(0.0, 0.0, 0.0, 1.0);
-            recorder.record_robot(&self.filter, &jacobian, &innovation.covariance);
-        }
-        self.filter.robot().heading_drift - before
+/// Corrects the drift by a change and its variance. Returns the change that the filter made: none if it refuses the measurement.
+fn correct_drift((change, variance): (f64, f64), estimator: &mut Walls) -> f64 {
+    let before = estimator.filter.robot().heading_drift;
+    let measured = Vector1::new(before + change);
+    if let Ok(innovation) = estimator.filter.update_robot(&DriftMeasurement(variance), &measured) {
+        let jacobian = DMatrix::from_row_slice(1, 4, &[0.0, 0.0, 0.0, 1.0]);
+        let covariance = DMatrix::from_element(1, 1, innovation.covariance[(0, 0)]);
+        estimator.record_robot(&jacobian, &covariance);
     }
+    estimator.filter.robot().heading_drift - before
 }

@@ -1,30 +1,20 @@
 use anyhow::{Result, bail};
 use wayfix_estimation_traits::Manifold;
-use wayfix_sensor_log::{Data, Record, TrueWall};
+use wayfix_evaluation::errors::{Sample, TruePositions, TrueTrack};
+use wayfix_sensor_log::{Data, Record, Stamp, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
-use super::{WallSlamParams, WallState, WallSystem, truth};
-use crate::system::KnownStart;
+use super::{SavedWalls, WallFrontEnd, WallSlamParams, WallSystem, truth};
 use crate::{
     slam::{
-        AssociationRule, Saved, StampedEstimate, start_pose, warn_of_an_empty_map, warn_of_no_overlap,
+        AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, Truth, run_through, start_pose,
         warn_of_reference, warn_of_start,
     },
-    system::{
-        DriveStep, Events, ODOMETRY, System, check_overlap, drive, warn_of_lag, without_odometry_delay,
-    },
+    system::{DriveStep, KnownStart, ODOMETRY, System, check_overlap, warn_of_lag, without_odometry_delay},
 };
-use wayfix_evaluation::errors::{Sample, TrueTrack};
 
-/// A log of scans that went through EKF-SLAM with walls, beside the poses that the log itself holds.
-pub struct WallRun {
-    /// The system in its last state.
-    pub system: WallSystem,
-    /// True poses, or those that another program corrected, where the log has them.
-    pub truth: TrueTrack,
-    /// True walls, where the log has them.
-    pub true_walls: Vec<TrueWall>,
-}
+/// A log of scans that went through EKF-SLAM with walls.
+pub type WallRun = SlamRun<WallFrontEnd, Vec<TrueWall>>;
 
 /// Runs EKF-SLAM with walls over the records of a log and shows each step to `observe`.
 ///
@@ -55,8 +45,8 @@ pub fn run(
     let start = start_pose(params.start, known);
     let laser = params.laser.or_else(|| laser_mount(records));
     let placed = WallSlamParams { laser, ..params.clone() };
-    let mut system = WallSystem::new(placed, start, track.noise(), moves_by_velocity)?;
-    system.laser_follows_log = params.laser.is_none();
+    let mut system = WallSystem::with_walls(placed, start, track.noise(), moves_by_velocity)?;
+    system.front_end.laser_follows_log = params.laser.is_none();
     if params.start.is_none() {
         warn_of_start(system.events(), known, &track);
     }
@@ -76,7 +66,7 @@ pub fn run(
 /// # Errors
 /// When the map is of another kind or is no state of the filter, when no later scan can be used, or a parameter is out of range.
 pub fn run_on(
-    saved: Saved<WallState>,
+    saved: SavedWalls,
     records: &[Record],
     params: &WallSlamParams,
     association: Option<AssociationRule>,
@@ -88,28 +78,26 @@ pub fn run_on(
 }
 
 fn drive_through(
-    mut system: WallSystem,
+    system: WallSystem,
     track: TrueTrack,
     true_walls: Vec<TrueWall>,
     records: &[Record],
     observe: impl FnMut(DriveStep<'_, WallSystem>),
 ) -> Result<WallRun> {
-    let records = without_odometry_delay(records, system.params.odometry_delay);
-    drive(&mut system, records.iter(), observe);
-    if system.stamped_estimates().is_empty() {
-        let n_before = system.events().get("before_resume");
+    let delay = system.front_end.params.odometry_delay;
+    let records = without_odometry_delay(records, delay);
+    let positions = TruePositions::from_records(&records);
+    let evaluated_until = Stamp::from_nanoseconds(u64::MAX);
+    let truth = Truth { track, positions, map: true_walls, evaluated_until };
+    let mut run = run_through(system, truth, &records, observe);
+    let stamped_estimates = run.system.stamped_estimates();
+    if stamped_estimates.is_empty() {
+        let n_before = run.events().get("before_resume");
         bail!("none of the scans could be used; the events tell why (before_resume: {n_before})");
     }
-    let stamped_estimates = system.stamped_estimates();
-    let estimated = stamped_estimates
-        .first()
-        .zip(stamped_estimates.last())
-        .map(|(first, last)| (first.stamp, last.stamp));
     let dead_reckoning: Vec<_> = stamped_estimates.iter().map(|at| (at.stamp, at.dead_reckoning)).collect();
-    warn_of_no_overlap(system.events(), &track, estimated);
-    let (seen_turns, delay) = (system.seen_turns().to_vec(), system.params.odometry_delay);
-    warn_of_lag(system.events(), &dead_reckoning, &seen_turns, delay);
-    let mut run = WallRun { system, truth: track, true_walls };
+    let seen_turns = run.system.seen_turns().to_vec();
+    warn_of_lag(run.events(), &dead_reckoning, &seen_turns, delay);
     let samples = run.samples();
     let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, Sample)| {
         sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME
@@ -122,8 +110,6 @@ fn drive_through(
         );
     }
     warn_of_reference(run.system.events(), &run.truth);
-    let n_landmarks = run.system.filter().n_landmarks();
-    warn_of_an_empty_map(run.system.events(), n_landmarks);
     Ok(run)
 }
 
@@ -135,27 +121,12 @@ fn laser_mount(records: &[Record]) -> Option<[f64; 3]> {
     })
 }
 
-/// Identities of anchors, out of the way of those that association gives.
-const FIRST_ANCHOR: u32 = 1 << 31;
-
 /// Below this distance poses are the same but for printed digits, m and rad.
 const SAME: f64 = 1e-3;
 
 impl WallRun {
-    /// Keyframes with the poses of the log.
-    pub fn samples(&self) -> Vec<(StampedEstimate, Sample)> {
-        let sample = |stamped_estimate: &StampedEstimate| {
-            let StampedEstimate { stamp, pose, covariance, .. } = stamped_estimate;
-            Some((*stamped_estimate, self.truth.sample(*stamp, *pose, covariance)?))
-        };
-        self.system.stamped_estimates().iter().filter_map(sample).collect()
-    }
-    /// How far each estimated wall is from its true one, in units of its covariance: see [`summarize`](super::summarize).
+    /// The distance of each estimated wall from its true one, squared, in units of its covariance: see [`summarize`](super::summarize).
     pub(super) fn wall_nees(&self) -> Vec<f64> {
-        self.system.filter().landmarks().filter_map(|wall| truth::nees(&wall, &self.true_walls)).collect()
-    }
-    /// What happened.
-    pub fn events(&mut self) -> &mut Events {
-        self.system.events()
+        self.system.filter().landmarks().filter_map(|wall| truth::nees(&wall, &self.true_map)).collect()
     }
 }

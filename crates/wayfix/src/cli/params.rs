@@ -10,7 +10,7 @@ use wayfix_evaluation::terminal::print;
 use wayfix_systems::{
     cml::CmlParams,
     color::ColorSystemParams,
-    slam::{Profile, SlamSystemParams},
+    points::{PointSlamParams, Profile},
     track::TrackParams,
     views::ViewsParams,
     walls::WallSlamParams,
@@ -58,7 +58,7 @@ enum SystemName {
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let text = match arguments.system {
-        SystemName::Slam => text(&SlamSystemParams::of(arguments.profile), arguments.schema),
+        SystemName::Slam => text(&PointSlamParams::of(arguments.profile), arguments.schema),
         SystemName::Walls => text(&WallSlamParams::default(), arguments.schema),
         SystemName::Lines => text(&wayfix_line_extract::Params::default(), arguments.schema),
         SystemName::Color => text(&ColorSystemParams::default(), arguments.schema),

@@ -7,7 +7,8 @@ use wayfix_sensor_log::{OpenOptions, read_relations};
 use super::super::Job;
 use wayfix_evaluation::report::Run;
 use wayfix_systems::{
-    slam::{self, AssociationRule, Profile, SlamEstimateLog, SlamSystem, SlamSystemParams},
+    points::{self, PointSlamParams, PointSystem, Profile},
+    slam::{AssociationRule, SlamEstimateLog},
     system::DriveStep,
     walls::{self, WallSlamParams},
 };
@@ -41,8 +42,8 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     let log = wayfix_sensor_log::open(job.log()?, &options)?;
     let profile = settings.profile.unwrap_or(Profile::of_log(log.meta()));
     let mut params = match &settings.params {
-        Some(file) => SlamSystemParams::from_toml(&job.read(file)?, profile)?,
-        None => SlamSystemParams::of(profile),
+        Some(file) => PointSlamParams::from_toml(&job.read(file)?, profile)?,
+        None => PointSlamParams::of(profile),
     };
     params.association = settings.association.or(params.association);
 
@@ -50,11 +51,11 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     let mut estimates = SlamEstimateLog::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let observe =
-        |DriveStep { system, record, .. }: DriveStep<'_, SlamSystem>| estimates.observe(record, system);
-    let mut slam = slam::run(&records, &params, observe)?;
+        |DriveStep { system, record, .. }: DriveStep<'_, PointSystem>| estimates.observe(record, system);
+    let mut slam = points::run(&records, &params, observe)?;
     estimates.finish()?;
     slam.events().add("log_problem", read.n_problems());
-    Ok(Run { log: Some(name), figures: slam::pictures(&slam)?, ..slam::summarize(&mut slam) })
+    Ok(Run { log: Some(name), figures: points::pictures(&slam)?, ..points::summarize(&mut slam) })
 }
 
 /// A log of laser scans through EKF-SLAM with walls.

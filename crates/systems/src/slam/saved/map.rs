@@ -2,8 +2,8 @@ use std::{fs, path::Path};
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-use super::{SavedMapError, SystemState, envelope};
-use crate::saved::write_atomically;
+use super::{SavedMapError, envelope};
+use crate::{saved::write_atomically, slam::AssociationRule};
 
 /// All that a system remembers between two records, and of what kind it is.
 pub trait SavedState: Serialize + DeserializeOwned {
@@ -20,9 +20,6 @@ pub trait Save {
     /// All that is needed to go on from here.
     fn save(&self) -> Saved<Self::State>;
 }
-
-/// A map of points: what [`SlamSystem`](crate::slam::SlamSystem) saves.
-pub type SavedMap = Saved<SystemState>;
 
 /// What a system saves, in a file.
 ///
@@ -117,20 +114,41 @@ impl<S: SavedState> Saved<S> {
     }
 }
 
+/// Identities that association gave are not those that a sensor reads.
+pub(crate) fn check_association(
+    asked: Option<AssociationRule>,
+    saved: AssociationRule,
+) -> Result<(), SavedMapError> {
+    match asked {
+        Some(asked) if asked != saved => Err(SavedMapError::Kind {
+            what: "association",
+            expected: format!("{asked:?}").to_lowercase(),
+            found: format!("{saved:?}").to_lowercase(),
+        }),
+        _ => Ok(()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector2;
+    use wayfix_slam_ekf::ScaledPose;
+
     use super::*;
+    use crate::{
+        points::{PointMemory, SavedMap},
+        slam::SlamState,
+    };
+
+    type State = SlamState<ScaledPose, Vector2<f64>, PointMemory>;
 
     #[test]
     fn a_map_of_another_kind_says_what_differs() {
         for (kind, what) in [
-            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<SystemState>() }, "robot is Ackermann"),
-            (Kind { landmark: "wall".to_owned(), ..Kind::of::<SystemState>() }, "landmark is wall"),
-            (Kind { robot_dimension: 3, ..Kind::of::<SystemState>() }, "robot dimension is 3, here it is 4"),
-            (
-                Kind { landmark_dimension: 3, ..Kind::of::<SystemState>() },
-                "landmark dimension is 3, here it is 2",
-            ),
+            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<State>() }, "robot is Ackermann"),
+            (Kind { landmark: "wall".to_owned(), ..Kind::of::<State>() }, "landmark is wall"),
+            (Kind { robot_dimension: 3, ..Kind::of::<State>() }, "robot dimension is 3, here it is 4"),
+            (Kind { landmark_dimension: 3, ..Kind::of::<State>() }, "landmark dimension is 3, here it is 2"),
         ] {
             let sealed = envelope::seal(&postcard::to_stdvec(&kind).unwrap());
             let error = SavedMap::from_bytes(&sealed).unwrap_err();

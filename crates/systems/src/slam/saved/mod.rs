@@ -12,10 +12,8 @@ mod envelope;
 mod error;
 mod map;
 mod saver;
-mod state;
 
 pub use error::SavedMapError;
-pub use map::{Save, Saved, SavedMap, SavedState};
+pub(crate) use map::check_association;
+pub use map::{Save, Saved, SavedState};
 pub use saver::Saver;
-pub(crate) use state::check_association;
-pub use state::{Odometry, SystemState};

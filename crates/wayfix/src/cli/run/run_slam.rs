@@ -1,11 +1,21 @@
-use std::{
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result};
-use wayfix_evaluation::terminal::{self, print, print_message};
-use wayfix_sensor_log::{Format, OpenOptions, Record};
+use nalgebra::DefaultAllocator;
+use wayfix_evaluation::{
+    plot::{Picture, PlotError},
+    report::Run,
+    terminal::{self, print, print_message},
+};
+use wayfix_sensor_log::{Format, OpenOptions, ReadReport};
+use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
+use wayfix_systems::{
+    points::{self, PointSlamParams, Profile, SavedMap},
+    slam::{
+        AssociationRule, FrontEnd, Saved, SavedState, Saver, SlamEstimateLog, SlamRun, SlamSystem, StateOf,
+    },
+    system::{DriveStep, Stopwatch},
+};
 
 use super::super::{
     common::Common,
@@ -16,14 +26,6 @@ use super::super::{
 };
 use super::run_walls;
 use crate::commented::commented;
-use wayfix_evaluation::report::Run;
-use wayfix_systems::{
-    slam::{
-        self, AssociationRule, Profile, SavedMap, Saver, SlamEstimateLog, SlamRun, SlamSystem,
-        SlamSystemParams,
-    },
-    system::{DriveStep, Stopwatch},
-};
 
 /// EKF-SLAM: where the robot went and where the landmarks are, from odometry and range-bearing detections or laser scans.
 ///
@@ -124,61 +126,44 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     if run_walls::is_for(&records) {
         return run_walls::main(&arguments, &records, meta.first_format(), &read);
     }
+    let origin = meta.first_format();
     let params = params(&arguments, Profile::of_log(&meta))?;
     if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let origin = meta.first_format();
+    let saved: Option<SavedMap> = arguments.saved_map()?;
+    execute(
+        &arguments,
+        (origin, records.len(), &read),
+        |observe| match saved {
+            Some(saved) => points::run_on(saved, &records, &params, observe),
+            None => points::run(&records, &params, observe),
+        },
+        |run| Ok(points::summarize(run)),
+        points::pictures,
+    )
+}
 
+/// Runs EKF-SLAM with one kind of landmark, and shows and saves the result. `input` is the format, the number of records and how reading
+/// them went.
+pub(super) fn execute<F: FrontEnd, T>(
+    arguments: &Arguments,
+    (origin, n_records, read): (Format, usize, &ReadReport),
+    run: impl FnOnce(&mut dyn FnMut(DriveStep<'_, SlamSystem<F>>)) -> Result<SlamRun<F, T>>,
+    summarize: impl FnOnce(&mut SlamRun<F, T>) -> Result<Run>,
+    pictures: impl FnOnce(&SlamRun<F, T>) -> Result<Vec<Picture>, PlotError>,
+) -> Result<ExitCode>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
+    StateOf<F>: SavedState,
+{
     let mut outputs = Outputs::open("slam", &arguments.common)?;
-    let mut estimates = outputs.estimates(origin)?;
+    let mut estimates: Option<SlamEstimateLog<F>> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let saved = arguments.resume.as_deref().map(saved_map).transpose()?;
     let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
-    let mut slam = run(&records, &params, saved, estimates.as_mut(), saver.as_mut())?;
-    if let Some(saver) = saver {
-        saver.finish(&slam.system).context("cannot save the map")?;
-    }
-    let warnings = add_read_problems(slam.events(), &read);
-
-    let run = Run {
-        name: name_of(&arguments.log),
-        seconds: stopwatch.elapsed().as_secs_f64(),
-        warnings,
-        ..slam::summarize(&mut slam)
-    };
-    run.notes.iter().for_each(print_message);
-    if let Some(estimates) = estimates {
-        estimates.finish()?;
-    }
-    outputs.show(run, || Ok(slam::pictures(&slam)?))?;
-    Ok(ExitCode::SUCCESS)
-}
-
-/// The parameters; `usual` is the profile unless the command line names one.
-fn params(arguments: &Arguments, usual: Profile) -> Result<SlamSystemParams> {
-    let profile = arguments.profile.unwrap_or(usual);
-    let mut params = match &arguments.common.params {
-        Some(path) => read_toml(path, |text| SlamSystemParams::from_toml(text, profile))?
-            .validated()
-            .with_context(|| format!("parameters in {} are not usable", path.display()))?,
-        None => SlamSystemParams::of(profile),
-    };
-    params.association = arguments.association.or(params.association);
-    params.record_observability = arguments.observability;
-    Ok(params)
-}
-
-fn run(
-    records: &[Record],
-    params: &SlamSystemParams,
-    saved: Option<SavedMap>,
-    mut estimates: Option<&mut SlamEstimateLog>,
-    mut saver: Option<&mut Saver>,
-) -> Result<SlamRun> {
-    let bar = terminal::bar(records.len(), "EKF-SLAM");
-    let observe = |DriveStep { system, record, next }: DriveStep<'_, SlamSystem>| {
+    let bar = terminal::bar(n_records, "EKF-SLAM");
+    let slam = run(&mut |DriveStep { system, record, next }: DriveStep<'_, SlamSystem<F>>| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
@@ -186,17 +171,49 @@ fn run(
             saver.observe(record, next, system);
         }
         bar.inc(1);
-    };
-    let slam = match saved {
-        Some(saved) => slam::run_on(saved, records, params, observe),
-        None => slam::run(records, params, observe),
-    };
+    });
     bar.finish_and_clear();
-    slam
+    let mut slam = slam?;
+    if let Some(saver) = saver {
+        saver.finish(&slam.system).context("cannot save the map")?;
+    }
+    let warnings = add_read_problems(slam.events(), read);
+    let run = Run {
+        name: name_of(&arguments.log),
+        seconds: stopwatch.elapsed().as_secs_f64(),
+        warnings,
+        ..summarize(&mut slam)?
+    };
+    run.notes.iter().for_each(print_message);
+    if let Some(estimates) = estimates {
+        estimates.finish()?;
+    }
+    outputs.show(run, || Ok(pictures(&slam)?))?;
+    Ok(ExitCode::SUCCESS)
 }
 
-fn saved_map(path: &Path) -> Result<SavedMap> {
-    SavedMap::read(path).with_context(|| format!("cannot go on from {}", path.display()))
+impl Arguments {
+    /// The map of `--resume`.
+    pub(super) fn saved_map<S: SavedState>(&self) -> Result<Option<Saved<S>>> {
+        let read = |path: &PathBuf| {
+            Saved::read(path).with_context(|| format!("cannot go on from {}", path.display()))
+        };
+        self.resume.as_ref().map(read).transpose()
+    }
+}
+
+/// The parameters; `usual` is the profile unless the command line names one.
+fn params(arguments: &Arguments, usual: Profile) -> Result<PointSlamParams> {
+    let profile = arguments.profile.unwrap_or(usual);
+    let mut params = match &arguments.common.params {
+        Some(path) => read_toml(path, |text| PointSlamParams::from_toml(text, profile))?
+            .validated()
+            .with_context(|| format!("parameters in {} are not usable", path.display()))?,
+        None => PointSlamParams::of(profile),
+    };
+    params.association = arguments.association.or(params.association);
+    params.record_observability = arguments.observability;
+    Ok(params)
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

@@ -1,22 +1,15 @@
 use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
-use wayfix_evaluation::terminal::{self, print, print_message};
-use wayfix_sensor_log::{Data, Format, ReadReport, Record, read_relations};
-
-use super::super::{
-    input::{name_of, read_toml},
-    outputs::Outputs,
-    read_problems::add_read_problems,
-};
-use super::run_slam;
-use crate::commented::commented;
-use wayfix_evaluation::report::Run;
+use wayfix_evaluation::terminal::{print, print_message};
+use wayfix_sensor_log::{Data, Format, ReadReport, Record, Relation, read_relations};
 use wayfix_systems::{
-    slam::{AssociationRule, Saved, Saver},
-    system::{DriveStep, Stopwatch},
-    walls::{self, WallEstimateLog, WallSlamParams, WallState, WallSystem},
+    slam::AssociationRule,
+    walls::{self, SavedWalls, WallSlamParams},
 };
+
+use super::{super::input::read_toml, run_slam};
+use crate::commented::commented;
 
 /// Whether a log is one of scans: walls are its landmarks then.
 pub(in crate::cli) fn is_for(records: &[Record]) -> bool {
@@ -40,49 +33,30 @@ pub(in crate::cli) fn main(
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut outputs = Outputs::open("slam", &arguments.common)?;
-    let mut estimates: Option<WallEstimateLog> = outputs.estimates(origin)?;
-    let stopwatch = Stopwatch::start();
-    let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
-    let bar = terminal::bar(records.len(), "EKF-SLAM with walls");
-    let observe = |DriveStep { system, record, next }: DriveStep<'_, WallSystem>| {
-        if let Some(estimates) = &mut estimates {
-            estimates.observe(record, system);
-        }
-        if let Some(saver) = &mut saver {
-            saver.observe(record, next, system);
-        }
-        bar.inc(1);
-    };
-    let slam = match arguments.resume.as_deref().map(saved_map).transpose()? {
-        Some(saved) => walls::run_on(saved, records, &params, arguments.association, observe),
-        None => walls::run(records, &params, observe),
-    };
-    bar.finish_and_clear();
-    let mut slam = slam?;
-    if let Some(saver) = saver {
-        saver.finish(&slam.system).context("cannot save the map")?;
+    let saved: Option<SavedWalls> = arguments.saved_map()?;
+    let relations = arguments.relations.as_deref().map(relations).transpose()?;
+    run_slam::execute(
+        arguments,
+        (origin, records.len(), read),
+        |observe| match saved {
+            Some(saved) => walls::run_on(saved, records, &params, arguments.association, observe),
+            None => walls::run(records, &params, observe),
+        },
+        |run| {
+            let mut summary = walls::summarize(run);
+            summary.metrics.extend(relations.iter().flat_map(|known| walls::relation_metrics(run, known)));
+            Ok(summary)
+        },
+        walls::pictures,
+    )
+}
+
+fn relations(path: &Path) -> Result<Vec<Relation>> {
+    let (relations, read) = read_relations(path)?;
+    if !read.is_clean() {
+        print_message(&read);
     }
-    if let Some(estimates) = estimates {
-        estimates.finish()?;
-    }
-    let warnings = add_read_problems(slam.events(), read);
-    let mut run = Run {
-        name: name_of(&arguments.log),
-        seconds: stopwatch.elapsed().as_secs_f64(),
-        warnings,
-        ..walls::summarize(&mut slam)
-    };
-    if let Some(path) = &arguments.relations {
-        let (relations, read) = read_relations(path)?;
-        if !read.is_clean() {
-            print_message(&read);
-        }
-        run.metrics.extend(walls::relation_metrics(&slam, &relations));
-    }
-    run.notes.iter().for_each(print_message);
-    outputs.show(run, || Ok(walls::pictures(&slam)?))?;
-    Ok(ExitCode::SUCCESS)
+    Ok(relations)
 }
 
 fn params(arguments: &run_slam::Arguments) -> Result<WallSlamParams> {
@@ -101,8 +75,4 @@ fn params(arguments: &run_slam::Arguments) -> Result<WallSlamParams> {
     }
     params.record_observability = arguments.observability;
     Ok(params)
-}
-
-fn saved_map(path: &Path) -> Result<Saved<WallState>> {
-    Saved::read(path).with_context(|| format!("cannot go on from {}", path.display()))
 }

@@ -7,20 +7,20 @@ use wayfix_slam_ekf::{
     MergingParams, NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
 };
 
-use crate::{settings::over_defaults, system::VELOCITY_HOLD};
+use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOLD};
 
 /// Everything that can be set for EKF-SLAM on a log.
 ///
 /// ```
-/// use wayfix_systems::slam::{Profile, SlamSystemParams};
-/// let params = SlamSystemParams::from_toml("profile = 'utias'\n[filter]\ngate_probability = 0.99", Profile::Generic)?;
+/// use wayfix_systems::points::{PointSlamParams, Profile};
+/// let params = PointSlamParams::from_toml("profile = 'utias'\n[filter]\ngate_probability = 0.99", Profile::Generic)?;
 /// assert_eq!(params.filter.gate_probability, 0.99);
-/// assert_eq!(params.velocity, SlamSystemParams::of(Profile::Utias).velocity); // not named in the file
+/// assert_eq!(params.velocity, PointSlamParams::of(Profile::Utias).velocity); // not named in the file
 /// # Ok::<(), toml::de::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SlamSystemParams {
+pub struct PointSlamParams {
     /// The robot whose defaults these are.
     pub profile: Profile,
     /// How detections find their landmarks; when not given, by identity where the log has identities, else joint compatibility.
@@ -29,6 +29,9 @@ pub struct SlamSystemParams {
     /// Start pose, m and rad; when not given, the truth where odometry starts, a fit to the first true positions, or the origin.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub start: Option<[f64; 3]>,
+    /// Number of true landmarks of the log, nearest to the start first, that the robot is given as known: anchors that tie the map to the
+    /// world. For logs that have true landmarks.
+    pub n_anchors: usize,
     /// Timing and calibration of the robot.
     pub robot: RobotParams,
     /// Where things sit on the robot.
@@ -129,19 +132,7 @@ impl Profile {
     }
 }
 
-/// How detections find their landmarks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum AssociationRule {
-    /// By the identity that the sensor reads.
-    Known,
-    /// Individual-compatibility nearest neighbour with two thresholds.
-    Nn,
-    /// Joint compatibility branch and bound.
-    Jcbb,
-}
-
-impl SlamSystemParams {
+impl PointSlamParams {
     /// The defaults of a kind of robot.
     pub fn of(profile: Profile) -> Self {
         match profile {
@@ -149,6 +140,7 @@ impl SlamSystemParams {
                 profile,
                 association: None,
                 start: None,
+                n_anchors: 0,
                 robot: RobotParams::default(),
                 mounting: MountingParams::default(),
                 vehicle: AckermannVehicle::default(),
@@ -296,8 +288,8 @@ mod tests {
     #[test]
     fn a_file_changes_what_it_names_and_nothing_else() {
         let text = "association = 'nn'\n[robot]\ncommand_delay = 0.2\n[filter.confirmation]\nmax_missed = 7";
-        let params = SlamSystemParams::from_toml(text, Profile::Utias).unwrap();
-        let mut expected = SlamSystemParams::of(Profile::Utias);
+        let params = PointSlamParams::from_toml(text, Profile::Utias).unwrap();
+        let mut expected = PointSlamParams::of(Profile::Utias);
         expected.association = Some(AssociationRule::Nn);
         expected.robot.command_delay = 0.2;
         expected.filter.confirmation.max_missed = Some(7);
@@ -306,13 +298,13 @@ mod tests {
 
     #[test]
     fn the_profile_of_the_file_goes_before_that_of_the_log() {
-        let params = SlamSystemParams::from_toml("profile = 'range-bearing'", Profile::Utias).unwrap();
-        assert_eq!(params, SlamSystemParams::of(Profile::RangeBearing));
+        let params = PointSlamParams::from_toml("profile = 'range-bearing'", Profile::Utias).unwrap();
+        assert_eq!(params, PointSlamParams::of(Profile::RangeBearing));
     }
 
     #[test]
     fn what_is_not_understood_is_named() {
-        let error = |text| SlamSystemParams::from_toml(text, Profile::Generic).unwrap_err().to_string();
+        let error = |text| PointSlamParams::from_toml(text, Profile::Generic).unwrap_err().to_string();
         for (text, named) in [
             ("[sensor]\nrange_sigm = 1.0", "`range_sigm`"),
             ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
@@ -328,9 +320,9 @@ mod tests {
     #[test]
     fn parameters_survive_being_written() {
         for profile in [Profile::Generic, Profile::RangeBearing, Profile::VictoriaPark, Profile::Utias] {
-            let params = SlamSystemParams::of(profile);
+            let params = PointSlamParams::of(profile);
             let text = toml::to_string(&params).unwrap();
-            assert_eq!(SlamSystemParams::from_toml(&text, Profile::Generic).unwrap(), params);
+            assert_eq!(PointSlamParams::from_toml(&text, Profile::Generic).unwrap(), params);
         }
     }
 }

@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 
 use wayfix_slam_ekf::{ConfirmationParams, JointCompatibility, NearestNeighbour, SlamError};
 
-use super::SlamSystemParams;
+use super::PointSlamParams;
 
 /// What a parameter may be, for the machine and in words.
 type Range = (RangeInclusive<f64>, &'static str);
@@ -20,12 +20,12 @@ const WHEEL_BASE: Range = (1e-3..=1e3, "from 0.001 to 1000 m");
 const SHARE: Range = (0.0..=1.0, "from 0 to 1");
 const THRESHOLD: Range = (f64::MIN_POSITIVE..=f64::INFINITY, "positive");
 
-impl SlamSystemParams {
+impl PointSlamParams {
     /// The same parameters, when each is within its range.
     ///
     /// ```
-    /// use wayfix_systems::slam::{Profile, SlamSystemParams};
-    /// let mut params = SlamSystemParams::of(Profile::Generic).validated()?;
+    /// use wayfix_systems::points::{PointSlamParams, Profile};
+    /// let mut params = PointSlamParams::of(Profile::Generic).validated()?;
     /// params.sensor.bearing_sigma = -0.01;
     /// let error = params.validated().unwrap_err().to_string();
     /// assert_eq!(error, "parameter sensor.bearing_sigma is -0.01, must be from 1e-9 to 1e6");
@@ -134,7 +134,7 @@ impl SlamSystemParams {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::slam::Profile;
+    use crate::points::Profile;
 
     /// Every number of the parameters, by its path in the file.
     fn numbers(prefix: &str, table: &toml::Table, found: &mut Vec<String>) {
@@ -148,14 +148,14 @@ mod tests {
         }
     }
 
-    fn with(path: &str, value: &str) -> SlamSystemParams {
-        SlamSystemParams::from_toml(&format!("{path} = {value}"), Profile::Utias).unwrap()
+    fn with(path: &str, value: &str) -> PointSlamParams {
+        PointSlamParams::from_toml(&format!("{path} = {value}"), Profile::Utias).unwrap()
     }
 
     #[test]
     fn no_number_may_be_nan_or_negative_and_the_error_names_it() {
         let mut paths = Vec::new();
-        let all = toml::Table::try_from(SlamSystemParams::of(Profile::Utias)).unwrap();
+        let all = toml::Table::try_from(PointSlamParams::of(Profile::Utias)).unwrap();
         numbers("", &all, &mut paths);
         assert!(paths.len() > 20, "{paths:?}");
         let in_the_filter = ["filter.gate_probability", "filter.student_t_degrees_of_freedom"];
@@ -175,14 +175,14 @@ mod tests {
     #[test]
     fn the_defaults_of_every_profile_are_in_range() {
         for profile in [Profile::Generic, Profile::RangeBearing, Profile::VictoriaPark, Profile::Utias] {
-            assert!(SlamSystemParams::of(profile).validated().is_ok());
+            assert!(PointSlamParams::of(profile).validated().is_ok());
         }
     }
 
     #[test]
     fn a_sensor_without_noise_is_refused() {
         let text = "[sensor]\nrange_sigma = 0.0\nrange_sigma_per_meter = 0.0";
-        let params = SlamSystemParams::from_toml(text, Profile::Generic).unwrap();
+        let params = PointSlamParams::from_toml(text, Profile::Generic).unwrap();
         assert!(matches!(params.validated(), Err(SlamError::Parameter { value: 0.0, .. })));
     }
 }

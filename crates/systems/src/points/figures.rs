@@ -1,0 +1,44 @@
+use wayfix_estimation_traits::{LieGroup, Pose2};
+use wayfix_evaluation::{
+    errors::{align, landmark_errors, median_distance, rms_distance},
+    report::{Metric, Run},
+};
+
+use super::PointRun;
+use crate::slam::summary;
+
+/// The figures and events of a run, ready for the report.
+pub fn summarize(run: &mut PointRun) -> Run {
+    let mut of_map = position_metrics(run);
+    let samples = run.samples();
+    let of_path =
+        align(samples.iter().map(|(_, sample)| (sample.estimate.translation, sample.truth.translation)));
+    if let Some((rmse, aligned)) =
+        landmark_errors(&run.landmarks(), &run.true_map, run.correspondence(), &of_path)
+    {
+        of_map.push(Metric::new("landmark_rmse_m", rmse, "m"));
+        of_map.push(Metric::new("landmark_aligned_rmse_m", aligned, "m"));
+    }
+    summary(run, of_map)
+}
+
+/// Where the log has true positions of an antenna and no true poses.
+fn position_metrics(run: &PointRun) -> Vec<Metric> {
+    let positions = run.positions();
+    if !run.samples().is_empty() || positions.is_empty() {
+        return Vec::new();
+    }
+    let estimated = positions.iter().map(|(_, estimate, truth)| (*estimate, *truth));
+    let reckoned = positions
+        .iter()
+        .map(|(stamped_estimate, _, truth)| (run.system.antenna(&stamped_estimate.dead_reckoning), *truth));
+    let motion = align(estimated.clone());
+    let mut metrics = Vec::new();
+    let mut add = |name, value: Option<f64>| metrics.extend(value.map(|value| Metric::new(name, value, "m")));
+    add("ate_rmse_m", rms_distance(estimated.clone(), &Pose2::identity()));
+    add("ate_median_m", median_distance(estimated.clone(), &Pose2::identity()));
+    add("ate_aligned_rmse_m", rms_distance(estimated.clone(), &motion));
+    add("ate_aligned_median_m", median_distance(estimated, &motion));
+    add("dead_reckoning_aligned_rmse_m", rms_distance(reckoned.clone(), &align(reckoned)));
+    metrics
+}

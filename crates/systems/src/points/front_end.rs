@@ -1,0 +1,255 @@
+use nalgebra::{Matrix3, Vector2};
+use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
+use wayfix_sensor_log::{AckermannDrive, Data, Detection, LogError, Record, Stamp, Target, Velocity};
+use wayfix_slam_ekf::{
+    EkfSlam, LandmarkId, MountedSensor, Observation, RangeBearing, RangeBearingSensor, ScaledMotion,
+    ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams,
+};
+
+use super::{
+    MountingParams, OdometryKind, PointSlamParams, commands::Commands, drawing, memory::PointMemory,
+    sequential_motion::SequentialMotion, unknown_motion::UnknownMotion,
+};
+use crate::{
+    slam::{AssociationRule, ChosenRule, Estimator, FrontEnd, SlamSystem, nis},
+    system::{EstimateWriter, MotionStatistics, PlausibleIncrement, Stopwatch, check_velocity},
+};
+
+/// Points seen by a range-bearing sensor that may sit anywhere on the robot and whose scale is estimated.
+pub type PointSensor = ScaledRangeBearingSensor<MountedSensor<RangeBearingSensor>>;
+
+/// EKF-SLAM with points.
+pub type PointSystem = SlamSystem<PointFrontEnd>;
+
+/// Detections of points with odometry that may come late.
+pub struct PointFrontEnd {
+    pub(super) params: PointSlamParams,
+    pub(super) commands: Commands,
+    /// How the robot has moved by its commands.
+    pub(super) motion: MotionStatistics,
+    plausible: PlausibleIncrement,
+    /// The kind of odometry that came first.
+    pub(super) odometry: Option<OdometryKind>,
+    /// The time of the filter's state.
+    pub(super) time: Stamp,
+}
+
+impl PointSystem {
+    /// A robot at `start` in an empty map, from `start_stamp` on; the covariance of the start is in its body frame, `(x, y, θ)`.
+    ///
+    /// # Errors
+    /// Returns an error if a parameter is out of range.
+    pub(super) fn with_points(
+        params: PointSlamParams,
+        rule: AssociationRule,
+        start_stamp: Stamp,
+        start: Pose2<f64>,
+        start_covariance: &Matrix3<f64>,
+    ) -> Result<Self, SlamError> {
+        let params = params.validated()?;
+        let association = ChosenRule::new(rule, params.nearest_neighbour, params.joint_compatibility)?;
+        // Two identities are two landmarks, however near they stand.
+        let (confirmation, merging) = match rule {
+            AssociationRule::Known => (params.filter.confirmation, None),
+            AssociationRule::Nn | AssociationRule::Jcbb => {
+                (params.unlabelled_confirmation, params.filter.merging)
+            }
+        };
+        let filter_params = SlamParams { confirmation, merging, ..params.filter };
+        let MountingParams { sensor_x, sensor_y, sensor_heading, .. } = params.mounting;
+        let mount = Pose2::new(sensor_x, sensor_y, sensor_heading);
+        let sensor = ScaledRangeBearingSensor(MountedSensor { sensor: params.sensor, mount });
+        let state = ScaledPose { pose: start, log_range_scale: 0.0 };
+        let mut covariance = start_covariance.to_homogeneous();
+        covariance.m44 = params.robot.range_scale_sigma.powi(2);
+        let filter = EkfSlam::with_start_covariance(sensor, filter_params, state, covariance)?;
+        let estimator = Estimator::new(filter, association, params.record_observability, start);
+        let front_end = PointFrontEnd {
+            commands: Commands::new(&params.robot),
+            motion: MotionStatistics::default(),
+            plausible: PlausibleIncrement::default(),
+            odometry: None,
+            params,
+            time: start_stamp,
+        };
+        Ok(Self::new(front_end, estimator))
+    }
+
+    /// Where the antenna is when the robot is at `pose`.
+    pub fn antenna(&self, pose: &Pose2<f64>) -> Vector2<f64> {
+        let MountingParams { antenna_x, antenna_y, .. } = self.front_end.params.mounting;
+        pose.transform(&Vector2::new(antenna_x, antenna_y))
+    }
+}
+
+type Points = Estimator<PointSensor>;
+
+impl FrontEnd for PointFrontEnd {
+    type Model = PointSensor;
+    type Memory = PointMemory;
+
+    fn take(&mut self, record: &Record, estimator: &mut Points) -> Result<(), String> {
+        let stamp = record.stamp;
+        match &record.data {
+            odometry if OdometryKind::of(odometry).is_some_and(|kind| !self.moves_by(kind)) => {
+                estimator.events.count("second_odometry");
+                Ok(())
+            }
+            Data::Velocity(velocity) => self.take_velocity(stamp, *velocity, estimator),
+            Data::Ackermann(drive) => self.take_drive(stamp, *drive, estimator),
+            Data::OdometryIncrement(increment) => self.take_increment(stamp, increment, estimator),
+            Data::Detections(detections) => self.take_detections(stamp, detections, estimator),
+            _ => Ok(()),
+        }
+    }
+
+    fn draw_map(
+        filter: &EkfSlam<PointSensor>,
+        stamp: Stamp,
+        writer: &mut EstimateWriter,
+    ) -> Result<(), LogError> {
+        drawing::draw_map(filter, stamp, writer)
+    }
+
+    fn memory(&self) -> PointMemory {
+        PointMemory::of(self)
+    }
+}
+
+impl PointFrontEnd {
+    fn take_velocity(
+        &mut self,
+        stamp: Stamp,
+        velocity: Velocity,
+        estimator: &mut Points,
+    ) -> Result<(), String> {
+        self.commands.push(stamp, check_velocity(velocity)?);
+        self.advance_to(self.exposure(stamp), estimator)
+    }
+
+    /// The encoder and the steering of a car are the velocity of its rear axle.
+    fn take_drive(
+        &mut self,
+        stamp: Stamp,
+        drive: AckermannDrive,
+        estimator: &mut Points,
+    ) -> Result<(), String> {
+        let moved = self.params.vehicle.velocity(drive.wheel_speed, drive.steering, 0.0);
+        self.take_velocity(stamp, Velocity { linear: moved.linear, angular: moved.angular }, estimator)
+    }
+
+    fn take_increment(
+        &mut self,
+        stamp: Stamp,
+        increment: &Pose2<f64>,
+        estimator: &mut Points,
+    ) -> Result<(), String> {
+        self.plausible.check(stamp, increment)?;
+        let stopwatch = Stopwatch::start();
+        estimator.predict(&ScaledMotion(self.params.increment), increment)?;
+        estimator.step += stopwatch.elapsed();
+        estimator.dead_reckoning = estimator.dead_reckoning.compose(increment);
+        self.time = stamp;
+        Ok(())
+    }
+
+    fn take_detections(
+        &mut self,
+        stamp: Stamp,
+        detections: &[Detection],
+        estimator: &mut Points,
+    ) -> Result<(), String> {
+        if stamp < self.time {
+            estimator.events.count("before_start");
+            return Ok(());
+        }
+        let observations = self.observations(detections, estimator);
+        if observations.is_empty() && !detections.is_empty() {
+            return Ok(()); // a scan of other robots only has no information about landmarks
+        }
+        self.advance_to(self.exposure(stamp), estimator)?;
+        let stopwatch = Stopwatch::start();
+        let report = estimator.update(&observations)?;
+        estimator.step += stopwatch.elapsed();
+        // The filter is at the exposure of the sensor; the estimate is at its stamp.
+        let motion = ScaledMotion(SequentialMotion(self.params.velocity));
+        let (state, covariance) =
+            estimator.predicted(&motion, self.commands.between(self.time, stamp).as_slice());
+        let covariance = covariance.fixed_view::<3, 3>(0, 0).into_owned();
+        estimator.add_stamped_estimate(stamp, state.pose, covariance, nis(&report));
+        Ok(())
+    }
+
+    /// Whether this kind of odometry moves the robot: the kind that comes first does. A log may record one motion in two kinds.
+    fn moves_by(&mut self, odometry: OdometryKind) -> bool {
+        *self.odometry.get_or_insert(odometry) == odometry
+    }
+
+    /// The time at which the sensor saw what has this stamp.
+    fn exposure(&self, stamp: Stamp) -> Stamp {
+        let latency = (self.params.robot.sensor_latency * 1e9) as u64;
+        Stamp::from_nanoseconds(stamp.nanoseconds().saturating_sub(latency))
+    }
+
+    /// Moves the robot by its commands; by all of them or none.
+    fn advance_to(&mut self, time: Stamp, estimator: &mut Points) -> Result<(), String> {
+        if time <= self.time {
+            return Ok(());
+        }
+        let stopwatch = Stopwatch::start();
+        let controls = self.commands.between(self.time, time);
+        let motion = SequentialMotion(self.params.velocity);
+        estimator.predict(&ScaledMotion(motion), controls.as_slice())?;
+        estimator.dead_reckoning = motion.propagate(&estimator.dead_reckoning, &controls);
+        for control in &self.commands.known_between(self.time, time) {
+            let moved = self.params.velocity.propagate(&Pose2::identity(), control);
+            self.motion.add(&moved, control.duration);
+        }
+        self.predict_unknown_motion(self.commands.unknown_seconds(self.time, time), estimator)?;
+        estimator.step += stopwatch.elapsed();
+        self.commands.forget_before(time);
+        self.time = time;
+        Ok(())
+    }
+
+    /// The robot may have moved as fast as it usually does while no record tells its motion.
+    fn predict_unknown_motion(&mut self, seconds: f64, estimator: &mut Points) -> Result<(), String> {
+        if seconds <= 0.0 {
+            return Ok(());
+        }
+        let hold = self.params.robot.velocity_hold;
+        estimator.events.warn(
+            "motion_unknown",
+            format!("velocities are missing for more than {hold} s: the motion is unknown there (robot.velocity_hold)"),
+        );
+        let unknown = ScaledMotion(UnknownMotion(self.motion.unknown_motion(seconds)));
+        estimator.filter.predict(&unknown, &()).map_err(|error| error.to_string())
+    }
+
+    /// The detections that can be landmarks; the others are counted.
+    fn observations(
+        &self,
+        detections: &[Detection],
+        estimator: &mut Points,
+    ) -> Vec<Observation<RangeBearing>> {
+        let mut observations = Vec::with_capacity(detections.len());
+        for detection in detections {
+            let label = match detection.target {
+                Target::Landmark(id) => Some(LandmarkId(id)),
+                Target::Unlabelled => None,
+                Target::Robot(_) => {
+                    estimator.events.count("robot_detection");
+                    continue;
+                }
+                Target::UnknownCode(_) => {
+                    estimator.events.count("unknown_code");
+                    continue;
+                }
+            };
+            let depth_factor = if self.params.robot.range_is_depth { detection.bearing.cos() } else { 1.0 };
+            let measurement = RangeBearing::new(detection.range / depth_factor, detection.bearing);
+            observations.push(Observation { label, measurement });
+        }
+        observations
+    }
+}

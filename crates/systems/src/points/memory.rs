@@ -1,0 +1,93 @@
+use nalgebra::{Matrix3, Vector2};
+use serde::{Deserialize, Serialize};
+use wayfix_sensor_log::{Data, Stamp, Velocity};
+use wayfix_slam_ekf::{ScaledPose, SlamError};
+
+use super::{PointFrontEnd, PointSlamParams, PointSystem};
+use crate::{
+    slam::{FrontEndMemory, Saved, SavedMapError, SlamState, check_association},
+    system::{MotionStatistics, check_velocity},
+};
+
+/// A map of points.
+pub type SavedMap = Saved<SlamState<ScaledPose, Vector2<f64>, PointMemory>>;
+
+/// All that a [`PointFrontEnd`] remembers between two records.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PointMemory {
+    /// The time of the filter's state, nanoseconds: earlier than the last record where the sensor is late.
+    pub time: u64,
+    /// The kind of odometry that moves the robot; unknown before the first.
+    pub odometry: Option<OdometryKind>,
+    /// Commands that still act: nanoseconds, m/s, rad/s.
+    pub commands: Vec<(u64, f64, f64)>,
+    /// How the robot has moved by its commands.
+    pub motion: MotionStatistics,
+}
+
+impl FrontEndMemory for PointMemory {
+    const ROBOT: (&str, usize) = ("planar pose with range scale", 4);
+    const LANDMARK: (&str, usize) = ("point in the plane", 2);
+}
+
+/// The kind of odometry that moves a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum OdometryKind {
+    /// Velocities, each held until the next.
+    Velocities,
+    /// Increments.
+    Increments,
+    /// Speed and steering of a car, each held until the next.
+    Drives,
+}
+
+impl OdometryKind {
+    /// The kind of a record; `None` when it is no odometry.
+    pub(super) fn of(data: &Data) -> Option<Self> {
+        match data {
+            Data::Velocity(_) => Some(Self::Velocities),
+            Data::OdometryIncrement(_) => Some(Self::Increments),
+            Data::Ackermann(_) => Some(Self::Drives),
+            _ => None,
+        }
+    }
+}
+
+impl PointMemory {
+    pub(super) fn of(front_end: &PointFrontEnd) -> Self {
+        let command =
+            |(stamp, velocity): (Stamp, Velocity)| (stamp.nanoseconds(), velocity.linear, velocity.angular);
+        Self {
+            time: front_end.time.nanoseconds(),
+            odometry: front_end.odometry,
+            commands: front_end.commands.rows().map(command).collect(),
+            motion: front_end.motion,
+        }
+    }
+}
+
+impl PointSystem {
+    /// The system of a saved map, with these parameters.
+    ///
+    /// # Errors
+    /// Returns an error if the map has another association rule, or holds invalid numbers.
+    pub(super) fn resume(params: PointSlamParams, saved: SavedMap) -> Result<Self, SavedMapError> {
+        let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end } = saved.state;
+        let PointMemory { time, odometry, commands, motion } = front_end;
+        check_association(params.association, association)?;
+        let stamp = Stamp::from_nanoseconds;
+        let mut system =
+            Self::with_points(params, association, stamp(time), dead_reckoning, &Matrix3::zeros())?;
+        for (nanoseconds, linear, angular) in commands {
+            let velocity = Velocity { linear, angular };
+            let impossible = |_| SlamError::NotFinite { what: "saved command" };
+            let velocity = check_velocity(velocity).map_err(impossible)?;
+            system.front_end.commands.push(stamp(nanoseconds), velocity);
+        }
+        if !motion.is_finite() {
+            return Err(SlamError::NotFinite { what: "saved motion" }.into());
+        }
+        (system.front_end.odometry, system.front_end.motion) = (odometry, motion);
+        system.resumed(filter, next_id, taken_until)
+    }
+}

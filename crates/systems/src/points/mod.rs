@@ -1,0 +1,20 @@
+//! EKF-SLAM with points: the front end for range-bearing detections.
+
+mod commands;
+mod drawing;
+mod figures;
+mod front_end;
+mod memory;
+mod params;
+mod pictures;
+mod ranges;
+mod run;
+mod sequential_motion;
+mod unknown_motion;
+
+pub use figures::summarize;
+pub use front_end::{PointFrontEnd, PointSensor, PointSystem};
+pub use memory::{OdometryKind, PointMemory, SavedMap};
+pub use params::{MountingParams, PointSlamParams, Profile, RobotParams};
+pub use pictures::pictures;
+pub use run::{PointRun, run, run_on};

@@ -1,0 +1,221 @@
+use std::collections::BTreeMap;
+
+use anyhow::{Result, bail};
+use nalgebra::Vector2;
+use wayfix_estimation_traits::Pose2;
+use wayfix_evaluation::errors::{Correspondence, TruePositions, TrueTrack, align};
+use wayfix_sensor_log::{Data, Record, Stamp, Target};
+use wayfix_slam_ekf::LandmarkId;
+
+use super::{PointFrontEnd, PointSlamParams, PointSystem, SavedMap};
+use crate::{
+    slam::{
+        AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, Truth, run_through, start_pose,
+        warn_of_start,
+    },
+    system::{DriveStep, Events, KnownStart, ODOMETRY, System, check_overlap},
+};
+
+/// A log that went through EKF-SLAM with points; the true map has the landmarks by identity.
+pub type PointRun = SlamRun<PointFrontEnd, BTreeMap<u32, Vector2<f64>>>;
+
+/// Runs EKF-SLAM over the records of a log and shows each step to `observe`.
+///
+/// The start pose is the truth where odometry starts, or led back to there by odometry from the first true pose after it. Where the log has positions only, it is the pose from which the first metres of the
+/// path fit them best; else the origin. Nothing else ties the run to the truth.
+///
+/// # Errors
+/// When there is no odometry, no detection, or none that can be used, or a parameter is out of range.
+pub fn run(
+    records: &[Record],
+    params: &PointSlamParams,
+    observe: impl FnMut(DriveStep<'_, PointSystem>),
+) -> Result<PointRun> {
+    let Some(start_stamp) = start_stamp(records) else {
+        bail!(
+            "the log has no odometry: EKF-SLAM needs velocities or increments (`wayfix info` shows what a log holds)"
+        );
+    };
+    let association = association(records, params.association)?;
+    check_overlap(records, ODOMETRY, ("detections", |data| matches!(data, Data::Detections(_))))?;
+    let truth = TrueTrack::from_records(records);
+    let true_positions = TruePositions::from_records(records);
+    let from =
+        |start| PointSystem::with_points(params.clone(), association, start_stamp, start, truth.noise());
+    let known = KnownStart::at(start_stamp, &truth, records).filter(|_| params.start.is_none());
+    let start = if params.start.is_none() && known.is_none() {
+        fitted_start(from(Pose2::new(0.0, 0.0, 0.0))?, records, &true_positions)
+    } else {
+        start_pose(params.start, known)
+    };
+    let mut system = from(start)?;
+    if params.start.is_none() {
+        warn_of_start(system.events(), known, &truth);
+    }
+    for (id, landmark) in anchors(records, association, &start, params.n_anchors) {
+        system.add_anchor(id, landmark)?;
+    }
+    drive_through(system, truth, records, observe)
+}
+
+/// Goes on from a saved map with the records of a log that are later than it, and shows each step to `observe`.
+///
+/// The start pose is that of the map. Keyframes, figures and events are those of this log alone.
+///
+/// # Errors
+/// When the map is of another kind or is no state of the filter, when no later detection can be used, or a parameter is out of range.
+pub fn run_on(
+    saved: SavedMap,
+    records: &[Record],
+    params: &PointSlamParams,
+    observe: impl FnMut(DriveStep<'_, PointSystem>),
+) -> Result<PointRun> {
+    let association = saved.state.association;
+    let system = PointSystem::resume(params.clone(), saved)?;
+    self::association(records, Some(association))?;
+    drive_through(system, TrueTrack::from_records(records), records, observe)
+}
+
+fn drive_through(
+    system: PointSystem,
+    track: TrueTrack,
+    records: &[Record],
+    observe: impl FnMut(DriveStep<'_, PointSystem>),
+) -> Result<PointRun> {
+    let positions = TruePositions::from_records(records);
+    let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or_default();
+    let last_truth = track.last_stamp().or(positions.last_stamp());
+    let evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
+    let truth = Truth { track, positions, map: true_landmarks(records), evaluated_until };
+    let mut run = run_through(system, truth, records, observe);
+    if !has_used_a_detection(run.events()) {
+        bail!(
+            "nothing could be estimated: no detection since the start of odometry was of use{}",
+            why(run.events())
+        );
+    }
+    Ok(run)
+}
+
+impl PointRun {
+    /// Estimated positions of the antenna with the true ones, for logs whose truth has no headings.
+    pub fn positions(&self) -> Vec<(StampedEstimate, Vector2<f64>, Vector2<f64>)> {
+        self.positions_of(|estimate| self.system.antenna(&estimate.pose))
+    }
+    /// Estimated landmark positions.
+    pub fn landmarks(&self) -> BTreeMap<u32, Vector2<f64>> {
+        self.system.filter().landmarks().map(|landmark| (landmark.id.0, landmark.mean)).collect()
+    }
+    /// How estimated landmarks are compared with true ones.
+    pub fn correspondence(&self) -> Correspondence {
+        match self.system.association() {
+            AssociationRule::Known => Correspondence::ById,
+            AssociationRule::Nn | AssociationRule::Jcbb => Correspondence::Nearest,
+        }
+    }
+}
+
+/// Metres of the path whose fit to the true positions gives the start pose: long against the errors of the fixes, short against those of
+/// the path.
+const START_LENGTH: f64 = 40.0;
+
+/// The start from which the first metres of a run fit the true positions best; the origin when there are none.
+fn fitted_start(mut pilot: PointSystem, records: &[Record], positions: &TruePositions) -> Pose2<f64> {
+    let mut travelled = 0.0;
+    let mut last = Vector2::zeros();
+    let is_short = |record: &&Record| {
+        let _ = pilot.take(record); // what is refused here is refused, and counted, again
+        let now = pilot.dead_reckoning().translation;
+        travelled += (now - last).norm();
+        last = now;
+        travelled < START_LENGTH
+    };
+    records.iter().take_while(is_short).for_each(drop);
+    let pair = |stamped_estimate: &StampedEstimate| {
+        Some((pilot.antenna(&stamped_estimate.pose), positions.near(stamped_estimate.stamp)?))
+    };
+    let pairs: Vec<_> = pilot.stamped_estimates().iter().filter_map(pair).collect();
+    align(pairs.into_iter())
+}
+
+fn has_used_a_detection(events: &Events) -> bool {
+    ["new_landmark", "accepted", "accepted_downweighted"].iter().any(|name| events.get(name) > 0)
+}
+
+/// The first refusal and how many there were, or else what happened to the detections.
+fn why(events: &Events) -> String {
+    let Some(first) = events.refusals().first() else {
+        let counts: Vec<String> = events.counts().iter().map(|(name, n)| format!("{name} {n}")).collect();
+        let what = if counts.is_empty() { "all detections are empty".to_owned() } else { counts.join(", ") };
+        return format!(" ({what})");
+    };
+    format!("; the first of {} refusals: {first}", events.n_refusals())
+}
+
+/// Where the known start is: at the first velocity, which holds from there on; for increments, which lead from an earlier pose to
+/// their stamp, at the last record before the first of them.
+fn start_stamp(records: &[Record]) -> Option<Stamp> {
+    let first = records.iter().find(|record| odometry_stamp(record).is_some())?;
+    let earlier = records.iter().map(|record| record.stamp).take_while(|stamp| *stamp < first.stamp).last();
+    match first.data {
+        Data::OdometryIncrement(_) => Some(earlier.unwrap_or(first.stamp)),
+        _ => Some(first.stamp),
+    }
+}
+
+fn odometry_stamp(record: &Record) -> Option<Stamp> {
+    matches!(record.data, Data::Velocity(_) | Data::Ackermann(_) | Data::OdometryIncrement(_))
+        .then_some(record.stamp)
+}
+
+/// The rule that was asked for, else by identity where there are identities.
+fn association(records: &[Record], asked: Option<AssociationRule>) -> Result<AssociationRule> {
+    let association = match (asked, has_identities(records)) {
+        (Some(rule), _) => rule,
+        (None, Some(true)) => AssociationRule::Known,
+        (None, Some(false)) => AssociationRule::Jcbb,
+        (None, None) => bail!(
+            "the log has no range-bearing detections of landmarks (`wayfix info` shows what a log holds)"
+        ),
+    };
+    if association == AssociationRule::Known && has_identities(records) == Some(false) {
+        bail!("no detection carries an identity: use nearest neighbour (--association nn)");
+    }
+    Ok(association)
+}
+
+/// Whether any detection of a landmark carries an identity; `None` when there are no such detections.
+fn has_identities(records: &[Record]) -> Option<bool> {
+    let detections = records.iter().flat_map(|record| match &record.data {
+        Data::Detections(detections) => detections.as_slice(),
+        _ => &[],
+    });
+    detections.fold(None, |found, detection| match detection.target {
+        Target::Landmark(_) => Some(true),
+        Target::Unlabelled => found.or(Some(false)),
+        _ => found,
+    })
+}
+
+/// The `n` true landmarks that are nearest to the start, with the identities that they have in the map.
+fn anchors(
+    records: &[Record],
+    association: AssociationRule,
+    start: &Pose2<f64>,
+    n: usize,
+) -> Vec<(LandmarkId, Vector2<f64>)> {
+    let mut nearest: Vec<_> = true_landmarks(records).into_iter().collect();
+    let distance = |(_, landmark): &(u32, Vector2<f64>)| (landmark - start.translation).norm();
+    nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let by_identity = association == AssociationRule::Known;
+    let id = |index: u32, label: u32| LandmarkId(if by_identity { label } else { FIRST_ANCHOR + index });
+    (0..).zip(nearest).take(n).map(|(index, (label, landmark))| (id(index, label), landmark)).collect()
+}
+
+fn true_landmarks(records: &[Record]) -> BTreeMap<u32, Vector2<f64>> {
+    let landmark = |record: &Record| match record.data {
+        Data::TrueLandmark(landmark) => Some((landmark.id, Vector2::new(landmark.x, landmark.y))),
+        _ => None,
+    };
+    records.iter().filter_map(landmark).collect()
+}

@@ -1,0 +1,183 @@
+use std::time::Duration;
+
+use nalgebra::{DMatrix, DefaultAllocator, Dim, Matrix3, OMatrix, allocator::Allocator};
+use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, TangentMatrix};
+use wayfix_sensor_log::Stamp;
+use wayfix_slam_ekf::{
+    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, Outcome, RobotDim,
+    SlamAlloc, StepReport, observability::ObservabilityRecorder,
+};
+
+use super::{AssociationRule, ChosenRule, event_name};
+use crate::system::Events;
+
+/// The estimate at the stamp of one scan of the sensor, from all records up to it.
+#[derive(Clone, Copy, Debug)]
+pub struct StampedEstimate {
+    /// When.
+    pub stamp: Stamp,
+    /// Estimated pose.
+    pub pose: Pose2<f64>,
+    /// Its covariance in the body frame.
+    pub covariance: Matrix3<f64>,
+    /// Where odometry alone would put the robot.
+    pub dead_reckoning: Pose2<f64>,
+    /// Landmarks in the map.
+    pub n_landmarks: usize,
+    /// Sum and number of the NIS of what corrected.
+    pub nis: (f64, usize),
+    /// Computing time since the last estimate.
+    pub step: Duration,
+}
+
+/// EKF-SLAM with its rule of association, and what a run records of it.
+pub struct Estimator<M: LandmarkModel>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    pub(crate) filter: EkfSlam<M>,
+    pub(super) association: ChosenRule,
+    observability: Option<ObservabilityRecorder>,
+    pub(crate) dead_reckoning: Pose2<f64>,
+    stamped_estimates: Vec<StampedEstimate>,
+    pub(crate) events: Events,
+    /// Computing time since the last estimate.
+    pub(crate) step: Duration,
+}
+
+impl<M: LandmarkModel> Estimator<M>
+where
+    DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
+{
+    pub(crate) fn new(
+        filter: EkfSlam<M>,
+        association: ChosenRule,
+        records_observability: bool,
+        start: Pose2<f64>,
+    ) -> Self {
+        Self {
+            observability: records_observability.then(|| ObservabilityRecorder::new(&filter)),
+            filter,
+            association,
+            dead_reckoning: start,
+            stamped_estimates: Vec::new(),
+            events: Events::default(),
+            step: Duration::ZERO,
+        }
+    }
+
+    pub(super) fn observability(&self) -> Option<&ObservabilityRecorder> {
+        self.observability.as_ref()
+    }
+    pub(super) fn stamped_estimates(&self) -> &[StampedEstimate] {
+        &self.stamped_estimates
+    }
+
+    /// Moves the robot.
+    pub(crate) fn predict<U: ?Sized>(
+        &mut self,
+        motion: &impl MotionModel<State = M::Robot, Control = U>,
+        control: &U,
+    ) -> Result<(), String> {
+        let jacobian = motion.jacobian(self.filter.robot(), control);
+        self.filter.predict(motion, control).map_err(|error| error.to_string())?;
+        if let Some(recorder) = &mut self.observability {
+            recorder.record_motion(&dynamic(&jacobian));
+        }
+        Ok(())
+    }
+
+    /// Corrects robot and map by the observations of one scan. Counts what became of them.
+    pub(crate) fn update(
+        &mut self,
+        observations: &[Observation<M::Measurement>],
+    ) -> Result<StepReport<M::Measurement>, String> {
+        let report = self.filter.update(observations, &mut self.association);
+        let report = report.map_err(|error| error.to_string())?;
+        if let Some(recorder) = &mut self.observability {
+            recorder.record(&self.filter, &seen_landmarks(&report));
+        }
+        for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
+            let name = event_name(outcome);
+            match outcome {
+                Outcome::Unusable => self.events.refuse(name, format!("{measurement:?} is not usable")),
+                Outcome::Duplicate { landmark } if self.association.rule() == AssociationRule::Known => {
+                    self.events.refuse(name, format!("landmark {landmark} a second time in one scan"));
+                }
+                _ => self.events.count(name),
+            }
+        }
+        for _ in &report.merges {
+            self.events.count("merged_landmark");
+        }
+        Ok(report)
+    }
+
+    /// Records a correction of the robot's own state.
+    pub(crate) fn record_robot(&mut self, jacobian: &DMatrix<f64>, covariance: &DMatrix<f64>) {
+        if let Some(recorder) = &mut self.observability {
+            recorder.record_robot(&self.filter, jacobian, covariance);
+        }
+    }
+
+    /// The robot after a motion that the filter has not made, and its covariance.
+    pub(crate) fn predicted<U: ?Sized>(
+        &self,
+        motion: &impl MotionModel<State = M::Robot, Control = U>,
+        control: &U,
+    ) -> (M::Robot, TangentMatrix<M::Robot>) {
+        let state = self.filter.robot();
+        let jacobian = motion.jacobian(state, control);
+        let covariance =
+            &jacobian * self.filter.robot_covariance() * jacobian.transpose() + motion.noise(state, control);
+        (motion.propagate(state, control), covariance)
+    }
+
+    /// Adds the estimate at a stamp.
+    pub(crate) fn add_stamped_estimate(
+        &mut self,
+        stamp: Stamp,
+        pose: Pose2<f64>,
+        covariance: Matrix3<f64>,
+        nis: (f64, usize),
+    ) {
+        self.stamped_estimates.push(StampedEstimate {
+            stamp,
+            pose,
+            covariance,
+            dead_reckoning: self.dead_reckoning,
+            n_landmarks: self.filter.n_landmarks(),
+            nis,
+            step: std::mem::take(&mut self.step),
+        });
+    }
+}
+
+/// Sum and number of the NIS of what corrected.
+pub(crate) fn nis<Z: Manifold<Scalar = f64>>(report: &StepReport<Z>) -> (f64, usize)
+where
+    DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
+{
+    report.innovations().fold((0.0, 0), |(sum, n), innovation| (sum + innovation.nis, n + 1))
+}
+
+/// Landmarks that corrected or started in a scan.
+fn seen_landmarks<Z: Manifold<Scalar = f64>>(report: &StepReport<Z>) -> Vec<LandmarkId>
+where
+    DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
+{
+    let seen = |outcome: &Outcome<Z>| match outcome {
+        Outcome::Accepted { landmark, .. }
+        | Outcome::Initialized { landmark }
+        | Outcome::Restarted { landmark } => Some(*landmark),
+        _ => None,
+    };
+    report.outcomes.iter().filter_map(seen).collect()
+}
+
+fn dynamic<R: Dim, C: Dim>(matrix: &OMatrix<f64, R, C>) -> DMatrix<f64>
+where
+    DefaultAllocator: Allocator<R, C>,
+{
+    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, column| matrix[(row, column)])
+}

@@ -1,0 +1,58 @@
+use nalgebra::DefaultAllocator;
+use serde::{Serialize, de::DeserializeOwned};
+use wayfix_sensor_log::{LogError, Record, Stamp};
+use wayfix_slam_ekf::{EkfSlam, LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
+
+use super::Estimator;
+use crate::system::EstimateWriter;
+
+/// What turns the records of a log into predictions and updates of EKF-SLAM, for one kind of landmark.
+pub trait FrontEnd
+where
+    DefaultAllocator: SlamAlloc<RobotDim<Self::Model>, LandmarkDim<Self::Model>, MeasurementDim<Self::Model>>,
+{
+    /// Robot, landmark and measurement.
+    type Model: LandmarkModel + Clone;
+    /// What it remembers between two records.
+    type Memory: FrontEndMemory;
+
+    /// Takes a record: predicts and updates.
+    ///
+    /// # Errors
+    /// Returns why the record was refused; everything is as before it.
+    fn take(&mut self, record: &Record, estimator: &mut Estimator<Self::Model>) -> Result<(), String>;
+
+    /// Uses what still waits for a later record at the end of the log.
+    ///
+    /// # Errors
+    /// Returns why it cannot be used.
+    fn finish(&mut self, _: &mut Estimator<Self::Model>) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// The stamp up to which records changed the state, where `taken_until` is the stamp of the last record.
+    fn settled_until(&self, taken_until: Stamp) -> Stamp {
+        taken_until
+    }
+
+    /// Draws the map for viewers.
+    ///
+    /// # Errors
+    /// Returns an error if it cannot be written.
+    fn draw_map(
+        filter: &EkfSlam<Self::Model>,
+        stamp: Stamp,
+        writer: &mut EstimateWriter,
+    ) -> Result<(), LogError>;
+
+    /// All that it needs to go on.
+    fn memory(&self) -> Self::Memory;
+}
+
+/// What a front end saves, and which kind of map it belongs to.
+pub trait FrontEndMemory: Serialize + DeserializeOwned {
+    /// The robot's state in words, and its dimension.
+    const ROBOT: (&str, usize);
+    /// The same of a landmark.
+    const LANDMARK: (&str, usize);
+}

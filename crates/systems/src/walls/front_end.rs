@@ -1,0 +1,318 @@
+use std::collections::VecDeque;
+
+use nalgebra::Matrix3;
+use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
+use wayfix_line_extract::Extractor;
+use wayfix_scan_match::Matcher;
+use wayfix_sensor_log::{Data, LaserScan, LogError, Record, Stamp};
+use wayfix_slam_ekf::{
+    DriftingPose, DriftingPoseSensor, EkfSlam, MountedSensor, Observation, WallMeasurement, WallSensor,
+};
+
+use super::{
+    KeyframeThreshold, WallMemory, WallSlamParams, drawing,
+    odometry::{Motion, Odometry},
+    relative_motion::RelativeMotion,
+    scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
+};
+use crate::{
+    slam::{AssociationRule, ChosenRule, Estimator, FrontEnd, SlamSystem, nis},
+    system::{EstimateWriter, Events, PlausibleIncrement, Stopwatch, check_velocity},
+};
+
+/// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
+pub type WallModel = DriftingPoseSensor<MountedSensor<WallSensor>>;
+
+/// EKF-SLAM with walls.
+pub type WallSystem = SlamSystem<WallFrontEnd>;
+
+/// Laser scans, matched to keyframes of which walls are extracted.
+pub struct WallFrontEnd {
+    pub(super) params: WallSlamParams,
+    pub(super) moves_by_velocity: bool,
+    extractor: Extractor,
+    pub(super) matcher: Option<Matcher>,
+    /// The scan that was looked at last, which those after it are laid on.
+    pub(super) last_keyframe: Option<KeyframeScan>,
+    /// The way since.
+    pub(super) relative_motion: RelativeMotion,
+    pub(super) odometry: Odometry,
+    /// Where the laser is now, where the log says it and the parameters do not.
+    pub(super) current_laser_mount: Option<Pose2<f64>>,
+    /// Whether the log places the laser, and not the parameters.
+    pub(super) laser_follows_log: bool,
+    plausible: PlausibleIncrement,
+    /// Scans that wait for the odometry that leads up to them, oldest first.
+    pub(super) waiting: VecDeque<WaitingScan>,
+    /// Heading by the points of the last scan alone, seen from the last look, rad.
+    laser_heading: Option<f64>,
+    /// By how much the robot has turned to each estimate from the one before, by the scans alone, rad.
+    seen_turns: Vec<Option<f64>>,
+}
+
+impl WallSystem {
+    /// A robot at `start` with an empty map; its motion is given by velocities or by increments.
+    ///
+    /// The covariance of the start is in its body frame, `(x, y, θ)`.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub(super) fn with_walls(
+        params: WallSlamParams,
+        start: Pose2<f64>,
+        start_covariance: &Matrix3<f64>,
+        moves_by_velocity: bool,
+    ) -> anyhow::Result<Self> {
+        let params = params.validated()?;
+        let rule = match params.association {
+            AssociationRule::Known => AssociationRule::Nn, // walls have no identities
+            rule => rule,
+        };
+        let association = ChosenRule::new(rule, params.nearest_neighbour, params.joint_compatibility)?;
+        let sensor = DriftingPoseSensor(MountedSensor { sensor: params.sensor, mount: params.mount() });
+        let state = DriftingPose { pose: start, heading_drift: 0.0 };
+        let mut covariance = start_covariance.to_homogeneous();
+        covariance.m44 = params.heading_drift_sigma.powi(2);
+        let filter = EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?;
+        let estimator = Estimator::new(filter, association, params.record_observability, start);
+        let front_end = WallFrontEnd {
+            extractor: Extractor::new(params.lines)?,
+            matcher: params.match_scans.then(|| Matcher::new(params.scan_match)).transpose()?,
+            last_keyframe: None,
+            relative_motion: RelativeMotion::default(),
+            params,
+            moves_by_velocity,
+            odometry: Odometry::default(),
+            current_laser_mount: None,
+            laser_follows_log: false,
+            plausible: PlausibleIncrement::default(),
+            waiting: VecDeque::new(),
+            laser_heading: None,
+            seen_turns: Vec::new(),
+        };
+        Ok(Self::new(front_end, estimator))
+    }
+
+    /// The rotation to each estimate from the one before by the scans alone, rad, where they tell it.
+    pub(super) fn seen_turns(&self) -> &[Option<f64>] {
+        &self.front_end.seen_turns
+    }
+}
+
+/// The estimator of this front end.
+pub(super) type Walls = Estimator<WallModel>;
+
+impl FrontEnd for WallFrontEnd {
+    type Model = WallModel;
+    type Memory = WallMemory;
+
+    fn take(&mut self, record: &Record, estimator: &mut Walls) -> Result<(), String> {
+        match &record.data {
+            Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment, estimator),
+            Data::Velocity(velocity) if self.moves_by_velocity => {
+                check_velocity(*velocity)?;
+                self.advance_to(record.stamp, estimator);
+                self.odometry.hold(record.stamp, *velocity)
+            }
+            Data::Scan(scan) => self.take_or_wait(record.stamp, scan, estimator),
+            Data::LaserMount(mount) if self.laser_follows_log => {
+                self.current_laser_mount = Some(*mount);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// No odometry leads up to the scans that still wait.
+    fn finish(&mut self, estimator: &mut Walls) -> Result<(), String> {
+        while let Some(waiting) = self.waiting.pop_front() {
+            if self.odometry.has_started() {
+                let motion = self.odometry.unknown_until(waiting.stamp);
+                self.move_by(&motion, estimator);
+            } else {
+                self.odometry.start(waiting.stamp);
+            }
+            self.take_waiting_scan(&waiting, estimator);
+        }
+        Ok(())
+    }
+
+    /// Scans that wait for their odometry come later.
+    fn settled_until(&self, taken_until: Stamp) -> Stamp {
+        let before =
+            |waiting: &WaitingScan| Stamp::from_nanoseconds(waiting.stamp.nanoseconds().saturating_sub(1));
+        self.waiting.front().map_or(taken_until, before)
+    }
+
+    fn draw_map(
+        filter: &EkfSlam<WallModel>,
+        stamp: Stamp,
+        writer: &mut EstimateWriter,
+    ) -> Result<(), LogError> {
+        drawing::draw_map(filter, stamp, writer)
+    }
+
+    fn memory(&self) -> WallMemory {
+        WallMemory::of(self)
+    }
+}
+
+impl WallFrontEnd {
+    /// Where the laser is on the robot.
+    fn mount(&self) -> Pose2<f64> {
+        self.params.mount()
+    }
+
+    /// Takes the scans that waited for this increment, each after its part of it.
+    fn take_increment(
+        &mut self,
+        stamp: Stamp,
+        increment: &Pose2<f64>,
+        estimator: &mut Walls,
+    ) -> Result<(), String> {
+        self.plausible.check(stamp, increment)?;
+        let n_reached = self.waiting.partition_point(|waiting| waiting.stamp <= stamp);
+        let reached: Vec<WaitingScan> = self.waiting.drain(..n_reached).collect();
+        if let (Some(first), false) = (reached.first(), self.odometry.has_started()) {
+            self.odometry.start(first.stamp);
+        }
+        let has_started = self.odometry.has_started();
+        let cuts: Vec<Stamp> = reached.iter().map(|waiting| waiting.stamp).collect();
+        let motions = self.odometry.cut(increment, stamp, &cuts);
+        if !has_started {
+            estimator.events.count("before_start");
+            return Ok(());
+        }
+        let mut scans = reached.iter();
+        for motion in &motions {
+            self.move_by(motion, estimator);
+            if let Some(waiting) = scans.next() {
+                self.take_waiting_scan(waiting, estimator);
+            }
+        }
+        Ok(())
+    }
+
+    fn move_by(&mut self, motion: &Motion, estimator: &mut Walls) {
+        let Motion { increment, error, unknown_seconds } = motion;
+        self.relative_motion = self
+            .relative_motion
+            .then(&self.params.increment, estimator.filter.robot().heading_drift, increment)
+            .with_added_covariance(error);
+        estimator.dead_reckoning = estimator.dead_reckoning.compose(increment);
+        if *unknown_seconds > self.params.velocity_hold {
+            estimator.events.warn(
+                "motion_unknown",
+                "odometry is missing for some time: the motion there comes from scan matching alone",
+            );
+        }
+    }
+
+    /// Moves the robot on with the velocity that holds.
+    fn advance_to(&mut self, stamp: Stamp, estimator: &mut Walls) {
+        if let Some(motion) = self.odometry.held_until(stamp, self.params.velocity_hold)
+            && self.odometry.has_started()
+        {
+            self.move_by(&motion, estimator);
+        }
+    }
+
+    /// Takes a scan now, when odometry leads up to it or never will, else with the next increment.
+    fn take_or_wait(&mut self, stamp: Stamp, scan: &LaserScan, estimator: &mut Walls) -> Result<(), String> {
+        let laser = self.current_laser_mount.unwrap_or(self.mount());
+        if self.moves_by_velocity {
+            self.advance_to(stamp, estimator);
+        } else if !(self.waiting.is_empty() && self.odometry.reaches(stamp)) || self.needs_twist(scan) {
+            self.waiting.push_back(WaitingScan { stamp, scan: scan.clone(), laser });
+            return Ok(());
+        }
+        if !self.odometry.has_started() {
+            self.odometry.start(stamp);
+        }
+        self.take_scan(stamp, scan, &laser, estimator)
+    }
+
+    /// Whether the motion during a scan is to be taken out and no odometry has told any yet.
+    fn needs_twist(&self, scan: &LaserScan) -> bool {
+        self.params.deskew_scans && scan.beam_period > 0.0 && self.odometry.twist().is_none()
+    }
+
+    /// Takes a scan that waited.
+    fn take_waiting_scan(&mut self, WaitingScan { stamp, scan, laser }: &WaitingScan, estimator: &mut Walls) {
+        if let Err(reason) = self.take_scan(*stamp, scan, laser, estimator) {
+            estimator.events.refuse("record_refused", format!("scan of {stamp}: {reason}"));
+        }
+    }
+
+    fn take_scan(
+        &mut self,
+        stamp: Stamp,
+        scan: &LaserScan,
+        laser: &Pose2<f64>,
+        estimator: &mut Walls,
+    ) -> Result<(), String> {
+        let stopwatch = Stopwatch::start();
+        let scan = self.placed(scan, laser, &mut estimator.events);
+        let cloud = scan.cloud().map_err(|error| error.to_string())?;
+        let laser_heading = self.match_to_keyframe(&cloud, estimator);
+        let seen_turn = self.laser_heading.zip(laser_heading).map(|(from, to)| wrap_angle(to - from));
+        self.laser_heading = laser_heading;
+        let KeyframeThreshold { min_distance, min_rotation } = self.params.keyframes;
+        let corrected =
+            if self.last_keyframe.is_some() && self.relative_motion.is_within(min_distance, min_rotation) {
+                estimator.events.count("scan_skipped");
+                (0.0, 0)
+            } else {
+                let observations = self.walls_in(&scan)?;
+                self.predict_to_scan(estimator)?;
+                self.last_keyframe = Some(KeyframeScan { scan, cloud });
+                self.laser_heading = Some(0.0);
+                nis(&estimator.update(&observations)?)
+            };
+        estimator.step += stopwatch.elapsed();
+        self.add_stamped_estimate(stamp, corrected, estimator);
+        self.seen_turns.push(seen_turn);
+        Ok(())
+    }
+
+    /// A scan with the motion of the laser while it was taken, by the velocity that odometry tells.
+    fn placed(&self, scan: &LaserScan, laser: &Pose2<f64>, events: &mut Events) -> PlacedScan {
+        let twist = self.odometry.twist().filter(|_| self.params.deskew_scans);
+        let step = twist.map_or(Ok(None), |twist| beam_step(scan, laser, &twist));
+        if step.is_err() {
+            events.warn(
+                "time_increment_implausible",
+                "by its time_increment a scan takes longer than a second: its beams are taken as sent at once",
+            );
+        } else if let Ok(Some(_)) = &step {
+            events.count("scan_deskewed");
+        }
+        PlacedScan { scan: scan.clone(), laser: *laser, beam_step: step.unwrap_or(None) }
+    }
+
+    /// Moves the robot by the motion since the last keyframe.
+    fn predict_to_scan(&mut self, estimator: &mut Walls) -> Result<(), String> {
+        let relative_motion = self.relative_motion;
+        estimator.predict(&relative_motion, &relative_motion.motion)?;
+        self.relative_motion = relative_motion.reset_at_keyframe();
+        Ok(())
+    }
+
+    /// The filter is at the last keyframe; the estimate is at the scan.
+    fn add_stamped_estimate(&self, stamp: Stamp, nis: (f64, usize), estimator: &mut Walls) {
+        let (state, covariance) = estimator.predicted(&self.relative_motion, &self.relative_motion.motion);
+        let covariance = covariance.fixed_view::<3, 3>(0, 0).into_owned();
+        estimator.add_stamped_estimate(stamp, state.pose, covariance, nis);
+    }
+
+    /// The walls of a scan that are long enough to be walls, as the laser would see them from where the model has it.
+    fn walls_in(&mut self, scan: &PlacedScan) -> Result<Vec<Observation<WallMeasurement>>, String> {
+        let found = scan.walls(&mut self.extractor).map_err(|error| error.to_string())?;
+        let long = found.segments.iter().filter(|segment| segment.length() >= self.params.min_wall_length);
+        let seen = long.map(WallMeasurement::from);
+        let moved = self.mount().inverse().compose(&scan.laser);
+        let as_seen =
+            |seen: WallMeasurement| if scan.laser == self.mount() { seen } else { seen.transformed(&moved) };
+        Ok(seen.map(|seen| Observation { label: None, measurement: as_seen(seen) }).collect())
+    }
+}
