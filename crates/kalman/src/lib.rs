@@ -36,7 +36,6 @@ mod check;
 mod consistency;
 mod error;
 mod filter;
-mod filter_with_sensor;
 mod form;
 mod forms;
 mod gating;
@@ -51,7 +50,6 @@ mod update;
 pub use consistency::{Consistency, nees};
 pub use error::KalmanError;
 pub use filter::{ExtendedKalmanFilter, GaussianFilter};
-pub use filter_with_sensor::FilterWithSensor;
 pub use form::Form;
 pub use forms::{
     Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, PlainExtended, Sequential,
