@@ -38,7 +38,6 @@ mod error;
 mod filter;
 mod form;
 mod forms;
-mod gating;
 mod innovation;
 mod linear;
 mod linearize;
@@ -52,8 +51,8 @@ pub use error::KalmanError;
 pub use filter::{ExtendedKalmanFilter, GaussianFilter};
 pub use form::Form;
 pub use forms::{
-    Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, PlainExtended, Sequential,
-    SquareRoot, Unscented,
+    Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, Sequential, SquareRoot,
+    Unscented,
 };
 pub use innovation::Innovation;
 pub use linear::{KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate};

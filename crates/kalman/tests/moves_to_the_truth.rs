@@ -5,7 +5,7 @@ use nalgebra::{Matrix1, Matrix3, Vector2, Vector3};
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel, Pose2, SensorModel, laws, numerical_jacobian};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    Extended, Form, GaussianFilter, Information, IteratedExtended, PlainExtended, Sequential, SquareRoot,
+    Extended, Form, GaussianFilter, Information, IteratedExtended, Sequential, SquareRoot,
     StackedMeasurement, StackedSensor, Unscented,
 };
 
@@ -86,7 +86,6 @@ fn moves<F: Form<Pose2<f64>>>(form: F) {
 #[test]
 fn every_form_moves_to_the_truth() {
     moves(Extended);
-    moves(PlainExtended);
     moves(IteratedExtended::default());
     moves(Sequential);
     moves(SquareRoot);
@@ -121,7 +120,6 @@ fn obeys<F: Form<Pose2<f64>> + Clone>(form: F) {
 #[test]
 fn every_form_obeys_the_laws_of_filters() {
     obeys(Extended);
-    obeys(PlainExtended);
     obeys(IteratedExtended::default());
     obeys(Sequential);
     obeys(SquareRoot);
