@@ -36,7 +36,7 @@ fn discrete_filter_obeys_the_laws_of_filters() {
 #[cfg(feature = "parallel")]
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    use wayfix_condensation::DiffusionKernel;
+    use wayfix_condensation::{DiffusionKernel, StateSpace};
     let grid = Grid::new(401, 307).unwrap();
     let go = Slip { stay_probability: 0.1, other_action_probability: 0.2 }
         .transition(&grid, Move { dx: 1, dy: -1 })
