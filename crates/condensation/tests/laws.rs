@@ -1,38 +1,42 @@
-//! The laws of a Bayes filter, and the same bits for any number of threads.
+//! The laws of filters, and the same bits for any number of threads.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use wayfix_condensation::{BestState, DiscreteFilter, Grid, Move, Slip, StateSpace, Transition};
-use wayfix_estimation_traits::BayesFilter;
-
-/// Code that runs any filter, run on this one.
-fn localize<F>(filter: &mut F, control: &F::Control, measurement: &F::Measurement) -> F::Estimate
-where
-    F: BayesFilter<Estimate = BestState>,
-    F::Error: std::fmt::Debug,
-{
-    for _ in 0..3 {
-        filter.predict(control).unwrap();
-        filter.update(measurement).unwrap();
-    }
-    filter.estimate()
-}
+use wayfix_condensation::{DiscreteFilter, Grid, Move, Slip};
+use wayfix_estimation_traits::laws;
 
 #[test]
-fn it_is_a_bayes_filter() {
+fn discrete_filter_obeys_the_laws_of_filters() {
     let grid = Grid::new(5, 4).unwrap();
-    let stay: Box<dyn Transition> = Box::new(Slip::default().transition(&grid, Move::STAY).unwrap());
-    let looks: Vec<f64> = (0..grid.n_states()).map(|s| if s == 13 { 0.0 } else { -5.0 }).collect();
-    let mut filter = DiscreteFilter::uniform(20).unwrap();
-    let best = localize(&mut filter, stay.as_ref(), looks.as_slice());
-    assert_eq!(best.state, 13);
-    assert!(best.confidence > 0.9999);
+    let stay = Slip::default().transition(&grid, Move::STAY).unwrap();
+    let other_grid = Slip::default().transition(&Grid::new(3, 2).unwrap(), Move::STAY).unwrap();
+    let state_13 = |likelihood: f64, n: usize| -> Vec<f64> {
+        (0..n).map(|state| if state == 13 { likelihood } else { -5.0 }).collect()
+    };
+    let sees = |log_likelihoods: Vec<f64>| {
+        move |filter: &mut DiscreteFilter| filter.update(&log_likelihoods).is_ok()
+    };
+    let (good, drives) =
+        (sees(state_13(0.0, 20)), |filter: &mut DiscreteFilter| filter.predict(&stay).is_ok());
+    let trial = laws::FilterTrial {
+        estimate: &DiscreteFilter::clone,
+        error: &|filter: &DiscreteFilter| 1.0 - filter.confidence(13).unwrap(),
+        bound: 1e-4,
+        accepted: &[&drives, &good, &drives, &good, &drives, &good],
+        refused: &[
+            &sees(state_13(f64::NAN, 20)),
+            &sees(state_13(f64::INFINITY, 20)),
+            &sees(state_13(0.0, 19)),
+            &|filter| filter.predict(&other_grid).is_ok(),
+        ],
+    };
+    laws::filter(&DiscreteFilter::uniform(20).unwrap(), &trial).unwrap();
 }
 
 #[cfg(feature = "parallel")]
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    use wayfix_condensation::DiffusionKernel;
+    use wayfix_condensation::{DiffusionKernel, StateSpace};
     let grid = Grid::new(401, 307).unwrap();
     let go = Slip { stay_probability: 0.1, other_action_probability: 0.2 }
         .transition(&grid, Move { dx: 1, dy: -1 })

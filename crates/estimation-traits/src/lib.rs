@@ -10,10 +10,9 @@
 //! | [`SampleMotion`] | the same, as a curried sampler | drive particles |
 //! | [`SensorModel`] | what the sensor should read, with Jacobian and noise | correct a Kalman filter |
 //! | [`LikelihoodModel`] | the same, as a curried log-likelihood | weigh particles |
-//! | [`BayesFilter`] | predict, update, estimate | write code that runs any filter |
-//! | [`Policy`] | when to do something | decide when to resample, publish, relearn |
 //!
-//! Each trait states its **laws**; [`laws`] holds suites that check them on your own types.
+//! Each trait states its **laws**; [`laws`] holds suites that check them on your own types. [`laws::filter`](fn@laws::filter) checks
+//! whole filters.
 //! The concrete states that planar and spatial robots need are here too: [`Angle`], [`Pose2`], [`Pose3`].
 //!
 //! Conventions everywhere: SI units and radians, x forward, y left, z up (REP 103), angles in (−π, π],
@@ -31,13 +30,11 @@
 
 mod alloc;
 mod angle;
-mod bayes_filter;
 mod derivative;
 pub mod laws;
 mod lie_group;
 mod manifold;
 mod motion;
-mod policy;
 mod pose2;
 mod pose3;
 #[cfg(feature = "sampling")]
@@ -47,12 +44,10 @@ mod sensor;
 
 pub use alloc::{StateAlloc, UpdateAlloc};
 pub use angle::{Angle, wrap_angle};
-pub use bayes_filter::BayesFilter;
 pub use derivative::numerical_jacobian;
 pub use lie_group::LieGroup;
 pub use manifold::{Jacobian, Manifold, Tangent, TangentMatrix};
 pub use motion::MotionModel;
-pub use policy::Policy;
 pub use pose2::Pose2;
 pub use pose3::Pose3;
 #[cfg(feature = "sampling")]

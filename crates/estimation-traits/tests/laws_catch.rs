@@ -7,8 +7,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use wayfix_estimation_traits::{
-    Angle, BayesFilter, LieGroup, LikelihoodModel, LogWeight, Manifold, MotionModel, Pose2, SampleMotion,
-    SensorModel, laws, wrap_angle,
+    Angle, LieGroup, LikelihoodModel, LogWeight, Manifold, MotionModel, Pose2, SampleMotion, SensorModel,
+    laws, wrap_angle,
 };
 
 const SEED: u64 = 20_261_121;
@@ -227,48 +227,39 @@ struct Scalar {
     checks_first: bool,
 }
 
-impl BayesFilter for Scalar {
-    type Control = f64;
-    type Measurement = f64;
-    type Estimate = (f64, f64);
-    type Report = ();
-    type Error = &'static str;
-    fn predict(&mut self, control: &f64) -> Result<(), &'static str> {
-        if !control.is_finite() {
-            return Err("control");
+impl Scalar {
+    fn predict(&mut self, control: f64) -> bool {
+        if control.is_finite() {
+            self.mean += control;
+            self.variance += 0.1;
         }
-        self.mean += control;
-        self.variance += 0.1;
-        Ok(())
+        control.is_finite()
     }
-    fn update(&mut self, measurement: &f64) -> Result<(), &'static str> {
+    fn update(&mut self, measurement: f64) -> bool {
         if self.checks_first && !measurement.is_finite() {
-            return Err("measurement");
+            return false;
         }
         let gain = self.variance / (self.variance + 0.01);
         self.variance *= 1.0 - gain;
-        if !measurement.is_finite() {
-            return Err("measurement");
-        }
-        if self.applies_gain {
+        if self.applies_gain && measurement.is_finite() {
             self.mean += gain * (measurement - self.mean);
         }
-        Ok(())
-    }
-    fn estimate(&self) -> (f64, f64) {
-        (self.mean, self.variance)
+        measurement.is_finite()
     }
 }
 
 #[test]
 fn law_suite_catches_a_frozen_filter_and_a_dirty_refusal() {
     let honest = Scalar { mean: 0.0, variance: 1.0, applies_gain: true, checks_first: true };
-    let trial = laws::FilterTrial::<Scalar, _> {
-        measurements: &[&5.0, &5.0, &5.0],
-        error: |estimate: &(f64, f64)| (estimate.0 - 5.0).abs(),
+    let good: laws::FilterCall<'_, Scalar> = &|filter| filter.update(5.0);
+    let trial = laws::FilterTrial {
+        estimate: &|filter: &Scalar| (filter.mean, filter.variance),
+        error: &|estimate: &(f64, f64)| (estimate.0 - 5.0).abs(),
         bound: 0.1,
-        refused_measurements: &[&f64::NAN, &f64::INFINITY],
-        refused_controls: &[&f64::NAN],
+        accepted: &[good; 3],
+        refused: &[&|filter| filter.update(f64::NAN), &|filter| filter.update(f64::INFINITY), &|filter| {
+            filter.predict(f64::NAN)
+        }],
     };
     laws::filter(&honest, &trial).unwrap();
     let violation = laws::filter(&Scalar { applies_gain: false, ..honest.clone() }, &trial).unwrap_err();

@@ -2,7 +2,7 @@ use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
 use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
-use crate::{Extended, Form, Innovation, KalmanError, Update, gating::gated};
+use crate::{Extended, Form, Innovation, KalmanError, Update};
 
 /// A Gaussian filter: a motion model, a [`Form`] and the present belief.
 ///
@@ -74,7 +74,7 @@ where
 
     /// The present belief as a Gaussian.
     pub fn estimate(&self) -> Gaussian<M::State> {
-        self.form.gaussian(&self.belief)
+        self.belief.clone().into()
     }
     /// The present belief in the representation of the form.
     pub fn belief(&self) -> &F::Belief {
@@ -128,10 +128,13 @@ where
         S: SensorModel<State = M::State>,
         DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
     {
-        let (outcome, posterior) = gated(&self.form, &self.belief, sensor, measurement, gate)?;
-        if let Some(posterior) = posterior {
-            self.belief = posterior;
-        }
-        Ok(outcome)
+        let Some(measurement) = measurement else { return Ok(Update::Missing) };
+        let admits = |innovation: &Innovation<M::State, S::Measurement>| gate.accepts(innovation.nis());
+        let (innovation, posterior) = self.form.update(&self.belief, sensor, measurement, admits)?;
+        let Some(posterior) = posterior else {
+            return Ok(Update::Rejected { innovation, threshold: gate.threshold() });
+        };
+        self.belief = posterior;
+        Ok(Update::Accepted { innovation })
     }
 }

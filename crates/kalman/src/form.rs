@@ -18,16 +18,13 @@ where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
     /// The representation of the Gaussian from step to step.
-    type Belief: Clone;
+    type Belief: Clone + Into<Gaussian<X>>;
 
     /// The belief equivalent to `gaussian`.
     ///
     /// # Errors
     /// Returns an error if its covariance is not positive definite.
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Self::Belief>;
-
-    /// The Gaussian equivalent to `belief`.
-    fn gaussian(&self, belief: &Self::Belief) -> Gaussian<X>;
 
     /// The belief after `control`.
     ///

@@ -36,10 +36,8 @@ mod check;
 mod consistency;
 mod error;
 mod filter;
-mod filter_with_sensor;
 mod form;
 mod forms;
-mod gating;
 mod innovation;
 mod linear;
 mod linearize;
@@ -51,11 +49,10 @@ mod update;
 pub use consistency::{Consistency, nees};
 pub use error::KalmanError;
 pub use filter::{ExtendedKalmanFilter, GaussianFilter};
-pub use filter_with_sensor::FilterWithSensor;
 pub use form::Form;
 pub use forms::{
-    Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, PlainExtended, Sequential,
-    SquareRoot, Unscented,
+    Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, Sequential, SquareRoot,
+    Unscented,
 };
 pub use innovation::Innovation;
 pub use linear::{KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate};

@@ -4,7 +4,7 @@ use wayfix_gaussian_core::{Gaussian, cholesky, symmetrize};
 
 use crate::{
     Extended, Form, Innovation, KalmanError, algebra::product::propagated_covariance,
-    algebra::transport::transported, check, error::Checked, linearize::linearize_motion,
+    algebra::transport::gaussian_at, check, error::Checked, linearize::linearize_motion,
 };
 
 /// The Rauch-Tung-Striebel smoother: a forward pass in [`Extended`] form, then a backward pass with the later measurements.
@@ -138,9 +138,7 @@ where
         let mut covariance =
             &remainder * filtered * remainder.transpose() + &gain * (&self.noise + later) * gain.transpose();
         symmetrize(&mut covariance);
-        check::positive_definite("smoothed", &covariance)?;
         let mean = check::moved("smoothed mean", self.filtered.mean(), &(gain * correction))?;
-        let covariance = transported(covariance, self.filtered.mean(), &mean)?;
-        Ok(Gaussian::from_parts_unchecked(mean, covariance))
+        gaussian_at("smoothed", mean, self.filtered.mean(), covariance)
     }
 }

@@ -11,7 +11,7 @@ use wayfix_estimation_traits::{MotionModel, SensorModel};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
     Extended, FactoredGaussian, Form, GaussianFilter, Information, IteratedExtended, KalmanFilter,
-    LinearMotion, LinearSensor, PlainExtended, Sequential, SquareRoot, Unscented,
+    LinearMotion, LinearSensor, Sequential, SquareRoot, Unscented,
 };
 
 /// Eight filters take turns: a million steps together.
@@ -149,7 +149,6 @@ fn ill_treat<F: Form<Vector4<f64>> + Copy>(
 fn ill_treated_filters_stay_positive_definite() {
     let refused = [
         ill_treat(Extended, 1, is_factorable),
-        ill_treat(PlainExtended, 2, is_factorable),
         ill_treat(IteratedExtended::default(), 3, is_factorable),
         ill_treat(Sequential, 4, is_factorable),
         ill_treat(SquareRoot, 5, is_a_factor),
@@ -218,7 +217,6 @@ fn wrong_sizes_are_refused_by_every_form() {
         assert!(filter.update(&sensor, &DVector::zeros(2)).is_ok());
     }
     refuses(Extended);
-    refuses(PlainExtended);
     refuses(IteratedExtended::default());
     refuses(Sequential);
     refuses(SquareRoot);

@@ -4,10 +4,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_estimation_traits::Policy;
-use wayfix_particle::{
-    InjectionMonitor, InjectionParams, KldParams, KldSampling, ParticleSet, Systematic, ess_below, grid_cell,
-};
+use wayfix_particle::{KldParams, KldSampling, ParticleSet, Systematic, grid_cell};
 
 /// Metres along the corridor. No two gaps are alike, or the robot could not tell where it is.
 const DOORS: [f64; 4] = [3.0, 8.0, 10.0, 17.0];
@@ -20,10 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 2. What is known at first: nothing but that the robot is in the corridor.
     let mut particles = ParticleSet::from_fn(2000, |rng| rng.random_range(0.0..LENGTH), &mut rng)?;
 
-    // 3. When to resample, to how many particles, and how to notice that the robot was carried off.
-    let mut due = ess_below(0.5);
+    // 3. To how many particles to resample.
     let kld = KldSampling::new(KldParams::default())?;
-    let mut lost = InjectionMonitor::new(InjectionParams { slow: 0.01, fast: 0.1 })?;
 
     // 4. Patrol in strides of half a metre. After 75 of them somebody carries the robot to the other end.
     let (mut robot, mut stride) = (1.0, 0.5);
@@ -48,12 +43,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             false => f64::NEG_INFINITY,
         })?;
         let evidence = particles.normalize()?;
-        let share = lost.observe(evidence.log_likelihood)?;
 
-        if due.fires(&evidence) || share > 0.0 {
+        // One particle in a hundred starts anew anywhere: the robot may have been carried off.
+        if evidence.effective_share() < 0.5 {
             let n = particles.kld_size(&kld, |x| grid_cell([*x], [0.2]), &mut rng)?;
             particles.resample(&Systematic, n, &mut rng)?;
-            particles.inject(share, |rng| rng.random_range(0.0..LENGTH), &mut rng)?;
+            particles.states_mut().iter_mut().step_by(100).for_each(|x| *x = rng.random_range(0.0..LENGTH));
         }
 
         // 5. Where is it?

@@ -5,8 +5,8 @@
 use nalgebra::Vector2;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_estimation_traits::{LikelihoodModel, Manifold, Policy, Pose2, SampleMotion};
-use wayfix_particle::{BootstrapFilter, ParticleSet, Stratified, ess_below};
+use wayfix_estimation_traits::{LikelihoodModel, Manifold, Pose2, SampleMotion};
+use wayfix_particle::{BootstrapFilter, ParticleSet, Stratified};
 
 /// Speed through the water and rudder are known; gusts turn the boat now and then.
 struct Boat;
@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (step, measurement) in measurements.iter().enumerate() {
         filter.predict(&(3.0, 0.01), &mut rng)?;
         let evidence = filter.update(measurement)?;
-        if step % 2 == 1 && ess_below(0.5).fires(&evidence) {
+        if step % 2 == 1 && evidence.effective_share() < 0.5 {
             filter.particles_mut().resample(&Stratified, 2000, &mut rng)?;
         }
     }

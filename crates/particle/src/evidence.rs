@@ -1,5 +1,3 @@
-use wayfix_estimation_traits::Policy;
-
 /// The result of a normalization: the likelihood of the measurement and the effective sample size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalizationReport {
@@ -12,30 +10,14 @@ pub struct NormalizationReport {
 }
 
 impl NormalizationReport {
-    /// The effective sample size as a share of the particles, in (0, 1].
+    /// The effective sample size as a share of the particles, in (0, 1]. Filters customarily resample below one half. [Liu & Chen 1998]
+    ///
+    /// ```
+    /// use wayfix_particle::NormalizationReport;
+    /// let report = NormalizationReport { log_likelihood: -2.0, effective_sample_size: 40.0, n_particles: 100 };
+    /// assert_eq!(report.effective_share(), 0.4);
+    /// ```
     pub fn effective_share(&self) -> f64 {
         self.effective_sample_size / self.n_particles as f64
-    }
-}
-
-/// See [`ess_below`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EssBelow(f64);
-
-/// Acts when the effective sample size is below `share` of the particles; one half is customary. [Liu & Chen 1998]
-///
-/// ```
-/// use wayfix_estimation_traits::Policy;
-/// use wayfix_particle::{NormalizationReport, ess_below};
-/// let evidence = NormalizationReport { log_likelihood: -2.0, effective_sample_size: 40.0, n_particles: 100 };
-/// assert!(ess_below(0.5).fires(&evidence) && !ess_below(0.3).fires(&evidence));
-/// ```
-pub fn ess_below(share: f64) -> EssBelow {
-    EssBelow(share)
-}
-
-impl Policy<NormalizationReport> for EssBelow {
-    fn fires(&mut self, evidence: &NormalizationReport) -> bool {
-        evidence.effective_share() < self.0
     }
 }

@@ -8,14 +8,14 @@
 //! | multiply by a likelihood | [`ParticleSet::reweigh`], or [`ParticleSet::correct_with`] to normalize as well |
 //! | both in one, by a proposal of your own | [`ParticleSet::advance_with`] |
 //! | normalize; how well was the measurement explained? | [`ParticleSet::normalize`], [`NormalizationReport`] |
-//! | is it time to resample? | [`ess_below`], and any [`Policy`](wayfix_estimation_traits::Policy) |
+//! | is it time to resample? | [`NormalizationReport::effective_share`] |
 //! | to how many particles? | [`ParticleSet::kld_size`] with [`KldSampling`] |
 //! | resample | [`ParticleSet::resample`] by [`Systematic`], [`Stratified`], [`Residual`], [`Multinomial`] or your own [`Resampler`] |
-//! | is the robot lost? | [`InjectionMonitor`], [`ParticleSet::inject`] |
 //! | where is it? | [`ParticleSet::moments`], [`ParticleSet::expectation`], [`ParticleSet::heaviest`] |
 //!
-//! [`BootstrapFilter`] and [`AuxiliaryFilter`] put the steps together for models that implement
-//! [`SampleMotion`](wayfix_estimation_traits::SampleMotion) and [`LikelihoodModel`](wayfix_estimation_traits::LikelihoodModel).
+//! [`BootstrapFilter`] puts the steps together for models that implement [`SampleMotion`](wayfix_estimation_traits::SampleMotion) and
+//! [`LikelihoodModel`](wayfix_estimation_traits::LikelihoodModel); [`AuxiliaryFilter`] takes a
+//! [`MotionModel`](wayfix_estimation_traits::MotionModel) with Gaussian noise.
 //! [`RaoBlackwell`] particles carry a part of the state in closed form and share it until it changes;
 //! [`ParticleSet::sample_and_condition`] moves and weighs them, [`map_conditionals`] changes what they share.
 //!
@@ -28,16 +28,14 @@
 //!
 //! ```
 //! use rand::{RngExt, SeedableRng};
-//! use wayfix_estimation_traits::Policy;
-//! use wayfix_particle::{ParticleSet, Systematic, ess_below};
+//! use wayfix_particle::{ParticleSet, Systematic};
 //!
 //! let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
 //! let mut particles = ParticleSet::from_fn(1000, |rng| rng.random_range(0.0..20.0), &mut rng)?; // metres along a corridor
-//! let mut due = ess_below(0.5);
 //! for truth in [3.0, 4.0, 5.0] {
 //!     particles.propagate(|x, rng| *x += 1.0 + rng.random_range(-0.2..0.2), &mut rng);
 //!     particles.reweigh(|x| -0.5 * ((x - truth) / 0.3_f64).powi(2))?;
-//!     if due.fires(&particles.normalize()?) {
+//!     if particles.normalize()?.effective_share() < 0.5 {
 //!         particles.resample(&Systematic, 1000, &mut rng)?;
 //!     }
 //! }
@@ -50,7 +48,6 @@ mod chunks;
 mod error;
 mod evidence;
 mod filters;
-mod injection;
 mod kld;
 pub mod laws;
 mod memory;
@@ -61,9 +58,8 @@ mod weights;
 
 pub use chunks::ChunkRng;
 pub use error::ParticleError;
-pub use evidence::{EssBelow, NormalizationReport, ess_below};
-pub use filters::{AuxiliaryFilter, BootstrapFilter, LikelyMotion, SeededFilter};
-pub use injection::{InjectionMonitor, InjectionParams};
+pub use evidence::NormalizationReport;
+pub use filters::{AuxiliaryFilter, BootstrapFilter};
 pub use kld::{KldParams, KldSampling, grid_cell};
 pub use rao_blackwell::{RaoBlackwell, map_conditionals};
 pub use resampling::{Multinomial, Resampler, Residual, Stratified, Systematic};

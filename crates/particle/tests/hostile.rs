@@ -130,15 +130,3 @@ fn a_state_that_is_not_finite_has_no_mean() {
     let set = ParticleSet::new(vec![Angle::new(1.0), Angle::new(f64::NAN)]).unwrap();
     assert!(matches!(set.moments(|x| *x), Err(ParticleError::Moments(_))));
 }
-
-#[test]
-fn a_share_outside_the_unit_interval_is_refused() {
-    for share in [-0.1, 1.1, f64::NAN] {
-        let mut set = particles();
-        assert!(matches!(
-            set.inject(share, |_| 0.0, &mut rng()),
-            Err(ParticleError::Parameter { what: "share", .. })
-        ));
-        assert_eq!(set, particles());
-    }
-}

@@ -8,17 +8,17 @@ use nalgebra::{Matrix1, Matrix1x2, Matrix2, U2, Vector1, Vector2};
 use rand::SeedableRng;
 use rand::distr::Distribution as _;
 use rand_chacha::ChaCha8Rng;
-use wayfix_estimation_traits::{Policy as _, laws};
+use wayfix_estimation_traits::laws;
 use wayfix_gaussian_core::{Gaussian, GaussianLikelihood, GaussianMotion};
 use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor};
 use wayfix_particle::{
-    AuxiliaryFilter, BootstrapFilter, NormalizationReport, ParticleError, ParticleSet, SeededFilter,
-    Systematic, ess_below,
+    AuxiliaryFilter, BootstrapFilter, NormalizationReport, ParticleError, ParticleSet, Systematic,
 };
 
 type State = Vector2<f64>;
-type Motion = GaussianMotion<LinearMotion<f64, U2>>;
 type Sensor = GaussianLikelihood<LinearSensor<State, Vector1<f64>>>;
+type Bootstrap = BootstrapFilter<GaussianMotion<LinearMotion<f64, U2>>, Sensor>;
+type Auxiliary = AuxiliaryFilter<LinearMotion<f64, U2>, Sensor>;
 
 const RUNS: u64 = 200;
 
@@ -61,17 +61,26 @@ impl Problem {
         ParticleSet::from_fn(n, |rng| prior.sample(rng), rng).unwrap()
     }
 
+    fn bootstrap_filter(&self, n: usize, rng: &mut ChaCha8Rng) -> Bootstrap {
+        let (motion, sensor) = (GaussianMotion(self.motion.clone()), GaussianLikelihood(self.sensor.clone()));
+        BootstrapFilter::new(self.particles(n, rng), motion, sensor)
+    }
+
+    fn auxiliary_filter(&self, n: usize, rng: &mut ChaCha8Rng) -> Auxiliary {
+        let (motion, sensor) = (self.motion.clone(), GaussianLikelihood(self.sensor.clone()));
+        AuxiliaryFilter::new(self.particles(n, rng), motion, sensor)
+    }
+
     /// The posterior mean of the position and the log evidence, from `n` particles.
     fn bootstrap(&self, n: usize, seed: u64) -> (f64, f64) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let (motion, sensor) = (GaussianMotion(self.motion.clone()), GaussianLikelihood(self.sensor.clone()));
-        let mut filter = BootstrapFilter::new(self.particles(n, &mut rng), motion, sensor);
-        let (mut due, mut log_evidence) = (ess_below(0.5), 0.0);
+        let mut filter = self.bootstrap_filter(n, &mut rng);
+        let mut log_evidence = 0.0;
         for z in &self.measurements {
             filter.predict(&None, &mut rng).unwrap();
             let evidence = filter.update(z).unwrap();
             log_evidence += evidence.log_likelihood;
-            if due.fires(&evidence) {
+            if evidence.effective_share() < 0.5 {
                 filter.particles_mut().resample(&Systematic, n, &mut rng).unwrap();
             }
         }
@@ -80,8 +89,7 @@ impl Problem {
 
     fn auxiliary(&self, n: usize, seed: u64) -> (f64, f64) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let (motion, sensor) = (GaussianMotion(self.motion.clone()), GaussianLikelihood(self.sensor.clone()));
-        let mut filter = AuxiliaryFilter::new(self.particles(n, &mut rng), motion, sensor);
+        let mut filter = self.auxiliary_filter(n, &mut rng);
         let log_evidence =
             self.measurements.iter().map(|z| filter.step(&None, z, &mut rng).unwrap().log_likelihood).sum();
         (filter.particles().moments(|x| *x).unwrap().mean[0], log_evidence)
@@ -125,40 +133,70 @@ fn the_error_falls_with_the_root_of_the_number_of_particles() {
     assert!((4.0 / 1.7..4.0 * 1.7).contains(&ratio), "ratio {ratio}, expected 4");
 }
 
+/// Ten measurements leave a sigma of 0.3/√10 ≈ 0.1 and particles from a prior of sigma 1.
+const BOUND: f64 = 0.2;
+const SEED: u64 = 20_261_121;
+
+fn error(particles: &ParticleSet<State>) -> f64 {
+    (particles.moments(|x| *x).unwrap().mean[0] - 0.8).abs()
+}
+
 #[test]
-fn a_seeded_filter_keeps_the_laws_of_a_bayes_filter() {
-    let problem = Problem::new(0.1, 0.3);
-    let mut rng = ChaCha8Rng::seed_from_u64(20_261_121);
-    let particles = problem.particles(1000, &mut rng);
-    let (motion, sensor): (Motion, Sensor) =
-        (GaussianMotion(problem.motion.clone()), GaussianLikelihood(problem.sensor.clone()));
-    let filter = SeededFilter::new(BootstrapFilter::new(particles, motion, sensor), rng);
-    let truth = Vector1::new(0.8);
-    let trial = laws::FilterTrial {
-        measurements: &[&truth; 10],
-        error: |particles: &ParticleSet<State>| (particles.moments(|x| *x).unwrap().mean[0] - truth[0]).abs(),
-        // Ten measurements leave a sigma of 0.3/√10 ≈ 0.1 and particles from a prior of sigma 1.
-        bound: 0.2,
-        refused_measurements: &[&Vector1::new(f64::NAN), &Vector1::new(f64::MAX)],
-        refused_controls: &[&Some(Vector2::new(f64::NAN, 0.0)), &Some(Vector2::new(0.0, f64::INFINITY))],
+fn bootstrap_filter_obeys_the_laws_of_filters() {
+    type Seeded = (Bootstrap, ChaCha8Rng);
+    let sees = |z: f64| {
+        move |(filter, rng): &mut Seeded| {
+            let Ok(report) = filter.update(&Vector1::new(z)) else { return false };
+            let resample = report.effective_share() < 0.5;
+            !resample || filter.particles_mut().resample(&Systematic, 1000, rng).is_ok()
+        }
     };
-    laws::filter(&filter, &trial).unwrap();
+    let drives = |x: f64, v: f64| {
+        move |(filter, rng): &mut Seeded| filter.predict(&Some(Vector2::new(x, v)), rng).is_ok()
+    };
+    let good: laws::FilterCall<'_, Seeded> = &sees(0.8);
+    let trial = laws::FilterTrial {
+        estimate: &|filter: &Seeded| filter.0.particles().clone(),
+        error: &error,
+        bound: BOUND,
+        accepted: &[good; 10],
+        refused: &[&sees(f64::NAN), &sees(f64::MAX), &drives(f64::NAN, 0.0), &drives(0.0, f64::INFINITY)],
+    };
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let filter = Problem::new(0.1, 0.3).bootstrap_filter(1000, &mut rng);
+    laws::filter(&(filter, rng), &trial).unwrap();
+}
+
+#[test]
+fn auxiliary_filter_obeys_the_laws_of_filters() {
+    type Seeded = (Auxiliary, ChaCha8Rng);
+    let steps = |z: f64| move |(filter, rng): &mut Seeded| filter.step(&None, &Vector1::new(z), rng).is_ok();
+    let good: laws::FilterCall<'_, Seeded> = &steps(0.8);
+    let trial = laws::FilterTrial {
+        estimate: &|filter: &Seeded| filter.0.particles().clone(),
+        error: &error,
+        bound: BOUND,
+        accepted: &[good; 10],
+        refused: &[&steps(f64::NAN), &steps(f64::MAX)],
+    };
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let filter = Problem::new(0.1, 0.3).auxiliary_filter(1000, &mut rng);
+    laws::filter(&(filter, rng), &trial).unwrap();
 }
 
 #[test]
 fn refusals_say_why() {
     let problem = Problem::new(0.1, 0.3);
-    let mut rng = ChaCha8Rng::seed_from_u64(20_261_121);
-    let (motion, sensor) =
-        (GaussianMotion(problem.motion.clone()), GaussianLikelihood(problem.sensor.clone()));
-    let particles = problem.particles(10, &mut rng);
-    let mut bootstrap = BootstrapFilter::new(particles.clone(), motion.clone(), sensor.clone());
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let mut bootstrap = problem.bootstrap_filter(10, &mut rng);
+    let particles = bootstrap.particles().clone();
     let lost = Some(Vector2::new(f64::NAN, 0.0));
     assert_eq!(bootstrap.predict(&lost, &mut rng), Err(ParticleError::State { index: 0 }));
     let impossible = Vector1::new(f64::MAX);
     assert_eq!(bootstrap.update(&impossible), Err(ParticleError::NoWeight { count: 10 }));
     assert_eq!(bootstrap.particles(), &particles);
-    let mut auxiliary = AuxiliaryFilter::new(particles.clone(), motion, sensor);
+    let mut auxiliary = problem.auxiliary_filter(10, &mut rng);
+    let particles = auxiliary.particles().clone();
     let refused: Result<NormalizationReport, _> = auxiliary.step(&None, &impossible, &mut rng);
     assert_eq!(refused, Err(ParticleError::NoWeight { count: 10 }));
     assert_eq!(auxiliary.particles(), &particles);

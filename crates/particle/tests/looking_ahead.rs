@@ -43,14 +43,15 @@ fn effective_share_after_sharp_measurement_matches_integral() {
     let motion = LinearMotion::<f64, U1>::stationary(Matrix1::new(MOTION_SIGMA.powi(2))).unwrap();
     let sensor =
         LinearSensor::<Line, Line>::new(Matrix1::identity(), Matrix1::new(SENSOR_SIGMA.powi(2))).unwrap();
-    let (motion, sensor) = (GaussianMotion(motion), GaussianLikelihood(sensor));
+    let sensor = GaussianLikelihood(sensor);
     let prior = Gaussian::from_sigmas(Line::zeros(), &Line::new(PRIOR_SIGMA)).unwrap().sampler();
     let measured = Line::zeros();
     let (mut bootstrap, mut auxiliary) = (vec![], vec![]);
     for seed in 0..30 {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let particles = ParticleSet::from_fn(N, |rng| prior.sample(rng), &mut rng).unwrap();
-        let mut filter = BootstrapFilter::new(particles.clone(), motion.clone(), sensor.clone());
+        let mut filter =
+            BootstrapFilter::new(particles.clone(), GaussianMotion(motion.clone()), sensor.clone());
         filter.predict(&None, &mut rng).unwrap();
         bootstrap.push(filter.update(&measured).unwrap().effective_share());
         let mut filter = AuxiliaryFilter::new(particles, motion.clone(), sensor.clone());

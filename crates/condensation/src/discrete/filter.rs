@@ -1,4 +1,4 @@
-use wayfix_estimation_traits::{BayesFilter, LogWeight};
+use wayfix_estimation_traits::LogWeight;
 
 use crate::discrete::chunks::{CHUNK, fold_chunks, map_chunks};
 use crate::discrete::lattice::n_cells;
@@ -194,26 +194,6 @@ impl DiscreteFilter {
     fn accept(&mut self, scale: f64) {
         map_chunks(&mut self.next, CHUNK, |_, chunk| chunk.iter_mut().for_each(|p| *p *= scale));
         std::mem::swap(&mut self.belief, &mut self.next);
-    }
-}
-
-impl BayesFilter for DiscreteFilter {
-    type Control = dyn Transition;
-    type Measurement = [LogWeight];
-    type Estimate = BestState;
-    type Report = Outcome;
-    type Error = CondensationError;
-
-    fn predict(&mut self, control: &dyn Transition) -> Result<(), CondensationError> {
-        Self::predict(self, control)
-    }
-
-    fn update(&mut self, measurement: &[LogWeight]) -> Result<Outcome, CondensationError> {
-        Self::update(self, measurement)
-    }
-
-    fn estimate(&self) -> BestState {
-        self.best()
     }
 }
 

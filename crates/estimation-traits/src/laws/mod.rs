@@ -15,7 +15,7 @@ mod sample_motion;
 mod tangents;
 mod violation;
 
-pub use filter::{FilterTrial, filter};
+pub use filter::{FilterCall, FilterTrial, filter};
 pub use lie_group::lie_group;
 pub use likelihood::likelihood;
 pub use manifold::{manifold, periodic};

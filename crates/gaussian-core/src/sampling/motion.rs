@@ -28,7 +28,7 @@ use super::{gaussian::sample_tangent, semidefinite_factor::semidefinite_factor};
 /// let next = sampler.sampler(&2.0)(&Vector1::new(1.0), &mut rng);
 /// assert!((next[0] - 3.0).abs() < 0.1); // ten sigma
 /// ```
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussianMotion<M>(pub M);
 
 impl<M: MotionModel> SampleMotion for GaussianMotion<M>

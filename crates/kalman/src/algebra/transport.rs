@@ -2,7 +2,7 @@
 
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, StateAlloc, TangentMatrix};
-use wayfix_gaussian_core::symmetrize;
+use wayfix_gaussian_core::{Gaussian, symmetrize};
 
 use crate::{check, error::Checked};
 
@@ -18,18 +18,21 @@ where
     (jacobian != identity).then_some(jacobian)
 }
 
-/// $`J P J^T`$ at `to`, positive definite.
-pub(crate) fn transported<X: Manifold>(
-    covariance: TangentMatrix<X>,
+/// The Gaussian at `mean` whose covariance in the tangent space at `from` is $`P`$: there it is $`J P J^T`$, positive definite.
+pub(crate) fn gaussian_at<X: Manifold>(
+    what: &'static str,
+    mean: X,
     from: &X,
-    to: &X,
-) -> Checked<TangentMatrix<X>>
+    mut covariance: TangentMatrix<X>,
+) -> Checked<Gaussian<X>>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
-    let Some(jacobian) = transport(from, to) else { return Ok(covariance) };
-    let mut there = &jacobian * covariance * jacobian.transpose();
-    symmetrize(&mut there);
-    check::positive_definite("posterior", &there)?;
-    Ok(there)
+    check::positive_definite(what, &covariance)?;
+    if let Some(jacobian) = transport(from, &mean) {
+        covariance = &jacobian * covariance * jacobian.transpose();
+        symmetrize(&mut covariance);
+        check::positive_definite(what, &covariance)?;
+    }
+    Ok(Gaussian::from_parts_unchecked(mean, covariance))
 }

@@ -5,7 +5,7 @@ use wayfix_gaussian_core::Gaussian;
 use crate::{
     Form, Innovation,
     algebra::product::{joseph, propagated_covariance},
-    algebra::transport::transported,
+    algebra::transport::gaussian_at,
     check,
     error::Checked,
     linearize::{linearize_motion, linearize_sensor},
@@ -27,10 +27,6 @@ where
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
         check::positive_definite("prior", gaussian.covariance())?;
         Ok(gaussian.clone())
-    }
-
-    fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
-        belief.clone()
     }
 
     fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>
@@ -63,8 +59,6 @@ where
         let gain = innovation.gain();
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
         let covariance = joseph(prior, &gain, innovation.cross_covariance(), &linear.jacobian, &linear.noise);
-        check::positive_definite("posterior", &covariance)?;
-        let covariance = transported(covariance, belief.mean(), &mean)?;
-        Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
+        Ok((innovation, Some(gaussian_at("posterior", mean, belief.mean(), covariance)?)))
     }
 }

@@ -31,7 +31,7 @@ impl<X: Manifold> InformationBelief<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
-    /// The matrix is always invertible, so [`Form::gaussian`] cannot fail.
+    /// The matrix is always invertible, so the conversion to a [`Gaussian`] cannot fail.
     fn checked(mean: X, information: TangentMatrix<X>) -> Checked<Self> {
         inverse("information", &mean, &information)?;
         Ok(Self { mean, information })
@@ -46,6 +46,17 @@ where
     }
 }
 
+impl<X: Manifold> From<InformationBelief<X>> for Gaussian<X>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    fn from(belief: InformationBelief<X>) -> Self {
+        let covariance = inverse("information", &belief.mean, &belief.information)
+            .expect("invariant: InformationBelief::checked has inverted it before");
+        Self::from_parts_unchecked(belief.mean, covariance)
+    }
+}
+
 impl<X: Manifold> Form<X> for Information
 where
     DefaultAllocator: StateAlloc<X::Dim>,
@@ -55,12 +66,6 @@ where
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<InformationBelief<X>> {
         let information = inverse("prior", gaussian.mean(), gaussian.covariance())?;
         InformationBelief::checked(gaussian.mean().clone(), information)
-    }
-
-    fn gaussian(&self, belief: &InformationBelief<X>) -> Gaussian<X> {
-        let covariance = inverse("information", &belief.mean, &belief.information)
-            .expect("invariant: InformationBelief::checked has inverted it before");
-        Gaussian::from_parts_unchecked(belief.mean.clone(), covariance)
     }
 
     fn predict<M>(&self, belief: &Self::Belief, motion: &M, control: &M::Control) -> Checked<Self::Belief>

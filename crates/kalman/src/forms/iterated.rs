@@ -5,7 +5,7 @@ use wayfix_estimation_traits::{
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Extended, Form, Innovation, KalmanError, algebra::product::joseph, algebra::transport::transported,
+    Extended, Form, Innovation, KalmanError, algebra::product::joseph, algebra::transport::gaussian_at,
     check, error::Checked, linearize::linearize_sensor,
 };
 
@@ -36,10 +36,6 @@ where
 
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
         Extended.belief_from(gaussian)
-    }
-
-    fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
-        belief.clone()
     }
 
     fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>
@@ -86,9 +82,7 @@ where
             if last_step <= self.tolerance.max(to_f64(epsilon::<X::Scalar>()).sqrt()) {
                 let covariance =
                     joseph(&prior, &gain, fit.cross_covariance(), &linear.jacobian, &linear.noise);
-                check::positive_definite("posterior", &covariance)?;
-                let covariance = transported(covariance, &point, &next)?;
-                return Ok((innovation, Some(Gaussian::from_parts_unchecked(next, covariance))));
+                return Ok((innovation, Some(gaussian_at("posterior", next, &point, covariance)?)));
             }
             point = next;
         }

@@ -3,7 +3,6 @@
 mod extended;
 mod information;
 mod iterated;
-mod plain;
 mod sequential;
 mod square_root;
 mod unscented;
@@ -11,7 +10,6 @@ mod unscented;
 pub use extended::Extended;
 pub use information::{Information, InformationBelief};
 pub use iterated::IteratedExtended;
-pub use plain::PlainExtended;
 pub use sequential::Sequential;
 pub use square_root::{FactoredGaussian, SquareRoot};
 pub use unscented::Unscented;

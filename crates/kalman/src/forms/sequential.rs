@@ -4,7 +4,7 @@ use wayfix_gaussian_core::{Gaussian, cholesky};
 
 use crate::{
     Extended, Form, Innovation,
-    algebra::transport::transported,
+    algebra::transport::gaussian_at,
     check,
     error::Checked,
     linearize::{LinearizedSensor, linearize_sensor},
@@ -26,10 +26,6 @@ where
 
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
         Extended.belief_from(gaussian)
-    }
-
-    fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
-        belief.clone()
     }
 
     fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>
@@ -69,10 +65,8 @@ where
             let gain = scalar_update(&mut covariance, &row);
             offset.axpy(remaining, &gain, nalgebra::one());
         }
-        check::positive_definite("posterior", &covariance)?;
         let mean = check::moved("posterior mean", belief.mean(), &offset)?;
-        let covariance = transported(covariance, belief.mean(), &mean)?;
-        Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
+        Ok((innovation, Some(gaussian_at("posterior", mean, belief.mean(), covariance)?)))
     }
 }
 

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::{
 };
 use wayfix_gaussian_core::{Gaussian, SigmaPoints, UnscentedParams, symmetrize, weighted_mean};
 
-use crate::{Extended, Form, Innovation, algebra::transport::transported, check, error::Checked};
+use crate::{Extended, Form, Innovation, algebra::transport::gaussian_at, check, error::Checked};
 
 /// The unscented filter with additive noise, on any manifold: sigma points instead of Jacobians.
 ///
@@ -26,10 +26,6 @@ where
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
         SigmaPoints::new(gaussian, &self.params)?;
         Extended.belief_from(gaussian)
-    }
-
-    fn gaussian(&self, belief: &Gaussian<X>) -> Gaussian<X> {
-        belief.clone()
     }
 
     fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>
@@ -73,9 +69,8 @@ where
         }
         let gain = innovation.gain();
         let mean = check::moved("posterior mean", belief.mean(), &(&gain * innovation.residual()))?;
-        let covariance = spread.remaining(&gain, &noise)?;
-        let covariance = transported(covariance, belief.mean(), &mean)?;
-        Ok((innovation, Some(Gaussian::from_parts_unchecked(mean, covariance))))
+        let covariance = spread.remaining(&gain, &noise);
+        Ok((innovation, Some(gaussian_at("posterior", mean, belief.mean(), covariance)?)))
     }
 }
 
@@ -130,14 +125,13 @@ where
         &self,
         gain: &OMatrix<X::Scalar, X::Dim, Z::Dim>,
         noise: &TangentMatrix<Z>,
-    ) -> Checked<TangentMatrix<X>> {
+    ) -> TangentMatrix<X> {
         let mut covariance = gain * noise * gain.transpose();
         for (weight, state, seen) in &self.deviations {
             add_outer::<X>(&mut covariance, *weight, &(state - gain * seen));
         }
         symmetrize(&mut covariance);
-        check::positive_definite("posterior", &covariance)?;
-        Ok(covariance)
+        covariance
     }
 }
 

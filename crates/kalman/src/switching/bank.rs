@@ -29,7 +29,7 @@ use crate::{Form, Innovation, KalmanError, check, error::Checked};
 /// assert!((bank.last_active_estimate(1).expect("two models").mean()[0] - 152.0).abs() < 0.1);
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ModelBank<M: MotionModel, F: Form<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
@@ -48,20 +48,6 @@ pub struct Candidate<I, B> {
     pub innovation: I,
     /// The belief after the measurement, if this model is the active one.
     pub belief: B,
-}
-
-impl<M: MotionModel, F: Form<M::State> + Clone> Clone for ModelBank<M, F>
-where
-    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
-{
-    fn clone(&self) -> Self {
-        Self {
-            models: Arc::clone(&self.models),
-            form: self.form.clone(),
-            settled: self.settled.clone(),
-            predicted: self.predicted.clone(),
-        }
-    }
 }
 
 impl<M: MotionModel, F: Form<M::State>> ModelBank<M, F>
@@ -88,12 +74,12 @@ where
 
     /// The belief of filter `model` when it was last active; `None` if there is no such filter.
     pub fn last_active_estimate(&self, model: usize) -> Option<Gaussian<M::State>> {
-        self.settled.get(model).map(|belief| self.form.gaussian(belief))
+        self.settled.get(model).map(|belief| belief.clone().into())
     }
 
     /// The belief of filter `model` if it has been active since the last measurement; `None` if there is no such filter.
     pub fn predicted(&self, model: usize) -> Option<Gaussian<M::State>> {
-        self.predicted.get(model).map(|belief| self.form.gaussian(belief))
+        self.predicted.get(model).map(|belief| belief.clone().into())
     }
 
     /// Predicts the belief of every filter with `control`, as if it were the active one.

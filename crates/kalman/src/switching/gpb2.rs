@@ -70,7 +70,7 @@ where
     /// # Errors
     /// Returns an error if the beliefs are spread so far over a manifold that they have no mean.
     pub fn estimate(&self) -> Result<Gaussian<M::State>, KalmanError> {
-        merged(&self.form, self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
+        merged(self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
     }
 
     /// Moves the belief of every model by `control` with every model.
@@ -118,7 +118,7 @@ where
         let possible = probabilities.into_iter().enumerate().filter(|(_, probability)| *probability > 0.0);
         let merge = |(model, probability)| {
             let same = hypotheses.iter().filter(|h| h.model == model).map(|h| (h.probability, &h.belief));
-            let belief = self.form.belief_from(&merged(&self.form, same)?)?;
+            let belief = self.form.belief_from(&merged(same)?)?;
             Ok(Hypothesis { model, belief, probability })
         };
         possible.map(merge).collect()

@@ -4,7 +4,7 @@ use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{LogWeight, Manifold, StateAlloc};
 use wayfix_gaussian_core::{Gaussian, moment_matched};
 
-use crate::{Form, KalmanError, error::Checked};
+use crate::{KalmanError, error::Checked};
 
 /// A belief under the assumption that `model` is active, and its probability.
 #[derive(Clone, Debug)]
@@ -47,20 +47,16 @@ pub(super) fn model_probabilities<B>(hypotheses: &[Hypothesis<B>], n_models: usi
 }
 
 /// The one Gaussian with the moments of the weighted ones.
-pub(super) fn merged<'a, X, F>(
-    form: &F,
-    weighted: impl Iterator<Item = (f64, &'a F::Belief)>,
-) -> Checked<Gaussian<X>>
+pub(super) fn merged<'a, X, B>(weighted: impl Iterator<Item = (f64, &'a B)>) -> Checked<Gaussian<X>>
 where
     X: Manifold,
-    F: Form<X>,
-    F::Belief: 'a,
+    B: Clone + Into<Gaussian<X>> + 'a,
     DefaultAllocator: StateAlloc<X::Dim>,
 {
     // A hypothesis of zero weight must not affect the mean, even if it is far away.
     let (weights, components): (Vec<f64>, Vec<_>) = weighted
         .filter(|(weight, _)| *weight > 0.0)
-        .map(|(weight, belief)| (weight, form.gaussian(belief)))
+        .map(|(weight, belief)| (weight, belief.clone().into()))
         .unzip();
     Ok(moment_matched(&weights, &components)?)
 }

@@ -68,7 +68,7 @@ where
 
     /// The belief if `model` is active; `None` if there is no such model.
     pub fn model_estimate(&self, model: usize) -> Option<Gaussian<M::State>> {
-        self.hypotheses.get(model).map(|hypothesis| self.form.gaussian(&hypothesis.belief))
+        self.hypotheses.get(model).map(|hypothesis| hypothesis.belief.clone().into())
     }
 
     /// The belief over all models, moment-matched.
@@ -76,7 +76,7 @@ where
     /// # Errors
     /// Returns an error if the beliefs are spread so far over a manifold that they have no mean.
     pub fn estimate(&self) -> Result<Gaussian<M::State>, KalmanError> {
-        merged(&self.form, self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
+        merged(self.hypotheses.iter().map(|h| (h.probability, &h.belief)))
     }
 
     /// Mixes the beliefs and moves each by `control` with its own model.
@@ -120,7 +120,7 @@ where
         }
         let weighted =
             self.hypotheses.iter().map(|h| (h.probability * self.chain.probability(h.model, to), &h.belief));
-        self.form.belief_from(&merged(&self.form, weighted)?)
+        self.form.belief_from(&merged(weighted)?)
     }
 }
 

@@ -30,6 +30,7 @@ use crate::{Form, KalmanError, check, error::Checked};
 /// assert_eq!(light.selected(), 0);
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
+#[derive(Clone)]
 pub struct JumpMarkov<M: MotionModel, F: Form<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
@@ -56,6 +57,7 @@ impl Default for JumpMarkovParams {
 }
 
 /// The active models at the measurements so far, and the belief under that assumption.
+#[derive(Clone)]
 struct History<M: MotionModel, F: Form<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
@@ -67,34 +69,6 @@ where
     probability: f64,
 }
 
-impl<M: MotionModel, F: Form<M::State> + Clone> Clone for History<M, F>
-where
-    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
-{
-    fn clone(&self) -> Self {
-        Self {
-            bank: self.bank.clone(),
-            active: self.active.clone(),
-            path: self.path.clone(),
-            probability: self.probability,
-        }
-    }
-}
-
-impl<M: MotionModel, F: Form<M::State> + Clone> Clone for JumpMarkov<M, F>
-where
-    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
-{
-    fn clone(&self) -> Self {
-        Self {
-            chain: self.chain.clone(),
-            params: self.params,
-            histories: self.histories.clone(),
-            log_evidence: self.log_evidence.clone(),
-        }
-    }
-}
-
 /// A history extended by one model.
 struct Extension<B> {
     parent: usize,
@@ -103,7 +77,7 @@ struct Extension<B> {
     log_weight: LogWeight,
 }
 
-impl<M: MotionModel, F: Form<M::State> + Clone> JumpMarkov<M, F>
+impl<M: MotionModel + Clone, F: Form<M::State> + Clone> JumpMarkov<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {

@@ -1,20 +1,21 @@
+use nalgebra::DefaultAllocator;
 use rand::Rng;
-use wayfix_estimation_traits::{LikelihoodModel, SampleMotion};
+use wayfix_estimation_traits::{LikelihoodModel, Manifold, MotionModel, SampleMotion, StateAlloc};
+use wayfix_gaussian_core::GaussianMotion;
 
-use super::LikelyMotion;
 use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet, Systematic};
 
 /// The auxiliary particle filter: ancestors are chosen by the likelihood of the new measurement at their predicted state.
 /// [Pitt & Shephard 1999]
 ///
-/// Better than the bootstrap filter where the measurement is sharp and the motion is not much blurred; worse where the likely future says
+/// The predicted state is $`f(x, u)`$ of the motion model, the mean of its Gaussian noise.
+/// Better than the bootstrap filter where the measurement is sharp and the motion is not much blurred; worse where the predicted state says
 /// little about the actual one.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use rand::{RngExt, SeedableRng};
 /// use wayfix_estimation_traits::{LikelihoodModel, MotionModel};
-/// use wayfix_gaussian_core::GaussianMotion;
 /// use wayfix_particle::{AuxiliaryFilter, ParticleSet};
 ///
 /// struct Drift;
@@ -39,28 +40,34 @@ use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet, Systemati
 ///
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
 /// let prior = ParticleSet::from_fn(500, |rng| Vector1::new(rng.random_range(-5.0..5.0)), &mut rng)?;
-/// let mut filter = AuxiliaryFilter::new(prior, GaussianMotion(Drift), Ruler);
+/// let mut filter = AuxiliaryFilter::new(prior, Drift, Ruler);
 /// let evidence = filter.step(&(), &2.0, &mut rng)?;
 /// assert!(evidence.effective_share() > 0.7); // the bootstrap filter would be left with some 4 %
 /// # Ok::<(), wayfix_particle::ParticleError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct AuxiliaryFilter<M: SampleMotion, L> {
-    motion: M,
+pub struct AuxiliaryFilter<M: MotionModel, L>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
+    motion: GaussianMotion<M>,
     sensor: L,
     particles: ParticleSet<M::State>,
 }
 
-impl<M: SampleMotion, L> AuxiliaryFilter<M, L> {
+impl<M: MotionModel, L> AuxiliaryFilter<M, L>
+where
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
+{
     /// A filter that starts from `particles`.
     pub fn new(particles: ParticleSet<M::State>, motion: M, sensor: L) -> Self {
-        Self { motion, sensor, particles }
+        Self { motion: GaussianMotion(motion), sensor, particles }
     }
     /// The particles.
     pub fn particles(&self) -> &ParticleSet<M::State> {
         &self.particles
     }
-    /// The particles for injection.
+    /// The particles, to replace some or all.
     pub fn particles_mut(&mut self) -> &mut ParticleSet<M::State> {
         &mut self.particles
     }
@@ -68,17 +75,19 @@ impl<M: SampleMotion, L> AuxiliaryFilter<M, L> {
 
 impl<M, L> AuxiliaryFilter<M, L>
 where
-    M: LikelyMotion + Sync,
-    M::State: Clone + Send,
+    M: MotionModel + Sync,
+    M::State: Send,
     M::Control: Sync,
     L: LikelihoodModel<State = M::State> + Sync,
     L::Measurement: Sync,
+    GaussianMotion<M>: SampleMotion<State = M::State, Control = M::Control>,
+    DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
-    /// Predicts and corrects in one: ancestors by $`w_i \, p(z | μ_i)`$ with $`μ_i`$ their likely future, then a draw from the motion of each,
+    /// Predicts and corrects in one: ancestors by $`w_i \, p(z | μ_i)`$ with $`μ_i`$ their predicted state, then a draw from the motion of each,
     /// weighed by $`p(z | x) / p(z | μ)`$. The evidence is the product of both stages, an unbiased estimate. [Pitt et al. 2012]
     ///
     /// # Errors
-    /// [`ParticleError::LogWeight`] when a log-likelihood is NaN or positive infinity; [`ParticleError::NoWeight`] when no likely future
+    /// [`ParticleError::LogWeight`] when a log-likelihood is NaN or positive infinity; [`ParticleError::NoWeight`] when no predicted state
     /// or no drawn particle explains the measurement. The particles are as they were.
     pub fn step<R: Rng + ?Sized>(
         &mut self,
@@ -89,9 +98,9 @@ where
         let (motion, sensor) = (&self.motion, &self.sensor);
         let mut candidates = self.candidates()?;
         candidates.propagate_with(
-            || (motion.likely(control), sensor.log_likelihood(measurement)),
-            |(likely, log_likelihood), candidate, _| {
-                candidate.promise = log_likelihood(&likely(&candidate.state));
+            || sensor.log_likelihood(measurement),
+            |log_likelihood, candidate, _| {
+                candidate.promise = log_likelihood(&motion.0.propagate(&candidate.state, control));
             },
             rng,
         );
@@ -124,6 +133,6 @@ where
 #[derive(Clone)]
 struct Candidate<X> {
     state: X,
-    /// Log-likelihood of its, or its ancestor's, likely future.
+    /// Log-likelihood of its, or its ancestor's, predicted state.
     promise: f64,
 }

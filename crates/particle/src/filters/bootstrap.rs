@@ -8,13 +8,12 @@ use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet};
 /// [Gordon, Salmond & Smith 1993]
 ///
 /// When to resample, how, and to how many particles is said between the steps, on [`particles_mut`](Self::particles_mut).
-/// [`SeededFilter`](crate::SeededFilter) makes a [`BayesFilter`](wayfix_estimation_traits::BayesFilter) of it.
 ///
 /// ```
 /// use nalgebra::Vector1;
 /// use rand::{Rng, RngExt, SeedableRng};
-/// use wayfix_estimation_traits::{LikelihoodModel, Policy, SampleMotion};
-/// use wayfix_particle::{BootstrapFilter, ParticleSet, Systematic, ess_below};
+/// use wayfix_estimation_traits::{LikelihoodModel, SampleMotion};
+/// use wayfix_particle::{BootstrapFilter, ParticleSet, Systematic};
 ///
 /// struct Drive;
 /// impl SampleMotion for Drive {
@@ -36,11 +35,9 @@ use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet};
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
 /// let prior = ParticleSet::from_fn(500, |rng| Vector1::new(rng.random_range(-5.0..5.0)), &mut rng)?;
 /// let mut filter = BootstrapFilter::new(prior, Drive, Altimeter);
-/// let mut due = ess_below(0.5);
 /// for truth in [1.0, 2.0, 3.0] {
 ///     filter.predict(&1.0, &mut rng)?;
-///     let evidence = filter.update(&truth)?;
-///     if due.fires(&evidence) {
+///     if filter.update(&truth)?.effective_share() < 0.5 {
 ///         filter.particles_mut().resample(&Systematic, 500, &mut rng)?;
 ///     }
 /// }
@@ -64,7 +61,7 @@ impl<M: SampleMotion, L> BootstrapFilter<M, L> {
     pub fn particles(&self) -> &ParticleSet<M::State> {
         &self.particles
     }
-    /// The particles for resampling and injection.
+    /// The particles for resampling.
     pub fn particles_mut(&mut self) -> &mut ParticleSet<M::State> {
         &mut self.particles
     }

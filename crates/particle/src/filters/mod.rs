@@ -2,10 +2,6 @@
 
 mod auxiliary;
 mod bootstrap;
-mod likely_motion;
-mod seeded_filter;
 
 pub use auxiliary::AuxiliaryFilter;
 pub use bootstrap::BootstrapFilter;
-pub use likely_motion::LikelyMotion;
-pub use seeded_filter::SeededFilter;

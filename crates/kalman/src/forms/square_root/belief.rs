@@ -1,5 +1,6 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, StateAlloc, TangentMatrix};
+use wayfix_gaussian_core::Gaussian;
 
 /// A Gaussian carried as mean and lower triangular $`L`$ with $`P = L L^T`$.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,5 +27,15 @@ where
     /// $`L L^T`$. Its variances are sums of squares and cannot be negative.
     pub fn covariance(&self) -> TangentMatrix<X> {
         &self.factor * self.factor.transpose()
+    }
+}
+
+impl<X: Manifold> From<FactoredGaussian<X>> for Gaussian<X>
+where
+    DefaultAllocator: StateAlloc<X::Dim>,
+{
+    fn from(belief: FactoredGaussian<X>) -> Self {
+        let covariance = belief.covariance();
+        Self::from_parts_unchecked(belief.mean, covariance)
     }
 }

@@ -37,10 +37,6 @@ where
         Ok(FactoredGaussian { mean: gaussian.mean().clone(), factor })
     }
 
-    fn gaussian(&self, belief: &FactoredGaussian<X>) -> Gaussian<X> {
-        Gaussian::from_parts_unchecked(belief.mean.clone(), belief.covariance())
-    }
-
     fn predict<M>(&self, belief: &Self::Belief, motion: &M, control: &M::Control) -> Checked<Self::Belief>
     where
         M: MotionModel<State = X>,
