@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use wayfix_sensor_log::{OpenOptions, Record};
 use wayfix_systems::{
     points::SavedMap,
-    slam::{AssociationRule, Save, SavedMapError},
+    slam::{AssociationRule, SavedMapError},
     walls::{SavedWalls, WallSlamParams, run, run_on},
 };
 
@@ -31,7 +31,7 @@ fn a_resumed_run_goes_on_bit_for_bit() {
     assert!(ends.len() >= 4);
     for end in ends {
         let half = SavedWalls::from_bytes(&saved(&records[..end])).unwrap();
-        assert!(half.state.filter.landmarks.len() > 3 && half.state.front_end.last_keyframe.is_some());
+        assert!(half.filter.landmarks.len() > 3 && half.front_end.last_keyframe.is_some());
         let resumed = run_on(half, &records, &params, None, |_| {}).unwrap();
         assert_eq!(resumed.system.save().to_bytes().unwrap(), saved(&records), "{end}");
     }

@@ -17,7 +17,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{OpenOptions, Record};
 use wayfix_systems::points::{PointSlamParams, Profile, SavedMap, run, run_on};
-use wayfix_systems::slam::{AssociationRule, Save, SavedMapError};
+use wayfix_systems::slam::{AssociationRule, SavedMapError};
 use wayfix_systems::system::DriveStep;
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
@@ -37,7 +37,7 @@ fn saved_after_each_stamp(records: &[Record], params: &PointSlamParams) -> BTree
     let mut saved = BTreeMap::new();
     run(records, params, |DriveStep { system, .. }| {
         let map = system.save();
-        saved.insert(map.state.taken_until, map.to_bytes().unwrap());
+        saved.insert(map.taken_until, map.to_bytes().unwrap());
     })
     .unwrap();
     saved
@@ -58,17 +58,14 @@ fn a_resumed_run_goes_on_bit_for_bit_through_a_file() {
         let stop = records[records.len() / 2].stamp;
         let whole = run(&records, &params, |DriveStep { system, .. }| {
             let map = system.save();
-            if map.state.taken_until <= stop.nanoseconds() {
+            if map.taken_until <= stop.nanoseconds() {
                 halves = vec![map];
             }
         })
         .unwrap();
         halves[0].write(&path).unwrap();
         let resumed = run_on(SavedMap::read(&path).unwrap(), &records, &params, |_| {}).unwrap();
-        assert!(
-            halves[0].state.filter.n_updates > 10 && resumed.system.stamped_estimates().len() > 10,
-            "{log:?}"
-        );
+        assert!(halves[0].filter.n_updates > 10 && resumed.system.stamped_estimates().len() > 10, "{log:?}");
         let (whole, resumed) = (whole.system.save(), resumed.system.save());
         assert_eq!(resumed.to_bytes().unwrap(), whole.to_bytes().unwrap(), "{log:?}");
     }
@@ -185,7 +182,7 @@ fn a_killed_process_leaves_the_old_or_the_new_file_whole() {
         n_killed += usize::from(child.wait().unwrap().code().is_none());
         n_cut += remove_unfinished(&map);
         let Ok(bytes) = fs::read(&map) else { continue }; // killed before the first save
-        let taken_until = SavedMap::from_bytes(&bytes).unwrap().state.taken_until;
+        let taken_until = SavedMap::from_bytes(&bytes).unwrap().taken_until;
         assert_eq!(bytes, expected[&taken_until], "as an undisturbed run saves it at {taken_until} ns");
     }
     assert!(n_killed >= 20 && map.exists(), "{n_killed} of 40 were killed while they ran");

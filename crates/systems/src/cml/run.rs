@@ -8,8 +8,8 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_sensor_log::{Data, Record};
 
 use super::{CmlParams, CmlSystem, FrameResult, Plan, PoseSigmas, system::gaussian};
-use crate::system::KnownStart;
-use crate::system::{DriveStep, ODOMETRY, System, check_overlap, drive, without_odometry_delay};
+
+use crate::system::{DriveStep, KnownStart, ODOMETRY, System, check_overlap, drive, without_odometry_delay};
 use wayfix_evaluation::errors::{Sample, TrueTrack};
 
 /// What a run does with its views.

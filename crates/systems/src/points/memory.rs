@@ -5,12 +5,12 @@ use wayfix_slam_ekf::{ScaledPose, SlamError};
 
 use super::{PointFrontEnd, PointSlamParams, PointSystem};
 use crate::{
-    slam::{FrontEndMemory, Saved, SavedMapError, SlamState, check_association},
+    slam::{FrontEndMemory, SavedMapError, SlamState, check_association},
     system::{MotionStatistics, check_velocity},
 };
 
 /// A map of points.
-pub type SavedMap = Saved<SlamState<ScaledPose, Vector2<f64>, PointMemory>>;
+pub type SavedMap = SlamState<ScaledPose, Vector2<f64>, PointMemory>;
 
 /// All that a [`PointFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,7 +72,7 @@ impl PointSystem {
     /// # Errors
     /// Returns an error if the map has another association rule, or holds invalid numbers.
     pub(super) fn resume(params: PointSlamParams, saved: SavedMap) -> Result<Self, SavedMapError> {
-        let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end } = saved.state;
+        let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end } = saved;
         let PointMemory { time, odometry, commands, motion } = front_end;
         check_association(params.association, association)?;
         let stamp = Stamp::from_nanoseconds;

@@ -9,10 +9,7 @@ use wayfix_slam_ekf::LandmarkId;
 
 use super::{PointFrontEnd, PointSlamParams, PointSystem, SavedMap};
 use crate::{
-    slam::{
-        AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, Truth, run_through, start_pose,
-        warn_of_start,
-    },
+    slam::{AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_start},
     system::{DriveStep, Events, KnownStart, ODOMETRY, System, check_overlap},
 };
 
@@ -70,7 +67,7 @@ pub fn run_on(
     params: &PointSlamParams,
     observe: impl FnMut(DriveStep<'_, PointSystem>),
 ) -> Result<PointRun> {
-    let association = saved.state.association;
+    let association = saved.association;
     let system = PointSystem::resume(params.clone(), saved)?;
     self::association(records, Some(association))?;
     drive_through(system, TrueTrack::from_records(records), records, observe)
@@ -78,16 +75,17 @@ pub fn run_on(
 
 fn drive_through(
     system: PointSystem,
-    track: TrueTrack,
+    truth: TrueTrack,
     records: &[Record],
     observe: impl FnMut(DriveStep<'_, PointSystem>),
 ) -> Result<PointRun> {
-    let positions = TruePositions::from_records(records);
+    let true_positions = TruePositions::from_records(records);
     let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or_default();
-    let last_truth = track.last_stamp().or(positions.last_stamp());
+    let last_truth = truth.last_stamp().or(true_positions.last_stamp());
     let evaluated_until = last_truth.map_or(last_odometry, |stamp| stamp.min(last_odometry));
-    let truth = Truth { track, positions, map: true_landmarks(records), evaluated_until };
-    let mut run = run_through(system, truth, records, observe);
+    let true_map = true_landmarks(records);
+    let mut run =
+        SlamRun { system, truth, true_positions, true_map, evaluated_until }.through(records, observe);
     if !has_used_a_detection(run.events()) {
         bail!(
             "nothing could be estimated: no detection since the start of odometry was of use{}",

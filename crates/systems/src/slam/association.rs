@@ -1,11 +1,24 @@
+use clap::ValueEnum;
 use nalgebra::DefaultAllocator;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use wayfix_slam_ekf::{
     Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds,
     LandmarkDim, LandmarkModel, MeasurementDim, NearestNeighbour, NearestNeighbourParams, Observation,
     RobotDim, SlamAlloc, SlamError,
 };
 
-use super::AssociationRule;
+/// How detections find their landmarks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum AssociationRule {
+    /// By the identity that the sensor reads.
+    Known,
+    /// Individual-compatibility nearest neighbour with two thresholds.
+    Nn,
+    /// Joint compatibility branch and bound.
+    Jcbb,
+}
 
 /// The rule of association that a run chose.
 pub(crate) enum ChosenRule {

@@ -37,9 +37,9 @@ where
 {
     pub(crate) filter: EkfSlam<M>,
     pub(super) association: ChosenRule,
-    observability: Option<ObservabilityRecorder>,
+    pub(super) observability: Option<ObservabilityRecorder>,
     pub(crate) dead_reckoning: Pose2<f64>,
-    stamped_estimates: Vec<StampedEstimate>,
+    pub(super) stamped_estimates: Vec<StampedEstimate>,
     pub(crate) events: Events,
     /// Computing time since the last estimate.
     pub(crate) step: Duration,
@@ -64,13 +64,6 @@ where
             events: Events::default(),
             step: Duration::ZERO,
         }
-    }
-
-    pub(super) fn observability(&self) -> Option<&ObservabilityRecorder> {
-        self.observability.as_ref()
-    }
-    pub(super) fn stamped_estimates(&self) -> &[StampedEstimate] {
-        &self.stamped_estimates
     }
 
     /// Moves the robot.

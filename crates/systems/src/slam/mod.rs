@@ -10,12 +10,12 @@ mod event_name;
 mod figures;
 mod front_end;
 mod pictures;
-mod rule;
 mod run;
 mod saved;
 mod start;
 mod system;
 
+pub use association::AssociationRule;
 pub(crate) use association::ChosenRule;
 pub(crate) use estimates::ellipse;
 pub use estimates::{SlamDrawing, SlamEstimateLog};
@@ -25,13 +25,11 @@ use event_name::event_name;
 pub(crate) use figures::summary;
 pub use front_end::{FrontEnd, FrontEndMemory};
 pub(crate) use pictures::pictures_with;
-pub use rule::AssociationRule;
 pub use run::SlamRun;
-pub(crate) use run::{Truth, run_through};
 pub(crate) use saved::check_association;
-pub use saved::{Save, Saved, SavedMapError, SavedState, Saver};
+pub use saved::{SavedMapError, Saver, SlamState};
 pub(crate) use start::{
     start_pose, warn_of_an_empty_map, warn_of_no_overlap, warn_of_reference, warn_of_start,
 };
 pub(crate) use system::FIRST_ANCHOR;
-pub use system::{SlamState, SlamSystem, StateOf};
+pub use system::{SlamSystem, StateOf};

@@ -23,38 +23,26 @@ where
     pub evaluated_until: Stamp,
 }
 
-/// The truth of a log.
-pub(crate) struct Truth<T> {
-    pub(crate) track: TrueTrack,
-    pub(crate) positions: TruePositions,
-    pub(crate) map: T,
-    pub(crate) evaluated_until: Stamp,
-}
-
-/// Passes records through the system and says what is wrong with the result.
-pub(crate) fn run_through<F: FrontEnd, T>(
-    mut system: SlamSystem<F>,
-    truth: Truth<T>,
-    records: &[Record],
-    observe: impl FnMut(DriveStep<'_, SlamSystem<F>>),
-) -> SlamRun<F, T>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
-{
-    drive(&mut system, records, observe);
-    let estimates = system.stamped_estimates();
-    let estimated = estimates.first().zip(estimates.last()).map(|(first, last)| (first.stamp, last.stamp));
-    warn_of_no_overlap(system.events(), &truth.track, estimated);
-    let n_landmarks = system.filter().n_landmarks();
-    warn_of_an_empty_map(system.events(), n_landmarks);
-    let Truth { track, positions, map, evaluated_until } = truth;
-    SlamRun { system, truth: track, true_positions: positions, true_map: map, evaluated_until }
-}
-
 impl<F: FrontEnd, T> SlamRun<F, T>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
+    /// Passes records through the system and says what is wrong with the result.
+    pub(crate) fn through(
+        mut self,
+        records: &[Record],
+        observe: impl FnMut(DriveStep<'_, SlamSystem<F>>),
+    ) -> Self {
+        drive(&mut self.system, records, observe);
+        let estimates = self.system.stamped_estimates();
+        let estimated =
+            estimates.first().zip(estimates.last()).map(|(first, last)| (first.stamp, last.stamp));
+        warn_of_no_overlap(self.system.events(), &self.truth, estimated);
+        let n_landmarks = self.system.filter().n_landmarks();
+        warn_of_an_empty_map(self.system.events(), n_landmarks);
+        self
+    }
+
     /// Estimates with their true poses.
     pub fn samples(&self) -> Vec<(StampedEstimate, Sample)> {
         let sample = |estimate: &StampedEstimate| {

@@ -1,9 +1,8 @@
 use wayfix_estimation_traits::Pose2;
+use wayfix_evaluation::errors::TrueTrack;
 use wayfix_sensor_log::Stamp;
 
-use crate::system::Events;
-use crate::system::KnownStart;
-use wayfix_evaluation::errors::TrueTrack;
+use crate::system::{Events, KnownStart};
 
 /// Says where the start pose comes from, unless it is the truth at the start.
 pub(crate) fn warn_of_start(events: &mut Events, known: Option<KnownStart>, truth: &TrueTrack) {

@@ -1,5 +1,4 @@
 use nalgebra::DefaultAllocator;
-use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{
@@ -7,10 +6,7 @@ use wayfix_slam_ekf::{
     Snapshot, observability::ObservabilityRecorder,
 };
 
-use super::{
-    AssociationRule, Estimator, FrontEnd, FrontEndMemory, Save, Saved, SavedMapError, SavedState,
-    StampedEstimate,
-};
+use super::{AssociationRule, Estimator, FrontEnd, SavedMapError, SlamState, StampedEstimate};
 use crate::system::{Events, System};
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
@@ -28,23 +24,6 @@ where
 
 /// The identity of the first anchor of a map without identities; association gives smaller ones.
 pub(crate) const FIRST_ANCHOR: u32 = 1 << 31;
-
-/// All that a [`SlamSystem`] remembers between two records.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SlamState<R, L, S> {
-    /// Robot, map and covariance.
-    pub filter: Snapshot<R, L>,
-    /// How observations find their landmarks.
-    pub association: AssociationRule,
-    /// The identity of the next new landmark; `None` where the sensor reads identities.
-    pub next_id: Option<u32>,
-    /// Stamp of the last record that was taken, nanoseconds; a resumed run leaves out what is not later.
-    pub taken_until: u64,
-    /// Where odometry alone would put the robot.
-    pub dead_reckoning: Pose2<f64>,
-    /// What the front end remembers.
-    pub front_end: S,
-}
 
 /// The [`SlamState`] of a front end.
 pub type StateOf<F> = SlamState<
@@ -85,6 +64,18 @@ where
         self.estimator.filter.add_anchor(id, landmark)
     }
 
+    /// All that is needed to go on from here.
+    pub fn save(&self) -> StateOf<F> {
+        SlamState {
+            filter: self.estimator.filter.snapshot(),
+            association: self.association(),
+            next_id: self.estimator.association.next_id(),
+            taken_until: self.front_end.settled_until(self.taken_until).nanoseconds(),
+            dead_reckoning: self.estimator.dead_reckoning,
+            front_end: self.front_end.memory(),
+        }
+    }
+
     /// The filter: robot, map, covariance.
     pub fn filter(&self) -> &EkfSlam<F::Model> {
         &self.estimator.filter
@@ -99,11 +90,11 @@ where
     }
     /// One estimate for every scan of the sensor.
     pub fn stamped_estimates(&self) -> &[StampedEstimate] {
-        self.estimator.stamped_estimates()
+        &self.estimator.stamped_estimates
     }
     /// What the run observed, where that was to be recorded.
     pub fn observability(&self) -> Option<&ObservabilityRecorder> {
-        self.estimator.observability()
+        self.estimator.observability.as_ref()
     }
 }
 
@@ -125,33 +116,4 @@ where
     fn events(&mut self) -> &mut Events {
         &mut self.estimator.events
     }
-}
-
-impl<F: FrontEnd> Save for SlamSystem<F>
-where
-    DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
-    StateOf<F>: SavedState,
-{
-    type State = StateOf<F>;
-
-    fn save(&self) -> Saved<StateOf<F>> {
-        Saved {
-            state: SlamState {
-                filter: self.estimator.filter.snapshot(),
-                association: self.association(),
-                next_id: self.estimator.association.next_id(),
-                taken_until: self.front_end.settled_until(self.taken_until).nanoseconds(),
-                dead_reckoning: self.estimator.dead_reckoning,
-                front_end: self.front_end.memory(),
-            },
-        }
-    }
-}
-
-impl<R, L, S: FrontEndMemory> SavedState for SlamState<R, L, S>
-where
-    Self: Serialize + for<'de> Deserialize<'de>,
-{
-    const ROBOT: (&str, usize) = S::ROBOT;
-    const LANDMARK: (&str, usize) = S::LANDMARK;
 }

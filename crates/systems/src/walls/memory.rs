@@ -10,10 +10,10 @@ use super::{
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan},
 };
-use crate::slam::{AssociationRule, FrontEndMemory, Saved, SavedMapError, SlamState, check_association};
+use crate::slam::{AssociationRule, FrontEndMemory, SavedMapError, SlamState, check_association};
 
 /// A map of walls.
-pub type SavedWalls = Saved<SlamState<DriftingPose, Wall, WallMemory>>;
+pub type SavedWalls = SlamState<DriftingPose, Wall, WallMemory>;
 
 /// All that a [`WallFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,7 +114,7 @@ impl WallSystem {
         asked: Option<AssociationRule>,
     ) -> anyhow::Result<Self> {
         let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end: memory } =
-            saved.state;
+            saved;
         check_association(asked, association)?;
         memory.check()?;
         let laser_follows_log = params.laser.is_none() && memory.laser_follows_log;

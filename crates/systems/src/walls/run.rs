@@ -7,8 +7,7 @@ use wayfix_slam_ekf::LandmarkId;
 use super::{SavedWalls, WallFrontEnd, WallSlamParams, WallSystem, truth};
 use crate::{
     slam::{
-        AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, Truth, run_through, start_pose,
-        warn_of_reference, warn_of_start,
+        AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_reference, warn_of_start,
     },
     system::{DriveStep, KnownStart, ODOMETRY, System, check_overlap, warn_of_lag, without_odometry_delay},
 };
@@ -79,17 +78,17 @@ pub fn run_on(
 
 fn drive_through(
     system: WallSystem,
-    track: TrueTrack,
-    true_walls: Vec<TrueWall>,
+    truth: TrueTrack,
+    true_map: Vec<TrueWall>,
     records: &[Record],
     observe: impl FnMut(DriveStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let delay = system.front_end.params.odometry_delay;
     let records = without_odometry_delay(records, delay);
-    let positions = TruePositions::from_records(&records);
+    let true_positions = TruePositions::from_records(&records);
     let evaluated_until = Stamp::from_nanoseconds(u64::MAX);
-    let truth = Truth { track, positions, map: true_walls, evaluated_until };
-    let mut run = run_through(system, truth, &records, observe);
+    let mut run =
+        SlamRun { system, truth, true_positions, true_map, evaluated_until }.through(&records, observe);
     let stamped_estimates = run.system.stamped_estimates();
     if stamped_estimates.is_empty() {
         let n_before = run.events().get("before_resume");

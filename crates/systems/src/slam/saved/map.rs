@@ -1,34 +1,33 @@
 use std::{fs, path::Path};
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use wayfix_estimation_traits::Pose2;
+use wayfix_slam_ekf::Snapshot;
 
 use super::{SavedMapError, envelope};
-use crate::{saved::write_atomically, slam::AssociationRule};
+use crate::{
+    saved::write_atomically,
+    slam::{AssociationRule, FrontEndMemory},
+};
 
-/// All that a system remembers between two records, and of what kind it is.
-pub trait SavedState: Serialize + DeserializeOwned {
-    /// The robot's state, in words, and how many numbers it has.
-    const ROBOT: (&str, usize);
-    /// The same of a landmark.
-    const LANDMARK: (&str, usize);
-}
-
-/// A system whose state can be saved.
-pub trait Save {
-    /// What it remembers.
-    type State: SavedState;
-    /// All that is needed to go on from here.
-    fn save(&self) -> Saved<Self::State>;
-}
-
-/// What a system saves, in a file.
+/// All that a [`SlamSystem`](crate::slam::SlamSystem) remembers between two records, in a file.
 ///
-/// Noise, gates and timing are not in it: they are parameters of the robot and come from its settings, so that a robot can go on with better
-/// ones. What must be the same is checked: the kind of robot and landmarks, and how detections find their landmarks.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Saved<S> {
-    /// The state of the system.
-    pub state: S,
+/// Noise, gates and timing are not in it: they are parameters of the robot, so that a robot can go on with better ones. The kind of robot and
+/// landmarks and the rule of association must be the same.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SlamState<R, L, S> {
+    /// Robot, map and covariance.
+    pub filter: Snapshot<R, L>,
+    /// How observations find their landmarks.
+    pub association: AssociationRule,
+    /// The identity of the next new landmark; `None` where the sensor reads identities.
+    pub next_id: Option<u32>,
+    /// Stamp of the last record that was taken, nanoseconds; a resumed run leaves out what is not later.
+    pub taken_until: u64,
+    /// Where odometry alone would put the robot.
+    pub dead_reckoning: Pose2<f64>,
+    /// What the front end remembers.
+    pub front_end: S,
 }
 
 /// What the state is of. It comes first in the payload: the rest of another kind would decode to nonsense.
@@ -41,7 +40,7 @@ struct Kind {
 }
 
 impl Kind {
-    fn of<S: SavedState>() -> Self {
+    fn of<S: FrontEndMemory>() -> Self {
         Self {
             robot: S::ROBOT.0.to_owned(),
             landmark: S::LANDMARK.0.to_owned(),
@@ -50,7 +49,7 @@ impl Kind {
         }
     }
 
-    fn check<S: SavedState>(&self) -> Result<(), SavedMapError> {
+    fn check<S: FrontEndMemory>(&self) -> Result<(), SavedMapError> {
         let differs = |((what, expected), (_, found)): ((_, String), (&str, String))| {
             (expected != found).then_some(SavedMapError::Kind { what, expected, found })
         };
@@ -68,14 +67,17 @@ impl Kind {
     }
 }
 
-impl<S: SavedState> Saved<S> {
+impl<R, L, S: FrontEndMemory> SlamState<R, L, S>
+where
+    Self: Serialize + DeserializeOwned,
+{
     /// The bytes of the file.
     ///
     /// # Errors
     /// When the encoder refuses, which it does not for want of anything but memory.
     pub fn to_bytes(&self) -> Result<Vec<u8>, SavedMapError> {
         let kind = postcard::to_stdvec(&Kind::of::<S>()).map_err(SavedMapError::Payload)?;
-        let payload = postcard::to_extend(&self.state, kind).map_err(SavedMapError::Payload)?;
+        let payload = postcard::to_extend(self, kind).map_err(SavedMapError::Payload)?;
         Ok(envelope::seal(&payload))
     }
 
@@ -92,7 +94,7 @@ impl<S: SavedState> Saved<S> {
             let expected = (bytes.len() - rest.len()) as u64;
             return Err(SavedMapError::Length { expected, found: bytes.len() as u64 });
         }
-        Ok(Self { state })
+        Ok(state)
     }
 
     /// Reads a file.
@@ -131,24 +133,19 @@ pub(crate) fn check_association(
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector2;
-    use wayfix_slam_ekf::ScaledPose;
-
     use super::*;
-    use crate::{
-        points::{PointMemory, SavedMap},
-        slam::SlamState,
-    };
-
-    type State = SlamState<ScaledPose, Vector2<f64>, PointMemory>;
+    use crate::points::{PointMemory, SavedMap};
 
     #[test]
     fn a_map_of_another_kind_says_what_differs() {
         for (kind, what) in [
-            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<State>() }, "robot is Ackermann"),
-            (Kind { landmark: "wall".to_owned(), ..Kind::of::<State>() }, "landmark is wall"),
-            (Kind { robot_dimension: 3, ..Kind::of::<State>() }, "robot dimension is 3, here it is 4"),
-            (Kind { landmark_dimension: 3, ..Kind::of::<State>() }, "landmark dimension is 3, here it is 2"),
+            (Kind { robot: "Ackermann".to_owned(), ..Kind::of::<PointMemory>() }, "robot is Ackermann"),
+            (Kind { landmark: "wall".to_owned(), ..Kind::of::<PointMemory>() }, "landmark is wall"),
+            (Kind { robot_dimension: 3, ..Kind::of::<PointMemory>() }, "robot dimension is 3, here it is 4"),
+            (
+                Kind { landmark_dimension: 3, ..Kind::of::<PointMemory>() },
+                "landmark dimension is 3, here it is 2",
+            ),
         ] {
             let sealed = envelope::seal(&postcard::to_stdvec(&kind).unwrap());
             let error = SavedMap::from_bytes(&sealed).unwrap_err();

@@ -14,6 +14,6 @@ mod map;
 mod saver;
 
 pub use error::SavedMapError;
+pub use map::SlamState;
 pub(crate) use map::check_association;
-pub use map::{Save, Saved, SavedState};
 pub use saver::Saver;

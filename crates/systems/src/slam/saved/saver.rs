@@ -2,7 +2,10 @@ use std::path::PathBuf;
 
 use wayfix_sensor_log::{Record, Stamp};
 
-use super::{Save, SavedMapError};
+use serde::{Serialize, de::DeserializeOwned};
+
+use super::{SavedMapError, SlamState};
+use crate::slam::FrontEndMemory;
 
 /// Saves a system while it runs, every so often by the clock of the log, and at its end.
 pub struct Saver {
@@ -21,13 +24,20 @@ impl Saver {
 
     /// Saves when it is time, after a record and before `next`. Only between two stamps, so that a resumed run knows by the
     /// stamp what was taken. A failure is kept until [`finish`](Self::finish).
-    pub fn observe(&mut self, record: &Record, next: Option<&Record>, system: &impl Save) {
+    pub fn observe<R, L, S: FrontEndMemory>(
+        &mut self,
+        record: &Record,
+        next: Option<&Record>,
+        state: impl FnOnce() -> SlamState<R, L, S>,
+    ) where
+        SlamState<R, L, S>: Serialize + DeserializeOwned,
+    {
         let Some(period) = self.period else { return };
         let is_whole = next.is_some_and(|next| next.stamp > record.stamp);
         let first = *self.saved_at.get_or_insert(record.stamp);
         if is_whole && record.stamp.seconds_since(first) >= period {
             self.saved_at = Some(record.stamp);
-            self.failure = system.save().write(&self.path).err().or(self.failure.take());
+            self.failure = state().write(&self.path).err().or(self.failure.take());
         }
     }
 
@@ -35,8 +45,11 @@ impl Saver {
     ///
     /// # Errors
     /// When that or anything before could not be written.
-    pub fn finish(self, system: &impl Save) -> Result<(), SavedMapError> {
-        system.save().write(&self.path)?;
+    pub fn finish<R, L, S: FrontEndMemory>(self, state: &SlamState<R, L, S>) -> Result<(), SavedMapError>
+    where
+        SlamState<R, L, S>: Serialize + DeserializeOwned,
+    {
+        state.write(&self.path)?;
         self.failure.map_or(Ok(()), Err)
     }
 }

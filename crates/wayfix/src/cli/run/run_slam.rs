@@ -2,6 +2,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Context, Result};
 use nalgebra::DefaultAllocator;
+use serde::{Serialize, de::DeserializeOwned};
 use wayfix_evaluation::{
     plot::{Picture, PlotError},
     report::Run,
@@ -12,7 +13,8 @@ use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 use wayfix_systems::{
     points::{self, PointSlamParams, Profile, SavedMap},
     slam::{
-        AssociationRule, FrontEnd, Saved, SavedState, Saver, SlamEstimateLog, SlamRun, SlamSystem, StateOf,
+        AssociationRule, FrontEnd, FrontEndMemory, Saver, SlamEstimateLog, SlamRun, SlamState, SlamSystem,
+        StateOf,
     },
     system::{DriveStep, Stopwatch},
 };
@@ -156,7 +158,7 @@ pub(super) fn execute<F: FrontEnd, T>(
 ) -> Result<ExitCode>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
-    StateOf<F>: SavedState,
+    StateOf<F>: Serialize + DeserializeOwned,
 {
     let mut outputs = Outputs::open("slam", &arguments.common)?;
     let mut estimates: Option<SlamEstimateLog<F>> = outputs.estimates(origin)?;
@@ -168,14 +170,14 @@ where
             estimates.observe(record, system);
         }
         if let Some(saver) = &mut saver {
-            saver.observe(record, next, system);
+            saver.observe(record, next, || system.save());
         }
         bar.inc(1);
     });
     bar.finish_and_clear();
     let mut slam = slam?;
     if let Some(saver) = saver {
-        saver.finish(&slam.system).context("cannot save the map")?;
+        saver.finish(&slam.system.save()).context("cannot save the map")?;
     }
     let warnings = add_read_problems(slam.events(), read);
     let run = Run {
@@ -194,9 +196,12 @@ where
 
 impl Arguments {
     /// The map of `--resume`.
-    pub(super) fn saved_map<S: SavedState>(&self) -> Result<Option<Saved<S>>> {
+    pub(super) fn saved_map<R, L, S: FrontEndMemory>(&self) -> Result<Option<SlamState<R, L, S>>>
+    where
+        SlamState<R, L, S>: Serialize + DeserializeOwned,
+    {
         let read = |path: &PathBuf| {
-            Saved::read(path).with_context(|| format!("cannot go on from {}", path.display()))
+            SlamState::read(path).with_context(|| format!("cannot go on from {}", path.display()))
         };
         self.resume.as_ref().map(read).transpose()
     }
