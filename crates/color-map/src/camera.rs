@@ -61,7 +61,7 @@ impl Camera {
     /// A camera that sees these angles between the outer edges of its outer pixels, radians, its axis in the middle.
     ///
     /// # Errors
-    /// As [`Camera::new`]; the angles must lie in (0, π).
+    /// Returns the errors of [`Camera::new`]; the angles must lie in (0, π).
     pub fn from_field_of_view(
         width: u32,
         height: u32,

@@ -29,7 +29,7 @@ impl LabelImage {
     /// Labels from bytes, row by row from the top.
     ///
     /// # Errors
-    /// [`ViewError::Size`] when their number is not `width * height`.
+    /// Returns [`ViewError::Size`] if their number is not `width * height`.
     pub fn from_codes(width: u32, height: u32, codes: &[u8]) -> Result<Self, ViewError> {
         let expected = width as usize * height as usize;
         if codes.len() != expected {

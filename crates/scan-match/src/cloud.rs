@@ -29,7 +29,7 @@ impl Cloud {
     /// no echo.
     ///
     /// # Errors
-    /// When the geometry is not finite, the range not positive, or the beams go around more than once.
+    /// Returns an error if the geometry is not finite, the range not positive, or the beams go around more than once.
     pub fn from_ranges(
         angle_min: f64,
         angle_increment: f64,

@@ -21,7 +21,7 @@ use crate::{Format, Log, LogError, ReadReport, WriteReport};
 /// ```
 ///
 /// # Errors
-/// When `path` is the log itself; else as [`write`](crate::write()).
+/// Returns an error if `path` is the log itself; else as [`write`](crate::write()).
 pub fn convert(
     mut log: Log,
     path: impl AsRef<Path>,

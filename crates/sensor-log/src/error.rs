@@ -13,12 +13,12 @@ pub enum LogError {
         /// What was asked for.
         path: PathBuf,
     },
-    /// The operating system refuses.
+    /// An operating-system error.
     #[error("{}: {source}", path.display())]
     Io {
-        /// What was read or written.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// The operating-system error.
         source: io::Error,
     },
     /// A file cannot be made where it was asked for.
@@ -26,7 +26,7 @@ pub enum LogError {
     NotCreated {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The operating-system error.
         source: io::Error,
     },
     /// The output would replace the log that is read.

@@ -70,7 +70,7 @@ impl ImageFolder {
 /// a letter or digit: `-2`, `t_-2`; in `img-1` it separates. Hidden files, whose names begin with a dot, are no images.
 ///
 /// # Errors
-/// When the folder cannot be read.
+/// Returns an error if the folder cannot be read.
 pub fn image_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
     let mut files = images_in(folder)?;
     files.sort_by_cached_key(|path| (natural_key(&file_name(path)), path.clone()));

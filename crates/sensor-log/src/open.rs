@@ -68,7 +68,7 @@ impl PoseKind {
 /// other files are passed over. A file that cannot be read keeps its frame number, so that later stamps stay right.
 ///
 /// # Errors
-/// When nothing usable is there: see [`LogError`]. Single bad rows are no error, they are in [`Log::report`].
+/// Returns an error if nothing usable is there: see [`LogError`]. Single bad rows are no error, they are in [`Log::report`].
 pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogError> {
     let path = path.as_ref();
     let format = match options.format {

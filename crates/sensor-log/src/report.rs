@@ -52,7 +52,7 @@ pub enum LogEnd {
     Damaged {
         /// Where the reading stopped; of a compressed text, in the text.
         byte: u64,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }

@@ -39,7 +39,7 @@ impl WriteReport {
 /// ```
 ///
 /// # Errors
-/// When the format is read only (UTIAS, Victoria Park, CARMEN, JSON, images), a number is not finite, or the file cannot be written.
+/// Returns an error if the format is read only (UTIAS, Victoria Park, CARMEN, JSON, images), a number is not finite, or the file cannot be written.
 pub fn write(
     path: impl AsRef<Path>,
     format: Format,

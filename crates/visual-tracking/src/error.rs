@@ -34,7 +34,7 @@ pub enum TrackingError {
     /// A parameter or a probability is outside its range.
     #[error("{what} is {value}, must be {range}")]
     Parameter {
-        /// Which one.
+        /// Path of the file.
         what: &'static str,
         /// Its value.
         value: f64,

@@ -13,7 +13,7 @@ pub(crate) fn schema_of<P: JsonSchema>() -> Schema {
 /// `params` as TOML, with the documentation of every key above it; keys that are not set follow their table as comments.
 ///
 /// # Errors
-/// When the parameters have no TOML form.
+/// Returns an error if the parameters have no TOML form.
 pub(crate) fn commented<P: JsonSchema + Serialize>(params: &P) -> anyhow::Result<String> {
     let mut document: DocumentMut = toml::to_string(params)?.parse()?;
     let root = schema_of::<P>().to_value();

@@ -92,7 +92,7 @@ impl Projector {
     /// `camera_pose` is the camera's in the world: x forward, y left, z up.
     ///
     /// # Errors
-    /// [`ViewError::Pose`] if the pose is not finite, farther than 1e6 m away, or its quaternion not of unit length. Nothing is emitted then.
+    /// Returns [`ViewError::Pose`] if the pose is not finite, farther than 1e6 m away, or its quaternion not of unit length. Nothing is emitted then.
     pub fn spans(&mut self, camera_pose: &Pose3<f64>, emit: &mut impl FnMut(Span)) -> Result<(), ViewError> {
         pose::check(camera_pose)?;
         let Self { map, camera, canvas, todo, standing, .. } = self;
@@ -138,7 +138,7 @@ impl Projector {
     /// border is no edge; a pixel that sees no map colour makes one.
     ///
     /// # Errors
-    /// As [`Projector::spans`].
+    /// Returns the errors of [`Projector::spans`].
     pub fn inner_spans(
         &mut self,
         camera_pose: &Pose3<f64>,
@@ -165,7 +165,7 @@ impl Projector {
     /// What the camera sees, as an image.
     ///
     /// # Errors
-    /// As [`Projector::spans`].
+    /// Returns the errors of [`Projector::spans`].
     pub fn labels(&mut self, camera_pose: &Pose3<f64>) -> Result<LabelImage, ViewError> {
         let mut labels = LabelImage::empty(self.camera.width(), self.camera.height());
         self.spans(camera_pose, &mut |span| labels.paint(span))?;

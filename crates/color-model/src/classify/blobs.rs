@@ -37,7 +37,7 @@ pub struct Blob {
 /// ```
 ///
 /// # Errors
-/// When the labels do not fill rows of `width` pixels, or there are none.
+/// Returns an error if the labels do not fill rows of `width` pixels, or there are none.
 pub fn find_blobs(labels: &[u8], width: usize) -> Result<Vec<Blob>, ColorModelError> {
     if labels.is_empty() || width == 0 || !labels.len().is_multiple_of(width) {
         let height = labels.len().checked_div(width).unwrap_or(0);

@@ -30,7 +30,7 @@ impl Classifier {
     /// those of a light that falls unevenly on a field [`PixelParams::shaded`](crate::PixelParams::shaded).
     ///
     /// # Errors
-    /// When a density has no peak, or there are more than 255.
+    /// Returns an error if a density has no peak, or there are more than 255.
     pub fn new(densities: impl IntoIterator<Item = ColorDensity>) -> Result<Self, ColorModelError> {
         let densities: Vec<SumDensity> =
             densities.into_iter().map(|density| SumDensity::new(&density)).collect::<Result<_, _>>()?;
@@ -50,7 +50,7 @@ impl Classifier {
     /// The same with a background that takes this share of all pixels; the colours share the rest evenly.
     ///
     /// # Errors
-    /// When the share is not between 0 and 1.
+    /// Returns an error if the share is not between 0 and 1.
     pub fn with_background_share(self, background: Background, share: f64) -> Result<Self, ColorModelError> {
         if !(share > 0.0 && share < 1.0) {
             return Err(ColorModelError::OutOfRange { what: "share of the background", value: share });

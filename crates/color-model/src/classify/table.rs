@@ -35,7 +35,7 @@ impl LookUpTable {
     /// A table for colours with these densities, with a class for the background if there is one.
     ///
     /// # Errors
-    /// When a colour's density has no peak, or there are more than 255 colours.
+    /// Returns an error if a colour's density has no peak, or there are more than 255 colours.
     pub fn new(colors: Vec<ColorDensity>, background: Option<Background>) -> Result<Self, ColorModelError> {
         let cells = vec![NO_COLOR; 1 << BITS.iter().sum::<u32>()];
         let mut table = Self { cells, compiled_for: Vec::new(), background, rebuild_above: 0.05 };
@@ -46,7 +46,7 @@ impl LookUpTable {
     /// Makes the table anew if the light has moved; tells whether it has.
     ///
     /// # Errors
-    /// When a colour's density has no peak; the table is unchanged then.
+    /// Returns an error if a colour's density has no peak; the table is unchanged then.
     pub fn rebuild_if_changed(&mut self, colors: Vec<ColorDensity>) -> Result<bool, ColorModelError> {
         let moved = colors.len() != self.compiled_for.len()
             || colors.iter().zip(&self.compiled_for).any(|(now, then)| {

@@ -30,7 +30,7 @@ impl Frame {
     /// The sums of all pixels.
     ///
     /// # Errors
-    /// When the image is wider than 3900 pixels, the bound up to which 32 bits hold a row's sums.
+    /// Returns an error if the image is wider than 3900 pixels, the bound up to which 32 bits hold a row's sums.
     pub fn new(image: &YuvImage) -> Result<Self, ColorModelError> {
         Self::with(image, |_| Some(0))
     }

@@ -51,7 +51,7 @@ impl LightingBank {
     /// A bank of filters for the same colours.
     ///
     /// # Errors
-    /// When there are none, not as many as the chain has states, or they differ in their number of colours.
+    /// Returns an error if there are none, not as many as the chain has states, or they differ in their number of colours.
     pub fn new(filters: Vec<LightingFilter>, chain: MarkovChain) -> Result<Self, ColorModelError> {
         let (expected, got) = (chain.n_models(), filters.len());
         if expected != got {
@@ -74,7 +74,7 @@ impl LightingBank {
     /// covariance; the active one is the one that is active in most of the weight.
     ///
     /// # Errors
-    /// When there is no weight, or the banks differ in their members.
+    /// Returns an error if there is no weight, or the banks differ in their members.
     pub fn merged<'a>(
         weighted: impl Iterator<Item = (f64, &'a Self)> + Clone,
     ) -> Result<Self, ColorModelError> {
@@ -150,7 +150,7 @@ impl LightingBank {
     /// Prepares every filter for being the active one after `seconds`.
     ///
     /// # Errors
-    /// When the time is negative or not finite; nothing has changed then.
+    /// Returns an error if the time is negative or not finite; nothing has changed then.
     pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         let predict = |filter: &Arc<LightingFilter>| {
             let mut filter = LightingFilter::clone(filter);
@@ -164,7 +164,7 @@ impl LightingBank {
     /// `member` was the active one and saw `means`; the others fall back to what they knew. Gives the log evidence, nats.
     ///
     /// # Errors
-    /// When there is no such member or it refuses the means; nothing has changed then.
+    /// Returns an error if there is no such member or it refuses the means; nothing has changed then.
     pub fn update_member(&mut self, member: usize, means: &ColorMeans) -> Result<f64, ColorModelError> {
         let n_members = self.n_members();
         let filter = self.predicted.get(member).ok_or(ColorModelError::NoSuchMember { member, n_members })?;
@@ -182,7 +182,7 @@ impl LightingBank {
     /// A frame that is impossible under every member leaves the active one and has log-likelihood $`-∞`$. One number is drawn in any case.
     ///
     /// # Errors
-    /// When there are not as many log-likelihoods as members, or one is NaN or $`+∞`$.
+    /// Returns an error if there are not as many log-likelihoods as members, or one is NaN or $`+∞`$.
     pub fn choose<R: Rng + ?Sized>(
         &self,
         log_likelihoods: &[f64],

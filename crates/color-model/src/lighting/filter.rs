@@ -40,7 +40,7 @@ impl LightingFilter {
     /// A filter that knows the `prior` of $`3M`$ numbers.
     ///
     /// # Errors
-    /// When the prior's dimension is not a positive multiple of three, it has no density, a mean lies beyond a million or a variance beyond a
+    /// Returns an error if the prior's dimension is not a positive multiple of three, it has no density, a mean lies beyond a million or a variance beyond a
     /// billion times that of an image's mean (next to which the mean would be without noise), or a parameter is out of range.
     pub fn new(prior: Gaussian<DVector<f64>>, params: LightingParams) -> Result<Self, ColorModelError> {
         params.check()?;
@@ -126,7 +126,7 @@ impl LightingFilter {
     /// Lets the light drift for `seconds` (Eq. 6).
     ///
     /// # Errors
-    /// When the time is negative or not finite; nothing has changed then.
+    /// Returns an error if the time is negative or not finite; nothing has changed then.
     pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         check_seconds(seconds)?;
         let LightingParams { drift, .. } = self.params;
@@ -138,7 +138,7 @@ impl LightingFilter {
     /// Learns from the colour means of one image (Eqs. 3-5). Gives the log evidence $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
     ///
     /// # Errors
-    /// When there are more or fewer colours, or a mean is not finite or beyond a million; nothing has changed then.
+    /// Returns an error if there are more or fewer colours, or a mean is not finite or beyond a million; nothing has changed then.
     pub fn update(&mut self, means: &ColorMeans) -> Result<f64, ColorModelError> {
         means.check(self.n_colors())?;
         let log_evidence = means.seen().map(|(color, mean)| self.observe(color, &mean)).sum();

@@ -28,7 +28,7 @@ impl SumDensity {
     /// Factors the covariance.
     ///
     /// # Errors
-    /// When the mean is not finite or the covariance not positive definite.
+    /// Returns an error if the mean is not finite or the covariance not positive definite.
     pub fn new(density: &ColorDensity) -> Result<Self, ColorModelError> {
         let refused = ColorModelError::DensityNotPositive;
         let information = density.covariance.cholesky().ok_or(refused)?;

@@ -64,7 +64,7 @@ impl FeatureLikelihood {
     /// The likelihood of a classified image, 255 being background, as [`Classifier`](crate::Classifier) and [`LookUpTable`](crate::LookUpTable) make it.
     ///
     /// # Errors
-    /// When there are not as many labels as the camera has pixels, or a parameter is out of range.
+    /// Returns an error if there are not as many labels as the camera has pixels, or a parameter is out of range.
     pub fn new(labels: &[u8], projector: Projector, params: FeatureParams) -> Result<Self, ColorModelError> {
         params.check()?;
         let camera = *projector.camera();

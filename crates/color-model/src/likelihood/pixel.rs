@@ -20,7 +20,7 @@ impl<'a> PixelLikelihood<'a> {
     /// [`Frame::with_background`](crate::Frame::with_background).
     ///
     /// # Errors
-    /// When image and camera differ in size, or a parameter is out of range.
+    /// Returns an error if image and camera differ in size, or a parameter is out of range.
     pub fn new(
         image: &'a YuvImage,
         nats: impl FnMut([u8; 3]) -> Option<f64>,

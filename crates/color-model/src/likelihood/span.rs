@@ -9,7 +9,7 @@ use crate::{ColorDensity, ColorModelError, Frame, PixelSums};
 /// Independent of light: one gathering serves every lighting hypothesis, and the colour means that update them.
 ///
 /// # Errors
-/// When the pose is not finite or its quaternion not of unit length.
+/// Returns an error if the pose is not finite or its quaternion not of unit length.
 pub fn gather<'a>(
     projector: &mut Projector,
     frame_of: impl Fn(ColorId) -> Option<&'a Frame>,
@@ -44,7 +44,7 @@ impl<'a> SpanLikelihood<'a> {
     /// The likelihood of one frame, made by [`Frame::with_background`], in the map of `projector`.
     ///
     /// # Errors
-    /// When frame and camera differ in size, or a parameter is out of range.
+    /// Returns an error if frame and camera differ in size, or a parameter is out of range.
     pub fn new(frame: &'a Frame, projector: Projector, params: PixelParams) -> Result<Self, ColorModelError> {
         params.check()?;
         check_size(&projector, frame.width(), frame.height())?;

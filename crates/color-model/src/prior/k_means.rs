@@ -32,7 +32,7 @@ type Point = Vec<Option<f64>>;
 /// ```
 ///
 /// # Errors
-/// When there are no more than `k - 1` different points, `k` or `restarts` is zero, points differ in length, have no known coordinate or
+/// Returns an error if there are no more than `k - 1` different points, `k` or `restarts` is zero, points differ in length, have no known coordinate or
 /// one that is not finite.
 pub fn k_means<R: Rng + ?Sized>(
     points: &[Vec<Option<f64>>],

@@ -31,7 +31,7 @@ use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
 /// ```
 ///
 /// # Errors
-/// When there are not `k` different venues, a venue or parameter makes no sense, a colour is in no image of a group, or EM does not arrive.
+/// Returns an error if there are not `k` different venues, a venue or parameter makes no sense, a colour is in no image of a group, or EM does not arrive.
 pub fn learn_priors<R: Rng + ?Sized>(
     colors: &[String],
     venues: &[TrainingVenue],
@@ -64,7 +64,7 @@ pub fn learn_priors<R: Rng + ?Sized>(
 /// The group of each venue, from 0 for the darkest to `k - 1`: k-means on the mean Y of each colour. [Schulz & Fox 2004, V]
 ///
 /// # Errors
-/// When there are not `k` different venues, or a venue has no image that shows a colour, images of another number of colours, or means that
+/// Returns an error if there are not `k` different venues, or a venue has no image that shows a colour, images of another number of colours, or means that
 /// are not finite.
 pub fn split_by_brightness<R: Rng + ?Sized>(
     venues: &[TrainingVenue],

@@ -34,7 +34,7 @@ impl LightingPriors {
     /// Priors for `colors` in the map's order, one or more, with the variances (Y, U, V) of pixels and of an image's mean of a colour.
     ///
     /// # Errors
-    /// When there is no colour or no member, a member has not three numbers a colour or is not positive definite, or a variance is not
+    /// Returns an error if there is no colour or no member, a member has not three numbers a colour or is not positive definite, or a variance is not
     /// positive.
     pub fn new(
         colors: Vec<String>,

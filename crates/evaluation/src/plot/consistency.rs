@@ -45,7 +45,7 @@ impl ConsistencyPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let time = Axis::covering(self.samples.iter().map(|(t, _)| *t), Scale::Linear, 0.0);
         let has_values =

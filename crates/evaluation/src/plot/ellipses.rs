@@ -48,7 +48,7 @@ impl EllipsesPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let outline = |e: &NamedEllipse| ellipse(e.center, e.covariance, self.sigmas);
         let all: Vec<(f64, f64)> =

@@ -42,7 +42,7 @@ impl ErrorPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let time = Axis::covering(self.samples.iter().map(|sample| sample.t), Scale::Linear, 0.0);
         let plate = |k| Some((k, self.plate(time?, k)?));

@@ -38,7 +38,7 @@ impl FilmStrip {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses; only an empty strip needs it.
+    /// Returns an error if the drawing library refuses; only an empty strip needs it.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let n_columns = self.rows.iter().map(|(_, frames)| frames.len()).max().unwrap_or(0);
         let (frame_width, frame_height) = self.frame_size;

@@ -73,7 +73,7 @@ impl LinesPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let x = Axis::covering(points().map(|point| point.0), self.x_scale, 0.0);

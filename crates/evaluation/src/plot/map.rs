@@ -62,7 +62,7 @@ impl MapPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let ellipses: Vec<Vec<(f64, f64)>> = self
             .landmarks

@@ -53,7 +53,7 @@ impl TimesPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let x = Axis::covering(self.points.iter().map(|point| point.0), self.x_scale, 0.02);
         let y = Axis::covering(self.points.iter().map(|point| point.1), self.y_scale, 0.05);

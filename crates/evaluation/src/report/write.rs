@@ -12,7 +12,7 @@ pub enum ReportError {
     Io {
         /// Which file or folder.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
     /// A number or name has no JSON form.
@@ -24,7 +24,7 @@ impl Report {
     /// Writes `report.json` and `index.html` into `folder`, which is made when it is not there.
     ///
     /// # Errors
-    /// When the folder or a file cannot be written.
+    /// Returns an error if the folder or a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
         let refused = |path: &Path| {
             let path = path.to_owned();

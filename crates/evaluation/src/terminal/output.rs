@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 /// Writes to standard output. A reader that has seen enough (`| head`) is no failure.
 ///
 /// # Errors
-/// When standard output cannot be written to.
+/// Returns an error if standard output cannot be written to.
 pub fn print(text: impl Display) -> Result<()> {
     let mut stdout = io::stdout().lock();
     match write!(stdout, "{text}").and_then(|()| stdout.flush()) {

@@ -16,7 +16,7 @@ const N_PEOPLE: usize = 12;
 /// they are not, and the same area empty.
 ///
 /// # Errors
-/// When a drive cannot be simulated or followed.
+/// Returns an error if a drive cannot be simulated or followed.
 pub fn crowded(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();

@@ -23,7 +23,7 @@ const COURSES: [&str; 6] =
 /// comes after: both are measured, each against the static map on the same drive. The method as printed on the first drive tells how hard the world is.
 ///
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();

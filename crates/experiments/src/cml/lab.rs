@@ -18,7 +18,7 @@ const STEPS: [usize; 4] = [2000, 4000, 6000, 8000];
 /// Table 1: references in a lab whose lamps and curtains never stay as they are, with and without active forgetting.
 ///
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();

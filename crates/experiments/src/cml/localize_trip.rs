@@ -31,7 +31,7 @@ pub struct TripResult {
 /// Drives a localizer along a trip.
 ///
 /// # Errors
-/// When it refuses a step.
+/// Returns an error if it refuses a step.
 pub fn localize_trip(localizer: &mut PanoramaLocalizer, trip: &Trip) -> Result<TripResult> {
     let mut course = TripResult::default();
     for step in &trip.steps {

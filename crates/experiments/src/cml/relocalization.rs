@@ -39,7 +39,7 @@ const MOST_DRAWS: usize = 1000;
 /// How many runs in known stores that begin anywhere end near the truth after 20 m.
 ///
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
     let courses = in_stores(setup, seed, |map, later, at| {
         let trip = away(later, map, at, TRAVEL_M)?;
@@ -51,7 +51,7 @@ pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
 /// How many runs in which a robot is carried elsewhere, after 20 m that it knew where it was, end near the truth after 20 m more.
 ///
 /// # Errors
-/// As [`global_start`].
+/// Returns the errors of [`global_start`].
 pub fn kidnapped(setup: &Setup, seed: u64) -> Result<Run> {
     report("Carried away", setup, &kidnapped_results(setup, seed, TRAVEL_M)?)
 }
@@ -60,7 +60,7 @@ pub fn kidnapped(setup: &Setup, seed: u64) -> Result<Run> {
 /// it not been carried, or to any other place.
 ///
 /// # Errors
-/// As [`global_start`].
+/// Returns the errors of [`global_start`].
 pub fn after_relocalization(setup: &Setup, seed: u64) -> Result<Run> {
     let courses = kidnapped_results(setup, seed, FOLLOWED_M)?;
     let after = |course: &TripResult| course.errors.get((TRAVEL_M / VIEW_M) as usize..).map(<[f64]>::to_vec);

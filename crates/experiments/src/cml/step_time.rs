@@ -25,7 +25,7 @@ const KIDNAPPED_QUANTILE: f64 = 0.95;
 /// Times change from call to call, and other runs of a report go on beside this one.
 ///
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
     let seed = setup.seeds(seed).start;
     let shape = StoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..StoreParams::home_store() };

@@ -45,7 +45,7 @@ pub struct Trial {
 /// Starts anywhere, light unknown.
 ///
 /// # Errors
-/// When a log cannot be simulated or no image used.
+/// Returns an error if a log cannot be simulated or no image used.
 pub fn global_start(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
@@ -63,7 +63,7 @@ pub fn global_start(
 /// Starts near the truth, and is carried away after 40 frames.
 ///
 /// # Errors
-/// As [`global_start`].
+/// Returns the errors of [`global_start`].
 pub fn kidnapped(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
@@ -128,7 +128,7 @@ impl Convergence {
     /// Counts, their interval, and the errors of every frame over the runs.
     ///
     /// # Errors
-    /// When the picture cannot be drawn.
+    /// Returns an error if the picture cannot be drawn.
     pub fn report(&self) -> Result<Run, PlotError> {
         let n = self.trials.len();
         let n_succeeded = self.trials.iter().filter(|trial| trial.succeeded()).count();

@@ -18,7 +18,7 @@ use wayfix_systems::color::{ColorSystemParams, run, summarize};
 /// The drive of the stored logs in halls that were not picked: means over halls with 95 % intervals.
 ///
 /// # Errors
-/// When a log cannot be simulated or no image used.
+/// Returns an error if a log cannot be simulated or no image used.
 pub fn other_halls(
     seeds: impl IntoIterator<Item = u64>,
     lighting: Lighting,

@@ -25,7 +25,7 @@ type Rates = [Vec<f64>; 2];
 /// images of the log with 95 % intervals, the gain of the joint prior from differences in the same image.
 ///
 /// # Errors
-/// When no image of the log can be used.
+/// Returns an error if no image of the log can be used.
 pub fn withheld(
     records: &[Record],
     map: &Arc<ColorMap>,
@@ -41,7 +41,7 @@ pub fn withheld(
 /// The same in halls that were not picked: means over halls with 95 % intervals, the gain of the joint prior from differences in the same hall.
 ///
 /// # Errors
-/// When a log cannot be simulated or no image used.
+/// Returns an error if a log cannot be simulated or no image used.
 pub fn withheld_in_halls(
     seeds: impl IntoIterator<Item = u64>,
     lighting: Lighting,

@@ -13,7 +13,7 @@ use wayfix_systems::{system::Stopwatch, views::FeatureKind};
 /// Learns one traverse, goes along the other; see the [module](super) for what is counted.
 ///
 /// # Errors
-/// When a folder cannot be read, a frame not be decoded, or there are too few.
+/// Returns an error if a folder cannot be read, a frame not be decoded, or there are too few.
 pub fn run(folder: &Path) -> Result<Run> {
     let stopwatch = Stopwatch::start();
     let traverses = Traverses::read(folder)?;

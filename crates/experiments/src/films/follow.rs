@@ -18,7 +18,7 @@ use wayfix_systems::{
 /// `observe` sees every frame of the first method.
 ///
 /// # Errors
-/// When a tracker cannot begin, or refuses a frame.
+/// Returns an error if a tracker cannot begin, or refuses a frame.
 pub fn follow(
     film: &Film,
     methods: &[Method],

@@ -40,7 +40,7 @@ impl FilmScore {
     /// Takes the next frame in.
     ///
     /// # Errors
-    /// When an outline cannot be compared with the truth.
+    /// Returns an error if an outline cannot be compared with the truth.
     pub fn add(&mut self, target: &Target, frame: &Frame) -> Result<()> {
         let lost = target.status == TrackStatus::Lost;
         if frame.visible.area() == 0 {

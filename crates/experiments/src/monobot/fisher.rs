@@ -11,7 +11,7 @@ use wayfix_slam_ekf::{
 /// Linear and with constant noise, so that no measurement matters: all are as expected.
 ///
 /// # Errors
-/// When the filter refuses, which it has no reason to.
+/// Returns an error if the filter refuses, which it has no reason to.
 pub fn first_entry(n_landmarks: u32, n_steps: usize) -> Result<Vec<f64>> {
     let sensor = MonobotSensor { sigma: 1.0, sigma_per_meter: 0.0 };
     let motion = MonobotMotion { sigma: 1.0, sigma_per_meter: 0.0 };

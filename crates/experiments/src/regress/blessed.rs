@@ -17,7 +17,7 @@ impl Blessed {
     /// Reads the figures; none when there is no such file yet.
     ///
     /// # Errors
-    /// When the file is there and cannot be read.
+    /// Returns an error if the file is there and cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
         if !path.exists() {
             return Ok(Self::default());
@@ -29,7 +29,7 @@ impl Blessed {
     /// Writes the figures of these runs.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn write<'a>(path: &Path, runs: impl Iterator<Item = &'a Run>) -> Result<()> {
         let figures =
             |run: &Run| run.metrics.iter().map(|metric| (metric.name.clone(), metric.value)).collect();

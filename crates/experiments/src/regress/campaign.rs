@@ -17,7 +17,7 @@ pub struct Cell {
 /// Everything that was asked for, in the order of the report: run by run, seed by seed.
 ///
 /// # Errors
-/// When a plan cannot be read.
+/// Returns an error if a plan cannot be read.
 pub fn cells(options: &Options) -> Result<Vec<Cell>> {
     let mut cells = Vec::new();
     for suite in &options.suites {

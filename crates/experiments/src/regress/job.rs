@@ -22,7 +22,7 @@ impl Job<'_> {
     /// Where its log is.
     ///
     /// # Errors
-    /// When the plan names none.
+    /// Returns an error if the plan names none.
     pub fn log(&self) -> Result<&PathBuf> {
         self.path.as_ref().with_context(|| format!("run {}: give `log` or `data`", self.planned.name))
     }
@@ -41,7 +41,7 @@ impl Job<'_> {
     /// Where a file of the recordings is.
     ///
     /// # Errors
-    /// When there is no folder of recordings.
+    /// Returns an error if there is no folder of recordings.
     pub fn recording(&self, file: &Path) -> Result<PathBuf> {
         let data = self.options.data.as_ref().context("recordings need `--data`")?;
         Ok(data.join(file))
@@ -50,7 +50,7 @@ impl Job<'_> {
     /// A file beside the plan, as text.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// Returns an error if it cannot be read.
     pub fn read(&self, file: &Path) -> Result<String> {
         let path = self.options.fixtures.join(file);
         fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))

@@ -83,7 +83,7 @@ impl Plan {
     /// Reads the plan of a suite, `SUITE.toml` in the folder of the stored logs.
     ///
     /// # Errors
-    /// When it cannot be read, or a run names both a stored log and a recording.
+    /// Returns an error if it cannot be read, or a run names both a stored log and a recording.
     pub fn read(folder: &Path, suite: &str) -> Result<Self> {
         let path = folder.join(suite).with_extension("toml");
         let text =
@@ -101,7 +101,7 @@ impl PlannedRun {
     /// What the suite wants to know of the run.
     ///
     /// # Errors
-    /// When a key is unknown or its value is of another kind.
+    /// Returns an error if a key is unknown or its value is of another kind.
     pub fn settings<T: DeserializeOwned>(&self) -> Result<T> {
         let settings = self.settings.clone().try_into();
         settings.with_context(|| format!("the settings of run {} are not usable", self.name))

@@ -38,7 +38,7 @@ impl Options {
 /// A piece of work that is done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Done {
-    /// Which one.
+    /// Path of the file.
     pub cell: Cell,
     /// What came out, not judged yet.
     pub run: Run,
@@ -49,7 +49,7 @@ pub struct Done {
 /// The figures depend neither on the number of threads nor on how the work is divided.
 ///
 /// # Errors
-/// When a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error.
+/// Returns an error if a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error.
 pub fn run_shard(options: &Options, shard: Shard, done: &(impl Fn(&str) + Sync)) -> Result<Vec<Done>> {
     fs::create_dir_all(&options.out).with_context(|| format!("cannot create {}", options.out.display()))?;
     let mine = cells(options)?.into_iter().enumerate().filter(|(index, _)| shard.takes(*index));

@@ -12,7 +12,7 @@ const MIN_VENUES: usize = 3;
 /// Leaves each venue below `folder` out in turn; see the [module](super) for what is counted.
 ///
 /// # Errors
-/// When the folder has fewer than three venues, or a venue has no usable ball.
+/// Returns an error if the folder has fewer than three venues, or a venue has no usable ball.
 pub fn run(folder: &Path) -> Result<Run> {
     let stopwatch = Stopwatch::start();
     let mut venues = Venue::read_all(folder)?;

@@ -60,7 +60,7 @@ impl WallHypothesis {
     /// Whether the line of a segment is within `n_sigma` of this one: $`d^2 \le n_σ^2`$, the ellipse of the paper.
     ///
     /// # Errors
-    /// [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
+    /// Returns [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
     pub fn is_compatible(&self, segment: &Segment) -> Result<bool, LineError> {
         let squared = self.estimate.mahalanobis_squared(&segment.estimate)?;
         Ok(squared <= self.n_sigma * self.n_sigma)
@@ -69,7 +69,7 @@ impl WallHypothesis {
     /// The most likely of the compatible segments that reach into the band; a segment may be longer than the predicted wall.
     ///
     /// # Errors
-    /// [`LineError::NotPositiveDefinite`] if a sum of covariances is not.
+    /// Returns [`LineError::NotPositiveDefinite`] if a sum of covariances is not.
     pub fn find(&self, segments: &[Segment]) -> Result<Option<usize>, LineError> {
         let mut best: Option<(usize, f64)> = None;
         for (k, segment) in segments.iter().enumerate() {

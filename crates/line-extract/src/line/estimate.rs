@@ -36,7 +36,7 @@ impl LineEstimate {
     /// ```
     ///
     /// # Errors
-    /// [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
+    /// Returns [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
     pub fn mahalanobis_squared(&self, other: &Self) -> Result<f64, LineError> {
         let turned = wrap(other.line.alpha() - self.line.alpha());
         // The other form has the other sign of ρ, and so of the covariance between ρ and α.

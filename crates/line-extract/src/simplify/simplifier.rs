@@ -78,7 +78,7 @@ impl Simplifier {
     /// Replaces `kept` by the indices that [`simplify()`] returns.
     ///
     /// # Errors
-    /// As [`simplify()`]; `kept` stays as it was.
+    /// Returns the errors of [`simplify()`]; `kept` stays as it was.
     pub fn simplify_into(
         &mut self,
         points: &[Vector2<f64>],

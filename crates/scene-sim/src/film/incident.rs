@@ -33,7 +33,7 @@ impl Incident {
     /// The incident of that name.
     ///
     /// # Errors
-    /// [`SimError::UnknownScenario`] when there is none.
+    /// Returns [`SimError::UnknownScenario`] if there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
         let found = Self::ALL.into_iter().find(|incident| incident.name() == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })

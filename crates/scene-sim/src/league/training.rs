@@ -66,7 +66,7 @@ impl TrainingParams {
     /// ```
     ///
     /// # Errors
-    /// When there is to be too much of anything.
+    /// Returns an error if there is to be too much of anything.
     pub fn gather(&self, mut rng: ChaCha8Rng) -> Result<Vec<TrainingVenue>, SimError> {
         check::count("halls", self.n_halls, 10_000)?;
         check::count("pictures", self.n_images, 10_000)?;

@@ -28,7 +28,7 @@ impl Waypoints {
     /// The open route.
     ///
     /// # Errors
-    /// When a number is out of range, or points outside the turning circle are not found in the square.
+    /// Returns an error if a number is out of range, or points outside the turning circle are not found in the square.
     pub fn route<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Route, SimError> {
         check::count("waypoints", self.n_waypoints, 100_000)?;
         check::positive("half width of the waypoints (m)", self.half_width_m)?;

@@ -72,7 +72,7 @@ impl Scenario {
     /// The one called `name`.
     ///
     /// # Errors
-    /// When there is none.
+    /// Returns an error if there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
         let all = [
             Self::all(),

@@ -65,7 +65,7 @@ impl ImagingConditions {
     /// The picture of `scene` on this visit. Beyond the edge the last pixel repeats.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when a figure is not finite, or not of the sign it must have; so too when the picture has
+    /// Returns [`SimError::Parameter`] if a figure is not finite, or not of the sign it must have; so too when the picture has
     /// more or fewer bytes than its size says.
     pub fn picture_of(&self, scene: &RgbPicture, seed: u64) -> Result<RgbPicture, SimError> {
         self.check()?;

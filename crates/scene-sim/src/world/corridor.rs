@@ -22,7 +22,7 @@ impl CorridorLoop {
     /// Places walls and landmarks.
     ///
     /// # Errors
-    /// When a number is not positive, the corridor leaves no block inside, or there are too many landmarks.
+    /// Returns an error if a number is not positive, the corridor leaves no block inside, or there are too many landmarks.
     pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Plan, SimError> {
         check::positive("width of the corridor (m)", self.corridor_m)?;
         check::positive("spacing of the landmarks (m)", self.spacing_m)?;

@@ -23,7 +23,7 @@ impl UniformField {
     /// Places the landmarks.
     ///
     /// # Errors
-    /// When a number is out of range or the landmarks do not find room.
+    /// Returns an error if a number is out of range or the landmarks do not find room.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

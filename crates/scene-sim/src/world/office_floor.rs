@@ -34,7 +34,7 @@ impl OfficeFloor {
     /// Places the walls.
     ///
     /// # Errors
-    /// When a number is not positive, the corridor leaves no block inside, or the rooms and doors do not fit.
+    /// Returns an error if a number is not positive, the corridor leaves no block inside, or the rooms and doors do not fit.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

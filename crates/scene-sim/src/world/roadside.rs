@@ -23,7 +23,7 @@ impl Roadside {
     /// Places the rocks along `route`.
     ///
     /// # Errors
-    /// When a number is out of range.
+    /// Returns an error if a number is out of range.
     pub fn plan<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Result<Plan, SimError> {
         check::count("landmarks", self.n_landmarks, MOST_LANDMARKS)?;
         check::not_negative("clear width of the road (m)", self.clear_m)?;

@@ -45,7 +45,7 @@ pub(crate) fn open_text(path: &Path) -> Result<TextReader, LogError> {
 /// ```
 ///
 /// # Errors
-/// When the file cannot be read, or is no text in UTF-8.
+/// Returns an error if the file cannot be read, or is no text in UTF-8.
 pub fn read_text(path: &Path) -> Result<String, LogError> {
     let mut text = String::new();
     open_text(path)?.read_to_string(&mut text).map_err(|source| LogError::io(path, source))?;

@@ -60,7 +60,7 @@ impl Format {
     /// The format of what lies at `path`: by what is in it for folders, by name for `.mcap`, else by the first bytes.
     ///
     /// # Errors
-    /// When nothing is there, it cannot be read, is empty, or looks like no known format.
+    /// Returns an error if nothing is there, it cannot be read, is empty, or looks like no known format.
     pub fn detect(path: &Path) -> Result<Self, LogError> {
         let io = |source| LogError::io(path, source);
         if fs::metadata(path).map_err(io)?.is_dir() {

@@ -18,7 +18,7 @@ impl EncodedImage {
     /// Columns and rows of the upright image, from the header; no pixel is decoded.
     ///
     /// # Errors
-    /// When the file is cut short, its header is damaged or of another format, or it claims no pixel or more than 64 Mi.
+    /// Returns an error if the file is cut short, its header is damaged or of another format, or it claims no pixel or more than 64 Mi.
     pub fn size(&self) -> Result<(u32, u32), ImageError> {
         let mut decoder = self.decoder()?;
         let (width, height) = decoder.dimensions();
@@ -35,7 +35,7 @@ impl EncodedImage {
     /// How the file stores its pixels, from the header: what decoding to eight bits of colour will change.
     ///
     /// # Errors
-    /// As [`size`](Self::size).
+    /// Returns the errors of [`size`](Self::size).
     pub fn layout(&self) -> Result<PixelLayout, ImageError> {
         let color = self.decoder()?.original_color_type();
         let channels = color.channel_count();
@@ -46,7 +46,7 @@ impl EncodedImage {
     /// The image in colour: grey becomes colour, deeper channels are rounded to eight bits, transparency is dropped.
     ///
     /// # Errors
-    /// As [`size`](Self::size), and when the pixels are damaged. A JPEG file has no checksum: flipped bits in it may as well give other
+    /// Returns the errors of [`size`](Self::size), and when the pixels are damaged. A JPEG file has no checksum: flipped bits in it may as well give other
     /// pixels.
     pub fn decode_rgb(&self) -> Result<DecodedImage, ImageError> {
         let image = self.decode()?.into_rgb8();
@@ -56,7 +56,7 @@ impl EncodedImage {
     /// The image in grey: for a grey image its own bytes, else luma of its colours.
     ///
     /// # Errors
-    /// As [`decode_rgb`](Self::decode_rgb).
+    /// Returns the errors of [`decode_rgb`](Self::decode_rgb).
     pub fn decode_gray(&self) -> Result<DecodedImage, ImageError> {
         let image = self.decode()?.into_luma8();
         Ok(DecodedImage { width: image.width(), height: image.height(), pixels: image.into_raw() })
@@ -65,7 +65,7 @@ impl EncodedImage {
     /// The labels in [`Data::TrueLabels`](crate::Data::TrueLabels): the bytes of a grey PNG, and nothing that a conversion made up.
     ///
     /// # Errors
-    /// As [`decode_rgb`](Self::decode_rgb), and when the image is not a PNG of eight grey bits.
+    /// Returns the errors of [`decode_rgb`](Self::decode_rgb), and when the image is not a PNG of eight grey bits.
     pub fn decode_labels(&self) -> Result<DecodedImage, ImageError> {
         let color = self.decoder()?.original_color_type();
         if self.format != ImageFormat::Png || color != ExtendedColorType::L8 {

@@ -14,7 +14,7 @@ impl EncodedImage {
     /// ```
     ///
     /// # Errors
-    /// When the pixels do not fill the image or there are none.
+    /// Returns an error if the pixels do not fill the image or there are none.
     pub fn pnm_rgb(width: u32, height: u32, rgb: &[u8]) -> Result<Self, ImageError> {
         super::encode::check(width, height, 3, rgb)?;
         Ok(pnm("P6", width, height, rgb))
@@ -23,7 +23,7 @@ impl EncodedImage {
     /// Grey pixels, a byte each, as they are.
     ///
     /// # Errors
-    /// When the pixels do not fill the image or there are none.
+    /// Returns an error if the pixels do not fill the image or there are none.
     pub fn pnm_gray(width: u32, height: u32, gray: &[u8]) -> Result<Self, ImageError> {
         super::encode::check(width, height, 1, gray)?;
         Ok(pnm("P5", width, height, gray))

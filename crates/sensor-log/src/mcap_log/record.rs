@@ -5,7 +5,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).
     ///
     /// # Errors
-    /// When a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says or true labels are not compressed, the stamp
+    /// Returns an error if a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says or true labels are not compressed, the stamp
     /// is beyond the year 2106, or the output fails.
     pub fn record(&mut self, record: &Record) -> Result<(), LogError> {
         let stamp = record.stamp;

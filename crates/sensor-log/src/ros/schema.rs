@@ -90,7 +90,7 @@ impl RosSchema {
     /// whatever lengths they claim.
     ///
     /// # Errors
-    /// When the bytes are not plain CDR or end too early.
+    /// Returns an error if the bytes are not plain CDR or end too early.
     pub fn decode(self, bytes: &[u8]) -> Result<RosMessage<'_>, CdrError> {
         let cdr = &mut CdrReader::new(bytes)?;
         Ok(match self {

@@ -33,7 +33,7 @@ pub struct Relation {
 /// ```
 ///
 /// # Errors
-/// When the file cannot be read. Single bad lines are in the report.
+/// Returns an error if the file cannot be read. Single bad lines are in the report.
 pub fn read_relations(path: impl AsRef<Path>) -> Result<(Vec<Relation>, ReadReport), LogError> {
     let mut relations = Vec::new();
     let mut report = ReadReport::default();

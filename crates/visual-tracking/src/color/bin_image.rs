@@ -29,7 +29,7 @@ impl BinImage {
     /// The bins of a picture.
     ///
     /// # Errors
-    /// [`TrackingError::Extent`] when the picture has no pixels, or more than a [`BitMask`](crate::BitMask) may have.
+    /// Returns [`TrackingError::Extent`] if the picture has no pixels, or more than a [`BitMask`](crate::BitMask) may have.
     pub fn new(quantizer: &ColorQuantizer, picture: &RgbImage) -> Result<Self, TrackingError> {
         Self::within(quantizer, picture, &PixelRect::whole(picture))
     }
@@ -37,7 +37,7 @@ impl BinImage {
     /// The bins of a part of a picture.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and [`TrackingError::Outside`] when the part is not inside.
+    /// Returns the errors of [`new`](Self::new), and [`TrackingError::Outside`] when the part is not inside.
     pub fn within(
         quantizer: &ColorQuantizer,
         picture: &RgbImage,

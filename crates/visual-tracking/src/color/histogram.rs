@@ -38,7 +38,7 @@ impl ColorHistogram {
     /// Of the pixels that are on in a mask.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when image and mask differ in size.
+    /// Returns [`TrackingError::Dimension`] if image and mask differ in size.
     pub fn of_mask(image: &BinImage, mask: &BitMask) -> Result<Self, TrackingError> {
         mask.check_size((image.width(), image.height()))?;
         Ok(Self::counted(image.n_bins(), mask.runs().map(|(v, run)| &image.row(v)[run])))
@@ -70,7 +70,7 @@ impl ColorHistogram {
     /// [Swain & Ballard 1991; Andrade-Cetto & Sanfeliu, Eq. 28]
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when they differ in the number of bins.
+    /// Returns [`TrackingError::Dimension`] if they differ in the number of bins.
     pub fn intersection(&self, model: &Self) -> Result<f64, TrackingError> {
         check_size("histogram", self.counts.len(), model.counts.len())?;
         let (mut shared, mut total) = ([0.0; LANES], [0.0; LANES]);
@@ -102,7 +102,7 @@ impl ColorHistogram {
     /// The same shares of another total, such as 1, or the pixels of a candidate of another size; unchanged without pixels.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] when `total` is not finite and positive.
+    /// Returns [`TrackingError::Parameter`] if `total` is not finite and positive.
     pub fn scaled_to(&self, total: f64) -> Result<Self, TrackingError> {
         checked("total of a histogram", total, total.is_finite() && total > 0.0, "finite and positive")?;
         let factor = match self.total() {

@@ -51,7 +51,7 @@ impl ColorQuantizer {
     /// With so many bins an axis.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] when an axis has no bin, or all together are more than 65536.
+    /// Returns [`TrackingError::Parameter`] if an axis has no bin, or all together are more than 65536.
     pub fn new(space: ColorSpace, bins: [usize; 3]) -> Result<Self, TrackingError> {
         for n in bins {
             checked("bins of an axis", n as f64, (1..=65536).contains(&n), "between 1 and 65536")?;

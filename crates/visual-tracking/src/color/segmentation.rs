@@ -8,7 +8,7 @@ impl BinImage {
     /// The pixels whose bin is on: $`S(u, v) = 1`$ where $`H(r, g, b) > 0`$. [Andrade-Cetto & Sanfeliu, Sec. 3.3]
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when the set is of another number of bins.
+    /// Returns [`TrackingError::Dimension`] if the set is of another number of bins.
     pub fn segment(&self, set: &BinSet) -> Result<BitMask, TrackingError> {
         check_size("set of bins", self.n_bins(), set.n_bins())?;
         // A byte a bin is looked up faster than a bit.
@@ -28,7 +28,7 @@ impl BinImage {
     /// is a word of every mask.
     ///
     /// # Errors
-    /// As [`segment`](Self::segment).
+    /// Returns the errors of [`segment`](Self::segment).
     pub fn segment_all(&self, sets: &[BinSet]) -> Result<Vec<BitMask>, TrackingError> {
         for set in sets {
             check_size("set of bins", self.n_bins(), set.n_bins())?;

@@ -54,7 +54,7 @@ impl ContourTracker {
     /// Starts from a mask of the first picture, the largest blob in it.
     ///
     /// # Errors
-    /// As [`from_outline`](Self::from_outline), and [`TrackingError::Dimension`] when the mask is not as large as the picture.
+    /// Returns the errors of [`from_outline`](Self::from_outline), and [`TrackingError::Dimension`] when the mask is not as large as the picture.
     pub fn from_mask(
         picture: &RgbImage,
         mask: &BitMask,
@@ -69,7 +69,7 @@ impl ContourTracker {
     /// it; where that does not fill the box, the ellipse that does.
     ///
     /// # Errors
-    /// As [`from_outline`](Self::from_outline).
+    /// Returns the errors of [`from_outline`](Self::from_outline).
     pub fn from_box(
         picture: &RgbImage,
         bounds: &BoundingBox,

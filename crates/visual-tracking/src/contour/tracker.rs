@@ -135,7 +135,7 @@ impl Tracker for ContourTracker {
     /// One step of CONDENSATION.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when the picture is not as large as the first one.
+    /// Returns [`TrackingError::Dimension`] if the picture is not as large as the first one.
     fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, rng: &mut R) -> Result<Target, TrackingError> {
         check_size("width of the picture", self.size.0, picture.width() as usize)?;
         check_size("height of the picture", self.size.1, picture.height() as usize)?;

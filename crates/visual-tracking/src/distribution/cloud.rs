@@ -43,7 +43,7 @@ impl ColorCloud {
     /// Of colours that stand for several pixels each, not necessarily a whole number.
     ///
     /// # Errors
-    /// As [`from_colors`](Self::from_colors), and [`TrackingError::Parameter`] for a count below zero.
+    /// Returns the errors of [`from_colors`](Self::from_colors), and [`TrackingError::Parameter`] for a count below zero.
     pub fn from_counted(
         colors: impl IntoIterator<Item = (Vector3<f64>, f64)>,
         max_points: usize,
@@ -100,7 +100,7 @@ impl ColorCloud {
     /// Its parameters; axes continue those of `previous`.
     ///
     /// # Errors
-    /// As [`PrincipalColors::of`].
+    /// Returns the errors of [`PrincipalColors::of`].
     pub fn principal(&self, previous: Option<&PrincipalColors>) -> Result<PrincipalColors, TrackingError> {
         PrincipalColors::of(&self.points, &self.counts, previous)
     }
@@ -109,7 +109,7 @@ impl ColorCloud {
     /// that stand for less than `FADED` pixels are forgotten.
     ///
     /// # Errors
-    /// As [`from_counted`](Self::from_counted).
+    /// Returns the errors of [`from_counted`](Self::from_counted).
     pub(crate) fn with_memory_of(
         &self,
         older: &Self,

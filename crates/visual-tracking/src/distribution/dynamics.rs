@@ -35,7 +35,7 @@ impl ColorDynamics {
     /// gets noise of its own standard deviation per picture.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] when a number is out of its range.
+    /// Returns [`TrackingError::Parameter`] if a number is out of its range.
     pub fn constant_velocity(damping: f64, sigma: &ColorVector) -> Result<Self, TrackingError> {
         crate::error::probability("damping of the colour velocity", damping)?;
         for &sigma in sigma {
@@ -52,7 +52,7 @@ impl ColorDynamics {
     /// From $`F_x`$, $`F_v`$ and $`L`$.
     ///
     /// # Errors
-    /// [`TrackingError::NotFinite`].
+    /// Returns [`TrackingError::NotFinite`].
     pub fn from_matrices(
         from_value: Square,
         from_velocity: Square,

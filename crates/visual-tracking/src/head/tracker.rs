@@ -88,7 +88,7 @@ impl HeadTracker {
     /// Starts from the pixels of the head in the first picture.
     ///
     /// # Errors
-    /// As [`new`](Self::new); [`TrackingError::Empty`] without a pixel, [`TrackingError::Dimension`] when mask and picture differ
+    /// Returns the errors of [`new`](Self::new); [`TrackingError::Empty`] without a pixel, [`TrackingError::Dimension`] when mask and picture differ
     /// in size.
     pub fn from_mask(
         picture: &RgbImage,

@@ -30,7 +30,7 @@ impl BitMask {
     /// No pixel is on.
     ///
     /// # Errors
-    /// [`TrackingError::Extent`] when a side is zero, or there are more than $`2^{28}`$ pixels.
+    /// Returns [`TrackingError::Extent`] if a side is zero, or there are more than $`2^{28}`$ pixels.
     pub fn empty(width: usize, height: usize) -> Result<Self, TrackingError> {
         check_extent(width, height)?;
         Ok(Self { width, height, words: vec![0; width.div_ceil(64) * height] })
@@ -39,7 +39,7 @@ impl BitMask {
     /// Every pixel is on.
     ///
     /// # Errors
-    /// As [`empty`](Self::empty).
+    /// Returns the errors of [`empty`](Self::empty).
     pub fn full(width: usize, height: usize) -> Result<Self, TrackingError> {
         Ok(Self::empty(width, height)?.not())
     }
@@ -47,7 +47,7 @@ impl BitMask {
     /// The pixels of column `u` and row `v` for which `on(u, v)` is true.
     ///
     /// # Errors
-    /// As [`empty`](Self::empty).
+    /// Returns the errors of [`empty`](Self::empty).
     pub fn from_fn(
         width: usize,
         height: usize,
@@ -98,7 +98,7 @@ impl BitMask {
     /// The pixels that are on here and there.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when the sizes differ.
+    /// Returns [`TrackingError::Dimension`] if the sizes differ.
     pub fn and(&self, other: &Self) -> Result<Self, TrackingError> {
         self.zip(other, |a, b| a & b)
     }
@@ -106,7 +106,7 @@ impl BitMask {
     /// The pixels that are on here or there.
     ///
     /// # Errors
-    /// As [`and`](Self::and).
+    /// Returns the errors of [`and`](Self::and).
     pub fn or(&self, other: &Self) -> Result<Self, TrackingError> {
         self.zip(other, |a, b| a | b)
     }
@@ -114,7 +114,7 @@ impl BitMask {
     /// The pixels that are on here and not there.
     ///
     /// # Errors
-    /// As [`and`](Self::and).
+    /// Returns the errors of [`and`](Self::and).
     pub fn and_not(&self, other: &Self) -> Result<Self, TrackingError> {
         self.zip(other, |a, b| a & !b)
     }
@@ -134,7 +134,7 @@ impl BitMask {
     /// The pixels of a rectangle; what of it is beyond the edges is off.
     ///
     /// # Errors
-    /// As [`empty`](Self::empty).
+    /// Returns the errors of [`empty`](Self::empty).
     pub fn crop(
         &self,
         corner: (usize, usize),

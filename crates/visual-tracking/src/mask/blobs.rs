@@ -81,7 +81,7 @@ impl Blobs {
     /// The one that shares the most pixels with a mask; none when no one shares any.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when the mask is of another size.
+    /// Returns [`TrackingError::Dimension`] if the mask is of another size.
     pub fn most_overlapping(&self, mask: &BitMask) -> Result<Option<usize>, TrackingError> {
         mask.check_size(self.size)?;
         let mut shared = vec![0; self.len()];

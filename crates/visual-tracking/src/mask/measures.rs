@@ -49,7 +49,7 @@ impl BitMask {
     /// How many pixels are on in both.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when the sizes differ.
+    /// Returns [`TrackingError::Dimension`] if the sizes differ.
     pub fn overlap(&self, other: &Self) -> Result<usize, TrackingError> {
         other.check_size(self.size())?;
         Ok(self.words().iter().zip(other.words()).map(|(a, b)| (a & b).count_ones() as usize).sum())
@@ -58,7 +58,7 @@ impl BitMask {
     /// Intersection over union: 1 for equal masks, 0 for masks apart and for two empty ones.
     ///
     /// # Errors
-    /// As [`overlap`](Self::overlap).
+    /// Returns the errors of [`overlap`](Self::overlap).
     pub fn iou(&self, other: &Self) -> Result<f64, TrackingError> {
         let shared = self.overlap(other)?;
         let union = self.area() + other.area() - shared;

@@ -130,7 +130,7 @@ impl AffineSnake {
     /// Lays it somewhere else.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] when the map turns the shape over or flattens it.
+    /// Returns [`TrackingError::Parameter`] if the map turns the shape over or flattens it.
     pub fn moved_to(&self, map: &AffineMap) -> Result<Self, TrackingError> {
         self.outline_at(map)?;
         checked("determinant", map.linear.determinant(), map.linear.determinant() > 0.0, "positive")?;
@@ -145,7 +145,7 @@ impl AffineSnake {
     /// The contour that a map gives.
     ///
     /// # Errors
-    /// As [`Outline::from_points`].
+    /// Returns the errors of [`Outline::from_points`].
     pub fn outline_at(&self, map: &AffineMap) -> Result<Outline, TrackingError> {
         Outline::from_points(self.shape.iter().map(|point| map.apply((*point).into())).collect())
     }

@@ -41,7 +41,7 @@ impl Outline {
     /// The ellipse that fills a box, as a polygon of `n_points` corners.
     ///
     /// # Errors
-    /// As [`from_points`](Self::from_points).
+    /// Returns the errors of [`from_points`](Self::from_points).
     pub fn ellipse(bounds: &BoundingBox, n_points: usize) -> Result<Self, TrackingError> {
         let ([u, v], (a, b)) = (bounds.center(), (bounds.width() / 2.0, bounds.height() / 2.0));
         let angle = |i: usize| std::f64::consts::TAU * i as f64 / n_points as f64;
@@ -102,7 +102,7 @@ impl Outline {
     /// `n_points` points at equal distances along the outline.
     ///
     /// # Errors
-    /// As [`from_points`](Self::from_points): so few points may not enclose anything.
+    /// Returns the errors of [`from_points`](Self::from_points): so few points may not enclose anything.
     pub fn resampled(&self, n_points: usize) -> Result<Self, TrackingError> {
         let length: f64 = edges(&self.points).map(|(p, q)| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
         let step = length / n_points.max(1) as f64;
@@ -122,7 +122,7 @@ impl Outline {
     /// Each point replaced by the mean of itself and `reach` neighbours on either side: takes the steps of pixels off a contour.
     ///
     /// # Errors
-    /// As [`from_points`](Self::from_points): what is thin may vanish.
+    /// Returns the errors of [`from_points`](Self::from_points): what is thin may vanish.
     pub fn smoothed(&self, reach: usize) -> Result<Self, TrackingError> {
         let n = self.points.len();
         let reach = reach.min((n - 1) / 2);
@@ -176,7 +176,7 @@ impl Outline {
     /// The outline under an affine map.
     ///
     /// # Errors
-    /// As [`from_points`](Self::from_points): the map may flatten it.
+    /// Returns the errors of [`from_points`](Self::from_points): the map may flatten it.
     pub fn mapped(&self, map: &AffineMap) -> Result<Self, TrackingError> {
         Self::from_points(self.points.iter().map(|point| map.apply(*point)).collect())
     }

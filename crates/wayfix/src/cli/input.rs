@@ -19,7 +19,7 @@ pub(super) fn name_of(log: &[PathBuf]) -> String {
     log.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Parameters from a TOML file; the error names the file and the key, or the line where the text is no TOML.
+/// Parameters from a TOML file; the error names the file and the key, or the line where the text is not valid TOML.
 pub(super) fn read_toml<P>(path: &Path, parse: impl Fn(&str) -> Result<P, toml::de::Error>) -> Result<P> {
     let text = read_text(path).with_context(|| format!("cannot read parameters from {}", path.display()))?;
     let read = parse(&text).map_err(|error| {

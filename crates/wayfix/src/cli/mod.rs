@@ -68,7 +68,7 @@ enum Run {
 /// Whether a command line, with the name of the program first, is one that the program takes. For tests of what is documented.
 ///
 /// # Errors
-/// What is wrong with it.
+/// The reason.
 #[doc(hidden)]
 pub fn parses<T: Into<std::ffi::OsString> + Clone>(
     command_line: impl IntoIterator<Item = T>,

@@ -10,12 +10,12 @@ pub enum LiveError {
         /// Where it should have been.
         address: SocketAddr,
     },
-    /// The operating system refuses.
+    /// An operating-system error.
     #[error("cannot listen on {address}: {source}")]
     Bind {
         /// Where it should have been.
         address: SocketAddr,
-        /// What the system says.
+        /// The operating-system error.
         source: io::Error,
     },
     /// The server does not start.

@@ -33,7 +33,7 @@ impl Pace {
     /// `factor` times as fast as the log was recorded; 0: nothing is held back. Pauses of more than five seconds are cut to five.
     ///
     /// # Errors
-    /// [`LiveError::Pace`].
+    /// Returns [`LiveError::Pace`].
     pub fn new(factor: f64) -> Result<Self, LiveError> {
         if !factor.is_finite() || factor < 0.0 {
             return Err(LiveError::Pace { factor });

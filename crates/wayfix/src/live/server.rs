@@ -47,7 +47,7 @@ impl LiveServer {
     /// Listens at `address`.
     ///
     /// # Errors
-    /// [`LiveError::InUse`], [`LiveError::Bind`], [`LiveError::Server`].
+    /// Returns [`LiveError::InUse`], [`LiveError::Bind`], [`LiveError::Server`].
     pub fn start(address: SocketAddr) -> Result<Self, LiveError> {
         let (context, audience) = (Context::new(), Arc::new(Audience::default()));
         let listener = Arc::clone(&audience);

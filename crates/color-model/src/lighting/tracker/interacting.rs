@@ -39,7 +39,7 @@ impl ImmTracker {
     /// Starts from the mixture of the bank's priors. Noise and drift are those of the first member; the probability of a switch is the chain's mean.
     ///
     /// # Errors
-    /// When the priors have no common Gaussian.
+    /// Returns an error if the priors have no common Gaussian.
     pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
         Ok(Self { filter: Imm::new(motions, chain, Sequential, &start)?, noise })
@@ -55,7 +55,7 @@ impl Gpb2Tracker {
     /// As [`ImmTracker::new`].
     ///
     /// # Errors
-    /// When the priors have no common Gaussian.
+    /// Returns an error if the priors have no common Gaussian.
     pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
         Ok(Self { filter: Gpb2::new(motions, chain, Sequential, &start)?, noise })

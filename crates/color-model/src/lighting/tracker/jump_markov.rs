@@ -43,7 +43,7 @@ impl JumpMarkovTracker {
     /// Starts from what the bank's members know. Noise is that of the first member.
     ///
     /// # Errors
-    /// When no history is to be kept.
+    /// Returns an error if no history is to be kept.
     pub fn new(bank: &LightingBank, params: JumpMarkovParams) -> Result<Self, ColorModelError> {
         let belief = |light: &LightingFilter| {
             Gaussian::from_parts_unchecked(light.mean().clone(), light.covariance().clone())

@@ -25,18 +25,18 @@ pub trait LightTracker {
     /// Lets `seconds` pass.
     ///
     /// # Errors
-    /// When the time is negative or not finite.
+    /// Returns an error if the time is negative or not finite.
     fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError>;
 
     /// Learns from what an image shows. One that shows no colour says nothing.
     ///
     /// # Errors
-    /// When there are more or fewer colours, or a mean is not finite.
+    /// Returns an error if there are more or fewer colours, or a mean is not finite.
     fn update(&mut self, means: &ColorMeans) -> Result<(), ColorModelError>;
 
     /// How the pixels of each colour are distributed now (Eq. 9), in the order of the map.
     ///
     /// # Errors
-    /// When the belief has no mean any more.
+    /// Returns an error if the belief has no mean any more.
     fn colors(&self) -> Result<Vec<ColorDensity>, ColorModelError>;
 }

@@ -44,7 +44,7 @@ impl Aisles {
     /// aisle that was driven least, never straight back; left or right of the middle by chance. It ends at the first crossing after `length_m`.
     ///
     /// # Errors
-    /// When the length is no length.
+    /// Returns an error if the length is no length.
     pub fn tour<R: Rng + ?Sized>(&self, length_m: f64, rng: &mut R) -> Result<Route, SimError> {
         self.tour_from([0, 0], length_m, rng)
     }
@@ -52,7 +52,7 @@ impl Aisles {
     /// The same from another crossing.
     ///
     /// # Errors
-    /// When the length is no length, or there is no such crossing.
+    /// Returns an error if the length is no length, or there is no such crossing.
     pub fn tour_from<R: Rng + ?Sized>(
         &self,
         start: Crossing,
@@ -84,7 +84,7 @@ impl Aisles {
     /// Laps around everything, counter-clockwise from the same corner; left or right of the middle by chance.
     ///
     /// # Errors
-    /// When there are no laps, or more than the longest tour.
+    /// Returns an error if there are no laps, or more than the longest tour.
     pub fn laps<R: Rng + ?Sized>(&self, n_laps: usize, rng: &mut R) -> Result<Route, SimError> {
         check::positive("laps", n_laps as f64)?;
         check::count("laps", n_laps, 1000)?;

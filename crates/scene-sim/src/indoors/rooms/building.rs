@@ -46,7 +46,7 @@ impl Building {
     /// The view from `pose` by the light of a usual day, when nobody is about.
     ///
     /// # Errors
-    /// When the numbers do not make a camera, or the pose is not finite.
+    /// Returns an error if the numbers do not make a camera, or the pose is not finite.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

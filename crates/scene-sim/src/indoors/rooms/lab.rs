@@ -51,7 +51,7 @@ impl Lab {
     /// The same with other things on a share of the desks.
     ///
     /// # Errors
-    /// When the share is none.
+    /// Returns an error if the share is none.
     pub fn rearranged<R: Rng + ?Sized>(&self, share: f64, rng: &mut R) -> Result<Self, SimError> {
         check::share("share of the desks that are rearranged", share)?;
         let mut later = self.clone();

@@ -36,7 +36,7 @@ impl Scenery {
     /// The scene of that name.
     ///
     /// # Errors
-    /// [`SimError::UnknownScenario`] when there is none.
+    /// Returns [`SimError::UnknownScenario`] if there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
         let found = Self::ALL.into_iter().find(|scenery| scenery.name == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })

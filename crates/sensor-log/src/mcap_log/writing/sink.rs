@@ -65,13 +65,13 @@ pub trait MessageSink {
     /// Takes a message.
     ///
     /// # Errors
-    /// When it cannot be passed on.
+    /// Returns an error if it cannot be passed on.
     fn message(&mut self, message: &Message<'_>) -> Result<(), LogError>;
 
     /// Is told, before the first message, in which format the records were stored first.
     ///
     /// # Errors
-    /// When that cannot be passed on.
+    /// Returns an error if that cannot be passed on.
     fn origin(&mut self, origin: Format) -> Result<(), LogError> {
         let _ = origin;
         Ok(())
@@ -80,7 +80,7 @@ pub trait MessageSink {
     /// Nothing more comes.
     ///
     /// # Errors
-    /// When what was taken cannot be completed.
+    /// Returns an error if what was taken cannot be completed.
     fn finish(self: Box<Self>) -> Result<(), LogError> {
         Ok(())
     }

@@ -45,7 +45,7 @@ impl McapWriter<BufWriter<File>> {
     /// Creates the file, or replaces the one that is there.
     ///
     /// # Errors
-    /// When it cannot be created.
+    /// Returns an error if it cannot be created.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, LogError> {
         Ok(Self::into_sink(McapFile::create(path)?))
     }
@@ -55,7 +55,7 @@ impl<W: Write + Seek> McapWriter<W> {
     /// Writes to `out`.
     ///
     /// # Errors
-    /// When `out` fails.
+    /// Returns an error if `out` fails.
     pub fn new(out: W) -> Result<Self, LogError> {
         Ok(Self::into_sink(McapFile::new(out)?))
     }
@@ -78,7 +78,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// since the file itself says so.
     ///
     /// # Errors
-    /// When the output fails.
+    /// Returns an error if the output fails.
     pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
         self.sink.origin(origin)
     }
@@ -86,7 +86,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// A pose in `frame`, as `foxglove.PoseInFrame`.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn pose_in_frame(
         &mut self,
         topic: &str,
@@ -101,7 +101,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Where the frame `child` is in the frame `parent`, as `foxglove.FrameTransform`; viewers need it to place what is given in `child`.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn frame_transform(
         &mut self,
         topic: &str,
@@ -123,7 +123,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// A path, as `foxglove.PosesInFrame`.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn poses_in_frame(
         &mut self,
         topic: &str,
@@ -142,7 +142,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Points in the plane, as `foxglove.PointCloud`.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn point_cloud(
         &mut self,
         topic: &str,
@@ -157,7 +157,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Ellipses, paths and markers, as `foxglove.SceneUpdate` (Foxglove draws them, Rerun 0.41 does not).
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn scene_update(
         &mut self,
         topic: &str,
@@ -172,7 +172,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Outlines in the image of the same stamp, as `foxglove.ImageAnnotations`; none takes those before away.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn image_outlines(
         &mut self,
         topic: &str,
@@ -186,7 +186,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// A picture as it is stored, as `foxglove.CompressedImage`; JPEG or PNG.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn image(&mut self, topic: &str, stamp: Stamp, image: &EncodedImage) -> Result<(), LogError> {
         if image.format == ImageFormat::Pnm || ImageFormat::of_bytes(&image.bytes) != Some(image.format) {
             let (what, n_bytes) = ("image", image.bytes.len());
@@ -198,7 +198,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Completes the file with its index, or whatever else the messages went into.
     ///
     /// # Errors
-    /// When the output fails.
+    /// Returns an error if the output fails.
     pub fn finish(mut self) -> Result<(), LogError> {
         self.flush_pending_cloud()?;
         Box::new(self.sink).finish()
