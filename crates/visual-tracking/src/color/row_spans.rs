@@ -24,8 +24,7 @@ pub struct RowSpans {
 const MAX_EXTENT: f64 = 16384.0;
 
 impl RowSpans {
-    /// The pixels whose middles are at most the semi-axes `[a, b]` away, $`(u / a)^2 + (v / b)^2 ≤ 1`$ from the middle of the centre pixel.
-    ///
+    /// The pixels whose centres lie in the ellipse with semi-axes `[a, b]`, $`(u / a)^2 + (v / b)^2 ≤ 1`$ from the middle of the centre pixel.
     /// # Errors
     /// Returns [`TrackingError::Parameter`] if a semi-axis is not positive or above 16384 pixels.
     pub fn ellipse([a, b]: [f64; 2]) -> Result<Self, TrackingError> {
@@ -61,7 +60,7 @@ impl RowSpans {
         self.spans.get(usize::try_from(row.checked_sub(self.top)?).ok()?).cloned()
     }
 
-    /// How many pixels it covers.
+    /// Number of pixels.
     pub fn area(&self) -> usize {
         self.spans.iter().map(|span| (span.end - span.start) as usize).sum()
     }

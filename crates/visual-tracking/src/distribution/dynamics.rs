@@ -31,9 +31,8 @@ pub struct ColorDynamics {
 }
 
 impl ColorDynamics {
-    /// $`F_x = I`$, $`F_v = d I`$: the velocity is kept, times a `damping` $`d`$ from 0 (a random walk) to 1, and every number of the state
-    /// gets noise of its own standard deviation per picture.
-    ///
+    /// $`F_x = I`$, $`F_v = d I`$: the velocity is kept, times a `damping` $`d`$ from 0 (a random walk) to 1. Every component of the state has noise
+    /// with its own standard deviation per image.
     /// # Errors
     /// Returns [`TrackingError::Parameter`] if a number is out of its range.
     pub fn constant_velocity(damping: f64, sigma: &ColorVector) -> Result<Self, TrackingError> {

@@ -5,14 +5,14 @@ use crate::TrackingError;
 
 type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
 
-/// What a training sequence says about how colours change.
+/// Colour dynamics learned from a training sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearnedDynamics {
     /// $`A`$ and $`B`$.
     pub dynamics: ColorDynamics,
-    /// Covariance of what the dynamics leave unexplained, $`L Lᵀ`$.
+    /// Covariance of the residuals of the dynamics, $`L Lᵀ`$.
     pub residual_covariance: SMatrix<f64, COLOR_DIM, COLOR_DIM>,
-    /// How many steps it was learned from.
+    /// Number of steps in the training sequence.
     pub n_steps: usize,
 }
 
@@ -38,7 +38,7 @@ impl ColorDynamics {
                 return Err(TrackingError::NotFinite { what: "colour state", index, value });
             }
         }
-        // What constant velocity leaves: its regression on the state is F - F_0.
+        // Residuals of constant velocity: their regression on the state is F - F_0.
         let steps = || series.windows(3).map(|x| (regressor(&x[0], &x[1]), x[2] - (x[1] * 2.0 - x[0])));
         let mut gram = SMatrix::<f64, 16, 16>::identity() * ridge;
         let mut cross = SMatrix::<f64, 16, COLOR_DIM>::zeros();
@@ -73,7 +73,7 @@ fn regressor(before: &ColorVector, now: &ColorVector) -> SMatrix<f64, 16, 1> {
     )
 }
 
-/// Whether the pivots span less than 1e12, so that at least four digits of the solution hold.
+/// Whether the ratio of the pivots is below 1e12, so that at least four digits of the solution are accurate.
 fn well_conditioned(factor: &Cholesky<f64, nalgebra::Const<16>>) -> bool {
     let pivots = factor.l_dirty().diagonal();
     pivots.min() > pivots.max() * 1e-6
@@ -129,7 +129,7 @@ mod tests {
         let learned = ColorDynamics::learn(&series(n, 3), 0.0).unwrap();
         let standard_error = 1.0 / (n as f64).sqrt();
         let difference = learned.dynamics.transition() - truth().transition();
-        // Of 256 numbers the largest lies within five standard errors all but surely.
+        // The largest of 256 numbers almost always lies within five standard errors.
         assert!(difference.amax() < 10.0 * standard_error, "{}", difference.amax());
         let noise = truth().noise();
         let covariance = noise * noise.transpose();

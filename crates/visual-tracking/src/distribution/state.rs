@@ -57,8 +57,8 @@ impl ColorState {
         [self.value[6], self.value[7]]
     }
 
-    /// The affine map that carries the colours of the reference into those that this state says:
-    /// $`\mathbf c ↦ \mathbf m' + U R(θ, φ) \operatorname{diag}(λ'_i / λ_i)\, Uᵀ (\mathbf c - \mathbf m)`$.
+    /// The affine map from the reference's colours to those of this state: $`\mathbf c ↦ \mathbf m' + U R(θ, φ) \operatorname{diag}(λ'_i / λ_i)\, Uᵀ
+    /// (\mathbf c - \mathbf m)`$.
     pub fn warp_from(&self, reference: &PrincipalColors) -> ColorWarp {
         let [theta, phi] = self.angles();
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), theta)

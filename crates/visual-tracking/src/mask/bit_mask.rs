@@ -95,24 +95,21 @@ impl BitMask {
         Ok(())
     }
 
-    /// The pixels that are on here and there.
-    ///
+    /// Intersection of the masks.
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if the sizes differ.
     pub fn and(&self, other: &Self) -> Result<Self, TrackingError> {
         self.zip(other, |a, b| a & b)
     }
 
-    /// The pixels that are on here or there.
-    ///
+    /// Union of the masks.
     /// # Errors
     /// Returns the errors of [`and`](Self::and).
     pub fn or(&self, other: &Self) -> Result<Self, TrackingError> {
         self.zip(other, |a, b| a | b)
     }
 
-    /// The pixels that are on here and not there.
-    ///
+    /// Difference: the pixels on here and off there.
     /// # Errors
     /// Returns the errors of [`and`](Self::and).
     pub fn and_not(&self, other: &Self) -> Result<Self, TrackingError> {
@@ -131,8 +128,7 @@ impl BitMask {
         Self { words, ..*self }
     }
 
-    /// The pixels of a rectangle; what of it is beyond the edges is off.
-    ///
+    /// The pixels of a rectangle; pixels beyond the edges are off.
     /// # Errors
     /// Returns the errors of [`empty`](Self::empty).
     pub fn crop(
@@ -162,7 +158,7 @@ impl BitMask {
         self.rows().enumerate().flat_map(|(v, row)| runs(row).map(move |run| (v, run)))
     }
 
-    /// From rows of words; the caller sees to their number and to zeros in the padding.
+    /// Builds a mask from rows of words; the caller ensures their number and zeros in the padding.
     pub(crate) fn from_words(width: usize, height: usize, words: Vec<u64>) -> Self {
         debug_assert_eq!(words.len(), width.div_ceil(64) * height);
         Self { width, height, words }
