@@ -26,17 +26,17 @@ use super::{Picture, PlotError};
 pub struct LinesPlot {
     /// Caption.
     pub title: String,
-    /// What the abscissa is, with its unit.
+    /// Label of the abscissa, with its unit.
     pub x_label: String,
-    /// What the ordinate is, with its unit.
+    /// Label of the ordinate, with its unit.
     pub y_label: String,
-    /// What is drawn.
+    /// The lines.
     pub series: Vec<Series>,
     /// Scale of the abscissa.
     pub x_scale: Scale,
     /// Scale of the ordinate.
     pub y_scale: Scale,
-    /// Where ordinates should be.
+    /// Expected range of the ordinates.
     pub band: Option<NamedBand>,
 }
 

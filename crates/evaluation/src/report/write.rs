@@ -3,11 +3,11 @@ use std::path::{Path, PathBuf};
 
 use super::{Report, html};
 
-/// Why a report could not be written.
+/// Errors of writing a report.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The file system refused.
+    /// An error of the file system.
     #[error("cannot write {}: {source}", path.display())]
     Io {
         /// Which file or folder.
@@ -21,8 +21,7 @@ pub enum ReportError {
 }
 
 impl Report {
-    /// Writes `report.json` and `index.html` into `folder`, which is made when it is not there.
-    ///
+    /// Writes `report.json` and `index.html` to `folder`, which is created if missing.
     /// # Errors
     /// Returns an error if the folder or a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), ReportError> {

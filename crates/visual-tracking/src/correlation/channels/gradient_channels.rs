@@ -156,7 +156,7 @@ mod tests {
         };
         let (bright, dim) = (gradient_channels(&patch(1.0), 4), gradient_channels(&patch(0.5), 4));
         for (a, b) in bright.iter().flatten().zip(dim.iter().flatten()) {
-            assert!((a - b).abs() < 0.01, "{a} {b}"); // // only the noise floor distinguishes them
+            assert!((a - b).abs() < 0.01, "{a} {b}"); // only the noise floor distinguishes them
         }
     }
 }
