@@ -4,11 +4,11 @@ use wayfix_gaussian_core::{GaussianError, IterationError, fit_hierarchical};
 use super::evidence::{evidence, pooled_mean_noise, pooled_pixel_noise};
 use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
 
-/// Learns a prior for each of `k` kinds of light from venues seen before. [Schulz & Fox 2004, III.B]
+/// Learns a prior for each of `k` kinds of light from training venues. [Schulz & Fox 2004, III.B]
 ///
-/// The venues are split by their brightness ([`split_by_brightness`]); each group gives the Gaussian that maximizes Eq. 10
-/// ([`fit_hierarchical`]). Colours that an image does not show are missing, not guessed.
-///
+/// The venues are split by their brightness ([`split_by_brightness`]); each group gives the Gaussian that maximizes Eq. 10 ([`fit_hierarchical`]).
+/// Colours not in an
+/// image are missing, not estimated.
 /// ```
 /// use nalgebra::Vector3;
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

@@ -3,10 +3,9 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::{PriorError, error::check_positive};
 
-/// What is known of the light before the first image: a Gaussian over all colours for each kind of light, from dark to bright.
+/// Priors of the light before the first image: a Gaussian over all colours for each kind of light, from dark to bright.
 ///
-/// A lighting filter starts from each member. With the feature `serde` it is a file.
-///
+/// A lighting filter starts from each member. With the feature `serde` it can be stored in a file.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use wayfix_color_model::LightingPriors;
@@ -82,7 +81,7 @@ impl LightingPriors {
         self.mean_noise
     }
 
-    /// The same without correlations between colours: nothing is learned of one from another. [Schulz & Fox 2004, V.A]
+    /// The same without correlations between colours: no colour informs another. [Schulz & Fox 2004, V.A]
     pub fn independent(&self) -> Self {
         let members = self.members.iter().map(|member| {
             let mut covariance = member.covariance().clone();

@@ -43,8 +43,7 @@ impl YuvImage {
         Ok(Self { width, height, pixels: pixels.iter().map(|rgb| convert(&weights, *rgb)).collect() })
     }
 
-    /// The image with squares of `by` × `by` pixels averaged to one; what does not fill a square is cut off at the right and at the bottom.
-    ///
+    /// Averages squares of `by` × `by` pixels; incomplete squares at the right and at the bottom are dropped.
     /// # Errors
     /// Returns an error if no square fits into the image, or `by` is 0.
     ///
