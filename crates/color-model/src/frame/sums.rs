@@ -77,7 +77,7 @@ impl PixelSums {
     }
 
     fn lane(&self, lane: usize) -> f64 {
-        self.lanes[lane] as i64 as f64 // // signed, since that is one instruction; sums stay far below 2⁶³
+        self.lanes[lane] as i64 as f64 // signed, since that is one instruction; sums stay far below 2⁶³
     }
 }
 

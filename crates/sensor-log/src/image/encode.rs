@@ -25,8 +25,7 @@ impl EncodedImage {
         png(width, height, rgb, ExtendedColorType::Rgb8)
     }
 
-    /// The same picture in a form that web pages show: uncompressed images become PNG, others stay as they are.
-    ///
+    /// Converts the image to a format that web pages show: uncompressed images become PNG, others are unchanged.
     /// # Errors
     /// Returns an error if an uncompressed image cannot be decoded.
     pub fn to_browser_format(&self) -> Result<Self, ImageError> {

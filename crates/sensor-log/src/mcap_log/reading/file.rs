@@ -14,7 +14,7 @@ use crate::{Format, LogError};
 /// Messages are flushed in chunks of about this size: a crash loses no more.
 const CHUNK_BYTES: u64 = 256 << 10;
 
-/// An MCAP file that messages go into. The same messages give the same bytes: no compression, no clock, no library version.
+/// Writes messages to an MCAP file. Equal messages give equal bytes: no compression, no clock, no library version.
 pub struct McapFile<W: Write + Seek> {
     writer: mcap::Writer<W>,
     channels: BTreeMap<ChannelKey, Channel>,

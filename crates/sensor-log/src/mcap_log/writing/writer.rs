@@ -23,10 +23,9 @@ pub struct MessageWriter<S: MessageSink> {
     pub(in crate::mcap_log) scan_frame: &'static str,
 }
 
-/// Writes records and things to draw into an MCAP file that Foxglove and Rerun open.
+/// Writes records and drawings to an MCAP file for Foxglove and Rerun.
 ///
-/// The same calls give the same bytes: no compression, no clock, no library version. [`finish`](MessageWriter::finish) completes the file.
-///
+/// Equal calls give equal bytes: no compression, no clock, no library version. [`finish`](MessageWriter::finish) completes the file.
 /// ```
 /// use std::io::Cursor;
 /// use wayfix_estimation_traits::Pose2;
@@ -67,16 +66,15 @@ impl<S: MessageSink> MessageWriter<S> {
         Self { sink, pending_cloud: PendingCloud::default(), scan_frame: topics::BODY_FRAME }
     }
 
-    /// Where the messages go.
+    /// The destination of the messages.
     pub fn sink(&self) -> &S {
         &self.sink
     }
 
-    /// Says which format the records come from; reading gives it back as [`LogMeta::origin`](crate::LogMeta::origin).
+    /// Stores the original format of the records; reading returns it as [`LogMeta::origin`](crate::LogMeta::origin).
     ///
-    /// Call it before anything else is written: readers that stream meet it in time only there. MCAP as the origin leaves no trace,
-    /// since the file itself says so.
-    ///
+    /// Call it before anything else is written, because streaming readers need it first. MCAP as the origin is not stored, because it is the
+    /// format of the file.
     /// # Errors
     /// Returns an error if the output fails.
     pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
@@ -98,8 +96,7 @@ impl<S: MessageSink> MessageWriter<S> {
         self.message(topic, stamp, &message)
     }
 
-    /// Where the frame `child` is in the frame `parent`, as `foxglove.FrameTransform`; viewers need it to place what is given in `child`.
-    ///
+    /// Writes the pose of the frame `child` in the frame `parent`, as `foxglove.FrameTransform`; viewers need it to place data given in `child`.
     /// # Errors
     /// Returns the errors of [`record`](Self::record).
     pub fn frame_transform(
@@ -169,8 +166,7 @@ impl<S: MessageSink> MessageWriter<S> {
         self.message(topic, stamp, &message)
     }
 
-    /// Outlines in the image of the same stamp, as `foxglove.ImageAnnotations`; none takes those before away.
-    ///
+    /// Writes outlines in the image of the same stamp, as `foxglove.ImageAnnotations`; an empty list removes the previous ones.
     /// # Errors
     /// Returns the errors of [`record`](Self::record).
     pub fn image_outlines(
@@ -204,7 +200,7 @@ impl<S: MessageSink> MessageWriter<S> {
         Box::new(self.sink).finish()
     }
 
-    /// Keeps a landmark or a wall until another kind of record or stamp comes.
+    /// Holds a landmark or a wall until another kind of record or stamp comes.
     pub(in crate::mcap_log) fn hold(&mut self, record: &Record) -> Result<(), LogError> {
         if !self.pending_cloud.is_of_same_cloud(record) {
             self.flush_pending_cloud()?;
@@ -232,7 +228,7 @@ impl<S: MessageSink> MessageWriter<S> {
         self.message_with(topic, &BTreeMap::new(), stamp, message)
     }
 
-    /// A message on a channel with metadata; other metadata make another channel of the same topic.
+    /// A message on a channel with metadata; other metadata open another channel of the same topic.
     pub(in crate::mcap_log) fn message_with<M>(
         &mut self,
         topic: &str,

@@ -45,7 +45,7 @@ pub(crate) struct CarmenLog {
 }
 
 impl CarmenLog {
-    /// Surveys the log; what it takes from it goes into the report.
+    /// Surveys the log; assumptions go into the report.
     pub(crate) fn open(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Result<Self, LogError> {
         let lines = Lines::open(path)?;
         Ok(Self {
@@ -60,7 +60,7 @@ impl CarmenLog {
         })
     }
 
-    /// The next record; trouble goes into the report.
+    /// The next record; problems go into the report.
     pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         while self.ready.is_empty() {
             let lines = self.lines.as_mut()?;
@@ -106,7 +106,7 @@ impl CarmenLog {
         self.ready.pop_front()
     }
 
-    /// A raw scan beside those with poses, and a scan that is logged once more by another message, are no scans of their own.
+    /// Raw scans in a log with posed scans, and scans repeated by another message, are ignored.
     fn why_ignored(&self, scan: &ScanRow) -> Option<String> {
         let word = scan.message.word();
         if scan.message == ScanMessage::Raw && self.first_pass.odometry.is_none() {
@@ -159,7 +159,7 @@ impl CarmenLog {
         verdict
     }
 
-    /// The robot's pose, unless it is the odometry; one that the caller says is true always.
+    /// The robot's pose, unless it is the odometry; always, if the caller declares it true.
     fn pose(&self, poses: &ScanPoses) -> Option<Data> {
         let is_told = self.first_pass.poses_are_estimates || self.poses == PoseKind::True;
         let robot = match &self.first_pass.pose_mount {
