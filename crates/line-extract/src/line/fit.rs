@@ -15,11 +15,10 @@ pub struct LineFit {
     pub chi_squared: f64,
 }
 
-/// The total least squares line through points with covariances (m²), which minimizes $`\sum_i e_i^2 / σ_i^2`$ with $`e_i = n \cdot p_i - ρ`$ and
-/// $`σ_i^2 = n^T C_i n`$ [Pfister, Roumeliotis & Burdick 2003].
+/// The total least squares line through points with covariances (m²), which minimizes $`\sum_i e_i^2 / σ_i^2`$ with
+/// $`e_i = n \cdot p_i - ρ`$ and $`σ_i^2 = n^T C_i n`$ [Pfister, Roumeliotis & Burdick 2003].
 ///
-/// The variances depend on the normal $`n`$, so the fit is repeated with those of the line found before; it starts from equal ones.
-///
+/// The variances depend on the normal $`n`$, so the fit is iterated with those of the last line; it starts from equal ones.
 /// ```
 /// use nalgebra::{Matrix2, Vector2};
 /// use wayfix_line_extract::fit_line;

@@ -7,10 +7,10 @@ use super::scan::Scanner;
 use super::split::{split_all, split_loop};
 use crate::LineError;
 
-/// How often each point may be looked at, in units of $`\log_2 n`$, before hulls are built.
+/// Number of tests per point, in units of $`\log_2 n`$, before hulls are built.
 const SCAN_BUDGET: usize = 2;
 
-/// How many looks an exact comparison takes, in the time of the fast kind: some 100 ns.
+/// Cost of an exact comparison in fast tests: about 100 ns.
 const EXACT_COMPARISON_COST: usize = 100;
 
 /// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`Distance::Line`](crate::Distance), in $`O(n \log^2 n)`$ whatever the chain.
@@ -78,7 +78,7 @@ impl Simplifier {
     /// Replaces `kept` by the indices that [`simplify()`] returns.
     ///
     /// # Errors
-    /// Returns the errors of [`simplify()`]; `kept` stays as it was.
+    /// Returns the errors of [`simplify()`]; `kept` is then unchanged.
     pub fn simplify_into(
         &mut self,
         points: &[Vector2<f64>],
