@@ -11,7 +11,7 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorSystemParams, run};
 
-/// Numbers of particles, each held fixed.
+/// Numbers of particles, each kept fixed.
 const N_PARTICLES: [usize; 5] = [100, 300, 1000, 3000, 10_000];
 /// Frames of the log that are used.
 const N_FRAMES: usize = 40;

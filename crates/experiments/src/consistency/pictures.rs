@@ -1,8 +1,7 @@
 use super::MonteCarlo;
 use wayfix_evaluation::plot::{LinesPlot, NamedBand, Picture, PlotError, Scale, Series};
 
-/// Average NEES of all filters against time, with the band at any one look.
-///
+/// Average NEES of all filters over time, with the band at any one scan.
 /// # Errors
 /// Returns an error if the picture cannot be drawn.
 pub fn picture(runs: &MonteCarlo) -> Result<Picture, PlotError> {

@@ -7,20 +7,19 @@ use anyhow::{Context, Result};
 
 use super::{Options, PlannedRun};
 
-/// A run of a plan with what it needs.
+/// A run of a plan with its inputs.
 #[derive(Clone, Debug)]
 pub struct Job<'a> {
-    /// What was asked for on the command line.
+    /// Command-line options.
     pub options: &'a Options,
     /// The run.
     pub planned: &'a PlannedRun,
-    /// Where its log is, when it has one.
+    /// Path of its log, if it has one.
     pub path: Option<PathBuf>,
 }
 
 impl Job<'_> {
-    /// Where its log is.
-    ///
+    /// Path of its log.
     /// # Errors
     /// Returns an error if the plan names none.
     pub fn log(&self) -> Result<&PathBuf> {
@@ -38,8 +37,7 @@ impl Job<'_> {
         (name, path)
     }
 
-    /// Where a file of the recordings is.
-    ///
+    /// Path of a file of the recordings.
     /// # Errors
     /// Returns an error if there is no folder of recordings.
     pub fn recording(&self, file: &Path) -> Result<PathBuf> {

@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 use super::{Cell, Done, Options, Shard, cells};
 use wayfix_evaluation::report::{Run, commit};
 
-/// What one shard did, as a file: `part.json` in its output folder.
+/// Results of one shard, as a file: `part.json` in its output folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// What was asked of all shards together; the same in all of them.
+    /// The work of all shards together; equal in all of them.
     campaign: Campaign,
-    /// What this one did.
+    /// The runs of this shard.
     runs: Vec<PartRun>,
 }
 
@@ -36,15 +36,14 @@ struct Campaign {
 struct PartRun {
     cell: Cell,
     run: Run,
-    /// The drawings, which a report keeps in its page only.
+    /// The pictures, which a report stores only in its page.
     svgs: Vec<String>,
 }
 
 const FILE: &str = "part.json";
 
 impl Part {
-    /// What `shard` did.
-    ///
+    /// The results of `shard`.
     /// # Errors
     /// Returns an error if a plan cannot be read.
     pub fn new(options: &Options, shard: Shard, done: Vec<Done>) -> Result<Self> {

@@ -7,20 +7,20 @@ use super::{Cell, Job, Plan, Shard, campaign::job, cells, suites};
 use wayfix_evaluation::report::Run;
 use wayfix_systems::system::Stopwatch;
 
-/// What to run and where to put it.
+/// Work to do and output folder.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Suites by name.
     pub suites: Vec<String>,
     /// Folder of the stored logs and plans.
     pub fixtures: PathBuf,
-    /// Folder of public recordings, when there is one.
+    /// Folder of public recordings, if available.
     pub data: Option<PathBuf>,
     /// Folder for the report.
     pub out: PathBuf,
     /// Seed of every generator.
     pub seed: u64,
-    /// How many seeds from that one on each run is repeated with.
+    /// Number of seeds per run, from that one on.
     pub n_seeds: u64,
     /// Stored logs and short experiments only.
     pub quick: bool,
@@ -40,7 +40,7 @@ impl Options {
 pub struct Done {
     /// Path of the file.
     pub cell: Cell,
-    /// What came out, not judged yet.
+    /// The result, without bounds.
     pub run: Run,
 }
 
