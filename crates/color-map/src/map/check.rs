@@ -1,11 +1,11 @@
-//! What makes a shape impossible.
+//! Validation of shapes.
 
 use nalgebra::Vector3;
 
 use super::{Plane, Prism, layer::FLAT};
 use crate::{Band, ColorId, MapError};
 
-/// Farthest coordinate, metres: beyond it, a double no longer holds the tolerances above.
+/// Largest coordinate, m: beyond it, a double cannot resolve the tolerances above.
 const MAX_COORDINATE: f64 = 1e6;
 /// Most colours: a grey label image has one value for each and one for none.
 const MAX_COLORS: usize = 255;
@@ -110,7 +110,7 @@ fn coordinate(shape: usize, value: f64) -> Result<(), MapError> {
     }
 }
 
-/// The plane through the centroid whose normal is the polygon's vector area: twice the area long, whatever the start vertex.
+/// The plane through the centroid with the polygon's vector area as normal: its length is twice the area, for any start vertex.
 fn newell_plane(shape: usize, vertices: &[Vector3<f64>]) -> Result<Plane, MapError> {
     let centroid = vertices.iter().sum::<Vector3<f64>>() / vertices.len() as f64;
     let doubled: Vector3<f64> = edges(vertices).map(|(a, b)| (a - centroid).cross(&(b - centroid))).sum();
