@@ -6,9 +6,9 @@ use crate::{SimError, check};
 pub struct Film {
     /// Its name.
     pub name: &'static str,
-    /// How many pictures it has.
+    /// Number of frames.
     pub n_frames: usize,
-    /// What happens to the target on the way.
+    /// Event that affects the target.
     pub incident: Incident,
     /// Seed of textures, paths, light and noise.
     pub seed: u64,

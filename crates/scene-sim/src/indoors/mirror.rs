@@ -54,7 +54,7 @@ impl Mirror {
     }
 }
 
-/// At a share of a turn from the first column and of the way from top to bottom.
+/// Interpolates at a share of a turn from the first column and a share of the height from the top.
 fn interpolated(view: &RgbPicture, turn: f64, depth: f64) -> [u8; 3] {
     let (x, y) = (turn * view.width as f64 - 0.5, (depth * view.height as f64 - 0.5).max(0.0));
     let (left, above) = (x.floor(), y as usize);

@@ -43,7 +43,7 @@ impl LeagueParams {
     }
 }
 
-/// The best frame of a stretch so far.
+/// The best frame of a section so far.
 #[derive(Clone)]
 struct Labelled {
     idx: usize,

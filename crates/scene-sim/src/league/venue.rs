@@ -20,7 +20,7 @@ pub struct Venue {
     pub bright: Lamps,
     /// All lamps off but one.
     pub dark: Lamps,
-    /// What is around the field.
+    /// Surroundings of the field.
     pub hall: Hall,
     /// The camera; set for the everyday light and never changed.
     pub camera: CameraParams,
@@ -52,7 +52,7 @@ impl Venue {
     /// ```
     ///
     /// # Errors
-    /// Passes on what the camera says; its numbers are sound, so it has nothing to say.
+    /// Returns the errors of the camera; none occur for its valid constants.
     pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Result<Self, SimError> {
         let paints = paints(rng);
         let kelvin = uniform(2700.0, 6500.0, rng);
@@ -132,7 +132,7 @@ fn mean_irradiance(light: &Lamps) -> Rgb {
     sum / 25.0
 }
 
-/// With what walls and ceiling throw back (the share `around` of the direct light), what comes in by the windows, and what the carpet sends up.
+/// Adds the light reflected by walls and ceiling (the share `around` of the direct light), that of the windows, and that reflected by the carpet.
 fn lighting(lamps: Vec<Lamp>, paints: &[Rgb; N_COLORS], around: f64, window: Rgb) -> Lamps {
     let mut light = Lamps { lamps, ..Lamps::default() };
     let direct = mean_irradiance(&light);
@@ -142,7 +142,7 @@ fn lighting(lamps: Vec<Lamp>, paints: &[Rgb; N_COLORS], around: f64, window: Rgb
     light
 }
 
-/// Set for the everyday light, as well as its few positions allow.
+/// A camera adjusted to the everyday light, as far as its few settings allow.
 fn camera<R: Rng + ?Sized>(
     kelvin: f64,
     paints: &[Rgb; N_COLORS],

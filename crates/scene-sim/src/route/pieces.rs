@@ -2,9 +2,9 @@ use wayfix_estimation_traits::Pose2;
 
 use crate::{SimError, check, plane};
 
-/// Length of the longest route, metres; beyond, arc length loses the digits that the driver needs.
+/// Maximum length of a route, m; beyond it, the arc length loses digits that the driver needs.
 const LONGEST_M: f64 = 1e7;
-/// How far apart the ends of a closed route may lie, metres.
+/// Maximum gap between the ends of a closed route, m.
 const CLOSING_GAP_M: f64 = 1e-6;
 
 /// A stretch of constant curvature.
@@ -60,7 +60,7 @@ impl Route {
     /// A route that is driven lap after lap.
     ///
     /// # Errors
-    /// Returns the errors of [`open`](Self::open), and when the end does not meet the start to a micrometre and a microradian.
+    /// Returns the errors of [`open`](Self::open), and an error if the end differs from the start by more than a micrometre or a microradian.
     pub fn closed(start: Pose2<f64>, pieces: Vec<Piece>) -> Result<Self, SimError> {
         let route = Self::open(start, pieces)?;
         let gap = plane::relative(&start, &route.end());

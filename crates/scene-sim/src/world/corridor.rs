@@ -38,7 +38,7 @@ impl CorridorLoop {
         Ok(Plan::numbered(points, walls))
     }
 
-    /// One landmark in each stretch of `spacing_m`, anywhere in its middle half.
+    /// One landmark in each section of `spacing_m`, at a random place in its middle half.
     fn hang<R: Rng + ?Sized>(&self, wall: &Wall, rng: &mut R) -> Vec<Vector2<f64>> {
         let whole = wall.to - wall.from;
         let n_stretches = (whole.norm() / self.spacing_m).round().max(1.0) as usize;

@@ -11,7 +11,7 @@ const ATTEMPTS: usize = 1000;
 /// Landmarks uniformly in a square about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformField {
-    /// How many.
+    /// Number of landmarks.
     pub n_landmarks: usize,
     /// Half the side of the square, metres.
     pub half_width_m: f64,

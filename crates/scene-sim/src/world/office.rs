@@ -17,7 +17,7 @@ pub struct Office {
     pub room_m: f64,
     /// Width of the doors, metres.
     pub door_m: f64,
-    /// Each post stands up to this far from its corner along x and y, metres.
+    /// Maximum offset of each post from its corner along x and y, m.
     pub jitter_m: f64,
 }
 

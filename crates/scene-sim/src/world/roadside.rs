@@ -11,11 +11,11 @@ use crate::{SimError, check, plane};
 /// Rocks on both sides of whatever road the robot takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roadside {
-    /// How many, anywhere along the route.
+    /// Number of rocks, at random places along the route.
     pub n_landmarks: usize,
     /// The least distance from the middle of the road, metres.
     pub clear_m: f64,
-    /// How far beyond that rocks may lie, metres.
+    /// Width of the strip beyond it that may contain rocks, m.
     pub verge_m: f64,
 }
 

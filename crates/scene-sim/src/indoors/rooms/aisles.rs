@@ -15,11 +15,11 @@ const LONGEST_M: f64 = 100_000.0;
 /// A grid of aisles: where people walk and robots drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aisles {
-    /// Where the aisles along y cross the x axis, growing, metres.
+    /// x of the aisles along y, increasing, m.
     pub(in crate::indoors) xs: Vec<f64>,
-    /// Where the aisles along x cross the y axis, growing, metres.
+    /// y of the aisles along x, increasing, m.
     pub(in crate::indoors) ys: Vec<f64>,
-    /// How far from the middle of an aisle a robot may drive, metres.
+    /// Maximum distance of a robot from the middle of an aisle, m.
     pub(in crate::indoors) max_lateral_offset_m: f64,
     /// Radius of its turns, metres.
     pub(in crate::indoors) turn_m: f64,
@@ -35,7 +35,7 @@ impl Aisles {
         (0..n * m).map(|i| [i % n, i / n]).collect()
     }
 
-    /// Where a crossing is, metres.
+    /// Position of a crossing, m.
     pub fn place(&self, [i, j]: Crossing) -> Vector2<f64> {
         Vector2::new(self.xs[i], self.ys[j])
     }
@@ -95,7 +95,7 @@ impl Aisles {
         self.route(&walk, rng)
     }
 
-    /// Where a tour starts: the middle of the corner's crossing, along x.
+    /// Start of a tour: the middle of the corner's crossing, along x.
     pub fn station(&self) -> Pose2<f64> {
         Pose2::new(self.xs[0], self.ys[0], 0.0)
     }
@@ -112,7 +112,7 @@ impl Aisles {
         (self.place(a) - self.place(b)).norm()
     }
 
-    /// Through the crossings, each straight stretch somewhere left or right of the middle; the first stretch starts in the middle.
+    /// A route through the crossings, with each straight stretch offset randomly from the middle; the first stretch starts in the middle.
     fn route<R: Rng + ?Sized>(&self, walk: &[Crossing], rng: &mut R) -> Result<Route, SimError> {
         let mut points = vec![self.place(walk[0])];
         let mut aside = 0.0;

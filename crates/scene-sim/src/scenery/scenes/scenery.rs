@@ -42,7 +42,7 @@ impl Scenery {
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
     }
 
-    /// How many views it has.
+    /// Number of views.
     pub fn n_states(&self) -> usize {
         self.columns * self.rows
     }
