@@ -1,8 +1,7 @@
 /// Colour distribution of pixels that show no map surface.
 ///
 /// Densities of two poses are comparable only if both explain every pixel of the image; a pixel without a label counts as background. Uniform over
-/// the $`256^3`$
-/// colours unless learned. For a custom one, use [`Background::Histogram`] with pixels known to be outside the map.
+/// the $`256^3`$ colours unless learned. For a custom one, use [`Background::Histogram`] with pixels known to be outside the map.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Background {
     /// All YUV values are equally likely.

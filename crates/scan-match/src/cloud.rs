@@ -41,7 +41,7 @@ impl Cloud {
     /// The same of a laser that moves by `step` from one beam to the next, in its own frame; the cloud is seen from where the first beam was sent.
     ///
     /// # Errors
-    /// Those of [`from_ranges`](Self::from_ranges), and for a step that is not finite.
+    /// Returns the errors of [`from_ranges`](Self::from_ranges), and for a step that is not finite.
     pub fn from_ranges_deskewed(
         angle_min: f64,
         angle_increment: f64,

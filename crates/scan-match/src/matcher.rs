@@ -65,9 +65,8 @@ impl Matcher {
     /// The pose of `cloud` in the frame of `reference`.
     ///
     /// Maximizes the posterior: the prior of the guess times a robust likelihood of the point-to-line distances, by iteratively reweighted least
-    /// squares with
-    /// a kernel that narrows. The prior is a Student-t distribution, to tolerate wheel slip. If its heading is uncertain, the search has several
-    /// starts and the best posterior counts. [Censi 2008; Chen & Medioni 1992]
+    /// squares with a kernel that narrows. The prior is a Student-t distribution, to tolerate wheel slip. If its heading is uncertain, the search
+    /// has several starts and the best posterior counts. [Censi 2008; Chen & Medioni 1992]
     /// # Errors
     /// Returns an error if either scan has fewer than ten points, or the guess is not a finite pose with a positive definite covariance.
     pub fn align(

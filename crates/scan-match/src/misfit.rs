@@ -61,10 +61,8 @@ impl Misfit {
     }
 
     /// Removes the spurious information $`N`$: normals with errors $`ε`$ add $`ε^2`$ times the motion along the surface to $`\sum w J^T J`$, so a
-    /// corridor
-    /// seems to determine the position along it and a round room the heading. With $`Λ = L L^T`$ the rest is $`L K L^T`$, $`K = (1 - L^{-1} N
-    /// L^{-T})_+`$, and the
-    /// gradient is $`L K L^{-1} g`$. [Fuller 1987, Eq. 1.2.3: errors in the regressors]
+    /// corridor seems to determine the position along it and a round room the heading. With $`Λ = L L^T`$ the rest is $`L K L^T`$,
+    /// $`K = (1 - L^{-1} N L^{-T})_+`$, and the gradient is $`L K L^{-1} g`$. [Fuller 1987, Eq. 1.2.3: errors in the regressors]
     fn without_noise_of_normals(self, noise: &Matrix3<f64>) -> Self {
         let Some(factor) = Cholesky::new(self.information).map(|factor| factor.l()) else { return self };
         let Some(inverse) = factor.try_inverse() else { return self };

@@ -47,7 +47,7 @@ impl Params {
     /// Whether every number has a meaning.
     ///
     /// # Errors
-    /// The first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn check(&self) -> Result<(), ScanMatchError> {
         for (what, value) in [
             ("sigma_m", self.sigma_m),

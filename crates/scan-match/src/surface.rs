@@ -15,7 +15,7 @@ const N_NEIGHBOURS: usize = 3;
 const FEWEST: usize = 4;
 /// Neighbours are near within this distance, m, or this share of the range: a flat view spreads the points.
 const NEAR: (f64, f64) = (0.3, 0.1);
-/// A surface is straight if its variance across is below this share of that along it, and below a centimetre squared.
+/// Limit of the variance across a straight surface: this share of the variance along it, plus a square centimetre.
 const STRAIGHT: (f64, f64) = (0.05, 1e-4);
 
 /// Surfaces from the points of a scan, in beam order.

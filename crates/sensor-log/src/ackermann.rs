@@ -1,8 +1,7 @@
 /// Encoder and steering readings of a car-like vehicle, as measured.
 ///
-/// The position of the wheel and the steering geometry belong to the vehicle, not to the log. With the encoder on the inner side of a left turn, half
-/// a track
-/// width $`H`$ off the middle, and the wheelbase $`L`$, the middle of the rear axle moves with
+/// The position of the wheel and the steering geometry belong to the vehicle, not to the log. With the encoder on the inner side of a left turn,
+/// half a track width $`H`$ off the middle, and the wheelbase $`L`$, the middle of the rear axle moves with
 /// $`v = v_{wheel} / (1 - \tan(\alpha) H / L)`$ [Guivant & Nebot 2001].
 /// ```
 /// use wayfix_sensor_log::{AckermannDrive, Data};

@@ -18,7 +18,7 @@ const RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 pub(crate) struct ImageFolder {
     files: Enumerate<vec::IntoIter<PathBuf>>,
     rate_hz: f64,
-    /// A doubt about the names, until it is told.
+    /// A pending warning about the names.
     doubt: Option<String>,
 }
 

@@ -14,9 +14,8 @@
 //! | | MCAP with ROS 2 messages ([`ros`]), as `ros2 bag` writes it | scans, odometry, images, cameras, poses |
 //! | [`Format::Images`] | a folder of PNG and JPEG files | images |
 //!
-//! [`write()`] writes records as text or MCAP, and [`convert()`] a whole log. [`McapWriter`] also writes drawings for viewers ([`MessageWriter`] also
-//! to live
-//! viewers). [`LogSummary`] summarizes the content of a log.
+//! [`write()`] writes records as text or MCAP, and [`convert()`] a whole log. [`McapWriter`] also writes drawings for viewers ([`MessageWriter`]
+//! also to live viewers). [`LogSummary`] summarizes the content of a log.
 //!
 //! An unusable row never stops the reading: it is skipped and counted by kind, and the first few are reported with file and line.
 //! ```

@@ -59,21 +59,18 @@ impl PoseKind {
 /// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, detections (MCAP: file order). Every repair below is
 /// reported.
 ///
-/// Text logs are read completely and sorted if rows go backwards. A row a minute or more from its neighbours is skipped; if the clock is set
-/// back, the longest stretch is read. CARMEN logs are read line by line, twice, and keep their order: repeated stamps are replaced, and stamps after
-/// a
+/// Text logs are read completely and sorted if rows go backwards. A row a minute or more from its neighbours is skipped; if the clock is set back,
+/// the longest stretch is read. CARMEN logs are read line by line, twice, and keep their order: repeated stamps are replaced, and stamps after a
 /// clock set back are moved on. Text may be gzipped under any name, begin with a byte-order mark, and have any line ends.
 ///
 /// MCAP files are read chunk by chunk; a record more than 256 records late is skipped. A folder with one MCAP file stands for that file. A folder
-/// with
-/// files named like the parts of a recording, `NAME_0.mcap`, `NAME_1.mcap`, or listed in its `metadata.yaml`, stands for all of them. In ROS 2 bags
-/// each kind of record comes
-/// from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] lists the use of the others.
+/// with files named like the parts of a recording, `NAME_0.mcap`, `NAME_1.mcap`, or listed in its `metadata.yaml`, stands for all of them. In ROS 2
+/// bags each kind of record comes from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] lists the use of the others.
 ///
 /// Folders of images are read file by file, in the order of their names with numbers by value (`frame9` before `frame10`); other files are
 /// skipped. An unreadable file keeps its frame number, so that later stamps stay correct.
 /// # Errors
-/// Returns an error if nothing usable is there: see [`LogError`]. Single bad rows are no error, they are in [`Log::report`].
+/// Returns an error if the log is unusable: see [`LogError`]. Single bad rows are no error; [`Log::report`] lists them.
 pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogError> {
     let path = path.as_ref();
     let format = match options.format {
@@ -99,7 +96,7 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
 /// ```
 ///
 /// # Errors
-/// [`LogError::NotAPart`] and [`LogError::NoPath`]; else as [`open`], which a single path is left to.
+/// Returns [`LogError::NotAPart`], [`LogError::NoPath`], or the errors of [`open`], which handles a single path.
 pub fn open_all(paths: &[impl AsRef<Path>], options: &OpenOptions) -> Result<Log, LogError> {
     if let [path] = paths {
         return open(path, options);

@@ -24,7 +24,7 @@ impl BoundingBox {
     /// From the top left corner.
     ///
     /// # Errors
-    /// [`TrackingError::NotFinite`] and, without an extent, [`TrackingError::Parameter`].
+    /// Returns [`TrackingError::NotFinite`] and, without an extent, [`TrackingError::Parameter`].
     pub fn from_corner(x: f64, y: f64, width: f64, height: f64) -> Result<Self, TrackingError> {
         for (index, value) in [x, y, width, height].into_iter().enumerate() {
             if !value.is_finite() {

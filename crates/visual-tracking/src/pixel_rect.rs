@@ -58,7 +58,7 @@ impl PixelRect {
     /// The same rectangle as a box.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] without columns or rows.
+    /// Returns [`TrackingError::Parameter`] without columns or rows.
     pub fn to_box(&self) -> Result<BoundingBox, TrackingError> {
         let [x, y, width, height] = [self.left, self.top, self.width, self.height].map(|n| n as f64);
         BoundingBox::from_corner(x, y, width, height)

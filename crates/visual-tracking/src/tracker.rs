@@ -32,6 +32,6 @@ pub trait Tracker {
     /// Takes the next picture.
     ///
     /// # Errors
-    /// Whatever makes the picture unusable, such as a size that is not that of the first one.
+    /// Returns an error if the image is unusable, for example if it differs from the first one in size.
     fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, rng: &mut R) -> Result<Target, TrackingError>;
 }

@@ -88,7 +88,7 @@ pub(super) fn post(shape: usize, x: f64, y: f64, radius: f64, bands: &[Band]) ->
     Ok(())
 }
 
-/// Posts are told which is in front by their places in plan, so no two may overlap there.
+/// Posts are sorted by their positions in plan, so no two may overlap there.
 pub(super) fn posts_apart(prisms: &[Prism]) -> Result<(), MapError> {
     for (i, a) in prisms.iter().enumerate() {
         for b in prisms[i + 1..].iter().filter(|b| b.shape != a.shape) {

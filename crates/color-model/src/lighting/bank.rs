@@ -148,7 +148,7 @@ impl LightingBank {
     /// Prepares every filter for being the active one after `seconds`.
     ///
     /// # Errors
-    /// Returns an error if the time is negative or not finite; nothing has changed then.
+    /// Returns an error if the time is negative or not finite; the state is then unchanged.
     pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         let predict = |filter: &Arc<LightingFilter>| {
             let mut filter = LightingFilter::clone(filter);
@@ -161,7 +161,7 @@ impl LightingBank {
 
     /// Sets `member` active and updates it with `means`; the others return to their stored state. Returns the log evidence, nats.
     /// # Errors
-    /// Returns an error if there is no such member or it refuses the means; nothing has changed then.
+    /// Returns an error if there is no such member or it refuses the means; the state is then unchanged.
     pub fn update_member(&mut self, member: usize, means: &ColorMeans) -> Result<f64, ColorModelError> {
         let n_members = self.n_members();
         let filter = self.predicted.get(member).ok_or(ColorModelError::NoSuchMember { member, n_members })?;

@@ -124,7 +124,7 @@ impl LightingFilter {
     /// Lets the light drift for `seconds` (Eq. 6).
     ///
     /// # Errors
-    /// Returns an error if the time is negative or not finite; nothing has changed then.
+    /// Returns an error if the time is negative or not finite; the state is then unchanged.
     pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         check_seconds(seconds)?;
         let LightingParams { drift, .. } = self.params;
@@ -135,7 +135,7 @@ impl LightingFilter {
 
     /// Updates the filter with the colour means of one image (Eqs. 3-5). Returns the log evidence $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
     /// # Errors
-    /// Returns an error if there are more or fewer colours, or a mean is not finite or beyond a million; nothing has changed then.
+    /// Returns an error if there are more or fewer colours, or a mean is not finite or beyond a million; the state is then unchanged.
     pub fn update(&mut self, means: &ColorMeans) -> Result<f64, ColorModelError> {
         means.check(self.n_colors())?;
         let log_evidence = means.seen().map(|(color, mean)| self.observe(color, &mean)).sum();

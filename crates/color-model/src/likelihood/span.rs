@@ -31,8 +31,7 @@ pub fn gather<'a>(
 /// The pixel likelihood computed from spans, equal to [`PixelLikelihood`](crate::PixelLikelihood).
 ///
 /// $`\sum_m \sum_{c ∈ m} [\ln N(c; μ_m, Σ_{mm} + ν) - \ln p_{bg}(c)]`$ [Schulz & Fox 2004, Eqs. 9, 16] depends on a colour's pixels only through
-/// their
-/// number, $`\sum c`$ and $`\sum c c^T`$, and a subtraction gives these for a run of pixels in a row.
+/// their number, $`\sum c`$ and $`\sum c c^T`$, and a subtraction gives these for a run of pixels in a row.
 pub struct SpanLikelihood<'a> {
     frame: &'a Frame,
     projector: Projector,

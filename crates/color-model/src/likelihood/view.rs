@@ -8,8 +8,7 @@ use crate::ColorDensity;
 /// poses are comparable for any visible part of the map; never NaN for a finite pose and finite densities.
 ///
 /// The reference is [`PixelLikelihood`](crate::PixelLikelihood), a faster equal one is [`SpanLikelihood`](crate::SpanLikelihood), and the fast
-/// alternative is
-/// [`FeatureLikelihood`](crate::FeatureLikelihood).
+/// alternative is [`FeatureLikelihood`](crate::FeatureLikelihood).
 pub trait ViewLikelihood {
     /// The log-likelihood of the image from `camera_pose` (x forward along the optical axis, in the world), with `light[m]` the density of map
     /// colour `m`.

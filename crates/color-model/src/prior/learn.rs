@@ -7,8 +7,7 @@ use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
 /// Learns a prior for each of `k` kinds of light from training venues. [Schulz & Fox 2004, III.B]
 ///
 /// The venues are split by their brightness ([`split_by_brightness`]); each group gives the Gaussian that maximizes Eq. 10 ([`fit_hierarchical`]).
-/// Colours not in an
-/// image are missing, not estimated.
+/// Colours not in an image are missing, not estimated.
 /// ```
 /// use nalgebra::Vector3;
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

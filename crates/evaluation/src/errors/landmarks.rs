@@ -18,8 +18,7 @@ pub enum Correspondence {
 /// RMS landmark error in metres, without alignment and after a rigid alignment; `None` without pairs.
 ///
 /// Nearest partners are searched again after every alignment, until the error stops decreasing (iterated closest points [Besl & McKay 1992]). The
-/// search starts from
-/// the map itself and from `of_path`, the motion that aligns the path: a rotated map would otherwise have wrong pairs.
+/// search starts from the map itself and from `of_path`, the motion that aligns the path: a rotated map would otherwise have wrong pairs.
 pub fn landmark_errors(
     estimated: &BTreeMap<u32, Vector2<f64>>,
     truth: &BTreeMap<u32, Vector2<f64>>,

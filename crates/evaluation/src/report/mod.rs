@@ -1,8 +1,8 @@
 //! Report of a run or a regression test: figures with their bounds, pictures, and provenance.
 //!
 //! A [`Report`] holds [`Suite`]s of [`Run`]s of [`Metric`]s. [`Report::write`] writes `report.json` (the interface for programs) and `index.html`
-//! (one page that works offline, for
-//! people) to a folder. [`table`] formats it for the terminal, and [`RunSummary`] is the object that `wayfix run --json` prints.
+//! (one page that works offline, for people) to a folder. [`table`] formats it for the terminal, and [`RunSummary`] is the object that
+//! `wayfix run --json` prints.
 //!
 //! Times are not among the `metrics`, which have equal bits for any number of threads; times are in `timings`.
 

@@ -22,7 +22,7 @@ struct Arguments {
     command: Command,
 }
 
-/// What an argument structure says of itself is its help; the group says it here.
+/// The doc comment of an argument structure is its help; the group has it here.
 #[derive(Subcommand)]
 enum Command {
     Regress(regress::Arguments),
@@ -34,7 +34,7 @@ enum Command {
 
 /// Whether the program accepts a command line, which begins with its name. For tests of the documentation.
 /// # Errors
-/// The reason.
+/// Returns the error message of `clap` if the command line is invalid.
 #[doc(hidden)]
 pub fn parses<T: Into<std::ffi::OsString> + Clone>(
     command_line: impl IntoIterator<Item = T>,

@@ -9,7 +9,7 @@ use super::{Setup, TripResult, localize_trip};
 use wayfix_evaluation::report::{Metric, Run};
 use wayfix_systems::cml::PanoramaLocalizer;
 
-/// People in 25 m × 10 m: hardly a view without somebody in it.
+/// People in 25 m × 10 m: almost every view shows a person.
 const N_PEOPLE: usize = 12;
 
 /// Whether people in view become part of the map: a crowded area with and without outlier rejection in the map, and the same area

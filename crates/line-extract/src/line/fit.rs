@@ -33,7 +33,7 @@ pub struct LineFit {
 /// ```
 ///
 /// # Errors
-/// [`LineError::Sizes`] unless there is a covariance for each point, [`LineError::TooFewPoints`] for fewer than two, [`LineError::Point`] and
+/// Returns [`LineError::Sizes`] unless there is a covariance for each point, [`LineError::TooFewPoints`] for fewer than two, [`LineError::Point`] and
 /// [`LineError::Param`] for points or variances that are not finite (variances: positive), [`LineError::NoDirection`] if all points are in one place.
 pub fn fit_line(points: &[Vector2<f64>], covariances: &[Matrix2<f64>]) -> Result<LineFit, LineError> {
     let got = points.len();

@@ -41,7 +41,7 @@ pub enum Distance {
 /// ```
 ///
 /// # Errors
-/// [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
+/// Returns [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
 /// 1e150.
 pub fn douglas_peucker(
     points: &[Vector2<f64>],

@@ -63,7 +63,7 @@ impl DriveParams {
     /// Whether the numbers make a robot.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::not_negative("speed (m/s)", self.speed_mps)?;
         check::positive("acceleration (m/s²)", self.acceleration_mps2)?;

@@ -31,7 +31,7 @@ impl AmbientLightParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::not_negative("σ of the daylight", self.daylight_sigma)?;
         check::positive("correlation time of the daylight (s)", self.daylight_correlation_s)?;
@@ -94,7 +94,7 @@ impl AmbientLight {
         }
     }
 
-    /// Somebody switches one group of lamps or draws one curtain.
+    /// Switches one group of lamps or draws one curtain.
     fn switch<R: Rng + ?Sized>(&mut self, rng: &mut R) {
         let which = below(self.lamps.len() + self.curtains.len(), rng);
         let open = uniform(-0.3, 1.3, rng).clamp(0.0, 1.0);

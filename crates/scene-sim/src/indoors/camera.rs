@@ -45,7 +45,7 @@ impl OmniCameraParams {
     /// Whether the numbers make a camera.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::above("columns of the camera", self.columns as f64, 3.5, "at least 4")?;
         check::count("columns of the camera", self.columns, 4096)?;

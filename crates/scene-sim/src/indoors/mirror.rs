@@ -29,7 +29,7 @@ impl Mirror {
     /// The raw picture for a view, which should be at least as fine; black beside the ring.
     ///
     /// # Errors
-    /// Returns an error if the ring does not fit into the picture, or the view is empty or not as large as it says.
+    /// Returns an error if the ring does not fit into the picture, or the view is empty or has an inconsistent size.
     pub fn image(&self, view: &RgbPicture) -> Result<RgbPicture, SimError> {
         check::count("side of the picture (pixels)", self.side_px, 1 << 14)?;
         check::not_negative("inner radius (pixels)", self.inner_px)?;

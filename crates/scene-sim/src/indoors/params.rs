@@ -37,7 +37,7 @@ impl IndoorParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         self.drive.validate()?;
         check::above("time between views (ms)", f64::from(self.view_period_ms), 9.0, "at least 10")?;

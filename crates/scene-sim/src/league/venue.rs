@@ -36,12 +36,12 @@ pub enum Lighting {
 }
 
 impl Venue {
-    /// One more venue of the world in which all of them are.
+    /// Draws a random venue.
     ///
     /// Four or six panels (2700 to 6500 K, every one a little different, somewhat green or magenta together) hang 2.4 to 3.4 m high in two
     /// rows; a paint differs by about 4 % as a whole (the carpet by 12 %) and 5 % in each primary. The camera has one of three fixed white
     /// balances, mostly the nearest, else the next; a gain that puts white at 0.65 to 1.1 of full scale on average over the field; and
-    /// filters that leave colours as pale as robots saw them then.
+    /// filters of low saturation, as in the robots of that time.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

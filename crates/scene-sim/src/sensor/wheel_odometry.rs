@@ -50,7 +50,7 @@ impl WheelOdometryParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::period("period of the odometry (ms)", self.period_ms)?;
         check::positive("wheel radius of the odometry (m)", self.wheel_radius_m)?;

@@ -58,7 +58,7 @@ impl Format {
 
     /// Detects the format at `path`: of folders by their content, of `.mcap` by name, else by the first bytes.
     /// # Errors
-    /// Returns an error if nothing is there, it cannot be read, is empty, or looks like no known format.
+    /// Returns an error if the path does not exist, cannot be read, is empty, or has no known format.
     pub fn detect(path: &Path) -> Result<Self, LogError> {
         let io = |source| LogError::io(path, source);
         if fs::metadata(path).map_err(io)?.is_dir() {

@@ -1,8 +1,7 @@
 //! ROS 2 messages as stored in bags, decoded without a copy where possible.
 //!
 //! [`RosSchema::named`] finds a message by its type name, [`RosSchema::decode`] decodes its CDR bytes. [`open`](crate::open) does both for the MCAP
-//! files of
-//! `ros2 bag`; this module is for programs with another source of bytes.
+//! files of `ros2 bag`; this module is for programs with another source of bytes.
 
 mod camera_info;
 mod geometry;

@@ -26,8 +26,7 @@ pub struct JointCompatibilityParams {
     /// NIS above which an observation is certainly of no landmark in the map. In between it is ignored.
     pub certainly_new: f64,
     /// Minimum difference between the NIS of a pairing and those of all other candidates of the observation; otherwise the observation is ambiguous
-    /// and
-    /// ignored. 0 always takes the best. Parallel walls and rows of trees need a larger value.
+    /// and ignored. 0 always takes the best. Parallel walls and rows of trees need a larger value.
     pub ambiguity_margin: f64,
     /// Maximum number of pairings tried per scan. When it is reached, the best set so far is used. Unlike a limit in milliseconds, it gives
     /// the same result on every machine.

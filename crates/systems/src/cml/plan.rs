@@ -41,8 +41,7 @@ const N_EVIDENCE: usize = 400;
 
 impl Plan {
     /// Builds a plan from folders of frames. Every `withhold`-th frame is localized and the others are learned. With `learn_from`, its frames are
-    /// learned and all
-    /// others localized. With `withhold` 0, no frame is learned. Sets the turning sense of the columns.
+    /// learned and all others localized. With `withhold` 0, no frame is learned. Sets the turning sense of the columns.
     ///
     /// # Errors
     /// Returns an error if no frame can be read.
@@ -115,8 +114,7 @@ impl Plan {
     }
 
     /// Builds a plan from the records of a log. If it has true poses, every `withhold`-th image is localized and the others are learned; with 0 no
-    /// image is
-    /// learned. Sets the turning sense of the columns.
+    /// image is learned. Sets the turning sense of the columns.
     ///
     /// # Errors
     /// Returns an error if views are to be learned and the log has no true poses.

@@ -69,9 +69,8 @@ impl ViewSystem {
     /// Learns `learned` and computes the features of `real`.
     ///
     /// # Errors
-    /// Returns [`ViewsError::Sizes`], [`ViewsError::NoContrast`], [`ViewsError::TooManyStates`], or [`ViewsError::Condensation`] if no view fits into
-    /// the
-    /// scene or a parameter is out of range.
+    /// Returns [`ViewsError::Sizes`], [`ViewsError::NoContrast`], [`ViewsError::TooManyStates`], or [`ViewsError::Condensation`] if no view fits
+    /// into the scene or a parameter is out of range.
     pub fn learn(
         learned: &Picture,
         real: &Picture,

@@ -46,7 +46,7 @@ impl ColorHistogram {
     /// From counts of one's own, one a bin.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] and, for a count that is negative or not finite, [`TrackingError::Parameter`].
+    /// Returns [`TrackingError::Dimension`] and, for a count that is negative or not finite, [`TrackingError::Parameter`].
     pub fn from_counts(quantizer: &ColorQuantizer, counts: Vec<f64>) -> Result<Self, TrackingError> {
         check_size("counts", quantizer.n_bins(), counts.len())?;
         for &count in &counts {

@@ -125,7 +125,7 @@ impl ContourTrackerParams {
     }
 
     /// # Errors
-    /// [`TrackingError::Parameter`] with the first parameter that is out of range.
+    /// Returns [`TrackingError::Parameter`] with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), TrackingError> {
         let count = |what, n: usize, most: usize| {
             checked(what, n as f64, (1..=most).contains(&n), "at least 1, and not beyond measure")

@@ -22,17 +22,15 @@ const TYPICAL_RATE: f64 = 0.05;
 
 /// Follows what a box encloses by its shape, its colours and its size: anything, in colour or grey, from the first box alone.
 ///
-/// Each picture is looked at in a square window around the last place. Position: the peak of
+/// Each image is sampled in a square window around the last position. Position: the peak of
 ///
 /// ```math
 /// (1 − w) \sum_d f_d ⋆ x_d + w \, \overline{p(c)}
 /// ```
 ///
 /// where $`x_d`$ are gradient-orientation, grey and colour channels. $`f`$ is a correlation filter that vanishes outside the target and stays near
-/// the
-/// previous one [Galoogahi et al. 2017; Li et al. 2018]. $`p(c)`$ is the ratio of the colour histograms of target and surroundings [Bertinetto et al.
-/// 2016].
-/// Size: a correlation filter over scales [Danelljan et al. 2017].
+/// the previous one [Galoogahi et al. 2017; Li et al. 2018]. $`p(c)`$ is the ratio of the colour histograms of target and surroundings [Bertinetto
+/// et al. 2016]. Size: a correlation filter over scales [Danelljan et al. 2017].
 ///
 /// Every result with a distinct peak is learned. The last filter that recognized the target beyond doubt is kept: after an occluder was learned,
 /// the kept filter finds the target where it reappears. A result is not learned if the kept filter does not recognize it and its colours
@@ -93,8 +91,7 @@ impl CorrelationTracker {
     /// Starts from the box around the target in the first image; the box is clipped to the image.
     /// # Errors
     /// Returns [`TrackingError::Parameter`] if a parameter is out of range or the target is smaller than 3 pixels, [`TrackingError::OutsidePicture`]
-    /// if
-    /// the box is outside the image, or [`TrackingError::Empty`] if the image is uniform.
+    /// if the box is outside the image, or [`TrackingError::Empty`] if the image is uniform.
     pub fn new(
         picture: &RgbImage,
         target: BoundingBox,

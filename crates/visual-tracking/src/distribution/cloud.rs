@@ -29,7 +29,7 @@ impl ColorCloud {
     /// Of the colours of pixels, every axis from 0 to 1. Of more than `max_points` the rarest are left out.
     ///
     /// # Errors
-    /// [`TrackingError::Empty`] without colours or points, [`TrackingError::NotFinite`].
+    /// Returns [`TrackingError::Empty`] without colours or points, [`TrackingError::NotFinite`].
     pub fn from_colors(
         colors: impl IntoIterator<Item = [f64; 3]>,
         max_points: usize,

@@ -11,7 +11,7 @@ type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
 /// $`\mathbf s = [\mathbf x; \dot{\mathbf x}]`$ and standard normal $`\mathbf w`$. [Andrade-Cetto & Sanfeliu, section 3.3,
 /// "Probabilistic propagation of samples"]
 ///
-/// The velocity is the last change, so $`A`$ and $`B`$ have two block rows that say the same:
+/// The velocity is the last change, so $`A`$ and $`B`$ have two equivalent block rows:
 /// $`A = \begin{bmatrix} F_x & F_v \\ F_x - I & F_v \end{bmatrix}`$ and $`B = [L; L]`$.
 ///
 /// ```

@@ -21,12 +21,12 @@ impl ColorDynamics {
     /// $`\min_F \sum_t \| \mathbf x_t - F_x \mathbf x_{t-1} - F_v \dot{\mathbf x}_{t-1} \|^2 + κ \| F - F_0 \|^2`$, and $`L Lᵀ`$ is the
     /// covariance of the residuals. [Andrade-Cetto & Sanfeliu, section 3.3: "A and B are estimated a priori from a training sequence"]
     ///
-    /// `ridge` $`κ ≥ 0`$ pulls towards $`F_0`$, constant velocity: what never changed in the training sequence then goes on not changing. It is
+    /// `ridge` $`κ ≥ 0`$ pulls towards $`F_0`$, constant velocity: a quantity constant in the training sequence then stays constant. It is
     /// in units of the squared states; 0 is plain least squares and needs a sequence in which all 16 numbers vary. The angles of the
-    /// series are to be added up from picture to picture ([`PrincipalColors::angles_since`](super::PrincipalColors::angles_since)).
+    /// series must be accumulated from image to image ([`PrincipalColors::angles_since`](super::PrincipalColors::angles_since)).
     ///
     /// # Errors
-    /// [`TrackingError::Empty`] with less than 18 states (16 unknowns a row), [`TrackingError::NotFinite`], and
+    /// Returns [`TrackingError::Empty`] with less than 18 states (16 unknowns a row), [`TrackingError::NotFinite`], and
     /// [`TrackingError::Parameter`] for a negative ridge or, with ridge 0, for a sequence that leaves something open.
     pub fn learn(series: &[ColorVector], ridge: f64) -> Result<LearnedDynamics, TrackingError> {
         crate::error::checked("ridge", ridge, ridge.is_finite() && ridge >= 0.0, "finite, not negative")?;

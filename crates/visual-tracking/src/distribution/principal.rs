@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Rotation3, SymmetricEigen, Vector3};
 
 use crate::TrackingError;
 
-/// Variance below which axes are not told apart: a step of an 8-bit channel, uniformly spread, $`(1/255)^2 / 12`$.
+/// Variance below which axes are not distinguished: a step of an 8-bit channel, uniformly spread, $`(1/255)^2 / 12`$.
 const TIE: f64 = 1.0 / (255.0 * 255.0 * 12.0);
 
 /// Centroid and principal components of a set of colours: $`\mathbf m`$, $`\boldsymbol λ`$ and the axes that go with them.
@@ -30,11 +30,11 @@ pub struct PrincipalColors {
 }
 
 impl PrincipalColors {
-    /// Of weighted colours.
+    /// The principal axes of weighted colours.
     ///
-    /// With `previous` the axes keep their identity: each is the one that continues the axis of the same number, with the same sign.
-    /// Where the colours do not say which way an axis points, because they have no extent there or the same extent all round, it stays
-    /// where it was: the eigenvectors are those of $`C + ε\, U \operatorname{diag}(2, 1, 0)\, Uᵀ`$, with the axes $`U`$ of before and a
+    /// With `previous` the axes keep their identity: each continues the axis of the same number, with the same sign. If the colours do not
+    /// determine the direction of an axis, because they have no extent there or equal extents in several directions, the previous
+    /// direction remains: the eigenvectors are those of $`C + ε\, U \operatorname{diag}(2, 1, 0)\, Uᵀ`$, with the previous axes $`U`$ and a
     /// variance $`ε`$ that 8-bit colours cannot resolve. Without `previous`, $`U`$ is the identity and axes are in falling order.
     ///
     /// # Errors

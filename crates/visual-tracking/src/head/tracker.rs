@@ -71,7 +71,7 @@ impl HeadTracker {
     /// Starts from the box around the head in the first picture.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] for a parameter out of its range or a head less than 6 pixels wide,
+    /// Returns [`TrackingError::Parameter`] for a parameter out of its range or a head less than 6 pixels wide,
     /// [`TrackingError::OutsidePicture`] for a box beyond the picture.
     pub fn new(
         picture: &RgbImage,

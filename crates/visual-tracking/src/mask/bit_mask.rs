@@ -85,7 +85,7 @@ impl BitMask {
     /// Switches a pixel on or off.
     ///
     /// # Errors
-    /// [`TrackingError::Outside`] beyond the edges.
+    /// Returns [`TrackingError::Outside`] beyond the edges.
     pub fn set(&mut self, u: usize, v: usize, on: bool) -> Result<(), TrackingError> {
         if u >= self.width || v >= self.height {
             return Err(TrackingError::Outside { pixel: (u, v), size: (self.width, self.height) });

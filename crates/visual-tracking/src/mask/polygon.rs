@@ -3,8 +3,7 @@ use crate::{BitMask, TrackingError};
 
 impl BitMask {
     /// The pixels whose centres are inside a closed polygon with corners `[u, v]` in pixels, by the even-odd rule. The polygon is clipped to the
-    /// mask;
-    /// polygons with a common side share no pixel.
+    /// mask; polygons with a common side share no pixel.
     /// ```
     /// use wayfix_visual_tracking::BitMask;
     /// let triangle = BitMask::from_polygon(40, 40, &[[0.0, 0.0], [20.0, 0.0], [0.0, 20.0]])?;

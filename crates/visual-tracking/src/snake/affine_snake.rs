@@ -36,7 +36,7 @@ impl Default for SnakeParams {
 
 impl SnakeParams {
     /// # Errors
-    /// [`TrackingError::Parameter`] with the first parameter that is out of range.
+    /// Returns [`TrackingError::Parameter`] with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), TrackingError> {
         let n_points = self.n_points as f64;
         checked("n_points", n_points, (8..=10_000).contains(&self.n_points), "from 8 to 10000")?;
@@ -102,7 +102,7 @@ pub struct SnakeFit {
 impl AffineSnake {
     /// A snake with the shape and the position of an outline.
     /// # Errors
-    /// [`TrackingError::Parameter`] for parameters out of range or an outline of less than four square pixels.
+    /// Returns [`TrackingError::Parameter`] for parameters out of range or an outline of less than four square pixels.
     pub fn new(outline: &Outline, params: &SnakeParams) -> Result<Self, TrackingError> {
         params.validate()?;
         let outline = outline.resampled(params.n_points)?;

@@ -40,7 +40,7 @@ struct Arguments {
     command: Command,
 }
 
-/// What an argument structure says of itself is its help; the groups say it here.
+/// The doc comment of an argument structure is its help; groups have it here.
 #[derive(Subcommand)]
 enum Command {
     /// Run a system on a log.
@@ -67,7 +67,7 @@ enum Run {
 
 /// Whether the program accepts a command line, which begins with its name. For tests of the documentation.
 /// # Errors
-/// The reason.
+/// Returns the error message of `clap` if the command line is invalid.
 #[doc(hidden)]
 pub fn parses<T: Into<std::ffi::OsString> + Clone>(
     command_line: impl IntoIterator<Item = T>,

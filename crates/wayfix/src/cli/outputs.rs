@@ -53,7 +53,7 @@ impl<'a> Outputs<'a> {
         Ok(sinks)
     }
 
-    /// Draws the estimates, where somebody will see them.
+    /// Draws the estimates, if there is a folder or a viewer.
     pub(super) fn estimates<D: Drawing>(&mut self, origin: Format) -> Result<Option<EstimateLog<D>>> {
         let sinks = self.sinks()?;
         Ok(if sinks.is_empty() { None } else { Some(EstimateLog::new(sinks, origin)?) })

@@ -52,7 +52,7 @@ impl StoreParams {
     /// Whether the numbers make a store with a shelf at least.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::positive("length of the store (m)", self.length_m)?;
         check::at_most("length of the store (m)", self.length_m, LONGEST_M, "at most 500")?;

@@ -80,7 +80,7 @@ impl CameraParams {
     /// Whether the numbers make a camera.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         let n_pixels = self.camera.width() as usize * self.camera.height() as usize;
         check::count("pixels of the camera", n_pixels, 1 << 22)?;

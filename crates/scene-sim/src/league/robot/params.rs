@@ -126,7 +126,7 @@ impl RobotParams {
     /// Whether the numbers make a robot.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         let Self { walk, sway, head, odometry } = self;
         check::not_negative("speed (m/s)", walk.speed_mps)?;

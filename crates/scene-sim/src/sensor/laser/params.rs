@@ -79,7 +79,7 @@ impl LaserParams {
     /// Whether the numbers make a scanner.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::period("period of the scans (ms)", self.period_ms)?;
         check::finite("direction of the first beam (rad)", self.first_beam_rad)?;

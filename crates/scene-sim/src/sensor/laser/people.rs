@@ -46,7 +46,7 @@ impl People {
     }
 }
 
-/// Somebody, seen from above.
+/// A person, seen from above.
 pub(super) struct Person {
     centre: Vector2<f64>,
     radius_m: f64,

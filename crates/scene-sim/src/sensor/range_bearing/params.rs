@@ -101,7 +101,7 @@ impl RangeBearingParams {
     /// Whether the numbers make a sensor.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::period("period of the looks (ms)", self.period_ms)?;
         check::not_negative("nearest range (m)", self.min_range_m)?;

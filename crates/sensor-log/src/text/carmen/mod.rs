@@ -1,10 +1,10 @@
-//! Logs of the Carnegie Mellon Robot Navigation Toolkit (CARMEN), as the Robotics Data Set Repository (Radish) has them: one message a line.
+//! Logs of the Carnegie Mellon Robot Navigation Toolkit (CARMEN), as in the Robotics Data Set Repository (Radish): one message per line.
 //!
-//! `FLASER` and `ROBOTLASER1` are scans with the poses of the laser and of the robot's odometry, `ODOM` what the wheels say, and `RAWLASER1` a
-//! scan without poses, which is read where there are no others. The order is that of the lines, for not all logs have stamps to go by. A
-//! scan gives the robot's pose where that is another than the odometry, the motion since the scan before, and what the laser saw. In
-//! corrected logs, the motion is still that of the wheels (`scan_odometry.rs` says how). The log is read twice: what the poses are, where
-//! the laser is, and what is wrong with the clock only the whole log tells (`first_pass.rs`).
+//! `FLASER` and `ROBOTLASER1` are scans with the poses of the laser and of the robot's odometry, `ODOM` is wheel odometry, and `RAWLASER1` a
+//! scan without poses, which is read if there are no others. The records keep the order of the lines, because not all logs have reliable
+//! stamps. A scan gives the robot's pose if that differs from odometry, the motion since the previous scan, and the ranges. In corrected
+//! logs, the motion is still that of the wheels (see `scan_odometry.rs`). The log is read twice, because the kind of poses, the laser's mount
+//! and the clock faults depend on the whole log (`first_pass.rs`).
 
 mod agreement;
 mod first_pass;
