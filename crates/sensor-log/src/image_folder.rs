@@ -136,7 +136,7 @@ fn natural_key(name: &str) -> (Vec<u8>, String) {
     (stem_key(&stem(name)), name.to_owned())
 }
 
-/// Text as it is. A number as how many digits it has, its digits and its decimals; a negative one with each byte turned round.
+/// Text is unchanged. A number becomes its digit count, its digits and its decimals; a negative one has each byte inverted.
 fn stem_key(stem: &str) -> Vec<u8> {
     let bytes = stem.as_bytes();
     let n_digits =

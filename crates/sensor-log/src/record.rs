@@ -180,7 +180,7 @@ pub struct TrueLandmark {
     pub y: f64,
 }
 
-/// A surveyed wall, or another straight surface visible to a laser. The order of the ends has no meaning.
+/// A surveyed wall, or another straight surface visible to a laser. The order of the ends does not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrueWall {
     /// Its identity.

@@ -17,7 +17,7 @@ pub struct ReadReport {
     pub problems: BTreeMap<ProblemKind, u64>,
     /// The first problems, in the order of the log.
     pub examples: Vec<Problem>,
-    /// Messages that this crate does not read: `topic (schema)`, or the first word of a CARMEN line, and how many.
+    /// Messages that this crate does not read: `topic (schema)`, or the first word of a CARMEN line, with their number.
     pub ignored: BTreeMap<String, u64>,
     /// Whether the log ends as it should.
     pub end: LogEnd,

@@ -32,7 +32,7 @@ pub struct LogSummary {
     pub landmarks_seen: BTreeSet<u32>,
     /// Detected robots.
     pub robots_seen: BTreeSet<u32>,
-    /// Codes that the log's own table does not list, and how often each was sighted.
+    /// Codes that the log's own table does not list, with their number of detections.
     pub unknown_codes: BTreeMap<u32, u64>,
     /// Number of detections without identity.
     pub n_unlabelled: u64,

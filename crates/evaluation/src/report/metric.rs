@@ -39,7 +39,7 @@ pub struct Metric {
 pub struct Spread {
     /// The interval reaches this far to both sides.
     pub half_width: f64,
-    /// Over how many seeds.
+    /// Number of seeds.
     pub n: usize,
 }
 

@@ -24,7 +24,7 @@ pub struct ConsistencySample {
 
 /// Runs a simulated log through one filter from the true start: one entry per scan, from the first one after a motion.
 /// # Errors
-/// Returns an error if the log has no true start, or the filter refuses what was simulated.
+/// Returns an error if the log has no true start, or the filter refuses a simulated measurement.
 pub fn drive(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<Vec<ConsistencySample>> {
     let mut slam = filter(laps, records, kind)?;
     let start_stamp = records.first().context("an empty log")?.stamp;

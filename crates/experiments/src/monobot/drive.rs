@@ -52,7 +52,7 @@ pub(crate) fn plain_filter() -> SlamParams {
 /// Runs a simulated drive through EKF-SLAM from the true start.
 ///
 /// # Errors
-/// Returns an error if the filter refuses what was simulated.
+/// Returns an error if the filter refuses a simulated measurement.
 pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> Result<Drive> {
     let sensor = MonobotSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_noise };
     let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_noise };

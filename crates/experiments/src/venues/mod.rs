@@ -4,7 +4,7 @@
 //! `day/robot/*.jpg`, each image with a `.txt` of boxes, `class cx cy w h` in fractions of the image. A day's robot is a venue.
 //!
 //! Definition of the pixels that count, the same for every method:
-//! * **ball**: those in the ellipse inscribed in a ball's box (class 0), shrunk to three quarters, since boxes are off by a few pixels and
+//! * **ball**: those in the ellipse inscribed in a ball's box (class 0), shrunk to three quarters, because boxes are off by a few pixels and
 //!   rims are blurred. A box cut by the image's border is continued to a square first: a ball is round. Balls of less than 12 pixels are all rim.
 //! * **carpet**: below the horizon (the lower 45 % of the rows: these cameras are upright), in the lens's ellipse, green the strongest
 //!   channel, and in the cluster of the dominant colour: around the fullest cell of the image's UV histogram, as far as a 99 % gate of its own

@@ -3,7 +3,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::{LineEstimate, Moments};
 use crate::{LineError, check};
 
-/// A fitted line and how well it fits.
+/// A fitted line with its goodness of fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LineFit {

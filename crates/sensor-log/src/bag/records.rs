@@ -133,7 +133,7 @@ impl BagRecords {
         warnings
     }
 
-    /// Remembers whether a scan states how far echoes reach.
+    /// Notes whether a scan states its maximum range.
     pub(crate) fn note_range_limit(&mut self, scan: &LaserScan) {
         self.lacks_range_limit |= scan.range_max == f64::INFINITY;
     }

@@ -30,7 +30,7 @@ pub struct CorrelationTrackerParams {
     pub color_weight: f64,
     /// Rate at which the colour histograms follow. Default 0.04.
     pub color_rate: f64,
-    /// Standard deviation of how far a target moves between two pictures, in sides of the target. Default 2.
+    /// Standard deviation of the motion of a target between two images, in sides of the target. Default 2.
     pub motion_width: f64,
     /// Scales that are compared, an odd number. Default 17.
     pub n_scales: usize,

@@ -5,7 +5,7 @@ pub(super) struct Peak {
     pub(super) shift: [f64; 2],
     /// The response there.
     pub(super) value: f64,
-    /// By how many standard deviations of the rest the peak rises above its mean. [Bolme et al. 2010, sec. 3.5]
+    /// Height of the peak above the mean of the rest, in standard deviations of the rest. [Bolme et al. 2010, sec. 3.5]
     pub(super) peak_to_sidelobe: f64,
 }
 

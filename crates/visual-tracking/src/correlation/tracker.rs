@@ -20,7 +20,7 @@ const MAX_SHARE: f64 = 1.5;
 /// Rate at which the typical response adapts.
 const TYPICAL_RATE: f64 = 0.05;
 
-/// Follows what a box encloses by its shape, its colours and its size: anything, in colour or grey, from the first box alone.
+/// Tracks an arbitrary target by its shape, its colours and its size, in colour or grey, from its first box alone.
 ///
 /// Each image is sampled in a square window around the last position. Position: the peak of
 ///

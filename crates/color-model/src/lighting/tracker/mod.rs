@@ -12,7 +12,7 @@ use super::{ColorDensity, ColorMeans};
 use crate::ColorModelError;
 
 /// Tracks the light from the colour means of successive images; poses, and hence labels, are known.
-/// | tracker | what it remembers | cost of an image |
+/// | tracker | state | cost of an image |
 /// | --- | --- | --- |
 /// | [`LightingFilter`](super::LightingFilter) | one Gaussian for all lights | one update |
 /// | [`JumpMarkovTracker`] | a Gaussian for each light of the bank; one that comes back is known already | histories × members |

@@ -21,7 +21,7 @@ struct Settings {
     /// Number of seeds.
     #[serde(default = "twenty")]
     n_seeds: u64,
-    /// The same with `--quick`, and how many frames.
+    /// The same with `--quick`, and the number of frames.
     #[serde(default = "two")]
     n_seeds_quick: u64,
     #[serde(default = "fifty")]

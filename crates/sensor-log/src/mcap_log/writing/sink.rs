@@ -77,7 +77,7 @@ pub trait MessageSink {
 
     /// Ends the output.
     /// # Errors
-    /// Returns an error if what was taken cannot be completed.
+    /// Returns an error if the output cannot be completed.
     fn finish(self: Box<Self>) -> Result<(), LogError> {
         Ok(())
     }

@@ -40,7 +40,7 @@ pub enum RecordingError {
         n_frames: usize,
         /// Rows of the table.
         n_poses: usize,
-        /// What is missing.
+        /// The reason.
         reason: &'static str,
     },
 }
