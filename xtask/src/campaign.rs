@@ -1,4 +1,4 @@
-//! `cargo xtask campaign`: the recipe for GNU parallel in `docs/campaigns`, run as a reader would.
+//! `cargo xtask campaign`: runs the recipe for GNU parallel in `docs/campaigns` as documented.
 
 use std::process::ExitCode;
 

@@ -43,13 +43,13 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is off by default is checked all the same; that it can be off, `fixtures` and `regress` show.
+/// Features that are off by default are checked too; `fixtures` and `regress` run without them.
 const LIVE: &str = "--features=wayfix/live";
 
 fn steps() -> Result<Vec<Step>> {
     let step = |name, args: &[&str]| Step { name, command: shell::command("cargo", args) };
     let itself = std::env::current_exe().context("where this program is")?;
-    // The program itself rather than `cargo xtask`, which would rebuild it under our feet.
+    // Runs the program itself, because `cargo xtask` would rebuild it while it runs.
     let task = |name, args: &[&str]| Step { name, command: shell::command(&itself, args) };
 
     let tests = if shell::have("cargo-nextest") {

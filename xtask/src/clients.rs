@@ -1,7 +1,7 @@
-//! `cargo xtask clients`: other people's programs read what the regression run wrote, and we read what others write.
+//! `cargo xtask clients`: other programs read the output of the regression run, and we read theirs.
 //!
-//! A format is right when somebody else's reader or writer says so: Python's `mcap`, `rosbags` and `websockets`, the Rerun command line, a browser.
-//! Where a program is missing its check is skipped, except under `CI=true`, where it is required.
+//! Independent readers and writers verify the formats: Python's `mcap`, `rosbags` and `websockets`, the Rerun command line, a browser. If a program
+//! is missing its check is skipped, except under `CI=true`, where it is required.
 
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Bags of known numbers, in both byte orders: `info` names their topics, and `convert` keeps every number.
+/// Bags of known numbers, in both byte orders: `info` must list their topics, and `convert` must keep every number.
 fn convert_ros_bags() -> Result<()> {
     let folder = shell::target_dir().join("ros-bags");
     let python =
@@ -79,9 +79,9 @@ fn convert_ros_bags() -> Result<()> {
     Ok(())
 }
 
-/// A run with the live view, as a WebSocket client sees it that is not ours.
+/// Tests the live view of a run with an independent WebSocket client.
 fn watch_live() -> Result<()> {
-    // As the tests are built, which leaves the program beside them: nothing is compiled for this alone.
+    // Builds like the tests, which leave the program beside them, so nothing is compiled only for this.
     let build = ["test", "--quiet", "--workspace", "--features=wayfix/live", "--test", "live", "--no-run"];
     shell::check(&mut shell::command("cargo", &build))?;
     let wayfix = shell::target_dir().join("debug").join("wayfix");
@@ -97,7 +97,7 @@ fn read_with_python(logs: &[PathBuf]) -> Result<()> {
     shell::check(command.args(logs))
 }
 
-/// `convert` exits with 0 for files it does not understand, so the recording is asked what it holds.
+/// `convert` exits with 0 for files that it does not understand, so list the content of the recording.
 fn convert_with_rerun(rerun: &Path, log: &Path) -> Result<()> {
     let recording = log.with_extension("rrd");
     let rerun = |args: &[&str]| {
@@ -115,7 +115,7 @@ fn convert_with_rerun(rerun: &Path, log: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Entities in what `rerun rrd print` lists, without the ones that describe the file itself.
+/// Entities listed by `rerun rrd print`, without those that describe the file.
 fn topics_in(listing: &str) -> Vec<&str> {
     let chunks = listing.lines().filter(|line| line.starts_with("Chunk("));
     let mut topics: Vec<_> = chunks.filter_map(|line| line.split(" - ").nth(1)).collect();
@@ -125,7 +125,7 @@ fn topics_in(listing: &str) -> Vec<&str> {
     topics
 }
 
-/// The page must draw something and throw nothing.
+/// The page must draw something and raise no error.
 fn open_in_browser(browser: &str, page: &Path) -> Result<()> {
     let profile = shell::target_dir().join("browser");
     let picture = page.with_extension("png");

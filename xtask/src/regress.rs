@@ -16,7 +16,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     shell::pass_on(&mut command)
 }
 
-/// Where reports go unless `--out` says otherwise.
+/// Default folder of reports, without `--out`.
 pub(crate) fn default_out() -> PathBuf {
     let out = shell::target_dir().join("regress");
     out.strip_prefix(shell::root()).map(Path::to_path_buf).unwrap_or(out)

@@ -1,4 +1,4 @@
-//! `cargo xtask robot`: robots outside the workspace, built and run as their builders would.
+//! `cargo xtask robot`: builds and runs robots outside the workspace, as their developers do.
 
 use std::process::ExitCode;
 

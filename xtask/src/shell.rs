@@ -12,7 +12,7 @@ pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."))
 }
 
-/// Where cargo builds.
+/// The target directory of cargo.
 pub(crate) fn target_dir() -> PathBuf {
     match std::env::var_os("CARGO_TARGET_DIR") {
         Some(dir) => root().join(dir),
@@ -62,7 +62,7 @@ pub(crate) fn python_has(modules: &[&str]) -> bool {
     probe.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
-/// Whether a program is there; what is missing is an error where CI requires it.
+/// Whether a program is available; a missing one is an error if CI requires it.
 pub(crate) fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
     let required = std::env::var("CI").is_ok_and(|value| value == "true");
     if !found && required {
@@ -74,7 +74,7 @@ pub(crate) fn available(what: &str, found: bool, remedy: &str) -> Result<bool> {
     Ok(found)
 }
 
-/// Runs to the end and fails when the program does.
+/// Runs a command; returns an error if it fails.
 pub(crate) fn check(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| format!("cannot start `{}`", spelled(command)))?;
     if !status.success() {
@@ -89,7 +89,7 @@ pub(crate) fn pass_on(command: &mut Command) -> Result<ExitCode> {
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
-/// Runs to the end and returns standard output; standard error goes to the terminal.
+/// Runs a command and returns standard output; standard error goes to the terminal.
 pub(crate) fn output(command: &mut Command) -> Result<String> {
     let output = command
         .stderr(Stdio::inherit())
@@ -101,7 +101,7 @@ pub(crate) fn output(command: &mut Command) -> Result<String> {
     String::from_utf8(output.stdout).with_context(|| format!("output of `{}`", spelled(command)))
 }
 
-/// The command as one would type it.
+/// The command as typed in a shell.
 pub(crate) fn spelled(command: &Command) -> String {
     let mut line = String::new();
     for (key, value) in command.get_envs() {

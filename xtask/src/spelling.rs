@@ -1,4 +1,4 @@
-//! `cargo xtask spelling`: no misspelled words in what we write; `typos.toml` has the words of the field that are none.
+//! `cargo xtask spelling`: checks the spelling; `typos.toml` lists the technical terms.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! `cargo xtask tutorials`: what the tutorials of `docs/tutorials` tell a reader to type, typed.
+//! `cargo xtask tutorials`: runs the commands of the tutorials in `docs/tutorials`.
 
 use std::fs;
 use std::path::Path;
@@ -26,7 +26,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Types every command of a page in a folder that looks like the root of the repository.
+/// Runs every command of a page in a folder with the layout of the repository's root.
 fn follow(page: &Path, name: &str) -> Result<()> {
     let folder = shell::target_dir().join("tutorials").join(name);
     if folder.exists() {

@@ -58,10 +58,9 @@ impl Camera {
         Ok(Self { width, height, fx, fy, cx, cy })
     }
 
-    /// A camera that sees these angles between the outer edges of its outer pixels, radians, its axis in the middle.
-    ///
+    /// A camera with these fields of view between the outer edges of its outer pixels, rad, and its axis in the middle.
     /// # Errors
-    /// As [`Camera::new`]; the angles must lie in (0, π).
+    /// Returns the errors of [`Camera::new`]; the angles must lie in (0, π).
     pub fn from_field_of_view(
         width: u32,
         height: u32,
@@ -80,9 +79,8 @@ impl Camera {
         Self::new(width, height, focal(cx, horizontal_rad), focal(cy, vertical_rad), cx, cy)
     }
 
-    /// The camera of this one's images with squares of `by` × `by` pixels averaged to one; what does not fill a square is cut off at the right and
-    /// at the bottom.
-    ///
+    /// The camera for images averaged over squares of `by` × `by` pixels; incomplete squares at the right and at the bottom are
+    /// dropped.
     /// # Errors
     /// [`ViewError::Camera`]: no square fits into the image, or `by` is 0.
     ///
@@ -132,7 +130,7 @@ impl Camera {
         self.cy
     }
 
-    /// Where a point of the camera frame appears, (column, row), on the image or beside it; nothing behind the camera.
+    /// Image position of a point of the camera frame, (column, row), inside or outside the image; `None` behind the camera.
     pub fn project(&self, point: &Vector3<f64>) -> Option<Vector2<f64>> {
         (point.x > 0.0).then(|| {
             Vector2::new(self.cx - self.fx * point.y / point.x, self.cy - self.fy * point.z / point.x)

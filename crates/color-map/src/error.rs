@@ -1,8 +1,8 @@
-/// Why shapes do not make a map. `shape` is the offender's place in the list.
+/// Errors of building a map. `shape` is the index of the invalid shape.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// More colours than a label image tells apart.
+    /// More colours than a label image can represent.
     #[error("{got} colours, at most {limit} are possible")]
     TooManyColors {
         /// The largest number possible.
@@ -23,7 +23,7 @@ pub enum MapError {
         shape: usize,
         /// Its colour.
         color: u8,
-        /// How many the map has.
+        /// Number of colours of the map.
         n_colors: usize,
     },
     /// A map file names a colour that it does not list.
@@ -39,9 +39,9 @@ pub enum MapError {
         shape: usize,
         /// Which of its numbers, with its unit.
         what: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it must be.
+        /// The requirement.
         must: &'static str,
     },
     /// A polygon of fewer than three corners.
@@ -59,7 +59,7 @@ pub enum MapError {
         shape: usize,
         /// Its area.
         area_m2: f64,
-        /// The way around it.
+        /// Length of the perimeter.
         perimeter_m: f64,
     },
     /// A corner that does not lie on the plane of its polygon.
@@ -69,7 +69,7 @@ pub enum MapError {
         shape: usize,
         /// Which corner.
         vertex: usize,
-        /// How far off.
+        /// Its distance from the plane.
         distance_m: f64,
     },
     /// A polygon with a corner on the outer side of one of its own edges.
@@ -79,7 +79,7 @@ pub enum MapError {
         shape: usize,
         /// Which corner.
         vertex: usize,
-        /// How far outside.
+        /// Its distance outside.
         distance_m: f64,
     },
     /// A post without bands.
@@ -97,14 +97,14 @@ pub enum MapError {
         shape: usize,
         /// Which band.
         band: usize,
-        /// Where it begins.
+        /// Lower end of the band.
         from_m: f64,
-        /// Where it ends.
+        /// Upper end of the band.
         to_m: f64,
-        /// Where the one before it ends.
+        /// Upper end of the band below.
         least_m: f64,
     },
-    /// Two posts that stand in each other, seen from above.
+    /// Two posts that intersect, seen from above.
     #[error("posts {first} and {second} are {distance_m} m apart, at least {least_m} m is needed")]
     PostsOverlap {
         /// The earlier one.
@@ -113,7 +113,7 @@ pub enum MapError {
         second: usize,
         /// Between their centres.
         distance_m: f64,
-        /// The smallest distance that keeps them apart.
+        /// The minimum distance of disjoint posts.
         least_m: f64,
     },
     /// The surfaces cut each other into more pieces than a view can be sorted from.
@@ -124,7 +124,7 @@ pub enum MapError {
     },
 }
 
-/// Why there is no view. Nothing was emitted.
+/// Errors of rendering a view. No span was emitted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
@@ -133,9 +133,9 @@ pub enum ViewError {
     Camera {
         /// Which number, with its unit.
         what: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it must be.
+        /// The requirement.
         must: &'static str,
     },
     /// A number of the camera pose is out of range.
@@ -143,12 +143,12 @@ pub enum ViewError {
     Pose {
         /// Which number, with its unit.
         what: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it must be.
+        /// The requirement.
         must: &'static str,
     },
-    /// Labels of another size than the image.
+    /// Labels and image differ in size.
     #[error("a label image of {width}x{height} has {expected} pixels, got {got}")]
     Size {
         /// Columns.

@@ -2,8 +2,7 @@ use crate::{ColorId, Span, ViewError};
 
 /// A map colour, or none, for every pixel.
 ///
-/// As bytes, for a grey image file: 0 says no map colour, `k + 1` says `ColorId(k)`.
-///
+/// As bytes, for a grey image file: 0 means no map colour, `k + 1` means `ColorId(k)`.
 /// ```
 /// use wayfix_color_map::{ColorId, LabelImage};
 ///
@@ -29,7 +28,7 @@ impl LabelImage {
     /// Labels from bytes, row by row from the top.
     ///
     /// # Errors
-    /// [`ViewError::Size`] when their number is not `width * height`.
+    /// Returns [`ViewError::Size`] if their number is not `width * height`.
     pub fn from_codes(width: u32, height: u32, codes: &[u8]) -> Result<Self, ViewError> {
         let expected = width as usize * height as usize;
         if codes.len() != expected {
@@ -70,7 +69,7 @@ impl LabelImage {
         &self.pixels
     }
 
-    /// How many pixels have this colour.
+    /// Number of pixels of this colour.
     pub fn count(&self, color: ColorId) -> usize {
         self.pixels.iter().filter(|&&pixel| pixel == Some(color)).count()
     }

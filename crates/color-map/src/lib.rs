@@ -1,9 +1,8 @@
-//! Maps of coloured surfaces, and what a camera should see of them.
+//! Maps of coloured surfaces, and their camera views.
 //!
-//! A [`ColorMap`] holds flat convex polygons and upright posts, each with one of the map's named colours. Two programs ask it the same
-//! question, what colour belongs where in the image, and this crate answers both alike: a simulator that paints a frame, and a localizer
-//! that compares a frame with what a hypothetical camera pose would show.
-//!
+//! A [`ColorMap`] holds flat convex polygons and upright posts, each with one of the map's named colours. The crate computes which colour each pixel
+//! of a camera shows, for a simulator that renders images and for a localizer that compares images with those expected at hypothetical
+//! camera poses.
 //! | ask | with | cost |
 //! | --- | --- | --- |
 //! | what does this ray hit | [`ColorMap::cast`] | every plane and post of the map |

@@ -5,13 +5,13 @@ use crate::ColorId;
 /// A coloured thing in a map. Metres, in the world frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// A flat convex surface, seen from both sides.
+    /// A flat convex surface, visible from both sides.
     ///
-    /// Polygons on one plane are decals: a later one lies on top of an earlier one, from whichever side.
+    /// Polygons on one plane are decals: a later one covers an earlier one, seen from either side.
     Polygon {
         /// Its colour.
         color: ColorId,
-        /// Corners in order, either way round; at least three.
+        /// Corners in order, in either direction; at least three.
         vertices: Vec<Vector3<f64>>,
     },
     /// An upright post, such as a beacon: one closed solid a band, seen from outside.
@@ -23,7 +23,7 @@ pub enum Shape {
         x: f64,
         /// Centre.
         y: f64,
-        /// Radius of the cylinder that is meant.
+        /// Radius of the cylinder that the prism approximates.
         radius: f64,
         /// Colours from the bottom up; they may leave gaps.
         bands: Vec<Band>,

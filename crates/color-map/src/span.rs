@@ -1,6 +1,6 @@
 use crate::ColorId;
 
-/// A run of pixels in one row whose centres see one colour: columns `start..end`, never empty.
+/// A run of pixels in one row whose centres show one colour: columns `start..end`, never empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Span {
     /// Row of the image, 0 at the top.
@@ -9,6 +9,6 @@ pub struct Span {
     pub start: u16,
     /// One past the last column.
     pub end: u16,
-    /// What the pixels see.
+    /// Colour of the pixels.
     pub color: ColorId,
 }

@@ -1,13 +1,13 @@
-/// How pixels look that show nothing of the map.
+/// Colour distribution of pixels that show no map surface.
 ///
-/// Densities of two poses are comparable only when both explain every pixel of the image; a pixel without a label counts as background.
-/// Uniform over the $`256^3`$ colours unless learned. An own one: [`Background::Histogram`] from pixels that are known to be no part of the map.
+/// Densities of two poses are comparable only if both explain every pixel of the image; a pixel without a label counts as background. Uniform over
+/// the $`256^3`$ colours unless learned. For a custom one, use [`Background::Histogram`] with pixels known to be outside the map.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Background {
-    /// Every YUV value is as likely as any other.
+    /// All YUV values are equally likely.
     #[default]
     Uniform,
-    /// As often as it was seen, in 4096 cells of 16 × 16 × 16, each with one pixel added so that nothing is impossible.
+    /// Histogram of 4096 cells of 16 × 16 × 16, each with one pixel added so that no cell is zero.
     Histogram(Vec<f64>),
 }
 
@@ -15,8 +15,7 @@ const CELLS: usize = 1 << 12;
 const COLOURS: f64 = 16_777_216.0;
 
 impl Background {
-    /// Learns from pixels that show nothing of the map; none give the uniform density.
-    ///
+    /// Learns from pixels outside the map; without pixels the density is uniform.
     /// ```
     /// use wayfix_color_model::Background;
     /// let wall = Background::learned([[200, 120, 130]; 5000].iter().copied());

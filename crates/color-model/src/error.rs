@@ -2,30 +2,30 @@ use wayfix_gaussian_core::GaussianError;
 use wayfix_kalman::KalmanError;
 use wayfix_particle::ParticleError;
 
-/// Why a colour model cannot do what it was asked for. What it knew before, it still knows.
+/// Errors of a colour model. After an error, the model is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorModelError {
-    /// Something has not as many parts as it should.
+    /// A wrong number of elements.
     #[error("{what}: expected {expected}, got {got}")]
     Dimension {
-        /// What was counted.
+        /// Name of the elements.
         what: &'static str,
-        /// How many there should be.
+        /// The expected number.
         expected: usize,
-        /// How many there are.
+        /// The given number.
         got: usize,
     },
     /// A number that is NaN or infinite.
     #[error("{what} is not finite")]
     NotFinite {
-        /// What it belongs to.
+        /// Name of the quantity.
         what: &'static str,
     },
     /// A number outside the range that has a meaning.
     #[error("{what}: {value} is out of range")]
     OutOfRange {
-        /// What it is.
+        /// Name of the quantity.
         what: &'static str,
         /// The number.
         value: f64,
@@ -33,7 +33,7 @@ pub enum ColorModelError {
     /// A colour's density with a mean that is not finite or a covariance that is not positive definite.
     #[error("the density of a colour has no peak: mean not finite or covariance not positive definite")]
     DensityNotPositive,
-    /// An image without pixels, or whose pixels do not fill it.
+    /// An image without pixels, or with a wrong number of bytes.
     #[error("an image of {width} x {height} pixels needs {expected} bytes, got {got}")]
     ImageSize {
         /// Columns.
@@ -42,10 +42,10 @@ pub enum ColorModelError {
         height: usize,
         /// Bytes that are needed; 0 for an image that is too large to be one.
         expected: usize,
-        /// Bytes that were given.
+        /// Number of bytes given.
         got: usize,
     },
-    /// An image of another size than the camera's, as (columns, rows).
+    /// An image that differs from the camera in size, as (columns, rows).
     #[error("frame of {} x {} pixels from a camera of {} x {}", got.0, got.1, expected.0, expected.1)]
     FrameSize {
         /// The camera's.
@@ -70,18 +70,18 @@ pub enum ColorModelError {
     /// No member of the bank.
     #[error("the bank has {n_members} lighting filters, no number {member}")]
     NoSuchMember {
-        /// The number asked for.
+        /// The given index.
         member: usize,
-        /// How many there are.
+        /// Number of members.
         n_members: usize,
     },
     /// A mean or covariance is none.
     #[error(transparent)]
     Gaussian(#[from] GaussianError),
-    /// A filter refuses.
+    /// An error of a filter.
     #[error(transparent)]
     Kalman(#[from] KalmanError),
-    /// Particles refuse.
+    /// An error of the particles.
     #[error(transparent)]
     Particle(#[from] ParticleError),
 }

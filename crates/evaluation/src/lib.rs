@@ -1,8 +1,7 @@
-//! Estimates against truth: [`errors`] compares them, [`plot`] draws them, [`report`] writes figures and pictures as JSON and HTML.
-//!
+//! Comparison of estimates with truth: [`errors`] compares them, [`plot`] draws them, [`report`] writes figures and pictures as JSON and HTML.
 //! [`terminal`] prints them.
 //!
-//! Nothing here knows an estimator: numbers, poses and covariances come in.
+//! This crate does not depend on an estimator: its inputs are numbers, poses and covariances.
 
 pub mod errors;
 pub mod plot;

@@ -1,7 +1,7 @@
-//! What reproduces the papers: plans of runs on stored logs and on public recordings, their bounds, and the report of all.
+//! Reproduction of the papers: plans of runs on stored logs and on public recordings, their bounds, and a report of all.
 //!
-//! [`regress`] runs the suites; [`fixtures`] are the stored logs. [`monobot`] and [`consistency`] are experiments with simulated robots, [`color`], [`cml`], [`films`], [`corridor`] and [`venues`]
-//! those of one system each.
+//! [`regress`] runs the suites; [`fixtures`] are the stored logs. [`monobot`] and [`consistency`] are experiments with simulated robots; [`color`],
+//! [`cml`], [`films`], [`corridor`] and [`venues`] are those of one system each.
 
 pub mod cli;
 pub mod cml;

@@ -51,7 +51,7 @@ impl PaperScene {
         Self::ALL.into_iter().find(|scene| scene.name == name)
     }
 
-    /// What the paper reports of a figure: `p_between_mean` (Table 1), `p_same_min`, `p_same_max`, `p_same_mean` (Table 2), `successes` (Table 3).
+    /// The paper's value of a figure: `p_between_mean` (Table 1), `p_same_min`, `p_same_max`, `p_same_mean` (Table 2), `successes` (Table 3).
     pub fn figure(&self, feature: FeatureKind, figure: &str) -> Option<f64> {
         let row = match figure {
             "p_between_mean" => &self.between,

@@ -1,4 +1,4 @@
-/// Why nothing was simplified, fitted or extracted.
+/// Errors of simplification, fitting and extraction.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LineError {
@@ -8,7 +8,7 @@ pub enum LineError {
         /// The value given.
         value: f64,
     },
-    /// A point is not finite, or so far away that areas overflow.
+    /// A point is not finite, or so large that areas overflow.
     #[error("point {index} is ({x}, {y}), must be finite and within ±{largest:e}")]
     Point {
         /// Which point.
@@ -25,9 +25,9 @@ pub enum LineError {
     Param {
         /// Its name, with its unit.
         what: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it must be.
+        /// The requirement.
         must: &'static str,
     },
     /// A number of the scan geometry is out of range.
@@ -35,15 +35,15 @@ pub enum LineError {
     Scan {
         /// Which number, with its unit.
         what: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it must be.
+        /// The requirement.
         must: &'static str,
     },
     /// The beams of one scan cover more than a full turn.
     #[error("scan: {n_beams} beams of {increment_rad} rad go beyond a full turn")]
     MoreThanATurn {
-        /// How many beams.
+        /// Number of beams.
         n_beams: usize,
         /// From one to the next.
         increment_rad: f64,
@@ -51,25 +51,25 @@ pub enum LineError {
     /// The number of covariances differs from the number of points.
     #[error("{covariances} covariances for {points} points")]
     Sizes {
-        /// How many points.
+        /// Number of points.
         points: usize,
-        /// How many covariances.
+        /// Number of covariances.
         covariances: usize,
     },
     /// Too few points for a line.
     #[error("{got} points, a line needs {needed}")]
     TooFewPoints {
-        /// How many came.
+        /// Number of points given.
         got: usize,
-        /// How many it takes.
+        /// Number of points required.
         needed: usize,
     },
     /// The points have no direction: their extent is within their noise.
     #[error("{n_points} points of extent {extent_m:e} m have no direction")]
     NoDirection {
-        /// How many points.
+        /// Number of points.
         n_points: usize,
-        /// How far they spread (rms) along the line.
+        /// RMS spread of the points along the line, m.
         extent_m: f64,
     },
     /// A covariance is not positive definite.

@@ -12,24 +12,23 @@ use crate::{
 /// A scan prepared for matching: its points and their surface normals.
 #[derive(Clone, Debug, Default)]
 pub struct Cloud {
-    /// Every so many beams a point, at most one a degree: enough to be laid on another scan.
+    /// Subsampled points, at most one per degree: enough for matching.
     pub(crate) points: Vec<Vector2<f64>>,
     /// Radians from one of the points to the next.
     pub(crate) spacing: f64,
     pub(crate) surfaces: Tree,
 }
 
-/// Points of a cloud are no denser than this, rad.
+/// Minimum spacing of the points of a cloud, rad.
 const SPACING: f64 = 0.0174;
 /// More beams than any laser has; a longer list is not a scan.
 const MOST_BEAMS: usize = 1 << 20;
 
 impl Cloud {
-    /// The cloud of a scan: beam $`i`$ points along `angle_min` $`+ i\,`$`angle_increment`, radians; `ranges` in metres. What is not in (0, `max_range`] is
-    /// no echo.
-    ///
+    /// The cloud of a scan: beam $`i`$ points along `angle_min` $`+ i\,`$`angle_increment`, rad; `ranges` in m. Values outside
+    /// (0, `max_range`] are no echoes.
     /// # Errors
-    /// When the geometry is not finite, the range not positive, or the beams go around more than once.
+    /// Returns an error if the geometry is not finite, the range not positive, or the beams go around more than once.
     pub fn from_ranges(
         angle_min: f64,
         angle_increment: f64,
@@ -42,7 +41,7 @@ impl Cloud {
     /// The same of a laser that moves by `step` from one beam to the next, in its own frame; the cloud is seen from where the first beam was sent.
     ///
     /// # Errors
-    /// Those of [`from_ranges`](Self::from_ranges), and for a step that is not finite.
+    /// Returns the errors of [`from_ranges`](Self::from_ranges), and for a step that is not finite.
     pub fn from_ranges_deskewed(
         angle_min: f64,
         angle_increment: f64,

@@ -1,4 +1,4 @@
-/// Why two scans were not matched.
+/// Errors of matching two scans.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScanMatchError {
@@ -7,17 +7,17 @@ pub enum ScanMatchError {
     Value {
         /// Which, with its unit.
         what: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it must be.
+        /// The requirement.
         must: &'static str,
     },
     /// Too few points of a scan lie on surfaces.
     #[error("{got} points on surfaces, a match needs {needed}")]
     TooFewPoints {
-        /// How many there are.
+        /// Number of points given.
         got: usize,
-        /// How many it takes.
+        /// Number of points required.
         needed: usize,
     },
     /// The guess is not finite, or its covariance is not positive definite.

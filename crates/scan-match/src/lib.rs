@@ -24,8 +24,8 @@
 //! # Ok::<(), wayfix_scan_match::ScanMatchError>(())
 //! ```
 //!
-//! Metres and radians, x forward, y left, everything in the frame of the laser. No filter and no map is known here. What it is worth in a
-//! map of walls is in `docs/adr/0014-scans-laid-on-one-another.md`. [Censi 2008; Chen & Medioni 1992]
+//! Units are metres and radians, x forward, y left, in the frame of the laser. The crate has no filter and no map. Its accuracy in a map of walls is
+//! in `docs/adr/0014-scans-laid-on-one-another.md`. [Censi 2008; Chen & Medioni 1992]
 
 mod cloud;
 mod error;

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 
 use crate::{Cloud, Params, ScanMatchError, misfit::Misfit};
 
-/// Lays one scan on another.
+/// Matches one scan to another.
 #[derive(Clone, Copy, Debug)]
 pub struct Matcher {
     params: Params,
@@ -16,8 +16,8 @@ pub struct Guess<'a> {
     pub pose: Pose2<f64>,
     /// Its covariance in its own frame: m and rad.
     pub covariance: Matrix3<f64>,
-    /// Poses to start from where the scans hardly fit near the guess: for wheels that slip, where the robot was, or where it would be if it had gone on
-    /// as before.
+    /// Further start poses, used if the scans overlap little near the guess. After wheel slip, for example the pose before, or the one at constant
+    /// velocity.
     pub alternative_poses: &'a [Pose2<f64>],
 }
 
@@ -30,25 +30,26 @@ pub struct Alignment {
     pub correction: Vector3<f64>,
     /// The information of the points alone about the correction, $`Λ`$: the inverse of a covariance, singular if a direction is undetermined.
     pub information: Matrix3<f64>,
-    /// $`Λ z`$ with $`z`$ the correction that the points alone ask for.
+    /// $`Λ z`$ with $`z`$ the correction from the points alone.
     pub information_vector: Vector3<f64>,
-    /// By how much the covariance of the guess had to be enlarged, because the scans say that it is off by more: below 1 where it is better than it says.
+    /// Factor on the covariance of the guess that explains its error according to the scans: below 1 if the guess is better than its covariance
+    /// states.
     pub guess_scale: f64,
     /// Share of the points that lie on a surface of the other scan.
     pub overlap: f64,
 }
 
-/// A match needs so many points in either scan.
+/// Minimum number of points of each scan.
 const FEWEST_POINTS: usize = 10;
-/// Scans that have this share of points in common fit; below it, a search from elsewhere may find better.
+/// Overlap above which a match is accepted without further starts.
 const GOOD_OVERLAP: f64 = 0.8;
 /// Degrees of freedom of the guess, $`ν`$.
 const TAIL: f64 = 4.0;
 /// The kernel narrows by this factor a step.
 const NARROWING: f64 = 0.7;
-/// A step this short ends the search, m and rad: far below what any laser tells.
+/// A shorter step ends the search, m and rad; it is far below the accuracy of lasers.
 const SHORT: f64 = 1e-5;
-/// More starts than a full turn of doubt needs with the default spacing.
+/// Maximum number of start headings; a full turn at the default spacing needs fewer.
 const MOST_STARTS: usize = 16;
 
 impl Matcher {
@@ -63,10 +64,9 @@ impl Matcher {
 
     /// The pose of `cloud` in the frame of `reference`.
     ///
-    /// Maximizes the posterior, the guess times a robust likelihood of the distances of points from the lines through their neighbours, by
-    /// iteratively reweighted least squares with a kernel that narrows. The guess has the tails of a Student-t distribution, for wheels slip.
-    /// Where its heading is in doubt, the search starts from several and the best posterior counts. [Censi 2008; Chen & Medioni 1992]
-    ///
+    /// Maximizes the posterior: the prior of the guess times a robust likelihood of the point-to-line distances, by iteratively reweighted least
+    /// squares with a kernel that narrows. The prior is a Student-t distribution, to tolerate wheel slip. If its heading is uncertain, the search
+    /// has several starts and the best posterior counts. [Censi 2008; Chen & Medioni 1992]
     /// # Errors
     /// Returns an error if either scan has fewer than ten points, or the guess is not a finite pose with a positive definite covariance.
     pub fn align(
@@ -107,14 +107,14 @@ impl Matcher {
         })
     }
 
-    /// Headings to start from: the guess, and more to either side as far as three deviations reach.
+    /// Start headings: the guess, and more on both sides up to three deviations.
     fn starts(&self, sigma: f64) -> impl Iterator<Item = Vector3<f64>> {
         let spacing = self.params.start_spacing_rad;
         let n = ((3.0 * sigma / spacing).round() as usize).min(MOST_STARTS) as i32;
         (-n..=n).map(move |i| Vector3::new(0.0, 0.0, f64::from(i) * spacing))
     }
 
-    /// Goes downhill from one start; `None` when the numbers give out.
+    /// Descends from one start; `None` on numerical failure.
     fn search(
         &self,
         reference: &Cloud,
@@ -145,7 +145,7 @@ impl Matcher {
     }
 }
 
-/// $`(ν + δ^T P^{-1} δ) / (ν + 3)`$: what a Student-t distribution makes of the covariance at a distance.
+/// $`(ν + δ^T P^{-1} δ) / (ν + 3)`$: covariance scale of a Student-t distribution at this distance.
 fn guess_scale(prior: &Matrix3<f64>, correction: &Vector3<f64>) -> f64 {
     (TAIL + correction.dot(&(prior * correction))) / (TAIL + 3.0)
 }

@@ -3,24 +3,24 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 
 use crate::{Cloud, Params};
 
-/// The misfit of a cloud to another one at a pose, with its derivatives by the pose to second order.
+/// The misfit of a cloud to another one at a pose, with its first and second derivatives by the pose.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Misfit {
     /// Nats.
     pub(crate) cost: f64,
     /// By the correction of the guess.
     pub(crate) gradient: Vector3<f64>,
-    /// $`\sum w J^T J`$: what the points know of the correction.
+    /// $`\sum w J^T J`$: information of the points about the correction.
     pub(crate) information: Matrix3<f64>,
-    /// Points that lie on a surface.
+    /// Number of points that lie on a surface.
     pub(crate) n_inliers: usize,
 }
 
 impl Misfit {
-    /// Of `cloud` seen from `guess` ⊞ `correction`, with the Geman-McClure kernel $`ρ(e) = \frac{k^2}{2 σ^2} \frac{e^2}{e^2 + k^2}`$ of distances
-    /// along the normals. A point without a surface near it costs the most that any point can.
+    /// The misfit of `cloud` at `guess` ⊞ `correction`, with the Geman-McClure kernel $`ρ(e) = \frac{k^2}{2 σ^2} \frac{e^2}{e^2 + k^2}`$ of distances
+    /// along the normals. A point without a surface near it has the maximum cost.
     ///
-    /// Gradient and information are free of what the noise of the normals seems to tell: see [`without_noise_of_normals`](Self::without_noise_of_normals).
+    /// Gradient and information exclude the spurious information of noisy normals: see [`without_noise_of_normals`](Self::without_noise_of_normals).
     pub(crate) fn of(
         reference: &Cloud,
         cloud: &Cloud,
@@ -60,9 +60,9 @@ impl Misfit {
         misfit.without_noise_of_normals(&noise_of_normals)
     }
 
-    /// The misfit without the information $`N`$ that is not there: normals that err by $`ε`$ add $`ε^2`$ times the motion along the surface to
-    /// $`\sum w J^T J`$, so that a corridor seems to tell the place along it and a round room the heading. With $`Λ = L L^T`$ what is left is
-    /// $`L K L^T`$, $`K = (1 - L^{-1} N L^{-T})_+`$, and the gradient is $`L K L^{-1} g`$. [Fuller 1987, Eq. 1.2.3: errors in the regressors]
+    /// Removes the spurious information $`N`$: normals with errors $`ε`$ add $`ε^2`$ times the motion along the surface to $`\sum w J^T J`$, so a
+    /// corridor seems to determine the position along it and a round room the heading. With $`Λ = L L^T`$ the rest is $`L K L^T`$,
+    /// $`K = (1 - L^{-1} N L^{-T})_+`$, and the gradient is $`L K L^{-1} g`$. [Fuller 1987, Eq. 1.2.3: errors in the regressors]
     fn without_noise_of_normals(self, noise: &Matrix3<f64>) -> Self {
         let Some(factor) = Cholesky::new(self.information).map(|factor| factor.l()) else { return self };
         let Some(inverse) = factor.try_inverse() else { return self };

@@ -15,14 +15,14 @@ use crate::ScanMatchError;
     serde(default, deny_unknown_fields)
 )]
 pub struct Params {
-    /// What a point is off its surface by, m: the laser, and what a straight line between neighbours gets wrong. Default: 0.03.
+    /// Standard deviation of a point from its surface, m: the laser noise, and the error of straight lines between neighbours. Default: 0.03.
     pub sigma_m: f64,
-    /// Over this angle the errors of neighbouring points are one error, rad: a wall that bulges, a person's coat, an edge. A denser scan says
-    /// no more. Default: 0.4.
+    /// Angle over which the errors of neighbouring points are fully correlated, rad, as on a bulging wall, a coat or an edge. A denser scan then
+    /// adds no information. Default: 0.4.
     pub correlation_angle_rad: f64,
     /// Misfit beyond which a point is rather something else, m: half its weight is lost at 0.64 of it. Default: 0.1.
     pub kernel_m: f64,
-    /// The same at the beginning, m: how far off the guess may be. Default: 0.5.
+    /// The initial kernel width, m: the expected error of the guess. Default: 0.5.
     pub initial_kernel_m: f64,
     /// Headings from which the search starts are this far apart, rad, over three deviations of the guess to either side. Default: 0.2.
     pub start_spacing_rad: f64,
@@ -47,7 +47,7 @@ impl Params {
     /// Whether every number has a meaning.
     ///
     /// # Errors
-    /// The first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn check(&self) -> Result<(), ScanMatchError> {
         for (what, value) in [
             ("sigma_m", self.sigma_m),

@@ -5,20 +5,20 @@ use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 pub(crate) struct SurfacePoint {
     pub(crate) at: Vector2<f64>,
     pub(crate) normal: Vector2<f64>,
-    /// How uncertain the direction of the normal is, rad².
+    /// Variance of the direction of the normal, rad².
     pub(crate) normal_variance: f64,
 }
 
-/// Neighbours to either side that say which way a surface looks.
+/// Number of neighbours on each side used for the normal.
 const N_NEIGHBOURS: usize = 3;
 /// So many of them must be near.
 const FEWEST: usize = 4;
 /// Neighbours are near within this distance, m, or this share of the range: a flat view spreads the points.
 const NEAR: (f64, f64) = (0.3, 0.1);
-/// A surface is straight when its points spread across it by less than this share of what they spread along it, in variance, and a centimetre.
+/// Limit of the variance across a straight surface: this share of the variance along it, plus a square centimetre.
 const STRAIGHT: (f64, f64) = (0.05, 1e-4);
 
-/// What the points of a scan, in the order of the beams, show of surfaces.
+/// Surfaces from the points of a scan, in beam order.
 pub(crate) fn surfaces(points: &[Option<Vector2<f64>>]) -> Vec<SurfacePoint> {
     (0..points.len()).filter_map(|beam| surface(points, beam)).collect()
 }

@@ -1,4 +1,4 @@
-/// Why a simulation cannot be set up.
+/// Errors of setting up a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
@@ -9,33 +9,33 @@ pub enum SimError {
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What it must be.
+        /// The requirement.
         must: &'static str,
     },
-    /// More is requested than a simulation holds in memory.
+    /// The request exceeds the memory limit of a simulation.
     #[error("{what} is {got}, at most {limit} are possible")]
     TooMany {
-        /// What there is too much of.
+        /// The excessive quantity.
         what: &'static str,
         /// The largest number possible.
         limit: u64,
-        /// The number asked for.
+        /// The requested number.
         got: u64,
     },
     /// Landmarks or waypoints that keep their distance do not fit.
     #[error("placed only {placed} of {wanted} {what}: there is no room for more")]
     NoRoom {
-        /// What was to be placed.
+        /// The objects to place.
         what: &'static str,
-        /// How many found room.
+        /// Number of placed objects.
         placed: usize,
-        /// How many were asked for.
+        /// Number of requested objects.
         wanted: usize,
     },
     /// No scenario has this name.
     #[error("no scenario is called {name:?}")]
     UnknownScenario {
-        /// The name asked for.
+        /// The requested name.
         name: String,
     },
     /// The shapes do not make a map.
@@ -49,7 +49,7 @@ pub enum SimError {
     /// A picture cannot be encoded.
     #[error("a picture cannot be encoded: {reason}")]
     Picture {
-        /// What the codec says.
+        /// The codec's error.
         reason: String,
     },
 }

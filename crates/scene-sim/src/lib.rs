@@ -1,8 +1,8 @@
-//! Simulated worlds, robots and sensors with realistic errors; knows no estimator.
+//! Simulated worlds, robots and sensors with realistic errors; the crate does not depend on estimators.
 //!
-//! A [`Simulation`] drives a robot along a [`route`] through a [`world`] and gives the log of its [`sensor`]s as
+//! A [`Simulation`] drives a robot along a [`route`] through a [`world`] and returns the log of its [`sensor`]s as
 //! [`Record`](wayfix_sensor_log::Record)s, truth included. Named, seeded set-ups are [`Scenario`]s; [`monobot`] is the
-//! one-dimensional robot on which filters are taken apart. Four worlds serve one system each and are features of their names:
+//! one-dimensional robot for the analysis of filters. Four worlds serve one system each and are features of their names:
 //!
 //! | feature | world |
 //! | --- | --- |
@@ -11,15 +11,15 @@
 //! | `film` | films of one target each under changing light, with its silhouette |
 //! | `indoors` | stores and rooms, seen by a camera that looks all around |
 //!
-//! * **The truth is nobody's model.** Two wheels with motors that lag, slip that hangs together in time and radii that are not as
-//!   built, integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
-//!   [`GaussianOdometry`](sensor::GaussianOdometry) and the default [`RangeBearingDetector`](sensor::RangeBearingDetector) match what an extended
-//!   Kalman filter assumes, for tests of its consistency.
-//! * **A laser** ([`sensor::Laser`]) casts its beams against the walls of a plan, such as [`world::OfficeFloor`]; it mixes what a beam hits on an edge, loses
-//!   and invents echoes, meets people, and rounds.
-//! * **One stream of randomness per sin** ([`random::Streams`]): switching one on leaves the draws of the others as they were.
-//! * **The same bits on every machine**: transcendental functions come from `libm` ([`plane`], [`space`], [`random`]).
-//! * **Yours plug in**: [`world::World`] and [`sensor::Sensor`] are the two places to extend (`examples/02_custom_sensor.rs`).
+//! * **The truth follows no estimator's model.** Two wheels with motor lag, time-correlated slip and radii that differ from nominal,
+//!   integrated at 1 kHz; encoders that count ticks; errors with heavy tails, bias and drift. Only
+//!   [`GaussianOdometry`](sensor::GaussianOdometry) and the default [`RangeBearingDetector`](sensor::RangeBearingDetector) match the assumptions
+//!   of an extended Kalman filter, for tests of its consistency.
+//! * **A laser** ([`sensor::Laser`]) casts its beams against the walls of a plan, such as [`world::OfficeFloor`]. It mixes ranges at edges, loses
+//!   and invents echoes, hits people, and rounds.
+//! * **One random stream per error source** ([`random::Streams`]): enabling one does not affect the draws of the others.
+//! * **Equal bits on every machine**: transcendental functions come from `libm` ([`plane`], [`space`], [`random`]).
+//! * **Extensible**: implement [`world::World`] or [`sensor::Sensor`] (`examples/02_custom_sensor.rs`).
 //!
 //! ```
 //! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

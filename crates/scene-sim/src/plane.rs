@@ -1,4 +1,4 @@
-//! Planar geometry on `libm`, so that a scene is the same bits on every machine.
+//! Planar geometry on `libm`, so that a scene has equal bits on every machine.
 //!
 //! [`Pose2`]'s own operations call the platform's sine and cosine, whose last digit differs between machines.
 
@@ -41,9 +41,9 @@ pub fn relative(from: &Pose2<f64>, to: &Pose2<f64>) -> Pose2<f64> {
     Pose2::new(offset.x, offset.y, to.heading() - from.heading())
 }
 
-/// Where a drive of `distance` metres along an arc that turns by `turn` radians ends.
+/// End pose of a drive of `distance` metres along an arc that turns by `turn` radians.
 ///
-/// The chord is $`d \, \frac{\sin(φ/2)}{φ/2}`$ long and points half the turn to the left of the start.
+/// The chord has length $`d \, \frac{\sin(φ/2)}{φ/2}`$ and points half the turn to the left of the start.
 pub fn advance(pose: &Pose2<f64>, distance: f64, turn: f64) -> Pose2<f64> {
     let half = 0.5 * turn;
     let chord = if half.abs() < 1e-4 { 1.0 - half * half / 6.0 } else { libm::sin(half) / half };

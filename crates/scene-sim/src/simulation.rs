@@ -28,19 +28,19 @@ const LONGEST_MS: u64 = 86_400_000;
 /// ```
 #[derive(Clone)]
 pub struct Simulation<'a> {
-    /// What there is to see.
+    /// The world.
     pub world: &'a dyn World,
-    /// Where the robot drives; it starts at rest at the beginning.
+    /// Route of the robot; it starts at rest at the beginning.
     pub route: Route,
     /// The robot. Default as [`DriveParams`].
     pub drive: DriveParams,
-    /// How long it drives, milliseconds, at most a day. Default 60 000.
+    /// Duration, milliseconds, at most a day. Default 60 000.
     pub duration_ms: u64,
     /// Time from one true pose in the log to the next, milliseconds. Default 100.
     pub truth_period_ms: u32,
     /// Whether the walls go to the log as truth, after the landmarks and numbered from 0. Default false.
     pub true_walls: bool,
-    /// Stamp of the start. Default 1.6e9 s: on the clock of a robot's computer, so that who keeps stamps in too few bits notices.
+    /// Stamp of the start. Default 1.6e9 s, as on the clock of a robot's computer, to expose stamps stored in too few bits.
     pub start: Stamp,
 }
 
@@ -58,10 +58,9 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Drives, and returns the log in time order; at the same stamp truth comes first, then `sensors` in their order.
-    ///
+    /// Runs the simulation and returns the log in time order; at equal stamps truth comes first, then `sensors` in their order.
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range; nothing is then drawn from `streams`.
+    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range; `streams` is then unchanged.
     pub fn run(
         &self,
         sensors: &mut [Box<dyn Sensor>],
@@ -95,7 +94,7 @@ impl<'a> Simulation<'a> {
         sensors.iter().try_for_each(|sensor| check::period("period of a sensor (ms)", sensor.period_ms()))
     }
 
-    /// What stands still, with its true place.
+    /// Static objects with their true positions.
     fn surveyed(&self) -> Vec<Record> {
         let walls = if self.true_walls { self.world.walls() } else { Vec::new() };
         let walls = walls.iter().zip(0..).map(|(wall, id)| TrueWall { id, start: wall.from, end: wall.to });

@@ -1,4 +1,4 @@
-//! Rotations and poses in space on `libm`, so that a picture is the same bits on every machine.
+//! Rotations and poses in space on `libm`, so that a picture has equal bits on every machine.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use wayfix_estimation_traits::{Pose2, Pose3};
@@ -32,7 +32,7 @@ pub fn on_ground(pose: &Pose2<f64>) -> Pose3<f64> {
     Pose3 { translation: Vector3::new(pose.x(), pose.y(), 0.0), rotation: yaw(pose.heading()) }
 }
 
-/// The pose that is `share` of the way from one to the other; for small differences only, where the chord is the arc.
+/// The pose at `share` between two poses; for small differences only, where the chord approximates the arc.
 pub fn between(from: &Pose3<f64>, to: &Pose3<f64>, share: f64) -> Pose3<f64> {
     let (a, b) = (from.rotation.into_inner(), to.rotation.into_inner());
     let b = if a.coords.dot(&b.coords) < 0.0 { -b } else { b };

@@ -1,9 +1,8 @@
-/// What the encoder and the steering of a car-like vehicle say, as they say it.
+/// Encoder and steering readings of a car-like vehicle, as measured.
 ///
-/// Where the wheel sits and how the wheels steer is the vehicle's affair, not the log's. With the encoder on the inner side of a left
-/// turn, half a track width $`H`$ off the middle, and the distance $`L`$ between the axles, the middle of the rear axle moves with
+/// The position of the wheel and the steering geometry belong to the vehicle, not to the log. With the encoder on the inner side of a left turn,
+/// half a track width $`H`$ off the middle, and the wheelbase $`L`$, the middle of the rear axle moves with
 /// $`v = v_{wheel} / (1 - \tan(\alpha) H / L)`$ [Guivant & Nebot 2001].
-///
 /// ```
 /// use wayfix_sensor_log::{AckermannDrive, Data};
 /// let drive = AckermannDrive { wheel_speed: 2.0, steering: 0.1 };

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 use crate::write::write_from;
 use crate::{Format, Log, LogError, ReadReport, WriteReport};
 
-/// Writes what is left of a log into the file at `path`, replacing what is there, and tells what could not be read and not be written.
+/// Writes the remaining records of a log to the file at `path`, replacing it, and reports what could not be read or written.
 ///
-/// Records pass through one by one, so the memory does not grow with the log. An MCAP file keeps where its records come from
-/// ([`LogMeta::origin`](crate::LogMeta::origin)), so that a program can go on treating them as what they were.
-///
+/// Records pass through one by one, so memory use does not grow with the log. An MCAP file stores the origin of its records
+/// ([`LogMeta::origin`](crate::LogMeta::origin)), so that later readers treat them like the original ones.
 /// ```
 /// use wayfix_sensor_log::{Format, OpenOptions, convert, open};
 /// # let folder = tempfile::tempdir()?;
@@ -21,14 +20,14 @@ use crate::{Format, Log, LogError, ReadReport, WriteReport};
 /// ```
 ///
 /// # Errors
-/// When `path` is the log itself; else as [`write`](crate::write()).
+/// Returns an error if `path` is the log itself; else as [`write`](crate::write()).
 pub fn convert(
     mut log: Log,
     path: impl AsRef<Path>,
     format: Format,
 ) -> Result<(ReadReport, WriteReport), LogError> {
     let path = path.as_ref();
-    // What is not there yet has no canonical path and cannot be the log.
+    // A path that does not exist has no canonical form and cannot be the log.
     let canonical = |path: &Path| fs::canonicalize(path).ok();
     let meta = log.meta();
     let is_source = |target: PathBuf| {

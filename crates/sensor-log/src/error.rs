@@ -3,33 +3,33 @@ use std::path::{Path, PathBuf};
 
 use crate::{Format, ImageFormat, LogEnd, Stamp};
 
-/// Why a log could not be opened or written, and what to do about it.
+/// Errors of opening and writing logs, with remedies.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogError {
-    /// Nothing is there.
+    /// The path does not exist.
     #[error("{}: no such file or folder", path.display())]
     NotFound {
-        /// What was asked for.
+        /// The path.
         path: PathBuf,
     },
-    /// The operating system refuses.
+    /// An operating-system error.
     #[error("{}: {source}", path.display())]
     Io {
-        /// What was read or written.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// The operating-system error.
         source: io::Error,
     },
-    /// A file cannot be made where it was asked for.
+    /// A file cannot be created.
     #[error("{}: cannot be written: {source}", path.display())]
     NotCreated {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The operating-system error.
         source: io::Error,
     },
-    /// The output would replace the log that is read.
+    /// The output would overwrite the input log.
     #[error("{}: is the log that is being read; write to another file", path.display())]
     SameFile {
         /// The file.
@@ -41,7 +41,7 @@ pub enum LogError {
         /// The folder.
         path: PathBuf,
     },
-    /// A folder of several MCAP files that do not look like one recording.
+    /// A folder of several MCAP files that do not form one recording.
     #[error("{}: holds {} MCAP files that are not called like the parts of one recording; give one of them, or name those that belong together", path.display(), files.len())]
     SeveralFiles {
         /// The folder.
@@ -49,7 +49,7 @@ pub enum LogError {
         /// The files, by name.
         files: Vec<PathBuf>,
     },
-    /// A log of several files, one of which is no MCAP file.
+    /// A log of several files, one of which is not MCAP.
     #[error("{}: a {format} log is read alone; only MCAP files can be parts of one log", path.display())]
     NotAPart {
         /// The file or folder.
@@ -66,22 +66,22 @@ pub enum LogError {
         /// The file.
         path: PathBuf,
     },
-    /// The content looks like no known format.
+    /// The content has no known format.
     #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), Format::NAMES)]
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// What was seen instead.
+        /// What was found instead.
         reason: String,
     },
-    /// The content is not of the format that was asked for, or that the name promises.
+    /// The content does not match the requested format or the file name.
     #[error("{}: is no log of the format {format}: {reason}", path.display())]
     NotThisFormat {
         /// The file or folder.
         path: PathBuf,
         /// The format it should have.
         format: Format,
-        /// Why it has not.
+        /// The reason.
         reason: String,
     },
     /// A format that other programs turn into one that is read.
@@ -89,12 +89,12 @@ pub enum LogError {
     UnsupportedFormat {
         /// The file.
         path: PathBuf,
-        /// What it is.
+        /// Name of the format.
         what: &'static str,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
-    /// A set of several robots needs a choice.
+    /// A data set of several robots needs a choice.
     #[error("{}: holds the robots {present:?}; choose one (--robot N)", path.display())]
     RobotNeeded {
         /// The folder.
@@ -126,29 +126,29 @@ pub enum LogError {
         /// Topics and schemas that are there.
         ignored: Vec<String>,
     },
-    /// A topic was asked for that is not there, or that has nothing which is read.
+    /// A requested topic does not exist, or holds nothing that is read.
     #[error("{}: nothing that is read on the topic {topic:?}; the topics of the file are {}", path.display(), listed(present))]
     NoSuchTopic {
         /// The file.
         path: PathBuf,
-        /// The topic that was asked for.
+        /// The requested topic.
         topic: String,
         /// Topics and schemas that are there.
         present: Vec<String>,
     },
-    /// Two topics were asked for that are of one kind: their records could not be told apart.
+    /// Two requested topics are of one kind: their records could not be distinguished.
     #[error("{}: {first} and {second} are both {what}; choose one of them", path.display())]
     AmbiguousTopics {
         /// The file.
         path: PathBuf,
         /// The kind.
         what: &'static str,
-        /// The topic that was asked for first.
+        /// The topic requested first.
         first: String,
         /// The other one.
         second: String,
     },
-    /// Topics were asked for in a format that has none.
+    /// Topics were requested for a format that has none.
     #[error("{}: {format} logs have no topics to choose from", path.display())]
     NoTopics {
         /// The file or folder.
@@ -156,7 +156,7 @@ pub enum LogError {
         /// Its format.
         format: Format,
     },
-    /// The file goes bad, or breaks off, before the first record.
+    /// The file is damaged or truncated before the first record.
     #[error("{}: {end} before the first record", path.display())]
     Damaged {
         /// The file.
@@ -178,7 +178,7 @@ pub enum LogError {
         /// Its stamp.
         stamp: Stamp,
     },
-    /// A camera that sees nothing.
+    /// A camera with an invalid projection.
     #[error("camera at {stamp}: {width} x {height} pixels with focal lengths {fx} and {fy} see nothing")]
     BadCamera {
         /// Columns.
@@ -192,14 +192,14 @@ pub enum LogError {
         /// Stamp of the record.
         stamp: Stamp,
     },
-    /// Bytes that are no image of the format that they should have, or true labels that are not compressed.
+    /// Bytes that are no image of the stated format, or uncompressed true labels.
     #[error("{what} at {stamp}: {n_bytes} bytes cannot be written as a {} image", format.name())]
     NotAnImage {
         /// Kind of the record.
         what: &'static str,
-        /// How it should be compressed.
+        /// The expected compression.
         format: ImageFormat,
-        /// How many bytes there are.
+        /// Number of bytes.
         n_bytes: usize,
         /// Stamp of the record.
         stamp: Stamp,
@@ -210,7 +210,7 @@ pub enum LogError {
         /// The rate.
         rate_hz: f64,
     },
-    /// A stamp beyond what Foxglove messages hold.
+    /// A stamp outside the range of Foxglove messages.
     #[error("stamp {stamp} is beyond the year 2106")]
     StampTooLate {
         /// The stamp.

@@ -1,4 +1,4 @@
-//! What can be wrong with one message, and the checks that all of them share.
+//! Faults of a single message, and the common checks.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use wayfix_estimation_traits::Pose3;
@@ -6,10 +6,10 @@ use wayfix_estimation_traits::Pose3;
 use crate::ProblemKind;
 use crate::planar::NORM_TOLERANCE;
 
-/// What is wrong with a message.
+/// A fault of a message.
 pub(crate) type Fault = (ProblemKind, String);
 
-/// How far the norm of a unit quaternion in doubles strays from one after a few products.
+/// Tolerance of the norm of a unit quaternion in doubles after a few products.
 const ROUNDING: f64 = 1e-12;
 
 pub(crate) fn inconsistent(reason: &str) -> Fault {
@@ -31,13 +31,13 @@ pub(crate) fn spatial(position: [f64; 3], orientation: [f64; 4]) -> Result<Pose3
     let quaternion = Quaternion::new(w, x, y, z);
     let norm = quaternion.norm();
     let rotation = if orientation == [0.0; 4] {
-        UnitQuaternion::identity() // one that is not there means no rotation to most writers
+        UnitQuaternion::identity() // most writers use a missing quaternion for no rotation
     } else if (norm - 1.0).abs() > NORM_TOLERANCE {
         return Err(inconsistent(&format!("quaternion of norm {norm:.3e}")));
     } else if (norm - 1.0).abs() > ROUNDING {
         UnitQuaternion::new_normalize(quaternion)
     } else {
-        UnitQuaternion::new_unchecked(quaternion) // it stays what it was, to the bit
+        UnitQuaternion::new_unchecked(quaternion) // unchanged, to the bit
     };
     Ok(Pose3 { translation: Vector3::from(position), rotation })
 }

@@ -11,14 +11,14 @@ use crate::{Data, EncodedImage, ImageFormat, LogError, Problem, ProblemKind, Rea
 /// No frame is larger; a file that is something else must not fill the memory.
 const MAX_FILE_BYTES: u64 = 128 << 20;
 
-/// Frame rates from one in a quarter of an hour to what no camera reaches; stamps in nanoseconds hold both.
+/// Accepted frame rates, Hz; nanosecond stamps can represent both ends.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
 /// The images of a folder by name, one at a time: memory does not grow with their number.
 pub(crate) struct ImageFolder {
     files: Enumerate<vec::IntoIter<PathBuf>>,
     rate_hz: f64,
-    /// A doubt about the names, until it is told.
+    /// A pending warning about the names.
     doubt: Option<String>,
 }
 
@@ -63,14 +63,13 @@ impl ImageFolder {
     }
 }
 
-/// Everything in a folder that is called a PNG or JPEG image, in the order of the numbers in the names.
+/// All PNG and JPEG files of a folder, by extension, in the order of the numbers in their names.
 ///
 /// `frame9` comes before `frame10`. A dot between two digits is a decimal point: `1.05` comes before `1.1`, and `1700000000.123456.png` is a
-/// time. Three numbers with dots between them are three whole numbers. A dash is a minus where it begins the name or follows a sign other than
-/// a letter or digit: `-2`, `t_-2`; in `img-1` it separates. Hidden files, whose names begin with a dot, are no images.
-///
+/// time. Three numbers with dots between them are three whole numbers. A dash is a minus at the beginning of the name or after a character other
+/// than a letter or digit: `-2`, `t_-2`; in `img-1` it separates. Hidden files, whose names begin with a dot, are skipped.
 /// # Errors
-/// When the folder cannot be read.
+/// Returns an error if the folder cannot be read.
 pub fn image_files(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
     let mut files = images_in(folder)?;
     files.sort_by_cached_key(|path| (natural_key(&file_name(path)), path.clone()));
@@ -97,7 +96,7 @@ pub(crate) fn images_in(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
     Ok(paths)
 }
 
-/// What is doubtful about sorted names: images whose names are the same but for zeros or the extension.
+/// A warning about ambiguous names: images that differ only in leading zeros or the extension.
 fn same_numbers(files: &[PathBuf]) -> Option<String> {
     let key = |path: &PathBuf| stem_key(&stem(&file_name(path)));
     let mut pairs = files.windows(2).filter(|pair| key(&pair[0]) == key(&pair[1]));
@@ -132,12 +131,12 @@ fn stem(name: &str) -> String {
     name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned()
 }
 
-/// A key by which names sort as [`image_files`] says; the extension counts last.
+/// Sort key for the order of [`image_files`]; the extension counts last.
 fn natural_key(name: &str) -> (Vec<u8>, String) {
     (stem_key(&stem(name)), name.to_owned())
 }
 
-/// Text as it is. A number as how many digits it has, its digits and its decimals; a negative one with each byte turned round.
+/// Text is unchanged. A number becomes its digit count, its digits and its decimals; a negative one has each byte inverted.
 fn stem_key(stem: &str) -> Vec<u8> {
     let bytes = stem.as_bytes();
     let n_digits =
@@ -160,7 +159,7 @@ fn stem_key(stem: &str) -> Vec<u8> {
         let whole = &bytes[at..at + n_whole];
         let after_dot = at + n_whole + 1;
         let n_decimals = if is_dot(after_dot - 1) { n_digits(after_dot) } else { 0 };
-        // `1.2.3` is no decimal number.
+        // `1.2.3` is not a decimal number.
         let is_first = at < 2 || !is_dot(at - 1) || !bytes[at - 2].is_ascii_digit();
         let is_last = !is_dot(after_dot + n_decimals) || n_digits(after_dot + n_decimals + 1) == 0;
         let decimals =

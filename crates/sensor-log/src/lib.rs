@@ -1,7 +1,7 @@
-//! Stamped robot records: readers for public data sets, MCAP and folders of images, writers for the same.
+//! Stamped robot records: readers for public data sets, MCAP and folders of images, and writers for the same.
 //!
-//! [`open`] (of a log in several files, [`open_all`]) gives the records of a log in time order, whatever its format, and a [`ReadReport`] of what could not be read:
-//!
+//! [`open`] (for a log in several files, [`open_all`]) gives the records of a log of any format in time order, and a [`ReadReport`] of what could
+//! not be read:
 //! | format | is | holds |
 //! | --- | --- | --- |
 //! | [`Format::Utias`] | a folder of the UTIAS multi-robot set | velocity, detections, truth |
@@ -14,11 +14,10 @@
 //! | | MCAP with ROS 2 messages ([`ros`]), as `ros2 bag` writes it | scans, odometry, images, cameras, poses |
 //! | [`Format::Images`] | a folder of PNG and JPEG files | images |
 //!
-//! [`write()`] writes records as text or MCAP, [`convert()`] a whole log, [`McapWriter`] also what viewers draw ([`MessageWriter`] not only into files);
-//! [`LogSummary`] says what a log holds.
+//! [`write()`] writes records as text or MCAP, and [`convert()`] a whole log. [`McapWriter`] also writes drawings for viewers ([`MessageWriter`]
+//! also to live viewers). [`LogSummary`] summarizes the content of a log.
 //!
-//! A bad row never stops the reading: it is left out, counted by kind, and the first few are named with file and line.
-//!
+//! An unusable row never stops the reading: it is skipped and counted by kind, and the first few are reported with file and line.
 //! ```
 //! use wayfix_sensor_log::{Data, OpenOptions, open};
 //! # let folder = tempfile::tempdir()?;

@@ -7,9 +7,9 @@ use crate::mcap_log::McapRecords;
 use crate::text::carmen::CarmenLog;
 use crate::{Format, ReadReport, Record, Topic};
 
-/// An open log: an iterator over its records in time order, and what is known about it.
+/// An open log: an iterator over its records in time order, with metadata.
 ///
-/// Iterate by reference when the report is wanted afterwards: for streamed formats it is complete only at the end.
+/// Iterate by reference to keep access to the report: for streamed formats it is complete only at the end.
 pub struct Log {
     meta: LogMeta,
     /// The record that was read to see whether there is one.
@@ -18,32 +18,32 @@ pub struct Log {
     report: ReadReport,
 }
 
-/// Where a log comes from.
+/// Metadata of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LogMeta {
-    /// How it is stored.
+    /// The storage format.
     pub format: Format,
-    /// How it was stored before it was [converted](crate::convert), where it says so.
+    /// The original format of a [converted](crate::convert) log, if stored in it.
     pub origin: Option<Format>,
-    /// The file or folder; of files that were named one by one, the first.
+    /// The file or folder; the first one of several named files.
     pub source: PathBuf,
-    /// The files of an MCAP log; several when it was split.
+    /// The files of an MCAP log; several if it was split.
     pub files: Vec<PathBuf>,
-    /// The robot whose records these are, in sets of several robots.
+    /// Robot of the records, in data sets of several robots.
     pub robot: Option<u32>,
-    /// The topics of ROS 2 messages, in the order of the file, and what becomes of each.
+    /// Topics of ROS 2 messages, in file order, with their use.
     pub topics: Vec<Topic>,
 }
 
 impl LogMeta {
-    /// The format in which the records were first stored, as far as it is known; MCAP when nothing else is.
+    /// The original format of the records if known, else MCAP.
     pub fn first_format(&self) -> Format {
         self.origin.unwrap_or(self.format)
     }
 }
 
-/// Where the next record comes from.
+/// Source of the records.
 pub(crate) enum Records {
     Memory(vec::IntoIter<Record>),
     Mcap(Box<McapRecords>),
@@ -52,7 +52,7 @@ pub(crate) enum Records {
 }
 
 impl Records {
-    /// The next record in time order; trouble goes into the report.
+    /// The next record in time order; problems go into the report.
     pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         match self {
             Self::Memory(records) => records.next(),
@@ -67,11 +67,11 @@ impl Log {
     pub(crate) fn new(meta: LogMeta, first: Record, rest: Records, report: ReadReport) -> Self {
         Self { meta, first: Some(first), rest, report }
     }
-    /// Where the log comes from.
+    /// Metadata of the log.
     pub fn meta(&self) -> &LogMeta {
         &self.meta
     }
-    /// What was read so far and what was not.
+    /// Report of the reading so far.
     pub fn report(&self) -> &ReadReport {
         &self.report
     }

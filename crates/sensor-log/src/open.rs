@@ -8,16 +8,16 @@ use crate::mcap_log::{McapRecords, files_of};
 use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
 use crate::{Data, Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record, Warning};
 
-/// How to open a log. The default finds out what it can.
+/// Options for opening a log. The default detects all of them.
 #[derive(Clone, Debug)]
 pub struct OpenOptions {
-    /// The format, when it is not to be detected.
+    /// The format; `None` detects it.
     pub format: Option<Format>,
     /// Which robot, in sets of several.
     pub robot: Option<u32>,
-    /// What the poses of a format that does not say (TUM, CARMEN, JSON) are.
+    /// Meaning of the poses in a format that does not define it (TUM, CARMEN, JSON).
     pub poses: PoseKind,
-    /// Topics of a ROS 2 bag that are to be read. Of a kind of which none is named here, the topic with the most messages is.
+    /// Topics of a ROS 2 bag to read. For a kind without a topic in this list, the topic with the most messages is read.
     pub topics: Vec<String>,
     /// Frames a second of a folder of images, which has no clock: frame k is k / rate seconds after the start. 30 Hz by default.
     pub frame_rate_hz: f64,
@@ -35,7 +35,7 @@ impl Default for OpenOptions {
     }
 }
 
-/// What bare poses mean.
+/// Meaning of bare poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum PoseKind {
     /// Some program's estimate: [`Data::EstimatedPose`](crate::Data::EstimatedPose).
@@ -56,19 +56,21 @@ impl PoseKind {
 
 /// Opens the log at `path`.
 ///
-/// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, detections (MCAP: the order of the file).
-/// Text logs are read whole and sorted where rows go backwards, which is reported. A row that is a minute or more from its neighbours is left
-/// out, and where the clock is set back, the longest stretch is read, which is reported, too. CARMEN logs are read line by line, twice, in whose
-/// order they stay: where time stands still, stamps are made up, and where the clock is set back, they are moved on, which is reported.
-/// Text may be compressed with gzip, whatever the file is called, begin with a byte-order mark, and have any line ends. MCAP files are read chunk by chunk;
-/// what comes more than 256 records too late is left out, which is reported. A folder with one MCAP file in it is that file, and one of files that
-/// are called like the parts of a recording, `NAME_0.mcap`, `NAME_1.mcap`, or that its `metadata.yaml` names, is all of them together.
-/// In ROS 2 bags a kind of record comes from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] tells what became of the others.
-/// Folders of images are read file by file, in the order of their names, where numbers count by value (`frame9` before `frame10`);
-/// other files are passed over. A file that cannot be read keeps its frame number, so that later stamps stay right.
+/// Records come in time order; at equal stamps true landmarks first, then true pose, odometry, detections (MCAP: file order). Every repair below is
+/// reported.
 ///
+/// Text logs are read completely and sorted if rows go backwards. A row a minute or more from its neighbours is skipped; if the clock is set back,
+/// the longest stretch is read. CARMEN logs are read line by line, twice, and keep their order: repeated stamps are replaced, and stamps after a
+/// clock set back are moved on. Text may be gzipped under any name, begin with a byte-order mark, and have any line ends.
+///
+/// MCAP files are read chunk by chunk; a record more than 256 records late is skipped. A folder with one MCAP file stands for that file. A folder
+/// with files named like the parts of a recording, `NAME_0.mcap`, `NAME_1.mcap`, or listed in its `metadata.yaml`, stands for all of them. In ROS 2
+/// bags each kind of record comes from one topic, see [`OpenOptions::topics`]; [`LogMeta::topics`] lists the use of the others.
+///
+/// Folders of images are read file by file, in the order of their names with numbers by value (`frame9` before `frame10`); other files are
+/// skipped. An unreadable file keeps its frame number, so that later stamps stay correct.
 /// # Errors
-/// When nothing usable is there: see [`LogError`]. Single bad rows are no error, they are in [`Log::report`].
+/// Returns an error if the log is unusable: see [`LogError`]. Single bad rows are no error; [`Log::report`] lists them.
 pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogError> {
     let path = path.as_ref();
     let format = match options.format {
@@ -79,8 +81,7 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
     open_files(path, format, files, warnings, options)
 }
 
-/// Opens a log that was recorded in several MCAP files, in whatever order they are named: all messages come in order of time.
-///
+/// Opens a log recorded in several MCAP files, given in any order; all messages come in time order.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_sensor_log::{Data, Format, OpenOptions, Record, Stamp, open_all, write};
@@ -95,7 +96,7 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
 /// ```
 ///
 /// # Errors
-/// [`LogError::NotAPart`] and [`LogError::NoPath`]; else as [`open`], which a single path is left to.
+/// Returns [`LogError::NotAPart`], [`LogError::NoPath`], or the errors of [`open`], which handles a single path.
 pub fn open_all(paths: &[impl AsRef<Path>], options: &OpenOptions) -> Result<Log, LogError> {
     if let [path] = paths {
         return open(path, options);
@@ -157,7 +158,7 @@ fn open_files(
     Ok(Log::new(meta, first, records, report))
 }
 
-/// Why there is not a single record: damage, the wrong content, or an empty log.
+/// Reason for the absence of records: damage, wrong content, or an empty log.
 fn nothing_in(path: &Path, format: Format, report: &ReadReport) -> LogError {
     let path = path.to_path_buf();
     if report.end != LogEnd::Complete {

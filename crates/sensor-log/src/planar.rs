@@ -5,7 +5,7 @@
 
 use wayfix_estimation_traits::wrap_angle;
 
-/// How far from 1 the norm of a quaternion may be where it is checked; a few printed digits give 1e-3.
+/// Tolerance of the norm of an input quaternion; a few printed digits cause 1e-3.
 pub(crate) const NORM_TOLERANCE: f64 = 0.05;
 
 /// A roll that no robot has and no viewer shows.
@@ -22,10 +22,10 @@ pub(crate) fn heading_of([x, y, z, w]: [f64; 4]) -> f64 {
     }
 }
 
-/// The quaternion `[x, y, z, w]` from which [`heading_of`] gives the heading back to the bit (but for the sign of a zero).
+/// A quaternion `[x, y, z, w]` from which [`heading_of`] restores the heading to the bit (except the sign of a zero).
 ///
-/// No arctangent reaches every number, so some headings would come back one unit in the last place off. What is lacking, about 1e-16,
-/// goes into `x`: as a rotation it is far below what any viewer shows. The difference of two neighbours is exact, and so is the sum.
+/// The arctangent does not reach every number, so some headings would be off by one unit in the last place. The remainder, about 1e-16, is stored
+/// in `x`: as a rotation it is far below the resolution of viewers. The difference of two neighbours is exact, and so is the sum.
 pub(crate) fn quaternion_of(heading: f64) -> [f64; 4] {
     let (z, w) = libm::sincos(heading / 2.0);
     [heading - 2.0 * libm::atan2(z, w), 0.0, z, w]

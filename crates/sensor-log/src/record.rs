@@ -3,52 +3,52 @@ use wayfix_estimation_traits::{Pose2, Pose3};
 
 use crate::{AckermannDrive, EncodedImage, LaserScan, Stamp};
 
-/// One thing that happened, and when.
+/// A stamped datum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// When it happened, on the clock of the log.
+    /// Time of the event, on the clock of the log.
     pub stamp: Stamp,
-    /// What happened.
+    /// The datum.
     pub data: Data,
 }
 
-/// What a record holds. SI units and radians, REP 103 axes.
+/// Content of a record. SI units and radians, REP 103 axes.
 ///
-/// More kinds come with more sensors; match with a wildcard arm.
+/// New sensors will add kinds; match with a wildcard arm.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Data {
-    /// Body velocity that holds until the next one.
+    /// Body velocity; it holds until the next one.
     Velocity(Velocity),
     /// Motion since the previous increment, in the robot frame before the motion.
     OdometryIncrement(Pose2<f64>),
-    /// What a car-like vehicle is told to do, or measures of itself; it holds until the next one.
+    /// Command or measurement of a car-like vehicle; it holds until the next one.
     Ackermann(AckermannDrive),
-    /// Everything one look of a range-bearing sensor saw, in the order of the log.
+    /// All detections of one scan of a range-bearing sensor, in log order.
     Detections(Vec<Detection>),
-    /// How wide the things are that the look at the same stamp saw, in its order, metres. It comes before the look.
+    /// Widths of the objects detected at the same stamp, in the same order, m. This record precedes the detections.
     DetectionWidths(Vec<f64>),
-    /// What one sweep of a laser saw.
+    /// One scan of a laser.
     Scan(LaserScan),
-    /// Where the laser is in the robot's frame: 0 of its bearings is along its x axis. It holds until the next one; the centre without any.
+    /// Pose of the laser in the robot frame: its bearing 0 is along its x axis. It holds until the next one; the default is the centre.
     LaserMount(Pose2<f64>),
-    /// Where the robot truly was, from motion capture or a simulator.
+    /// True pose of the robot, from motion capture or a simulator.
     TruePose(Pose2<f64>),
-    /// Where one point of the robot truly was, from a satellite receiver for instance; nothing is known of the heading.
+    /// True position of one point of the robot, for example from a satellite receiver; the heading is unknown.
     TruePosition(TruePosition),
-    /// Where a landmark truly is.
+    /// True position of a landmark.
     TrueLandmark(TrueLandmark),
-    /// Where a wall truly is.
+    /// True position of a wall.
     TrueWall(TrueWall),
     /// A pose some program estimated.
     EstimatedPose(Pose2<f64>),
-    /// How the camera projects; it holds until the next one.
+    /// Calibration of the camera; it holds until the next one.
     CameraInfo(CameraInfo),
-    /// Where the joints say that the camera is in the robot's frame on the ground: x along the optical axis, y left, z up.
+    /// Pose of the camera in the robot frame on the ground, from the joint angles: x along the optical axis, y left, z up.
     CameraMount(Pose3<f64>),
-    /// What the camera saw.
+    /// A camera image.
     Image(EncodedImage),
-    /// What each pixel of the image at the same stamp shows: 0 nothing of the map, k + 1 the map's colour k.
+    /// Label of each pixel of the image at the same stamp: 0 for background, k + 1 for map colour k.
     TrueLabels(EncodedImage),
 }
 
@@ -75,7 +75,7 @@ impl Data {
         }
     }
 
-    /// The kind, when one of its numbers is NaN or infinite that has no business to be.
+    /// Returns the kind if one of its numbers is NaN or infinite where that is not allowed.
     pub(crate) fn check_finite(&self) -> Result<(), &'static str> {
         let is_finite = match self {
             Self::Velocity(velocity) => velocity.linear.is_finite() && velocity.angular.is_finite(),
@@ -139,7 +139,7 @@ impl CameraInfo {
 /// One range and bearing to one thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detection {
-    /// What the sensor says it saw.
+    /// Identity reported by the sensor.
     pub target: Target,
     /// Distance, metres.
     pub range: f64,
@@ -147,20 +147,20 @@ pub struct Detection {
     pub bearing: f64,
 }
 
-/// What a detection is of.
+/// Target of a detection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Target {
-    /// A landmark whose identity the sensor reads.
+    /// A landmark with an identity read by the sensor.
     Landmark(u32),
     /// Another robot.
     Robot(u32),
     /// A code that the log's own table does not list.
     UnknownCode(u32),
-    /// The sensor does not tell things apart.
+    /// The sensor does not distinguish targets.
     Unlabelled,
 }
 
-/// Where an antenna, or another point of the robot, was.
+/// Position of an antenna, or another point of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruePosition {
     /// x in the world, metres.
@@ -180,7 +180,7 @@ pub struct TrueLandmark {
     pub y: f64,
 }
 
-/// A surveyed wall, or another straight surface that a laser sees. Which end is the start says nothing of its sides.
+/// A surveyed wall, or another straight surface visible to a laser. The order of the ends does not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrueWall {
     /// Its identity.

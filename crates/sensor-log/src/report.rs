@@ -3,38 +3,38 @@ use std::fmt;
 
 use crate::EncodedImage;
 
-/// How many problems a report names; the rest is only counted.
+/// Maximum number of problems listed; the others are only counted.
 const MAX_EXAMPLES: usize = 20;
 
-/// What was read of a log and what was not.
+/// Report of reading a log.
 ///
-/// `Display` prints it for people, one line a fact.
+/// `Display` prints it for people, one line per fact.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct ReadReport {
-    /// Rows or messages that were understood.
+    /// Number of rows or messages read.
     pub rows_read: u64,
-    /// How often each kind of problem occurred.
+    /// Count of each kind of problem.
     pub problems: BTreeMap<ProblemKind, u64>,
     /// The first problems, in the order of the log.
     pub examples: Vec<Problem>,
-    /// Messages that this crate does not read: `topic (schema)`, or the first word of a CARMEN line, and how many.
+    /// Messages that this crate does not read: `topic (schema)`, or the first word of a CARMEN line, with their number.
     pub ignored: BTreeMap<String, u64>,
     /// Whether the log ends as it should.
     pub end: LogEnd,
-    /// What was assumed because the log does not say it, or what its user should know; each once.
+    /// Assumptions and other warnings for the user, without repetitions.
     pub warnings: Vec<Warning>,
 }
 
-/// Something the user should know: an assumption that was made, or a doubt about the data.
+/// A warning for the user: an assumption, or a doubt about the data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     /// Its kind, as it is counted among the events: `laser_mount_unknown`.
     pub name: &'static str,
-    /// What was assumed or is doubtful, with numbers, and the option that changes it.
+    /// Description with numbers, and the option that changes an assumption.
     pub text: String,
 }
 
-/// How a log ends.
+/// End of a log.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum LogEnd {
@@ -50,23 +50,23 @@ pub enum LogEnd {
     },
     /// It cannot be followed beyond some point. Everything before was read.
     Damaged {
-        /// Where the reading stopped; of a compressed text, in the text.
+        /// Position at which reading stopped; in a compressed text, in the uncompressed text.
         byte: u64,
-        /// Why.
+        /// The reason.
         reason: String,
     },
 }
 
-/// One row or message that gave trouble.
+/// A row or message with a problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// The file's name, without its folder.
     pub file: String,
     /// Line of a text file, index of a scan in a JSON file, of a message in an MCAP file or of an image in its folder; all count from 1.
     pub row: u64,
-    /// What kind of trouble.
+    /// Kind of problem.
     pub kind: ProblemKind,
-    /// What exactly.
+    /// The details.
     pub reason: String,
 }
 
@@ -80,7 +80,7 @@ pub enum ProblemKind {
     NotANumber,
     /// A number is NaN or infinite; left out.
     NotFinite,
-    /// A time stamp is negative, beyond the year 2540 or far from those of the rows around it; left out.
+    /// A time stamp is negative, beyond the year 2540 or far from its neighbours; skipped.
     BadStamp,
     /// Not a row of this format: unknown first word, a line too long or not text; left out.
     Unrecognized,
@@ -88,17 +88,17 @@ pub enum ProblemKind {
     Inconsistent,
     /// Earlier than the row before it. Text logs are sorted, so it is kept.
     OutOfOrder,
-    /// Not later than the row before it, in a log whose clock cannot be trusted. Kept, 0.1 s after the row before.
+    /// Not later than the row before it, in a log with an unreliable clock. Kept, 0.1 s after the row before.
     NotLater,
-    /// Earlier than what a streamed log has already given out, or after a clock that was set back; left out.
+    /// Earlier than records already returned from a streamed log, or after a clock set back; skipped.
     TooLate,
-    /// A message that is not what its schema says; left out.
+    /// A message that does not match its schema; skipped.
     Undecodable,
-    /// A chunk of messages whose checksum or compression is wrong; left out.
+    /// A chunk of messages with an invalid checksum or compression; skipped.
     DamagedChunk,
-    /// A file of a recording in several that is empty or of another format; left out.
+    /// A file of a split recording that is empty or of another format; skipped.
     UnreadableFile,
-    /// A file that is no image, breaks off or claims too many pixels; left out.
+    /// A file that is no image, is truncated or claims too many pixels; skipped.
     UnreadableImage,
 }
 
@@ -114,7 +114,7 @@ impl ReadReport {
     pub fn n_problems(&self) -> u64 {
         self.problems.values().sum()
     }
-    /// Whether all of the log was read and nothing was assumed: no problem, no warning, and an end where it should be.
+    /// Whether the whole log was read without a problem or warning, up to a regular end.
     pub fn is_clean(&self) -> bool {
         self.n_problems() == 0 && self.end == LogEnd::Complete && self.warnings.is_empty()
     }
@@ -134,14 +134,14 @@ impl ReadReport {
             );
         }
     }
-    /// Counts a problem, and names it when it is among the first.
+    /// Counts a problem, and lists it if it is among the first.
     pub fn add(&mut self, problem: Problem) {
         *self.problems.entry(problem.kind).or_default() += 1;
         if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(problem);
         }
     }
-    /// Takes back `n_rows` that were read, all for the reason of the first.
+    /// Counts `n_rows` already read rows as skipped, with the problem of the first.
     pub(crate) fn leave_out(&mut self, first: Problem, n_rows: u64) {
         self.rows_read -= n_rows.min(self.rows_read);
         *self.problems.entry(first.kind).or_default() += n_rows.saturating_sub(1);

@@ -2,8 +2,7 @@ use std::fmt;
 
 /// Nanoseconds on the clock of a log.
 ///
-/// Integers keep order and byte-identity where floating seconds since 1970 would lose the last digits.
-///
+/// Integers are exact; floating-point seconds since 1970 would lose the last digits.
 /// ```
 /// use wayfix_sensor_log::Stamp;
 /// let stamp = Stamp::from_seconds(1_248_446_189.249).expect("finite");
@@ -32,7 +31,7 @@ impl Stamp {
     pub fn seconds(self) -> f64 {
         self.0 as f64 * 1e-9
     }
-    /// Seconds from `earlier` to here; negative when `earlier` is later.
+    /// Seconds from `earlier` to this stamp; negative if `earlier` is later.
     pub fn seconds_since(self, earlier: Self) -> f64 {
         (self.0 as i128 - earlier.0 as i128) as f64 * 1e-9
     }

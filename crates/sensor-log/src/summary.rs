@@ -3,8 +3,7 @@ use std::fmt;
 
 use crate::{Data, ImageSummary, Log, LogMeta, ReadReport, ScanSummary, Stamp, Target};
 
-/// What a log holds; `Display` prints it for people.
-///
+/// Content of a log; `Display` prints it for people.
 /// ```
 /// use wayfix_sensor_log::{LogSummary, OpenOptions, open};
 /// # let folder = tempfile::tempdir()?;
@@ -19,36 +18,36 @@ use crate::{Data, ImageSummary, Log, LogMeta, ReadReport, ScanSummary, Stamp, Ta
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LogSummary {
-    /// Where the log comes from.
+    /// Metadata of the log.
     pub meta: LogMeta,
     /// Stamps of the first and the last record.
     pub span: Option<(Stamp, Stamp)>,
-    /// How many records of each kind.
+    /// Number of records of each kind.
     pub kinds: BTreeMap<&'static str, KindSummary>,
     /// Single detections, of anything.
     pub n_detections: u64,
-    /// Landmarks whose true position is given.
+    /// Landmarks with a known true position.
     pub landmarks_surveyed: BTreeSet<u32>,
-    /// Landmarks that were sighted.
+    /// Detected landmarks.
     pub landmarks_seen: BTreeSet<u32>,
-    /// Robots that were sighted.
+    /// Detected robots.
     pub robots_seen: BTreeSet<u32>,
-    /// Codes that the log's own table does not list, and how often each was sighted.
+    /// Codes that the log's own table does not list, with their number of detections.
     pub unknown_codes: BTreeMap<u32, u64>,
-    /// Detections that say nothing of what they are of.
+    /// Number of detections without identity.
     pub n_unlabelled: u64,
     /// Images by kind of record.
     pub images: BTreeMap<&'static str, ImageSummary>,
     /// Laser scans.
     pub scans: ScanSummary,
-    /// What could not be read.
+    /// Report of the reading.
     pub report: ReadReport,
 }
 
 /// Records of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KindSummary {
-    /// How many.
+    /// Number of records.
     pub count: u64,
     /// Stamp of the first.
     pub first: Stamp,

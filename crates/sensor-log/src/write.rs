@@ -7,12 +7,12 @@ use std::path::Path;
 use crate::text::{range_bearing_writer, tum};
 use crate::{Format, LogError, McapWriter, Record};
 
-/// What was written and what the format has no place for.
+/// Report of writing a log.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct WriteReport {
     /// Records that went into the file.
     pub records_written: u64,
-    /// Kinds that were left out, and how often.
+    /// Count of the skipped records by kind, which the format cannot store.
     pub left_out: BTreeMap<&'static str, u64>,
 }
 
@@ -22,11 +22,10 @@ impl WriteReport {
     }
 }
 
-/// Writes records into the file at `path`, replacing what is there.
+/// Writes records to the file at `path`, replacing it.
 ///
-/// MCAP keeps everything; range-bearing text loses stamps, velocities, car odometry, bare positions, scans, estimates, cameras and detections of robots and unknown codes;
-/// TUM keeps poses only. The report counts what was left out.
-///
+/// MCAP stores everything. Range-bearing text loses stamps, velocities, car odometry, bare positions, scans, estimates, cameras and detections of
+/// robots and unknown codes. TUM stores only poses. The report counts the skipped records.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_sensor_log::{Data, Format, OpenOptions, Record, Stamp, open, write};
@@ -39,7 +38,7 @@ impl WriteReport {
 /// ```
 ///
 /// # Errors
-/// When the format is read only (UTIAS, Victoria Park, CARMEN, JSON, images), a number is not finite, or the file cannot be written.
+/// Returns an error if the format is read only (UTIAS, Victoria Park, CARMEN, JSON, images), a number is not finite, or the file cannot be written.
 pub fn write(
     path: impl AsRef<Path>,
     format: Format,
@@ -48,7 +47,7 @@ pub fn write(
     write_from(path.as_ref(), format, format, records)
 }
 
-/// Writes records that were first stored in the format `origin`.
+/// Writes records whose original format is `origin`.
 pub(crate) fn write_from(
     path: &Path,
     format: Format,

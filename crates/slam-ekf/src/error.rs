@@ -1,13 +1,13 @@
 use crate::LandmarkId;
 
-/// Why the filter refused a call. The filter is then unchanged.
+/// Errors of the filter. After an error the filter is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SlamError {
     /// A control, pose, landmark or noise is NaN or infinite.
     #[error("{what} is not finite")]
     NotFinite {
-        /// What it is.
+        /// Name of the quantity.
         what: &'static str,
     },
     /// A noise or covariance is not symmetric positive (semi)definite.
@@ -25,7 +25,7 @@ pub enum SlamError {
     /// A dimension does not match.
     #[error("{what} has dimension {got}, expected {expected}")]
     Dimension {
-        /// What has the wrong size.
+        /// Name of the quantity with the wrong size.
         what: &'static str,
         /// The expected size.
         expected: usize,

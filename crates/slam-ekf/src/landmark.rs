@@ -21,7 +21,7 @@ impl fmt::Display for LandmarkId {
 pub struct Observation<Z> {
     /// The identity that the sensor reads.
     pub label: Option<LandmarkId>,
-    /// What was measured.
+    /// The measurement.
     pub measurement: Z,
 }
 
@@ -74,8 +74,8 @@ where
         self.noise(measurement)
     }
 
-    /// The noise of a measurement, given in the tangent space of the measurement, in that of what is expected: the same unless one thing
-    /// has two forms, as a line has.
+    /// The noise of a measurement, moved from the tangent space of the measurement to that of the expected one. The two differ only if a
+    /// measurement has two forms, as a line has.
     fn noise_at_expected(
         &self,
         _expected: &Self::Measurement,
@@ -118,7 +118,7 @@ where
         landmark.clone()
     }
 
-    /// Whether a landmark with this prediction is within range and field of view, so that no detection is a miss. By default: always.
+    /// Whether a landmark with this prediction is within range and field of view, so that a missing detection counts as a miss. By default: always.
     fn expects_detection(&self, _expected: &Self::Measurement) -> bool {
         true
     }

@@ -16,7 +16,7 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 ///
 /// 5. Moving robot and landmark along a symmetry changes no measurement, and the motions of the robot by the symmetries are independent.
 ///
-/// A model whose single measurement does not place a landmark says so by landmarks that are not finite; it is held to the first law only.
+/// A model whose single measurement does not determine a landmark returns landmarks that are not finite; only the first law applies to it.
 ///
 /// ```
 /// use nalgebra::Vector2;

@@ -77,11 +77,11 @@ impl<Z: Manifold<Scalar = f64>> StepReport<Z>
 where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
-    /// How many observations corrected the state.
+    /// Number of observations that corrected the state.
     pub fn n_accepted(&self) -> usize {
         self.count(|outcome| matches!(outcome, Outcome::Accepted { .. }))
     }
-    /// How many observations were refused as outliers, duplicates or unusable.
+    /// Number of observations refused as outliers, duplicates or unusable.
     pub fn n_rejected(&self) -> usize {
         self.count(|outcome| {
             matches!(outcome, Outcome::Rejected { .. } | Outcome::Duplicate { .. } | Outcome::Unusable)

@@ -13,7 +13,7 @@ pub struct Snapshot<R, L> {
     pub robot: R,
     /// The landmarks of the state, in the order of their blocks in the covariance.
     pub landmarks: Vec<SavedLandmark<L>>,
-    /// Landmarks whose place is known exactly.
+    /// Landmarks with an exactly known position.
     pub anchors: Vec<(LandmarkId, L)>,
     /// Landmarks that left the state and still correct it.
     pub retired: Vec<SavedRetired<L>>,
@@ -27,7 +27,7 @@ pub struct Snapshot<R, L> {
 pub struct SavedLandmark<L> {
     /// Its identity.
     pub id: LandmarkId,
-    /// Where it is.
+    /// Its estimated position.
     pub mean: L,
     /// Its first estimate, at which a first-estimates filter linearizes.
     pub first: L,
@@ -47,8 +47,8 @@ pub struct SavedLandmark<L> {
 pub struct SavedRetired<L> {
     /// Its identity.
     pub id: LandmarkId,
-    /// Where it is.
+    /// Its position.
     pub mean: L,
-    /// Its marginal when it left, column by column.
+    /// Its marginal covariance when it was retired, column by column.
     pub covariance: Vec<f64>,
 }

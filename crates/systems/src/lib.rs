@@ -1,4 +1,4 @@
-//! The estimators of Wayfix behind one trait: records of a log go into a [`system::System`], estimates, events and figures come out.
+//! The estimators of Wayfix behind one trait: a [`system::System`] takes the records of a log and yields estimates, events and figures.
 //!
 //! | module | system |
 //! | --- | --- |
@@ -6,10 +6,10 @@
 //! | [`lines`] | walls of single scans |
 //! | [`color`] | localization in a coloured map |
 //! | [`cml`] | localization and mapping by appearance |
-//! | [`views`] | which view of a scene a camera sees |
-//! | [`track`] | a target in pictures |
+//! | [`views`] | which view of a scene a camera shows |
+//! | [`track`] | a target in images |
 //!
-//! No terminal, and no files but saved maps.
+//! This crate writes no terminal output, and no files but saved maps.
 
 pub mod cml;
 pub mod color;

@@ -1,11 +1,11 @@
-//! Files of parameters that name only what they change.
+//! Parameter files that override defaults.
 
 use serde::{Serialize, de::DeserializeOwned};
 
-/// `defaults`, with the values that a TOML text names in their place.
+/// Returns `defaults` overridden by the values of a TOML text.
 ///
 /// # Errors
-/// When the text is no TOML, or names a key that does not exist or a value of another kind.
+/// Returns an error if the text is not valid TOML, or contains an unknown key or a value of the wrong type.
 pub(crate) fn over_defaults<T: Serialize + DeserializeOwned>(
     defaults: &T,
     text: &str,
@@ -15,7 +15,7 @@ pub(crate) fn over_defaults<T: Serialize + DeserializeOwned>(
     values.try_into()
 }
 
-/// Puts the values of `upper` over those of `lower`, table by table.
+/// Writes the values of `upper` over those of `lower`, table by table.
 fn overlay(lower: &mut toml::Table, upper: toml::Table) {
     for (key, value) in upper {
         match (lower.get_mut(&key), value) {

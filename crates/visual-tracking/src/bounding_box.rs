@@ -24,7 +24,7 @@ impl BoundingBox {
     /// From the top left corner.
     ///
     /// # Errors
-    /// [`TrackingError::NotFinite`] and, without an extent, [`TrackingError::Parameter`].
+    /// Returns [`TrackingError::NotFinite`] and, without an extent, [`TrackingError::Parameter`].
     pub fn from_corner(x: f64, y: f64, width: f64, height: f64) -> Result<Self, TrackingError> {
         for (index, value) in [x, y, width, height].into_iter().enumerate() {
             if !value.is_finite() {
@@ -42,7 +42,7 @@ impl BoundingBox {
     /// From the centre.
     ///
     /// # Errors
-    /// As [`from_corner`](Self::from_corner).
+    /// Returns the errors of [`from_corner`](Self::from_corner).
     pub fn from_center(center: [f64; 2], width: f64, height: f64) -> Result<Self, TrackingError> {
         Self::from_corner(center[0] - width / 2.0, center[1] - height / 2.0, width, height)
     }
@@ -84,7 +84,7 @@ impl BoundingBox {
     /// The part inside a picture of `size` pixels.
     ///
     /// # Errors
-    /// [`TrackingError::OutsidePicture`] when there is none.
+    /// Returns [`TrackingError::OutsidePicture`] if there is none.
     pub fn clipped(&self, size: (usize, usize)) -> Result<Self, TrackingError> {
         let (width, height) = (size.0 as f64, size.1 as f64);
         let (left, top) = (self.x.max(0.0), self.y.max(0.0));

@@ -1,20 +1,20 @@
 use wayfix_gaussian_core::GaussianError;
 use wayfix_particle::ParticleError;
 
-/// Why an operation was refused. Whatever it was called on is as it was before.
+/// Errors of this crate. After an error, the object is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrackingError {
-    /// Something that must hold at least one element holds none.
+    /// A collection that must not be empty is empty.
     #[error("no {what}")]
     Empty {
-        /// What there should be some of.
+        /// Name of the collection.
         what: &'static str,
     },
     /// Sizes do not fit.
     #[error("{what} has size {got}, expected {expected}")]
     Dimension {
-        /// What has the wrong size.
+        /// Name of the quantity with the wrong size.
         what: &'static str,
         /// The size that fits.
         expected: usize,
@@ -24,7 +24,7 @@ pub enum TrackingError {
     /// A number is NaN or infinite where it must not be.
     #[error("{what} {index} is {value}")]
     NotFinite {
-        /// What it is.
+        /// Name of the quantity.
         what: &'static str,
         /// Its position in its list.
         index: usize,
@@ -34,17 +34,17 @@ pub enum TrackingError {
     /// A parameter or a probability is outside its range.
     #[error("{what} is {value}, must be {range}")]
     Parameter {
-        /// Which one.
+        /// Path of the file.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What it may be.
+        /// The allowed range.
         range: &'static str,
     },
     /// A state space, a picture or a window has a side of zero, or more cells than can be counted.
     #[error("{what} of size {size:?}")]
     Extent {
-        /// What it is.
+        /// Name of the quantity.
         what: &'static str,
         /// Its sides.
         size: Vec<usize>,
@@ -57,7 +57,7 @@ pub enum TrackingError {
         /// Width and height of the picture.
         picture: (usize, usize),
     },
-    /// There is no such pixel.
+    /// The pixel is outside the image.
     #[error("pixel {pixel:?} is outside {size:?}")]
     Outside {
         /// Its column and row.
@@ -73,7 +73,7 @@ pub enum TrackingError {
     Particle(#[from] ParticleError),
 }
 
-/// `value`, if it lies in `range`.
+/// Returns `value` if it lies in `range`.
 pub(crate) fn checked(
     what: &'static str,
     value: f64,

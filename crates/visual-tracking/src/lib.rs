@@ -1,6 +1,6 @@
 //! A target followed from picture to picture while the light changes.
 //!
-//! | part | what is in it |
+//! | part | content |
 //! | --- | --- |
 //! | trackers | [`Tracker`]: [`CorrelationTracker`] (a box around anything), [`HeadTracker`] (an ellipse by colours and rim), [`ContourTracker`] (an outline) |
 //! | colours | bins of a [`ColorSpace`]: [`ColorQuantizer`], [`BinImage`], [`ColorHistogram`], [`SlidingHistogram`] |

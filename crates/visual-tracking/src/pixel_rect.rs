@@ -18,14 +18,14 @@ pub struct PixelRect {
     pub left: usize,
     /// The first row.
     pub top: usize,
-    /// How many columns; at least one in every rectangle that the crate returns.
+    /// Number of columns; at least one in every rectangle that the crate returns.
     pub width: usize,
-    /// How many rows; likewise.
+    /// Number of rows; at least one in every rectangle that the crate returns.
     pub height: usize,
 }
 
 impl PixelRect {
-    /// The pixels that a box touches in a picture of width and height `size`; none when it lies outside.
+    /// The pixels that a box touches in an image of width and height `size`; none if it lies outside.
     pub fn covering(bounding_box: &BoundingBox, size: (usize, usize)) -> Option<Self> {
         let [x, y] = bounding_box.corner();
         let (left, width) = clipped(x, bounding_box.width(), size.0)?;
@@ -48,7 +48,7 @@ impl PixelRect {
         (self.width, self.height)
     }
 
-    /// The smallest rectangle that holds both.
+    /// The smallest rectangle that contains both.
     pub fn union(&self, other: &Self) -> Self {
         let (left, width) = joined((self.left, self.width), (other.left, other.width));
         let (top, height) = joined((self.top, self.height), (other.top, other.height));
@@ -58,14 +58,14 @@ impl PixelRect {
     /// The same rectangle as a box.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] without columns or rows.
+    /// Returns [`TrackingError::Parameter`] without columns or rows.
     pub fn to_box(&self) -> Result<BoundingBox, TrackingError> {
         let [x, y, width, height] = [self.left, self.top, self.width, self.height].map(|n| n as f64);
         BoundingBox::from_corner(x, y, width, height)
     }
 }
 
-/// The whole pixels of `start .. start + len` that lie in `0 .. limit`: the first one and how many. Converting saturates.
+/// The whole pixels of `start .. start + len` in `0 .. limit`: the first one and their number. The conversion saturates.
 fn clipped(start: f64, len: f64, limit: usize) -> Option<(usize, usize)> {
     let first = (start.floor() as usize).min(limit);
     let end = ((start + len).ceil() as usize).min(limit);

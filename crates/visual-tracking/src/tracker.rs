@@ -3,35 +3,35 @@ use rand::Rng;
 use super::BoundingBox;
 use crate::{RgbImage, TrackingError};
 
-/// What a tracker says of one picture.
+/// Estimate of the target in one image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     /// Around the target; while it is lost, where it was seen last.
     pub bounding_box: BoundingBox,
-    /// The closed outline, points `[u, v]` in pixels in order around the target; empty when only a box is known.
+    /// The closed outline, points `[u, v]` in pixels in order around the target; empty if only a box is known.
     pub outline: Vec<[f64; 2]>,
-    /// Whether the tracker believes what it says.
+    /// Whether the target is tracked or lost.
     pub status: TrackStatus,
-    /// How well the target is recognized, from 0 to 1.
+    /// Recognition quality, from 0 to 1.
     pub quality: f64,
 }
 
 /// Whether the target is in sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TrackStatus {
-    /// It is where the tracker says.
+    /// The target is at the estimated position.
     Tracked,
-    /// It is not, and is being looked for.
+    /// The target is not found; the tracker searches for it.
     Lost,
 }
 
-/// Follows one target, one picture at a time.
+/// Tracks one target, one image at a time.
 ///
-/// **Laws**: an error leaves the tracker as it was; the same pictures and the same generator give the same bits.
+/// **Laws**: an error leaves the tracker unchanged; equal images and equal generators give equal bits.
 pub trait Tracker {
     /// Takes the next picture.
     ///
     /// # Errors
-    /// Whatever makes the picture unusable, such as a size that is not that of the first one.
+    /// Returns an error if the image is unusable, for example if it differs from the first one in size.
     fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, rng: &mut R) -> Result<Target, TrackingError>;
 }

@@ -1,4 +1,4 @@
-//! Parameters as a TOML text that says of every key what it means.
+//! Parameters as TOML text with a comment for every key.
 
 use schemars::{JsonSchema, Schema, schema_for};
 use serde::Serialize;
@@ -13,7 +13,7 @@ pub(crate) fn schema_of<P: JsonSchema>() -> Schema {
 /// `params` as TOML, with the documentation of every key above it; keys that are not set follow their table as comments.
 ///
 /// # Errors
-/// When the parameters have no TOML form.
+/// Returns an error if the parameters have no TOML form.
 pub(crate) fn commented<P: JsonSchema + Serialize>(params: &P) -> anyhow::Result<String> {
     let mut document: DocumentMut = toml::to_string(params)?.parse()?;
     let root = schema_of::<P>().to_value();
@@ -35,7 +35,7 @@ fn comment_table(table: &mut Table, schema: &Value, root: &Value) {
             inner.decor_mut().set_prefix(format!("\n{says}"));
             comment_table(inner, property, root);
         } else if let Some(Item::ArrayOfTables(inner)) = table.get_mut(key) {
-            // What is said once holds for all of them.
+            // A comment common to all entries appears once.
             if let Some(first) = inner.get_mut(0) {
                 first.decor_mut().set_prefix(format!("\n{says}"));
                 comment_table(first, &resolved(property, root)["items"], root);
@@ -60,7 +60,7 @@ fn comment_table(table: &mut Table, schema: &Value, root: &Value) {
     }
 }
 
-/// What the documentation says, and what may be chosen, as lines of comment.
+/// The doc comment and the allowed values, as comment lines.
 fn comment(property: &Value, root: &Value) -> String {
     let own = property["description"].as_str();
     let described = own.or_else(|| resolved(property, root)["description"].as_str()).unwrap_or_default();
@@ -71,7 +71,7 @@ fn comment(property: &Value, root: &Value) -> String {
     lines.iter().map(|line| format!("# {line}\n")).collect()
 }
 
-/// The variants of an enumeration, each with what it means.
+/// The variants of an enumeration with their descriptions.
 fn choices(property: &Value, root: &Value) -> Vec<Vec<String>> {
     let target = resolved(property, root);
     let variants = target["oneOf"].as_array().map(Vec::as_slice).unwrap_or_default();
@@ -87,7 +87,7 @@ fn choices(property: &Value, root: &Value) -> Vec<Vec<String>> {
     variants.iter().filter_map(variant).collect()
 }
 
-/// The schema itself, or the definition that it refers to; of what may be absent, that which may be there.
+/// Resolves a reference to a definition, and an optional type to its inner type.
 fn resolved<'a>(schema: &'a Value, root: &'a Value) -> &'a Value {
     let alternatives = schema["anyOf"].as_array().map(Vec::as_slice).unwrap_or_default();
     let schema = alternatives.iter().find(|one| one["type"] != "null").unwrap_or(schema);
@@ -144,7 +144,7 @@ mod tests {
     fn same_with_comments<P: JsonSchema + Serialize + PartialEq + serde::de::DeserializeOwned>(params: &P) {
         let text = commented(params).unwrap();
         assert!(toml::from_str::<P>(&text).unwrap() == *params, "{text}");
-        // A variant that is chosen stands alone in its table, under what all of them mean; of many tables only the first has comments.
+        // The selected variant has its own table, below the description of the enumeration; only the first of many tables has comments.
         let (mut table, mut above, mut bare) = ("", "", Vec::new());
         for line in text.lines() {
             if line.starts_with('[') {

@@ -1,4 +1,4 @@
-//! What there is to measure: benches of our crates, and peers where they are installed.
+//! The measurements: benches of our crates, and peers if installed.
 
 use std::path::Path;
 use std::process::Command;
@@ -20,7 +20,7 @@ type Reader = Box<dyn Fn(&str) -> Option<Measurement>>;
 pub(super) struct Job {
     pub(super) name: String,
     pub(super) command: Command,
-    /// What has to be installed or given first.
+    /// A missing program or input, if any.
     pub(super) missing: Option<String>,
     pub(super) read: Reader,
 }
@@ -40,7 +40,7 @@ fn job(name: impl Into<String>, command: Command) -> Job {
     Job { name: name.into(), command, missing: None, read: Box::new(parse_line) }
 }
 
-/// `benches/` of every crate; those that have peers are measured by the peers' program, in the same run.
+/// `benches/` of every crate; those with peers are measured by the peers' program, in the same run.
 fn crate_benches(options: &Options) -> Result<Vec<Job>> {
     let with_peers = if options.peers { crates_with("peers/Cargo.toml")? } else { Vec::new() };
     let mut crates = crates_with("benches")?;
@@ -57,7 +57,7 @@ fn crate_benches(options: &Options) -> Result<Vec<Job>> {
         .collect())
 }
 
-/// Packages of their own, so that no crate of ours ever depends on a peer.
+/// Separate packages, so that no crate of ours depends on a peer.
 fn rust_peers() -> Result<Vec<Job>> {
     let crates = crates_with("peers/Cargo.toml")?;
     Ok(crates
@@ -146,7 +146,7 @@ fn mrpt(options: &Options) -> Vec<Job> {
     })
 }
 
-/// Without MRPT the configuration fails; what it says of that would only drown the name of the package.
+/// Without MRPT the configuration fails; its output is suppressed in favour of the package name.
 fn build_mrpt(build: &Path) -> bool {
     let steps: [&[&str]; 2] = [&["-S", "peers", "-B"], &["--build"]];
     steps.iter().all(|args| {
@@ -155,7 +155,7 @@ fn build_mrpt(build: &Path) -> bool {
     })
 }
 
-/// One job a case, completed by `finish`; a single skipped one when there are no logs.
+/// One job per case, completed by `finish`; a single skipped one if there are no logs.
 fn slam_jobs(
     options: &Options,
     program: &str,

@@ -61,7 +61,7 @@ fn parse(args: &[String]) -> Result<Options> {
     Ok(options)
 }
 
-/// Runs one job and shows what else it says.
+/// Runs one job and prints its other output.
 fn measure(mut job: jobs::Job) -> Result<Vec<Measurement>, (String, anyhow::Error)> {
     // One thread everywhere, or the comparison is of thread counts.
     for variable in ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "RAYON_NUM_THREADS"] {

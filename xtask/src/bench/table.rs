@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-/// How long one program takes for one job.
+/// Time of one program for one job.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Measurement {
     pub(super) job: String,

@@ -1,4 +1,4 @@
-//! The Markdown pages of `docs` as pages of the site. rustdoc renders them, so that code and formulas look as in the reference.
+//! The Markdown pages of `docs` as pages of the site, rendered by rustdoc for the same style of code and formulas.
 
 use std::fs;
 use std::path::Path;
@@ -8,12 +8,12 @@ use anyhow::{Context, Result};
 use super::page::Page;
 use crate::{shell, tidy};
 
-/// Opening the site leads to the book.
+/// Redirects the site's front page to the book.
 const FRONT: &str = "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Wayfix</title>\n\
     <meta http-equiv=\"refresh\" content=\"0; url=book/index.html\">\n\
     <p><a href=\"book/index.html\">Wayfix: where to begin</a>, <a href=\"wayfix/index.html\">API reference</a></p></html>\n";
 
-/// Renders every page into `doc/book`, and says how many there are.
+/// Renders every page into `doc/book`, and prints their number.
 pub(super) fn bind(doc: &Path, header: Option<&Path>) -> Result<usize> {
     let book = doc.join("book");
     if book.exists() {

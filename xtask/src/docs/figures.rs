@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::{regress, shell};
 
-/// What begins the place of a table, before the name of a suite.
+/// Start marker of a table, before the name of a suite.
 const BEGIN: &str = "<!-- figures: ";
 const END: &str = "<!-- end figures -->";
 
@@ -41,7 +41,7 @@ fn pages(folder: &Path) -> Result<Vec<std::path::PathBuf>> {
     Ok(pages)
 }
 
-/// The page with the tables of the suites that the report has; the others stay as they are.
+/// The page with the tables of the suites in the report; other tables are unchanged.
 fn with_tables(page: &str, report: &Value) -> Result<String> {
     let mut parts = page.split(BEGIN);
     let mut written = parts.next().unwrap_or_default().to_owned();
@@ -55,7 +55,7 @@ fn with_tables(page: &str, report: &Value) -> Result<String> {
     Ok(written)
 }
 
-/// A row for each figure that has a bound, a paper's or another program's figure.
+/// A row for each figure with a bound, or with a value of a paper or another program.
 fn of_suite(suite: &Value) -> String {
     let mut table = String::from(
         "| run | figure | measured | bound | compared with |\n| --- | --- | ---: | --- | --- |\n",
@@ -86,7 +86,7 @@ fn text(value: &Value) -> String {
     value.as_str().unwrap_or_default().to_owned()
 }
 
-/// Three digits, which is more than any run repeats on another log.
+/// Three digits, the most that is reproducible on another log.
 fn number(value: &Value) -> Option<String> {
     let value = value.as_f64()?;
     let digits = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;

@@ -1,4 +1,4 @@
-//! What draws the formulas, laid beside the pages so that they need no network.
+//! Installs the formula renderer beside the pages, which then work offline.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::shell;
 /// The npm package that draws the formulas.
 const KATEX: &str = "katex@0.19.1";
 
-/// Puts the style, script and fonts where `docs/katex-header.html` looks for them.
+/// Copies the style, script and fonts to the paths in `docs/katex-header.html`.
 pub(super) fn install(doc: &Path) -> Result<()> {
     let katex = doc.join("katex");
     let stamp = katex.join("package.txt");

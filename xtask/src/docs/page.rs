@@ -1,4 +1,4 @@
-//! Where a Markdown file of the repository stands in the site, and where its links lead from there.
+//! Path of a Markdown file of the repository in the site, and the targets of its links.
 
 use crate::tidy::{link_targets, resolve};
 
@@ -12,7 +12,7 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// `docs/README.md` is the index; a page stands in the book where it stands in `docs`.
+    /// `docs/README.md` is the index; other pages keep their path relative to `docs`.
     pub(super) fn of(path: &str) -> Option<Self> {
         let stem = match path {
             "docs/README.md" => "index",
@@ -23,12 +23,12 @@ impl Page {
         Some(Self { source: path.to_owned(), target: format!("{stem}.html") })
     }
 
-    /// The way to the root of the book.
+    /// Relative path to the root of the book.
     pub(super) fn up(&self) -> String {
         "../".repeat(self.target.matches('/').count())
     }
 
-    /// What stands above every page.
+    /// Banner at the top of every page.
     pub(super) fn banner(&self) -> String {
         let up = self.up();
         format!(

@@ -1,8 +1,8 @@
-//! Rust text with everything blanked that does not run in a library: comments, strings, test modules.
+//! Rust text with comments, strings and test modules blanked.
 //!
-//! Lines stay where they are, so findings can name them.
+//! Line numbers are unchanged, so findings can refer to them.
 
-/// Code only: comments and the insides of literals become spaces.
+/// Code only: replaces comments and the content of literals by spaces.
 pub(super) fn without_comments_and_strings(text: &str) -> String {
     let chars: Vec<char> = text.chars().collect();
     let mut kept = chars.clone();
@@ -35,7 +35,7 @@ pub(super) fn without_tests(code: &str) -> String {
     chars.into_iter().collect()
 }
 
-/// Whether `word` stands in `line` with no letter, digit or underscore touching it.
+/// Whether `line` contains `word` with no letter, digit or underscore next to it.
 pub(super) fn has_word(line: &str, word: &str) -> bool {
     let part_of_word = |c: char| c.is_alphanumeric() || c == '_';
     line.match_indices(word).any(|(start, _)| {
@@ -53,7 +53,7 @@ fn blank(chars: &mut [char]) {
     }
 }
 
-/// Whether the `r` here ends or continues a name; the `b` of `br"…"` does not make it one.
+/// Whether the `r` at `at` ends or continues a name; the `b` of `br"…"` does not count.
 fn follows_word(chars: &[char], at: usize) -> bool {
     let is_word = |c: &char| c.is_alphanumeric() || *c == '_';
     let mut before = chars[..at].iter().rev().peekable();

@@ -1,4 +1,4 @@
-//! Who may know whom: the dependency direction of `docs/architecture.md`, as a table.
+//! Allowed dependencies between crates: the table of `docs/architecture.md`.
 
 use super::manifest::{entries, member};
 use super::{Finding, Source};
@@ -42,10 +42,10 @@ const ALLOWED_DEPENDENCIES: [(&str, &[&str]); 17] = [
     ),
 ];
 
-/// The application, the experiments and the tasks may know every library.
+/// The application, the experiments and the tasks may depend on every library.
 const UNRESTRICTED: [&str; 3] = ["wayfix", "experiments", "xtask"];
 
-/// Crates that must not learn what an image is.
+/// Crates that must not depend on images.
 const IMAGE_FREE: [&str; 8] = [
     "estimation-traits",
     "integrity",
@@ -83,7 +83,7 @@ fn check_member(name: &str, source: &Source) -> Vec<Finding> {
         if entry.key == "wayfix" {
             found(format!("`{name}` depends on `wayfix`"), "nothing knows the application");
         }
-        // Tests may use any library of ours (a simulator, say), never the application.
+        // Tests may use any library of ours (a simulator, say), but not the application.
         if entry.section.ends_with("dev-dependencies") {
             continue;
         }

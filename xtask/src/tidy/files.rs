@@ -1,4 +1,4 @@
-//! What is in the tree: everything that git tracks or would track.
+//! Files of the tree: everything that git tracks or would track.
 
 use anyhow::Result;
 

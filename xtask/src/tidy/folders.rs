@@ -1,4 +1,4 @@
-//! Folders that a reader sees at once, and crates of one idea.
+//! Limits on the number of files in a folder and in a crate.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The picture of who depends on whom in `docs/architecture.md`, drawn from what Cargo resolves.
+//! The dependency diagram in `docs/architecture.md`, drawn from the output of Cargo.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -11,7 +11,7 @@ pub(super) const PAGE: &str = "docs/architecture.md";
 const MARKS: [&str; 2] =
     ["<!-- dependencies: written by `cargo xtask tidy --write` -->\n```text\n", "```\n<!-- end -->\n"];
 
-/// What `cargo tree` must print for [`picture`].
+/// Arguments of `cargo tree` for [`picture`].
 pub(super) const TREE: [&str; 11] = [
     "tree",
     "--locked",
@@ -28,7 +28,7 @@ pub(super) const TREE: [&str; 11] = [
 
 type Graph<'a> = BTreeMap<&'a str, BTreeSet<&'a str>>;
 
-/// A finding when the page does not hold the picture of `tree`.
+/// A finding if the page does not contain the diagram of `tree`.
 pub(super) fn check(sources: &[Source], tree: &str) -> Vec<Finding> {
     let page = sources.iter().find(|source| source.path == PAGE);
     let is_drawn = page.is_some_and(|page| with_picture(&page.text, tree).as_deref() == Some(&page.text));
@@ -39,14 +39,14 @@ pub(super) fn check(sources: &[Source], tree: &str) -> Vec<Finding> {
     if is_drawn { Vec::new() } else { vec![finding()] }
 }
 
-/// The page with the picture of `tree` between its marks; nothing when a mark is missing.
+/// The page with the diagram of `tree` between its markers; `None` if a marker is missing.
 pub(super) fn with_picture(page: &str, tree: &str) -> Option<String> {
     let (before, rest) = page.split_once(MARKS[0])?;
     let (_, after) = rest.split_once(MARKS[1])?;
     Some(format!("{before}{}{}{}{after}", MARKS[0], picture(tree), MARKS[1]))
 }
 
-/// A line a crate with the crates of ours that it depends on and that no other of them brings; lowest first.
+/// One line per crate with its direct dependencies in the workspace, without transitive ones; lowest first.
 fn picture(tree: &str) -> String {
     let graph = graph(tree);
     let mut crates: Vec<&str> = graph.keys().copied().collect();
@@ -90,7 +90,7 @@ fn reached<'a>(graph: &Graph<'a>, name: &str) -> BTreeSet<&'a str> {
     direct.flat_map(|other| std::iter::once(*other).chain(reached(graph, other))).collect()
 }
 
-/// Crates on the longest way down.
+/// Number of crates on the longest dependency path.
 fn height(graph: &Graph<'_>, name: &str) -> usize {
     graph.get(name).into_iter().flatten().map(|other| 1 + height(graph, other)).max().unwrap_or(0)
 }

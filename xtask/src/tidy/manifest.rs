@@ -1,6 +1,6 @@
-//! As much of a `Cargo.toml` as the checks need.
+//! A minimal parser of `Cargo.toml` for the checks.
 
-/// A `key = value` line and the section it stands in.
+/// A `key = value` line with its section.
 pub(super) struct Entry<'a> {
     pub(super) section: &'a str,
     /// Up to the first dot, so that `rand.workspace = true` has the key `rand`.
@@ -37,7 +37,7 @@ pub(super) fn value<'a>(text: &'a str, section: &str, key: &str) -> Option<&'a s
     Some(value.strip_prefix('"').and_then(|rest| rest.split('"').next()).unwrap_or(value))
 }
 
-/// The folder below `crates` (or `xtask`) whose manifest `path` is.
+/// The folder below `crates` (or `xtask`) of the manifest `path`.
 pub(super) fn member(path: &str) -> Option<&str> {
     let folder = path.strip_suffix("/Cargo.toml")?;
     let name = folder.strip_prefix("crates/").unwrap_or(folder);

@@ -36,7 +36,7 @@ pub(crate) struct Source {
 #[derive(Debug, PartialEq)]
 pub(crate) struct Finding {
     path: String,
-    /// From 1; 0 when it concerns the whole file.
+    /// Line number from 1; 0 for the whole file.
     line: usize,
     what: String,
     why: &'static str,
@@ -94,7 +94,7 @@ pub(crate) fn run(args: &[String]) -> Result<ExitCode> {
     Ok(if findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Writes what is drawn from the code into the docs.
+/// Writes the generated diagrams into the docs.
 fn write(tree: &str) -> Result<ExitCode> {
     let path = shell::root().join(graph::PAGE);
     let page = std::fs::read_to_string(&path)?;

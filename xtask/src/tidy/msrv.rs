@@ -3,7 +3,7 @@
 use super::manifest::value;
 use super::{Finding, Source};
 
-/// `metadata` is what `cargo metadata --format-version 1` prints.
+/// `metadata` is the output of `cargo metadata --format-version 1`.
 pub(super) fn check(sources: &[Source], metadata: &str) -> Vec<Finding> {
     let text_of =
         |path: &str| sources.iter().find(|source| source.path == path).map_or("", |s| s.text.as_str());

@@ -1,9 +1,9 @@
-//! Libraries compute: no files, clocks, terminal or randomness of their own, and no `unsafe` anywhere.
+//! Libraries must not use files, clocks, the terminal or their own randomness, and `unsafe` is forbidden everywhere.
 
 use super::code::{has_word, without_comments_and_strings, without_tests};
 use super::{Finding, Source};
 
-/// Crates whose business is the world outside; everything else under `crates` is pure computation.
+/// Crates that access the outside world; all others under `crates` are pure computation.
 const OUTWARD: [&str; 5] = ["sensor-log", "evaluation", "systems", "experiments", "wayfix"];
 
 const OUTSIDE: [&str; 11] = [
@@ -42,7 +42,7 @@ pub(super) fn check(sources: &[Source]) -> Vec<Finding> {
     findings
 }
 
-/// The crate folder when `path` is library code: in its `src`, and not a test module of its own.
+/// The crate folder if `path` is library code: in its `src`, and not a test module.
 fn library_code(path: &str) -> Option<&str> {
     let (owner, inside) = path.strip_prefix("crates/")?.split_once("/src/")?;
     let test_file = inside.split('/').any(|part| part == "tests" || part == "tests.rs");
@@ -59,7 +59,7 @@ fn words(source: &Source, code: &str, forbidden: &[&str], why: &'static str) -> 
     findings
 }
 
-/// `use std::{fs, …}` hides the paths that [`words`] looks for.
+/// `use std::{fs, …}` hides the paths in [`words`].
 fn grouped_imports(source: &Source, code: &str) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (start, _) in code.match_indices("std::{") {

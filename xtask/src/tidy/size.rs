@@ -48,7 +48,7 @@ pub(super) fn weights(files: &[(String, u64)]) -> Vec<Finding> {
         .collect()
 }
 
-/// Too many linked crates (macros run at compile time and are not counted) in what `cargo tree --prefix none` prints for `package`.
+/// A finding for too many linked crates (without macros, which run at compile time) in the output of `cargo tree --prefix none` for `package`.
 pub(super) fn tree(package: &str, listing: &str) -> Vec<Finding> {
     // A crate that came before is listed again with a star.
     let crates: BTreeSet<_> =

@@ -3,7 +3,7 @@ use nalgebra::Vector3;
 use super::{ColorMap, PLANE_TOLERANCE_M};
 use crate::ColorId;
 
-/// What a ray meets first.
+/// First intersection of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Colour of the surface.
@@ -15,11 +15,10 @@ pub struct Hit {
 }
 
 impl ColorMap {
-    /// What a ray meets first, on its way from `origin` along `direction` (of any length but zero).
+    /// First intersection of the ray from `origin` along `direction` (of any nonzero length).
     ///
-    /// This is the plain definition of what is seen; [`Projector`](crate::Projector) finds the same for a whole image at once. A polygon whose
-    /// plane is within 1e-9 m of the origin is edge-on and not seen, nor is a post from inside. Nothing is met if a number is not finite.
-    ///
+    /// This is the reference definition of visibility; [`Projector`](crate::Projector) computes the same for a whole image. A polygon whose plane is
+    /// within 1e-9 m of the origin is edge-on and invisible, and so is a post from inside. Returns `None` if a number is not finite.
     /// ```
     /// use nalgebra::Vector3;
     /// use wayfix_color_map::{Band, ColorId, ColorMap, Shape};
@@ -41,7 +40,7 @@ impl ColorMap {
         for layer in &self.layers {
             let height = layer.plane.distance(origin);
             let at = -height / layer.plane.normal.dot(direction);
-            // Written so that a NaN goes on to the next one.
+            // Written so that a NaN skips the polygon.
             if !(height.abs() > PLANE_TOLERANCE_M && at > 0.0 && at < nearest) {
                 continue;
             }

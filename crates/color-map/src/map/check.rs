@@ -1,11 +1,11 @@
-//! What makes a shape impossible.
+//! Validation of shapes.
 
 use nalgebra::Vector3;
 
 use super::{Plane, Prism, layer::FLAT};
 use crate::{Band, ColorId, MapError};
 
-/// Farthest coordinate, metres: beyond it, a double no longer holds the tolerances above.
+/// Largest coordinate, m: beyond it, a double cannot resolve the tolerances above.
 const MAX_COORDINATE: f64 = 1e6;
 /// Most colours: a grey label image has one value for each and one for none.
 const MAX_COLORS: usize = 255;
@@ -88,7 +88,7 @@ pub(super) fn post(shape: usize, x: f64, y: f64, radius: f64, bands: &[Band]) ->
     Ok(())
 }
 
-/// Posts are told which is in front by their places in plan, so no two may overlap there.
+/// Posts are sorted by their positions in plan, so no two may overlap there.
 pub(super) fn posts_apart(prisms: &[Prism]) -> Result<(), MapError> {
     for (i, a) in prisms.iter().enumerate() {
         for b in prisms[i + 1..].iter().filter(|b| b.shape != a.shape) {
@@ -110,7 +110,7 @@ fn coordinate(shape: usize, value: f64) -> Result<(), MapError> {
     }
 }
 
-/// The plane through the centroid whose normal is the polygon's vector area: twice the area long, whatever the start vertex.
+/// The plane through the centroid with the polygon's vector area as normal: its length is twice the area, for any start vertex.
 fn newell_plane(shape: usize, vertices: &[Vector3<f64>]) -> Result<Plane, MapError> {
     let centroid = vertices.iter().sum::<Vector3<f64>>() / vertices.len() as f64;
     let doubled: Vector3<f64> = edges(vertices).map(|(a, b)| (a - centroid).cross(&(b - centroid))).sum();

@@ -1,11 +1,10 @@
 use super::{Decal, Extent, Layer, Prism, check};
 use crate::{ColorId, MapError, Shape, tree::Tree};
 
-/// A map of coloured surfaces, checked once.
+/// A validated map of coloured surfaces.
 ///
-/// Polygons may touch and pierce each other and posts may stand in them: every view is sorted exactly. Only posts must keep clear of
-/// each other, seen from above.
-///
+/// Polygons may touch and intersect each other, and posts may intersect polygons: every view is sorted exactly. Only posts must not overlap each
+/// other, seen from above.
 /// ```
 /// use nalgebra::Vector3;
 /// use wayfix_color_map::{ColorId, ColorMap, MapError, Shape};

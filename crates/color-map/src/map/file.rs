@@ -45,7 +45,7 @@ impl TryFrom<MapFile> for ColorMap {
 
     fn try_from(file: MapFile) -> Result<Self, MapError> {
         let color = |name: String| match file.colors.iter().position(|color| *color == name) {
-            // An index beyond a byte means too many colours, which `ColorMap::new` refuses.
+            // An index beyond a byte means too many colours, which `ColorMap::new` rejects.
             Some(index) => Ok(ColorId(u8::try_from(index).unwrap_or(u8::MAX))),
             None => Err(MapError::UnknownColorName { name }),
         };

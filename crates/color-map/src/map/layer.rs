@@ -3,7 +3,7 @@ use nalgebra::Vector3;
 use super::Plane;
 use crate::ColorId;
 
-/// Polygons closer than this to a common plane lie on it, metres.
+/// Tolerance within which polygons lie on a common plane, m.
 pub(crate) const FLAT: f64 = 1e-6;
 
 /// All polygons on one plane, in map order: later ones on top.
@@ -23,7 +23,7 @@ pub(crate) struct Decal {
 }
 
 impl Layer {
-    /// Puts a polygon with its own plane on the first layer it lies on, or on a new one.
+    /// Adds a polygon with its plane to the first layer that contains it, or to a new one.
     pub(crate) fn sort_in(layers: &mut Vec<Self>, plane: Plane, mut decal: Decal) {
         let lies_on = |layer: &Self| decal.vertices.iter().all(|v| layer.plane.distance(v).abs() <= FLAT);
         let index = layers.iter().position(lies_on).unwrap_or_else(|| {
@@ -42,7 +42,7 @@ impl Layer {
 }
 
 impl Decal {
-    /// Whether a point of the plane lies on the polygon.
+    /// Whether a point of the plane is inside the polygon.
     pub(crate) fn contains(&self, normal: &Vector3<f64>, point: &Vector3<f64>) -> bool {
         let next = self.vertices.iter().cycle().skip(1);
         self.vertices.iter().zip(next).all(|(a, b)| normal.cross(&(b - a)).dot(&(point - a)) >= 0.0)

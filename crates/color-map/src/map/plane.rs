@@ -1,7 +1,7 @@
 use nalgebra::Vector3;
 
-/// What counts as no distance, metres: a surface whose plane passes the eye this closely is seen edge-on, that is not at all, and
-/// surfaces that reach less than this through a plane do not reach through it.
+/// Distance treated as zero, m: a surface whose plane passes the eye within it is edge-on and invisible, and surfaces that extend less than this
+/// beyond a plane do not cross it.
 pub(crate) const PLANE_TOLERANCE_M: f64 = 1e-9;
 
 /// $`n^T x = d`$ with a unit normal.

@@ -3,10 +3,10 @@ use nalgebra::Vector3;
 use super::Plane;
 use crate::{Band, ColorId};
 
-/// Sides of the prism that stands for a post.
+/// Number of sides of the prism that approximates a post.
 pub(crate) const SIDES: usize = 16;
-/// Circumscribed over meant radius, π / (16 sin π/16): the prism's outline is as long as the circle, so the mean of its width over all
-/// directions is the circle's diameter (Cauchy).
+/// Ratio of circumscribed to nominal radius, π / (16 sin π/16): the prism's perimeter equals that of the circle, so its mean width over
+/// all directions is the circle's diameter (Cauchy).
 const CORNER_RADIUS: f64 = 1.006_454_542_799_564;
 /// cos π/8, cos π/4 and cos 3π/8.
 const COSINES: [f64; 3] =

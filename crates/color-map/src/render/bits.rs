@@ -7,7 +7,7 @@ pub(super) fn set(words: &mut [u64], start: usize, end: usize) {
     masks(start, end).for_each(|(index, mask)| words[index] |= mask);
 }
 
-/// Sets the columns `start..end` and tells the runs of those that were not set.
+/// Sets the columns `start..end` and reports the runs of those that were not set.
 pub(super) fn claim(words: &mut [u64], start: usize, end: usize, run: impl FnMut(usize, usize)) {
     let free = masks(start, end).map(|(index, mask)| {
         let free = mask & !words[index];
@@ -32,7 +32,7 @@ fn masks(start: usize, end: usize) -> impl Iterator<Item = (usize, u64)> {
     })
 }
 
-/// Tells the runs of ones, also those that go on from one word to the next.
+/// Reports the runs of ones, also across words.
 fn runs(words: impl Iterator<Item = (usize, u64)>, mut run: impl FnMut(usize, usize)) {
     let (mut start, mut end) = (0, 0);
     for (index, mut word) in words {

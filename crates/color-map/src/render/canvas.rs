@@ -1,7 +1,7 @@
 use super::{coverage::Coverage, outline::Outline, silhouette, view::ImagePoint, view::View};
 use crate::{Camera, ColorId, Span, map::Prism, tree::Facet};
 
-/// Draws convex things from front to back; what comes first stays.
+/// Draws convex shapes from front to back; drawn pixels are not overwritten.
 #[derive(Clone, Debug)]
 pub(super) struct Canvas {
     outline: Outline,

@@ -1,6 +1,6 @@
 use super::bits;
 
-/// Which pixels have been emitted: a bit a pixel, each row in words of its own.
+/// Emitted pixels: one bit per pixel, each row in separate words.
 #[derive(Clone, Debug)]
 pub(super) struct Coverage {
     words_per_row: usize,
@@ -17,7 +17,7 @@ impl Coverage {
         self.words.fill(0);
     }
 
-    /// Covers the columns `start..end` of a row and tells the runs of those that were free.
+    /// Covers the columns `start..end` of a row and reports the runs of those that were free.
     pub(super) fn claim(&mut self, row: usize, start: usize, end: usize, free: impl FnMut(usize, usize)) {
         let words = &mut self.words[row * self.words_per_row..][..self.words_per_row];
         bits::claim(words, start, end, free);

@@ -14,7 +14,7 @@ pub(super) struct Margin {
     before: Vec<u64>,
 }
 
-/// Where one colour is.
+/// Mask of one colour.
 #[derive(Clone, Debug)]
 struct Plane {
     words: Vec<u64>,
@@ -49,7 +49,7 @@ impl Margin {
         bits::set(words, usize::from(span.start), usize::from(span.end));
     }
 
-    /// Leaves, in every colour, the pixels with nothing else within `reach` pixels. What is beside the image counts as more of the same.
+    /// Keeps, in every colour, the pixels with no other colour within `reach` pixels. The image is extended by its border pixels.
     pub(super) fn erode(&mut self, reach: usize) {
         let reach = reach.min(self.n_columns.max(self.n_rows));
         for Plane { words, rows } in self.planes.iter_mut().filter(|plane| !plane.rows.is_empty()) {
@@ -89,9 +89,9 @@ fn steps(reach: usize) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Leaves the pixels that are set `step` columns to the left and to the right, too, `step` from 1 to 63.
+/// Keeps the pixels that are also set `step` columns to the left and to the right, with `step` from 1 to 63.
 ///
-/// Beside the image its border pixel goes on: what that one has reached so far lies within what the wanted one would have.
+/// Beyond the image its border pixel repeats: its present value lies within that of the exact one.
 fn erode_row(row: &mut [u64], n_columns: usize, step: usize) {
     let beside = |column: usize| 0_u64.wrapping_sub(row[column / BITS] >> (column % BITS) & 1);
     let (left_border, right_border) = (beside(0), beside(n_columns - 1));
@@ -108,7 +108,7 @@ fn erode_row(row: &mut [u64], n_columns: usize, step: usize) {
     row[last] &= !padding;
 }
 
-/// Leaves the pixels that are set `step` rows above and below, too; beyond the image, its border row goes on.
+/// Keeps the pixels that are also set `step` rows above and below; beyond the image, its border row repeats.
 fn erode_columns(plane: &mut [u64], words_per_row: usize, step: usize, before: &mut Vec<u64>) {
     before.clear();
     before.extend_from_slice(plane);

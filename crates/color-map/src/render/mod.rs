@@ -1,4 +1,4 @@
-//! What a camera sees of a map, as spans of pixels.
+//! Camera views of a map, as spans of pixels.
 
 mod bits;
 mod canvas;

@@ -8,17 +8,17 @@ const LEVEL: f64 = 1e-16;
 /// 1.5 · 2⁵², where doubles are the whole numbers.
 const INTEGERS: f64 = 6_755_399_441_055_744.0;
 
-/// Where a convex thing lies in each row, as the lines around it leave it.
+/// The columns of a convex shape in each row, bounded by its edge lines.
 ///
-/// Every line is a bound of its own: a row's left end is the largest of the bounds to the left. So the bound that two neighbours share is the
-/// same number for both. A line is asked only in rows that its edge reaches: elsewhere, one of the others is the tighter one.
+/// Every line is a separate bound: a row's left end is the largest of the left bounds. A bound shared by two neighbours is therefore the same number
+/// for both. A line is evaluated only in the rows of its edge: elsewhere, another one is tighter.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
     n_columns: f64,
     /// Of the image's pixels.
     row_centers: Vec<f64>,
     edges: Vec<Edge>,
-    /// Rows that were traced.
+    /// The traced rows.
     rows: std::ops::Range<usize>,
     left: Vec<f64>,
     right: Vec<f64>,
@@ -125,7 +125,7 @@ impl Outline {
         self.rows.end = self.rows.end.max(self.rows.start);
     }
 
-    /// Rows of the image whose centres lie between two rows, both included, and up to one more at either end.
+    /// Rows of the image with centres between two rows, both included, and up to one more at either end.
     fn rows_between(&self, top: f64, bottom: f64) -> std::ops::Range<usize> {
         let height = self.row_centers.len() as f64;
         let start = (top - 0.5).clamp(0.0, height) as usize;
@@ -134,11 +134,11 @@ impl Outline {
     }
 }
 
-/// For every `u` the first column whose centre is there or to the right of it.
+/// For every `u` the first column with its centre at or to the right of it.
 fn first_centers_from(us: &[f64], n_columns: f64, columns: &mut [u32]) {
     for (column, u) in columns.iter_mut().zip(us) {
-        // Rounding up, in a way that a plain processor does for several at once: a sum with `INTEGERS` has no bits left for a fraction, and
-        // its lowest ones are the whole number.
+        // Rounds up in a way that vectorizes: a sum with `INTEGERS` has no bits left for a fraction, and its lowest bits are the whole
+        // number.
         let edge = u.clamp(0.0, n_columns) - 0.5;
         let rounded = (edge + INTEGERS) - INTEGERS;
         let up = rounded + if rounded < edge { 1.0 } else { 0.0 };

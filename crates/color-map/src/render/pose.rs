@@ -7,7 +7,7 @@ const MAX_COORDINATE: f64 = 1e6;
 /// Difference of the squared quaternion length from one that is still rounding.
 const UNIT: f64 = 1e-6;
 
-/// That a camera can stand there..
+/// Checks a camera pose.
 pub(super) fn check(pose: &Pose3<f64>) -> Result<(), ViewError> {
     for &value in &pose.translation {
         if !(-MAX_COORDINATE..=MAX_COORDINATE).contains(&value) {

@@ -9,15 +9,14 @@ use crate::{
     tree::{Face, Node, Solid},
 };
 
-/// Draws a map as one camera sees it.
+/// Renders a map for one camera.
 ///
-/// Surfaces come from front to back and a pixel belongs to the first one that covers its centre, so the cost is that of the edges and the spans
-/// in view. Equal to [`ColorMap::cast`] through every pixel's centre, up to rounding: they may differ only where that ray passes within about
-/// 1e-9 of its length of an edge, or of the line where two surfaces meet. Only sums, products, quotients and square roots are used, so the
-/// spans of a pose are the same on every machine.
+/// Surfaces are drawn from front to back and a pixel belongs to the first one that covers its centre, so the cost depends on the visible edges and
+/// spans. The result equals [`ColorMap::cast`] through every pixel's centre, up to rounding: they may differ only if that ray passes within about
+/// 1e-9 of its length of an edge, or of the line where two surfaces meet. Only sums, products, quotients and square roots are used, so the spans of
+/// a pose are equal on every machine.
 ///
-/// Keeps its scratch space from view to view, so make one a thread.
-///
+/// It reuses its buffers between views, so create one per thread.
 /// ```
 /// use std::sync::Arc;
 /// use nalgebra::Vector3;
@@ -41,11 +40,11 @@ pub struct Projector {
     canvas: Canvas,
     todo: Vec<Step>,
     standing: Vec<Standing>,
-    /// Made when it is first asked for.
+    /// Created on first use.
     margin: Option<Margin>,
 }
 
-/// What is left to draw, the nearest last.
+/// A pending step; the nearest is last.
 #[derive(Clone, Copy, Debug)]
 enum Step {
     /// A subtree.
@@ -54,12 +53,12 @@ enum Step {
     Facets(usize, bool),
 }
 
-/// A solid of a leaf and what says whether another one may hide it: only one that is less.
+/// A solid of a leaf with its sort key: only a solid with a smaller key may hide it.
 #[derive(Clone, Copy, Debug)]
 struct Standing {
     /// Power of the eye's foot with respect to the prism's circle.
     power: f64,
-    /// Between the eye's height and those of the solid: for bands of one post.
+    /// Vertical distance from the eye to the solid, for bands of one post.
     gap: f64,
     solid: usize,
 }
@@ -87,12 +86,11 @@ impl Projector {
         &self.camera
     }
 
-    /// Emits every pixel that sees a map colour exactly once, in spans of no particular order.
+    /// Emits every pixel that shows a map colour exactly once, in spans in any order.
     ///
     /// `camera_pose` is the camera's in the world: x forward, y left, z up.
-    ///
     /// # Errors
-    /// [`ViewError::Pose`] if the pose is not finite, farther than 1e6 m away, or its quaternion not of unit length. Nothing is emitted then.
+    /// Returns [`ViewError::Pose`] if the pose is not finite, farther than 1e6 m away, or its quaternion not of unit length. Nothing is emitted then.
     pub fn spans(&mut self, camera_pose: &Pose3<f64>, emit: &mut impl FnMut(Span)) -> Result<(), ViewError> {
         pose::check(camera_pose)?;
         let Self { map, camera, canvas, todo, standing, .. } = self;
@@ -132,13 +130,12 @@ impl Projector {
         Ok(())
     }
 
-    /// [`Projector::spans`] without the pixels near an edge, whose label a small error of the pose would change.
+    /// [`Projector::spans`] without the pixels near an edge, whose label is sensitive to the pose.
     ///
-    /// Left are those whose neighbours up to `margin` pixels away, also across corners, all see the same colour. The image's own
-    /// border is no edge; a pixel that sees no map colour makes one.
-    ///
+    /// Keeps pixels whose neighbours up to `margin` pixels away, also across corners, all show the same colour. The image's own border is no edge; a
+    /// pixel without map colour is one.
     /// # Errors
-    /// As [`Projector::spans`].
+    /// Returns the errors of [`Projector::spans`].
     pub fn inner_spans(
         &mut self,
         camera_pose: &Pose3<f64>,
@@ -162,10 +159,9 @@ impl Projector {
         seen
     }
 
-    /// What the camera sees, as an image.
-    ///
+    /// Renders the view as an image.
     /// # Errors
-    /// As [`Projector::spans`].
+    /// Returns the errors of [`Projector::spans`].
     pub fn labels(&mut self, camera_pose: &Pose3<f64>) -> Result<LabelImage, ViewError> {
         let mut labels = LabelImage::empty(self.camera.width(), self.camera.height());
         self.spans(camera_pose, &mut |span| labels.paint(span))?;
@@ -202,7 +198,7 @@ fn draw_solid(
     let Some(faces) = &solid.faces else {
         return canvas.prism(&prisms[solid.prism], view, emit);
     };
-    // Those of a convex thing that look at the eye do not hide each other.
+    // The visible faces of a convex shape do not hide each other.
     for Face { facet, .. } in faces.iter().filter(|face| face.plane.distance(&view.eye) > PLANE_TOLERANCE_M) {
         canvas.facet(facet, true, view, emit);
     }

@@ -1,4 +1,4 @@
-//! The outline of a convex solid: the edges between a face that looks at the eye and one that does not.
+//! The outline of a convex solid: the edges between a visible and an invisible face.
 
 use super::{
     outline::Outline,
@@ -15,7 +15,7 @@ pub(super) fn trace(prism: &Prism, view: &View, outline: &mut Outline) {
     let bottom = prism.bottom().distance(&view.eye) > PLANE_TOLERANCE_M;
 
     outline.clear();
-    // An edge a → b as a face that is seen goes around it, counter-clockwise.
+    // A visible face goes around its edge a → b counter-clockwise.
     let mut edge = |a: &ImagePoint, b: &ImagePoint| outline.add((a, b), (b, a));
     for k in 0..SIDES {
         let next = (k + 1) % SIDES;

@@ -3,10 +3,10 @@ use wayfix_estimation_traits::Pose3;
 
 use crate::Camera;
 
-/// A camera at a place, as the linear map from the world to homogeneous pixels.
+/// A camera at a pose, as the linear map from the world to homogeneous pixels.
 ///
-/// [Olano & Greer 1997]: a point becomes $`h = (u w, v w, w)`$ with w its depth; the line through two of them is $`h_a × h_b`$, and which side
-/// of it a pixel's ray passes is the sign of $`(h_a × h_b)^T (u, v, 1)`$, also when a point is behind the camera. Nothing is ever clipped.
+/// [Olano & Greer 1997]: a point becomes $`h = (u w, v w, w)`$ with w its depth; the line through two points is $`h_a × h_b`$, and the side on which
+/// a pixel's ray passes it is the sign of $`(h_a × h_b)^T (u, v, 1)`$, also for points behind the camera. No clipping is needed.
 #[derive(Clone, Debug)]
 pub(super) struct View {
     pub(super) eye: Vector3<f64>,
@@ -16,7 +16,7 @@ pub(super) struct View {
     frustum: [Vector3<f64>; 5],
 }
 
-/// A point as the camera sees it.
+/// A point in camera view.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ImagePoint {
     /// Homogeneous pixel.
@@ -70,7 +70,7 @@ impl ImagePoint {
         }
     }
 
-    /// Where the edge passes beside the camera its image goes to infinity, up or down as `v w` says there.
+    /// If the edge passes beside the camera its image extends to infinity, up or down by the sign of `v w`.
     fn rows_to_horizon(&self, behind: &Self) -> (f64, f64) {
         let (front_w, front_v) = (self.pixel.z, self.pixel.y);
         let (behind_w, behind_v) = (behind.pixel.z, behind.pixel.y);

@@ -9,16 +9,16 @@ use crate::{
     map::{Layer, Plane, Prism, SIDES},
 };
 
-/// Most pieces before a map is refused.
+/// Maximum number of pieces; a map with more is rejected.
 const MAX_PIECES: usize = 200_000;
-/// About so many pieces are looked at to choose a plane.
+/// Approximate number of pieces tested to choose a plane.
 const LOOKS: usize = 20_000;
-/// A cut polygon costs as much as this imbalance.
+/// Cost of a cut polygon, in units of imbalance.
 const CUT_FACET: usize = 4;
 /// A post in two pieces is drawn face by face. That costs more than any imbalance.
 const CUT_SOLID: usize = 1 << 20;
 
-/// What has to be sorted into one subtree.
+/// The content of one subtree before sorting.
 #[derive(Default)]
 struct Heap {
     /// With the layer each is on, in map order within a layer.
@@ -39,7 +39,7 @@ impl Tree {
         }
         all.solids.extend((0..prisms.len()).map(|prism| Solid { prism, faces: None }));
 
-        // A stack of our own: a tree may be as deep as the map has planes.
+        // An explicit stack: a tree may be as deep as the number of planes.
         let mut n_pieces = all.facets.len() + all.solids.len();
         tree.nodes.push(Node::Leaf { solids: Vec::new() });
         let mut open = vec![(tree.root, all)];
@@ -70,11 +70,11 @@ impl Tree {
 /// A plane to sort by.
 struct Cut {
     plane: Plane,
-    /// The layer that lies on it, if one does.
+    /// The layer on the cut's plane, if any.
     layer: Option<usize>,
 }
 
-/// The plane that cuts least and, among those, halves best. None if no facet is left.
+/// The plane with the fewest cuts and, among those, the best balance. `None` if no facet is left.
 ///
 /// It is that of a layer, unless this would cut a post and a face of a post cuts nothing.
 fn best_cut(heap: &Heap, layers: &[Layer], prisms: &[Prism]) -> Option<Cut> {
@@ -142,7 +142,7 @@ impl Cut {
     }
 }
 
-/// What lies on the cut's layer, the topmost decal first, and what is in front of and behind the plane.
+/// The facets on the cut's layer, the topmost decal first, and the pieces in front of and behind the plane.
 fn part(heap: Heap, cut: &Cut, prisms: &[Prism]) -> (Vec<Facet>, [Heap; 2]) {
     let (mut on_it, mut front, mut back) = (Vec::new(), Heap::default(), Heap::default());
     for (own, facet) in heap.facets {

@@ -20,10 +20,10 @@ pub(crate) struct Facet {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Edge {
     pub(crate) corner: Vector3<f64>,
-    /// The ends of the edge that this one was cut from.
+    /// The ends of the original edge of this part.
     ///
-    /// All parts of an edge are drawn with the line through its ends, which is then the same to the last bit, so that facets that
-    /// share it leave no gap and do not overlap.
+    /// All parts of an edge are drawn with the line through its ends, which is equal to the last bit, so that adjacent facets
+    /// leave no gap and do not overlap.
     pub(crate) whole: Option<(Vector3<f64>, Vector3<f64>)>,
 }
 
@@ -65,7 +65,7 @@ impl Facet {
             let end = self.edges[(k + 1) % n].corner;
             let (here, there) = (plane.distance(&edge.corner), plane.distance(&end));
             let (sign, next) = (sign(here), sign(there));
-            // From a corner on the plane, one of the two goes on along the edge and the other along the plane.
+            // From a corner on the plane, one of the two continues along the edge and the other along the plane.
             let along_plane = Edge { corner: edge.corner, whole: None };
             if sign >= 0 {
                 front.push(if sign == 0 && next < 0 { along_plane } else { *edge });

@@ -10,13 +10,13 @@ pub(crate) struct Tree {
 
 #[derive(Clone, Debug)]
 pub(crate) enum Node {
-    /// Facets on a plane, the topmost decal first, and what is on its two sides.
+    /// Facets on a plane, the topmost decal first, and the subtrees on its two sides.
     Split { plane: Plane, facets: Vec<Facet>, front: usize, back: usize },
-    /// What is left where no plane is.
+    /// The content of a subtree without planes.
     Leaf { solids: Vec<Solid> },
 }
 
-/// A band of a post, or what planes left of it.
+/// A band of a post, or a part of it after cuts.
 #[derive(Clone, Debug)]
 pub(crate) struct Solid {
     /// Its place in the map's prisms.

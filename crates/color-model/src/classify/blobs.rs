@@ -8,7 +8,7 @@ use crate::ColorModelError;
 pub struct Blob {
     /// Their colour.
     pub color: ColorId,
-    /// How many.
+    /// Number of pixels.
     pub n_pixels: usize,
     /// First and last column.
     pub columns: (usize, usize),
@@ -18,10 +18,9 @@ pub struct Blob {
     pub centroid: (f64, f64),
 }
 
-/// Finds the blobs of a classified image, 255 being background; neighbours touch at an edge or a corner. Ordered by their first pixel.
+/// Finds the blobs of a classified image, with 255 for background; pixels connect at an edge or a corner. Blobs are ordered by their first pixel.
 ///
-/// Runs of equal labels are joined to those that they touch in the row above, and each set of runs is a blob: time in proportion to the pixels.
-///
+/// Runs of equal labels are joined with adjacent runs in the row above, and each set of runs is a blob: time in proportion to the pixels.
 /// ```
 /// use wayfix_color_map::ColorId;
 /// use wayfix_color_model::find_blobs;
@@ -37,7 +36,7 @@ pub struct Blob {
 /// ```
 ///
 /// # Errors
-/// When the labels do not fill rows of `width` pixels, or there are none.
+/// Returns an error if the labels do not fill rows of `width` pixels, or there are none.
 pub fn find_blobs(labels: &[u8], width: usize) -> Result<Vec<Blob>, ColorModelError> {
     if labels.is_empty() || width == 0 || !labels.len().is_multiple_of(width) {
         let height = labels.len().checked_div(width).unwrap_or(0);
@@ -70,7 +69,7 @@ pub(crate) fn blobs_of_spans(spans: &mut [Span]) -> Vec<Blob> {
     runs.blobs()
 }
 
-/// Pixels of a row with the same label, as many as there are side by side.
+/// A maximal run of pixels of a row with equal labels.
 struct Run {
     label: u8,
     row: usize,
@@ -78,13 +77,13 @@ struct Run {
     end: usize,
 }
 
-/// All runs so far, as a forest whose roots are the first runs of their blobs.
+/// All runs so far, as a forest; each root is the first run of its blob.
 #[derive(Default)]
 struct Runs {
     runs: Vec<Run>,
     parent: Vec<usize>,
     row: usize,
-    /// Where the runs of this row begin, and where those of the row above do.
+    /// First run of this row, and of the row above.
     this_row: usize,
     last_row: usize,
     /// The first run of the row above that the next one may touch.
@@ -104,7 +103,7 @@ impl Runs {
         self.join_above(at);
     }
 
-    /// Joins run `at` to those it touches in the row above.
+    /// Joins run `at` with adjacent runs in the row above.
     fn join_above(&mut self, at: usize) {
         let (start, end, label) = (self.runs[at].start, self.runs[at].end, self.runs[at].label);
         let mut above = self.above;

@@ -21,16 +21,15 @@ use crate::{Background, ColorDensity, ColorModelError, SumDensity, YuvImage};
 pub struct Classifier {
     densities: Vec<SumDensity>,
     background: Option<Background>,
-    /// How much more frequent the background is than any one colour, nats.
+    /// Log ratio of the background's frequency to that of any one colour, nats.
     background_odds: f64,
 }
 
 impl Classifier {
-    /// Tells colours with these densities apart; every pixel is one of them. The densities of a light are [`LightingFilter::colors`](crate::LightingFilter::colors),
-    /// those of a light that falls unevenly on a field [`PixelParams::shaded`](crate::PixelParams::shaded).
-    ///
+    /// Classifies pixels by these densities. The densities of a light are [`LightingFilter::colors`](crate::LightingFilter::colors);
+    /// those of uneven light on a field are [`PixelParams::shaded`](crate::PixelParams::shaded).
     /// # Errors
-    /// When a density has no peak, or there are more than 255.
+    /// Returns an error if a density has no peak, or there are more than 255.
     pub fn new(densities: impl IntoIterator<Item = ColorDensity>) -> Result<Self, ColorModelError> {
         let densities: Vec<SumDensity> =
             densities.into_iter().map(|density| SumDensity::new(&density)).collect::<Result<_, _>>()?;
@@ -50,7 +49,7 @@ impl Classifier {
     /// The same with a background that takes this share of all pixels; the colours share the rest evenly.
     ///
     /// # Errors
-    /// When the share is not between 0 and 1.
+    /// Returns an error if the share is not between 0 and 1.
     pub fn with_background_share(self, background: Background, share: f64) -> Result<Self, ColorModelError> {
         if !(share > 0.0 && share < 1.0) {
             return Err(ColorModelError::OutOfRange { what: "share of the background", value: share });
@@ -93,14 +92,14 @@ impl Classifier {
         }
     }
 
-    /// What a colour has to be more probable than.
+    /// Log-density that a colour must exceed.
     fn floor(&self, pixel: [u8; 3]) -> f64 {
         let background = self.background.as_ref();
         background.map_or(f64::NEG_INFINITY, |bg| bg.log_density(pixel) + self.background_odds)
     }
 }
 
-/// The colour that gives a pixel the highest log-density, the first of equal ones; none that is not above `floor`.
+/// The colour with the highest log-density for a pixel, the first of equal ones; `None` if none exceeds `floor`.
 pub(crate) fn most_probable(densities: &[SumDensity], pixel: [u8; 3], floor: f64) -> Option<ColorId> {
     let better = |best: (Option<ColorId>, f64), (at, density): (u8, &SumDensity)| {
         let log = density.log(pixel);

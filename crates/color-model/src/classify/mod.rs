@@ -1,4 +1,4 @@
-//! Which map colour a pixel shows: exactly, or from a table that is compiled for the light of the moment; and what hangs together.
+//! Classification of pixels into map colours, exactly or by a table compiled for the current light, and connected components.
 
 mod blobs;
 mod classifier;

@@ -2,11 +2,10 @@ use super::{Classifier, NO_COLOR, classifier::Row};
 use crate::{Background, ColorDensity, ColorModelError, YuvImage};
 use wayfix_color_map::ColorId;
 
-/// A [`Classifier`] compiled into a table over YUV, made anew when the light has moved: one look-up a pixel. [Schulz & Fox 2004, VI]
+/// A [`Classifier`] compiled into a table over YUV, rebuilt when the light changes: one look-up per pixel. [Schulz & Fox 2004, VI]
 ///
-/// It looks at six bits of Y and all of U and V: paints differ less in their chroma than the light differs in its brightness from place to
-/// place, so chroma wants the finer cells. Four megabytes, of which an image touches little.
-///
+/// It uses six bits of Y and all of U and V: paints differ less in chroma than the light varies in brightness, so chroma needs the finer cells. The
+/// table has four megabytes; one image accesses a small part of it.
 /// ```
 /// use nalgebra::{Matrix3, Vector3};
 /// use wayfix_color_map::ColorId;
@@ -23,19 +22,19 @@ pub struct LookUpTable {
     cells: Vec<u8>,
     compiled_for: Vec<ColorDensity>,
     background: Option<Background>,
-    /// The table is made anew when any colour's density has moved by more than this from the one it was compiled for: symmetrized
-    /// Kullback-Leibler divergence, nats. Default 0.05: a shift by about a quarter of a standard deviation.
+    /// The table is rebuilt when the symmetrized Kullback-Leibler divergence of any colour's density from the compiled one exceeds this,
+    /// in nats. Default 0.05: a shift by about a quarter of a standard deviation.
     pub rebuild_above: f64,
 }
 
-/// Bits that are looked at of Y, U, V.
+/// Number of bits used of Y, U, V.
 const BITS: [u32; 3] = [6, 8, 8];
 
 impl LookUpTable {
     /// A table for colours with these densities, with a class for the background if there is one.
     ///
     /// # Errors
-    /// When a colour's density has no peak, or there are more than 255 colours.
+    /// Returns an error if a colour's density has no peak, or there are more than 255 colours.
     pub fn new(colors: Vec<ColorDensity>, background: Option<Background>) -> Result<Self, ColorModelError> {
         let cells = vec![NO_COLOR; 1 << BITS.iter().sum::<u32>()];
         let mut table = Self { cells, compiled_for: Vec::new(), background, rebuild_above: 0.05 };
@@ -43,14 +42,13 @@ impl LookUpTable {
         Ok(table)
     }
 
-    /// Makes the table anew if the light has moved; tells whether it has.
-    ///
+    /// Rebuilds the table if the light has changed; returns whether it has.
     /// # Errors
-    /// When a colour's density has no peak; the table is unchanged then.
+    /// Returns an error if a colour's density has no peak; the table is unchanged then.
     pub fn rebuild_if_changed(&mut self, colors: Vec<ColorDensity>) -> Result<bool, ColorModelError> {
         let moved = colors.len() != self.compiled_for.len()
             || colors.iter().zip(&self.compiled_for).any(|(now, then)| {
-                // What cannot be compared is no reason to trust the table.
+                // Rebuild if the densities cannot be compared.
                 !now.divergence(then).is_some_and(|divergence| divergence <= self.rebuild_above)
             });
         if moved {

@@ -30,15 +30,14 @@ impl Frame {
     /// The sums of all pixels.
     ///
     /// # Errors
-    /// When the image is wider than 3900 pixels, the bound up to which 32 bits hold a row's sums.
+    /// Returns an error if the image is wider than 3900 pixels, the bound up to which 32 bits hold a row's sums.
     pub fn new(image: &YuvImage) -> Result<Self, ColorModelError> {
         Self::with(image, |_| Some(0))
     }
 
-    /// The sums of those pixels that `nats` gives a value to, their $`-\ln p_{bg}(c)`$; the others are counted as outliers.
+    /// Adds to the sums the background terms $`-\ln p_{bg}(c)`$ given by `nats`; pixels without a value count as outliers.
     ///
-    /// Values are kept in units of 2⁻¹⁶ nats, between 0 and 16.8.
-    ///
+    /// Values are stored in units of 2⁻¹⁶ nats, between 0 and 16.8.
     /// # Errors
     /// As for [`new`](Self::new).
     pub fn with_background(
@@ -85,7 +84,7 @@ impl Frame {
         self.width * self.height
     }
 
-    /// Adds pixels `start..end` of `row` to `sums`; what lies outside the image adds nothing.
+    /// Adds pixels `start..end` of `row` to `sums`; pixels outside the image add nothing.
     #[inline]
     pub fn add_run(&self, row: usize, start: usize, end: usize, sums: &mut PixelSums) {
         let at = row * (self.width + 1);

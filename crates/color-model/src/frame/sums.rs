@@ -1,6 +1,6 @@
 use nalgebra::{Matrix3, Vector3};
 
-/// Lanes of a sum: y u v, yy uu vv yu yv uv, how many, background, how many outliers.
+/// Lanes of a sum: y u v, yy uu vv yu yv uv, count, background, outlier count.
 pub(crate) const LANES: usize = 12;
 pub(crate) const COUNT: usize = 9;
 const BACKGROUND: usize = 10;
@@ -9,8 +9,7 @@ pub(crate) const OUTLIERS: usize = 11;
 /// Nats per unit of the background lane.
 const BACKGROUND_UNIT: f64 = 1.0 / 65536.0;
 
-/// What a Gaussian likelihood has to know of a set of pixels: how many, $`\sum c`$ and $`\sum c c^T`$, exactly.
-///
+/// Sufficient statistics of a set of pixels for a Gaussian likelihood, exact: number, $`\sum c`$ and $`\sum c c^T`$.
 /// ```
 /// use wayfix_color_model::PixelSums;
 /// let mut sums = PixelSums::default();
@@ -32,21 +31,21 @@ impl PixelSums {
         }
     }
 
-    /// Adds all pixels of another sum.
+    /// Adds another sum.
     pub fn add(&mut self, other: &Self) {
         for (sum, lane) in self.lanes.iter_mut().zip(other.lanes) {
             *sum += lane;
         }
     }
 
-    /// Takes away the pixels of another sum, all of which are in this one.
+    /// Subtracts another sum, whose pixels must all be in this one.
     pub(crate) fn remove(&mut self, other: &Self) {
         for (sum, lane) in self.lanes.iter_mut().zip(other.lanes) {
             *sum -= lane;
         }
     }
 
-    /// How many pixels.
+    /// Number of pixels.
     pub fn count(&self) -> u64 {
         self.lanes[COUNT]
     }
@@ -68,11 +67,11 @@ impl PixelSums {
         let cross = self.sum() * mean.transpose();
         self.products() - cross - cross.transpose() + mean * mean.transpose() * self.count() as f64
     }
-    /// $`-\sum \ln p_{bg}(c)`$ in nats: what the background would pay for these pixels. 0 when the frame was built without one.
+    /// $`-\sum \ln p_{bg}(c)`$ in nats: the background's cost of these pixels. 0 for a frame without background.
     pub fn background_nats(&self) -> f64 {
         self.lane(BACKGROUND) * BACKGROUND_UNIT
     }
-    /// How many more pixels lie there that the frame takes for outliers; they are in none of the other sums.
+    /// Number of outliers among the pixels; the other sums exclude them.
     pub fn n_outliers(&self) -> u64 {
         self.lanes[OUTLIERS]
     }
@@ -82,7 +81,7 @@ impl PixelSums {
     }
 }
 
-/// What one pixel adds to each lane.
+/// Contribution of one pixel to each lane.
 pub(crate) fn lanes_of([y, u, v]: [u8; 3], background: u32) -> [u32; LANES] {
     let [y, u, v] = [u32::from(y), u32::from(u), u32::from(v)];
     [y, u, v, y * y, u * u, v * v, y * u, y * v, u * v, 1, background, 0]

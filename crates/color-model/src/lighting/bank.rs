@@ -7,12 +7,11 @@ use wayfix_kalman::MarkovChain;
 use super::{ColorMeans, LightingFilter};
 use crate::ColorModelError;
 
-/// Lighting filters for different kinds of light (dark, bright), of which one is active at a time; a Markov chain says how the light is switched.
+/// Lighting filters for different kinds of light (dark, bright), one active at a time; a Markov chain models the switches.
 ///
-/// Only the active filter learns; the others keep what they knew when they were last active. [Schulz & Fox 2004, §III.A.3] Which one is
-/// active, a particle filter decides by drawing an index for each particle ([`choose`](Self::choose)); with known poses
-/// [`JumpMarkovTracker`](super::JumpMarkovTracker) weighs the histories. Clones share their filters until one of them learns.
-///
+/// Only the active filter learns; the others keep their state. [Schulz & Fox 2004, §III.A.3] A particle filter draws the active index for each
+/// particle ([`choose`](Self::choose)); with known poses [`JumpMarkovTracker`](super::JumpMarkovTracker) weighs the
+/// histories. Clones share their filters until one of them learns.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use wayfix_color_model::{ColorMeans, LightingBank, LightingFilter, LightingParams};
@@ -38,7 +37,7 @@ pub struct LightingBank {
     active: Option<usize>,
 }
 
-/// Which filter of a bank a particle takes for the active one, and what it says of the frame.
+/// The filter of a bank that a particle has as active, and its likelihood of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// The member drawn.
@@ -51,14 +50,14 @@ impl LightingBank {
     /// A bank of filters for the same colours.
     ///
     /// # Errors
-    /// When there are none, not as many as the chain has states, or they differ in their number of colours.
+    /// Returns an error if there are none, not as many as the chain has states, or they differ in their number of colours.
     pub fn new(filters: Vec<LightingFilter>, chain: MarkovChain) -> Result<Self, ColorModelError> {
         let (expected, got) = (chain.n_models(), filters.len());
         if expected != got {
             return Err(ColorModelError::Dimension { what: "lighting filters of a chain", expected, got });
         }
         let n_colors = filters.first().map_or(0, LightingFilter::n_colors);
-        // What one member sees, every member could have seen.
+        // All members observe the same number of colours.
         if let Some(other) = filters.iter().map(LightingFilter::n_colors).find(|n| *n != n_colors) {
             return Err(ColorModelError::Dimension {
                 what: "colours of a lighting filter",
@@ -70,11 +69,10 @@ impl LightingBank {
         Ok(Self { chain: Arc::new(chain), predicted: settled.clone(), settled, active: None })
     }
 
-    /// What is known of the light when it is not known which of these weighted banks is right: each member's mixture, matched in mean and
-    /// covariance; the active one is the one that is active in most of the weight.
-    ///
+    /// Merges weighted banks: each member's mixture, matched in mean and covariance; the active member is the one with the largest total
+    /// weight.
     /// # Errors
-    /// When there is no weight, or the banks differ in their members.
+    /// Returns an error if there is no weight, or the banks differ in their members.
     pub fn merged<'a>(
         weighted: impl Iterator<Item = (f64, &'a Self)> + Clone,
     ) -> Result<Self, ColorModelError> {
@@ -103,12 +101,12 @@ impl LightingBank {
         Ok(merged)
     }
 
-    /// How many filters.
+    /// Number of filters.
     pub fn n_members(&self) -> usize {
         self.settled.len()
     }
 
-    /// How many colours.
+    /// Number of colours.
     pub fn n_colors(&self) -> usize {
         self.settled.first().map_or(0, |filter| filter.n_colors())
     }
@@ -118,7 +116,7 @@ impl LightingBank {
         &self.chain
     }
 
-    /// What the filters of the bank predict, each as if it were the active one now.
+    /// Predictions of all filters of the bank, each as if it were active.
     pub fn members(&self) -> &[Arc<LightingFilter>] {
         &self.predicted
     }
@@ -126,7 +124,7 @@ impl LightingBank {
     /// One of [`members`](Self::members).
     ///
     /// # Panics
-    /// When there is no such member; [`n_members`](Self::n_members) tells.
+    /// Panics if there is no such member; see [`n_members`](Self::n_members).
     pub fn member(&self, member: usize) -> &LightingFilter {
         &self.predicted[member]
     }
@@ -150,7 +148,7 @@ impl LightingBank {
     /// Prepares every filter for being the active one after `seconds`.
     ///
     /// # Errors
-    /// When the time is negative or not finite; nothing has changed then.
+    /// Returns an error if the time is negative or not finite; the state is then unchanged.
     pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         let predict = |filter: &Arc<LightingFilter>| {
             let mut filter = LightingFilter::clone(filter);
@@ -161,10 +159,9 @@ impl LightingBank {
         Ok(())
     }
 
-    /// `member` was the active one and saw `means`; the others fall back to what they knew. Gives the log evidence, nats.
-    ///
+    /// Sets `member` active and updates it with `means`; the others return to their stored state. Returns the log evidence, nats.
     /// # Errors
-    /// When there is no such member or it refuses the means; nothing has changed then.
+    /// Returns an error if there is no such member or it refuses the means; the state is then unchanged.
     pub fn update_member(&mut self, member: usize, means: &ColorMeans) -> Result<f64, ColorModelError> {
         let n_members = self.n_members();
         let filter = self.predicted.get(member).ok_or(ColorModelError::NoSuchMember { member, n_members })?;
@@ -176,13 +173,12 @@ impl LightingBank {
         Ok(log_evidence)
     }
 
-    /// Draws the active member from the optimal proposal $`p(j | i, z) ∝ π_{ij}\, p(z | j)`$ by enumeration, given $`\ln p(z | j)`$ of a frame
-    /// under each. Nothing is learned yet. [Andrieu et al. 2002]
+    /// Draws the active member from the optimal proposal $`p(j | i, z) ∝ π_{ij}\, p(z | j)`$ by enumeration, given $`\ln p(z | j)`$ of a frame under
+    /// each. It does not learn. [Andrieu et al. 2002]
     ///
-    /// A frame that is impossible under every member leaves the active one and has log-likelihood $`-∞`$. One number is drawn in any case.
-    ///
+    /// A frame that is impossible under every member keeps the active one and has log-likelihood $`-∞`$. One number is drawn in any case.
     /// # Errors
-    /// When there are not as many log-likelihoods as members, or one is NaN or $`+∞`$.
+    /// Returns an error if there are not as many log-likelihoods as members, or one is NaN or $`+∞`$.
     pub fn choose<R: Rng + ?Sized>(
         &self,
         log_likelihoods: &[f64],

@@ -1,6 +1,6 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-/// How the pixels of one map colour are distributed in YUV: $`N(μ[m], Σ[m,m] + ν)`$. [Schulz & Fox 2004, Eq. 9]
+/// Distribution of the pixels of one map colour in YUV: $`N(μ[m], Σ[m,m] + ν)`$. [Schulz & Fox 2004, Eq. 9]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorDensity {
     /// Mean (Y, U, V).
@@ -10,8 +10,7 @@ pub struct ColorDensity {
 }
 
 impl ColorDensity {
-    /// Half of $`KL(p ‖ q) + KL(q ‖ p)`$, nats: how far two densities are apart. `None` when one of them is none.
-    ///
+    /// Half of $`KL(p ‖ q) + KL(q ‖ p)`$, nats: a distance of two densities. `None` if one of them is invalid.
     /// ```
     /// use nalgebra::{Matrix3, Vector3};
     /// use wayfix_color_model::ColorDensity;
@@ -42,7 +41,7 @@ impl ColorDensity {
         })
     }
 
-    /// What is said of a colour that is not there: nothing, in a way that every user of densities refuses.
+    /// Density of a colour that does not exist: NaN, which every function of densities rejects.
     pub(super) fn unknown() -> Self {
         Self { mean: Vector3::repeat(f64::NAN), covariance: Matrix3::repeat(f64::NAN) }
     }

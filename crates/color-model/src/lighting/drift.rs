@@ -4,7 +4,7 @@ use wayfix_gaussian_core::Gaussian;
 use super::Drift;
 
 impl Drift {
-    /// Where the mean is after `seconds`.
+    /// The mean after `seconds`.
     pub(super) fn move_mean(self, seconds: f64, prior: &Gaussian<DVector<f64>>, mean: &mut DVector<f64>) {
         if let Self::TowardsPrior(time_constant) = self {
             let stays = (-seconds / time_constant).exp();
@@ -14,7 +14,7 @@ impl Drift {
         }
     }
 
-    /// What the covariance becomes after `seconds`. Variances that a random walk lets grow stop at `widest` times (Y, U, V).
+    /// The covariance after `seconds`. Variances that grow by a random walk are limited to `widest` times (Y, U, V).
     pub(super) fn widen(
         self,
         seconds: f64,

@@ -7,10 +7,9 @@ use wayfix_gaussian_core::{Gaussian, check_covariance};
 use super::{ColorDensity, ColorMeans, LightingParams, Unseen, update::observe};
 use crate::ColorModelError;
 
-/// A Kalman filter over the means of all map colours at once, $`θ ∼ N(μ, Σ)`$ with $`θ = (θ[1], …, θ[M])`$ in YUV: what one kind of light does.
+/// A Kalman filter over the means of all map colours, $`θ ∼ N(μ, Σ)`$ with $`θ = (θ[1], …, θ[M])`$ in YUV, for one kind of light.
 ///
-/// Colours vary together, so a colour that nobody has seen yet follows from those that were seen. [Schulz & Fox 2004, Eqs. 2-6]
-///
+/// Colours are correlated, so colours not seen yet are estimated from those that were. [Schulz & Fox 2004, Eqs. 2-6]
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use wayfix_color_map::ColorId;
@@ -37,10 +36,9 @@ pub struct LightingFilter {
 }
 
 impl LightingFilter {
-    /// A filter that knows the `prior` of $`3M`$ numbers.
-    ///
+    /// A filter with the `prior` of $`3M`$ numbers.
     /// # Errors
-    /// When the prior's dimension is not a positive multiple of three, it has no density, a mean lies beyond a million or a variance beyond a
+    /// Returns an error if the prior's dimension is not a positive multiple of three, it has no density, a mean lies beyond a million or a variance beyond a
     /// billion times that of an image's mean (next to which the mean would be without noise), or a parameter is out of range.
     pub fn new(prior: Gaussian<DVector<f64>>, params: LightingParams) -> Result<Self, ColorModelError> {
         params.check()?;
@@ -63,14 +61,14 @@ impl LightingFilter {
         Ok(Self { prior: Arc::new(prior), params, mean, covariance })
     }
 
-    /// What was known before the first image.
+    /// The prior before the first image.
     pub fn prior(&self) -> &Gaussian<DVector<f64>> {
         &self.prior
     }
 
-    /// What is known when it is not known which of these filters is right: the mixture's mean and covariance.
+    /// Merges weighted filters: the mixture's mean and covariance.
     ///
-    /// `None` without any weight, or for filters of different dimensions.
+    /// Returns `None` without any weight, or for filters of different dimensions.
     pub(super) fn merged<'a>(weighted: impl Iterator<Item = (f64, &'a Self)> + Clone) -> Option<Self> {
         let total: f64 = weighted.clone().map(|(weight, _)| weight).sum();
         let mut merged = weighted.clone().next()?.1.clone();
@@ -92,7 +90,7 @@ impl LightingFilter {
         Some(merged)
     }
 
-    /// How many colours.
+    /// Number of colours.
     pub fn n_colors(&self) -> usize {
         self.mean.len() / 3
     }
@@ -112,8 +110,8 @@ impl LightingFilter {
         &self.covariance
     }
 
-    /// How the pixels of a colour are distributed (Eq. 9). The numbers of a colour that is not there are NaN, which everything that uses
-    /// densities refuses.
+    /// Distribution of the pixels of a colour (Eq. 9). For a colour that does not exist all numbers are NaN, which every function of
+    /// densities rejects.
     pub fn color(&self, color: ColorId) -> ColorDensity {
         self.colors().nth(color.index()).unwrap_or_else(ColorDensity::unknown)
     }
@@ -126,7 +124,7 @@ impl LightingFilter {
     /// Lets the light drift for `seconds` (Eq. 6).
     ///
     /// # Errors
-    /// When the time is negative or not finite; nothing has changed then.
+    /// Returns an error if the time is negative or not finite; the state is then unchanged.
     pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         check_seconds(seconds)?;
         let LightingParams { drift, .. } = self.params;
@@ -135,10 +133,9 @@ impl LightingFilter {
         Ok(())
     }
 
-    /// Learns from the colour means of one image (Eqs. 3-5). Gives the log evidence $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
-    ///
+    /// Updates the filter with the colour means of one image (Eqs. 3-5). Returns the log evidence $`\ln p(\bar v | \bar v_{1:k-1})`$, nats.
     /// # Errors
-    /// When there are more or fewer colours, or a mean is not finite or beyond a million; nothing has changed then.
+    /// Returns an error if there are more or fewer colours, or a mean is not finite or beyond a million; the state is then unchanged.
     pub fn update(&mut self, means: &ColorMeans) -> Result<f64, ColorModelError> {
         means.check(self.n_colors())?;
         let log_evidence = means.seen().map(|(color, mean)| self.observe(color, &mean)).sum();
@@ -153,7 +150,7 @@ impl LightingFilter {
         (0..3).map(|i| observe(&mut self.mean, &mut self.covariance, at + i, mean[i], noise[i])).sum()
     }
 
-    /// Fills in the colours that were not seen. Given those that were, each looks most likely as its mean says by now, so the means stay.
+    /// Fills in unseen colours with their conditional means given the seen ones, so their means do not change.
     fn observe_regressed(&mut self, means: &ColorMeans) {
         let all = (0..=u8::MAX).map(ColorId).take(self.n_colors());
         for color in all.filter(|color| means.mean(*color).is_none()) {
@@ -174,7 +171,7 @@ pub(super) fn check_seconds(seconds: f64) -> Result<(), ColorModelError> {
     }
 }
 
-/// Values of pixels, up to those of very deep images; squares of what lies beyond might leave the range of numbers.
+/// Bound on pixel values, enough for very deep images; squares of larger values could overflow.
 pub(super) fn check_value(what: &'static str, value: f64) -> Result<(), ColorModelError> {
     if !value.is_finite() {
         Err(ColorModelError::NotFinite { what })

@@ -4,9 +4,8 @@ use wayfix_color_map::ColorId;
 use super::filter::check_value;
 use crate::ColorModelError;
 
-/// What one image says of the light: the mean YUV of every map colour in it, $`\bar v`$ of [Schulz & Fox 2004, Eq. 3]; colours that it does not
-/// show are missing.
-///
+/// Measurement of the light from one image: the mean YUV of every map colour in it, $`\bar v`$ of [Schulz & Fox 2004, Eq. 3]; colours
+/// not in the image are missing.
 /// ```
 /// use nalgebra::Vector3;
 /// use wayfix_color_map::ColorId;
@@ -26,7 +25,7 @@ impl ColorMeans {
         Self { colors: colors.into_iter().collect() }
     }
 
-    /// How many colours there are, seen or not.
+    /// Number of colours, seen or not.
     pub fn n_colors(&self) -> usize {
         self.colors.len()
     }
@@ -36,12 +35,12 @@ impl ColorMeans {
         self.colors.get(color.index()).and_then(|(mean, _)| *mean)
     }
 
-    /// How many pixels of a colour were seen.
+    /// Number of seen pixels of a colour.
     pub fn n_pixels(&self, color: ColorId) -> u64 {
         self.colors.get(color.index()).map_or(0, |(_, n)| *n)
     }
 
-    /// The colours that were seen, with their means.
+    /// The seen colours with their means.
     pub fn seen(&self) -> impl Iterator<Item = (ColorId, Vector3<f64>)> {
         let seen =
             |(at, (mean, _)): (usize, &(Option<Vector3<f64>>, u64))| Some((ColorId(at as u8), (*mean)?));

@@ -1,4 +1,4 @@
-//! What today's light does to the colours: filters over all colour means at once, and banks of them for different lights.
+//! Estimation of the colours under the current light: filters over all colour means, and banks of them for different lights.
 
 mod bank;
 mod density;

@@ -1,13 +1,13 @@
 use nalgebra::{DMatrix, DVector};
 
-/// Observes one number of the state: $`z = θ_i + v`$, $`v ∼ N(0, r)`$. Gives $`\ln N(z; μ_i, Σ_{ii} + r)`$.
+/// Observes one component of the state: $`z = θ_i + v`$, $`v ∼ N(0, r)`$. Returns $`\ln N(z; μ_i, Σ_{ii} + r)`$.
 ///
-/// The noise of a mean is diagonal, so a colour is three of these one after the other, exactly; nothing is factored, and no memory is asked for.
+/// The noise of a mean is diagonal, so a colour takes three scalar updates, exactly, without factorization and allocation.
 ///
 /// With $`c = Σ e_i`$ and $`s = Σ_{ii} + r`$ the new covariance is $`Σ - c c^T / s`$. Entries across the diagonal are computed by the same two
-/// products, $`(c_j c_k) / s`$, so symmetry holds to the bit. Row and column $`i`$ are what they were times $`r / s`$, without a difference, as the
-/// form of Joseph would have them. And since $`c c^T ⪯ Σ_{ii} Σ`$, what is left is at least $`(r / s)\, Σ`$: positive definite as long as $`r / s`$
-/// is far above rounding, which [`LightingParams`](super::LightingParams) sees to.
+/// products, $`(c_j c_k) / s`$, so it is exactly symmetric. Row and column $`i`$ are multiplied by $`r / s`$, without a difference, as in Joseph's
+/// form. Since $`c c^T ⪯ Σ_{ii} Σ`$, the remainder is at least $`(r / s)\, Σ`$: positive definite as long as $`r / s`$ is far above rounding, which
+/// [`LightingParams`](super::LightingParams) ensures.
 pub(super) fn observe(
     mean: &mut DVector<f64>,
     covariance: &mut DMatrix<f64>,
@@ -31,7 +31,7 @@ pub(super) fn observe(
         }
         column[i] = cross[k] * stays;
     }
-    // The others needed it as it was, so it comes last.
+    // The other updates use its old value, so it comes last.
     cross.iter_mut().for_each(|value| *value *= stays);
     -0.5 * (std::f64::consts::TAU.ln() + variance.ln() + residual * residual * per_variance)
 }

@@ -4,9 +4,8 @@ use crate::{ColorDensity, ColorModelError, PixelSums};
 
 /// A colour's density, factored once, for single pixels and for sums of many.
 ///
-/// $`\sum_c \ln N(c; μ, S) = n \ln N(μ; μ, S) - \tfrac{1}{2} \operatorname{tr} S^{-1} \sum_c (c - μ)(c - μ)^T`$, so a region's log-likelihood needs
-/// nothing of its pixels but [`PixelSums`].
-///
+/// $`\sum_c \ln N(c; μ, S) = n \ln N(μ; μ, S) - \tfrac{1}{2} \operatorname{tr} S^{-1} \sum_c (c - μ)(c - μ)^T`$, so a region's
+/// log-likelihood needs only the [`PixelSums`] of its pixels.
 /// ```
 /// use nalgebra::{Matrix3, Vector3};
 /// use wayfix_color_model::{ColorDensity, PixelSums, SumDensity};
@@ -28,7 +27,7 @@ impl SumDensity {
     /// Factors the covariance.
     ///
     /// # Errors
-    /// When the mean is not finite or the covariance not positive definite.
+    /// Returns an error if the mean is not finite or the covariance not positive definite.
     pub fn new(density: &ColorDensity) -> Result<Self, ColorModelError> {
         let refused = ColorModelError::DensityNotPositive;
         let information = density.covariance.cholesky().ok_or(refused)?;

@@ -10,22 +10,20 @@ use crate::{
     classify::{blobs_of_spans, find_blobs},
 };
 
-/// The feature-based likelihood: bearing and area of the blobs of a classified image beside those that the map should show.
+/// The feature-based likelihood: bearing and area of the blobs of a classified image against those expected from the map.
 ///
-/// Every blob of the image is either clutter, of density $`λ`$ over bearing and log area, or one that the pose lets expect; every expected one is
-/// seen with probability $`p_D`$. Relative to an image that is all clutter,
-///
+/// Every blob of the image is either clutter, of density $`λ`$ over bearing and log area, or the detection of an expected blob; every expected one
+/// is detected with probability $`p_D`$. Relative to an image that is all clutter,
 /// ```math
 /// \ln p(z | x) = \sum_{\text{expected}} \ln (1 - p_D) + \sum_{\text{pairs}} \ln \frac{p_D\, N(b - \hat b; 0, σ_b^2 I)\, N(\ln a - \ln \hat a; 0, σ_a^2)}{(1 - p_D)\, λ},
 /// ```
 ///
-/// over pairs of the same colour that raise it, the best first and each blob once [Bar-Shalom & Fortmann 1988, ch. 9]. So a missing blob and an
-/// extra one cost a bounded amount. Expected blobs are those of the projected map, cut by the image's border, hidden, and merged with
-/// their neighbours as those of the image are.
+/// over pairs of equal colour that raise it, the best first and each blob once [Bar-Shalom & Fortmann 1988, ch. 9]. A missing or an extra blob
+/// therefore has a bounded cost. Expected blobs come from the projected map: clipped to the image, occluded, and merged with neighbours as in the
+/// image.
 ///
-/// Features are the colours of standing things that nothing horizontal has: beacons and goals, but not carpet and lines. A map without such
-/// colours makes all poses alike. The light counts in the classification only: it is not judged again.
-///
+/// Features are the colours of standing objects that no horizontal surface has: beacons and goals, but not carpet and lines. A map without such
+/// colours makes all poses equal. The light affects the classification only.
 /// ```
 /// use std::sync::Arc;
 /// use nalgebra::Vector3;
@@ -64,7 +62,7 @@ impl FeatureLikelihood {
     /// The likelihood of a classified image, 255 being background, as [`Classifier`](crate::Classifier) and [`LookUpTable`](crate::LookUpTable) make it.
     ///
     /// # Errors
-    /// When there are not as many labels as the camera has pixels, or a parameter is out of range.
+    /// Returns an error if there are not as many labels as the camera has pixels, or a parameter is out of range.
     pub fn new(labels: &[u8], projector: Projector, params: FeatureParams) -> Result<Self, ColorModelError> {
         params.check()?;
         let camera = *projector.camera();
@@ -81,7 +79,7 @@ impl FeatureLikelihood {
         Ok(Self { seen, projector, params, is_feature, log_clutter, spans: Vec::new() })
     }
 
-    /// What a pair is worth, nats above a missing blob and clutter.
+    /// Log gain of a pair over a missing blob and clutter, nats.
     fn gain(&self, seen: &Feature, expected: &Feature) -> f64 {
         let FeatureParams {
             detection_probability,
@@ -90,7 +88,7 @@ impl FeatureLikelihood {
             log_area_sigma,
             ..
         } = self.params;
-        // Of what is seen, so that the peak is as high for every pose.
+        // Uses the extent of the detected blob, so that the peak is equally high for every pose.
         let off = (seen.bearing - expected.bearing).norm();
         let bearing = bearing_sigma.hypot(bearing_sigma_per_extent * seen.extent);
         let area = log_area_sigma.hypot(2.0 / (0.5 * seen.log_area).exp()); // a square of n pixels has a border of 4 √n

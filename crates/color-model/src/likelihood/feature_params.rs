@@ -1,6 +1,6 @@
 use crate::ColorModelError;
 
-/// How blobs of a classified image are compared with those that the map should show.
+/// Parameters of the comparison of image blobs with blobs expected from the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -13,11 +13,11 @@ pub struct FeatureParams {
     pub min_pixels: usize,
     /// Probability that a blob which the map should show is there, in (0, 1): missing ones cost $`\ln(1 - p_D)`$ each, no more.
     pub detection_probability: f64,
-    /// Blobs of an image that nothing in the map explains, on average and for each colour.
+    /// Mean number of clutter blobs per image and colour.
     pub mean_clutter: f64,
-    /// Standard deviation of a small blob's direction, azimuth and elevation alike, radians.
+    /// Standard deviation of a small blob's azimuth and of its elevation, rad.
     pub bearing_sigma: f64,
-    /// What a blob's own extent adds to that, as a share of the angle that a square of its area takes: half-hidden blobs have their centre elsewhere.
+    /// Addition to it for the blob's extent, as a share of the angle of a square of equal area: occlusion shifts the centre of a blob.
     pub bearing_sigma_per_extent: f64,
     /// Standard deviation of the logarithm of a large blob's area. Small ones differ more: half a pixel all around.
     pub log_area_sigma: f64,

@@ -4,10 +4,10 @@ use wayfix_estimation_traits::LogWeight;
 use super::{PixelParams, params::Region};
 use crate::{LightingFilter, PixelSums};
 
-/// The likelihood of all pixels at once, the light being the same for all of them.
+/// The likelihood of all pixels jointly, under one common light.
 ///
-/// $`\ln \int \prod_m \prod_{c ∈ m} N(c; θ_m + e_m, ν)^β\, N(e; 0, R)\, N(θ; μ, Σ)\, dθ\, de`$, with $`β`$ the tempering and $`R`$ the variance of an image's
-/// means. Eq. 9 gives every pixel a light of its own, so that under a light hardly known the right pose pays for that ignorance pixel by
+/// $`\ln \int \prod_m \prod_{c ∈ m} N(c; θ_m + e_m, ν)^β\, N(e; 0, R)\, N(θ; μ, Σ)\, dθ\, de`$, with $`β`$ the tempering and $`R`$ the variance of
+/// an image's means. Eq. 9 treats the light of every pixel as independent, so with an uncertain light even the correct pose pays for it at every
 /// pixel; here it pays once. In closed form, from the same sums: [`log_within`], the scatter of each colour about its own mean, and
 /// [`log_innovation`](Self::log_innovation) of all means.
 pub(crate) struct JointLikelihood {
@@ -23,7 +23,7 @@ impl JointLikelihood {
         Self { covariance: Vec::new(), residuals: Vec::new(), rows: Vec::new(), noises: Vec::new() }
     }
 
-    /// What the colours' means say of a light: $`\ln N(\bar v; μ, Σ + R + ν/βn) - \ln N(0; 0, ν/βn)`$ over the colours that are seen.
+    /// Log-likelihood of the colour means under a light: $`\ln N(\bar v; μ, Σ + R + ν/βn) - \ln N(0; 0, ν/βn)`$ over the seen colours.
     pub(crate) fn log_innovation(
         &mut self,
         sums: &[PixelSums],
@@ -60,7 +60,7 @@ impl JointLikelihood {
     }
 }
 
-/// What all pixels say about their colours' own means, whatever the light is.
+/// Log-likelihood of all pixels about their colour means, independent of the light.
 pub(crate) fn log_within(
     sums: &[PixelSums],
     params: &PixelParams,
@@ -82,7 +82,7 @@ fn log_scatter(sums: &PixelSums, noise: &Vector3<f64>) -> f64 {
     n * (-1.5 * std::f64::consts::TAU.ln() - log_root) - 0.5 * factor.inverse().dot(&scatter)
 }
 
-/// So many standard deviations have a product that a double holds.
+/// Number of standard deviations whose product a double can hold.
 const FACTORS: usize = 15;
 
 /// $`-\tfrac{1}{2} (\ln |S| + r^T S^{-1} r)`$ of a covariance given as the rows of its lower triangle, by Cholesky in place.

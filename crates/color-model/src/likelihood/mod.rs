@@ -1,4 +1,4 @@
-//! How well an image fits a camera pose in a coloured map, under given light.
+//! Likelihood of an image given a camera pose in a coloured map and the light.
 
 mod density;
 mod feature;

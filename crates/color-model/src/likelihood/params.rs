@@ -7,14 +7,14 @@ use crate::{ColorDensity, ColorModelError, PixelSums};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum PixelLight {
-    /// All pixels of an image have one light: what is not known of it counts once.
+    /// All pixels of an image share one light: its uncertainty counts once.
     #[default]
     Common,
-    /// Each pixel counts for itself, as in [Schulz & Fox 2004, Eqs. 9, 16]: what is not known of the light counts for every pixel.
+    /// Pixels are independent, as in [Schulz & Fox 2004, Eqs. 9, 16]: the uncertainty of the light counts for every pixel.
     Each,
 }
 
-/// How the pixels of an image are weighed.
+/// Parameters of the pixel likelihood.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -25,16 +25,16 @@ pub enum PixelLight {
 pub struct PixelParams {
     /// Whether pixels share the light that is not known.
     pub light: PixelLight,
-    /// How many independent observations an image is worth, however many pixels it has: log-likelihoods are multiplied by this over the
-    /// number of pixels. Neighbouring pixels share shade, blur and label errors, so 25 000 of them do not tell 25 000 times as much as one.
+    /// Number of independent observations that an image is worth: log-likelihoods are multiplied by this over the number of pixels. Neighbouring
+    /// pixels share shade, blur and label errors, so their errors are correlated.
     pub independent_pixels: f64,
-    /// Share of a mapped surface that something unmapped hides: a pixel that no map colour explains counts $`\ln`$ of it, wherever it lies.
+    /// Share of the map's surface hidden by unmapped objects: a pixel that no map colour explains counts $`\ln`$ of it, at any position.
     pub outlier_share: f64,
     /// The worst that the pixels of one colour can count on average, nats a pixel below the background: a hidden surface does not make a
     /// pose impossible. Infinite for the pixel product as it is in the paper.
     pub floor: f64,
-    /// How far a colour differs over one image and over the field, which the lighting model does not know: standard deviation of Y as a share of
-    /// the light's mean Y, since shade and vignetting multiply the light. Added to what the lighting filter says.
+    /// Variation of a colour over an image and over the field, outside the lighting model: standard deviation of Y as a share of the light's mean
+    /// Y, because shade and vignetting multiply the light. Added to the covariance of the lighting filter.
     pub uneven_brightness: f64,
     /// The same of U and of V, as a share of the light's mean Y.
     pub uneven_chroma: f64,
@@ -59,7 +59,7 @@ impl Default for PixelParams {
     }
 }
 
-/// What the likelihood has to know of the pixels that a pose gives to one colour.
+/// Statistics of the pixels that a pose assigns to one colour.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Region {
     /// Pixels, without outliers.
@@ -83,10 +83,9 @@ impl Region {
 }
 
 impl PixelParams {
-    /// The densities of all colours of one light, each spread in the direction in which shade moves it, by $`σ^2 s_m s_m^\top`$ with
-    /// $`s_m = (Y_m,\; U_m - 128,\; V_m - 128)`$ and $`σ`$ = `uneven_brightness`: what tells the pixels of an image apart. Less light scales red, green
-    /// and blue by one factor, with a power for gamma too, which moves a colour towards black. Black is taken to be Y = 0, as in full-range YUV.
-    ///
+    /// The densities of all colours under one light, each widened along the direction of shade, by $`σ^2 s_m s_m^\top`$ with
+    /// $`s_m = (Y_m,\; U_m - 128,\; V_m - 128)`$ and $`σ`$ = `uneven_brightness`. These densities classify single pixels. Less light scales red,
+    /// green and blue by one factor, also with gamma, which moves a colour towards black. Black is Y = 0, as in full-range YUV.
     /// ```
     /// use nalgebra::{Matrix3, Vector3};
     /// use wayfix_color_model::{ColorDensity, PixelParams};
@@ -105,7 +104,7 @@ impl PixelParams {
         colors.into_iter().map(shaded).collect()
     }
 
-    /// The densities of all colours of one light over a whole image, with the variances of `uneven_…`: what a pose's pixels are weighed by.
+    /// The densities of all colours under one light over a whole image, with the variances of `uneven_…`; used to weigh a pose's pixels.
     pub(crate) fn uneven(&self, colors: impl IntoIterator<Item = ColorDensity>) -> Vec<ColorDensity> {
         let mut colors: Vec<ColorDensity> = colors.into_iter().collect();
         let brightness = colors.iter().map(|color| color.mean.x).sum::<f64>() / colors.len() as f64;

@@ -4,10 +4,10 @@ use wayfix_estimation_traits::{LogWeight, Pose3};
 use super::{PixelParams, SumDensity, ViewLikelihood, params::Region};
 use crate::{ColorDensity, ColorModelError, YuvImage, frame};
 
-/// The pixel product [Schulz & Fox 2004, Eq. 16], pixel by pixel: the reference.
+/// The pixel product [Schulz & Fox 2004, Eq. 16], computed pixel by pixel: the reference implementation.
 ///
-/// Each pixel that the map, seen from the pose, labels with colour `m` counts $`\ln p(c|m) - \ln p_{bg}(c)`$. The paper leaves background pixels
-/// out; without the ratio, poses that label different numbers of pixels would not compare.
+/// Each pixel that the projected map labels with colour `m` counts $`\ln p(c|m) - \ln p_{bg}(c)`$. The paper omits background pixels; without
+/// the ratio, poses that label different numbers of pixels would not be comparable.
 pub struct PixelLikelihood<'a> {
     image: &'a YuvImage,
     background: Vec<Option<f64>>,
@@ -20,7 +20,7 @@ impl<'a> PixelLikelihood<'a> {
     /// [`Frame::with_background`](crate::Frame::with_background).
     ///
     /// # Errors
-    /// When image and camera differ in size, or a parameter is out of range.
+    /// Returns an error if image and camera differ in size, or a parameter is out of range.
     pub fn new(
         image: &'a YuvImage,
         nats: impl FnMut([u8; 3]) -> Option<f64>,

@@ -4,12 +4,11 @@ use wayfix_estimation_traits::{LogWeight, Pose3};
 use super::{PixelParams, SumDensity, ViewLikelihood, params::Region, pixel::check_size};
 use crate::{ColorDensity, ColorModelError, Frame, PixelSums};
 
-/// Sums what the frame of each colour shows where the map, seen from `camera_pose`, has each colour, without the pixels within `edge_margin` of an edge.
+/// Sums the pixels of each colour where the projected map at `camera_pose` shows it, without the pixels within `edge_margin` of an edge.
 ///
-/// Independent of light: one gathering serves every lighting hypothesis, and the colour means that update them.
-///
+/// The sums do not depend on the light: they serve every lighting hypothesis and the colour means that update it.
 /// # Errors
-/// When the pose is not finite or its quaternion not of unit length.
+/// Returns an error if the pose is not finite or its quaternion not of unit length.
 pub fn gather<'a>(
     projector: &mut Projector,
     frame_of: impl Fn(ColorId) -> Option<&'a Frame>,
@@ -29,10 +28,10 @@ pub fn gather<'a>(
     }
 }
 
-/// The pixel likelihood at the cost of spans, equal to that of [`PixelLikelihood`](crate::PixelLikelihood).
+/// The pixel likelihood computed from spans, equal to [`PixelLikelihood`](crate::PixelLikelihood).
 ///
-/// $`\sum_m \sum_{c ∈ m} [\ln N(c; μ_m, Σ_{mm} + ν) - \ln p_{bg}(c)]`$ [Schulz & Fox 2004, Eqs. 9, 16]: of the pixels of a colour only count,
-/// $`\sum c`$ and $`\sum c c^T`$ matter, and a row's run of pixels gives them in one subtraction.
+/// $`\sum_m \sum_{c ∈ m} [\ln N(c; μ_m, Σ_{mm} + ν) - \ln p_{bg}(c)]`$ [Schulz & Fox 2004, Eqs. 9, 16] depends on a colour's pixels only through
+/// their number, $`\sum c`$ and $`\sum c c^T`$, and a subtraction gives these for a run of pixels in a row.
 pub struct SpanLikelihood<'a> {
     frame: &'a Frame,
     projector: Projector,
@@ -44,7 +43,7 @@ impl<'a> SpanLikelihood<'a> {
     /// The likelihood of one frame, made by [`Frame::with_background`], in the map of `projector`.
     ///
     /// # Errors
-    /// When frame and camera differ in size, or a parameter is out of range.
+    /// Returns an error if frame and camera differ in size, or a parameter is out of range.
     pub fn new(frame: &'a Frame, projector: Projector, params: PixelParams) -> Result<Self, ColorModelError> {
         params.check()?;
         check_size(&projector, frame.width(), frame.height())?;
@@ -66,7 +65,7 @@ impl ViewLikelihood for SpanLikelihood<'_> {
     }
 }
 
-/// The likelihood from what [`gather`] summed.
+/// The likelihood from the sums of [`gather`].
 pub(crate) fn log_likelihood(
     sums: &[PixelSums],
     light: &[SumDensity],

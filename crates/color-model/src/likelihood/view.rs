@@ -2,13 +2,13 @@ use wayfix_estimation_traits::{LogWeight, Pose3};
 
 use crate::ColorDensity;
 
-/// One image as a log-likelihood of camera poses: everything that depends only on the image is done before.
+/// The log-likelihood of camera poses given one image; the terms of the image alone are precomputed.
 ///
-/// **Law**: the value is $`\ln p(z | x, \text{light})`$ in nats up to a constant that depends on neither pose nor light, so that values of different
-/// poses compare however much of the map they see; never NaN for a finite pose and finite densities.
+/// **Law**: the value is $`\ln p(z | x, \text{light})`$ in nats up to a constant that depends on neither pose nor light, so values of different
+/// poses are comparable for any visible part of the map; never NaN for a finite pose and finite densities.
 ///
-/// The reference is [`PixelLikelihood`](crate::PixelLikelihood), the same numbers at a fraction of the cost [`SpanLikelihood`](crate::SpanLikelihood), the fast
-/// alternative [`FeatureLikelihood`](crate::FeatureLikelihood).
+/// The reference is [`PixelLikelihood`](crate::PixelLikelihood), a faster equal one is [`SpanLikelihood`](crate::SpanLikelihood), and the fast
+/// alternative is [`FeatureLikelihood`](crate::FeatureLikelihood).
 pub trait ViewLikelihood {
     /// The log-likelihood of the image from `camera_pose` (x forward along the optical axis, in the world), with `light[m]` the density of map
     /// colour `m`.

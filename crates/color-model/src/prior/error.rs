@@ -1,30 +1,30 @@
 use wayfix_gaussian_core::{GaussianError, HierarchicalFit, IterationError};
 
-/// Why no prior was learned, or a stored one is none.
+/// Errors of learning or reading a prior.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PriorError {
     /// Fewer venues, or venues that differ, than groups to split them into.
     #[error("{got} different {what} do not make {needed} groups")]
     TooFew {
-        /// What there should be more of.
+        /// Name of the missing elements.
         what: &'static str,
-        /// How many are needed.
+        /// The required number.
         needed: usize,
-        /// How many there are.
+        /// The given number.
         got: usize,
     },
-    /// Something has not as many parts as it should.
+    /// A wrong number of elements.
     #[error("{what}: expected {expected}, got {got}")]
     Dimension {
-        /// What was counted.
+        /// Name of the elements.
         what: &'static str,
-        /// How many there should be.
+        /// The expected number.
         expected: usize,
-        /// How many there are.
+        /// The given number.
         got: usize,
     },
-    /// A venue whose images show no colour at all.
+    /// A venue whose images show no map colour.
     #[error("no image of the venue {name} shows a colour")]
     Blank {
         /// Its name.
@@ -41,12 +41,12 @@ pub enum PriorError {
     /// A number that is NaN, infinite or out of range.
     #[error("{what} is {value}")]
     OutOfRange {
-        /// What it is.
+        /// Name of the quantity.
         what: &'static str,
         /// The number.
         value: f64,
     },
-    /// No venue has two images of the same colour, from which the scatter of images could be learned: give it as a parameter.
+    /// No venue has two images of the same colour, so the scatter of images cannot be learned: give it as a parameter.
     #[error("no colour is seen twice in a venue: the scatter of images is unknown")]
     UnknownScatter,
     /// A mean or covariance is none.

@@ -4,7 +4,7 @@ use wayfix_gaussian_core::GroupEvidence;
 use super::{PixelSpread, PriorError, TrainingVenue};
 use crate::ColorMeans;
 
-/// A venue as a group of observations of its colours: those an image does not show are missing.
+/// A venue as a group of observations of its colours; colours not in an image are missing.
 pub(super) fn evidence(
     venue: &TrainingVenue,
     n_colors: usize,
@@ -48,7 +48,7 @@ pub(super) fn pooled_mean_noise(
     }
 }
 
-/// Variance of pixels, pooled over the venues that recorded it; `otherwise` when none did.
+/// Variance of pixels, pooled over the venues that recorded it; `otherwise` if none did.
 pub(super) fn pooled_pixel_noise(venues: &[TrainingVenue], otherwise: &Vector3<f64>) -> Vector3<f64> {
     let mut scatter = Vector3::zeros();
     let mut pooled = 0.0;

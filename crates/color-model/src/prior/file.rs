@@ -4,7 +4,7 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::{LightingPriors, PriorError};
 
-/// [`LightingPriors`] as files have them: plain lists, checked on the way in.
+/// [`LightingPriors`] in file format: plain lists, checked on reading.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PriorFile {

@@ -5,7 +5,7 @@ use super::PriorError;
 /// Points split into groups around centres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KMeans {
-    /// The mean of each group, coordinates that none of it has being those of its start.
+    /// The mean of each group; coordinates without a value in the group keep the start value.
     pub centers: Vec<Vec<f64>>,
     /// The group of each point; none is empty.
     pub assignment: Vec<usize>,
@@ -18,8 +18,7 @@ type Point = Vec<Option<f64>>;
 
 /// Splits points into `k` groups: Lloyd's iteration from k-means++ starts [Arthur & Vassilvitskii 2007], the best of `restarts`.
 ///
-/// Where coordinates are unknown, the distance over the known ones is scaled up by how many are missing [Dixon 1979].
-///
+/// If coordinates are missing, the distance over the known ones is scaled up accordingly [Dixon 1979].
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_color_model::k_means;
@@ -32,7 +31,7 @@ type Point = Vec<Option<f64>>;
 /// ```
 ///
 /// # Errors
-/// When there are no more than `k - 1` different points, `k` or `restarts` is zero, points differ in length, have no known coordinate or
+/// Returns an error if there are no more than `k - 1` different points, `k` or `restarts` is zero, points differ in length, have no known coordinate or
 /// one that is not finite.
 pub fn k_means<R: Rng + ?Sized>(
     points: &[Vec<Option<f64>>],
@@ -69,7 +68,7 @@ fn check(points: &[Point], k: usize) -> Result<(), PriorError> {
     Ok(())
 }
 
-/// k-means++: every next centre is a point drawn by its squared distance to the nearest centre so far. None when too few points differ.
+/// k-means++: draws each next centre by the squared distance to the nearest centre so far. `None` if there are too few distinct points.
 fn start<R: Rng + ?Sized>(points: &[Point], k: usize, rng: &mut R) -> Option<Vec<Vec<f64>>> {
     let overall = mean(points.iter(), &vec![0.0; points[0].len()]);
     let complete = |point: &Point| point.iter().zip(&overall).map(|(x, mean)| x.unwrap_or(*mean)).collect();
@@ -81,14 +80,14 @@ fn start<R: Rng + ?Sized>(points: &[Point], k: usize, rng: &mut R) -> Option<Vec
             left -= distance;
             left < 0.0 && *distance > 0.0
         });
-        // Rounding can leave the last point's share unreached; no distance at all means that no further point differs.
+        // Rounding can leave the last point's share unreached; if all distances are zero there is no further distinct point.
         let chosen = chosen.or_else(|| distances.iter().rposition(|distance| *distance > 0.0))?;
         centers.push(complete(&points[chosen]));
     }
     Some(centers)
 }
 
-/// Assigns and averages in turn until nothing changes; every round lowers the distortion, so none repeats. None when a group runs empty.
+/// Alternates assignment and averaging until nothing changes; every round lowers the distortion, so it terminates. `None` if a group becomes empty.
 fn lloyd(points: &[Point], mut centers: Vec<Vec<f64>>) -> Option<KMeans> {
     let mut assignment = Vec::new();
     loop {
@@ -118,7 +117,7 @@ fn squared_distance(point: &Point, center: &[f64]) -> f64 {
     weight(point) * known.sum::<f64>()
 }
 
-/// What minimizes the sum of these distances: points with gaps weigh more in the coordinates that they have.
+/// Minimizes the sum of these distances: points with gaps weigh more in their known coordinates.
 fn mean<'a>(points: impl Iterator<Item = &'a Point>, otherwise: &[f64]) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); otherwise.len()];
     for point in points {

@@ -4,11 +4,10 @@ use wayfix_gaussian_core::{GaussianError, IterationError, fit_hierarchical};
 use super::evidence::{evidence, pooled_mean_noise, pooled_pixel_noise};
 use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
 
-/// Learns a prior for each of `k` kinds of light from venues seen before. [Schulz & Fox 2004, III.B]
+/// Learns a prior for each of `k` kinds of light from training venues. [Schulz & Fox 2004, III.B]
 ///
-/// The venues are split by their brightness ([`split_by_brightness`]); each group gives the Gaussian that maximizes Eq. 10
-/// ([`fit_hierarchical`]). Colours that an image does not show are missing, not guessed.
-///
+/// The venues are split by their brightness ([`split_by_brightness`]); each group gives the Gaussian that maximizes Eq. 10 ([`fit_hierarchical`]).
+/// Colours not in an image are missing, not estimated.
 /// ```
 /// use nalgebra::Vector3;
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -31,7 +30,7 @@ use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
 /// ```
 ///
 /// # Errors
-/// When there are not `k` different venues, a venue or parameter makes no sense, a colour is in no image of a group, or EM does not arrive.
+/// Returns an error if there are not `k` different venues, a venue or parameter makes no sense, a colour is in no image of a group, or EM does not arrive.
 pub fn learn_priors<R: Rng + ?Sized>(
     colors: &[String],
     venues: &[TrainingVenue],
@@ -64,7 +63,7 @@ pub fn learn_priors<R: Rng + ?Sized>(
 /// The group of each venue, from 0 for the darkest to `k - 1`: k-means on the mean Y of each colour. [Schulz & Fox 2004, V]
 ///
 /// # Errors
-/// When there are not `k` different venues, or a venue has no image that shows a colour, images of another number of colours, or means that
+/// Returns an error if there are not `k` different venues, or a venue has no image that shows a colour, images of another number of colours, or means that
 /// are not finite.
 pub fn split_by_brightness<R: Rng + ?Sized>(
     venues: &[TrainingVenue],

@@ -1,4 +1,4 @@
-//! What lights are like, learned from venues seen before: a prior per kind of light.
+//! Priors of the light, learned from training venues: one per kind of light.
 
 mod error;
 mod evidence;

@@ -6,22 +6,22 @@ use super::{
     error::{check_correlation, check_positive},
 };
 
-/// How priors are learned.
+/// Parameters of learning priors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PriorParams {
     /// Standard deviation of a colour between venues before any is seen, (Y, U, V): the mode of the hyperprior. Default 30, 10, 10.
     pub color_sigmas: Vector3<f64>,
     /// Correlation of two colours between venues before any is seen, in Y as in U and V: one light falls on all of them. Default 0.9.
     pub color_correlation: f64,
-    /// How many venues the hyperprior is worth. Default 3.
+    /// Weight of the hyperprior, in venues. Default 3.
     pub pseudo_venues: f64,
     /// Variance of an image's mean of a colour about its venue's, (Y, U, V). Default none: pooled over the training images.
     pub mean_noise: Option<Vector3<f64>>,
-    /// Variance of a pixel about the mean of its colour when no venue recorded it. Default 144, 36, 36.
+    /// Variance of a pixel about the mean of its colour, if no venue recorded it. Default 144, 36, 36.
     pub pixel_noise: Vector3<f64>,
-    /// How many starts of k-means; the best result counts. Default 20.
+    /// Number of starts of k-means; the best result counts. Default 20.
     pub restarts: usize,
-    /// When EM stops: see [`HierarchicalParams`]. Default 1e-6 nats, or 10 000 iterations.
+    /// Tolerance of EM: see [`HierarchicalParams`]. Default 1e-6 nats, or 10 000 iterations.
     pub tolerance: f64,
     /// See `tolerance`.
     pub max_iterations: usize,
@@ -52,7 +52,7 @@ impl PriorParams {
         check_positive("number of restarts", self.restarts as f64)
     }
 
-    /// The hyperprior for `n_colors` colours, and when to stop.
+    /// The hyperprior for `n_colors` colours, and the stopping criterion.
     pub(super) fn hierarchical(&self, n_colors: usize) -> Result<HierarchicalParams, PriorError> {
         let mode = DMatrix::from_fn(3 * n_colors, 3 * n_colors, |i, j| {
             let correlation = match (i == j, i % 3 == j % 3) {

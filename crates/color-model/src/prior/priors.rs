@@ -3,10 +3,9 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::{PriorError, error::check_positive};
 
-/// What is known of the light before the first image: a Gaussian over all colours for each kind of light, from dark to bright.
+/// Priors of the light before the first image: a Gaussian over all colours for each kind of light, from dark to bright.
 ///
-/// A lighting filter starts from each member. With the feature `serde` it is a file.
-///
+/// A lighting filter starts from each member. With the feature `serde` it can be stored in a file.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use wayfix_color_model::LightingPriors;
@@ -34,7 +33,7 @@ impl LightingPriors {
     /// Priors for `colors` in the map's order, one or more, with the variances (Y, U, V) of pixels and of an image's mean of a colour.
     ///
     /// # Errors
-    /// When there is no colour or no member, a member has not three numbers a colour or is not positive definite, or a variance is not
+    /// Returns an error if there is no colour or no member, a member has not three numbers a colour or is not positive definite, or a variance is not
     /// positive.
     pub fn new(
         colors: Vec<String>,
@@ -82,7 +81,7 @@ impl LightingPriors {
         self.mean_noise
     }
 
-    /// The same without correlations between colours: nothing is learned of one from another. [Schulz & Fox 2004, V.A]
+    /// The same without correlations between colours: no colour informs another. [Schulz & Fox 2004, V.A]
     pub fn independent(&self) -> Self {
         let members = self.members.iter().map(|member| {
             let mut covariance = member.covariance().clone();

@@ -6,11 +6,11 @@ use crate::ColorMeans;
 /// One environment under one light: the mean colours of each image of it, labels being known. $`\bar t_{1:k}`$ of [Schulz & Fox 2004, III.B]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrainingVenue {
-    /// What messages call it.
+    /// Name for messages.
     pub name: String,
     /// An entry per image.
     pub images: Vec<ColorMeans>,
-    /// How pixels scatter about the mean of their colour in their image, where that was recorded.
+    /// Scatter of pixels about the mean of their colour in their image, if recorded.
     pub pixels: Option<PixelSpread>,
 }
 
@@ -19,7 +19,7 @@ pub struct TrainingVenue {
 pub struct PixelSpread {
     /// Of Y, U and V.
     pub variances: Vector3<f64>,
-    /// Pixels less means taken.
+    /// Number of pixels minus number of means.
     pub degrees_of_freedom: f64,
 }
 

@@ -20,7 +20,7 @@ impl YuvImage {
     /// An image of YUV pixels.
     ///
     /// # Errors
-    /// When the pixels do not fill the image, or there are none.
+    /// Returns an error if the pixels do not fill the image, or there are none.
     pub fn new(width: u32, height: u32, pixels: Vec<[u8; 3]>) -> Result<Self, ColorModelError> {
         let got = pixels.len() * 3;
         check(width, height, got)?;
@@ -30,7 +30,7 @@ impl YuvImage {
     /// Converts RGB bytes.
     ///
     /// # Errors
-    /// When the bytes do not fill the image, or there are none.
+    /// Returns an error if the bytes do not fill the image, or there are none.
     pub fn from_rgb(
         width: u32,
         height: u32,
@@ -43,10 +43,9 @@ impl YuvImage {
         Ok(Self { width, height, pixels: pixels.iter().map(|rgb| convert(&weights, *rgb)).collect() })
     }
 
-    /// The image with squares of `by` × `by` pixels averaged to one; what does not fill a square is cut off at the right and at the bottom.
-    ///
+    /// Averages squares of `by` × `by` pixels; incomplete squares at the right and at the bottom are dropped.
     /// # Errors
-    /// When no square fits into the image, or `by` is 0.
+    /// Returns an error if no square fits into the image, or `by` is 0.
     ///
     /// ```
     /// # use wayfix_color_model::YuvImage;

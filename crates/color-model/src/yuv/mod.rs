@@ -1,4 +1,4 @@
-//! Images in YUV, by the standard that says what YUV is.
+//! Images in YUV, by a YUV standard.
 
 mod image;
 mod standard;

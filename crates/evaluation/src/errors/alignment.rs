@@ -30,7 +30,7 @@ pub fn align(pairs: impl Iterator<Item = (Vector2<f64>, Vector2<f64>)> + Clone) 
     Pose2 { translation: true_center - rotation.transform(&estimated_center), ..rotation }
 }
 
-/// Root mean square distance of the pairs after moving the first of each by `motion`; `None` when there are none.
+/// RMS distance of the pairs after moving the first of each by `motion`; `None` without pairs.
 pub fn rms_distance(
     pairs: impl Iterator<Item = (Vector2<f64>, Vector2<f64>)>,
     motion: &Pose2<f64>,
@@ -41,7 +41,7 @@ pub fn rms_distance(
     (n > 0).then(|| (sum / n as f64).sqrt())
 }
 
-/// Median distance of the pairs after moving the first of each by `motion`; `None` when there are none.
+/// Median distance of the pairs after moving the first of each by `motion`; `None` without pairs.
 pub fn median_distance(
     pairs: impl Iterator<Item = (Vector2<f64>, Vector2<f64>)>,
     motion: &Pose2<f64>,

@@ -1,7 +1,6 @@
 use statrs::distribution::{Beta, ContinuousCDF, StudentsT};
 
-/// A mean with the interval that holds the true one with 95 % confidence.
-///
+/// A mean with its 95 % confidence interval.
 /// ```
 /// use wayfix_evaluation::errors::MeanInterval;
 /// let rates = MeanInterval::of(&[0.9, 1.0, 0.8, 0.9]).expect("two or more samples");
@@ -14,7 +13,7 @@ pub struct MeanInterval {
     pub mean: f64,
     /// Student's interval reaches this far to both sides.
     pub half_width: f64,
-    /// How many samples.
+    /// Number of samples.
     pub n: usize,
 }
 
@@ -28,9 +27,8 @@ impl MeanInterval {
         Some(Self { mean, half_width: quantile * (variance / n as f64).sqrt(), n })
     }
 
-    /// The ratio $`r = \bar a / \bar b`$ of two means over the same samples, by linearization: the interval of the mean of $`a_i - r b_i`$ over $`|\bar b|`$.
-    /// [Cochran 1977, Sampling Techniques, 6.4] `None` for fewer than two pairs, and when the numbers of samples differ.
-    ///
+    /// The ratio $`r = \bar a / \bar b`$ of two means over the same samples, by linearization: the interval of the mean of $`a_i - r b_i`$ over
+    /// $`|\bar b|`$. [Cochran 1977, Sampling Techniques, 6.4] `None` for fewer than two pairs, or if the numbers of samples differ.
     /// ```
     /// use wayfix_evaluation::errors::MeanInterval;
     /// let ratio = MeanInterval::of_ratio(&[1.0, 2.0, 3.0], &[2.0, 4.0, 6.0]).expect("three pairs");
@@ -49,8 +47,7 @@ impl MeanInterval {
     }
 }
 
-/// The interval that holds a probability with 95 % confidence when `successes` of `trials` succeeded. [Clopper & Pearson 1934]
-///
+/// 95 % confidence interval of a probability, from `successes` of `trials`. [Clopper & Pearson 1934]
 /// ```
 /// let (low, high) = wayfix_evaluation::errors::proportion_interval(95, 100);
 /// assert!((low - 0.8872).abs() < 1e-4 && (high - 0.9836).abs() < 1e-4); // tables of the exact binomial interval
@@ -72,7 +69,7 @@ mod tests {
     fn all_or_none_of_the_trials_reach_the_end_of_the_interval() {
         assert_eq!(proportion_interval(0, 10).0, 0.0);
         assert_eq!(proportion_interval(10, 10).1, 1.0);
-        // (α/2)^(1/n), which is what the interval is for all of n.
+        // (α/2)^(1/n) is the lower bound if all n trials succeed.
         assert!((proportion_interval(10, 10).0 - 0.025_f64.powf(0.1)).abs() < 1e-9);
         assert_eq!(proportion_interval(0, 0), (0.0, 1.0));
     }

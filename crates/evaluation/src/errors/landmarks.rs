@@ -5,20 +5,20 @@ use wayfix_estimation_traits::Pose2;
 
 use super::{align, rms_distance};
 
-/// How estimated landmarks find their true partners.
+/// Association of estimated landmarks with true ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Correspondence {
     /// Both carry the same identities.
     ById,
-    /// The filter gave its own identities: each estimate is compared with the true landmark that is nearest: as it stands, or after the alignment that
-    /// nearest partners lead to.
+    /// By distance, because the filter numbers its landmarks itself: each estimate is compared with the nearest true landmark, without alignment or
+    /// after the alignment by nearest partners.
     Nearest,
 }
 
-/// Root mean square landmark error in metres, as it stands and after a rigid alignment of its own; `None` without pairs.
+/// RMS landmark error in metres, without alignment and after a rigid alignment; `None` without pairs.
 ///
-/// Nearest partners are found again after every alignment, until nothing gains (closest points, iterated [Besl & McKay 1992]), from the map as it stands
-/// and from `of_path`, the motion that aligns the path: a map that is turned as a whole pairs wrongly before it is turned back.
+/// Nearest partners are searched again after every alignment, until the error stops decreasing (iterated closest points [Besl & McKay 1992]). The
+/// search starts from the map itself and from `of_path`, the motion that aligns the path: a rotated map would otherwise have wrong pairs.
 pub fn landmark_errors(
     estimated: &BTreeMap<u32, Vector2<f64>>,
     truth: &BTreeMap<u32, Vector2<f64>>,
@@ -77,7 +77,7 @@ mod tests {
         let (rmse, aligned) =
             landmark_errors(&estimated, &truth, Correspondence::ById, &Pose2::new(0.0, 0.0, 0.0)).unwrap();
         assert!((rmse - 0.125_f64.sqrt()).abs() < 1e-12); // (0.3² + 0.4²) / 2
-        // Two points lie on a line of their own length; what a rigid motion cannot mend is the difference in length, half at each end.
+        // Two points lie on a line of their own length; a rigid motion leaves the difference in length, half at each end.
         assert!((aligned - 0.5 * (10.0_f64.hypot(0.1) - 10.0)).abs() < 1e-12);
         let swapped = map(&[(1, 10.0, 0.0), (2, 0.0, 0.0)]);
         assert!(
@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn a_map_that_is_turned_as_a_whole_finds_its_partners() {
         let truth = map(&[(1, 0.0, 0.0), (2, 10.0, 0.0), (3, 10.0, 1.5), (4, 0.0, 8.0), (5, 10.0, -1.5)]);
-        let turn = Pose2::new(0.2, -0.1, 0.15); // 1.5 m at the far landmarks, as far as they are apart
+        let turn = Pose2::new(0.2, -0.1, 0.15); // 1.5 m at the far landmarks, equal to their separation
         let turned = truth.iter().map(|(id, at)| (id + 10, turn.transform(at))).collect();
         let of_path = turn.inverse().compose(&Pose2::new(SOMEWHAT, -SOMEWHAT, SOMEWHAT));
         let (rmse, aligned) = landmark_errors(&turned, &truth, Correspondence::Nearest, &of_path).unwrap();

@@ -7,11 +7,11 @@ pub struct TruePositions {
     fixes: Vec<(Stamp, Vector2<f64>)>,
 }
 
-/// How far a fix may be from a pose in time to be compared with it, s; fixes come about once a second.
+/// Maximum time between a fix and a pose that are compared, s; fixes usually come once a second.
 const LONGEST_WAIT: f64 = 0.3;
 
 impl TruePositions {
-    /// The true positions among `records`; those that are not finite or go back in time are left out.
+    /// The true positions among `records`; skips those that are not finite or go back in time.
     pub fn from_records(records: &[Record]) -> Self {
         let mut fixes: Vec<(Stamp, Vector2<f64>)> = Vec::new();
         for record in records {
@@ -35,7 +35,7 @@ impl TruePositions {
         &self.fixes
     }
 
-    /// The fix nearest in time, when it is within 0.3 s.
+    /// The fix nearest in time, if within 0.3 s.
     pub fn near(&self, stamp: Stamp) -> Option<Vector2<f64>> {
         let after = self.fixes.partition_point(|(known, _)| *known < stamp);
         let distance = |known: Stamp| known.seconds_since(stamp).abs();

@@ -61,7 +61,7 @@ pub struct TrajectoryErrors {
     pub nees_mean: Option<f64>,
 }
 
-/// Errors over all samples; `None` when there are none.
+/// Errors over all samples; `None` without samples.
 pub fn trajectory_errors(samples: &[Sample]) -> Option<TrajectoryErrors> {
     let positions = samples.iter().map(|sample| (sample.estimate.translation, sample.truth.translation));
     let identity = Pose2::new(0.0, 0.0, 0.0);

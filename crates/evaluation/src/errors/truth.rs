@@ -4,7 +4,7 @@ use wayfix_sensor_log::{Data, Record, Stamp};
 
 use super::{Sample, truth_noise::truth_noise};
 
-/// True poses over time, or those of another program.
+/// Reference poses over time: true ones, or estimates of another program.
 #[derive(Clone, Debug, Default)]
 pub struct TrueTrack {
     poses: Vec<(Stamp, Pose2<f64>)>,
@@ -12,11 +12,11 @@ pub struct TrueTrack {
     is_estimate: bool,
 }
 
-/// Motion capture and GPS lose sight of a robot; across a longer gap nobody knows where it was, s.
+/// Longest interval over which truth is interpolated, s; motion capture and GPS have gaps.
 pub const LONGEST_GAP: f64 = 0.5;
 
 impl TrueTrack {
-    /// The true poses among `records`; those that are not finite or go back in time are left out.
+    /// The true poses among `records`; skips those that are not finite or go back in time.
     pub fn from_records(records: &[Record]) -> Self {
         let mut poses: Vec<(Stamp, Pose2<f64>)> = Vec::new();
         for record in records {
@@ -31,7 +31,7 @@ impl TrueTrack {
         Self { poses, noise, is_estimate: false }
     }
 
-    /// The true poses, or those that another program estimated, where the log has no true ones.
+    /// The true poses, or, if the log has none, the estimates of another program.
     pub fn from_records_or_estimates(records: &[Record]) -> Self {
         let truth = Self::from_records(records);
         if !truth.poses.is_empty() {
@@ -45,22 +45,22 @@ impl TrueTrack {
         Self { is_estimate: !track.poses.is_empty(), ..track }
     }
 
-    /// Covariance of the errors of the truth itself, `(x, y, θ)` in the body frame; zero as far as the log does not show any.
+    /// Covariance of the errors of the truth, `(x, y, θ)` in the body frame; zero if the log does not reveal any.
     pub fn noise(&self) -> &Matrix3<f64> {
         &self.noise
     }
 
-    /// Whether the poses are those of another program, whose errors are unknown.
+    /// Whether the poses are estimates of another program, with unknown errors.
     pub fn is_estimate(&self) -> bool {
         self.is_estimate
     }
 
-    /// Whether there is no pose at all.
+    /// Whether there are no poses.
     pub fn is_empty(&self) -> bool {
         self.poses.is_empty()
     }
 
-    /// An estimate beside the truth at its stamp. The noise of the truth is part of what they may differ by.
+    /// Pairs an estimate with the truth at its stamp. Adds the noise of the truth to the covariance.
     pub fn sample(&self, stamp: Stamp, estimate: Pose2<f64>, covariance: &Matrix3<f64>) -> Option<Sample> {
         let truth = self.at(stamp)?;
         Some(Sample { estimate, covariance: covariance + self.noise, truth })

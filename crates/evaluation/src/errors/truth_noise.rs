@@ -2,9 +2,9 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_sensor_log::{Data, Record, Stamp};
 
-/// Covariance of the errors of the truth itself, told by its scatter while odometry has not moved yet; zero where it never stands still.
+/// Covariance of the errors of the truth, estimated from its scatter before odometry first moves; zero if the robot does not stand still.
 ///
-/// Two poses of a robot that stands differ by twice the variance of one.
+/// The difference of two poses of a standing robot has twice the variance of one.
 pub(super) fn truth_noise(poses: &[(Stamp, Pose2<f64>)], records: &[Record]) -> Matrix3<f64> {
     let Some((begin, end)) = standstill(records) else { return Matrix3::zeros() };
     let still = poses.iter().filter(|(stamp, _)| (begin..=end).contains(stamp));
@@ -33,7 +33,7 @@ fn standstill(records: &[Record]) -> Option<(Stamp, Stamp)> {
         };
         let is_velocity = !matches!(record.data, Data::OdometryIncrement(_));
         span = match span {
-            // A velocity holds up to the next one.
+            // A velocity holds until the next one.
             Some((begin, _)) if moves => {
                 return Some((begin, if is_velocity { record.stamp } else { span?.1 }));
             }

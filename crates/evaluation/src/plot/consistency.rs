@@ -5,8 +5,7 @@ use super::svg::layout::{Frame, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
 use super::{Picture, PlotError};
 
-/// NEES or NIS against time, with the band in which a consistent filter keeps 95 % of the samples, and the moving mean.
-///
+/// NEES or NIS over time, with the 95 % band of a consistent filter and the moving mean.
 /// ```
 /// use wayfix_evaluation::plot::{ConsistencyPlot, Scale};
 /// let plot = ConsistencyPlot {
@@ -29,7 +28,7 @@ pub struct ConsistencyPlot {
     pub statistic: String,
     /// `(seconds, value)` in the order of time.
     pub samples: Vec<(f64, f64)>,
-    /// What a consistent filter has on average: the degrees of freedom.
+    /// Mean for a consistent filter: the degrees of freedom.
     pub expected: f64,
     /// The 2.5 % and 97.5 % quantiles of chi-squared with these degrees of freedom.
     pub band: (f64, f64),
@@ -45,7 +44,7 @@ impl ConsistencyPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let time = Axis::covering(self.samples.iter().map(|(t, _)| *t), Scale::Linear, 0.0);
         let has_values =

@@ -23,9 +23,9 @@ use super::{Picture, PlotError};
 pub struct EllipsesPlot {
     /// Caption.
     pub title: String,
-    /// What the abscissa is.
+    /// Label of the abscissa.
     pub x_label: String,
-    /// How many standard deviations the ellipses reach.
+    /// Size of the ellipses, in standard deviations.
     pub sigmas: f64,
     /// Heading and ellipses of each panel; a name has the same ink in every panel.
     pub groups: Vec<(String, Vec<NamedEllipse>)>,
@@ -38,7 +38,7 @@ pub struct NamedEllipse {
     pub name: String,
     /// Its mean.
     pub center: (f64, f64),
-    /// Its covariance; nothing is drawn when it is not positive definite.
+    /// Its covariance; skipped if not positive definite.
     pub covariance: [[f64; 2]; 2],
 }
 
@@ -48,7 +48,7 @@ impl EllipsesPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let outline = |e: &NamedEllipse| ellipse(e.center, e.covariance, self.sigmas);
         let all: Vec<(f64, f64)> =

@@ -1,8 +1,8 @@
-/// Why a picture could not be drawn.
+/// Errors of drawing a picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlotError {
-    /// The drawing library refused; no input is known to make it.
+    /// The drawing library failed; no input is known to cause it.
     #[error("drawing failed: {0}")]
     Drawing(String),
 }

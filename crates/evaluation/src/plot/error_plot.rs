@@ -34,7 +34,7 @@ pub struct ErrorSample {
 }
 
 const PANEL_HEIGHT: f64 = 92.0;
-/// Name of each component and what its unit is in the stored one.
+/// Name of each component, its display unit, and the factor from the stored unit.
 const COMPONENTS: [(&str, f64); 3] =
     [("x error, m", 1.0), ("y error, m", 1.0), ("heading error, °", 180.0 / std::f64::consts::PI)];
 
@@ -42,7 +42,7 @@ impl ErrorPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let time = Axis::covering(self.samples.iter().map(|sample| sample.t), Scale::Linear, 0.0);
         let plate = |k| Some((k, self.plate(time?, k)?));
@@ -67,11 +67,11 @@ impl ErrorPlot {
         })
     }
 
-    /// Panel of component `k`; `None` when none of its errors can be drawn.
+    /// Panel of component `k`; `None` if none of its errors can be drawn.
     fn plate(&self, x: Axis, k: usize) -> Option<Plate> {
         let (name, unit) = COMPONENTS[k];
         let errors = || self.samples.iter().map(|sample| (unit * sample.error[k]).abs());
-        // Every error is seen; a band that is wide for a moment, as before the first detection, may be cut off.
+        // The axis covers every error; a temporarily wide band, as before the first detection, may be cut off.
         let largest_error = quantile(errors(), 1.0)?;
         let usual_band =
             quantile(self.samples.iter().map(|sample| 3.0 * unit * sample.sigma[k]), 0.95).unwrap_or(0.0);

@@ -9,14 +9,14 @@ use super::svg::layout::{WIDTH, no_data};
 use super::svg::markup::escape;
 use super::{Picture, PlotError};
 
-/// Rows of pictures of one size: what a camera saw, and what a program made of it.
+/// Rows of images of one size: camera images and results.
 ///
-/// The pictures are inside the drawing, so that the page needs no other file.
+/// The images are embedded in the drawing, so the page needs no other file.
 #[derive(Clone, Debug, Default)]
 pub struct FilmStrip {
     /// Caption.
     pub title: String,
-    /// What each row shows, with its frames from left to right.
+    /// Title of each row, with its frames from left to right.
     pub rows: Vec<(String, Vec<FilmFrame>)>,
     /// Width and height of a frame in its own pixels.
     pub frame_size: (u32, u32),
@@ -38,7 +38,7 @@ impl FilmStrip {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses; only an empty strip needs it.
+    /// Returns an error if the drawing library refuses; only an empty strip needs it.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let n_columns = self.rows.iter().map(|(_, frames)| frames.len()).max().unwrap_or(0);
         let (frame_width, frame_height) = self.frame_size;

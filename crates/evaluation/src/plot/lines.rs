@@ -26,17 +26,17 @@ use super::{Picture, PlotError};
 pub struct LinesPlot {
     /// Caption.
     pub title: String,
-    /// What the abscissa is, with its unit.
+    /// Label of the abscissa, with its unit.
     pub x_label: String,
-    /// What the ordinate is, with its unit.
+    /// Label of the ordinate, with its unit.
     pub y_label: String,
-    /// What is drawn.
+    /// The lines.
     pub series: Vec<Series>,
     /// Scale of the abscissa.
     pub x_scale: Scale,
     /// Scale of the ordinate.
     pub y_scale: Scale,
-    /// Where ordinates should be.
+    /// Expected range of the ordinates.
     pub band: Option<NamedBand>,
 }
 
@@ -73,7 +73,7 @@ impl LinesPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let x = Axis::covering(points().map(|point| point.0), self.x_scale, 0.0);

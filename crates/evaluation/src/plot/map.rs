@@ -6,8 +6,7 @@ use super::svg::legend::{Legend, Mark};
 use super::svg::panel::Panel;
 use super::{Picture, PlotError};
 
-/// Paths and landmarks of a planar run; one metre is as long on both axes.
-///
+/// Paths and landmarks of a planar run; both axes have the same scale.
 /// ```
 /// use wayfix_evaluation::plot::{EstimatedLandmark, MapPlot};
 /// let map = MapPlot {
@@ -24,23 +23,23 @@ use super::{Picture, PlotError};
 pub struct MapPlot {
     /// Caption.
     pub title: String,
-    /// True path `(x, y)`, metres; may be empty, as may all the rest.
+    /// True path `(x, y)`, m; may be empty, like every list here.
     pub truth: Vec<(f64, f64)>,
     /// Estimated path.
     pub estimate: Vec<(f64, f64)>,
     /// Path of the odometry alone. It drifts, so it is cut off where it leaves the surroundings of the others.
     pub dead_reckoning: Vec<(f64, f64)>,
-    /// What the filter says about the landmarks.
+    /// Estimated landmarks.
     pub landmarks: Vec<EstimatedLandmark>,
-    /// Where the landmarks are.
+    /// True landmarks.
     pub true_landmarks: Vec<(f64, f64)>,
     /// Lines on the floor, true walls: drawn faintly beneath.
     pub surroundings: Vec<Vec<(f64, f64)>>,
-    /// Walls that were found.
+    /// Extracted walls.
     pub walls: Vec<Vec<(f64, f64)>>,
-    /// What a laser's beams hit.
+    /// Echoes of a laser.
     pub echoes: Vec<(f64, f64)>,
-    /// Where a map has reference views, metres.
+    /// Positions of a map's reference views, m.
     pub references: Vec<(f64, f64)>,
 }
 
@@ -49,11 +48,11 @@ pub struct MapPlot {
 pub struct EstimatedLandmark {
     /// Mean `(x, y)`, metres.
     pub position: (f64, f64),
-    /// Covariance of x and y, m²; drawn as its 2σ ellipse, or not at all when it is not positive definite.
+    /// Covariance of x and y, m²; drawn as its 2σ ellipse, or skipped if not positive definite.
     pub covariance: [[f64; 2]; 2],
 }
 
-/// Ellipses and dead reckoning may widen the map by this share of it on each side.
+/// Maximum extension of the map by ellipses and dead reckoning, as a share of its size on each side.
 const OVERHANG: f64 = 0.35;
 /// Height of the map as a share of its width.
 const SHAPE: (f64, f64) = (0.4, 1.1);
@@ -62,7 +61,7 @@ impl MapPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let ellipses: Vec<Vec<(f64, f64)>> = self
             .landmarks
@@ -146,7 +145,7 @@ impl MapPlot {
         let (x, y) = (x.padded(0.04 * length, least), y.padded(0.04 * length, least));
         let shape = (y.length() / x.length()).clamp(SHAPE.0, SHAPE.1);
         let meters_wide = x.length().max(y.length() / shape);
-        // To the pixel, then the axes follow it: rounding the other way round would stretch one of them.
+        // Round the height first, then derive the axes from it; rounding after would stretch one of them.
         let height = (PANEL_WIDTH * shape).round();
         Some((x.widened(meters_wide), y.widened(meters_wide * height / PANEL_WIDTH), height))
             .map(|(x, y, height)| (Axis::linear(x.low, x.high), Axis::linear(y.low, y.high), height))
@@ -161,7 +160,7 @@ struct Extent {
 }
 
 impl Extent {
-    /// What drawable points cover in x and in y.
+    /// Ranges of drawable points in x and in y.
     fn of(points: &[(f64, f64)]) -> Option<(Self, Self)> {
         let drawable = |value: f64| Axis::covering([value], Scale::Linear, 0.0).is_some();
         let mut points = points.iter().filter(|(x, y)| drawable(*x) && drawable(*y));

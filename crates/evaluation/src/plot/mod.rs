@@ -1,7 +1,6 @@
-//! Pictures of a run, as SVG that follows the reader's light or dark page.
+//! Plots of a run, as SVG in the colours of the reader's light or dark page.
 //!
-//! Each plot is a struct of plain numbers with a `draw` method that gives a [`Picture`]:
-//!
+//! Each plot is a struct of plain numbers with a `draw` method that returns a [`Picture`]:
 //! | plot | shows |
 //! | --- | --- |
 //! | [`MapPlot`] | paths and landmarks with 2σ ellipses, one scale on both axes |
@@ -12,8 +11,8 @@
 //! | [`EllipsesPlot`] | covariance ellipses in the plane, a panel for each group |
 //! | [`FilmStrip`] | camera frames in rows |
 //!
-//! Numbers that are not finite leave a gap; a plot without a single drawable number says "no data". Long series are thinned to what the
-//! picture can show: the lowest and highest value of every pixel column stay.
+//! Numbers that are not finite leave a gap; a plot without a drawable number shows "no data". Long series are thinned to the resolution of the
+//! picture: the lowest and highest value of every pixel column remain.
 
 mod consistency;
 mod ellipses;

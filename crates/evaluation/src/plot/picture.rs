@@ -7,7 +7,7 @@ use super::svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
 pub struct Picture {
     /// Caption.
     pub title: String,
-    /// What the picture shows, for readers who do not see it.
+    /// Alternative text for readers who cannot see the picture.
     pub alt: String,
     /// Natural width, CSS pixels.
     pub width: u32,
@@ -19,8 +19,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The picture as a file of its own: the same element with the palette inside.
-    ///
+    /// The picture as a separate file: the same element with the palette inside.
     /// ```
     /// use wayfix_evaluation::plot::{LinesPlot, Series};
     /// let plot = LinesPlot { series: vec![Series::new("speed", vec![(0.0, 1.0), (1.0, 3.0)])], ..Default::default() };

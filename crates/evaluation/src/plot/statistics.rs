@@ -1,6 +1,6 @@
 //! Medians and quantiles of figures.
 
-/// The median of the finite values, `None` when there is none.
+/// The median of the finite values; `None` without any.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     quantile(values, 0.5)
 }

@@ -7,8 +7,7 @@ use super::svg::layout::{Frame, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
 use super::{Picture, PlotError};
 
-/// What each step cost, against the number of the step or the size of the state, with the median.
-///
+/// Cost of each step, over the step number or the size of the state, with the median.
 /// ```
 /// use wayfix_evaluation::plot::TimesPlot;
 /// let plot = TimesPlot { points: (1..100).map(|n| (f64::from(n), f64::from(n * n))).collect(), ..TimesPlot::default() };
@@ -19,7 +18,7 @@ use super::{Picture, PlotError};
 pub struct TimesPlot {
     /// Caption.
     pub title: String,
-    /// What the abscissa is: "step", "state dimension".
+    /// Label of the abscissa: "step", "state dimension".
     pub x_label: String,
     /// `(abscissa, microseconds)`.
     pub points: Vec<(f64, f64)>,
@@ -44,7 +43,7 @@ impl Default for TimesPlot {
 const PANEL_HEIGHT: f64 = 170.0;
 /// Stretches of the abscissa with a median each.
 const N_BINS: usize = 32;
-/// Cells to the width and height of the panel, of which each gets one dot; fewer when that makes too many dots.
+/// Number of cells in the width and height of the panel, with one dot each; fewer if that makes too many dots.
 const CELLS: (f64, f64) = (150.0, 56.0);
 /// Dots of a picture: about 45 kB of text.
 const DOT_BUDGET: usize = 650;
@@ -53,7 +52,7 @@ impl TimesPlot {
     /// The picture.
     ///
     /// # Errors
-    /// When the drawing library refuses.
+    /// Returns an error if the drawing library refuses.
     pub fn draw(&self) -> Result<Picture, PlotError> {
         let x = Axis::covering(self.points.iter().map(|point| point.0), self.x_scale, 0.02);
         let y = Axis::covering(self.points.iter().map(|point| point.1), self.y_scale, 0.05);
@@ -75,7 +74,7 @@ impl TimesPlot {
         })
     }
 
-    /// The longest time of each small cell of the panel: sparse points, and with them the extremes, all stay.
+    /// The longest time in each small cell of the panel; sparse points and extremes remain.
     fn decimated(&self, x: Axis, y: Axis) -> Vec<(f64, f64)> {
         let mut cells = CELLS;
         loop {

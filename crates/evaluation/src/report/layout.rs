@@ -1,5 +1,4 @@
-/// How Foxglove should show what `wayfix run SYSTEM` writes: a layout that it imports, as JSON; `None` for systems that are none.
-///
+/// A Foxglove layout for the output of `wayfix run SYSTEM`, as JSON for import; `None` for an unknown system.
 /// ```
 /// let layout = wayfix_evaluation::report::foxglove_layout("slam").expect("a system");
 /// assert!(layout.contains("/estimate/pose"));

@@ -2,10 +2,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::errors::MeanInterval;
 
-/// One figure of a run and the bounds it must keep.
+/// One figure of a run with its bounds.
 ///
-/// Whether it passes is never stored by hand: `pass` in the JSON is computed when it is written and ignored when it is read.
-///
+/// The verdict is not stored: `pass` in the JSON is computed on writing and ignored on reading.
 /// ```
 /// use wayfix_evaluation::report::Metric;
 /// let ate = Metric::new("ate_aligned_rmse_m", 0.121, "m").at_most(0.164).bound_from("docs/accuracy.md");
@@ -17,21 +16,21 @@ use crate::errors::MeanInterval;
 pub struct Metric {
     /// Name with the unit in it, as in the contract: `ate_rmse_m`.
     pub name: String,
-    /// What was measured; not finite means it could not be.
+    /// Measured value; not finite if it could not be measured.
     pub value: f64,
     /// Unit for display, empty for plain numbers.
     pub unit: String,
-    /// How sure the value is, when it is a mean over seeds.
+    /// Uncertainty of the value, if it is a mean over seeds.
     pub spread: Option<Spread>,
     /// Smallest value that passes.
     pub low: Option<f64>,
     /// Largest value that passes.
     pub high: Option<f64>,
-    /// What the paper reports.
+    /// Value in the paper.
     pub paper: Option<f64>,
     /// The best other program on the same data.
     pub peer: Option<Peer>,
-    /// The argument, paper or peer that the bounds come from.
+    /// Source of the bounds: an argument, paper or peer.
     pub bound_source: Option<String>,
 }
 
@@ -40,11 +39,11 @@ pub struct Metric {
 pub struct Spread {
     /// The interval reaches this far to both sides.
     pub half_width: f64,
-    /// Over how many seeds.
+    /// Number of seeds.
     pub n: usize,
 }
 
-/// What another program reaches on the same data.
+/// Value of another program on the same data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peer {
     /// Its name and version.
@@ -71,7 +70,7 @@ impl Metric {
     pub fn at_most(self, high: f64) -> Self {
         Self { high: Some(high), ..self }
     }
-    /// The same with what the paper reports.
+    /// Sets the value in the paper.
     pub fn paper(self, value: f64) -> Self {
         Self { paper: Some(value), ..self }
     }
@@ -79,12 +78,12 @@ impl Metric {
     pub fn peer(self, name: impl Into<String>, value: f64) -> Self {
         Self { peer: Some(Peer { name: name.into(), value }), ..self }
     }
-    /// The same with where its bounds come from.
+    /// Sets the source of the bounds.
     pub fn bound_from(self, source: impl Into<String>) -> Self {
         Self { bound_source: Some(source.into()), ..self }
     }
 
-    /// Finite and within its bounds, both included. A bound that is not a number passes nothing.
+    /// Whether the value is finite and within its bounds, both included. A NaN bound always fails.
     pub fn passes(&self) -> bool {
         self.value.is_finite()
             && self.low.is_none_or(|low| self.value >= low)
@@ -96,7 +95,7 @@ impl Metric {
     }
 }
 
-/// A metric as `report.json` has it. JSON knows no NaN: such a value is `null`.
+/// A metric as stored in `report.json`. JSON has no NaN: such a value is `null`.
 #[derive(Serialize, Deserialize)]
 struct StoredMetric {
     name: String,

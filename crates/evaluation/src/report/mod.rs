@@ -1,10 +1,10 @@
-//! What a run or a regression found: figures with their bounds, pictures, and where they come from.
+//! Report of a run or a regression test: figures with their bounds, pictures, and provenance.
 //!
-//! A [`Report`] holds [`Suite`]s of [`Run`]s of [`Metric`]s. [`Report::write`] puts `report.json` (the contract with programs) and
-//! `index.html` (one page without network, for people) into a folder; [`table`] sets it for the terminal and [`RunSummary`] is the
-//! object that `wayfix run --json` prints.
+//! A [`Report`] holds [`Suite`]s of [`Run`]s of [`Metric`]s. [`Report::write`] writes `report.json` (the interface for programs) and `index.html`
+//! (one page that works offline, for people) to a folder. [`table`] formats it for the terminal, and [`RunSummary`] is the object that
+//! `wayfix run --json` prints.
 //!
-//! Times are never among the `metrics`: those are the same bits for any number of threads, and times go into `timings`.
+//! Times are not among the `metrics`, which have equal bits for any number of threads; times are in `timings`.
 
 pub mod html;
 mod layout;

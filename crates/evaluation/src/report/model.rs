@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Machine, Metric};
 use crate::plot::Picture;
 
-/// All suites of one call, and what is needed to repeat it.
-///
+/// All suites of one call, with the data needed to repeat it.
 /// ```
 /// use wayfix_evaluation::report::{Metric, Report, Run, Suite};
 /// let run = Run { name: "robot 1".to_owned(), metrics: vec![Metric::new("nees_mean", 2.9, "").at_most(4.0)], ..Run::default() };
@@ -21,9 +20,9 @@ pub struct Report {
     pub suites: Vec<Suite>,
     /// Seed of every generator.
     pub seed: u64,
-    /// Revision of the source, `null` when unknown.
+    /// Revision of the source; `null` if unknown.
     pub commit: Option<String>,
-    /// Where it ran.
+    /// The machine.
     pub machine: Machine,
 }
 
@@ -43,12 +42,12 @@ pub struct Run {
     pub name: String,
     /// Figures that the seed and the log decide, bit for bit.
     pub metrics: Vec<Metric>,
-    /// How long it took.
+    /// Duration, s.
     pub seconds: f64,
-    /// Figures that change from call to call: times. Their bounds count like those of `metrics`.
+    /// Figures that vary from call to call: times. Their bounds count like those of `metrics`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub timings: Vec<Metric>,
-    /// How often each kind of event happened: lost, rejected, new landmark.
+    /// Count of each kind of event: lost, rejected, new landmark.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub events: BTreeMap<String, u64>,
     /// Pictures in the order of the page; the drawings themselves are in the page only.
@@ -57,7 +56,7 @@ pub struct Run {
     /// Remarks for the reader, a paragraph each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// What was assumed for the user or is doubtful, a sentence each.
+    /// Assumptions and doubts for the user, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// MCAP of the estimates, relative to the folder of the report.
@@ -66,7 +65,7 @@ pub struct Run {
     /// A layout with which Foxglove shows the log, beside the report.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<String>,
-    /// Why the run ended early; such a run fails.
+    /// Reason of an early end; such a run fails.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
 }

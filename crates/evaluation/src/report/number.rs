@@ -1,4 +1,4 @@
-/// `value` with about four significant digits; large and small ones with an exponent, what is not finite as a dash.
+/// Formats `value` with about four significant digits; large and small values with an exponent, non-finite values as a dash.
 pub(super) fn significant(value: f64) -> String {
     let size = value.abs();
     if !value.is_finite() {
@@ -6,7 +6,7 @@ pub(super) fn significant(value: f64) -> String {
     } else if value.fract() == 0.0 && size < 1e9 {
         format!("{value:.0}")
     } else if (1e-3..1e5).contains(&size) {
-        // The exponent after rounding, so that 9.99996 does not get a digit too many.
+        // The exponent after rounding, so that 9.99996 has no extra digit.
         let exponent: i32 = format!("{size:.3e}")
             .split_once('e')
             .and_then(|(_, exponent)| exponent.parse().ok())
@@ -18,7 +18,7 @@ pub(super) fn significant(value: f64) -> String {
     }
 }
 
-/// The same, empty when there is none.
+/// The same for an optional value; empty for `None`.
 pub(super) fn significant_or_empty(value: Option<f64>) -> String {
     value.map_or_else(String::new, significant)
 }

@@ -10,15 +10,14 @@ use serde::{Deserialize, Serialize};
 pub struct Machine {
     /// Name of the processor.
     pub cpu: String,
-    /// Logical cores this process may use; 0 when unknown.
+    /// Logical cores available to this process; 0 if unknown.
     pub cores: usize,
     /// Operating system and architecture.
     pub platform: String,
 }
 
 impl Machine {
-    /// This machine; what cannot be found out stays "unknown".
-    ///
+    /// Describes this machine; unavailable properties are "unknown".
     /// ```
     /// assert!(wayfix_evaluation::report::Machine::detect().platform.contains(std::env::consts::OS));
     /// ```

@@ -17,7 +17,7 @@ use super::Run;
 pub struct RunSummary {
     /// Metrics and timings; one that is not finite is absent.
     pub metrics: BTreeMap<String, f64>,
-    /// How often each kind of event happened.
+    /// Count of each kind of event.
     pub events: BTreeMap<String, u64>,
     /// Seed of every generator.
     pub seed: u64,

@@ -5,10 +5,10 @@ use console::{measure_text_width, truncate_str};
 use super::number::{duration, significant, significant_or_empty};
 use super::{Metric, Report, Run};
 
-/// How a table is set.
+/// Style of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableStyle {
-    /// Columns of the terminal. What does not fit is left out from the right, and long names are cut.
+    /// Width of the terminal, in columns. Table columns that do not fit are dropped from the right, and long names are cut.
     pub width: usize,
     /// Whether ✓ and ✗ are coloured.
     pub colour: bool,
@@ -18,7 +18,7 @@ impl TableStyle {
     /// 100 columns without colour.
     pub const PLAIN: Self = Self { width: 100, colour: false };
 
-    /// As standard output is: without colour when it is no terminal or `NO_COLOR` is set.
+    /// Style for standard output: without colour if it is no terminal or `NO_COLOR` is set.
     pub fn of_stdout() -> Self {
         let terminal = console::Term::stdout();
         let width = terminal.size_checked().map_or(Self::PLAIN.width, |(_, columns)| usize::from(columns));
@@ -94,7 +94,7 @@ fn row(metric: &Metric) -> Row {
     ]
 }
 
-/// The figure, and how sure it is.
+/// The value with its uncertainty.
 fn value(metric: &Metric) -> String {
     let value = significant(metric.value);
     match metric.spread {
@@ -115,7 +115,7 @@ fn mark(passes: bool, colour: bool) -> String {
     }
 }
 
-/// Aligns the columns that hold something, as many as fit.
+/// Aligns the non-empty columns, as many as fit.
 fn set(rows: &[Row], style: TableStyle) -> String {
     let width_of = |k: usize| rows.iter().map(|row| measure_text_width(&row[k])).max().unwrap_or(0);
     let is_used = |k: &usize| rows.iter().skip(1).any(|row| !row[*k].is_empty());
@@ -133,7 +133,7 @@ fn set(rows: &[Row], style: TableStyle) -> String {
     rows.iter().map(|row| set_row(row, &columns, style) + "\n").collect()
 }
 
-/// Columns that always stay.
+/// Columns that are never dropped.
 const MARK: usize = 0;
 const NAME: usize = 1;
 const OURS: usize = 2;

@@ -3,9 +3,9 @@ use std::ops::Add;
 
 use super::{Metric, Report, Run, Suite};
 
-/// How many figures pass and fail.
+/// Number of figures that pass and fail.
 ///
-/// A figure counts when it has a bound or is not finite; a run that ended early counts as one failure.
+/// A figure counts if it has a bound or is not finite; a run that ended early counts as one failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Figures within their bounds.
@@ -15,7 +15,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Something was judged and nothing failed: a report without a single bound proves nothing.
+    /// Whether at least one figure counts and none fails: a report without bounds does not pass.
     pub fn all_pass(self) -> bool {
         self.failed == 0 && self.passed > 0
     }

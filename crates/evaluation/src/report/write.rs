@@ -3,16 +3,16 @@ use std::path::{Path, PathBuf};
 
 use super::{Report, html};
 
-/// Why a report could not be written.
+/// Errors of writing a report.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The file system refused.
+    /// An error of the file system.
     #[error("cannot write {}: {source}", path.display())]
     Io {
         /// Which file or folder.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
     /// A number or name has no JSON form.
@@ -21,10 +21,9 @@ pub enum ReportError {
 }
 
 impl Report {
-    /// Writes `report.json` and `index.html` into `folder`, which is made when it is not there.
-    ///
+    /// Writes `report.json` and `index.html` to `folder`, which is created if missing.
     /// # Errors
-    /// When the folder or a file cannot be written.
+    /// Returns an error if the folder or a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
         let refused = |path: &Path| {
             let path = path.to_owned();

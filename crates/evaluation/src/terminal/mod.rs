@@ -1,4 +1,4 @@
-//! What a command prints, and how far it has come.
+//! Terminal output and progress of a command.
 
 mod output;
 mod progress;

@@ -5,10 +5,9 @@ use std::{
 
 use anyhow::{Context, Result};
 
-/// Writes to standard output. A reader that has seen enough (`| head`) is no failure.
-///
+/// Writes to standard output. A closed reader (`| head`) is not an error.
 /// # Errors
-/// When standard output cannot be written to.
+/// Returns an error if standard output cannot be written to.
 pub fn print(text: impl Display) -> Result<()> {
     let mut stdout = io::stdout().lock();
     match write!(stdout, "{text}").and_then(|()| stdout.flush()) {
@@ -17,7 +16,7 @@ pub fn print(text: impl Display) -> Result<()> {
     }
 }
 
-/// Tells people something on standard error, which may be closed.
+/// Prints a message to standard error, which may be closed.
 pub fn print_message(text: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", text.to_string().trim_end());
 }

@@ -7,7 +7,7 @@ pub fn bar(length: usize, what: &str) -> ProgressBar {
     ProgressBar::new(length as u64).with_style(style.progress_chars("=> ")).with_message(what.to_owned())
 }
 
-/// A count on standard error of what has no known end.
+/// A counter on standard error for work of unknown length.
 pub fn counter(what: &str) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:24} {pos} frames, {per_sec}")
         .unwrap_or_else(|_| ProgressStyle::default_spinner());

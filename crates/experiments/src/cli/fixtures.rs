@@ -10,14 +10,14 @@ use wayfix_systems::color::priors;
 pub(super) enum Command {
     /// Write every stored log from its seed.
     Build(Arguments),
-    /// Compare every stored log with what its seed gives, byte for byte.
+    /// Compare every stored log with the output of its seed, byte for byte.
     Check(Arguments),
     /// Learn the priors of `wayfix run color` from the simulated training venues.
     Priors {
-        /// Where to write them.
+        /// Output file.
         #[arg(default_value = "crates/systems/data/four-legged-priors.json")]
         file: PathBuf,
-        /// How many, from dark to bright.
+        /// Number of kinds of light, from dark to bright.
         #[arg(long, default_value_t = 2)]
         lights: usize,
     },

@@ -9,10 +9,10 @@ use anyhow::{Context, Result};
 use super::regress::show;
 use crate::regress::{Part, assemble, join};
 
-/// Make one report of the shares of a regression that several machines have done.
+/// Merge the shares of a regression that several machines have run into one report.
 ///
-/// Each share is the output folder of one `wayfix-experiments regress --shard K/N`. The report, its figures and its exit code are those of one machine that
-/// does all the work; only times tell the difference. Shares of another campaign, missing and doubled ones are refused.
+/// Each share is the output folder of one `wayfix-experiments regress --shard K/N`. The report, its figures and its exit code equal those of one
+/// machine that runs everything, except for times. Shares of another campaign, and missing or repeated ones, are errors.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// Output folders of all shares.
@@ -40,7 +40,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
 
 /// Copies a log from whichever share has it.
 fn copy_estimates(log: &str, shares: &[PathBuf], out: &Path) -> Result<()> {
-    let Some(log) = Path::new(log).file_name() else { return Ok(()) }; // a share may come from anywhere: its files stay in their folders
+    let Some(log) = Path::new(log).file_name() else { return Ok(()) }; // a share may come from any folder: its files stay there
     let target = out.join(log);
     let source = shares.iter().map(|share| share.join(log)).find(|path| path.exists() && *path != target);
     match source {

@@ -22,7 +22,7 @@ struct Arguments {
     command: Command,
 }
 
-/// What an argument structure says of itself is its help; the group says it here.
+/// The doc comment of an argument structure is its help; the group has it here.
 #[derive(Subcommand)]
 enum Command {
     Regress(regress::Arguments),
@@ -32,10 +32,9 @@ enum Command {
     Fixtures(fixtures::Command),
 }
 
-/// Whether a command line, with the name of the program first, is one that the program takes. For tests of what is documented.
-///
+/// Whether the program accepts a command line, which begins with its name. For tests of the documentation.
 /// # Errors
-/// What is wrong with it.
+/// Returns the error message of `clap` if the command line is invalid.
 #[doc(hidden)]
 pub fn parses<T: Into<std::ffi::OsString> + Clone>(
     command_line: impl IntoIterator<Item = T>,
@@ -43,13 +42,13 @@ pub fn parses<T: Into<std::ffi::OsString> + Clone>(
     Arguments::try_parse_from(command_line).map(|_| ())
 }
 
-/// The commands and their options as `clap` knows them. For tests of what is documented.
+/// The commands and their options as `clap` defines them. For tests of the documentation.
 #[doc(hidden)]
 pub fn commands() -> clap::Command {
     Arguments::command()
 }
 
-/// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
+/// Parses and executes the command line, and prints errors to standard error. Returns 0, 1 (failure) or 2 (wrong usage).
 pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Regress(arguments) => regress::main(arguments),

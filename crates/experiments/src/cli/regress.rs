@@ -9,10 +9,10 @@ use wayfix_evaluation::terminal::{self, print};
 use crate::regress::{Options, Part, Shard, assemble, cells, run_shard, suites};
 use wayfix_evaluation::report::{Report, table, table::TableStyle};
 
-/// Run every system on the stored logs, and on public recordings where they are at hand, and judge the figures.
+/// Run every system on the stored logs, and on public recordings if available, and compare the figures with their bounds.
 ///
-/// Each figure has bounds, and each bound a source: a paper, another program, or an argument (fixtures/SUITE.toml). Ends with 0 when
-/// every figure is within its bounds, else with 1. OUT/index.html shows trajectories, maps and figures.
+/// Each figure has bounds, and each bound a source: a paper, another program, or an argument (fixtures/SUITE.toml). The exit code is 0 if every
+/// figure is within its bounds, else 1. OUT/index.html shows trajectories, maps and figures.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// Suites to run; all by default.
@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     /// Seed of every generator.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Repeat every run with so many seeds, from --seed on, and report means with 95 % intervals.
+    /// Repeat every run with this number of seeds, from --seed on, and report means with 95 % intervals.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "bless")]
     seeds: u64,
     /// Do the K-th of N shares of the work and write OUT/part.json; `wayfix-experiments merge-reports` makes one report of all shares.
@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     /// Stored logs and short experiments only.
     #[arg(long)]
     quick: bool,
-    /// Take the figures of the stored logs as right from now on; look at the change first.
+    /// Store the present figures of the stored logs as the reference; review the change first.
     #[arg(long)]
     bless: bool,
     /// Threads [default: one a core]. The figures do not depend on it.

@@ -25,7 +25,7 @@ struct Lapped {
 /// Fig. 4: seven laps around shelves from an empty map, odometry as it is. Length and share of the setup play no part.
 ///
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn laps(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();

@@ -9,14 +9,13 @@ use super::{Setup, TripResult, localize_trip};
 use wayfix_evaluation::report::{Metric, Run};
 use wayfix_systems::cml::PanoramaLocalizer;
 
-/// People in 25 m × 10 m: hardly a view without somebody in it.
+/// People in 25 m × 10 m: almost every view shows a person.
 const N_PEOPLE: usize = 12;
 
-/// Whether people make references of places that look otherwise without them: a crowded area while outliers are kept out of the map, while
-/// they are not, and the same area empty.
-///
+/// Whether people in view become part of the map: a crowded area with and without outlier rejection in the map, and the same area
+/// empty.
 /// # Errors
-/// When a drive cannot be simulated or followed.
+/// Returns an error if a drive cannot be simulated or followed.
 pub fn crowded(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();

@@ -17,13 +17,13 @@ const N_PEOPLE: usize = 20;
 const COURSES: [&str; 6] =
     ["static", "adapting", "static_later", "adapted", "static_printed", "adapting_printed"];
 
-/// Fig. 5: a map taught with true poses, four weeks later, while it stays as it is and while it is adapted.
+/// Fig. 5: a map learned with true poses, four weeks later, static and adapted.
 ///
-/// The paper has "numerous" failures of the static map, and then 58 cm "by using the adapted map", which may be the drive that adapts it or one that
-/// comes after: both are measured, each against the static map on the same drive. The method as printed on the first drive tells how hard the world is.
-///
+/// The paper reports "numerous" failures of the static map, and then 58 cm "by using the adapted map", which may be the drive that adapts it or a
+/// later one: both are measured, each against the static map on the same drive. The method as printed, on the first drive, shows the difficulty of
+/// the simulated world.
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();

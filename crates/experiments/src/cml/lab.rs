@@ -15,10 +15,9 @@ const SWITCHING_S: f64 = 30.0;
 /// Steps after which references are counted. [Gross et al. 2004, Table 1]
 const STEPS: [usize; 4] = [2000, 4000, 6000, 8000];
 
-/// Table 1: references in a lab whose lamps and curtains never stay as they are, with and without active forgetting.
-///
+/// Table 1: references in a lab with changing lamps and curtains, with and without active forgetting.
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
@@ -57,7 +56,7 @@ pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
     Ok(Run { metrics, figures: vec![plot.draw()?], notes: vec![note], ..Run::default() })
 }
 
-/// What the last quarter of the steps adds to the number of references, as a share of it.
+/// Growth of the number of references in the last quarter of the steps, as a share of it.
 fn growth(name: &str, seeds: &[[TripResult; 2]], at: usize) -> Vec<Metric> {
     let share = |courses: &[TripResult; 2]| {
         let counts = &courses[at].n_references;

@@ -8,13 +8,13 @@ use super::Trip;
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 use wayfix_systems::system::Stopwatch;
 
-/// How well a pose is known that somebody has measured by hand, m, m and rad.
+/// Standard deviations of a pose surveyed by hand, m, m and rad.
 const SURVEYED: [f64; 3] = [0.02, 0.02, 0.01];
 
-/// What became of a drive, view by view.
+/// Results of a drive, view by view.
 #[derive(Clone, Debug, Default)]
 pub struct TripResult {
-    /// The heaviest hypothesis, when there was any.
+    /// The heaviest hypothesis, if there is any.
     pub estimates: Vec<Option<Pose2<f64>>>,
     /// Distance from the truth, metres; infinite without an estimate.
     pub errors: Vec<f64>,
@@ -22,16 +22,16 @@ pub struct TripResult {
     pub n_references: Vec<usize>,
     /// Computing time of prediction and update, seconds.
     pub step_s: Vec<f64>,
-    /// How often the state fell apart, and the robot was found elsewhere.
+    /// Number of track losses followed by a relocalization at another pose.
     pub n_lost: usize,
-    /// How often the robot turned out to be elsewhere than it was thought.
+    /// Number of relocations of the estimate.
     pub n_relocated: usize,
 }
 
 /// Drives a localizer along a trip.
 ///
 /// # Errors
-/// When it refuses a step.
+/// Returns an error if it refuses a step.
 pub fn localize_trip(localizer: &mut PanoramaLocalizer, trip: &Trip) -> Result<TripResult> {
     let mut course = TripResult::default();
     for step in &trip.steps {

@@ -1,4 +1,4 @@
-//! The experiments of Gross, Koenig & Müller in simulated buildings, and those that they leave out, for `wayfix-experiments regress cml`.
+//! The experiments of Gross, Koenig & Müller in simulated buildings, and further ones, for `wayfix-experiments regress cml`.
 
 mod area;
 mod crowded;

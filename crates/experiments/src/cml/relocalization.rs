@@ -18,28 +18,27 @@ use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 /// A run has succeeded that ends this near, metres.
 const NEAR_M: f64 = 1.0;
-/// How far the robot drives to find out where it is, metres.
+/// Distance within which the robot must localize itself, m.
 const TRAVEL_M: f64 = 20.0;
 /// Way between two views, metres, about.
 const VIEW_M: f64 = 0.25;
-/// How far one that was carried is followed, metres: what it was before goes along for 50 m from where it was found.
+/// Distance for which a kidnapped robot is followed, m: the previous hypothesis survives for 50 m after the relocalization.
 const FOLLOWED_M: f64 = 80.0;
-/// Who has been found and is this far off afterwards was led away again, metres: across an aisle.
+/// Error after a relocalization that counts as divergence, m: across an aisle.
 const DIVERGED_M: f64 = 3.0;
 /// Runs in each store: a map takes far longer to learn than a run.
 const RUNS_PER_STORE: u64 = 10;
 const REARRANGED: f64 = 0.1;
 const N_PEOPLE: usize = 20;
-/// A drive is in known ground that is never further than this from what was taught, metres: the width of an aisle, in which a robot keeps within 0.4 m of
-/// the middle. Nobody can be found where nothing was ever seen, and 2 000 m do not pass all aisles of a store.
+/// Maximum distance of a drive in known ground from the training poses, m: the width of an aisle, in which a robot stays within 0.4 m of the
+/// middle. A place without training views cannot be recognized, and 2 000 m do not cover all aisles of a store.
 const KNOWN_M: f64 = 1.0;
 /// Drives that are drawn at most until one is in known ground.
 const MOST_DRAWS: usize = 1000;
 
-/// How many runs in known stores that begin anywhere end near the truth after 20 m.
-///
+/// Number of runs with an unknown start in known stores that end near the truth after 20 m.
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
     let courses = in_stores(setup, seed, |map, later, at| {
         let trip = away(later, map, at, TRAVEL_M)?;
@@ -48,19 +47,17 @@ pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
     report("From anywhere", setup, &courses)
 }
 
-/// How many runs in which a robot is carried elsewhere, after 20 m that it knew where it was, end near the truth after 20 m more.
-///
+/// Number of kidnapped robots, after 20 m of correct tracking, that end near the truth after another 20 m.
 /// # Errors
-/// As [`global_start`].
+/// Returns the errors of [`global_start`].
 pub fn kidnapped(setup: &Setup, seed: u64) -> Result<Run> {
     report("Carried away", setup, &kidnapped_results(setup, seed, TRAVEL_M)?)
 }
 
-/// How many runs in which a robot is carried elsewhere, and finds itself, are led away from there in the 60 m that follow: back to where it would be had
-/// it not been carried, or to any other place.
-///
+/// Number of kidnapped and relocalized robots that diverge in the next 60 m: to the pose that they would have without the kidnapping, or to
+/// another place.
 /// # Errors
-/// As [`global_start`].
+/// Returns the errors of [`global_start`].
 pub fn after_relocalization(setup: &Setup, seed: u64) -> Result<Run> {
     let courses = kidnapped_results(setup, seed, FOLLOWED_M)?;
     let after = |course: &TripResult| course.errors.get((TRAVEL_M / VIEW_M) as usize..).map(<[f64]>::to_vec);
@@ -69,7 +66,7 @@ pub fn after_relocalization(setup: &Setup, seed: u64) -> Result<Run> {
     let n_diverged = found.iter().filter(|errors| errors.iter().any(|error| *error > DIVERGED_M)).count();
     let n_diverged_at_end =
         found.iter().filter(|errors| errors.last().is_some_and(|error| *error > DIVERGED_M)).count();
-    // Nobody was found: no share, and no bound is kept.
+    // Without relocalizations the share is NaN, and no bound holds.
     let share = |n: usize| n as f64 / found.len() as f64;
     let (low, high) = proportion_interval(n_diverged as u64, found.len() as u64);
     let metrics = vec![
@@ -89,7 +86,7 @@ pub fn after_relocalization(setup: &Setup, seed: u64) -> Result<Run> {
     Ok(Run { metrics, figures, notes: vec![note], ..Run::default() })
 }
 
-/// Robots that know where they are for 20 m, and are then carried to where a drive of `length_m` begins.
+/// Robots that are tracked for 20 m, and then kidnapped to the start of a drive of `length_m`.
 fn kidnapped_results(setup: &Setup, seed: u64, length_m: f64) -> Result<Vec<TripResult>> {
     in_stores(setup, seed, |map, later, at| {
         let before = away(later, map, (at.0, at.1 + 1000), TRAVEL_M)?;
@@ -118,7 +115,7 @@ fn in_stores(
     Ok(courses.into_iter().flatten().collect())
 }
 
-/// A drive from some crossing, through aisles that the map knows.
+/// A drive from a random crossing, through aisles of the map.
 fn away(building: &Building, map: &PanoramaMap, (seed, visit): (u64, u64), length_m: f64) -> Result<Trip> {
     let mut rng = Draw::Visit(visit).rng(seed);
     let route = known_route(building, map, length_m, &mut rng)?;

@@ -1,11 +1,11 @@
 use serde::Deserialize;
 use wayfix_appearance_cml::LocalizerParams;
 
-/// How an experiment is set up.
+/// Setup of an experiment.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Setup {
-    /// Number of seeds, each with a world of its own.
+    /// Number of seeds; each has its own world.
     pub n_seeds: u64,
     /// Length of a drive, metres, where the experiment leaves it open.
     #[serde(default)]
@@ -23,7 +23,7 @@ impl Setup {
         0.4
     }
 
-    /// The seeds of `regress --seed SEED`, beside those of the stored logs.
+    /// The seeds for `regress --seed SEED`, disjoint from those of the stored logs.
     pub(super) fn seeds(&self, seed: u64) -> std::ops::Range<u64> {
         const FIRST: u64 = 20_000;
         let first = FIRST + 1000 * seed;

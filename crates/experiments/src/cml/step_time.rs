@@ -17,15 +17,13 @@ use wayfix_systems::system::Stopwatch;
 const N_REFERENCES: [usize; 7] = [1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000];
 /// Steps that are timed in each map.
 const N_STEPS: usize = 200;
-/// Share of the steps that are not dearer than what is told of a robot in doubt, whose steps are not alike.
+/// Quantile of the step times reported for a kidnapped robot, whose steps vary.
 const KIDNAPPED_QUANTILE: f64 = 0.95;
 
-/// Computing time against the number of references: of a step of a robot that knows where it is, of one that is elsewhere than it believes and follows two
-/// beliefs at once, and of the search of the whole map that one needs who knows nothing.
-/// Times change from call to call, and other runs of a report go on beside this one.
-///
+/// Computing time over the number of references: of a step of a localized robot, of a step of a kidnapped robot with two hypotheses, and of a search
+/// of the whole map for global localization. Times vary from call to call, and other runs of a report run in parallel.
 /// # Errors
-/// When a drive cannot be simulated or followed, or the picture not be drawn.
+/// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
 pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
     let seed = setup.seeds(seed).start;
     let shape = StoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..StoreParams::home_store() };
@@ -35,11 +33,11 @@ pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
     let mut again = tour(&building, 0.25 * N_STEPS as f64, params, (seed, 1))?;
     again.steps.truncate(N_STEPS);
 
-    // What the limit of a match is learned from needs no more than the first of them.
+    // The smallest number of references suffices to learn the match threshold.
     let first = learned.steps.len().min(N_REFERENCES[0]);
     let mut map = taught(&Trip { steps: learned.steps[..first].to_vec() })?;
     let mut more = between(&learned).skip(first);
-    // Half way along what every map knows, where the drive is not.
+    // Half way along the part that every map contains, away from the drive.
     let elsewhere = Start::Known(surveyed(learned.steps[first / 2].pose)?);
     let astray = LocalizerParams { learning: Learning::Static, ..setup.localizer };
     let (mut steps, mut doubts, mut searches) = (Vec::new(), Vec::new(), Vec::new());
@@ -86,7 +84,7 @@ pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
 
 /// The views of a trip, and then, round by round, views between successive ones.
 fn between(trip: &Trip) -> impl Iterator<Item = (PanoramaDescriptor, Pose2<f64>)> {
-    // Each round gives one at least, or none ever will.
+    // Each round adds at least one reference, or it never ends.
     (0..N_REFERENCES[6] as u32).flat_map(|round| {
         // Multiples of the golden section spread evenly; the first round is of the views themselves.
         let share = (f64::from(round) * 0.618_034).fract();

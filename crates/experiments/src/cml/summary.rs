@@ -46,7 +46,7 @@ pub(super) fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NAN, f64::max)
 }
 
-/// One world astray moves a mean of ten: here they are one by one.
+/// One diverged world dominates a mean of ten, so list them separately.
 pub(super) fn by_seed<'a>(what: &str, errors: impl Iterator<Item = &'a [f64]>) -> String {
     let figures: Vec<String> =
         errors.map(|errors| format!("{:.2} ({:.1})", mean(errors), largest(errors))).collect();

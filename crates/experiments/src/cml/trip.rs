@@ -12,14 +12,14 @@ pub struct Trip {
     pub steps: Vec<TripStep>,
 }
 
-/// One view with what the wheels said before it.
+/// One view with the odometry before it.
 #[derive(Clone, Debug)]
 pub struct TripStep {
     /// Since the last view; none at the first.
     pub odometry: Option<Pose2<f64>>,
     /// The truth.
     pub pose: Pose2<f64>,
-    /// What was seen; nothing when the view was refused, as one right before a single-coloured wall is.
+    /// The descriptor of the view; `None` if it was refused, as in front of a uniform wall.
     pub view: Option<PanoramaDescriptor>,
 }
 
@@ -43,7 +43,7 @@ impl Trip {
         })
     }
 
-    /// Where the robot would be by its odometry alone.
+    /// Dead-reckoned poses.
     pub fn dead_reckoning(&self) -> Vec<Pose2<f64>> {
         let Some(first) = self.steps.first() else { return Vec::new() };
         let mut pose = first.pose;
@@ -80,8 +80,8 @@ mod tests {
             .collect();
         off.sort_by(f64::total_cmp);
         assert!(off.len() > 20, "{} turning steps", off.len());
-        // Half a column is 1.5°; parallax over a step of 0.25 m, 1 m before a wall, moves single things by up to 14°. Exchanged left and
-        // right would make it at least twice the turn, 23°.
+        // Half a column is 1.5°; parallax over a step of 0.25 m, 1 m from a wall, moves single objects by up to 14°. A mirrored view would give at
+        // least twice the turn, 23°.
         assert!(off[off.len() / 2].to_degrees() < 7.0, "{}", off[off.len() / 2].to_degrees());
     }
 

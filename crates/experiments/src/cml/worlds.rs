@@ -7,12 +7,12 @@ use wayfix_scene_sim::random::Streams;
 
 use super::Trip;
 
-/// What a draw is for; each has a generator of its own, so that more of the one do not change the others.
+/// Purpose of a random draw; each has its own generator, so that more draws of one do not change the others.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Draw {
-    /// What the building is like.
+    /// The building.
     World,
-    /// What has been rearranged by then, by visit.
+    /// The rearrangement before each visit.
     Rearranged(u64),
     /// The wheels of the robot.
     Robot,

@@ -15,17 +15,17 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, StartPose, run};
 
-/// A run that has not come this near within its frames has failed, metres.
+/// Maximum position error of a successful run, m.
 const NEAR_M: f64 = 0.2;
 /// Frames that a run has: to find out where it is, or to notice that it was carried away and find out anew.
 const FRAMES: usize = 60;
-/// Frames that count as the end: a single lucky one is no success.
+/// Number of final frames that must satisfy it; a single one could be chance.
 const LAST_FRAMES: usize = 5;
 
-/// How many of many runs, each in a hall of its own under light that nobody has seen, end near the truth.
+/// Number of successful runs, each in its own hall under unseen light.
 #[derive(Clone, Debug)]
 pub struct Convergence {
-    /// Whether the start is anywhere, or known and the robot is carried away later.
+    /// Whether the start is known and the robot is kidnapped later, rather than unknown.
     pub kidnapped: bool,
     /// One a seed, in their order.
     pub trials: Vec<Trial>,
@@ -38,14 +38,13 @@ pub struct Trial {
     pub seed: u64,
     /// Position error frame by frame, metres.
     pub errors: Vec<f64>,
-    /// Whether the estimate said of itself that it is worth something at the end.
+    /// Whether the estimate reports tracking at the end.
     pub reported_tracking: bool,
 }
 
-/// Starts anywhere, light unknown.
-///
+/// Global localization with unknown light.
 /// # Errors
-/// When a log cannot be simulated or no image used.
+/// Returns an error if a log cannot be simulated or no image used.
 pub fn global_start(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
@@ -63,7 +62,7 @@ pub fn global_start(
 /// Starts near the truth, and is carried away after 40 frames.
 ///
 /// # Errors
-/// As [`global_start`].
+/// Returns the errors of [`global_start`].
 pub fn kidnapped(
     seeds: impl IntoIterator<Item = u64>,
     map: &Arc<ColorMap>,
@@ -128,7 +127,7 @@ impl Convergence {
     /// Counts, their interval, and the errors of every frame over the runs.
     ///
     /// # Errors
-    /// When the picture cannot be drawn.
+    /// Returns an error if the picture cannot be drawn.
     pub fn report(&self) -> Result<Run, PlotError> {
         let n = self.trials.len();
         let n_succeeded = self.trials.iter().filter(|trial| trial.succeeded()).count();

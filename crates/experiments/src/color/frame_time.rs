@@ -11,7 +11,7 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorSystemParams, run};
 
-/// Numbers of particles, each held fixed.
+/// Numbers of particles, each kept fixed.
 const N_PARTICLES: [usize; 5] = [100, 300, 1000, 3000, 10_000];
 /// Frames of the log that are used.
 const N_FRAMES: usize = 40;
@@ -19,7 +19,7 @@ const N_FRAMES: usize = 40;
 /// Computing time of a frame against the number of particles. Times change from call to call, and other runs of a report go on beside this one.
 ///
 /// # Errors
-/// When no image of the log can be used, or the picture not be drawn.
+/// Returns an error if no image of the log can be used, or the picture not be drawn.
 pub fn frame_time(
     records: &[Record],
     map: &Arc<ColorMap>,

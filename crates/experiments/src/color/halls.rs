@@ -15,10 +15,9 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorSystemParams, run, summarize};
 
-/// The drive of the stored logs in halls that were not picked: means over halls with 95 % intervals.
-///
+/// The drive of the stored logs in random halls: means over halls with 95 % intervals.
 /// # Errors
-/// When a log cannot be simulated or no image used.
+/// Returns an error if a log cannot be simulated or no image used.
 pub fn other_halls(
     seeds: impl IntoIterator<Item = u64>,
     lighting: Lighting,
@@ -52,7 +51,7 @@ pub fn other_halls(
     Ok(Run { metrics, ..Run::default() })
 }
 
-/// The drive of the stored logs in a hall of its own.
+/// The drive of the stored logs in its own hall.
 pub(super) fn drive(seed: u64, lighting: Lighting) -> Result<Vec<Record>> {
     let drive = LeagueParams { lights: vec![(0, lighting)], ..LeagueParams::default() };
     Ok(drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?)

@@ -1,4 +1,4 @@
-//! The experiments of the paper, and those that it leaves out, for `wayfix-experiments regress color`.
+//! The experiments of the paper, and further ones, for `wayfix-experiments regress color`.
 
 mod convergence;
 mod frame_time;

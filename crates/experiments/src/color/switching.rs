@@ -16,13 +16,12 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, run, tally};
 
-/// Figure 6 of [Schulz & Fox 2004]: the classification rate frame by frame while lights are switched, of a jump Markov model and of one Gaussian,
-/// both while localizing; and of every way to follow a switched light, poses being known.
+/// Figure 6 of [Schulz & Fox 2004]: the classification rate frame by frame under switched light, of a jump Markov model and of one Gaussian, both
+/// while localizing; and of every light tracker with known poses.
 ///
-/// `switches` are the frames at which the light changes; `bank` has a filter a light, `single` one for all.
-///
+/// `switches` are the frames at which the light changes; `bank` has one filter per light, `single` one for all.
 /// # Errors
-/// When no image of the log can be used, or a picture not be drawn.
+/// Returns an error if no image of the log can be used, or a picture not be drawn.
 pub fn switching(
     records: &[Record],
     switches: &[usize],
@@ -99,7 +98,7 @@ fn plot(title: &str, curves: &[(&str, Curve)]) -> LinesPlot {
     }
 }
 
-/// An image with what it truly shows.
+/// An image with its true labels.
 struct Labelled {
     stamp: Stamp,
     image: YuvImage,

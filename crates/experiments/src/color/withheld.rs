@@ -14,18 +14,17 @@ use wayfix_evaluation::{
 };
 use wayfix_systems::color::{ColorSystemParams, priors, rate_of, run};
 
-/// Fewer labelled pixels of a colour in an image give no rate of their own.
+/// Minimum number of labelled pixels of a colour in an image for a rate of its own.
 const MIN_PIXELS: u64 = 20;
 
-/// How well a withheld colour is recognized in each image that shows it: with the joint prior and with the independent one.
+/// Classification rates of a withheld colour per image: with the joint prior and with the independent one.
 type Rates = [Vec<f64>; 2];
 
-/// Table 1 of [Schulz & Fox 2004], its lower half: each colour withheld from the lighting filter in turn, and how well it is recognized all the same,
-/// from what the other colours tell (joint prior) or from its prior alone (independent: all correlations between colours set to zero). Means over the
-/// images of the log with 95 % intervals, the gain of the joint prior from differences in the same image.
-///
+/// Table 1 of [Schulz & Fox 2004], lower half: each colour is withheld from the lighting filter in turn. Its classification rate then depends on the
+/// other colours (joint prior) or on its prior alone (independent: all correlations between colours set to zero). Means over the images of the log
+/// with 95 % intervals; the gain of the joint prior is from differences in the same image.
 /// # Errors
-/// When no image of the log can be used.
+/// Returns an error if no image of the log can be used.
 pub fn withheld(
     records: &[Record],
     map: &Arc<ColorMap>,
@@ -38,10 +37,9 @@ pub fn withheld(
     Ok(Run { metrics, ..Run::default() })
 }
 
-/// The same in halls that were not picked: means over halls with 95 % intervals, the gain of the joint prior from differences in the same hall.
-///
+/// The same in random halls: means over halls with 95 % intervals, the gain of the joint prior from differences in the same hall.
 /// # Errors
-/// When a log cannot be simulated or no image used.
+/// Returns an error if a log cannot be simulated or no image used.
 pub fn withheld_in_halls(
     seeds: impl IntoIterator<Item = u64>,
     lighting: Lighting,
@@ -63,7 +61,7 @@ pub fn withheld_in_halls(
     Ok(Run { metrics, ..Run::default() })
 }
 
-/// Both rates and their difference pair by pair, each a mean with its interval; nothing of a colour that is hardly shown.
+/// Both rates and their paired difference, each a mean with its interval; empty for a colour that is rarely shown.
 fn compared(name: &str, [joint, independent]: &Rates) -> Vec<Metric> {
     let gain = joint.iter().zip(independent).map(|(joint, alone)| joint - alone).collect::<Vec<f64>>();
     let mean_of = |what: &str, values: &[f64]| {
@@ -98,7 +96,7 @@ fn rates(
         .collect::<Result<_>>()?;
     let mut rates = rates.into_iter();
     let pairs: Vec<Rates> = std::iter::from_fn(|| Some([rates.next()?, rates.next()?])).collect();
-    // Images are paired by their order: one that only one of the two could use would shift all others.
+    // Images are paired by order: one usable in only one of the two would shift all others.
     ensure!(
         pairs.iter().all(|[joint, independent]| joint.len() == independent.len()),
         "an image was used with one prior only"

@@ -9,7 +9,7 @@ use super::{FilterKind, Laps};
 use crate::monobot::plain_filter;
 use wayfix_evaluation::errors::Sample;
 
-/// What the filter says after one look, beside the truth.
+/// Estimate and truth after one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConsistencySample {
     /// Since the first record, s.
@@ -22,10 +22,9 @@ pub struct ConsistencySample {
     pub heading_sigma: f64,
 }
 
-/// Runs a simulated log through one filter from the true start: one entry a look, from the first after which the robot moved.
-///
+/// Runs a simulated log through one filter from the true start: one entry per scan, from the first one after a motion.
 /// # Errors
-/// When the log has no true start, or the filter refuses what was simulated.
+/// Returns an error if the log has no true start, or the filter refuses a simulated measurement.
 pub fn drive(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<Vec<ConsistencySample>> {
     let mut slam = filter(laps, records, kind)?;
     let start_stamp = records.first().context("an empty log")?.stamp;

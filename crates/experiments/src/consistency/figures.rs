@@ -4,7 +4,7 @@ use wayfix_gaussian_core::ChiSquaredBand;
 use super::{ConsistencySample, FilterKind, Laps, drive};
 use wayfix_evaluation::report::Metric;
 
-/// One filter over all logs, look by look.
+/// Results of one filter over all logs, scan by scan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilterHistory {
     /// Which filter.
@@ -18,11 +18,11 @@ pub struct FilterHistory {
 pub struct MonteCarlo {
     /// One a filter, in the order of [`FilterKind::ALL`].
     pub courses: Vec<FilterHistory>,
-    /// Where the average NEES of a consistent filter is at any one look with 95 % probability.
+    /// 95 % band of the average NEES of a consistent filter at any one scan.
     pub band: ChiSquaredBand,
-    /// Where it is at all samples at once with at least 95 %, however they hang together.
+    /// 95 % band for all samples at once, for any correlation in time.
     pub whole_run_band: ChiSquaredBand,
-    /// How many logs.
+    /// Number of logs.
     pub n_runs: u32,
 }
 
@@ -90,7 +90,7 @@ impl MonteCarlo {
         metrics
     }
 
-    /// The heading is least certain just before the first loop closes; as the filter says that is surest to say it right.
+    /// The heading σ is largest just before the first loop closure; this is the average that the filter states there.
     fn heading_sigma_at_closure(&self) -> f64 {
         let invariant = self.courses.iter().filter(|course| course.kind == FilterKind::Invariant);
         invariant.flat_map(|course| &course.samples).map(|look| look.heading_sigma).fold(0.0, f64::max)
@@ -108,7 +108,7 @@ impl FilterHistory {
     }
 }
 
-/// Over runs, look by look, as far as all runs go.
+/// Averages over runs, scan by scan, up to the shortest run.
 fn average(runs: &[Vec<ConsistencySample>]) -> Vec<ConsistencySample> {
     let n_samples = runs.iter().map(Vec::len).min().unwrap_or(0);
     let at = |k: usize| {

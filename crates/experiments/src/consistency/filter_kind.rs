@@ -5,9 +5,9 @@ use wayfix_slam_ekf::Linearization;
 /// The filters that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilterKind {
-    /// Every derivative at the newest estimate, and nothing ties the map to the world.
+    /// All derivatives at the newest estimate, with no reference to the world.
     Standard,
-    /// The same, with some landmarks whose places are known. [Andrade-Cetto 2005, Eq. 20]
+    /// The same, with some landmarks at known positions. [Andrade-Cetto 2005, Eq. 20]
     Anchored,
     /// First-estimates Jacobians. [Huang et al. 2010]
     FirstEstimates,
@@ -29,7 +29,7 @@ impl FilterKind {
         }
     }
 
-    /// Where it linearizes.
+    /// Linearization points.
     pub fn linearization(self) -> Linearization {
         match self {
             Self::Standard | Self::Anchored => Linearization::Newest,

@@ -35,11 +35,11 @@ pub struct Laps {
     pub corridor_m: f64,
     /// From one landmark to the next on the same wall, m.
     pub spacing_m: f64,
-    /// How often around.
+    /// Number of laps.
     pub n_laps: u32,
-    /// The anchored filter is told the place of every so many-th landmark; of the first alone when this is 0.
+    /// The anchored filter knows the position of every n-th landmark; only of the first if this is 0.
     pub anchor_every: u32,
-    /// How far the sensor sees, all around, m.
+    /// Range of the omnidirectional sensor, m.
     pub max_range_m: f64,
     /// Standard deviation of x and of y of every increment of two metres, m.
     pub odometry_sigma_m: f64,
@@ -51,7 +51,7 @@ pub struct Laps {
     pub bearing_sigma_rad: f64,
 }
 
-/// Odometry and looks come together, this often; two metres apart.
+/// Period of odometry and scans, ms; they are two metres apart.
 const PERIOD_MS: u32 = 500;
 const SPEED_MPS: f64 = 4.0;
 const CORNER_RADIUS_M: f64 = 3.0;
@@ -86,7 +86,7 @@ impl Laps {
         Ok(self.scene().simulate(&mut Streams::new(ChaCha8Rng::seed_from_u64(seed)))?)
     }
 
-    /// What the filter may assume of odometry: how it was simulated.
+    /// Motion model with the simulated noise.
     pub fn motion(&self) -> IncrementMotion {
         IncrementMotion {
             translation_variance_per_meter: 0.0,
@@ -97,7 +97,7 @@ impl Laps {
         }
     }
 
-    /// What it may assume of detections.
+    /// Sensor model with the simulated noise.
     pub fn sensor(&self) -> RangeBearingSensor {
         RangeBearingSensor {
             range_sigma: self.range_sigma_m,

@@ -1,7 +1,6 @@
-//! Does a SLAM filter know how wrong it is? Laps of a loop, many times over, through the standard filter and through those that keep the
-//! freedom of the whole world open.
+//! Consistency of SLAM filters: many laps of a loop with the standard filter, and with filters that preserve the unobservable directions.
 //!
-//! The filter is given the noise that the simulation really used: what leaves the band then is the filter, not its calibration.
+//! The filter has the true noise of the simulation, so inconsistency comes from the filter and not from its calibration.
 
 mod drive;
 mod figures;

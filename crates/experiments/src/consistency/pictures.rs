@@ -1,10 +1,9 @@
 use super::MonteCarlo;
 use wayfix_evaluation::plot::{LinesPlot, NamedBand, Picture, PlotError, Scale, Series};
 
-/// Average NEES of all filters against time, with the band at any one look.
-///
+/// Average NEES of all filters over time, with the band at any one scan.
 /// # Errors
-/// When the picture cannot be drawn.
+/// Returns an error if the picture cannot be drawn.
 pub fn picture(runs: &MonteCarlo) -> Result<Picture, PlotError> {
     let series = runs.courses.iter().map(|course| {
         let points = course.samples.iter().map(|look| (look.seconds, look.nees)).collect();

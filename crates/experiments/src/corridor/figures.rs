@@ -5,7 +5,7 @@ use super::localize::{LocalizationRun, Method, STEADY, TOLERANCE, VAGUE};
 use wayfix_evaluation::report::Metric;
 use wayfix_systems::views::FeatureKind;
 
-/// One feature along the corridor in every way.
+/// Results of one feature in the corridor, in all variants.
 pub(super) struct Variants {
     pub(super) filtered: LocalizationRun,
     swapped: f64,
@@ -31,7 +31,7 @@ impl Variants {
     }
 }
 
-/// Of drives of so many frames that begin at each of the frames, the share that is found at the end. NaN where none is that long.
+/// Share of short drives, one from each frame, of `n_frames` frames, that are localized at the end. NaN if none is that long.
 fn found_after(n_frames: usize, learned: &FeatureTable, seen: &FeatureTable) -> Result<f64> {
     let n_starts = (seen.n_states() + 1).saturating_sub(n_frames);
     let mut n_found = 0;
@@ -44,7 +44,7 @@ fn found_after(n_frames: usize, learned: &FeatureTable, seen: &FeatureTable) -> 
     Ok(n_found as f64 / n_starts as f64)
 }
 
-/// The share of frames found, first as it is meant, then in the other ways.
+/// Share of frames found, first of the main method, then of the variants.
 pub(super) fn metrics(variants: &[(FeatureKind, Variants)]) -> Vec<Metric> {
     let column = |suffix: &'static str, value: fn(&Variants) -> f64| {
         variants

@@ -1,17 +1,17 @@
 use anyhow::Result;
 use wayfix_condensation::{DiscreteFilter, FeatureTable, SparseTransition, Traverse, TraverseParams};
 
-/// A place so far off is the same: the data's own definition.
+/// Tolerance of a correct place, in frames: the definition of the data set.
 pub(super) const TOLERANCE: usize = 2;
-/// Share of the belief that goes everywhere between two frames, as for drives through scenes.
+/// Share of the belief that is spread uniformly between two frames, as for drives through scenes.
 const LEAK: f64 = 1e-3;
 
-/// How frames become places.
+/// Method of localization.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Method {
-    /// A filter that knows the robot to drive on: none, one or two places a frame with these probabilities.
+    /// A filter with forward motion: zero, one or two places per frame with these probabilities.
     Filter([f64; 3]),
-    /// The same, with neighbouring frames taken for independent.
+    /// The same, with neighbouring frames assumed independent.
     Independent([f64; 3]),
     /// Every frame for itself.
     SingleFrame,
@@ -22,13 +22,13 @@ pub(super) const STEADY: [f64; 3] = [0.1, 0.8, 0.1];
 /// The same, half of the time only.
 pub(super) const VAGUE: [f64; 3] = [0.25, 0.5, 0.25];
 
-/// What was believed after every frame.
+/// Belief after every frame.
 pub(super) struct LocalizationRun {
     /// One distribution over the places a frame.
     pub(super) beliefs: Vec<Vec<f64>>,
     /// The place believed in most.
     pub(super) best: Vec<usize>,
-    /// How many neighbouring frames count as one.
+    /// Number of neighbouring frames that count as one.
     pub(super) correlation_length: f64,
 }
 
@@ -64,7 +64,7 @@ impl LocalizationRun {
         Ok(Self { beliefs, best, correlation_length: traverse.correlation_length() })
     }
 
-    /// How far the place believed in is off, in places.
+    /// Errors of the most probable place, in places.
     pub(super) fn errors(&self) -> impl Iterator<Item = usize> + '_ {
         self.best.iter().enumerate().map(|(frame, place)| place.abs_diff(frame))
     }

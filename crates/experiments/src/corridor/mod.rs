@@ -1,14 +1,13 @@
-//! Places along a corridor that was driven twice: learned in one traverse, found again in the other.
+//! Localization along a corridor driven twice: the first traverse is learned, the second localized.
 //!
-//! Made for the corridor of [Milford, *Vision-based place recognition: how low can you go?*, IJRR 2013]: [`run`] takes a folder with the
-//! subfolders `ref` and `query` of 111 frames each, frame i of one showing what frame i ± 2 of the other does. Places are the frames of the
-//! traverse that was learned. A frame is found when the place believed in is at most two off.
+//! Made for the corridor of [Milford, *Vision-based place recognition: how low can you go?*, IJRR 2013]: [`run`] takes a folder with the subfolders
+//! `ref` and `query` of 111 frames each, where frame i of one matches frame i ± 2 of the other. Places are the frames of the learned traverse. A
+//! frame counts as found if the most probable place is at most two off.
 //!
-//! The filter knows that the robot drives on: one place a frame, none or two in a tenth of the frames each. The rest is learned from the first
-//! traverse alone ([`Traverse`](wayfix_condensation::Traverse)), but the form of the model was settled while
-//! looking at this corridor. Beside it stand the figures
-//! of four variants: the traverses swapped, a vaguer idea of the motion, no filter at all, and frames taken for independent; and the share of
-//! short drives that are found at the end, when one begins at each of the frames.
+//! The filter assumes forward motion: one place per frame, zero or two in a tenth of the frames each. All other parameters are learned from the
+//! first traverse ([`Traverse`](wayfix_condensation::Traverse)), but the form of the model was chosen on this corridor. Four variants are reported
+//! too: the traverses swapped, vaguer motion, no filter, and frames assumed independent; and the share of short drives, one from each frame, that
+//! are localized at the end.
 
 mod figures;
 mod localize;

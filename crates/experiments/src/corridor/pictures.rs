@@ -17,7 +17,7 @@ const MARK_EVERY: usize = 10;
 const FILM_FRAMES: usize = 6;
 const TRUTH: [u8; 3] = [214, 39, 40];
 
-/// Where belief is frame by frame, how far off the best place is, and what robot and map see.
+/// Belief frame by frame, error of the best place, and the frames with their matches.
 pub(super) fn pictures(traverses: &Traverses, variants: &[(FeatureKind, Variants)]) -> Result<Vec<Picture>> {
     let mut pictures = vec![beliefs(variants)?, errors(variants).draw()?];
     if let Some((kind, best)) = variants.last() {

@@ -10,10 +10,9 @@ use super::{
 use wayfix_evaluation::report::Run;
 use wayfix_systems::{system::Stopwatch, views::FeatureKind};
 
-/// Learns one traverse, goes along the other; see the [module](super) for what is counted.
-///
+/// Learns one traverse and localizes the other; see the [module](super) for the figures.
 /// # Errors
-/// When a folder cannot be read, a frame not be decoded, or there are too few.
+/// Returns an error if a folder cannot be read, a frame not be decoded, or there are too few.
 pub fn run(folder: &Path) -> Result<Run> {
     let stopwatch = Stopwatch::start();
     let traverses = Traverses::read(folder)?;

@@ -6,10 +6,10 @@ use wayfix_sensor_log::{Data, EncodedImage, OpenOptions};
 
 use wayfix_systems::views::{FeatureKind, ViewsError};
 
-/// Fewer frames leave nothing to learn noise from.
+/// Minimum number of frames to learn the noise from.
 const MIN_FRAMES: usize = 10;
 
-/// The frames of both, in the order in which they were passed.
+/// The frames of both traverses, in order.
 pub(super) struct Traverses {
     pub(super) learned: Vec<Frame>,
     pub(super) seen: Vec<Frame>,

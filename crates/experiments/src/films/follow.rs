@@ -13,12 +13,11 @@ use wayfix_systems::{
     track::{FrameResult, Method, Start, TrackParams, Truth},
 };
 
-/// Shows a film to trackers of several methods, each with the true mask of the first frame to begin with, and scores the frames after it.
+/// Runs trackers of several methods on a film, each started with the true mask of the first frame, and scores the later frames.
 ///
 /// `observe` sees every frame of the first method.
-///
 /// # Errors
-/// When a tracker cannot begin, or refuses a frame.
+/// Returns an error if a tracker cannot begin, or refuses a frame.
 pub fn follow(
     film: &Film,
     methods: &[Method],

@@ -8,31 +8,30 @@ use wayfix_systems::track::StatusScore;
 const RIGHT: f64 = 0.5;
 /// Distance of the centre of a box in pixels up to which it is right. [Wu, Lim & Yang 2013, "precision"]
 const NEAR: f64 = 20.0;
-/// Fewer pixels of a neck in a frame say nothing of where it is.
+/// Minimum number of pixels of a neck in a frame that determine its position.
 const MIN_DISTRACTOR_PX: usize = 100;
 
-/// How well one tracker followed the target of one film, after the frame it began with.
+/// Score of one tracker on one film, without the first frame.
 ///
-/// An outline is judged by the pixels in it and the whole target, hidden parts included; a target without an outline by its box and the true
-/// one.
+/// An outline is scored by its pixels and the whole target, hidden parts included; a target without an outline by its box and the true one.
 #[derive(Clone, Debug, Default)]
 pub struct FilmScore {
-    /// Overlap of each frame in which something of the target is visible; 0 when the tracker says that it is lost.
+    /// Overlap of each frame with a visible target; 0 if the tracker reports it lost.
     pub iou: Vec<f64>,
-    /// Distance of the centres in pixels, of those frames in which it is not lost.
+    /// Distance of the centres in pixels, in frames not reported lost.
     pub center_error: Vec<f64>,
-    /// Whether each frame in which something of the target is visible is right: the outline covers it, or the centre of the box is near. The
-    /// overlap of a box is no measure for a target that turns in it.
+    /// Whether each frame with a visible target is correct: the outline covers it, or the centre of the box is near. Box overlap is unsuitable for
+    /// a target that rotates.
     pub right: Vec<bool>,
     /// Share of the neck that is inside the outline, of the frames with enough of a neck.
     pub distractor_share: Vec<f64>,
-    /// How often the tracker is wrong about whether it has the target.
+    /// Error rates of the lost status.
     pub status: StatusScore,
-    /// In how many frames with a visible target the tracker says that it is lost.
+    /// Number of frames with a visible target reported lost.
     pub n_lost: usize,
-    /// How many frames show nothing of the target.
+    /// Number of frames without a visible target.
     pub n_hidden: usize,
-    /// In how many of these the tracker says so.
+    /// Number of these that are reported lost.
     pub n_hidden_and_lost: usize,
 }
 
@@ -40,7 +39,7 @@ impl FilmScore {
     /// Takes the next frame in.
     ///
     /// # Errors
-    /// When an outline cannot be compared with the truth.
+    /// Returns an error if an outline cannot be compared with the truth.
     pub fn add(&mut self, target: &Target, frame: &Frame) -> Result<()> {
         let lost = target.status == TrackStatus::Lost;
         if frame.visible.area() == 0 {
@@ -85,7 +84,7 @@ impl FilmScore {
     }
 }
 
-/// The mean; not a number when there is nothing.
+/// The mean; NaN if empty.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

@@ -18,7 +18,7 @@ const N_END: usize = 20;
 /// the first method and seed.
 ///
 /// # Errors
-/// When a tracker cannot begin or refuses a frame, or a picture not be drawn.
+/// Returns an error if a tracker cannot begin or refuses a frame, or a picture not be drawn.
 pub fn table(film: &Film, seeds: Range<u64>, methods: &[Method], params: &TrackParams) -> Result<Run> {
     let shown = seeds.start;
     let one = |seed: u64| -> Result<(Vec<FilmScore>, RunHistory, Vec<Duration>)> {

@@ -8,42 +8,42 @@ use wayfix_slam_ekf::{
 
 use super::{Camera, Reference};
 
-/// What the filter says after one look, beside the truth; of the first landmark, and of the mean over all.
+/// Estimate and truth after one scan: of the first landmark, and of the mean over all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// Where the robot is, m.
+    /// True position of the robot, m.
     pub true_position: f64,
-    /// Where the filter says it is.
+    /// Estimated position of the robot, m.
     pub position: f64,
     /// Standard deviation of that.
     pub position_sigma: f64,
-    /// Where the filter says the first landmark is.
+    /// Estimated position of the first landmark, m.
     pub landmark: f64,
     /// Standard deviation of that.
     pub landmark_sigma: f64,
     /// Mean error over all landmarks: estimate minus truth.
     pub mean_landmark_error: f64,
-    /// Kalman gains of the look at the first landmark, robot and landmark.
+    /// Kalman gains of the measurement of the first landmark, for robot and landmark.
     pub gains: [f64; 2],
 }
 
 /// One drive through the filter.
 #[derive(Clone, Debug)]
 pub struct Drive {
-    /// One step a look; the first is the one that starts the landmarks.
+    /// One step per scan; the first one initializes the landmarks.
     pub steps: Vec<Step>,
     /// True place of the landmarks, m.
     pub true_landmark: f64,
-    /// What the looks said.
+    /// Information of the measurements.
     pub observability: ObservabilityRecorder,
 }
 
-/// The anchor's identity: after those of all landmarks.
+/// The anchor's identity, after those of all landmarks.
 const ANCHOR: LandmarkId = LandmarkId(u32::MAX);
-/// A landmark on top of the robot is seen with this, m: noise in proportion to distance alone would make that look exact.
+/// Minimum σ of a range, m: noise in proportion to distance alone would make a range of 0 exact.
 const SMALLEST_SIGMA: f64 = 1e-6;
 
-/// The plain Kalman filter: every landmark counts at once, and no look is doubted.
+/// The plain Kalman filter: every landmark is used at once, without gating.
 pub(crate) fn plain_filter() -> SlamParams {
     let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
     SlamParams { gate_probability: 1.0 - 1e-12, confirmation, ..SlamParams::default() }
@@ -52,7 +52,7 @@ pub(crate) fn plain_filter() -> SlamParams {
 /// Runs a simulated drive through EKF-SLAM from the true start.
 ///
 /// # Errors
-/// When the filter refuses what was simulated.
+/// Returns an error if the filter refuses a simulated measurement.
 pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> Result<Drive> {
     let sensor = MonobotSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_noise };
     let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_noise };
@@ -87,7 +87,7 @@ fn observations(run: &MonobotRun, k: usize, reference: Reference) -> Vec<Observa
     all.map(|(id, distance)| Observation { label: Some(id), measurement: Vector1::new(distance) }).collect()
 }
 
-/// $`K = P H^T s^{-1}`$ with $`H = (-1, 1)`$ for a look at the first landmark alone; none before it is in the map.
+/// $`K = P H^T s^{-1}`$ with $`H = (-1, 1)`$ for a measurement of the first landmark alone; `None` before it is in the map.
 fn gains(slam: &EkfSlam<MonobotSensor>, distance: Option<f64>) -> [f64; 2] {
     use wayfix_slam_ekf::LandmarkModel;
     let (Some(distance), true) = (distance, slam.contains(LandmarkId(0))) else { return [f64::NAN; 2] };

@@ -70,7 +70,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Of the line through the origin that fits best: 1 when the last error is the first, 0 when it has nothing to do with it.
+/// Slope of the best line through the origin: 1 if the last error equals the first, 0 if they are unrelated.
 fn slope(first: &[f64], end: &[f64]) -> f64 {
     let products: f64 = first.iter().zip(end).map(|(first, end)| first * end).sum();
     products / first.iter().map(|first| first * first).sum::<f64>()

@@ -5,13 +5,12 @@ use wayfix_slam_ekf::{
     observability::ObservabilityRecorder,
 };
 
-/// The first entry of the total Fisher information after each of `n_steps` looks at `n_landmarks`, with
-/// $`P_{r,0|0} = V = W = 1`$. [Andrade-Cetto 2005, Fig. 3]
+/// The first entry of the total Fisher information after each of `n_steps` scans of `n_landmarks`, with $`P_{r,0|0} = V = W = 1`$.
+/// [Andrade-Cetto 2005, Fig. 3]
 ///
-/// Linear and with constant noise, so that no measurement matters: all are as expected.
-///
+/// The system is linear with constant noise, so the information does not depend on the measurements.
 /// # Errors
-/// When the filter refuses, which it has no reason to.
+/// Returns an error if the filter refuses, which it has no reason to.
 pub fn first_entry(n_landmarks: u32, n_steps: usize) -> Result<Vec<f64>> {
     let sensor = MonobotSensor { sigma: 1.0, sigma_per_meter: 0.0 };
     let motion = MonobotMotion { sigma: 1.0, sigma_per_meter: 0.0 };
@@ -32,9 +31,8 @@ pub fn first_entry(n_landmarks: u32, n_steps: usize) -> Result<Vec<f64>> {
         .collect()
 }
 
-/// What a look adds to it in the end: $`n / (n p + 1)`$, with $`p = (n + \sqrt{n^2 + 4 n}) / 2n`$ the predicted variance of the robot
-/// against its map, where $`p = 1 + p / (n p + 1)`$.
-///
+/// The asymptotic gain per scan: $`n / (n p + 1)`$, with $`p = (n + \sqrt{n^2 + 4 n}) / 2n`$ the predicted variance of the robot relative to its map,
+/// where $`p = 1 + p / (n p + 1)`$.
 /// ```
 /// // One landmark: p is the golden ratio.
 /// let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;

@@ -4,7 +4,7 @@ use wayfix_evaluation::plot::{LinesPlot, Picture, PlotError, Series};
 /// The four columns of [Andrade-Cetto 2005, Figs. 4-6] for one drive: places, robot error, landmark error, gains.
 ///
 /// # Errors
-/// When a picture cannot be drawn.
+/// Returns an error if a picture cannot be drawn.
 pub fn pictures(drive: &Drive) -> Result<Vec<Picture>, PlotError> {
     let line = |value: &dyn Fn(&Step) -> f64| -> Vec<(f64, f64)> {
         drive.steps.iter().enumerate().map(|(k, step)| (k as f64, value(step))).collect()
@@ -49,7 +49,7 @@ pub fn pictures(drive: &Drive) -> Result<Vec<Picture>, PlotError> {
 /// The first entry of the total Fisher information against steps. [Andrade-Cetto 2005, Fig. 3]
 ///
 /// # Errors
-/// When the filter or the picture refuses.
+/// Returns an error if the filter or the picture refuses.
 pub fn fisher_picture(n_landmarks: &[u32], n_steps: usize) -> anyhow::Result<Picture> {
     let series = |n: &u32| {
         let points =

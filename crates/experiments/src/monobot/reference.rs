@@ -2,13 +2,13 @@ use nalgebra::{Matrix1, Vector1};
 use serde::Deserialize;
 use wayfix_estimation_traits::SensorModel;
 
-/// What ties the map of the monobot to the world.
+/// Reference of the monobot's map to the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Reference {
-    /// Nothing: the standard filter. [Fig. 4]
+    /// None: the standard filter. [Fig. 4]
     None,
-    /// A landmark at the origin whose place is known. [Eq. 20, Fig. 5]
+    /// A landmark at the origin with known position. [Eq. 20, Fig. 5]
     Anchor,
     /// A sensor that measures the robot's position. [Eq. 23, Fig. 6]
     Camera,

@@ -6,7 +6,7 @@ use wayfix_evaluation::report::{Machine, Report, Run, Suite, commit};
 /// The report of all runs, in the order of the plans: figures over all seeds, with a verdict for each.
 ///
 /// # Errors
-/// When a plan or the blessed figures cannot be read or written.
+/// Returns an error if a plan or the blessed figures cannot be read or written.
 pub fn assemble(options: &Options, done: &[Done]) -> Result<Report> {
     let suites = options.suites.iter().map(|suite| assemble_suite(options, suite, done));
     Ok(Report {

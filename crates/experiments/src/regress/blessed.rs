@@ -4,9 +4,9 @@ use anyhow::{Context, Result};
 
 use wayfix_evaluation::report::{Metric, Run};
 
-/// Figures of the stored logs as they were when somebody last looked at them and said they are right.
+/// Reviewed reference figures of the stored logs.
 ///
-/// They are no bounds: they tell that a change of the code changed a figure at all. `--bless` writes them anew.
+/// They are not bounds: a difference shows that a code change affected a figure. `--bless` rewrites them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Blessed(BTreeMap<String, BTreeMap<String, f64>>);
 
@@ -14,10 +14,9 @@ pub struct Blessed(BTreeMap<String, BTreeMap<String, f64>>);
 const RELATIVE_TOLERANCE: f64 = 1e-6;
 
 impl Blessed {
-    /// Reads the figures; none when there is no such file yet.
-    ///
+    /// Reads the figures; empty if the file does not exist.
     /// # Errors
-    /// When the file is there and cannot be read.
+    /// Returns an error if the file is there and cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
         if !path.exists() {
             return Ok(Self::default());
@@ -29,7 +28,7 @@ impl Blessed {
     /// Writes the figures of these runs.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// Returns an error if the file cannot be written.
     pub fn write<'a>(path: &Path, runs: impl Iterator<Item = &'a Run>) -> Result<()> {
         let figures =
             |run: &Run| run.metrics.iter().map(|metric| (metric.name.clone(), metric.value)).collect();
@@ -39,7 +38,7 @@ impl Blessed {
         fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
     }
 
-    /// How many figures of a run differ from the blessed ones, as a figure of its own that must be 0.
+    /// Number of figures of a run that differ from the reference, as a figure that must be 0.
     pub fn compare(&self, run: &Run) -> Option<Metric> {
         let blessed = self.0.get(&run.name)?;
         let differs = |metric: &&Metric| match blessed.get(&metric.name) {

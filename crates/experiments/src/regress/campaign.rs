@@ -14,10 +14,9 @@ pub struct Cell {
     pub seed: u64,
 }
 
-/// Everything that was asked for, in the order of the report: run by run, seed by seed.
-///
+/// All requested work, in the order of the report: run by run, seed by seed.
 /// # Errors
-/// When a plan cannot be read.
+/// Returns an error if a plan cannot be read.
 pub fn cells(options: &Options) -> Result<Vec<Cell>> {
     let mut cells = Vec::new();
     for suite in &options.suites {
@@ -30,7 +29,7 @@ pub fn cells(options: &Options) -> Result<Vec<Cell>> {
     Ok(cells)
 }
 
-/// A run with what it needs; `None` for recordings that are not at hand and for what is not asked for.
+/// A run with its inputs; `None` for unavailable recordings and unrequested runs.
 pub(super) fn job<'a>(options: &'a Options, planned: &'a PlannedRun) -> Option<Job<'a>> {
     let path = match (&planned.log, &planned.data) {
         _ if options.quick && (planned.slow || planned.data.is_some()) => return None,

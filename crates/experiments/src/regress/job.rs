@@ -7,22 +7,21 @@ use anyhow::{Context, Result};
 
 use super::{Options, PlannedRun};
 
-/// A run of a plan with what it needs.
+/// A run of a plan with its inputs.
 #[derive(Clone, Debug)]
 pub struct Job<'a> {
-    /// What was asked for on the command line.
+    /// Command-line options.
     pub options: &'a Options,
     /// The run.
     pub planned: &'a PlannedRun,
-    /// Where its log is, when it has one.
+    /// Path of its log, if it has one.
     pub path: Option<PathBuf>,
 }
 
 impl Job<'_> {
-    /// Where its log is.
-    ///
+    /// Path of its log.
     /// # Errors
-    /// When the plan names none.
+    /// Returns an error if the plan names none.
     pub fn log(&self) -> Result<&PathBuf> {
         self.path.as_ref().with_context(|| format!("run {}: give `log` or `data`", self.planned.name))
     }
@@ -38,10 +37,9 @@ impl Job<'_> {
         (name, path)
     }
 
-    /// Where a file of the recordings is.
-    ///
+    /// Path of a file of the recordings.
     /// # Errors
-    /// When there is no folder of recordings.
+    /// Returns an error if there is no folder of recordings.
     pub fn recording(&self, file: &Path) -> Result<PathBuf> {
         let data = self.options.data.as_ref().context("recordings need `--data`")?;
         Ok(data.join(file))
@@ -50,7 +48,7 @@ impl Job<'_> {
     /// A file beside the plan, as text.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// Returns an error if it cannot be read.
     pub fn read(&self, file: &Path) -> Result<String> {
         let path = self.options.fixtures.join(file);
         fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))

@@ -1,7 +1,7 @@
-//! `wayfix-experiments regress`: every system on stored logs, and on public recordings where they are, against stated bounds.
+//! `wayfix-experiments regress`: every system on stored logs, and on public recordings if available, against stated bounds.
 //!
 //! [`cells`] lists the work, run by run and seed by seed; [`run_shard`] does some or all of it; [`assemble`] makes the report. Shards on other
-//! machines leave a [`Part`] each, and [`join`] puts them together.
+//! machines leave a [`Part`] each, and [`join`] merges them.
 
 mod assemble;
 mod blessed;

@@ -4,8 +4,7 @@ use wayfix_evaluation::{
     report::{Metric, Run, Spread},
 };
 
-/// One run from the same run with several seeds: means with their intervals, sums of events; pictures and the log of the first. `None` of
-/// nothing.
+/// Merges one run over several seeds: means with their intervals, sums of events; pictures and the log of the first. `None` if empty.
 pub(super) fn over_seeds(done: &[&Done]) -> Option<Run> {
     let (first, others) = done.split_first()?;
     if others.is_empty() {

@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 use super::{Cell, Done, Options, Shard, cells};
 use wayfix_evaluation::report::{Run, commit};
 
-/// What one shard did, as a file: `part.json` in its output folder.
+/// Results of one shard, as a file: `part.json` in its output folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// What was asked of all shards together; the same in all of them.
+    /// The work of all shards together; equal in all of them.
     campaign: Campaign,
-    /// What this one did.
+    /// The runs of this shard.
     runs: Vec<PartRun>,
 }
 
@@ -36,17 +36,16 @@ struct Campaign {
 struct PartRun {
     cell: Cell,
     run: Run,
-    /// The drawings, which a report keeps in its page only.
+    /// The pictures, which a report stores only in its page.
     svgs: Vec<String>,
 }
 
 const FILE: &str = "part.json";
 
 impl Part {
-    /// What `shard` did.
-    ///
+    /// The results of `shard`.
     /// # Errors
-    /// When a plan cannot be read.
+    /// Returns an error if a plan cannot be read.
     pub fn new(options: &Options, shard: Shard, done: Vec<Done>) -> Result<Self> {
         let campaign = Campaign {
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -67,7 +66,7 @@ impl Part {
     /// Writes `part.json` into `folder`.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns an error if it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<PathBuf> {
         let path = folder.join(FILE);
         fs::write(&path, serde_json::to_string(self)?)
@@ -78,7 +77,7 @@ impl Part {
     /// Reads the `part.json` of a folder.
     ///
     /// # Errors
-    /// When it is missing or is no part.
+    /// Returns an error if it is missing or is no part.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join(FILE);
         let text = fs::read(&path).with_context(|| {
@@ -102,7 +101,7 @@ impl Part {
 /// Puts the parts of all shards together: the options of the whole campaign, and all that was done.
 ///
 /// # Errors
-/// When the parts are of different campaigns, one is missing, or the same work was done twice. The message says which.
+/// Returns an error if the parts are of different campaigns, one is missing, or the same work was done twice. The message says which.
 pub fn join(parts: Vec<(PathBuf, Part)>, fixtures: &Path, out: &Path) -> Result<(Options, Vec<Done>)> {
     let Some(campaign) = parts.first().map(|(_, part)| part.campaign.clone()) else {
         bail!("no parts: give the output folders of all shards");

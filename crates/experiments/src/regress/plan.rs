@@ -8,13 +8,13 @@ use serde::{Deserialize, de::DeserializeOwned};
 
 use wayfix_evaluation::report::{Metric, Run};
 
-/// What a suite runs and which bounds it must keep: a TOML file beside the stored logs.
+/// Runs of a suite with their bounds: a TOML file beside the stored logs.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
     /// In the order of the report.
     pub run: Vec<PlannedRun>,
-    /// Means over runs; left out when one of them is.
+    /// Means over runs; skipped if a run is missing.
     #[serde(default)]
     pub mean: Vec<PlannedMean>,
 }
@@ -51,12 +51,12 @@ pub struct PlannedRun {
     /// Bounds and figures of others.
     #[serde(default)]
     pub bound: Vec<Bound>,
-    /// All other keys: what the suite wants to know.
+    /// All other keys: settings of the suite.
     #[serde(flatten)]
     settings: toml::Table,
 }
 
-/// What a figure must keep, and beside whom it stands.
+/// Bounds of a figure, and values to compare it with.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bound {
@@ -66,15 +66,15 @@ pub struct Bound {
     pub low: Option<f64>,
     /// Largest value that passes.
     pub high: Option<f64>,
-    /// What the paper reports.
+    /// Value in the paper.
     pub paper: Option<f64>,
-    /// What another program reaches.
+    /// Value of another program.
     pub peer: Option<f64>,
     /// Which program.
     pub peer_name: Option<String>,
     /// The argument, paper or peer that the bound comes from.
     pub source: String,
-    /// Not enforced yet: the report says so beside the figure.
+    /// Not enforced yet; the report states it beside the figure.
     #[serde(default)]
     pub open: bool,
 }
@@ -83,7 +83,7 @@ impl Plan {
     /// Reads the plan of a suite, `SUITE.toml` in the folder of the stored logs.
     ///
     /// # Errors
-    /// When it cannot be read, or a run names both a stored log and a recording.
+    /// Returns an error if it cannot be read, or a run names both a stored log and a recording.
     pub fn read(folder: &Path, suite: &str) -> Result<Self> {
         let path = folder.join(suite).with_extension("toml");
         let text =
@@ -98,10 +98,9 @@ impl Plan {
 }
 
 impl PlannedRun {
-    /// What the suite wants to know of the run.
-    ///
+    /// The suite's settings of the run.
     /// # Errors
-    /// When a key is unknown or its value is of another kind.
+    /// Returns an error if a key is unknown or its value is of another kind.
     pub fn settings<T: DeserializeOwned>(&self) -> Result<T> {
         let settings = self.settings.clone().try_into();
         settings.with_context(|| format!("the settings of run {} are not usable", self.name))
@@ -109,7 +108,7 @@ impl PlannedRun {
 }
 
 impl PlannedMean {
-    /// The mean over `runs`; `None` when one of them did not run.
+    /// The mean over `runs`; `None` if one of them did not run.
     pub fn over(&self, runs: &[Run]) -> Option<Run> {
         let members: Option<Vec<&Run>> =
             self.of.iter().map(|name| runs.iter().find(|run| &run.name == name)).collect();
@@ -127,7 +126,7 @@ impl PlannedMean {
     }
 }
 
-/// Puts bounds and the figures of others to those of ours. A figure that is bounded and was not measured fails as NaN.
+/// Adds bounds and comparison values to our figures. A bounded figure that was not measured fails as NaN.
 pub(super) fn judge(bounds: &[Bound], metrics: &mut Vec<Metric>) {
     for bound in bounds {
         let index = metrics.iter().position(|metric| metric.name == bound.metric).unwrap_or_else(|| {

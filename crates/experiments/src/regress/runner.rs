@@ -7,20 +7,20 @@ use super::{Cell, Job, Plan, Shard, campaign::job, cells, suites};
 use wayfix_evaluation::report::Run;
 use wayfix_systems::system::Stopwatch;
 
-/// What to run and where to put it.
+/// Work to do and output folder.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Suites by name.
     pub suites: Vec<String>,
     /// Folder of the stored logs and plans.
     pub fixtures: PathBuf,
-    /// Folder of public recordings, when there is one.
+    /// Folder of public recordings, if available.
     pub data: Option<PathBuf>,
     /// Folder for the report.
     pub out: PathBuf,
     /// Seed of every generator.
     pub seed: u64,
-    /// How many seeds from that one on each run is repeated with.
+    /// Number of seeds per run, from that one on.
     pub n_seeds: u64,
     /// Stored logs and short experiments only.
     pub quick: bool,
@@ -38,9 +38,9 @@ impl Options {
 /// A piece of work that is done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Done {
-    /// Which one.
+    /// Path of the file.
     pub cell: Cell,
-    /// What came out, not judged yet.
+    /// The result, without bounds.
     pub run: Run,
 }
 
@@ -49,7 +49,7 @@ pub struct Done {
 /// The figures depend neither on the number of threads nor on how the work is divided.
 ///
 /// # Errors
-/// When a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error.
+/// Returns an error if a plan cannot be read or the output folder cannot be written. A log that fails is a run with an error.
 pub fn run_shard(options: &Options, shard: Shard, done: &(impl Fn(&str) + Sync)) -> Result<Vec<Done>> {
     fs::create_dir_all(&options.out).with_context(|| format!("cannot create {}", options.out.display()))?;
     let mine = cells(options)?.into_iter().enumerate().filter(|(index, _)| shard.takes(*index));

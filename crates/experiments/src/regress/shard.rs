@@ -19,7 +19,7 @@ impl Shard {
     /// All of the work.
     pub const WHOLE: Self = Self { number: 1, total: 1 };
 
-    /// Whether the piece of work with this index is ours. Neighbours, which are alike, go to different shards.
+    /// Whether this shard does the work with this index. Neighbours, which cost about the same, go to different shards.
     pub fn takes(self, index: usize) -> bool {
         index % self.total == self.number - 1
     }
@@ -29,7 +29,7 @@ impl Shard {
         self.total > 1
     }
 
-    /// How many there are.
+    /// Number of shards.
     pub fn total(self) -> usize {
         self.total
     }

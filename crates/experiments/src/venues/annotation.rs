@@ -2,7 +2,7 @@ use anyhow::{Context, Result, bail};
 
 /// The class of balls.
 const BALL: u32 = 0;
-/// A ball's pixels lie in its ellipse shrunk to this part of the axes.
+/// Scale of the inner ellipse of a ball that is used for its pixels.
 const CORE: f64 = 0.75;
 /// Balls with less than this many pixels across are all rim.
 const MIN_DIAMETER: f64 = 12.0;
@@ -19,7 +19,7 @@ pub(super) struct ObjectBox {
     bottom: f64,
 }
 
-/// Where a ball's pixels are: the core of its ellipse.
+/// The inner ellipse of a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BallCore {
     center: (f64, f64),
@@ -61,7 +61,7 @@ impl ObjectBox {
         if class != BALL {
             return None;
         }
-        // No ball here is cut by the upper border.
+        // No ball in these images is cut by the upper border.
         let (w, h) = (right - left, bottom - top);
         if bottom > f64::from(height) - BORDER {
             bottom = bottom.max(top + w);

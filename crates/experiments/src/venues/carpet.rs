@@ -10,7 +10,7 @@ const REACH: f64 = 16.0;
 const GATE: f64 = 11.345;
 /// Rounds of gating.
 const ROUNDS: usize = 5;
-/// Fewer pixels are no carpet.
+/// Minimum number of carpet pixels.
 const MIN_PIXELS: u64 = 1000;
 
 /// The dominant colour of an image's ground.
@@ -73,7 +73,7 @@ pub(super) fn density<'a>(pixels: impl Iterator<Item = &'a [u8; 3]>) -> Option<(
         return None;
     }
     let mean = sums.mean()?;
-    // The variance of rounding to whole levels, which alone keeps a saturated channel from having none.
+    // The variance of rounding to whole levels; it keeps the variance of a saturated channel positive.
     let rounding = Matrix3::from_diagonal_element(1.0 / 12.0);
     let covariance = sums.scatter_about(&mean) / (sums.count() - 1) as f64 + rounding;
     Some((ColorDensity { mean, covariance }, sums.count()))

@@ -9,7 +9,7 @@ use wayfix_evaluation::{
 
 const BOUND: &str = "the own-venue oracle's 0.999 and the best known 0.994 in the worst venue, rounded down";
 
-/// Mean and worst venue of every method, and what the joint prior is worth.
+/// Mean and worst venue of every method, and the gain of the joint prior.
 pub(super) fn metrics(scores: &[VenueScore]) -> Vec<Metric> {
     let mut metrics = Vec::new();
     for (k, method) in Method::ALL.into_iter().enumerate() {
@@ -41,7 +41,7 @@ pub(super) fn metrics(scores: &[VenueScore]) -> Vec<Metric> {
     metrics
 }
 
-/// What the figures say of the joint prior, in words.
+/// A summary of the joint prior's gain in words.
 pub(super) fn note(scores: &[VenueScore]) -> String {
     let gains: Vec<f64> = scores.iter().map(|score| score.joint_gain_nats).collect();
     let verdict = match MeanInterval::of(&gains) {
@@ -57,7 +57,7 @@ pub(super) fn note(scores: &[VenueScore]) -> String {
     )
 }
 
-/// The rate of every venue by method, and where carpet and ball lie in UV.
+/// The rate of every venue by method, and carpet and ball in UV.
 pub(super) fn pictures(venues: &[Venue], scores: &[VenueScore]) -> Result<Vec<Picture>, PlotError> {
     let series = Method::ALL.into_iter().enumerate().map(|(k, method)| {
         let points =

@@ -7,7 +7,7 @@ use wayfix_sensor_log::{DecodedImage, EncodedImage, ImageFormat, read_text};
 use super::annotation::{BallCore, ObjectBox, read_boxes};
 use super::carpet::Carpet;
 
-/// Above this part of the rows is no ground.
+/// Share of the rows above the horizon, which are skipped.
 const HORIZON: f64 = 0.55;
 
 /// The pixels of one image that count.
@@ -22,7 +22,7 @@ pub(super) struct VenueImage {
 }
 
 impl VenueImage {
-    /// Reads an image and its boxes; `None` when no carpet is seen.
+    /// Reads an image and its boxes; `None` if no carpet is visible.
     pub(super) fn read(path: &Path) -> Result<Option<Self>> {
         let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
         let decoded = EncodedImage::new(ImageFormat::Jpeg, bytes)

@@ -6,7 +6,7 @@ use wayfix_color_model::{ColorDensity, ColorMeans, LightingFilter, LightingParam
 use super::image::VenueImage;
 use super::prior::{BALL, CARPET, TrainingStatistics, block};
 
-/// How the two colours of an image become Gaussians; the order is that of all tables here.
+/// Methods for the Gaussians of the two colours of an image, in the order of all tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Method {
     Fixed,
@@ -20,7 +20,7 @@ impl Method {
     pub(super) const ALL: [Self; 5] =
         [Self::Fixed, Self::Joint, Self::Independent, Self::SharedNoise, Self::Oracle];
 
-    /// What its figures are called.
+    /// Its name in figures.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Fixed => "fixed",
@@ -42,7 +42,7 @@ impl Method {
         }
     }
 
-    /// Gaussians of carpet and ball for one image of a venue whose ball pixels are truly `own_ball`.
+    /// Gaussians of carpet and ball for one image of a venue with true ball pixels `own_ball`.
     pub(super) fn densities(
         self,
         experience: &TrainingStatistics,
@@ -69,7 +69,7 @@ impl Method {
     }
 }
 
-/// What is known of the colours' means.
+/// Estimate of the colours' means.
 struct Light {
     mean: nalgebra::DVector<f64>,
     covariance: nalgebra::DMatrix<f64>,
@@ -80,7 +80,7 @@ fn prior(experience: &TrainingStatistics) -> Light {
     Light { mean: joint.mean().clone(), covariance: joint.covariance().clone() }
 }
 
-/// The colours' means once an image's carpet was seen.
+/// The colours' means after observing an image's carpet.
 fn lit(experience: &TrainingStatistics, priors: &LightingPriors, carpet: &Vector3<f64>) -> Result<Light> {
     let light = filter(experience, priors, carpet)?;
     Ok(Light { mean: light.mean().clone(), covariance: light.covariance().clone() })
@@ -102,14 +102,14 @@ fn filter(
     Ok(light)
 }
 
-/// The pixels of a colour that is known as well as `light` knows it: its mean, the image's mean about that, the pixels about the image's.
+/// Predicted pixel distribution of a colour: the sum of the variances of its mean, of the image's mean, and of the pixels within the image.
 fn predicted(experience: &TrainingStatistics, light: &Light, color: usize) -> ColorDensity {
     let (mean, covariance) = block(&light.mean, &light.covariance, color);
     ColorDensity { mean, covariance: covariance + experience.mean_noise() + experience.pixels[color] }
 }
 
-/// How much better the joint prior foretells the venue's ball than the independent one, nats: the logarithm of the ratio of the densities
-/// of the mean ball once the mean carpet is seen.
+/// Gain of the joint prior over the independent one in predicting the venue's ball, nats: the log ratio of the densities of the mean ball given the
+/// mean carpet.
 pub(super) fn joint_gain_nats(
     experience: &TrainingStatistics,
     carpet: &Vector3<f64>,

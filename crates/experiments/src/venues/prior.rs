@@ -11,7 +11,7 @@ pub(super) const CARPET: usize = 0;
 /// Index of the ball.
 pub(super) const BALL: usize = 1;
 
-/// What other venues say of one not seen: where the colours are, and how their pixels scatter.
+/// Prior for a new venue from other venues: colour means and pixel scatter.
 pub(super) struct TrainingStatistics {
     pub(super) priors: LightingPriors,
     /// Covariance of a pixel about its image's mean, carpet and ball each their own.
@@ -19,7 +19,7 @@ pub(super) struct TrainingStatistics {
 }
 
 impl TrainingStatistics {
-    /// Learned with the default parameters; every image counts alike for the scatter of pixels.
+    /// Learned with the default parameters; every image has equal weight for the pixel scatter.
     pub(super) fn of(venues: &[&Venue]) -> Result<Self> {
         let mut covariances = [Vec::new(), Vec::new()];
         for venue in venues {
@@ -29,7 +29,7 @@ impl TrainingStatistics {
         }
         let pixels = covariances.map(|list| list.iter().sum::<Matrix3<f64>>() / list.len() as f64);
         let training: Vec<_> = venues.iter().map(|venue| venue.training()).collect();
-        // One kind of light: k-means has nothing to draw that could change the result.
+        // With one kind of light, k-means has no random choice that affects the result.
         let params = PriorParams {
             pixel_noise: (0.5 * (pixels[CARPET] + pixels[BALL])).diagonal(),
             ..PriorParams::default()

@@ -9,10 +9,9 @@ use wayfix_systems::system::Stopwatch;
 /// Fewer venues leave too little to learn from.
 const MIN_VENUES: usize = 3;
 
-/// Leaves each venue below `folder` out in turn; see the [module](super) for what is counted.
-///
+/// Leave-one-out over the venues below `folder`; see the [module](super) for the figures.
 /// # Errors
-/// When the folder has fewer than three venues, or a venue has no usable ball.
+/// Returns an error if the folder has fewer than three venues, or a venue has no usable ball.
 pub fn run(folder: &Path) -> Result<Run> {
     let stopwatch = Stopwatch::start();
     let mut venues = Venue::read_all(folder)?;

@@ -13,11 +13,11 @@ use super::{
 pub(super) struct VenueScore {
     /// In the order of [`Method::ALL`].
     pub(super) rates: Vec<Rates>,
-    /// How much better the joint prior foretells the ball than the independent one, nats.
+    /// Gain of the joint prior over the independent one in predicting the ball, nats.
     pub(super) joint_gain_nats: f64,
 }
 
-/// Pixels taken for what they are, of each kind.
+/// Correctly classified pixels of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Rates {
     right: [u64; 2],
@@ -30,7 +30,7 @@ impl Rates {
         0.5 * (self.of(CARPET) + self.of(BALL))
     }
 
-    /// The share of ball pixels taken for ball.
+    /// The share of ball pixels classified as ball.
     pub(super) fn of_ball(&self) -> f64 {
         self.of(BALL)
     }

@@ -10,7 +10,7 @@ use wayfix_sensor_log::is_hidden;
 
 use super::{carpet::density, image::VenueImage};
 
-/// What is known of one day's robot.
+/// Data of one day's robot.
 #[derive(Clone, Debug)]
 pub(super) struct Venue {
     pub(super) name: String,
@@ -52,7 +52,7 @@ impl Venue {
         Some(density(self.images.iter().flat_map(|image| &image.ball_pixels))?.0)
     }
 
-    /// Each image's means of carpet and ball.
+    /// Means of carpet and ball of each image.
     pub(super) fn training(&self) -> TrainingVenue {
         let means = |image: &VenueImage| {
             let ball = density(image.ball_pixels.iter());
@@ -83,7 +83,7 @@ impl Venue {
     }
 }
 
-/// What is in a folder but hidden files, sorted.
+/// The entries of a folder except hidden files, sorted.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let read = || fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>();
     let mut paths = read().with_context(|| format!("cannot list {}", folder.display()))?;

@@ -3,10 +3,10 @@ use std::ops::Range;
 use super::points::Points;
 use super::{Params, Scan};
 
-/// Cuts the echoes where the next one is too far away to be on the same surface [Borges & Aldon 2004, adaptive breakpoint detector].
+/// Splits the echoes where the next one is too far away to be on the same surface [Borges & Aldon 2004, adaptive breakpoint detector].
 ///
-/// A surface that the beam at range $`r`$ meets at the angle $`λ`$ is met by the next beam, $`Δφ`$ further, at most
-/// $`r \sin Δφ / \sin(λ - Δφ)`$ away; three deviations of the range are added. What is farther is another surface, or too flat to tell.
+/// If a beam of range $`r`$ meets a surface at the angle $`λ`$, the next beam, $`Δφ`$ further, meets it at most
+/// $`r \sin Δφ / \sin(λ - Δφ)`$ away; three deviations of the range are added. A larger step separates surfaces, or the angle is too small.
 pub(super) fn surfaces(points: &Points, scan: &Scan, params: &Params, found: &mut Vec<Range<usize>>) {
     let reaches: Vec<f64> = (1..=params.max_missing_beams.min(scan.ranges.len()) + 1)
         .map(|beams| reach(beams as f64 * scan.angle_increment.abs(), params.breakpoint_angle_rad))
@@ -16,7 +16,7 @@ pub(super) fn surfaces(points: &Points, scan: &Scan, params: &Params, found: &mu
     let mut start = 0;
     for k in 1..points.at.len() {
         let step = points.beam[k] - points.beam[k - 1];
-        // From the nearer of the two, so that both directions of turning cut at the same place.
+        // Uses the nearer of the two, so that both directions split at the same point.
         let near = points.range[k].min(points.range[k - 1]);
         let together = reaches.get(step - 1).is_some_and(|reach| {
             let limit = near * reach + slack;
@@ -32,7 +32,7 @@ pub(super) fn surfaces(points: &Points, scan: &Scan, params: &Params, found: &mu
     }
 }
 
-/// The largest step over the range; nothing for beams so far apart that a surface may hide between them.
+/// The largest step relative to the range; `None` for beams too far apart to exclude a surface in between.
 fn reach(turn: f64, flattest: f64) -> f64 {
     if turn < flattest { turn.sin() / (flattest - turn).sin() } else { 0.0 }
 }

@@ -5,9 +5,10 @@ use nalgebra::Vector2;
 use super::RangeBearingNoise;
 use crate::LineEstimate;
 
-/// A parabola across a line, fitted to what the line leaves: coefficient times information, and information.
+/// A parabola across a line, fitted to the residuals of the line: coefficient times information, and information.
 ///
-/// The parabola is orthogonal to the line's place and direction. The normal points away from the sensor, so that chords of one arc bend to one side.
+/// The parabola is orthogonal to the line's position and direction. The normal points away from the sensor, so that chords of one arc have
+/// curvature of one sign.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CurvatureTest {
     fitted: f64,

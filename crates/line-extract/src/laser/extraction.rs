@@ -8,7 +8,7 @@ use crate::LineEstimate;
 pub struct Extraction {
     /// The walls in the order of their first beams.
     pub segments: Vec<Segment>,
-    /// What became of the beams.
+    /// Beam counts by use.
     pub counts: Counts,
 }
 
@@ -18,7 +18,7 @@ pub struct Extraction {
 pub struct Segment {
     /// The line it is on, with its covariance.
     pub estimate: LineEstimate,
-    /// Its observed start, metres; from here to `end` the sensor is on the left.
+    /// Its observed start, m; from here to `end` the sensor is on the left.
     pub start: Vector2<f64>,
     /// Its observed end, metres.
     pub end: Vector2<f64>,
@@ -39,7 +39,7 @@ impl Segment {
     }
 }
 
-/// What became of the beams of a scan. The first five add up to their number.
+/// Beam counts by use. The first five sum to the number of beams.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counts {

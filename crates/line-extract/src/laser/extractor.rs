@@ -92,7 +92,7 @@ impl Extractor {
     /// The same for a sensor that moves by `step` from one beam to the next, in its own frame; walls are in the sensor frame at the first beam.
     ///
     /// # Errors
-    /// Those of [`extract`](Self::extract), and [`LineError::Scan`] if the step is not finite.
+    /// Returns the errors of [`extract`](Self::extract), and [`LineError::Scan`] if the step is not finite.
     pub fn extract_deskewed(
         &mut self,
         scan: &Scan,

@@ -35,9 +35,9 @@ pub struct WallHypothesis {
     pub start: Vector2<f64>,
     /// Its predicted end, metres.
     pub end: Vector2<f64>,
-    /// How many deviations off is still compatible; the paper has 2, which 86 % of the true ones pass.
+    /// Gate in standard deviations; the paper uses 2, which 86 % of the true segments pass.
     pub n_sigma: f64,
-    /// How far the band goes beyond the ends, metres.
+    /// Extension of the band beyond the ends, m.
     pub margin_m: f64,
 }
 
@@ -60,16 +60,15 @@ impl WallHypothesis {
     /// Whether the line of a segment is within `n_sigma` of this one: $`d^2 \le n_σ^2`$, the ellipse of the paper.
     ///
     /// # Errors
-    /// [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
+    /// Returns [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
     pub fn is_compatible(&self, segment: &Segment) -> Result<bool, LineError> {
         let squared = self.estimate.mahalanobis_squared(&segment.estimate)?;
         Ok(squared <= self.n_sigma * self.n_sigma)
     }
 
-    /// The most likely of the compatible segments that reach into the band; a segment may be longer than the predicted wall.
-    ///
+    /// The most likely of the compatible segments that overlap the band; a segment may be longer than the predicted wall.
     /// # Errors
-    /// [`LineError::NotPositiveDefinite`] if a sum of covariances is not.
+    /// Returns [`LineError::NotPositiveDefinite`] if a sum of covariances is not.
     pub fn find(&self, segments: &[Segment]) -> Result<Option<usize>, LineError> {
         let mut best: Option<(usize, f64)> = None;
         for (k, segment) in segments.iter().enumerate() {
@@ -90,7 +89,7 @@ impl WallHypothesis {
         a.max(b) >= from && a.min(b) <= to
     }
 
-    /// From where to where the band goes, metres from the foot of the sensor's perpendicular.
+    /// Extent of the band, m from the foot of the sensor's perpendicular.
     fn reach(&self) -> (f64, f64) {
         let direction = self.estimate.line.direction();
         let (a, b) = (direction.dot(&self.start), direction.dot(&self.end));

@@ -30,7 +30,7 @@ fn join(a: &Piece, b: &Piece, params: &Params) -> Option<Piece> {
     Some(Piece { moments, estimate, ends, beams, bend: a.bend })
 }
 
-/// What lies between two pieces along the line of the first; negative where they overlap.
+/// The gap between two pieces along the line of the first; negative for an overlap.
 fn gap(a: &Piece, b: &Piece) -> f64 {
     let direction = a.estimate.line.direction();
     let interval = |piece: &Piece| {

@@ -30,22 +30,22 @@ pub struct Params {
     pub split: SplitMethod,
     /// A piece with a point farther off than this, metres, is split. Default: 0.05, five times the noise.
     pub split_distance_m: f64,
-    /// Points at the ends of a piece that are farther off its line than so many of their deviations are left out. Default: 3.
+    /// Points at the ends of a piece farther from its line than this number of their standard deviations are dropped. Default: 3.
     pub end_gate_sigma: f64,
     /// Pieces are one wall up to this squared Mahalanobis distance of their lines. Default: 13.8, which 99.9 % of equal lines pass (chi-squared, 2).
     pub merge_gate: f64,
     /// Standard deviation of the bulge of a straight wall, metres. Neighbouring pieces with a common curvature beyond that and the noise
     /// (99.9 % of chi-squared, 1) are chords of an arc and no walls. Default: 0.01, the tolerance of DIN 18202 for a finished wall over 4 m.
     pub bulge_sigma_m: f64,
-    /// Pieces farther apart than this along the wall, metres, stay two. Default: 0.3.
+    /// Maximum gap along the wall between merged pieces, m. Default: 0.3.
     pub merge_gap_m: f64,
-    /// A wall has at least so many points. Default: 5.
+    /// Minimum number of points of a wall. Default: 5.
     pub min_points: usize,
-    /// A wall is at least so long, metres. Default: 0.3.
+    /// Minimum length of a wall, m. Default: 0.3.
     pub min_length_m: f64,
 }
 
-/// How a surface is split into straight pieces.
+/// Method of splitting a surface into straight pieces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]

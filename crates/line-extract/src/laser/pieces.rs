@@ -38,7 +38,7 @@ pub(super) fn split(
     Ok(())
 }
 
-/// Where to split what the fitted line misses: at the point farthest from it, or, when that is an end, from the line through the ends.
+/// Split index for residuals of the fitted line: the point farthest from it, or, if that is an end, from the line through the ends.
 fn off_the_fit(surface: &[Vector2<f64>], start: usize, end: usize, limit: f64) -> Option<usize> {
     let line = Moments::new(&surface[start..=end], |_| 1.0).line().ok()?.line;
     let distance = |k: usize| line.signed_distance(&surface[k]).abs();
@@ -54,7 +54,7 @@ fn off_the_fit(surface: &[Vector2<f64>], start: usize, end: usize, limit: f64) -
 }
 
 impl Piece {
-    /// Fits a line to neighbouring echoes, without those at the ends that belong to the next wall; `None` if too little is left.
+    /// Fits a line to neighbouring echoes, without points at the ends that belong to the next wall; `None` if too few points remain.
     pub(super) fn fit(points: &Points, mut range: Range<usize>, params: &Params) -> Option<Self> {
         let noise = &params.noise;
         let moments = |range: &Range<usize>, normal: &Vector2<f64>| {

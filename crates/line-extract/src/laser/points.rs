@@ -32,7 +32,7 @@ impl Points {
         counts.valid = self.at.len();
     }
 
-    /// Moves each echo to where it is seen from the first beam, when the sensor moves by `step` from beam to beam.
+    /// Transforms each echo to the frame of the first beam, if the sensor moves by `step` from beam to beam.
     pub(super) fn deskew(&mut self, step: &Isometry2<f64>) {
         let mut sensor = Isometry2::identity();
         let mut at_beam = 0;
@@ -59,7 +59,7 @@ impl Points {
     }
 }
 
-/// Why a range is none.
+/// Reason why a range is no echo.
 fn reason(range: f64, counts: &mut Counts) -> &mut usize {
     if range.is_nan() {
         &mut counts.nan

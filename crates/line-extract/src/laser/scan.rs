@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use crate::LineError;
 
-/// Far beyond any laser; up to here nothing overflows and no digit that matters is lost.
+/// Maximum range, m: far beyond any laser, and without overflow or loss of relevant digits.
 const FARTHEST_M: f64 = 1e6;
 
 /// The ranges of one turn of a laser: beam $`i`$ has the direction $`α_0 + i Δ`$ in the sensor's frame.

@@ -16,11 +16,11 @@ pub struct LineEstimate {
 }
 
 impl LineEstimate {
-    /// The squared Mahalanobis distance $`Δ^T (P_1 + P_2)^{-1} Δ`$ of two independent estimates; chi-squared with two degrees of
-    /// freedom if they are of one line.
+    /// The squared Mahalanobis distance $`Δ^T (P_1 + P_2)^{-1} Δ`$ of two independent estimates; chi-squared with two degrees of freedom if both are
+    /// of one line.
     ///
-    /// $`Δ`$ is taken where the two agree best: $`(ρ, α)`$ and $`(-ρ, α + π)`$ are one line, and close to the origin noise decides which is meant.
-    ///
+    /// $`Δ`$ is the smaller of two differences: $`(ρ, α)`$ and $`(-ρ, α + π)`$ are one line, and close to the origin noise decides which is
+    /// estimated.
     /// ```
     /// use nalgebra::Matrix2;
     /// use wayfix_line_extract::{HessianLine, LineEstimate};
@@ -36,7 +36,7 @@ impl LineEstimate {
     /// ```
     ///
     /// # Errors
-    /// [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
+    /// Returns [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
     pub fn mahalanobis_squared(&self, other: &Self) -> Result<f64, LineError> {
         let turned = wrap(other.line.alpha() - self.line.alpha());
         // The other form has the other sign of ρ, and so of the covariance between ρ and α.

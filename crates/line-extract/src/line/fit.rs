@@ -3,7 +3,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::{LineEstimate, Moments};
 use crate::{LineError, check};
 
-/// A fitted line and how well it fits.
+/// A fitted line with its goodness of fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LineFit {
@@ -15,11 +15,10 @@ pub struct LineFit {
     pub chi_squared: f64,
 }
 
-/// The total least squares line through points with covariances (m²), which minimizes $`\sum_i e_i^2 / σ_i^2`$ with $`e_i = n \cdot p_i - ρ`$ and
-/// $`σ_i^2 = n^T C_i n`$ [Pfister, Roumeliotis & Burdick 2003].
+/// The total least squares line through points with covariances (m²), which minimizes $`\sum_i e_i^2 / σ_i^2`$ with
+/// $`e_i = n \cdot p_i - ρ`$ and $`σ_i^2 = n^T C_i n`$ [Pfister, Roumeliotis & Burdick 2003].
 ///
-/// The variances depend on the normal $`n`$, so the fit is repeated with those of the line found before; it starts from equal ones.
-///
+/// The variances depend on the normal $`n`$, so the fit is iterated with those of the last line; it starts from equal ones.
 /// ```
 /// use nalgebra::{Matrix2, Vector2};
 /// use wayfix_line_extract::fit_line;
@@ -34,7 +33,7 @@ pub struct LineFit {
 /// ```
 ///
 /// # Errors
-/// [`LineError::Sizes`] unless there is a covariance for each point, [`LineError::TooFewPoints`] for fewer than two, [`LineError::Point`] and
+/// Returns [`LineError::Sizes`] unless there is a covariance for each point, [`LineError::TooFewPoints`] for fewer than two, [`LineError::Point`] and
 /// [`LineError::Param`] for points or variances that are not finite (variances: positive), [`LineError::NoDirection`] if all points are in one place.
 pub fn fit_line(points: &[Vector2<f64>], covariances: &[Matrix2<f64>]) -> Result<LineFit, LineError> {
     let got = points.len();

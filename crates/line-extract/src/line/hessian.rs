@@ -4,8 +4,7 @@ use nalgebra::Vector2;
 
 /// A line in Hessian form, $`x \cos α + y \sin α = ρ`$, with $`ρ \ge 0`$ (metres) and $`α`$ in (−π, π] (radians).
 ///
-/// The normal points away from the origin, usually the sensor. A line through the origin has two normals; the one that was given stays.
-///
+/// The normal points away from the origin, usually the sensor. A line through the origin has two normals; the given one is kept.
 /// ```
 /// use nalgebra::Vector2;
 /// use wayfix_line_extract::HessianLine;
@@ -47,7 +46,7 @@ impl HessianLine {
         Vector2::new(self.alpha.cos(), self.alpha.sin())
     }
 
-    /// The unit vector along the line that has the origin on its left: the way beams go that turn counter-clockwise.
+    /// The unit vector along the line with the origin on its left: the direction of counter-clockwise beams.
     pub fn direction(&self) -> Vector2<f64> {
         Vector2::new(-self.alpha.sin(), self.alpha.cos())
     }

@@ -16,7 +16,7 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// About the first point, so that points far from the origin lose no digits.
+    /// Sums about the first point, to keep precision far from the origin.
     pub(crate) fn new(points: &[Vector2<f64>], weight: impl Fn(usize) -> f64) -> Self {
         let (mut total, mut sum) = (0.0, Vector2::zeros());
         let origin = points.first().copied().unwrap_or_default();
@@ -65,13 +65,13 @@ impl Moments {
             + 2.0 * xy * direction.x * direction.y
             + yy * direction.y * direction.y;
         let extent_m = (along / self.weight).sqrt();
-        // Below the resolution of the coordinates there is no direction, only rounding.
+        // Below the resolution of the coordinates the direction is rounding noise.
         if !(extent_m > 1e-12 * self.mean.amax() && along.is_finite()) {
             return Err(LineError::NoDirection { n_points: self.n_points, extent_m });
         }
         let rho = normal.dot(&self.mean);
         let arm = direction.dot(&self.mean);
-        // The normal that points the other way turns the sign of ρ, and so of its covariance with α.
+        // The opposite normal flips the sign of ρ, and so of its covariance with α.
         let sign = if rho < 0.0 { -1.0 } else { 1.0 };
         let both = sign * arm / along;
         let covariance = Matrix2::new(1.0 / self.weight + arm * arm / along, both, both, 1.0 / along);

@@ -12,12 +12,12 @@ pub(super) struct Baseline<'a> {
     a: &'a Vector2<f64>,
     b: &'a Vector2<f64>,
     d: Vector2<f64>,
-    /// What [`Self::cross`] may be wrong by for any point of the chain.
+    /// Error bound of [`Self::cross`] for any point of the chain.
     slack: f64,
 }
 
 impl<'a> Baseline<'a> {
-    /// `extent` is the width and height of everything that will be asked about.
+    /// `extent` is the width and height of all points to test.
     pub(super) fn new(a: &'a Vector2<f64>, b: &'a Vector2<f64>, extent: &Vector2<f64>) -> Self {
         let d = b - a;
         Self { a, b, d, slack: slack(&d, extent) }
@@ -75,7 +75,7 @@ impl<'a> Baseline<'a> {
         }
     }
 
-    /// The sign of $`(b - a) \times (q - p)`$, exactly: whether the way from `p` to `q` leads to the left of the line.
+    /// The exact sign of $`(b - a) \times (q - p)`$: whether the direction from `p` to `q` is to the left of the line.
     pub(super) fn turn(&self, p: &Vector2<f64>, q: &Vector2<f64>) -> Ordering {
         turn(self.a, self.b, p, q)
     }
@@ -90,7 +90,7 @@ impl<'a> Baseline<'a> {
     }
 }
 
-/// How much rounding there may be in a cross product of `d` with a vector of a size up to `extent`.
+/// Rounding error bound of a cross product of `d` with a vector of a size up to `extent`.
 #[inline]
 fn slack(d: &Vector2<f64>, extent: &Vector2<f64>) -> f64 {
     // Three factors of (1 + U) in a product and one in the difference: 4 U; 5 U covers the extent's own rounding, too.
@@ -118,7 +118,7 @@ mod tests {
         let (a, b) = (Vector2::new(0.1, 0.1), Vector2::new(0.7, 0.1));
         let line = Baseline::new(&a, &b, &Vector2::new(1.0, 1.0));
         let (above, below) = (Vector2::new(0.3, 0.1 + 0.0625), Vector2::new(0.2, 0.1 - 0.0625));
-        // 0.1 ± 1/16 round differently, so the two are no tie; the integers of the significands say which is farther.
+        // 0.1 ± 1/16 round differently, so there is no tie; the integers of the significands decide.
         let up = above.y - a.y;
         let down = a.y - below.y;
         assert_eq!(line.compare(&above, &below), up.partial_cmp(&down).unwrap()); // both differences are exact (Sterbenz)

@@ -5,7 +5,7 @@ use crate::{LineError, check};
 /// Beyond this, metres, the product of two differences may overflow.
 const LARGEST: f64 = 1e150;
 
-/// Points and tolerance that were found usable.
+/// Validated points and tolerance.
 pub(super) struct Chain<'a> {
     pub(super) points: &'a [Vector2<f64>],
     pub(super) epsilon: f64,

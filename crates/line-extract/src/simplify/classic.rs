@@ -6,13 +6,13 @@ use super::scan::Scanner;
 use super::split::{first_max, split_all, split_loop};
 use crate::LineError;
 
-/// What a point's distance is measured to.
+/// Reference of a point's distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Distance {
-    /// The line through both ends of the piece, as [Andrade-Cetto, Table 2] means it.
+    /// The line through both ends of the piece, as in [Andrade-Cetto, Table 2].
     #[default]
     Line,
-    /// The piece itself: what lies beyond an end is as far as that end.
+    /// The segment between both ends: beyond an end, the distance is that to the end.
     Segment,
 }
 
@@ -41,7 +41,7 @@ pub enum Distance {
 /// ```
 ///
 /// # Errors
-/// [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
+/// Returns [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
 /// 1e150.
 pub fn douglas_peucker(
     points: &[Vector2<f64>],

@@ -33,7 +33,7 @@ fn sign_on_a_grid(a: &Vector2<f64>, b: &Vector2<f64>, w: &[(f64, &Vector2<f64>)]
     Some(order(left, right).then(order(left_tail, right_tail)))
 }
 
-/// The sum, if no addition on the way was rounded.
+/// The sum, if no addition was rounded.
 fn exact_sum(terms: impl IntoIterator<Item = f64>) -> Option<f64> {
     terms.into_iter().try_fold(0.0, |sum, term| {
         let (sum, tail) = two_sum(sum, term);
@@ -80,14 +80,14 @@ impl Expansion {
     }
 }
 
-/// `a + b` rounded, and what the rounding lost [Knuth 1969].
+/// `a + b` rounded, and the rounding error [Knuth 1969].
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_virtual = sum - a;
     (sum, (a - (sum - b_virtual)) + (b - b_virtual))
 }
 
-/// `a b` rounded, and what the rounding lost.
+/// `a b` rounded, and the rounding error.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     (product, a.mul_add(b, -product))

@@ -29,7 +29,7 @@ pub(super) struct Level {
 #[derive(Default)]
 pub(super) struct Sides {
     vertices: Vec<u32>,
-    /// Where each block's vertices end.
+    /// End of each block's vertices.
     ends: Vec<usize>,
 }
 
@@ -89,9 +89,9 @@ impl Sides {
         &self.vertices[start..self.ends[block]]
     }
 
-    /// Appends the half hull of points that come from left to right and turn only one `way` [Andrew 1979].
+    /// Appends the half hull of points sorted from left to right that turn only one `way` [Andrew 1979].
     ///
-    /// Of coincident points the first to come stays.
+    /// Of coincident points the first is kept.
     fn push_hull(&mut self, points: &[Vector2<f64>], order: impl Iterator<Item = u32>, way: Ordering) {
         let at = |k: u32| &points[k as usize];
         let start = self.vertices.len();

@@ -1,4 +1,4 @@
-//! Fewer points that describe a chain as well: Douglas-Peucker, plain and with a tree of hulls.
+//! Polyline simplification: Douglas-Peucker, plain and with a tree of hulls.
 
 mod baseline;
 mod chain;

@@ -1,4 +1,4 @@
-//! The farthest point of a range, asked of the hulls.
+//! Farthest-point queries on the hulls.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -63,7 +63,7 @@ impl HullTree {
         }
     }
 
-    /// The first point of a block that is as far as `best`, which the block holds: down the levels, left where possible.
+    /// The first point of a block that is as far as `best`, which the block contains: descends the levels, left where possible.
     fn first_as_far(&self, points: &[Vector2<f64>], block: Block, line: &Baseline, best: usize) -> usize {
         let as_far = |k: usize| line.compare(&points[k], &points[best]) == Ordering::Equal;
         let mut place = block.place;
@@ -76,7 +76,7 @@ impl HullTree {
 }
 
 impl Level {
-    /// One of the farthest points of a block, and whether others may be as far.
+    /// One of the farthest points of a block, and whether others may be equally far.
     fn farthest(&self, points: &[Vector2<f64>], place: usize, line: &Baseline) -> (usize, bool) {
         let (above, above_tied) = extreme(points, self.upper.of(place), line, Ordering::Greater);
         let (below, below_tied) = extreme(points, self.lower.of(place), line, Ordering::Less);
@@ -88,7 +88,7 @@ impl Level {
     }
 }
 
-/// Where half a hull stops to lead away from the line, and whether its next edge runs along it.
+/// Index at which half a hull stops leading away from the line, and whether its next edge is parallel to it.
 fn extreme(points: &[Vector2<f64>], half: &[u32], line: &Baseline, away: Ordering) -> (usize, bool) {
     let away = if line.is_rightward() { away } else { away.reverse() };
     let turn = |t: usize| line.turn(&points[half[t] as usize], &points[half[t + 1] as usize]);

@@ -7,12 +7,12 @@ use super::baseline::Baseline;
 
 const BLOCK: usize = 128;
 
-/// Finds farthest points by looking at each.
+/// Finds farthest points by testing every point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scanner {
     /// Room to note the blocks that may hold the farthest point.
     blocks: Vec<usize>,
-    /// How many comparisons came so close that they may have been computed exactly.
+    /// Number of comparisons close enough to need exact arithmetic.
     pub(super) n_exact_comparisons: usize,
 }
 
@@ -44,7 +44,7 @@ impl Scanner {
         best
     }
 
-    /// The largest computed value, and in `blocks` where values are that may in truth be as large.
+    /// The largest computed value, and in `blocks` the positions of values that may be equally large.
     fn note_blocks(&mut self, points: &[Vector2<f64>], range: &Range<usize>, line: &Baseline) -> f64 {
         let mut most = 0.0;
         self.blocks.clear();
@@ -70,7 +70,7 @@ pub(super) fn farther(points: &[Vector2<f64>], line: &Baseline, best: Option<usi
     }
 }
 
-/// Four running maxima, so that no comparison waits for the one before.
+/// Four running maxima, so that comparisons do not wait for each other.
 #[inline]
 fn largest(points: &[Vector2<f64>], line: &Baseline) -> f64 {
     let mut lanes = [0.0_f64; 4];

@@ -7,18 +7,18 @@ use super::scan::Scanner;
 use super::split::{split_all, split_loop};
 use crate::LineError;
 
-/// How often each point may be looked at, in units of $`\log_2 n`$, before hulls are built.
+/// Number of tests per point, in units of $`\log_2 n`$, before hulls are built.
 const SCAN_BUDGET: usize = 2;
 
-/// How many looks an exact comparison takes, in the time of the fast kind: some 100 ns.
+/// Cost of an exact comparison in fast tests: about 100 ns.
 const EXACT_COMPARISON_COST: usize = 100;
 
-/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`Distance::Line`](crate::Distance), in $`O(n \log^2 n)`$ whatever the chain.
+/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`Distance::Line`](crate::Distance), in $`O(n \log^2 n)`$ for every chain.
 ///
-/// As long as splits are balanced nothing is faster than looking at each point. When that has taken $`2 n \log_2 n`$ looks, convex
-/// hulls of the chain's blocks are built and answer for the rest: the farthest point of a block is a vertex of its hull, found by bisection. That is the
-/// idea of [Hershberger & Snoeyink 1992], whose hulls of paths need a chain that does not cross itself; hulls of index ranges do not, so
-/// there is no case to fall back from. All comparisons are exact, hence the same indices.
+/// While splits are balanced, a test of every point is fastest. After $`2 n \log_2 n`$ tests, convex
+/// hulls of the chain's blocks are built for the rest: the farthest point of a block is a vertex of its hull, found by bisection. This is the
+/// idea of [Hershberger & Snoeyink 1992], whose path hulls require a chain that does not cross itself; hulls of index ranges do not. All
+/// comparisons are exact, hence the same indices.
 ///
 /// ```
 /// use nalgebra::Vector2;
@@ -33,7 +33,7 @@ const EXACT_COMPARISON_COST: usize = 100;
 /// ```
 ///
 /// # Errors
-/// [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
+/// Returns [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
 /// 1e150.
 pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, LineError> {
     let mut kept = Vec::new();
@@ -78,7 +78,7 @@ impl Simplifier {
     /// Replaces `kept` by the indices that [`simplify()`] returns.
     ///
     /// # Errors
-    /// As [`simplify()`]; `kept` stays as it was.
+    /// Returns the errors of [`simplify()`]; `kept` is then unchanged.
     pub fn simplify_into(
         &mut self,
         points: &[Vector2<f64>],

@@ -2,10 +2,10 @@
 
 use super::chain::Chain;
 
-/// Splits ranges until `find` names no more point, and writes the kept indices in order [Douglas & Peucker 1973].
+/// Splits ranges until `find` returns no more point, and writes the kept indices in order [Douglas & Peucker 1973].
 ///
-/// `find(i, j)` is the point between `i` and `j` where the chain must be split, or `None`. Ranges still to do share their ends, so
-/// a list of ends is all the memory, on the heap and at most as long as the chain.
+/// `find(i, j)` is the split point between `i` and `j`, or `None`. Pending ranges share their ends, so a list of ends on the heap suffices, at most
+/// as long as the chain.
 pub(super) fn split_all(
     n: usize,
     ends: &mut Vec<usize>,
@@ -33,7 +33,7 @@ pub(super) fn split_all(
     }
 }
 
-/// Where a chain whose ends coincide has to be split: farthest from that point, if farther than the tolerance.
+/// Split point of a chain with coincident ends: the farthest from that point, if farther than the tolerance.
 ///
 /// A split point differs from both ends, so only the whole chain can be such a range, once.
 pub(super) fn split_loop(chain: &Chain, start: usize, end: usize) -> Option<usize> {

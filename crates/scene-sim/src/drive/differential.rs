@@ -24,7 +24,7 @@ pub struct DifferentialDrive {
     pose: Pose2<f64>,
     /// Turning speeds of the left and right wheel, rad/s.
     wheel_rates: [f64; 2],
-    /// How far each has turned since the start, radians.
+    /// Angle of each wheel since the start, rad.
     wheel_angles: [f64; 2],
     common_slip: GaussMarkov,
     own_slips: [GaussMarkov; 2],
@@ -62,17 +62,17 @@ impl DifferentialDrive {
         }
     }
 
-    /// Where the robot truly is.
+    /// True pose of the robot.
     pub fn pose(&self) -> Pose2<f64> {
         self.pose
     }
 
-    /// How far the left and the right wheel have turned since the start, radians: what encoders count.
+    /// Angles of the left and the right wheel since the start, rad: the input of encoders.
     pub fn wheel_angles(&self) -> [f64; 2] {
         self.wheel_angles
     }
 
-    /// The controller knows the data sheet only.
+    /// The controller uses the nominal parameters.
     fn follow_command(&mut self, step_s: f64, linear: f64, angular: f64) {
         let half_track = 0.5 * self.params.track_m;
         let wanted = [linear - half_track * angular, linear + half_track * angular]

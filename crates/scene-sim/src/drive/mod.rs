@@ -1,4 +1,4 @@
-//! How the robot truly moves: two wheels, slip, and a driver that follows a route.
+//! True motion of the robot: two wheels, slip, and a driver that follows a route.
 
 mod differential;
 mod params;

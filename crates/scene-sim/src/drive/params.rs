@@ -1,6 +1,6 @@
 use crate::{SimError, check};
 
-/// A robot on two wheels: what its builder believes, and how it truly is.
+/// A robot on two wheels: nominal parameters and true deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveParams {
     /// Cruising speed, m/s; 0 stands still. Default 0.5.
@@ -11,21 +11,21 @@ pub struct DriveParams {
     pub wheel_radius_m: f64,
     /// Distance between the wheels on the data sheet, metres. Default 0.30.
     pub track_m: f64,
-    /// By what share the true radius of the left wheel differs. Default 0.
+    /// Relative error of the true radius of the left wheel. Default 0.
     pub left_radius_error: f64,
-    /// By what share the true radius of the right wheel differs. Default 0.
+    /// Relative error of the true radius of the right wheel. Default 0.
     pub right_radius_error: f64,
-    /// By what share the true track differs. Default 0.
+    /// Relative error of the true track. Default 0.
     pub track_error: f64,
-    /// How fast the wheels come to the commanded speed: time constant, seconds; 0 at once. Default 0.1.
+    /// Time constant of the wheel speeds, s; 0 for an immediate response. Default 0.1.
     pub motor_lag_s: f64,
-    /// How far ahead on the route the driver looks, metres. Default 0.5.
+    /// Lookahead of the driver on the route, m. Default 0.5.
     pub lookahead_m: f64,
     /// Slip of the wheels. Default none.
     pub slip: SlipParams,
 }
 
-/// Share of a wheel's turning that does not become travel: a Gauss-Markov process per wheel.
+/// Share of a wheel's rotation lost to slip: a Gauss-Markov process per wheel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlipParams {
     /// Standard deviation of the share. Default 0.
@@ -63,7 +63,7 @@ impl DriveParams {
     /// Whether the numbers make a robot.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::not_negative("speed (m/s)", self.speed_mps)?;
         check::positive("acceleration (m/s²)", self.acceleration_mps2)?;

@@ -4,12 +4,12 @@ use super::DriveParams;
 use crate::plane;
 use crate::route::Route;
 
-/// A driver that steers for a point a little ahead on the route. [Coulter 1992]
+/// A driver that steers towards a point ahead on the route. [Coulter 1992]
 ///
-/// It sees where the robot truly is, as a person at the wheel would; estimates play no part in a simulated log.
+/// It uses the true pose; a simulated log does not depend on estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pursuit {
-    /// How far along the route the robot is, metres.
+    /// Progress along the route, m.
     progress_m: f64,
     /// The commanded speed, m/s.
     speed_mps: f64,

@@ -1,6 +1,6 @@
 use crate::scenery::canvas::{Canvas, Color, times};
 
-/// Paints what passes before the target: a board with a grain, in the colour of slate.
+/// Paints the occluder that passes the target: a slate-coloured board with a grain.
 pub(super) fn paint(canvas: &mut Canvas, (left, right): (f64, f64), light: Color) {
     let (top, bottom) = (-1.0, canvas.height as f64 + 1.0);
     canvas.rectangle((left, top), (right, bottom), |x, y| {

@@ -6,10 +6,10 @@ use crate::random::{Source, Streams};
 use crate::scenery::RgbPicture;
 use crate::scenery::canvas::{Canvas, Color};
 
-/// The mean of the picture, of full scale, that automatic exposure strives for, and the share of the way it goes each frame.
+/// Target mean of the automatic exposure, of full scale, and its gain per frame.
 const MIDDLE_GREY: f64 = 0.22;
 const FOLLOWS: f64 = 0.06;
-/// How far red and blue drift against green.
+/// Amplitude of the drift of red and blue against green.
 const WHITE_BALANCE: f64 = 0.04;
 /// Electrons in a full pixel of an ordinary web camera, and its noise in the dark as a share of full scale.
 const FULL_WELL: f64 = 6000.0;
@@ -69,7 +69,7 @@ fn blur(light: &mut Canvas) {
     }
 }
 
-/// Blurs `n` pixels that lie `step` apart.
+/// Blurs `n` pixels with stride `step`.
 fn smear(pixels: &mut [Color], start: usize, step: usize, n: usize) {
     let mut before = pixels[start];
     for i in 0..n {

@@ -6,9 +6,9 @@ use crate::{SimError, check};
 pub struct Film {
     /// Its name.
     pub name: &'static str,
-    /// How many pictures it has.
+    /// Number of frames.
     pub n_frames: usize,
-    /// What happens to the target on the way.
+    /// Event that affects the target.
     pub incident: Incident,
     /// Seed of textures, paths, light and noise.
     pub seed: u64,
@@ -30,7 +30,7 @@ impl Film {
     /// The film of that name.
     ///
     /// # Errors
-    /// [`SimError::UnknownScenario`] when there is none.
+    /// Returns [`SimError::UnknownScenario`] if there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
         let found = Self::ALL.into_iter().find(|film| film.name == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
@@ -39,7 +39,7 @@ impl Film {
     /// Shows it from the beginning.
     ///
     /// # Errors
-    /// [`SimError::UnknownScenario`] when it has the name of none, and [`SimError::TooMany`] frames.
+    /// Returns [`SimError::UnknownScenario`] if it has the name of none, and [`SimError::TooMany`] frames.
     pub fn frames(&self) -> Result<Frames, SimError> {
         Self::named(self.name)?;
         check::count("frames", self.n_frames, Self::MAX_FRAMES)?;

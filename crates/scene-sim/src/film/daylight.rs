@@ -8,10 +8,10 @@ const SKY: Color = [0.20, 0.24, 0.30];
 /// Width of the patches of shade, and how fast they pass.
 const SHADE_PX: f64 = 130.0;
 const SHADE_PX_S: f64 = 45.0;
-/// How much of the sun the leaves hold back.
+/// Share of the sunlight blocked by leaves.
 const SHADE: f64 = 0.6;
 
-/// The light outdoors: a sun that grows and fades and gets warmer and cooler, patches of shade that pass, and the sky.
+/// Outdoor light: a sun of varying strength and colour, moving patches of shade, and the sky.
 pub(super) struct Daylight {
     strength: SineSum,
     warmth: SineSum,

@@ -1,15 +1,15 @@
 use super::Silhouette;
 use crate::scenery::RgbPicture;
 
-/// One picture of a film, and what is true of it.
+/// One frame of a film with its truth.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// What the camera gives.
+    /// The camera image.
     pub picture: RgbPicture,
-    /// The whole target as far as it lies in the picture, hidden parts included.
+    /// The whole target within the image, hidden parts included.
     pub target: Silhouette,
-    /// The part of the target that nothing hides.
+    /// The visible part of the target.
     pub visible: Silhouette,
-    /// What belongs to the same creature and not to the target: the neck of the snail. Empty in other films.
+    /// Parts of the same animal that do not belong to the target: the neck of the snail. Empty in other films.
     pub distractor: Silhouette,
 }

@@ -7,11 +7,11 @@ use crate::random::deviate::{below, uniform, unit};
 use crate::random::{Source, Streams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
 
-/// How far a hand-held camera sways, in pixels.
+/// Amplitude of a hand-held camera's sway, px.
 const SWAY_PX: f64 = 6.0;
 const MARGIN_PX: usize = 8;
 
-/// What lies behind the target, larger than the picture, before a camera that a hand holds.
+/// Background of the target, larger than the image, seen by a hand-held camera.
 pub(super) struct Ground {
     albedo: Canvas,
     sway: [SineSum; 2],
@@ -29,7 +29,7 @@ impl Ground {
         Self { albedo, sway: [SineSum::new(5.0, rng), SineSum::new(4.0, rng)] }
     }
 
-    /// What of it the camera sees at one moment.
+    /// The visible part at one moment.
     pub(super) fn at(&self, seconds: f64) -> impl Fn(f64, f64) -> Color + '_ {
         let margin = MARGIN_PX as f64 - 0.5; // the colour of a pixel is that of its centre
         let shift = self.sway.map(|swing| margin + SWAY_PX * swing.at(seconds));
@@ -48,7 +48,7 @@ impl Ground {
     }
 }
 
-/// Scatters `n` leaves, or pebbles when they are nearly round, each in a colour between two of the list.
+/// Scatters `n` leaves, or nearly round pebbles, each in a colour between two of the list.
 pub(super) fn scatter(
     canvas: &mut Canvas,
     n: usize,

@@ -1,7 +1,7 @@
 use super::Film;
 use crate::SimError;
 
-/// What happens to the target in the middle of a film. All times are shares of its length.
+/// Event that affects the target in the middle of a film. All times are shares of its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Incident {
@@ -12,7 +12,7 @@ pub enum Incident {
     PartlyHidden,
     /// A board passes before the target and hides all of it for a fifth of a second or more.
     Hidden,
-    /// The target leaves the picture, is away for more than half a second, and comes back.
+    /// The target leaves the image for more than half a second and returns.
     Away,
 }
 
@@ -33,20 +33,20 @@ impl Incident {
     /// The incident of that name.
     ///
     /// # Errors
-    /// [`SimError::UnknownScenario`] when there is none.
+    /// Returns [`SimError::UnknownScenario`] if there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
         let found = Self::ALL.into_iter().find(|incident| incident.name() == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
     }
 
-    /// How far to the right the target is out of its way, in pixels, at a share of the film's length.
+    /// Displacement of the target to the right, px, at a share of the film's length.
     pub(super) fn aside(self, share: f64) -> f64 {
         let away = Film::SIZE_PX.0 as f64 + 100.0;
         let gone = if share < 0.5 { smooth((share - 0.35) / 0.15) } else { smooth((0.80 - share) / 0.15) };
         if self == Self::Away { away * gone } else { 0.0 }
     }
 
-    /// Left and right edge of what passes before the target.
+    /// Left and right edge of the occluder.
     pub(super) fn board(self, share: f64) -> Option<(f64, f64)> {
         let width = match self {
             Self::PartlyHidden => 20.0,

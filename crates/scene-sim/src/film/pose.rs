@@ -1,6 +1,6 @@
 use crate::scenery::canvas::Window;
 
-/// Where a flat thing is in the picture, how it is turned, and how large one of its units is along and across.
+/// Position and rotation of a flat object in the image, and its scale along and across.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pose {
     pub(super) centre: (f64, f64),
@@ -28,13 +28,13 @@ impl Pose {
         self.unit_px.0.min(self.unit_px.1)
     }
 
-    /// The part of a picture within so many units of the centre.
+    /// The part of an image within this number of units of the centre.
     pub(super) fn window(self, units: f64, size: (usize, usize)) -> Window {
         Window::around(self.centre, 2.0 + units * self.unit_px.0.max(self.unit_px.1), size)
     }
 }
 
-/// How far inside an upright ellipse a point lies, in the units of the point.
+/// Position of a point relative to an upright ellipse, positive inside, in the units of the point.
 pub(super) fn in_ellipse((u, v): (f64, f64), centre: (f64, f64), radii: (f64, f64)) -> f64 {
     let (a, b) = ((u - centre.0) / radii.0, (v - centre.1) / radii.1);
     (1.0 - (a * a + b * b).sqrt()) * radii.0.min(radii.1)

@@ -9,12 +9,12 @@ pub struct Silhouette {
 }
 
 impl Silhouette {
-    /// Nothing.
+    /// An empty silhouette.
     pub(super) fn empty((width, height): (usize, usize)) -> Self {
         Self { width, height, inside: vec![false; width * height] }
     }
 
-    /// Where `inside` is positive at the centre of the pixel.
+    /// The pixels at whose centre `inside` is positive.
     pub(super) fn of(size: (usize, usize), window: &Window, inside: impl Fn(f64, f64) -> f64) -> Self {
         let mut silhouette = Self::empty(size);
         for row in window.rows.clone() {
@@ -26,7 +26,7 @@ impl Silhouette {
         silhouette
     }
 
-    /// What is left when the pixels of another are taken away.
+    /// The silhouette without the pixels of another.
     pub(super) fn without(mut self, other: &Self) -> Self {
         for (mine, theirs) in self.inside.iter_mut().zip(&other.inside) {
             *mine &= !theirs;
@@ -54,8 +54,8 @@ impl Silhouette {
         self.inside.iter().filter(|&&inside| inside).count()
     }
 
-    /// Left and top edge, width and height in pixels, where the pixel in column `u` and row `v` covers $`[u, u+1) × [v, v+1)`$; `None`
-    /// when there is no pixel.
+    /// Left and top edge, width and height in pixels, where the pixel in column `u` and row `v` covers $`[u, u+1) × [v, v+1)`$; `None` without
+    /// pixels.
     pub fn bounding_box(&self) -> Option<[f64; 4]> {
         let (mut left, mut right, mut top, mut bottom) = (self.width, 0, self.height, 0);
         for (i, _) in self.inside.iter().enumerate().filter(|(_, inside)| **inside) {

@@ -4,7 +4,7 @@ use rand::Rng;
 
 use crate::random::deviate::{uniform, unit};
 
-/// A smooth random path that never repeats and never leaves [−1, 1]: a sum of swings whose periods have no common multiple.
+/// A smooth random path within [−1, 1] that does not repeat: a sum of sines with incommensurable periods.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SineSum {
     /// Size, radians a second, and where it begins.

@@ -5,10 +5,10 @@ use crate::random::deviate::{below, chance, normal, uniform};
 use crate::random::{GaussMarkov, Source, Streams};
 use crate::{SimError, check};
 
-/// Light from everywhere, so that nothing is quite black.
+/// Ambient light, so that nothing is completely black.
 const STRAY: [f32; 3] = [0.12; 3];
 
-/// How light changes while a robot drives.
+/// Parameters of the change of light during a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmbientLightParams {
     /// Standard deviation of the logarithm of the daylight: clouds. Default 0.35.
@@ -17,7 +17,7 @@ pub struct AmbientLightParams {
     pub daylight_correlation_s: f64,
     /// Standard deviation of the logarithm of each group of lamps from one drive to the next: some fail, some are new. Default 0.1.
     pub lamp_sigma: f64,
-    /// Mean time between two changes made by people who switch lamps and draw curtains, seconds; `None` when nobody does. Default `None`.
+    /// Mean time between two changes by people who switch lamps and draw curtains, s; `None` for no changes. Default `None`.
     pub switching_s: Option<f64>,
 }
 
@@ -31,7 +31,7 @@ impl AmbientLightParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::not_negative("σ of the daylight", self.daylight_sigma)?;
         check::positive("correlation time of the daylight (s)", self.daylight_correlation_s)?;
@@ -50,7 +50,7 @@ pub(super) struct AmbientLight {
     lamps: Vec<f64>,
     /// Which share of its window each curtain leaves open.
     pub(super) curtains: Vec<f64>,
-    /// Brightness of the day, 1 as usual.
+    /// Brightness of the day, 1 for a typical day.
     pub(super) daylight: f64,
     clouds: GaussMarkov,
 }
@@ -94,7 +94,7 @@ impl AmbientLight {
         }
     }
 
-    /// Somebody switches one group of lamps or draws one curtain.
+    /// Switches one group of lamps or draws one curtain.
     fn switch<R: Rng + ?Sized>(&mut self, rng: &mut R) {
         let which = below(self.lamps.len() + self.curtains.len(), rng);
         let open = uniform(-0.3, 1.3, rng).clamp(0.0, 1.0);

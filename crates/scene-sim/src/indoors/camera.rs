@@ -2,10 +2,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::{SimError, check};
 
-/// A camera that sees all around, and how its picture is unrolled.
+/// An omnidirectional camera, and the unwrapping of its image.
 ///
-/// A view is what somebody sees who turns round, from left to right: column k is centred on the azimuth $`π - (k + ½)\,2π/n`$, the front is in
-/// the middle, and the first row looks highest.
+/// The columns of a view run from left to right in the order of a clockwise turn: column k is centred on the azimuth $`π - (k + ½)\,2π/n`$, the
+/// front is in the middle, and the first row has the highest elevation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmniCameraParams {
     /// Sectors, an even number. Default 120.
@@ -22,7 +22,7 @@ pub struct OmniCameraParams {
     pub rays: [usize; 2],
     /// Standard deviation of the noise of a pixel, grey values. Default 2.
     pub noise: f64,
-    /// How much of a change of the light the automatic exposure takes back, 0 to 1. Default 0.8.
+    /// Share of a change of light that the automatic exposure compensates, 0 to 1. Default 0.8.
     pub exposure_control: f64,
 }
 
@@ -45,7 +45,7 @@ impl OmniCameraParams {
     /// Whether the numbers make a camera.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::above("columns of the camera", self.columns as f64, 3.5, "at least 4")?;
         check::count("columns of the camera", self.columns, 4096)?;

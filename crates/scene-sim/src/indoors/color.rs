@@ -2,7 +2,7 @@ use rand::Rng;
 
 use crate::random::deviate::uniform;
 
-/// How much red, green and blue a surface throws back, 255 all of it.
+/// Reflectance in red, green and blue, 255 for all of the light.
 pub(super) type Rgb8 = [u8; 3];
 
 /// From hue (turns), saturation and value in [0, 1].

@@ -7,7 +7,7 @@ use super::camera::OmniCameraParams;
 use super::panel::Panel;
 use crate::plane;
 
-/// What each ray of a view meets first.
+/// First intersection of each ray of a view.
 #[derive(Clone, Debug)]
 pub(super) struct Depths {
     /// Unit vectors in the robot's frame, one an azimuth.
@@ -57,7 +57,7 @@ impl Depths {
         self.met.fill(PanelHit::FAR);
     }
 
-    /// What the rays of one azimuth meet, the lowest first.
+    /// First intersections of the rays of one azimuth, the lowest first.
     pub(super) fn column(&self, azimuth: usize) -> &[PanelHit] {
         let n = self.slopes.len();
         &self.met[azimuth * n..(azimuth + 1) * n]
@@ -72,7 +72,7 @@ impl Depths {
         self.rays.len()
     }
 
-    /// Puts a panel, seen from `pose`, before what is farther away.
+    /// Draws a panel, seen from `pose`, in front of farther ones.
     pub(super) fn put(&mut self, number: u32, panel: &Panel, pose: &Pose2<f64>) {
         if !panel.faces(&pose.translation) {
             return;

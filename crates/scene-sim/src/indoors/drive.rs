@@ -16,16 +16,16 @@ use crate::{SimError, check};
 /// Time between two steps of the integration, milliseconds.
 const STEP_MS: u64 = 10;
 
-/// What happens at one view, truth included.
+/// One view with its truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IndoorStep {
     /// Since the start.
     pub milliseconds: u64,
-    /// What the wheels say to have moved since the last view, in the robot's frame before; none at the first.
+    /// Odometry since the last view, in the robot frame before; `None` at the first.
     pub odometry: Option<Pose2<f64>>,
-    /// Where the robot truly is.
+    /// True pose of the robot.
     pub pose: Pose2<f64>,
-    /// What it sees, as [`OmniCameraParams`](super::OmniCameraParams) says.
+    /// The view, with the parameters [`OmniCameraParams`](super::OmniCameraParams).
     pub view: RgbPicture,
 }
 

@@ -5,9 +5,9 @@ use crate::random::deviate::quick_normal;
 
 /// Entries of the tone curve.
 const N_TONES: usize = 4096;
-/// What the mean of a view is exposed to, of full scale.
+/// Target mean of the exposure, of full scale.
 const MEAN: f32 = 0.22;
-/// Light of a usual view; the exposure without any control is for this.
+/// Mean light of a typical view; the exposure without control is for this.
 const USUAL: f32 = 0.3;
 
 /// Makes bytes out of light: exposure, tone curve, noise.

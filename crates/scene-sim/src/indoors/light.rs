@@ -5,12 +5,12 @@ use super::ambient_light::AmbientLight;
 /// Distance between the points for which the light is known, metres.
 const CELL_M: f64 = 2.0;
 
-/// Where the light comes from.
+/// Source of the light.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LightGroup {
     /// Lamps that are switched together, or a window.
     pub(super) kind: LightKind,
-    /// Light of each source right below it, where 1 shows a white wall as bright as usual.
+    /// Light of each source directly below it; 1 shows a white wall at typical brightness.
     pub(super) color: [f32; 3],
     /// Places of its lamps or of the window, metres.
     pub(super) places: Vec<Vector2<f64>>,
@@ -24,11 +24,11 @@ pub(super) enum LightKind {
     Lamps(usize),
     /// The window of the curtain of that number.
     Window(usize),
-    /// Daylight that nothing holds off.
+    /// Unobstructed daylight.
     Skylight,
 }
 
-/// How much of the light of every group arrives where, on a lattice over the floor.
+/// Irradiance by every group of lamps, on a lattice over the floor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LightField {
     low: Vector2<f64>,
@@ -77,7 +77,7 @@ pub(super) struct MixedLight {
 }
 
 impl MixedLight {
-    /// What arrives at a place; beyond the lattice what arrives at its edge.
+    /// Irradiance at a place; beyond the lattice, that at its edge.
     pub(super) fn at(&self, place: Vector2<f64>) -> [f32; 3] {
         let [x, y] = [0, 1].map(|k| ((place[k] - self.low[k]) / CELL_M).clamp(0.0, (self.n[k] - 1) as f64));
         let (i, j) = ((x as usize).min(self.n[0] - 2), (y as usize).min(self.n[1] - 2));

@@ -29,7 +29,7 @@ impl Mirror {
     /// The raw picture for a view, which should be at least as fine; black beside the ring.
     ///
     /// # Errors
-    /// When the ring does not fit into the picture, or the view is empty or not as large as it says.
+    /// Returns an error if the ring does not fit into the picture, or the view is empty or has an inconsistent size.
     pub fn image(&self, view: &RgbPicture) -> Result<RgbPicture, SimError> {
         check::count("side of the picture (pixels)", self.side_px, 1 << 14)?;
         check::not_negative("inner radius (pixels)", self.inner_px)?;
@@ -54,7 +54,7 @@ impl Mirror {
     }
 }
 
-/// At a share of a turn from the first column and of the way from top to bottom.
+/// Interpolates at a share of a turn from the first column and a share of the height from the top.
 fn interpolated(view: &RgbPicture, turn: f64, depth: f64) -> [u8; 3] {
     let (x, y) = (turn * view.width as f64 - 0.5, (depth * view.height as f64 - 0.5).max(0.0));
     let (left, above) = (x.floor(), y as usize);

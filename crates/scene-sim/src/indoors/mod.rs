@@ -1,10 +1,10 @@
-//! Stores and rooms, and what a camera sees that looks all around: textured walls, shelves, windows, people, changing light.
+//! Stores and rooms, and the views of an omnidirectional camera: textured walls, shelves, windows, people, changing light.
 //!
-//! A [`Store`] or a [`Lab`] is drawn from a seed, and rearranged by a share some weeks later; its [`Building`] says where one can drive
-//! ([`Aisles`]); an [`IndoorDrive`] gives views, drifting odometry and true poses one step after another.
+//! A [`Store`] or a [`Lab`] is drawn from a seed, and rearranged by a share some weeks later; its [`Building`] has the drivable
+//! [`Aisles`]; an [`IndoorDrive`] gives views, drifting odometry and true poses one step after another.
 //!
-//! A view is drawn panel by panel into a buffer of depths, one ray for each quarter of a pixel; each ray looks its colour up in a texture
-//! that is as coarse as the ray is wide, so that nothing flickers when the robot moves, and 120 × 20 pixels cost less than half a millisecond.
+//! A view is drawn panel by panel into a buffer of depths, one ray for each quarter of a pixel; each ray has its colour from a
+//! texture with the resolution of the ray's width, which avoids flicker under motion, and 120 × 20 pixels cost less than half a millisecond.
 
 mod ambient_light;
 mod camera;

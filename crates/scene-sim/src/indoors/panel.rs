@@ -3,7 +3,7 @@ use nalgebra::Vector2;
 /// An upright rectangle, seen from one side only.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Panel {
-    /// Its foot on the left of who looks at it, metres.
+    /// Its foot on the viewer's left, m.
     pub(super) left: Vector2<f64>,
     /// Its foot on the right.
     pub(super) right: Vector2<f64>,
@@ -11,18 +11,18 @@ pub(super) struct Panel {
     pub(super) bottom_m: f64,
     /// Height of its upper edge, metres.
     pub(super) top_m: f64,
-    /// What it looks like.
+    /// Its appearance.
     pub(super) material: Material,
 }
 
-/// What a panel shows: textures by their number.
+/// Appearance of a panel: textures by number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Material {
     /// Lit by the lamps.
     Lit(usize),
-    /// A window on the daylight, as far as its curtain does not hide it.
+    /// A window with daylight, partly covered by its curtain.
     Window {
-        /// What is outside; it shines as bright as the day is.
+        /// The scene outside; its brightness is that of the day.
         outside: usize,
         /// Its curtain, drawn from the left and lit by the lamps.
         curtain: usize,
@@ -34,7 +34,7 @@ pub(super) enum Material {
 }
 
 impl Panel {
-    /// Whether it shows its face to who stands at `eye`.
+    /// Whether its front faces the point `eye`.
     pub(super) fn faces(&self, eye: &Vector2<f64>) -> bool {
         (self.right - self.left).perp(&(eye - self.left)) < 0.0
     }

@@ -6,7 +6,7 @@ use crate::random::deviate::normal;
 use crate::sensor::{OdometryKind, WheelOdometryParams};
 use crate::{SimError, check};
 
-/// A robot that drives about in a building, and who is there beside it.
+/// A robot in a building, and the people around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IndoorParams {
     /// The robot; [`calibrated_robot`] draws one. Default: 0.5 m/s, wheels exactly as built, slip of 0.1 %.
@@ -17,7 +17,7 @@ pub struct IndoorParams {
     pub camera: OmniCameraParams,
     /// The light.
     pub ambient_light: AmbientLightParams,
-    /// People who walk about. Default 0.
+    /// Number of walking people. Default 0.
     pub n_people: usize,
 }
 
@@ -37,7 +37,7 @@ impl IndoorParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         self.drive.validate()?;
         check::above("time between views (ms)", f64::from(self.view_period_ms), 9.0, "at least 10")?;
@@ -47,7 +47,7 @@ impl IndoorParams {
         check::count("people", self.n_people, 1000)
     }
 
-    /// Encoders that believe the data sheet.
+    /// Encoders with nominal parameters.
     pub(super) fn odometry(&self) -> WheelOdometryParams {
         WheelOdometryParams {
             kind: OdometryKind::Increment,
@@ -59,8 +59,8 @@ impl IndoorParams {
     }
 }
 
-/// A robot whose wheels were calibrated as well as one does it by hand: travel wrong by 0.3 % and heading by 10⁻⁴ rad for each metre (σ), beside
-/// the slip, which turns it by 0.1° on the first metre and by 1° over 100 m.
+/// A robot with manually calibrated wheels: errors of 0.3 % in distance and 10⁻⁴ rad per metre in heading (σ), in addition to slip,
+/// which turns it by 0.1° on the first metre and by 1° over 100 m.
 pub fn calibrated_robot<R: Rng + ?Sized>(rng: &mut R) -> DriveParams {
     robot([3e-3 * normal(rng), 1e-4 * normal(rng)])
 }

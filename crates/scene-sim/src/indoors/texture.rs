@@ -2,11 +2,11 @@ use super::color::Rgb8;
 
 /// Edge of a texel of the finest level, metres.
 pub(super) const TEXEL_M: f64 = 0.05;
-/// How often each axis is halved, beside the finest level.
+/// Number of halvings of each axis, besides the finest level.
 const HALVINGS: [usize; 2] = [6, 5];
 
-/// The colours of an upright surface, with every pair of halvings along its length and height stored beside it, so that a ray that covers
-/// much of it costs one look.
+/// The colours of an upright surface, stored for every pair of halvings along its length and height, so that a wide ray needs one
+/// look-up.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Texture {
     levels: Vec<Level>,
@@ -46,7 +46,7 @@ impl Texture {
     }
 }
 
-/// How often to halve so that a texel is about as large as the patch.
+/// Number of halvings at which a texel is about as large as the patch.
 fn halvings(size_m: f64, most: usize) -> usize {
     let mut edge = TEXEL_M * std::f64::consts::SQRT_2;
     (0..most)

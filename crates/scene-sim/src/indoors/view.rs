@@ -25,7 +25,7 @@ pub(super) struct ViewRenderer {
     radiance: Vec<[f32; 3]>,
 }
 
-/// Where a person stands and in what.
+/// Position and clothes of a person.
 pub(super) type Standing = (Vector2<f64>, [Rgb8; 3]);
 
 impl ViewRenderer {
@@ -69,7 +69,7 @@ impl ViewRenderer {
     }
 }
 
-/// A person, turned to who looks.
+/// A person, facing the viewer.
 fn upright(place: Vector2<f64>, eye: &Vector2<f64>, number: usize) -> Panel {
     let sight = (place - eye).normalize();
     let aside = Vector2::new(-sight.y, sight.x) * HALF_WIDTH_M;
@@ -83,7 +83,7 @@ fn upright(place: Vector2<f64>, eye: &Vector2<f64>, number: usize) -> Panel {
     }
 }
 
-/// What is needed to tell the light from a place.
+/// Data needed to compute the light at a place.
 struct Shading<'a> {
     building: &'a Building,
     ambient_light: &'a AmbientLight,

@@ -2,18 +2,18 @@ use nalgebra::Vector3;
 
 use super::Rgb;
 
-/// What is behind the field. Implement it to put a hall of your own around it.
+/// Background of the field. Implement it for a custom hall.
 ///
-/// **Laws**: reflectances are finite and nowhere negative, normals are unit vectors, and nothing depends on anything but the arguments.
+/// **Laws**: reflectances are finite and not negative, normals are unit vectors, and results depend only on the arguments.
 pub trait Backdrop {
-    /// What a ray that meets nothing on the field meets; `direction` is not a unit vector.
+    /// Intersection of a ray that misses the field; `direction` is not a unit vector.
     fn surface_hit(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> SurfaceHit;
 }
 
 /// A point of the backdrop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceHit {
-    /// Where it is, metres.
+    /// Position, m.
     pub point: Vector3<f64>,
     /// Unit normal, on the side of the eye.
     pub normal: Vector3<f64>,
@@ -36,9 +36,9 @@ pub struct Hall {
     pub half_length_m: f64,
     /// Half its extent along y, metres. Default 3.2.
     pub half_width_m: f64,
-    /// How much of the walls people stand in front of, in [0, 1]. Default 0.6.
+    /// Share of the walls covered by people, in [0, 1]. Default 0.6.
     pub crowd: f64,
-    /// Which people stand there, and what the wall is like. Default 0.
+    /// Selects the people and the wall. Default 0.
     pub seed: u64,
 }
 
@@ -84,7 +84,7 @@ impl Hall {
         Rgb::new(0.23, 0.21, 0.19) * (0.9 + 0.2 * tone)
     }
 
-    /// A wall, and what stands before it at the distance `along` from its middle and at the height `z`.
+    /// Colour of a wall and the people before it, at the distance `along` from its middle and at the height `z`.
     fn wall(&self, number: u64, along: f64, z: f64) -> Rgb {
         let place = (along / PLACE_M).floor();
         let who = self.hash([2 + number, place as i64 as u64, 0]);
@@ -114,7 +114,7 @@ impl Hall {
     }
 }
 
-/// What a person wears at the given share of their height, `aside` of the middle of their place; `None` beside them.
+/// Colour of a person at the given share of their height, `aside` of the middle of their place; `None` beside them.
 fn person(who: u64, aside: f64, height: f64) -> Option<Rgb> {
     let (legs, body, head) = (0.26, 0.34, 0.13);
     match height {

@@ -11,28 +11,27 @@ use crate::SimError;
 use crate::random::deviate::uniform;
 use crate::random::{GaussMarkov, Source, Streams};
 
-/// What happens at one frame, truth included.
+/// One frame with its truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// When the middle of the exposure is, milliseconds after the start.
+    /// Middle of the exposure, milliseconds after the start.
     pub milliseconds: u64,
-    /// What the robot believes to have moved since the last frame, and when it says so (just before the shutter opens, milliseconds
-    /// after the start); none at the first frame.
+    /// Odometry since the last frame, and its time (just before the shutter opens, milliseconds after the start); `None` at the first
+    /// frame.
     pub odometry: Option<(u64, Pose2<f64>)>,
-    /// Where it truly is.
+    /// True pose.
     pub pose: Pose2<f64>,
-    /// Where the joints say that the camera is, in the robot's frame on the ground.
+    /// Pose of the camera from the joint angles, in the robot frame on the ground.
     pub mount: Pose3<f64>,
-    /// Where the camera truly is in the world.
+    /// True pose of the camera in the world.
     pub camera_pose: Pose3<f64>,
     /// Which lamps are on.
     pub lighting: Lighting,
-    /// The picture, and what it truly shows.
+    /// The image with its true labels.
     pub picture: Picture,
 }
 
-/// The frames of a drive, one after another.
-///
+/// Iterator over the frames of a drive.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_scene_sim::{league::{LeagueParams, LeagueDrive}, random::Streams};
@@ -95,7 +94,7 @@ impl LeagueDrive {
         })
     }
 
-    /// Where it drives.
+    /// The venue.
     pub fn venue(&self) -> &Venue {
         &self.venue
     }
@@ -155,7 +154,7 @@ impl LeagueDrive {
         Frame { milliseconds: middle, odometry, pose, mount, camera_pose, lighting, picture }
     }
 
-    /// Before the first frame it counts for nothing.
+    /// Ignored before the first frame.
     fn odometry(&mut self, milliseconds: u64) -> Option<(u64, Pose2<f64>)> {
         self.walk_until(milliseconds);
         let seconds = f64::from(self.params.period_ms) * 1e-3;

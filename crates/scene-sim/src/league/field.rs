@@ -7,7 +7,7 @@ use crate::random::deviate::uniform;
 
 /// The map colours, in the order of their [`ColorId`]s.
 pub const COLOR_NAMES: [&str; 5] = ["green", "white", "yellow", "cyan", "pink"];
-/// How many map colours there are.
+/// Number of map colours.
 pub const N_COLORS: usize = COLOR_NAMES.len();
 
 pub(super) const GREEN: ColorId = ColorId(0);
@@ -46,7 +46,7 @@ const BEACON_RADIUS_M: f64 = 0.05;
 /// ```
 ///
 /// # Errors
-/// Passes on what the map says; the shapes are constant, so it has nothing to say.
+/// Returns the errors of the map; none occur, because the shapes are constant.
 pub fn field_map() -> Result<ColorMap, SimError> {
     let mut shapes = carpet();
     shapes.extend(lines());
@@ -56,7 +56,7 @@ pub fn field_map() -> Result<ColorMap, SimError> {
     Ok(ColorMap::new(COLOR_NAMES.map(str::to_owned).to_vec(), shapes)?)
 }
 
-/// Where to look for something that tells places apart: the middles of the beacons' bands and of the goals, metres.
+/// Distinctive points to look at: the middles of the beacons' bands and of the goals, m.
 pub fn landmarks() -> Vec<Vector3<f64>> {
     let beacons = beacon_places().map(|(x, y)| Vector3::new(x, y, 0.3));
     let goals = [-1.0, 1.0].map(|side| Vector3::new(side * (HALF_LENGTH_M + GOAL_DEPTH_M), 0.0, 0.15));

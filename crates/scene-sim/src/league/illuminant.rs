@@ -2,9 +2,8 @@ use super::Rgb;
 
 /// Linear sRGB of a black body of the given temperature (kelvin, clamped to 1667 … 25 000), with luminance 1.
 ///
-/// Chromaticity by the cubic splines of [Kim et al. 2002], then the matrix of IEC 61966-2-1. Warm light has almost no blue
-/// primary; what would fall below zero is cut off.
-///
+/// Chromaticity by the cubic splines of [Kim et al. 2002], then the matrix of IEC 61966-2-1. Warm light has almost no blue primary; negative
+/// values are set to zero.
 /// ```
 /// use wayfix_scene_sim::league::black_body;
 /// let (warm, day) = (black_body(2700.0), black_body(6500.0));

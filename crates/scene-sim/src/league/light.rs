@@ -1,11 +1,11 @@
 use nalgebra::Vector3;
 
-/// Linear red, green and blue: radiance, irradiance, reflectance or gain, as the place says.
+/// Linear red, green and blue: radiance, irradiance, reflectance or gain, depending on the context.
 pub type Rgb = Vector3<f64>;
 
-/// How much light falls on what. Implement it to light the field your own way (`examples/03_custom_light.rs`).
+/// Light on surfaces. Implement it for custom light (`examples/03_custom_light.rs`).
 ///
-/// **Laws**: finite and nowhere negative, and nothing depends on anything but the arguments.
+/// **Laws**: results are finite and not negative, and depend only on the arguments.
 pub trait LightField {
     /// Irradiance of a surface at `point` (metres) that faces along the unit vector `normal`; 1 is the everyday light of a venue.
     fn irradiance(&self, point: &Vector3<f64>, normal: &Vector3<f64>) -> Rgb;
@@ -14,16 +14,15 @@ pub trait LightField {
 /// A panel on the ceiling that shines downwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
-    /// Where it hangs, metres.
+    /// Position, m.
     pub position: Vector3<f64>,
     /// Irradiance 1 m straight below it.
     pub strength: Rgb,
 }
 
-/// Lamps, and light from everywhere else.
+/// Lamps and ambient light.
 ///
-/// A lamp gives $`E = I \cos θ_o \cos θ_i / d^2`$ (a Lambert emitter that faces down and a Lambert surface); nothing casts a shadow.
-///
+/// A lamp gives $`E = I \cos θ_o \cos θ_i / d^2`$ (a downward Lambert emitter and a Lambert surface); there are no shadows.
 /// ```
 /// use wayfix_estimation_traits::nalgebra::Vector3;
 /// use wayfix_scene_sim::league::{Lamp, Lamps, LightField, Rgb};
@@ -35,11 +34,11 @@ pub struct Lamp {
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Lamps {
-    /// What shines.
+    /// The lamps.
     pub lamps: Vec<Lamp>,
-    /// Irradiance from above that comes from everywhere.
+    /// Ambient irradiance from above.
     pub ambient: Rgb,
-    /// Irradiance from below: what the carpet throws back.
+    /// Irradiance from below, reflected by the carpet.
     pub bounce: Rgb,
 }
 

@@ -1,7 +1,7 @@
-//! The field of the four-legged league, a robot that walks on it, and what its camera sees in good light and in bad.
+//! The field of the four-legged league, a robot that walks on it, and its camera images in good and bad light.
 //!
-//! The truth about shapes is [`field_map`], which an estimator may have. The truth about colours is nobody's model: [`Lamps`] with
-//! colour temperatures and fall-off shine on [`Venue`]-own paints, and a [`CameraSimulator`] turns that into bytes with a soft lens, motion blur,
+//! The truth about shapes is [`field_map`], which an estimator may use. The true colours follow no estimator's model: [`Lamps`] with
+//! colour temperatures and fall-off shine on [`Venue`]-own paints, and a [`CameraSimulator`] converts it to bytes with a soft lens, motion blur,
 //! vignetting, crosstalk, drifting white balance, shot noise, saturation, gamma and shared chroma, in front of a [`Hall`] full of people.
 
 mod backdrop;

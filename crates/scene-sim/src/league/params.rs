@@ -10,19 +10,19 @@ pub struct LeagueParams {
     pub n_frames: usize,
     /// Time from one to the next, milliseconds; longer than the exposure. Default 100.
     pub period_ms: u32,
-    /// Which venue: the one that this seed gives, or with `None` one that belongs to the seed of the drive. Default `None`.
+    /// Seed of the venue; with `None` the venue belongs to the seed of the drive. Default `None`.
     pub venue_seed: Option<u64>,
     /// The light from the frame on, in the order of the frames. Default bright from frame 0 on; so it is before the first.
     pub lights: Vec<(usize, Lighting)>,
-    /// Where the robot starts; `None` for anywhere on the field. Default `None`.
+    /// Start pose; `None` for a random one on the field. Default `None`.
     pub start: Option<Pose2<f64>>,
-    /// Before which frames somebody lifts the robot and puts it elsewhere, 1 m away at least. Default none.
+    /// Frames before which the robot is kidnapped, by at least 1 m. Default none.
     pub kidnaps: Vec<usize>,
     /// The robot.
     pub robot: RobotParams,
     /// Whether there are robots, a ball and a referee that no map lists. Default true.
     pub with_unmapped_objects: bool,
-    /// How many frames of the log get labels. Default 12.
+    /// Number of labelled frames in the log. Default 12.
     pub n_labelled: usize,
 }
 
@@ -43,7 +43,7 @@ impl Default for LeagueParams {
 }
 
 impl LeagueParams {
-    /// Whether the numbers make a drive with this camera; the robot's are looked at when it is built.
+    /// Validates the parameters for this camera; those of the robot are validated when it is created.
     pub(super) fn validate(&self, camera: &CameraParams) -> Result<(), SimError> {
         check::count("frames", self.n_frames, 100_000)?;
         let (exposure, period) = (f64::from(camera.exposure_ms), f64::from(self.period_ms));

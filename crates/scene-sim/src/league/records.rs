@@ -14,7 +14,7 @@ impl LeagueParams {
     /// stamp of the frame, true pose, camera mount, true labels (of some frames) and picture.
     ///
     /// The log is cut into [`n_labelled`](Self::n_labelled) stretches, and in each the first frame with the most map colours in view
-    /// (40 pixels at least) gets labels: somebody who labels by hand takes pictures that show something.
+    /// (40 pixels at least) gets labels, as a manual choice of images would.
     ///
     /// # Errors
     /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
@@ -43,7 +43,7 @@ impl LeagueParams {
     }
 }
 
-/// The best frame of a stretch so far.
+/// The best frame of a section so far.
 #[derive(Clone)]
 struct Labelled {
     idx: usize,

@@ -16,8 +16,8 @@ const ORANGE: [f64; 3] = [0.80, 0.26, 0.04];
 const TROUSERS: [f64; 3] = [0.03, 0.03, 0.035];
 const BALL_RADIUS_M: f64 = 0.04;
 
-/// What is on the field and in no map: a robot in red and one in blue, an orange ball, a referee's legs. They move about slowly and
-/// make way.
+/// Unmapped objects on the field: a red and a blue robot, an orange ball, a referee's legs. They move slowly and avoid the
+/// robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnmappedObjects {
     red: Round,
@@ -26,7 +26,7 @@ pub struct UnmappedObjects {
     referee: Round,
 }
 
-/// A way round and round about a point.
+/// A circular path about a point.
 #[derive(Clone, Debug, PartialEq)]
 struct Round {
     centre: Vector2<f64>,
@@ -53,7 +53,7 @@ impl UnmappedObjects {
         }
     }
 
-    /// Their surfaces at a time, out of the way of the robot that looks.
+    /// Their surfaces at a time, away from the observing robot.
     pub fn surfaces(&self, seconds: f64, watcher: &Pose2<f64>) -> Vec<Surface> {
         let mut surfaces = robot(&self.red.pose(seconds, watcher, 0.4), RED);
         surfaces.extend(robot(&self.blue.pose(seconds, watcher, 0.4), BLUE));

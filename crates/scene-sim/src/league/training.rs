@@ -6,14 +6,14 @@ use super::{LeagueDrive, LeagueParams, Lighting, N_COLORS, Picture, Rgb, Venue, 
 use crate::random::{Source, Streams};
 use crate::{SimError, check};
 
-/// What pictures of one venue under one light say about the map colours, labels being known.
+/// Statistics of the map colours in labelled images of one venue under one light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrainingVenue {
     /// Its name; the two lights of one hall share the number.
     pub name: String,
-    /// Which lamps were on.
+    /// The lamps that are on.
     pub lighting: Lighting,
-    /// Each picture's means.
+    /// Colour means of each image.
     pub images: Vec<ColorMeans>,
     /// Variance of Y, U and V of the pixels of one colour in one picture, pooled over colours and pictures by their degrees of freedom.
     pub pixel_variance: [f64; 3],
@@ -26,11 +26,11 @@ pub struct TrainingVenue {
 pub struct ColorMeans {
     /// Mean Y, U, V (BT.601 in full range, U and V about 128) of each map colour; `None` where too little is in view.
     pub means: [Option<[f64; 3]>; N_COLORS],
-    /// How many pixels show each of them.
+    /// Number of pixels of each colour.
     pub counts: [usize; N_COLORS],
 }
 
-/// How to gather training venues.
+/// Parameters of the training venues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrainingParams {
     /// Number of halls, each seen under both lights. Default 22, which makes 44 sets of pictures.
@@ -47,14 +47,13 @@ impl Default for TrainingParams {
     }
 }
 
-/// Seconds between pictures, so that they show different things.
+/// Time between images, ms, long enough to change the view.
 const PERIOD_MS: u32 = 2500;
 
 impl TrainingParams {
-    /// Draws halls, walks through them, and takes pictures: first the dark sets, then the bright.
+    /// Draws halls, simulates walks through them and takes images: first the dark sets, then the bright ones.
     ///
     /// A logged venue must not be one of these: draw it from another seed.
-    ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     /// use wayfix_scene_sim::league::TrainingParams;
@@ -66,7 +65,7 @@ impl TrainingParams {
     /// ```
     ///
     /// # Errors
-    /// When there is to be too much of anything.
+    /// Returns an error if there is to be too much of anything.
     pub fn gather(&self, mut rng: ChaCha8Rng) -> Result<Vec<TrainingVenue>, SimError> {
         check::count("halls", self.n_halls, 10_000)?;
         check::count("pictures", self.n_images, 10_000)?;

@@ -20,7 +20,7 @@ pub struct Venue {
     pub bright: Lamps,
     /// All lamps off but one.
     pub dark: Lamps,
-    /// What is around the field.
+    /// Surroundings of the field.
     pub hall: Hall,
     /// The camera; set for the everyday light and never changed.
     pub camera: CameraParams,
@@ -36,12 +36,12 @@ pub enum Lighting {
 }
 
 impl Venue {
-    /// One more venue of the world in which all of them are.
+    /// Draws a random venue.
     ///
     /// Four or six panels (2700 to 6500 K, every one a little different, somewhat green or magenta together) hang 2.4 to 3.4 m high in two
     /// rows; a paint differs by about 4 % as a whole (the carpet by 12 %) and 5 % in each primary. The camera has one of three fixed white
     /// balances, mostly the nearest, else the next; a gain that puts white at 0.65 to 1.1 of full scale on average over the field; and
-    /// filters that leave colours as pale as robots saw them then.
+    /// filters of low saturation, as in the robots of that time.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -52,7 +52,7 @@ impl Venue {
     /// ```
     ///
     /// # Errors
-    /// Passes on what the camera says; its numbers are sound, so it has nothing to say.
+    /// Returns the errors of the camera; none occur for its valid constants.
     pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Result<Self, SimError> {
         let paints = paints(rng);
         let kelvin = uniform(2700.0, 6500.0, rng);
@@ -132,7 +132,7 @@ fn mean_irradiance(light: &Lamps) -> Rgb {
     sum / 25.0
 }
 
-/// With what walls and ceiling throw back (the share `around` of the direct light), what comes in by the windows, and what the carpet sends up.
+/// Adds the light reflected by walls and ceiling (the share `around` of the direct light), that of the windows, and that reflected by the carpet.
 fn lighting(lamps: Vec<Lamp>, paints: &[Rgb; N_COLORS], around: f64, window: Rgb) -> Lamps {
     let mut light = Lamps { lamps, ..Lamps::default() };
     let direct = mean_irradiance(&light);
@@ -142,7 +142,7 @@ fn lighting(lamps: Vec<Lamp>, paints: &[Rgb; N_COLORS], around: f64, window: Rgb
     light
 }
 
-/// Set for the everyday light, as well as its few positions allow.
+/// A camera adjusted to the everyday light, as far as its few settings allow.
 fn camera<R: Rng + ?Sized>(
     kelvin: f64,
     paints: &[Rgb; N_COLORS],

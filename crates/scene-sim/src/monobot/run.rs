@@ -10,17 +10,17 @@ pub struct MonobotParams {
     pub n_steps: usize,
     /// Number of landmarks, all at one place, at most 10 000. Default 1.
     pub n_landmarks: usize,
-    /// Where the robot starts and is to come back to, metres. Default −1 (the paper's).
+    /// Start and end position of the robot, m. Default −1 (the paper's).
     pub start_m: f64,
-    /// Where the landmarks are, metres. Default 1 (the paper's).
+    /// Position of the landmarks, m. Default 1 (the paper's).
     pub landmark_m: f64,
-    /// How far the robot goes to either side, metres. Default 1 (the paper gives none).
+    /// Amplitude of the robot's motion, m. Default 1 (the paper states none).
     pub amplitude_m: f64,
-    /// σ of a motion as a share of the commanded motion. Default 0.1 (the paper gives none).
+    /// σ of a motion as a share of the commanded motion. Default 0.1 (the paper states none).
     pub motion_noise: f64,
-    /// σ of a range as a share of the distance. Default 0.05 (the paper gives none).
+    /// σ of a range as a share of the distance. Default 0.05 (the paper states none).
     pub range_noise: f64,
-    /// σ of the external position sensor, metres. Default 0.05 (the paper gives none).
+    /// σ of the external position sensor, m. Default 0.05 (the paper states none).
     pub external_sigma_m: f64,
 }
 
@@ -57,9 +57,7 @@ pub struct MonobotRun {
 }
 
 impl MonobotParams {
-    /// Drives: $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Eq. 19], the commands those of
-    /// $`x_0 + A \sin(2πk/N)`$.
-    ///
+    /// Simulates $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Eq. 19]; the commands are the increments of $`x_0 + A \sin(2πk/N)`$.
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     /// use wayfix_scene_sim::{monobot::MonobotParams, random::Streams};
@@ -101,7 +99,7 @@ impl MonobotParams {
         check::not_negative("σ of the external sensor (m)", self.external_sigma_m)
     }
 
-    /// Where the robot would be after `k` steps without noise.
+    /// The noise-free position after `k` steps.
     fn planned(&self, k: usize) -> f64 {
         self.start_m + self.amplitude_m * libm::sin(TAU * k as f64 / self.n_steps as f64)
     }

@@ -2,10 +2,9 @@ use rand::Rng;
 
 use super::deviate::normal;
 
-/// An error that hangs together in time: a stationary first-order Gauss-Markov process of variance 1.
+/// A time-correlated error: a stationary first-order Gauss-Markov process of variance 1.
 ///
 /// $`x_{k+1} = φ x_k + \sqrt{1 - φ^2}\, n_k`$ with $`φ = e^{-Δt/τ}`$, so that the correlation after $`t`$ seconds is $`e^{-t/τ}`$.
-///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_scene_sim::random::GaussMarkov;

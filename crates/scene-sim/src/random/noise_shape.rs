@@ -5,8 +5,7 @@ use rand::Rng;
 use super::deviate::{normal, not_zero, unit};
 use crate::{SimError, check};
 
-/// The shape of a white error; always mean 0 and variance 1, so that a stated σ stays the standard deviation.
-///
+/// Distribution of a white error; always of mean 0 and variance 1, so that a stated σ is the standard deviation.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_scene_sim::random::NoiseShape;

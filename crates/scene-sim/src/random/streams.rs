@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use rand_chacha::ChaCha8Rng;
 
-/// What a random number is drawn for.
+/// Purpose of a random number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Source {
@@ -26,23 +26,23 @@ pub enum Source {
     Drift,
     /// Gross outliers.
     Outlier,
-    /// Whole looks that are lost.
+    /// Lost scans.
     Dropout,
     /// Targets in view that are not reported.
     Missed,
     /// Reports of things that are not there.
     Clutter,
-    /// Reports under another landmark's identity.
+    /// Detections with another landmark's identity.
     Mislabel,
     /// Noise on the readings of an external position sensor.
     ExternalPosition,
     /// Noise on the ranges to a reference at the origin.
     Anchor,
-    /// What a venue is like: its paints, lamps, camera and people.
+    /// Venue: its paints, lamps, camera and people.
     Venue,
-    /// Where a legged robot walks and when it stands.
+    /// Path and rests of a legged robot.
     Walk,
-    /// What it looks at.
+    /// Gaze of a legged robot.
     Gaze,
     /// Errors of its joints.
     Joints,
@@ -54,7 +54,7 @@ pub enum Source {
     Picture,
     /// Robots, ball and referee on the field.
     UnmappedObjects,
-    /// Where a kidnapped robot is put.
+    /// Pose of a robot after a kidnapping.
     Kidnap,
     /// Smooth textures of a flat scene.
     Texture,
@@ -62,7 +62,7 @@ pub enum Source {
     Objects,
     /// Noise of the camera before a flat scene.
     Pixels,
-    /// Where the beams of a laser that fall on two surfaces find their mean.
+    /// Mixed ranges of laser beams that hit two surfaces.
     MixedPixels,
     /// People in front of a laser.
     People,
@@ -72,11 +72,11 @@ pub enum Source {
     Daylight,
     /// People who switch lamps and draw curtains.
     Switching,
-    /// People who walk about in a building.
+    /// People who walk in a building.
     Crowd,
-    /// How the target of a film moves.
+    /// Motion of the target of a film.
     Motion,
-    /// How the light of a film changes.
+    /// Light of a film.
     Light,
     /// A user's own.
     Other(u32),
@@ -129,9 +129,8 @@ impl Source {
 
 /// One independent generator per [`Source`], all from one seed.
 ///
-/// Switching a sin on or off, or changing its size, leaves the draws of all others as they were: two logs that differ in one
-/// parameter can be compared sample by sample.
-///
+/// Enabling an error source, or changing its size, does not affect the draws of the others: two logs that differ in one parameter can be
+/// compared sample by sample.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::{Rng, SeedableRng}};
 /// use wayfix_scene_sim::random::{Source, Streams};
@@ -148,7 +147,7 @@ pub struct Streams {
 }
 
 impl Streams {
-    /// The streams that share the seed of `rng`, each from its beginning, wherever `rng` itself stands.
+    /// The streams with the seed of `rng`, each from its beginning, for any position of `rng`.
     pub fn new(rng: ChaCha8Rng) -> Self {
         Self { root: rng, open: BTreeMap::new() }
     }

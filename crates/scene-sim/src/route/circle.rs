@@ -16,7 +16,7 @@ impl Circle {
     /// The closed route.
     ///
     /// # Errors
-    /// When the radius is not a positive number.
+    /// Returns an error if the radius is not a positive number.
     pub fn route(&self) -> Result<Route, SimError> {
         let r = self.radius_m;
         check::positive("radius of the circle (m)", r)?;

@@ -20,7 +20,7 @@ impl LawnMower {
     /// The open route.
     ///
     /// # Errors
-    /// When there is no row or too many, or a length is not a positive number.
+    /// Returns an error if there is no row or too many, or a length is not a positive number.
     pub fn route(&self) -> Result<Route, SimError> {
         check::count("rows of the lawn-mower", self.n_rows, 100_000)?;
         check::positive("length of a row (m)", self.row_length_m)?;

@@ -1,4 +1,4 @@
-//! Where robots drive: straight lines and arcs end to end, and planners that lay them out.
+//! Routes of robots: connected straight lines and arcs, and planners for them.
 
 mod circle;
 mod lawn_mower;

@@ -3,8 +3,7 @@ use rand::Rng;
 use super::{Circle, LawnMower, RoundedRectangle, Route, Waypoints};
 use crate::SimError;
 
-/// How to lay out a route.
-///
+/// Parameters of a route.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_scene_sim::route::{RouteParams, Waypoints};

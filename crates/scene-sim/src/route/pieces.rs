@@ -2,9 +2,9 @@ use wayfix_estimation_traits::Pose2;
 
 use crate::{SimError, check, plane};
 
-/// Length of the longest route, metres; beyond, arc length loses the digits that the driver needs.
+/// Maximum length of a route, m; beyond it, the arc length loses digits that the driver needs.
 const LONGEST_M: f64 = 1e7;
-/// How far apart the ends of a closed route may lie, metres.
+/// Maximum gap between the ends of a closed route, m.
 const CLOSING_GAP_M: f64 = 1e-6;
 
 /// A stretch of constant curvature.
@@ -40,7 +40,7 @@ impl Route {
     /// A route from `start` that ends where its last piece ends.
     ///
     /// # Errors
-    /// When there is no piece, a number is not finite, a length is not positive, or the whole is longer than 10 000 km.
+    /// Returns an error if there is no piece, a number is not finite, a length is not positive, or the whole is longer than 10 000 km.
     pub fn open(start: Pose2<f64>, pieces: Vec<Piece>) -> Result<Self, SimError> {
         check::finite("start of the route", start.x() + start.y() + start.heading())?;
         let mut starts = Vec::with_capacity(pieces.len());
@@ -60,7 +60,7 @@ impl Route {
     /// A route that is driven lap after lap.
     ///
     /// # Errors
-    /// As [`open`](Self::open), and when the end does not meet the start to a micrometre and a microradian.
+    /// Returns the errors of [`open`](Self::open), and an error if the end differs from the start by more than a micrometre or a microradian.
     pub fn closed(start: Pose2<f64>, pieces: Vec<Piece>) -> Result<Self, SimError> {
         let route = Self::open(start, pieces)?;
         let gap = plane::relative(&start, &route.end());

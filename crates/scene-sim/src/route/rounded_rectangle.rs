@@ -20,7 +20,7 @@ impl RoundedRectangle {
     /// The closed route.
     ///
     /// # Errors
-    /// When a number is not positive, or the corners do not leave straight sides.
+    /// Returns an error if a number is not positive, or the corners do not leave straight sides.
     pub fn route(&self) -> Result<Route, SimError> {
         let r = self.corner_radius_m;
         check::positive("radius of the corners (m)", r)?;

@@ -28,7 +28,7 @@ impl Waypoints {
     /// The open route.
     ///
     /// # Errors
-    /// When a number is out of range, or points outside the turning circle are not found in the square.
+    /// Returns an error if a number is out of range, or points outside the turning circle are not found in the square.
     pub fn route<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Route, SimError> {
         check::count("waypoints", self.n_waypoints, 100_000)?;
         check::positive("half width of the waypoints (m)", self.half_width_m)?;
@@ -54,7 +54,7 @@ impl Waypoints {
     }
 }
 
-/// The arc that turns towards `point` and the straight line that then leads there; `None` when it lies inside the turning circle.
+/// The arc that turns towards `point` and the following straight line; `None` if the point lies inside the turning circle.
 fn turn_and_go(pose: &Pose2<f64>, point: &Vector2<f64>, radius: f64) -> Option<(Piece, Piece)> {
     let seen = plane::to_body(pose, point);
     let side = if seen.y < 0.0 { -1.0 } else { 1.0 };

@@ -39,7 +39,7 @@ fn loop_known() -> PlanarParams {
     }
 }
 
-/// The same kind of world, seen by a sensor that tells nothing apart.
+/// The same kind of world, with a sensor that reads no identities.
 fn loop_unlabelled() -> PlanarParams {
     let known = loop_known();
     PlanarParams { sensor: RangeBearingParams { labelled: false, ..known.sensor }, ..known }

@@ -14,15 +14,15 @@ use crate::{SimError, Simulation};
 pub struct LaserDriveParams {
     /// Walls.
     pub layout: Layout,
-    /// Where the robot drives.
+    /// Route of the robot.
     pub route: RouteParams,
-    /// How it moves.
+    /// Motion of the robot.
     pub drive: DriveParams,
-    /// What it knows of its motion.
+    /// Odometry.
     pub odometry: OdometryParams,
-    /// What it sees.
+    /// Laser.
     pub laser: LaserParams,
-    /// How long it drives, milliseconds.
+    /// Duration, milliseconds.
     pub duration_ms: u64,
     /// Time from one true pose to the next, milliseconds.
     pub truth_period_ms: u32,
@@ -48,8 +48,8 @@ impl LaserDriveParams {
     }
 }
 
-/// Once around a loop of 90 m on an office floor of 303 m², as in Fig. 7 of Andrade-Cetto, and nearly 4 m on over ground seen before. The wheels differ by
-/// 0.13 %, which alone turns the odometry by 22° a lap. A scan comes every quarter of a second: the log is to stay below 3 MB.
+/// One lap of a loop of 90 m on an office floor of 303 m², as in Fig. 7 of Andrade-Cetto, and nearly 4 m beyond its start. The wheels differ by 0.13
+/// %, which alone turns the odometry by 22° per lap. The scan period of a quarter of a second keeps the log below 3 MB.
 pub(super) fn office_laser() -> Scenario {
     let params = LaserDriveParams {
         layout: Layout::OfficeFloor(OfficeFloor {

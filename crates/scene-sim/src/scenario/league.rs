@@ -1,8 +1,8 @@
 use super::{Scenario, ScenarioParams};
 use crate::league::{LeagueParams, Lighting};
 
-/// The hall of all four: picked out of 24, because what the colours seen tell about one not yet seen shows best in its dark light. It is no
-/// average; for an average draw others ([`Scenario::with_seed`]).
+/// The hall of all four scenarios, selected from 24 because its dark light shows best how seen colours predict an unseen one. It is not
+/// representative; for random halls use [`Scenario::with_seed`].
 const HALL: u64 = 2034;
 
 pub(super) fn all() -> Vec<Scenario> {

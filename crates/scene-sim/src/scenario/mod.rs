@@ -1,4 +1,4 @@
-//! Named, seeded set-ups: what fixtures are made of.
+//! Named, seeded set-ups, the sources of fixtures.
 
 mod catalogue;
 mod laser;

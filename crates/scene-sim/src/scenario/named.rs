@@ -12,8 +12,7 @@ use crate::league::LeagueParams;
 use crate::monobot::MonobotParams;
 use crate::random::Streams;
 
-/// A set-up with a name and the seed that goes with it.
-///
+/// A set-up with a name and a seed.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_scene_sim::Scenario;
@@ -26,13 +25,13 @@ use crate::random::Streams;
 pub struct Scenario {
     /// Its name, also of its fixture.
     pub name: &'static str,
-    /// What to seed the generator with.
+    /// Seed of the generator.
     pub seed: u64,
-    /// What happens.
+    /// Parameters of the set-up.
     pub params: ScenarioParams,
 }
 
-/// What kind of scene it is.
+/// Parameters by kind of scene.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ScenarioParams {
@@ -45,7 +44,7 @@ pub enum ScenarioParams {
     /// A robot with a camera on the field of the four-legged league.
     #[cfg(feature = "league")]
     League(Box<LeagueParams>),
-    /// A robot in a store, with a camera that looks all around.
+    /// A robot with an omnidirectional camera in a store.
     #[cfg(feature = "indoors")]
     StoreLaps(Box<StoreLapsParams>),
 }
@@ -72,7 +71,7 @@ impl Scenario {
     /// The one called `name`.
     ///
     /// # Errors
-    /// When there is none.
+    /// Returns an error if there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
         let all = [
             Self::all(),
@@ -85,9 +84,8 @@ impl Scenario {
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
     }
 
-    /// The same with other draws of everything, in a store of its own, and on the four-legged league's field in a hall of its own:
-    /// light that nobody has seen.
-    ///
+    /// The same with other random draws. A store or a hall of the four-legged league is then drawn too, with unseen
+    /// light.
     /// ```
     /// use wayfix_scene_sim::Scenario;
     /// let scenario = Scenario::named("office_velocity")?.with_seed(100);
@@ -107,8 +105,7 @@ impl Scenario {
         self
     }
 
-    /// The log, in time order. Give it a generator seeded with [`seed`](Self::seed) for the log that goes by this name.
-    ///
+    /// The log, in time order. A generator seeded with [`seed`](Self::seed) gives the log of this name.
     /// # Errors
     /// Returns an error if a parameter is out of range.
     pub fn simulate(&self, rng: ChaCha8Rng) -> Result<Vec<Record>, SimError> {

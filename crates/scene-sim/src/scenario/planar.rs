@@ -16,19 +16,19 @@ use crate::{SimError, Simulation, check};
 pub struct PlanarParams {
     /// Landmarks and walls.
     pub layout: Layout,
-    /// Things with codes 1000, 1001, … that no table lists, anywhere among the landmarks; at most 1000.
+    /// Number of objects with unlisted codes 1000, 1001, …, placed randomly among the landmarks; at most 1000.
     pub n_unknown_codes: usize,
     /// Robots that drive about; at most 100.
     pub other_robots: Vec<OtherRobotParams>,
-    /// Where the robot drives.
+    /// Route of the robot.
     pub route: RouteParams,
-    /// How it moves.
+    /// Motion of the robot.
     pub drive: DriveParams,
-    /// What it knows of its motion.
+    /// Odometry.
     pub odometry: OdometryParams,
-    /// What it sees.
+    /// Sensor.
     pub sensor: RangeBearingParams,
-    /// How long it drives, milliseconds.
+    /// Duration, milliseconds.
     pub duration_ms: u64,
     /// Time from one true pose to the next, milliseconds.
     pub truth_period_ms: u32,
@@ -39,9 +39,9 @@ pub struct PlanarParams {
 pub struct OtherRobotParams {
     /// Its number.
     pub id: u32,
-    /// Where it drives.
+    /// Route.
     pub route: RouteParams,
-    /// How fast, m/s.
+    /// Speed, m/s.
     pub speed_mps: f64,
 }
 

@@ -10,16 +10,16 @@ use crate::random::Streams;
 /// Stamp of the start, nanoseconds, as in [`Simulation`](crate::Simulation).
 const START_NS: u64 = 1_600_000_000_000_000_000;
 
-/// Laps around the shelves of a store with a camera that looks all around.
+/// Laps around the shelves of a store with an omnidirectional camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoreLapsParams {
     /// The store.
     pub store: StoreParams,
-    /// Decides what the store is like and how its robot errs.
+    /// Seed of the store and of its robot's errors.
     pub store_seed: u64,
     /// Laps around everything.
     pub n_laps: usize,
-    /// The robot is drawn; the rest is as said here.
+    /// The drive; its robot is drawn from the seed.
     pub drive: IndoorParams,
     /// Quality of the pictures in the log, 1 to 100.
     pub jpeg_quality: u8,

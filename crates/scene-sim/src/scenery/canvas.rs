@@ -18,7 +18,7 @@ impl Window {
         Self { columns: 0..width, rows: 0..height }
     }
 
-    /// The square around a centre, as far as it lies in the picture.
+    /// The square around a centre, clipped to the image.
     #[cfg(feature = "film")]
     pub(crate) fn around(centre: (f64, f64), radius: f64, size: (usize, usize)) -> Self {
         let clipped = |middle: f64, n: usize| {
@@ -49,7 +49,7 @@ impl Canvas {
         self.paint_in(&Window::of_size((self.width, self.height)), inside, shade);
     }
 
-    /// As [`paint`](Self::paint), where nothing outside a window is touched.
+    /// As [`paint`](Self::paint), restricted to a window.
     pub(crate) fn paint_in(
         &mut self,
         window: &Window,
@@ -105,7 +105,7 @@ impl Canvas {
     }
 }
 
-/// From one colour to another.
+/// Interpolates between two colours.
 pub(crate) fn mix(from: Color, to: Color, share: f64) -> Color {
     [0, 1, 2].map(|c| from[c] + (to[c] - from[c]) * share)
 }

@@ -6,13 +6,13 @@ use crate::random::deviate::quick_normal;
 use crate::random::{Source, Streams};
 use crate::{SimError, check};
 
-/// How a scene looks when the robot comes back: another camera, another light, and not quite the same place.
+/// Appearance of a scene on a later visit: another camera, another light, and another position.
 ///
-/// In this order: the picture is taken some pixels aside, lit from the middle with a cast of colour, exposed, bent by a power and an
-/// S-shaped response, squeezed between a black and a white level, and gets noise that grows with brightness.
+/// The steps, in order: a shift of some pixels; light that falls off from the middle, with a colour cast; exposure; a power and an S-shaped
+/// response; a black and a white level; and noise that grows with brightness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImagingConditions {
-    /// The camera stands so many pixels to the right and down; fractions interpolate. Default (3.4, −2.6).
+    /// Camera shift to the right and down, px; fractions interpolate. Default (3.4, −2.6).
     pub shift_px: (f64, f64),
     /// Factors of red, green and blue. Default a lamp a little warmer than daylight: 1.05, 1, 0.92.
     pub cast: [f64; 3],
@@ -46,9 +46,9 @@ impl Default for ImagingConditions {
 }
 
 impl ImagingConditions {
-    /// Gain 0.7, offset 20 grey levels, gamma 1.3 and noise, the same everywhere and in all three colours, with the camera (4, 3) pixels aside.
+    /// Gain 0.7, offset 20 grey levels, gamma 1.3 and noise, equal everywhere and in all three colours, with a camera shift of (4, 3) pixels.
     ///
-    /// The steepness is so small that the response is straight to 1e-8 of its range.
+    /// The steepness is so small that the response is linear to 1e-8 of its range.
     pub fn dimmed() -> Self {
         Self {
             shift_px: (4.0, 3.0),
@@ -65,8 +65,8 @@ impl ImagingConditions {
     /// The picture of `scene` on this visit. Beyond the edge the last pixel repeats.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when a figure is not finite, or not of the sign it must have; so too when the picture has
-    /// more or fewer bytes than its size says.
+    /// Returns [`SimError::Parameter`] if a number is not finite or has the wrong sign, or if the image has another number of bytes than
+    /// its size requires.
     pub fn picture_of(&self, scene: &RgbPicture, seed: u64) -> Result<RgbPicture, SimError> {
         self.check()?;
         let n_bytes = scene.width.saturating_mul(scene.height).saturating_mul(3);

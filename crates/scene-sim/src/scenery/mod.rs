@@ -1,9 +1,8 @@
-//! Flat scenes for a camera that looks at one window of them at a time, and how they look on another day.
+//! Flat scenes for a camera that sees one window at a time, and their appearance on another day.
 //!
-//! A [`Scenery`] is composed of simple shapes and smooth textures. A [`ImagingConditions`] renders it through a camera that is not the one of
-//! the first picture: another response, light that falls off, a cast of colour, noise, and a shift of some pixels. By default it is made of
-//! other steps than gain, offset and gamma, so that no light model of an estimator fits it exactly; [`ImagingConditions::dimmed`] has just these, and noise.
-//!
+//! A [`Scenery`] is composed of simple shapes and smooth textures. [`ImagingConditions`] renders it with a camera that differs from that of the
+//! first image: another response, vignetting, a colour cast, noise, and a shift of some pixels. By default its steps differ from gain, offset and
+//! gamma, so that no light model of an estimator fits exactly; [`ImagingConditions::dimmed`] has only these, and noise.
 //! ```
 //! use wayfix_scene_sim::scenery::{Scenery, ImagingConditions};
 //! let lab = Scenery::named("lab")?;

@@ -26,7 +26,7 @@ impl Noise {
         upper * (1.0 - v) + lower * v
     }
 
-    /// Octaves, each half as wide and half as strong; in [0, 1].
+    /// Sums octaves, each half as wide and half as strong; in [0, 1].
     pub(crate) fn fractal(&self, x: f64, y: f64, octaves: u32) -> f64 {
         let (mut sum, mut weight, mut scale) = (0.0, 0.0, 1.0);
         for octave in 0..octaves {

@@ -28,7 +28,7 @@ impl GaussianOdometryParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::period("period of the odometry (ms)", self.period_ms)?;
         check::not_negative("σ of odometry increments (m)", self.sigma_m)?;

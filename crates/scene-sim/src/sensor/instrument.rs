@@ -9,11 +9,11 @@ use crate::world::World;
 pub struct TrueState<'a> {
     /// Since the start.
     pub milliseconds: u64,
-    /// Where the robot is.
+    /// Pose of the robot.
     pub pose: Pose2<f64>,
-    /// How far the left and right wheel have turned since the start, radians.
+    /// Angles of the left and right wheel since the start, rad.
     pub wheel_angles: [f64; 2],
-    /// What there is to see.
+    /// The world.
     pub world: &'a dyn World,
 }
 
@@ -24,23 +24,23 @@ impl TrueState<'_> {
     }
 }
 
-/// What a sensor gives to the log.
+/// Output of a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
     /// The measurement.
     pub data: Data,
-    /// How much later than the moment it describes it is stamped, milliseconds; negative when stamped before.
+    /// Difference of the stamp from the measured moment, ms; negative for an early stamp.
     pub stamp_offset_ms: i64,
 }
 
-/// An instrument on the robot. Implement it to log something of your own: the driver calls it, stamps what it says and sorts it in.
+/// A sensor on the robot. Implement it for custom data: the simulation calls it, stamps its readings and sorts them into the log.
 ///
-/// **Laws**: with the same history and the same streams it says the same; it draws from `streams` only, and as many numbers whatever it
-/// sees, so that two logs of one seed stay comparable.
+/// **Laws**: equal histories and equal streams give equal readings; it draws from `streams` only, and a fixed number of draws for any input, so
+/// that two logs of one seed stay comparable.
 pub trait Sensor {
-    /// Time from one reading to the next, at least 1 ms; the first comes at the start.
+    /// Period of the readings, at least 1 ms; the first comes at the start.
     fn period_ms(&self) -> u32;
 
-    /// What it says now; `None` when it says nothing.
+    /// The current reading; `None` if there is none.
     fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading>;
 }

@@ -1,4 +1,4 @@
-//! What robots measure with.
+//! Simulated sensors.
 
 mod gaussian_odometry;
 mod instrument;

@@ -7,7 +7,7 @@ use super::{Reading, Sensor, TrueState};
 use crate::random::{Source, Streams, deviate};
 use crate::{SimError, check, plane};
 
-/// In which form wheel odometry goes to the log.
+/// Form of wheel odometry in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OdometryKind {
     /// Mean velocity over a period, stamped at its beginning: holding it until the next retraces the motion.
@@ -50,7 +50,7 @@ impl WheelOdometryParams {
     /// Whether the numbers have a meaning.
     ///
     /// # Errors
-    /// Names the first that has none.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::period("period of the odometry (ms)", self.period_ms)?;
         check::positive("wheel radius of the odometry (m)", self.wheel_radius_m)?;
@@ -68,8 +68,7 @@ pub struct WheelOdometry {
 }
 
 impl WheelOdometry {
-    /// Encoders that have counted nothing yet.
-    ///
+    /// Encoders at their initial count.
     /// # Errors
     /// Returns [`SimError::Parameter`] if a parameter is out of range.
     pub fn new(params: WheelOdometryParams) -> Result<Self, SimError> {
@@ -77,7 +76,7 @@ impl WheelOdometry {
         Ok(Self { params, last: None })
     }
 
-    /// What the encoder says for a wheel that has turned by `angle`.
+    /// Encoder reading for a wheel angle.
     fn counted(&self, angle: f64) -> f64 {
         match self.params.ticks_per_turn {
             None => angle,

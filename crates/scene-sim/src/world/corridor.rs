@@ -22,7 +22,7 @@ impl CorridorLoop {
     /// Places walls and landmarks.
     ///
     /// # Errors
-    /// When a number is not positive, the corridor leaves no block inside, or there are too many landmarks.
+    /// Returns an error if a number is not positive, the corridor leaves no block inside, or there are too many landmarks.
     pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Plan, SimError> {
         check::positive("width of the corridor (m)", self.corridor_m)?;
         check::positive("spacing of the landmarks (m)", self.spacing_m)?;
@@ -38,7 +38,7 @@ impl CorridorLoop {
         Ok(Plan::numbered(points, walls))
     }
 
-    /// One landmark in each stretch of `spacing_m`, anywhere in its middle half.
+    /// One landmark in each section of `spacing_m`, at a random place in its middle half.
     fn hang<R: Rng + ?Sized>(&self, wall: &Wall, rng: &mut R) -> Vec<Vector2<f64>> {
         let whole = wall.to - wall.from;
         let n_stretches = (whole.norm() / self.spacing_m).round().max(1.0) as usize;

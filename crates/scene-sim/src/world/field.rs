@@ -11,7 +11,7 @@ const ATTEMPTS: usize = 1000;
 /// Landmarks uniformly in a square about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformField {
-    /// How many.
+    /// Number of landmarks.
     pub n_landmarks: usize,
     /// Half the side of the square, metres.
     pub half_width_m: f64,
@@ -23,7 +23,7 @@ impl UniformField {
     /// Places the landmarks.
     ///
     /// # Errors
-    /// When a number is out of range or the landmarks do not find room.
+    /// Returns an error if a number is out of range or the landmarks do not find room.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};

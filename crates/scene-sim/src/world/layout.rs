@@ -14,7 +14,7 @@ pub(super) const MOST_LANDMARKS: usize = 100_000;
 pub struct Plan {
     /// Points that the robot may learn.
     pub landmarks: Vec<TrueLandmark>,
-    /// What hides them.
+    /// Walls that hide the landmarks.
     pub walls: Vec<Wall>,
 }
 
@@ -30,9 +30,9 @@ impl Plan {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Layout {
-    /// Landmarks anywhere in a square.
+    /// Random landmarks in a square.
     UniformField(UniformField),
-    /// A corridor that leads around a block.
+    /// A corridor around a block.
     CorridorLoop(CorridorLoop),
     /// Rooms in rows and columns, with doors.
     Office(Office),

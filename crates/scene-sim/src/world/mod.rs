@@ -1,4 +1,4 @@
-//! What there is to see: landmarks, walls that hide them, other robots, things with unlisted codes.
+//! Visible objects: landmarks, walls that hide them, other robots, objects with unlisted codes.
 
 mod corridor;
 mod field;

@@ -17,7 +17,7 @@ pub struct Office {
     pub room_m: f64,
     /// Width of the doors, metres.
     pub door_m: f64,
-    /// Each post stands up to this far from its corner along x and y, metres.
+    /// Maximum offset of each post from its corner along x and y, m.
     pub jitter_m: f64,
 }
 
@@ -25,7 +25,7 @@ impl Office {
     /// Places posts and walls.
     ///
     /// # Errors
-    /// When there is no room, there are too many, or a length is out of range.
+    /// Returns an error if there is no room, there are too many, or a length is out of range.
     pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Plan, SimError> {
         check::positive("number of rooms", self.n_columns as f64 * self.n_rows as f64)?;
         let n_posts = (self.n_columns.saturating_add(1)).saturating_mul(self.n_rows.saturating_add(1));

@@ -8,8 +8,8 @@ use crate::{SimError, check, plane};
 /// The most rooms on a side of the corridor.
 const MOST_ROOMS: usize = 1000;
 
-/// A corridor around a closed block about the origin, as offices have it. On the outer long sides are rooms with open doors and furniture, on the
-/// short ones closed doors in niches; pillars and cabinets stand along the block. Walls only: the landmarks are for the laser to find.
+/// A corridor around a closed block about the origin, as in offices. The outer long sides have rooms with open doors and furniture, the short ones
+/// closed doors in niches; pillars and cabinets stand along the block. It has only walls and no landmarks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OfficeFloor {
     /// Extent of the corridor's centre line along x, metres.
@@ -34,7 +34,7 @@ impl OfficeFloor {
     /// Places the walls.
     ///
     /// # Errors
-    /// When a number is not positive, the corridor leaves no block inside, or the rooms and doors do not fit.
+    /// Returns an error if a number is not positive, the corridor leaves no block inside, or the rooms and doors do not fit.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -94,7 +94,7 @@ impl OfficeFloor {
         )
     }
 
-    /// A side of the rectangle that lies `offset / 2` outside the centre line; the lower one first, counter-clockwise.
+    /// A side of the rectangle `offset / 2` outside the centre line; the lower one first, counter-clockwise.
     fn side(&self, turn: usize, offset: f64) -> Side {
         let (x, y) = (0.5 * (self.length_m + offset), 0.5 * (self.width_m + offset));
         let (half, away) = if turn.is_multiple_of(2) { (x, y) } else { (y, x) };
@@ -124,7 +124,7 @@ impl OfficeFloor {
         }
     }
 
-    /// A cupboard at the back wall and a table somewhere in the room that begins at `left`.
+    /// A cupboard at the back wall and a table at a random place in the room that begins at `left`.
     fn add_furniture<R: Rng + ?Sized>(&self, side: &Side, left: f64, rng: &mut R, walls: &mut Vec<Wall>) {
         let (room, depth) = (self.room_m, self.room_depth_m);
         let at = left + uniform(0.1, 0.6, rng) * room;

@@ -4,15 +4,15 @@ use wayfix_sensor_log::{Target, TrueLandmark};
 use super::{Plan, Wall};
 use crate::route::Route;
 
-/// What sensors look at. Implement it to drive through a world of your own.
+/// A world for sensors. Implement it for a custom world.
 ///
-/// **Laws**: [`targets`](Self::targets) lists the same things in the same order at every time (errors that hang together in time
-/// belong to a place in this list), and nothing depends on anything but the arguments.
+/// **Laws**: [`targets`](Self::targets) lists the same objects in the same order at every time (time-correlated errors belong to a place in this
+/// list), and results depend only on the arguments.
 pub trait World {
-    /// The surveyed landmarks: what the log gives as truth.
+    /// The surveyed landmarks: the truth in the log.
     fn landmarks(&self) -> Vec<TrueLandmark>;
 
-    /// The surfaces that a laser sees. By default there are none.
+    /// The surfaces visible to a laser. By default there are none.
     fn walls(&self) -> Vec<Wall> {
         Vec::new()
     }
@@ -20,7 +20,7 @@ pub trait World {
     /// Everything that could be seen `seconds` after the start, wherever from, and where it is (metres).
     fn targets(&self, seconds: f64) -> Vec<(Target, Vector2<f64>)>;
 
-    /// Whether something stands between `eye` and `point`. By default nothing does.
+    /// Whether an object hides `point` from `eye`. By default none does.
     fn occludes(&self, eye: &Vector2<f64>, point: &Vector2<f64>) -> bool {
         let _ = (eye, point);
         false
@@ -51,9 +51,9 @@ pub struct PlanarWorld {
 pub struct OtherRobot {
     /// Its number.
     pub id: u32,
-    /// Where it drives.
+    /// Route of the robot.
     pub route: Route,
-    /// How fast, m/s.
+    /// Speed, m/s.
     pub speed_mps: f64,
 }
 

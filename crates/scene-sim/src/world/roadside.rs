@@ -11,11 +11,11 @@ use crate::{SimError, check, plane};
 /// Rocks on both sides of whatever road the robot takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roadside {
-    /// How many, anywhere along the route.
+    /// Number of rocks, at random places along the route.
     pub n_landmarks: usize,
     /// The least distance from the middle of the road, metres.
     pub clear_m: f64,
-    /// How far beyond that rocks may lie, metres.
+    /// Width of the strip beyond it that may contain rocks, m.
     pub verge_m: f64,
 }
 
@@ -23,7 +23,7 @@ impl Roadside {
     /// Places the rocks along `route`.
     ///
     /// # Errors
-    /// When a number is out of range.
+    /// Returns an error if a number is out of range.
     pub fn plan<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Result<Plan, SimError> {
         check::count("landmarks", self.n_landmarks, MOST_LANDMARKS)?;
         check::not_negative("clear width of the road (m)", self.clear_m)?;

@@ -1,6 +1,6 @@
 use nalgebra::Vector2;
 
-/// A straight wall; what stands behind it is hidden.
+/// A straight wall; it hides everything behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
     /// One end, metres.
@@ -27,8 +27,7 @@ impl Wall {
         self.crossing(eye, &(point - eye)).is_some_and(|along| (0.0..1.0 - SURFACE).contains(&along))
     }
 
-    /// How far it is from `eye` along the unit vector `direction` to the wall, metres; `None` when the ray misses it.
-    ///
+    /// Distance from `eye` along the unit vector `direction` to the wall, m; `None` if the ray misses it.
     /// ```
     /// use wayfix_estimation_traits::nalgebra::Vector2;
     /// use wayfix_scene_sim::world::Wall;
@@ -41,7 +40,7 @@ impl Wall {
         self.crossing(eye, direction).filter(|along| *along >= 0.0)
     }
 
-    /// Where the line through `eye` along `sight` crosses the wall, in lengths of `sight`.
+    /// Intersection of the line through `eye` along `sight` with the wall, in lengths of `sight`.
     fn crossing(&self, eye: &Vector2<f64>, sight: &Vector2<f64>) -> Option<f64> {
         let (wall, offset) = (self.to - self.from, self.from - eye);
         let determinant = sight.perp(&wall);

@@ -9,8 +9,8 @@ use crate::ros;
 
 /// The pinhole camera of a message.
 ///
-/// `is_rectified` says that the images were freed of distortion: their projection is `P` then, else `K`. In ROS the centre of the first
-/// pixel is at (0, 0), here it is at (1/2, 1/2).
+/// If the images are rectified (`is_rectified`), their projection is `P`, else `K`. In ROS the centre of the first pixel is at (0, 0), here
+/// at (1/2, 1/2).
 pub(super) fn pinhole(message: &ros::CameraInfo<'_>, is_rectified: bool) -> Result<CameraInfo, Fault> {
     let [kx, skew, cx, _, ky, cy, ..] = message.k;
     let [px, _, pcx, _, _, py, pcy, ..] = message.p;
@@ -43,10 +43,10 @@ pub(super) fn pinhole(message: &ros::CameraInfo<'_>, is_rectified: bool) -> Resu
     }
 }
 
-/// A camera with x along its axis, y left and z up, from the frame of its images.
+/// The pose of a camera with x along its axis, y left and z up, from the frame of its images.
 ///
-/// Images are given in a frame with z along the axis, x right, y down, which REP 103 calls `…_optical`. Simulators and hasty
-/// configurations give them in the camera's own frame, which has no such name.
+/// Image frames have z along the axis, x right, y down; REP 103 names them `…_optical`. Simulators and some configurations use the camera's
+/// body frame instead, whose name lacks this suffix.
 pub(super) fn mount(frame: &str, in_body: &Pose3<f64>) -> Pose3<f64> {
     if !last_part(frame).contains("optical") {
         return *in_body;
@@ -55,12 +55,12 @@ pub(super) fn mount(frame: &str, in_body: &Pose3<f64>) -> Pose3<f64> {
     Pose3 { rotation: in_body.rotation * camera_in_optical, ..*in_body }
 }
 
-/// Whether a topic's name says that its images were freed of distortion.
+/// Whether a topic's name indicates rectified images.
 pub(super) fn is_rectified(topic: &str) -> bool {
     last_part(image_base(topic)).contains("rect")
 }
 
-/// Where a camera's calibration is, by the convention of `image_transport`: beside its images.
+/// Topic of a camera's calibration, by the convention of `image_transport`: beside its images.
 pub(super) fn info_topic(image_topic: &str) -> String {
     let base = image_base(image_topic);
     let namespace = base.rsplit_once('/').map_or("", |(namespace, _)| namespace);
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn an_optical_frame_is_turned_so_that_x_looks_ahead() {
-        // The usual joint from a camera to its optical frame: roll -90°, yaw -90°.
+        // The standard joint from a camera to its optical frame: roll -90°, yaw -90°.
         let optical = UnitQuaternion::new_normalize(Quaternion::new(0.5, -0.5, 0.5, -0.5));
         let in_body = Pose3 { translation: Vector3::new(0.1, 0.0, 0.2), rotation: optical };
         let turned = mount("front_optical_frame", &in_body);

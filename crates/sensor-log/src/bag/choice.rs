@@ -8,34 +8,34 @@ use super::probe::{TopicProbe, topic_probes};
 use super::{Topic, TopicInfo, TopicUse};
 use crate::LogError;
 
-/// Which topics of a bag are read, and as what.
+/// The topics of a bag to read, and their kinds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Choice {
     /// By name and schema.
     routes: BTreeMap<(String, String), BagRoute>,
-    /// Whether odometry tells of motion by its velocity: its pose stands still.
+    /// Whether motion comes from the velocity of odometry, because its pose does not change.
     pub(super) moves_by_twist: bool,
-    /// Whether transforms tell of motion: no other topic does.
+    /// Whether motion comes from transforms, because no other topic has it.
     pub(super) moves_by_transforms: bool,
-    /// Whether transforms tell of estimates: no other topic does.
+    /// Whether estimates come from transforms, because no other topic has them.
     pub(super) estimates_by_transforms: bool,
-    /// Whether the images that are read were freed of distortion.
+    /// Whether the selected images are rectified.
     pub(super) is_rectified: bool,
 }
 
-/// Why a choice of topics cannot be followed.
+/// Errors of a requested choice of topics.
 #[derive(Debug, PartialEq)]
 pub(crate) enum ChoiceError {
-    /// It is not there, or nothing that is read.
+    /// The topic does not exist, or holds nothing that is read.
     NotReadable { topic: String },
     /// Two of one kind.
     Ambiguous { what: &'static str, first: String, second: String },
 }
 
 impl Choice {
-    /// Chooses among the topics of a file: those that are wanted, else of each kind the one with the most messages.
+    /// Chooses among the topics of a file: the requested ones, and for each other kind the topic with the most messages.
     ///
-    /// `passed` puts topics to a probe each and tells the indices of those that passed.
+    /// `passed` probes topics and returns the indices of those that passed.
     pub(crate) fn among(
         topics: &[TopicInfo],
         wanted: &[String],
@@ -77,12 +77,12 @@ impl Choice {
         })
     }
 
-    /// What messages on this topic are read as.
+    /// Kind that messages on this topic are read as.
     pub(crate) fn route(&self, topic: &str, schema: &str) -> Option<BagRoute> {
         self.routes.get(&(topic.to_owned(), schema.to_owned())).copied()
     }
 
-    /// What becomes of every topic of ROS 2 messages, for people.
+    /// Use of every topic of ROS 2 messages, for people.
     pub(crate) fn uses(&self, topics: &[TopicInfo]) -> Vec<Topic> {
         let describe = |(index, topic): (usize, &TopicInfo)| {
             let r#use = match Candidate::of((index, topic)) {
@@ -116,7 +116,7 @@ impl ChoiceError {
     }
 }
 
-/// The calibration beside the images; of another place only where there is one camera, or it was asked for.
+/// The calibration beside the images; one at another topic only if there is one camera, or if it was requested.
 fn camera_info<'a>(
     image: Option<Candidate<'a>>,
     infos: Vec<Candidate<'a>>,
@@ -127,7 +127,7 @@ fn camera_info<'a>(
     beside.or_else(|| best(infos).filter(|_| any_camera))
 }
 
-/// By kind, the topic that was asked for; transforms are read from everywhere.
+/// The requested topic of each kind; transforms are read from all topics.
 fn wanted_of(candidates: &[Candidate<'_>], wanted: &[String]) -> Result<BTreeMap<Kind, usize>, ChoiceError> {
     let mut by_kind: BTreeMap<Kind, &Candidate<'_>> = BTreeMap::new();
     for name in wanted {

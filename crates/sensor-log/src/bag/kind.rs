@@ -1,6 +1,6 @@
 use crate::ros::RosSchema;
 
-/// What a topic of a bag can be read as; one topic of each kind is, but for transforms.
+/// Kinds of topics in a bag; one topic of each kind is read, except for transforms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     Scan,
@@ -12,16 +12,16 @@ pub(crate) enum Kind {
     Transforms,
 }
 
-/// What the messages of a topic are, and what they are read as.
+/// Message type of a topic, and the kind that it is read as.
 pub(crate) type BagRoute = (RosSchema, Kind);
 
-/// Parts of a topic's name that tell of motion capture or a simulator.
+/// Parts of a topic's name that indicate motion capture or a simulator.
 const TRUTH: [&str; 6] = ["truth", "mocap", "motion_capture", "vicon", "optitrack", "qualisys"];
-/// Poses where the robot is to go, or was said to be by hand: not where a program thinks it is.
+/// Names of poses that are goals or manual inputs and not estimates.
 const NO_ESTIMATE: [&str; 5] = ["goal", "target", "setpoint", "waypoint", "initialpose"];
 
 impl Kind {
-    /// What messages of this schema on this topic are; `None` for poses that are none of the robot's.
+    /// Kind of the messages of this schema on this topic; `None` for poses that are not the robot's.
     pub(super) fn of(schema: RosSchema, topic: &str) -> Option<Self> {
         match schema {
             RosSchema::LaserScan => Some(Self::Scan),

@@ -1,4 +1,4 @@
-//! ROS 2 bags: which of their topics are read, and what their messages become.
+//! ROS 2 bags: selection of topics, and conversion of messages.
 
 mod camera;
 mod candidate;

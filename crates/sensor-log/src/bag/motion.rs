@@ -5,22 +5,22 @@ use crate::planar::heading_of;
 use crate::ros::Pose;
 use crate::{ProblemKind, Stamp};
 
-/// No robot on the ground is faster, m/s: what is, is odometry that was set back.
+/// Maximum speed of a ground robot, m/s; faster motion is an odometry reset.
 const FASTEST: f64 = 100.0;
-/// Stamps of drivers are no more exact than this, seconds.
+/// Assumed stamp jitter of drivers, s.
 const JITTER: f64 = 0.01;
 /// Makes increments of poses that follow each other.
 #[derive(Debug, Default)]
 pub(super) struct Odometer {
     last: Option<(Stamp, Pose2<f64>)>,
-    /// A pose that no motion leads to from the last one: wrong, or the first after odometry was set anew.
+    /// A pose that is too far from the last one: an outlier, or the first after an odometry reset.
     doubtful: Option<(Stamp, Pose2<f64>)>,
 }
 
 impl Odometer {
-    /// Motion since the pose before, in the robot's frame there; `None` at the first.
+    /// Motion since the previous pose, in the robot frame there; `None` at the first.
     ///
-    /// A pose that no motion leads to is left out. Odometry was set anew when the next pose follows that one.
+    /// An implausible pose is skipped. If the next pose is consistent with it, odometry was reset.
     pub(super) fn increment(&mut self, stamp: Stamp, pose: Pose2<f64>) -> Result<Option<Pose2<f64>>, Fault> {
         let Some((before, from)) = self.last else {
             self.last = Some((stamp, pose));
@@ -44,7 +44,7 @@ impl Odometer {
     }
 }
 
-/// The motion from one pose to another; why not, where no robot is so fast.
+/// The motion between two poses; an error if it is too fast.
 fn motion(since: Stamp, from: &Pose2<f64>, stamp: Stamp, pose: &Pose2<f64>) -> Result<Pose2<f64>, String> {
     let seconds = stamp.seconds_since(since);
     let increment = from.inverse().compose(pose);

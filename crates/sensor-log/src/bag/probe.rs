@@ -9,7 +9,7 @@ use crate::ros::{RosMessage, RosSchema};
 /// The frame of wheel odometry. [REP 105]
 pub(super) const ODOMETRY_FRAME: &str = "odom";
 
-/// A topic that is put to a probe before it is chosen.
+/// A topic that is probed before the selection.
 #[derive(Debug)]
 pub(crate) struct TopicProbe {
     /// Which of the file's topics.
@@ -18,7 +18,7 @@ pub(crate) struct TopicProbe {
     pub(crate) probe: Probe,
 }
 
-/// What has to be seen of a topic before it is known whether to read it.
+/// Property of a topic that decides whether it is read.
 #[derive(Debug)]
 pub(crate) enum Probe {
     /// Whether the first image can be read.
@@ -29,7 +29,7 @@ pub(crate) enum Probe {
     Transforms,
 }
 
-/// What has to be found out of a file by reading.
+/// The topics of a file that need a probe.
 pub(super) fn topic_probes(
     motion: Option<Candidate<'_>>,
     images: &[Candidate<'_>],
@@ -37,7 +37,7 @@ pub(super) fn topic_probes(
 ) -> Vec<TopicProbe> {
     let question =
         |topic: &Candidate<'_>, probe| TopicProbe { index: topic.index, schema: topic.schema, probe };
-    // One camera alone is read whatever it sends: what is wrong with it gets told message by message.
+    // A single camera is read without a probe: its problems are reported message by message.
     let images = if images.len() > 1 { images } else { &[] };
     let mut topic_probes: Vec<TopicProbe> =
         images.iter().map(|image| question(image, Probe::Image)).collect();
@@ -46,7 +46,7 @@ pub(super) fn topic_probes(
             topic_probes.push(question(&odometry, Probe::Poses { first: None }));
         }
         Some(_) => {
-            // What is said to stand still is no odometry.
+            // Static transforms are not odometry.
             let moving = transforms.iter().filter(|topic| !topic.topic.name.ends_with("tf_static"));
             topic_probes.extend(moving.map(|topic| question(topic, Probe::Transforms)));
         }
@@ -56,7 +56,7 @@ pub(super) fn topic_probes(
 }
 
 impl Probe {
-    /// Looks at a message: an answer, or `None` when more have to be seen.
+    /// Inspects a message: an answer, or `None` if more messages are needed.
     pub(crate) fn inspect(&mut self, schema: RosSchema, bytes: &[u8]) -> Option<bool> {
         match (self, schema.decode(bytes)) {
             (Self::Image, message) => Some(match message {

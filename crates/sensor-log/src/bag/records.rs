@@ -30,13 +30,13 @@ pub(crate) struct BagRecords {
     body: Option<String>,
     camera_mount: Option<Pose3<f64>>,
     laser_mount: Option<Mount>,
-    /// How often the laser's mount has changed.
+    /// Number of changes of the laser's mount.
     n_laser_mounts: usize,
-    /// Frames of scans and images that no transform places on the robot, as far as known by now.
+    /// Frames of scans and images without a transform to the robot so far.
     unplaced: BTreeMap<&'static str, String>,
-    /// Whether a scan says no largest range.
+    /// Whether a scan states no maximum range.
     lacks_range_limit: bool,
-    /// What was wrong with parts of messages since it was taken.
+    /// Faults of parts of messages since the last call of `take_faults`.
     faults: Vec<Fault>,
 }
 
@@ -45,12 +45,12 @@ impl BagRecords {
         Self { choice, ..Self::default() }
     }
 
-    /// What a message on this topic is read as.
+    /// Kind that a message on this topic is read as.
     pub(crate) fn route(&self, topic: &str, schema: &str) -> Option<BagRoute> {
         self.choice.route(topic, schema)
     }
 
-    /// The records in a message; one without a stamp of its own takes the time at which it was logged.
+    /// The records in a message; one without a stamp gets its log time.
     pub(crate) fn take(
         &mut self,
         (schema, kind): BagRoute,
@@ -99,12 +99,12 @@ impl BagRecords {
         }
     }
 
-    /// What was wrong with parts of messages since the last call.
+    /// Faults of parts of messages since the last call.
     pub(crate) fn take_faults(&mut self) -> Vec<Fault> {
         std::mem::take(&mut self.faults)
     }
 
-    /// What was assumed, once all messages are known.
+    /// Assumptions made, available after the last message.
     pub(crate) fn warnings(&self) -> Vec<(&'static str, String)> {
         let mut warnings = Vec::new();
         if let Some(frame) = self.unplaced.get(LASER) {
@@ -133,7 +133,7 @@ impl BagRecords {
         warnings
     }
 
-    /// Remembers whether a scan states how far echoes reach.
+    /// Notes whether a scan states its maximum range.
     pub(crate) fn note_range_limit(&mut self, scan: &LaserScan) {
         self.lacks_range_limit |= scan.range_max == f64::INFINITY;
     }
@@ -168,7 +168,7 @@ impl BagRecords {
         records
     }
 
-    /// Whether a sensor's frame is placed on the robot; a transform may come later.
+    /// Notes whether a sensor's frame has a transform to the robot; a transform may come later.
     fn note_place(&mut self, sensor: &'static str, frame: &str, is_placed: bool) {
         if is_placed {
             self.unplaced.remove(sensor);
@@ -196,7 +196,7 @@ impl BagRecords {
         Ok(increment.map_or_else(Vec::new, |increment| one(stamp, Data::OdometryIncrement(increment))))
     }
 
-    /// The stamp matters for motions only: a transform that stands still holds at any time.
+    /// The stamp matters only for motions: a static transform holds at any time.
     fn transform(
         &mut self,
         stamp: Result<Stamp, Fault>,

@@ -5,10 +5,10 @@ use crate::fault::{Fault, finite, inconsistent};
 use crate::planar::heading_of;
 use crate::ros;
 
-/// A laser that is tilted more than this sees the floor or the sky, degrees.
+/// Maximum tilt of a laser, degrees; with more tilt it measures the floor or the sky.
 const MAX_TILT_DEG: f64 = 20.0;
 
-/// Where a laser is on the robot, on the ground.
+/// Pose of a laser on the robot, in the ground plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mount {
     pub(super) pose: Pose2<f64>,
@@ -31,7 +31,7 @@ impl Mount {
     }
 }
 
-/// The scan with directions as the robot sees them: those of a laser that hangs head down go the other way round.
+/// The scan with directions in the robot frame; those of a laser mounted upside down are reversed.
 pub(super) fn scan(message: &ros::LaserScan<'_>, mount: Option<&Mount>) -> Result<LaserScan, Fault> {
     let [angle_min, angle_increment] = [message.angle_min, message.angle_increment].map(f64::from);
     finite([angle_min, angle_increment])?;
@@ -50,12 +50,12 @@ pub(super) fn scan(message: &ros::LaserScan<'_>, mount: Option<&Mount>) -> Resul
     })
 }
 
-/// The time from beam to beam; 0, unknown, where it is no time.
+/// The time between beams; 0, unknown, if it is invalid.
 fn beam_period(message: &ros::LaserScan<'_>) -> f64 {
     Some(message.time_increment).filter(|period| period.is_finite() && *period > 0.0).map_or(0.0, f64::from)
 }
 
-/// The limits of a scan's ranges; those between which no range lies say nothing.
+/// The range limits of a scan; limits that exclude all ranges are ignored.
 fn limits(message: &ros::LaserScan<'_>) -> (f32, f64) {
     let min = if message.range_min.is_nan() { 0.0 } else { message.range_min };
     let max = if message.range_max > 0.0 { f64::from(message.range_max) } else { f64::INFINITY };

@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// A topic of a ROS 2 bag and what becomes of it.
+/// A topic of a ROS 2 bag and its use.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Topic {
@@ -8,23 +8,23 @@ pub struct Topic {
     pub name: String,
     /// Type of its messages.
     pub schema: String,
-    /// How many there are.
+    /// Number of messages.
     pub n_messages: u64,
     /// Whether they are read.
     pub r#use: TopicUse,
 }
 
-/// What becomes of a topic.
+/// Use of a topic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TopicUse {
     /// It is read, as this.
     Read(&'static str),
-    /// It could be read as this, and another topic is.
+    /// It could be read as this kind, but another topic is.
     NotChosen(&'static str),
     /// Messages of this type, or of this name, are not read.
     NotUnderstood,
-    /// There is no message on it.
+    /// It has no messages.
     Empty,
 }
 
@@ -43,7 +43,7 @@ impl TopicInfo {
         self.name == other.name && self.schema == other.schema
     }
 
-    /// Whether its messages are encoded as those of ROS 2.
+    /// Whether its messages have the encoding of ROS 2.
     pub(super) fn is_cdr(&self) -> bool {
         self.encoding == "cdr"
     }

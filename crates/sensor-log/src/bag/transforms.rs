@@ -16,7 +16,7 @@ impl Transforms {
         self.parents.insert(bare(child).to_owned(), (bare(parent).to_owned(), pose));
     }
 
-    /// Where a frame is in the robot's: on the ground where the robot has such a frame, else the one that odometry moves, else `base_link`.
+    /// Pose of a frame in the robot's frame: the ground frame if there is one, else the child frame of odometry, else `base_link`.
     pub(super) fn in_body(&self, frame: &str, odometry_child: Option<&str>) -> Option<Pose3<f64>> {
         let rank = |name: &str| {
             let named = BODY.iter().position(|body| last_part(name) == *body);
@@ -34,12 +34,12 @@ impl Transforms {
         best.map(|(_, pose)| pose)
     }
 
-    /// Where a frame is in the nearest ancestor of a name, which may have a namespace before it.
+    /// Pose of a frame in the nearest ancestor of a name, with or without a namespace.
     pub(super) fn in_ancestor(&self, frame: &str, ancestor: &str) -> Option<Pose3<f64>> {
         self.ancestors(frame).find(|(name, _)| last_part(name) == ancestor).map(|(_, pose)| pose)
     }
 
-    /// The frame itself and those above it, with the place of the frame in each.
+    /// The frame and its ancestors, with the pose of the frame in each.
     fn ancestors<'a>(&'a self, frame: &'a str) -> impl Iterator<Item = (&'a str, Pose3<f64>)> {
         let mut next = Some((bare(frame), Pose3::identity()));
         // A circle of frames ends after all of them.

@@ -1,4 +1,4 @@
-/// Why bytes are not the CDR message that they should be.
+/// Errors of decoding a CDR message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CdrError {
@@ -17,7 +17,7 @@ pub enum CdrError {
     /// The message ends, or a length claims more than is there.
     #[error("{needed} bytes needed at byte {at}, {left} left")]
     Truncated {
-        /// Where, counted from the byte after the header.
+        /// Offset from the byte after the header.
         at: usize,
         /// Bytes that should be there.
         needed: u64,
@@ -27,7 +27,7 @@ pub enum CdrError {
     /// A string that is not UTF-8 or lacks its final zero.
     #[error("string at byte {at} is not UTF-8 with a final zero")]
     BadString {
-        /// Where its characters begin, counted from the byte after the header.
+        /// Offset of its first character from the byte after the header.
         at: usize,
     },
 }

@@ -1,7 +1,7 @@
 //! Common Data Representation, the encoding of ROS 2 messages [OMG CORBA 3.3, Interoperability, 9.3; OMG DDSI-RTPS 2.5, 10.5].
 //!
-//! Four bytes of header tell the byte order. Every number then stands at a multiple of its size, counted from the byte after the header; a
-//! string and a sequence begin with their length in 32 bits.
+//! A four-byte header gives the byte order. Every number is aligned to its size, counted from the byte after the header. Strings and
+//! sequences begin with their length in 32 bits.
 
 mod error;
 mod reader;

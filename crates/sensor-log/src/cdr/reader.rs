@@ -2,9 +2,9 @@ use super::CdrError;
 
 const HEADER_BYTES: usize = 4;
 
-/// Reads numbers, strings and sequences off a message; nothing is allocated that the bytes do not fill.
+/// Reads numbers, strings and sequences from a message; allocation is bounded by the bytes present.
 pub(crate) struct CdrReader<'a> {
-    /// What comes after the header.
+    /// The bytes after the header.
     body: &'a [u8],
     at: usize,
     is_little_endian: bool,
@@ -12,7 +12,7 @@ pub(crate) struct CdrReader<'a> {
 
 /// Something with a fixed place in a message: its fields in the order of the definition.
 pub(crate) trait FromCdr<'a>: Sized {
-    /// Reads it off the front of what is left.
+    /// Reads a value from the front of the remaining bytes.
     fn read(cdr: &mut CdrReader<'a>) -> Result<Self, CdrError>;
 }
 
@@ -50,7 +50,7 @@ impl<'a> CdrReader<'a> {
         self.number(f64::from_le_bytes, f64::from_be_bytes)
     }
 
-    /// Numbers whose count the definition says.
+    /// Numbers of fixed count.
     pub(crate) fn f64_array<const N: usize>(&mut self) -> Result<[f64; N], CdrError> {
         let mut numbers = [0.0; N];
         for number in &mut numbers {

@@ -13,8 +13,7 @@ use crate::image_folder::images_in;
 use crate::mcap_log::files_in;
 use crate::text::{Lines, carmen, range_bearing, tum, utias, victoria_park};
 
-/// How a log is stored.
-///
+/// Storage format of a log.
 /// ```
 /// use wayfix_sensor_log::Format;
 /// assert_eq!("range-bearing".parse::<Format>()?, Format::RangeBearing);
@@ -27,7 +26,7 @@ use crate::text::{Lines, carmen, range_bearing, tum, utias, victoria_park};
 pub enum Format {
     /// A folder of the UTIAS Multi-Robot Cooperative Localization and Mapping set.
     Utias,
-    /// A folder of the Victoria Park set: `odometry.csv`, `trees.csv` and, if need be, `gps.csv`.
+    /// A folder of the Victoria Park set: `odometry.csv`, `trees.csv` and optionally `gps.csv`.
     VictoriaPark,
     /// Plain `L`, `P`, `O`, `Z` lines.
     RangeBearing,
@@ -57,10 +56,9 @@ impl Format {
     pub(crate) const NAMES: &'static str =
         "utias, range-bearing, tum, mcap, images, victoria-park, carmen, scan-json";
 
-    /// The format of what lies at `path`: by what is in it for folders, by name for `.mcap`, else by the first bytes.
-    ///
+    /// Detects the format at `path`: of folders by their content, of `.mcap` by name, else by the first bytes.
     /// # Errors
-    /// When nothing is there, it cannot be read, is empty, or looks like no known format.
+    /// Returns an error if the path does not exist, cannot be read, is empty, or has no known format.
     pub fn detect(path: &Path) -> Result<Self, LogError> {
         let io = |source| LogError::io(path, source);
         if fs::metadata(path).map_err(io)?.is_dir() {
@@ -117,7 +115,7 @@ impl Format {
     }
 }
 
-/// As many rows are looked at before a text is of no known format: one that is damaged, or a header, does not hide the others.
+/// Number of rows tested before a text counts as unknown, so that a damaged row or a header does not hide the format.
 const ROWS_TRIED: usize = 16;
 
 /// Enough of a text to recognize it in a message.

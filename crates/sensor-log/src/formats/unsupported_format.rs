@@ -47,7 +47,7 @@ const UNSUPPORTED_FORMATS: [UnsupportedFormat; 8] = [
     },
 ];
 
-/// An error that names the format and the way out, where a file is of a format that is known and not read.
+/// Returns an error with the format and a remedy if a file has a known format that is not supported.
 pub(crate) fn check(path: &Path) -> Result<(), LogError> {
     let longest = UNSUPPORTED_FORMATS.iter().map(|foreign| foreign.magic.len()).max().unwrap_or(0);
     let mut head = Vec::new();
@@ -61,7 +61,7 @@ pub(crate) fn check(path: &Path) -> Result<(), LogError> {
     }
 }
 
-/// The same for the files of a folder in which nothing was found that is read.
+/// The same for the files of a folder without a readable log.
 pub(crate) fn check_folder(folder: &Path) -> Result<(), LogError> {
     let entries = fs::read_dir(folder).map_err(|source| LogError::io(folder, source))?;
     let mut files: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();

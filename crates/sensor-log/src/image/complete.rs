@@ -1,7 +1,7 @@
 use super::{Anymap, ImageFormat};
 
 impl ImageFormat {
-    /// Whether a file goes on to its end mark. Decoders paint what is missing in grey and call it an image.
+    /// Whether a file reaches its end mark. Decoders fill missing pixels with grey without an error.
     pub(super) fn is_complete(self, bytes: &[u8]) -> bool {
         match self {
             Self::Jpeg => is_complete_jpeg(bytes).is_some(),
@@ -11,7 +11,7 @@ impl ImageFormat {
     }
 }
 
-/// Goes from marker to marker, over segments by their length, so that the end of a thumbnail is not taken for the end of the image.
+/// Steps from marker to marker, over segments by their length, so that the end of a thumbnail is not mistaken for the end of the image.
 fn is_complete_jpeg(bytes: &[u8]) -> Option<()> {
     const END_OF_IMAGE: u8 = 0xD9;
     let mut rest = bytes.get(2..)?;

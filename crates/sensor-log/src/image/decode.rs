@@ -9,16 +9,16 @@ use super::{DecodedImage, EncodedImage, ImageError, ImageFormat, PixelLayout};
 
 /// Pixels of the largest image that is decoded; a damaged or hostile header must not fill the memory.
 const MAX_PIXELS: u64 = 64 << 20;
-/// What a decoder may allocate: the deepest pixels, four channels of two bytes, and as much to work with.
+/// Allocation limit of a decoder: the deepest pixels, four channels of two bytes, and an equal working buffer.
 const MAX_BYTES: u64 = 2 * 8 * MAX_PIXELS;
 
-/// Decoding gives the same pixels with AVX2 and without vector instructions (`tests/image_portability.rs`; Neon is not measured yet).
-/// Images are turned as their EXIF orientation says. A JPEG without Huffman tables, as webcams send, gets those of the standard.
+/// Decoding gives equal pixels with AVX2 and without vector instructions (`tests/image_portability.rs`; Neon is not measured yet). Images are
+/// rotated by their EXIF orientation. A JPEG without Huffman tables, as from webcams, gets those of the standard.
 impl EncodedImage {
     /// Columns and rows of the upright image, from the header; no pixel is decoded.
     ///
     /// # Errors
-    /// When the file is cut short, its header is damaged or of another format, or it claims no pixel or more than 64 Mi.
+    /// Returns an error if the file is cut short, its header is damaged or of another format, or it claims no pixel or more than 64 Mi.
     pub fn size(&self) -> Result<(u32, u32), ImageError> {
         let mut decoder = self.decoder()?;
         let (width, height) = decoder.dimensions();
@@ -26,16 +26,15 @@ impl EncodedImage {
         Ok(if is_on_its_side { (height, width) } else { (width, height) })
     }
 
-    /// The EXIF orientation of an image that is not stored upright, 2 to 8: it is turned when it is decoded.
+    /// The EXIF orientation of an image that is not stored upright, 2 to 8; decoding corrects it.
     pub fn orientation(&self) -> Option<u8> {
         let orientation = orientation(&mut self.decoder().ok()?);
         (orientation != Orientation::NoTransforms).then(|| orientation.to_exif())
     }
 
-    /// How the file stores its pixels, from the header: what decoding to eight bits of colour will change.
-    ///
+    /// Pixel layout of the file, from the header; it shows what a decoding to eight-bit colour will change.
     /// # Errors
-    /// As [`size`](Self::size).
+    /// Returns the errors of [`size`](Self::size).
     pub fn layout(&self) -> Result<PixelLayout, ImageError> {
         let color = self.decoder()?.original_color_type();
         let channels = color.channel_count();
@@ -43,10 +42,9 @@ impl EncodedImage {
         Ok(PixelLayout { channels, bits_per_channel })
     }
 
-    /// The image in colour: grey becomes colour, deeper channels are rounded to eight bits, transparency is dropped.
-    ///
+    /// Decodes to colour: grey becomes colour, deeper channels are rounded to eight bits, transparency is dropped.
     /// # Errors
-    /// As [`size`](Self::size), and when the pixels are damaged. A JPEG file has no checksum: flipped bits in it may as well give other
+    /// Returns the errors of [`size`](Self::size), and an error if the pixels are damaged. A JPEG file has no checksum, so damage may only change
     /// pixels.
     pub fn decode_rgb(&self) -> Result<DecodedImage, ImageError> {
         let image = self.decode()?.into_rgb8();
@@ -56,16 +54,15 @@ impl EncodedImage {
     /// The image in grey: for a grey image its own bytes, else luma of its colours.
     ///
     /// # Errors
-    /// As [`decode_rgb`](Self::decode_rgb).
+    /// Returns the errors of [`decode_rgb`](Self::decode_rgb).
     pub fn decode_gray(&self) -> Result<DecodedImage, ImageError> {
         let image = self.decode()?.into_luma8();
         Ok(DecodedImage { width: image.width(), height: image.height(), pixels: image.into_raw() })
     }
 
-    /// The labels in [`Data::TrueLabels`](crate::Data::TrueLabels): the bytes of a grey PNG, and nothing that a conversion made up.
-    ///
+    /// Decodes the labels in [`Data::TrueLabels`](crate::Data::TrueLabels): the bytes of a grey PNG, without conversion.
     /// # Errors
-    /// As [`decode_rgb`](Self::decode_rgb), and when the image is not a PNG of eight grey bits.
+    /// Returns the errors of [`decode_rgb`](Self::decode_rgb), and an error if the image is not a PNG of eight grey bits.
     pub fn decode_labels(&self) -> Result<DecodedImage, ImageError> {
         let color = self.decoder()?.original_color_type();
         if self.format != ImageFormat::Png || color != ExtendedColorType::L8 {
@@ -110,7 +107,7 @@ impl EncodedImage {
     }
 }
 
-/// Damaged EXIF data say nothing.
+/// Damaged EXIF data are ignored.
 fn orientation(decoder: &mut impl ImageDecoder) -> Orientation {
     decoder.orientation().unwrap_or(Orientation::NoTransforms)
 }
@@ -160,7 +157,7 @@ mod tests {
         assert!(EncodedImage::new(ImageFormat::Jpeg, &b"GIF89a"[..]).size().is_err());
     }
 
-    /// The header chunk has its checksum after 4 + 4 + 13 bytes; a decoder looks at that first.
+    /// The header chunk has its checksum after 4 + 4 + 13 bytes; a decoder checks it first.
     fn with_claimed_size(png: &EncodedImage, width: u32, height: u32) -> EncodedImage {
         let mut bytes = png.bytes.to_vec();
         bytes[16..20].copy_from_slice(&width.to_be_bytes());
@@ -184,7 +181,7 @@ mod tests {
         );
         assert!(with_claimed_size(&png, i32::MAX as u32, i32::MAX as u32).size().is_err());
         assert!(with_claimed_size(&png, 0, 4).decode_rgb().is_err());
-        // The same size, to see that it is not the altered checksum that is refused.
+        // The same size, to show that the altered checksum is not the cause of the error.
         assert_eq!(with_claimed_size(&png, 4, 4).decode_gray().unwrap().pixels, [7; 16]);
 
         let mut jpeg = EncodedImage::jpeg(4, 4, &ramp(4, 4), 90).unwrap().bytes.to_vec();
@@ -208,7 +205,7 @@ mod tests {
         assert_eq!(grey.layout().unwrap(), PixelLayout { channels: 1, bits_per_channel: 8 });
     }
 
-    /// An EXIF segment with nothing but an orientation, after the start of the image.
+    /// Inserts an EXIF segment with only an orientation, after the start of the image.
     fn with_orientation(jpeg: &EncodedImage, orientation: u8) -> EncodedImage {
         let mut exif = b"Exif\0\0MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0".to_vec();
         exif.extend([orientation, 0, 0, 0, 0, 0, 0]);

@@ -7,7 +7,7 @@ impl EncodedImage {
     /// RGB pixels as JPEG of the given quality, 1 to 100; the same bytes on every machine.
     ///
     /// # Errors
-    /// When the pixels do not fill the image or there are none.
+    /// Returns an error if the pixels do not fill the image or there are none.
     pub fn jpeg(width: u32, height: u32, rgb: &[u8], quality: u8) -> Result<Self, ImageError> {
         check(width, height, 3, rgb)?;
         let mut bytes = Vec::new();
@@ -19,16 +19,15 @@ impl EncodedImage {
     /// RGB pixels as PNG.
     ///
     /// # Errors
-    /// When the pixels do not fill the image or there are none.
+    /// Returns an error if the pixels do not fill the image or there are none.
     pub fn png_rgb(width: u32, height: u32, rgb: &[u8]) -> Result<Self, ImageError> {
         check(width, height, 3, rgb)?;
         png(width, height, rgb, ExtendedColorType::Rgb8)
     }
 
-    /// The same picture in a form that web pages show: uncompressed images become PNG, others stay as they are.
-    ///
+    /// Converts the image to a format that web pages show: uncompressed images become PNG, others are unchanged.
     /// # Errors
-    /// When an uncompressed image cannot be decoded.
+    /// Returns an error if an uncompressed image cannot be decoded.
     pub fn to_browser_format(&self) -> Result<Self, ImageError> {
         match (self.format, Anymap::of(&self.bytes)) {
             (ImageFormat::Pnm, Some(Anymap { channels: 1, .. })) => {
@@ -46,7 +45,7 @@ impl EncodedImage {
     /// Grey pixels, a byte each, as PNG.
     ///
     /// # Errors
-    /// When the pixels do not fill the image or there are none.
+    /// Returns an error if the pixels do not fill the image or there are none.
     pub fn png_gray(width: u32, height: u32, gray: &[u8]) -> Result<Self, ImageError> {
         check(width, height, 1, gray)?;
         png(width, height, gray, ExtendedColorType::L8)

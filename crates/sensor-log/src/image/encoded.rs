@@ -14,13 +14,13 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, PartialEq, Eq)]
 pub struct EncodedImage {
-    /// How it is stored.
+    /// Storage format.
     pub format: ImageFormat,
     /// The file.
     pub bytes: Arc<[u8]>,
 }
 
-/// How an image is stored.
+/// Storage format of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum ImageFormat {
@@ -43,7 +43,7 @@ pub struct DecodedImage {
     pub pixels: Vec<u8>,
 }
 
-/// How a file stores its pixels.
+/// Pixel layout of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelLayout {
     /// 1 grey, 2 grey and alpha, 3 colours, 4 colours and alpha.
@@ -53,14 +53,14 @@ pub struct PixelLayout {
 }
 
 impl PixelLayout {
-    /// Whether a channel says how transparent a pixel is.
+    /// Whether the pixels have an alpha channel.
     pub fn has_alpha(self) -> bool {
         matches!(self.channels, 2 | 4)
     }
 }
 
 impl ImageFormat {
-    /// Its name; of those that are compressed, as `foxglove.CompressedImage` and `sensor_msgs/CompressedImage` have it.
+    /// Its name; of compressed formats, as in `foxglove.CompressedImage` and `sensor_msgs/CompressedImage`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Jpeg => "jpeg",
@@ -81,7 +81,7 @@ impl ImageFormat {
 }
 
 impl EncodedImage {
-    /// The file as it is; nothing is decoded.
+    /// Stores the file without decoding it.
     pub fn new(format: ImageFormat, bytes: impl Into<Arc<[u8]>>) -> Self {
         Self { format, bytes: bytes.into() }
     }
@@ -97,7 +97,7 @@ impl EncodedImage {
 }
 
 impl fmt::Debug for EncodedImage {
-    /// Kilobytes of numbers help nobody.
+    /// Omits the bytes from the debug output.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "EncodedImage({}, {} bytes)", self.format.name(), self.bytes.len())
     }

@@ -2,7 +2,7 @@ use image::ExtendedColorType;
 
 use super::ImageFormat;
 
-/// Why an image could not be encoded or decoded.
+/// Errors of encoding and decoding images.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
@@ -17,7 +17,7 @@ pub enum ImageError {
         channels: u32,
         /// Bytes that are needed.
         expected: u64,
-        /// Bytes that were given.
+        /// Number of bytes given.
         got: u64,
     },
     /// No pixels at all.
@@ -44,15 +44,15 @@ pub enum ImageError {
         /// Bytes that are there.
         n_bytes: usize,
     },
-    /// An image that holds no labels.
+    /// The image holds no labels.
     #[error("labels are 8-bit grey PNG, this is {} with pixels {color:?}", format.name())]
     NotLabels {
-        /// How it is compressed.
+        /// Its compression.
         format: ImageFormat,
-        /// What its pixels are.
+        /// Its pixel format.
         color: ExtendedColorType,
     },
-    /// The codec refuses: damaged, or of another format than it says.
+    /// An error of the codec: damaged data, or another format than stated.
     #[error("{}", .0.to_string().trim_end())]
     Codec(image::ImageError),
 }

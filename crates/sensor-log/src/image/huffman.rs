@@ -1,6 +1,6 @@
 use std::borrow::Cow;
 
-/// How many codes of 1 to 16 bits a table has, and what they mean.
+/// Number of codes of 1 to 16 bits in a table, and their meanings.
 type Table = (u8, [u8; 16], &'static [u8]);
 
 /// The typical Huffman tables: class and destination, lengths, values. [ITU-T T.81, Tables K.3 to K.6]
@@ -39,9 +39,9 @@ const AC_CHROMINANCE: [u8; 162] = [
     0xF2, 0xF3, 0xF4, 0xF5, 0xF6, 0xF7, 0xF8, 0xF9, 0xFA,
 ];
 
-/// A baseline JPEG whose Huffman tables are missing, with the typical ones; any other file as it is.
+/// Adds the standard Huffman tables to a baseline JPEG that has none; other files are unchanged.
 ///
-/// The frames of Motion JPEG leave them out.
+/// Frames of Motion JPEG omit them.
 pub(super) fn with_huffman_tables(bytes: &[u8]) -> Cow<'_, [u8]> {
     if !lacks_tables(bytes) {
         return Cow::Borrowed(bytes);

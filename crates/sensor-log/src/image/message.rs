@@ -3,9 +3,9 @@ use crate::ProblemKind;
 use crate::fault::Fault;
 use crate::formats::format::shortened;
 
-/// The picture in a message with an image file, of ROS 2 or of Foxglove, and what the sender calls its format.
+/// The image in a message of ROS 2 or Foxglove that contains an image file, with the sender's name of the format.
 ///
-/// What the file is counts more than what it is called. Distances and the mosaic of a Bayer sensor are no picture, even in a JPEG or PNG file.
+/// The file content takes precedence over the name. Depth images and the mosaic of a Bayer sensor are rejected, even in a JPEG or PNG file.
 /// `image_transport` names the pixels, the compression and the compressed pixels: `bayer_rggb8; jpeg compressed bgr8`.
 pub(crate) fn picture(called: &str, bytes: &[u8]) -> Result<EncodedImage, Fault> {
     let refused = |why: &str| {
@@ -34,7 +34,7 @@ pub(crate) fn picture(called: &str, bytes: &[u8]) -> Result<EncodedImage, Fault>
 /// The encodings of distances in `sensor_msgs/image_encodings.hpp` and their relatives. [REP 118]
 const DEPTH: [&str; 5] = ["16UC1", "16SC1", "32SC1", "32FC1", "64FC1"];
 
-/// Whether the sender says that it made colours of a mosaic before it compressed them.
+/// Whether the name says that the sender converted the mosaic to colour before compression.
 fn is_made_colour(called: &str) -> bool {
     ["bgr8", "rgb8"].iter().any(|colours| called.trim_end().ends_with(colours))
 }

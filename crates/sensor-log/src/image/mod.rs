@@ -1,4 +1,4 @@
-//! Camera images as logs hold them: files, compressed or not, decoded when somebody wants to see them.
+//! Camera images as stored in logs: files, compressed or not, decoded on demand.
 
 mod complete;
 mod decode;

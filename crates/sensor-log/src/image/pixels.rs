@@ -7,7 +7,7 @@ use crate::{EncodedImage, ProblemKind};
 pub(crate) struct Pixels<'a> {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// What the bytes of a pixel mean: `rgb8`, `mono8`, …
+    /// Pixel format: `rgb8`, `mono8`, …
     pub(crate) encoding: &'a str,
     /// From one row to the next, bytes.
     pub(crate) step: u32,
@@ -16,15 +16,15 @@ pub(crate) struct Pixels<'a> {
 }
 
 impl Pixels<'_> {
-    /// The image as a file that is not compressed.
+    /// Converts the image to an uncompressed file.
     ///
-    /// Padding of rows and transparency are dropped, colours come in the order R, G, B.
+    /// Removes row padding and transparency; colours are in the order R, G, B.
     pub(crate) fn uncompressed(&self) -> Result<EncodedImage, Fault> {
         let Self { width, height, encoding, step, data } = *self;
         let channels = channels(encoding)?;
         let unreadable = |reason: String| (ProblemKind::UnreadableImage, reason);
         let row_bytes = u64::from(width) * channels.n_bytes as u64;
-        // The last row need not be padded.
+        // The last row may lack padding.
         let rows_before = u64::from(step) * u64::from(height.saturating_sub(1));
         let needed = rows_before.saturating_add(row_bytes);
         if u64::from(step) < row_bytes || (data.len() as u64) < needed {
@@ -48,14 +48,14 @@ impl Pixels<'_> {
     }
 }
 
-/// Where the bytes of a pixel are.
+/// Offsets of the channels in a pixel.
 struct Channels {
     n_bytes: usize,
     /// Of red, green and blue; `None` for grey.
     colors: Option<[usize; 3]>,
 }
 
-/// Names as in `sensor_msgs/image_encodings.hpp`; those of OpenCV without colours count as OpenCV has them, blue first.
+/// Names as in `sensor_msgs/image_encodings.hpp`; OpenCV types without a colour order count as blue first.
 fn channels(encoding: &str) -> Result<Channels, Fault> {
     let (n_bytes, colors) = match encoding {
         "mono8" | "8UC1" => (1, None),

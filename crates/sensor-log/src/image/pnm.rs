@@ -3,8 +3,7 @@
 use super::{EncodedImage, ImageError, ImageFormat};
 
 impl EncodedImage {
-    /// RGB pixels as they are, behind a few bytes that say how many.
-    ///
+    /// RGB pixels after a short header with their number.
     /// ```
     /// use wayfix_sensor_log::EncodedImage;
     /// let image = EncodedImage::pnm_rgb(1, 2, &[255, 0, 0, 0, 0, 255])?;
@@ -14,7 +13,7 @@ impl EncodedImage {
     /// ```
     ///
     /// # Errors
-    /// When the pixels do not fill the image or there are none.
+    /// Returns an error if the pixels do not fill the image or there are none.
     pub fn pnm_rgb(width: u32, height: u32, rgb: &[u8]) -> Result<Self, ImageError> {
         super::encode::check(width, height, 3, rgb)?;
         Ok(pnm("P6", width, height, rgb))
@@ -23,7 +22,7 @@ impl EncodedImage {
     /// Grey pixels, a byte each, as they are.
     ///
     /// # Errors
-    /// When the pixels do not fill the image or there are none.
+    /// Returns an error if the pixels do not fill the image or there are none.
     pub fn pnm_gray(width: u32, height: u32, gray: &[u8]) -> Result<Self, ImageError> {
         super::encode::check(width, height, 1, gray)?;
         Ok(pnm("P5", width, height, gray))
@@ -37,12 +36,12 @@ pub(crate) struct Anymap<'a> {
     pub(crate) height: u32,
     /// 1 or 3.
     pub(crate) channels: u32,
-    /// Row by row from the upper left; fewer than the header claims when the file breaks off.
+    /// Row by row from the upper left; fewer than the header claims if the file is truncated.
     pub(crate) pixels: &'a [u8],
 }
 
 impl<'a> Anymap<'a> {
-    /// `None` when the header is not one of eight bits a channel.
+    /// Returns `None` unless the header has eight bits per channel.
     pub(crate) fn of(bytes: &'a [u8]) -> Option<Self> {
         let channels = match bytes {
             [b'P', b'5', ..] => 1,

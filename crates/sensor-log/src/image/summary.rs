@@ -3,8 +3,7 @@ use std::fmt;
 
 use super::{EncodedImage, ImageFormat};
 
-/// What images there are, by their headers; `Display` prints it for people.
-///
+/// Image statistics from the headers; `Display` prints them for people.
 /// ```
 /// use wayfix_sensor_log::{EncodedImage, ImageFormat, ImageSummary};
 /// let mut summary = ImageSummary::default();
@@ -17,9 +16,9 @@ use super::{EncodedImage, ImageFormat};
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct ImageSummary {
-    /// How many of each format, width and height.
+    /// Number of images of each format, width and height.
     pub sizes: BTreeMap<(ImageFormat, u32, u32), u64>,
-    /// How many have a header that cannot be read or break off.
+    /// Number of images with an unreadable or truncated header.
     pub n_damaged: u64,
     /// Bytes of all of them.
     pub n_bytes: u64,

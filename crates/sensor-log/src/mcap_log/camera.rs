@@ -11,7 +11,7 @@ use crate::formats::format::shortened;
 use crate::image::{Anymap, Pixels, picture};
 use crate::{CameraInfo, Data, EncodedImage, ImageFormat, LogError, Record, Stamp};
 
-/// What would not come back is not written.
+/// Rejects records that a reader could not restore.
 pub(super) fn check(record: &Record) -> Result<(), LogError> {
     let stamp = record.stamp;
     match &record.data {
@@ -20,7 +20,7 @@ pub(super) fn check(record: &Record) -> Result<(), LogError> {
             Err(LogError::BadCamera { width, height, fx, fy, stamp })
         }
         Data::Image(image) if !is_image(image) => Err(no_image(record, image)),
-        // An uncompressed image is another message than the one that labels are.
+        // Labels must be compressed; an uncompressed image has another message type.
         Data::TrueLabels(image) if !is_image(image) || image.format == ImageFormat::Pnm => {
             Err(no_image(record, image))
         }
@@ -85,7 +85,7 @@ pub(super) fn encode_image(timestamp: Timestamp, image: &EncodedImage) -> Compre
     }
 }
 
-/// An image whose pixels lie open; nothing in it when it is none, which [`check`] finds before.
+/// A message with raw pixels; empty for an invalid image, which [`check`] rejects before.
 pub(super) fn encode_raw_image(timestamp: Timestamp, image: &EncodedImage) -> RawImage {
     let mut message = RawImage {
         timestamp: Some(timestamp),
@@ -114,7 +114,7 @@ pub(super) fn info(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> 
         let CameraInfo { width, height, .. } = info;
         return Err(inconsistent(&format!("{width} x {height} pixels, focal lengths {fx} and {fy}")));
     }
-    // Points would be taken for seen where they are not.
+    // Points would be projected to wrong pixels.
     if skew != 0.0 || message.d.iter().any(|coefficient| *coefficient != 0.0) {
         let (model, d) = (shortened(&message.distortion_model), &message.d[..message.d.len().min(8)]);
         let reason =

@@ -9,7 +9,7 @@ use super::writing::encode;
 /// Name and type of one column; columns are packed without gaps.
 pub(super) type Column = (&'static str, NumericType);
 
-/// A cloud whose points are written by `push_point`, one per item, in the order of `columns`.
+/// A cloud with one point per item, written by `push_point` in the order of `columns`.
 pub(super) fn pack<T>(
     timestamp: Timestamp,
     frame: &str,
@@ -37,14 +37,14 @@ pub(super) fn pack<T>(
     }
 }
 
-/// The points of a cloud as byte slices; `None` when the sizes do not fit together.
+/// The points of a cloud as byte slices; `None` if its sizes are inconsistent.
 pub(super) fn points(cloud: &PointCloud) -> Option<impl Iterator<Item = &[u8]>> {
     let stride = cloud.point_stride as usize;
     let fits = if stride == 0 { cloud.data.is_empty() } else { cloud.data.len().is_multiple_of(stride) };
     fits.then(|| cloud.data.chunks_exact(stride.max(1)))
 }
 
-/// Where a column lies in each point.
+/// Position of a column in each point.
 #[derive(Clone, Copy)]
 pub(super) struct PointField {
     offset: usize,
@@ -52,7 +52,7 @@ pub(super) struct PointField {
 }
 
 impl PointField {
-    /// The column `name`; `None` when the cloud has none or it does not fit into a point.
+    /// The column `name`; `None` if it is missing or does not fit into a point.
     pub(super) fn of(cloud: &PointCloud, name: &str) -> Option<Self> {
         let field = cloud.fields.iter().find(|field| field.name == name)?;
         let numeric_type = NumericType::try_from(field.r#type).ok()?;
@@ -61,7 +61,7 @@ impl PointField {
             .then_some(Self { offset, numeric_type })
     }
 
-    /// A floating-point number; `None` when the column is of another type.
+    /// A floating-point number; `None` if the column has another type.
     pub(super) fn float(self, point: &[u8]) -> Option<f64> {
         match self.numeric_type {
             NumericType::Float64 => self.array(point).map(f64::from_le_bytes),
@@ -70,7 +70,7 @@ impl PointField {
         }
     }
 
-    /// A whole number; `None` when the column is of another type.
+    /// A whole number; `None` if the column has another type.
     pub(super) fn whole(self, point: &[u8]) -> Option<u32> {
         match self.numeric_type {
             NumericType::Uint32 => self.array(point).map(u32::from_le_bytes),

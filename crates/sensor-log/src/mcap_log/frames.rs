@@ -8,19 +8,19 @@ use crate::LogEnd;
 /// No sane writer makes larger chunks or messages; a damaged length must not fill the memory.
 pub(super) const MAX_RECORD_BYTES: usize = 128 << 20;
 
-/// What is passed over may be an attachment of any size, but no file is larger than this.
+/// Upper bound of a file's size; a skipped attachment may have any size below it.
 const MAX_FILE_BYTES: u64 = 1 << 50;
 
-/// Metadata beyond this is not ours; it is passed over.
+/// Larger metadata records are not ours and are skipped.
 const MAX_METADATA_BYTES: u64 = 1 << 16;
 
 /// Opcode and length before each record.
 const HEAD_BYTES: usize = 9;
-/// What ends a file that is whole: the footer record and the magic.
+/// Size of the end of a complete file: the footer record and the magic.
 const FOOTER_BYTES: u64 = HEAD_BYTES as u64 + 20;
 const DATA_END_BYTES: u64 = HEAD_BYTES as u64 + 4;
 
-/// The top-level records of an MCAP file, read one at a time, with the point where a file breaks off or goes bad.
+/// Reads the top-level records of an MCAP file one at a time, and finds the point at which it is truncated or damaged.
 pub(super) struct Frames<R> {
     reader: R,
     offset: u64,
@@ -39,12 +39,12 @@ pub(super) enum Frame {
 }
 
 impl<R: Read> Frames<R> {
-    /// `reader` stands after the magic.
+    /// `reader` is positioned after the magic.
     pub(super) fn new(reader: R) -> Self {
         Self { reader, offset: MAGIC.len() as u64, seen_data_end: false, finished: false }
     }
 
-    /// The next record that can matter; the others are passed over.
+    /// The next relevant record; skips the others.
     pub(super) fn next(&mut self) -> Frame {
         while !self.finished {
             match self.step() {

@@ -1,6 +1,6 @@
-//! Which format the records of an MCAP file come from: a metadata record, since no message has a place for it.
+//! Original format of the records of an MCAP file: a metadata record, because no message has a field for it.
 //!
-//! It stands before the first message, so that a reader meets it even in a file that breaks off.
+//! It precedes the first message, so that readers find it even in a truncated file.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub(super) fn encode(origin: Format) -> Metadata {
     Metadata { name: NAME.to_owned(), metadata: BTreeMap::from([(KEY.to_owned(), origin.to_string())]) }
 }
 
-/// The origin in the body of a metadata record; `None` in those of other programs and for formats of later versions.
+/// The origin in a metadata record; `None` for other programs' records and formats of later versions.
 pub(super) fn decode(body: &[u8]) -> Option<Format> {
     let mut fields = Fields(body);
     if fields.str()? != NAME {

@@ -2,11 +2,10 @@ use super::{MessageSink, MessageWriter, camera, scan, topics, vehicle, writing::
 use crate::{Data, ImageFormat, LogError, Record};
 
 impl<S: MessageSink> MessageWriter<S> {
-    /// Writes a record to the topic of its kind (see [`topics`]); reading gives it back to the bit (negative zeros lose their sign).
-    ///
+    /// Writes a record to the topic of its kind (see [`topics`]); reading restores it to the bit (negative zeros lose their sign).
     /// # Errors
-    /// When a number is not finite, a camera has no pixels or no focal length, an image is not of the format that it says or true labels are not compressed, the stamp
-    /// is beyond the year 2106, or the output fails.
+    /// Returns an error if a number is not finite, a camera has no pixels or no focal length, an image does not have its stated format, true
+    /// labels are not compressed, the stamp is beyond the year 2106, or the output fails.
     pub fn record(&mut self, record: &Record) -> Result<(), LogError> {
         let stamp = record.stamp;
         record.data.check_finite().map_err(|what| LogError::NotFinite { what, stamp })?;

@@ -1,6 +1,6 @@
-//! Laser scans as Foxglove messages, and back.
+//! Conversion of laser scans to and from Foxglove messages.
 //!
-//! `foxglove.LaserScan` has the bearings of the first and the last beam and no longest range. What that loses, the channel's metadata keep.
+//! `foxglove.LaserScan` has the bearings of the first and the last beam and no maximum range. The channel's metadata store the rest.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ const INCREMENT: &str = "angle_increment";
 const RANGE_MAX: &str = "range_max";
 const BEAM_PERIOD: &str = "beam_period";
 
-/// What a channel says of all its scans; nothing in the files of other programs.
+/// Channel metadata common to all its scans; empty in files of other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct ScanChannel {
     increment: Option<f64>,
@@ -59,7 +59,7 @@ pub(super) fn encode_scan(timestamp: Timestamp, frame: &str, scan: &LaserScan) -
     }
 }
 
-/// What came back, for viewers that do not draw scans.
+/// The echoes as points, for viewers that do not draw scans.
 pub(super) fn encode_points(timestamp: Timestamp, frame: &str, scan: &LaserScan) -> PointCloud {
     let point = |(bearing, range): (f64, f64)| {
         let (sin, cos) = libm::sincos(bearing);
@@ -106,7 +106,7 @@ pub(super) fn scan(channel: ScanChannel, bytes: &[u8], log_time: Stamp) -> Resul
     Ok(vec![Record { stamp, data: Data::Scan(scan) }])
 }
 
-/// A quaternion that is not there, or all zeros, means no rotation to most writers.
+/// Most writers use a missing or zero quaternion for no rotation.
 fn is_identity(pose: &messages::Pose) -> bool {
     let (t, q) = (pose.position.unwrap_or_default(), pose.orientation.unwrap_or_default());
     [t.x, t.y, t.z, q.x, q.y, q.z].iter().all(|number| *number == 0.0)

@@ -1,5 +1,4 @@
-//! Where each kind of record lives in an MCAP file, and in which Foxglove schema.
-//!
+//! Topic and Foxglove schema of each kind of record in an MCAP file.
 //! | topic | schema | frame | record |
 //! | --- | --- | --- | --- |
 //! | [`VELOCITY`] | `foxglove.Odometry`, the two velocities | [`BODY_FRAME`] in [`ODOMETRY_FRAME`] | [`Data::Velocity`](crate::Data::Velocity) |
@@ -37,36 +36,36 @@ pub const INCREMENT: &str = "/odom/increment";
 pub const ACKERMANN: &str = "/odom/ackermann";
 /// Ranges and bearings.
 pub const DETECTIONS: &str = "/sightings";
-/// How wide the sighted things are.
+/// Widths of detected objects.
 pub const DETECTION_WIDTHS: &str = "/sightings/widths";
-/// What a laser saw.
+/// Laser scans.
 pub const SCAN: &str = "/scan";
-/// Where the laser is on the robot.
+/// Pose of the laser on the robot.
 pub const LASER_MOUNT: &str = "/scan/mount";
 /// The same as points; not read back.
 pub const SCAN_POINTS: &str = "/scan/points";
-/// Where a point of the robot truly was.
+/// True position of a point of the robot.
 pub const TRUE_POSITION: &str = "/truth/position";
-/// Where the robot truly was.
+/// True pose of the robot.
 pub const TRUE_POSE: &str = "/truth/pose";
-/// Where the landmarks truly are.
+/// True positions of the landmarks.
 pub const TRUE_LANDMARKS: &str = "/truth/landmarks";
-/// Where the walls truly are.
+/// True positions of the walls.
 pub const TRUE_WALLS: &str = "/truth/walls";
-/// Where some program thinks the robot was.
+/// Pose estimates of some program.
 pub const ESTIMATED_POSE: &str = "/estimate/pose";
 
-/// How the camera projects.
+/// Calibration of the camera.
 pub const CAMERA_INFO: &str = "/camera/info";
-/// Where the camera is on the robot.
+/// Pose of the camera on the robot.
 pub const CAMERA_MOUNT: &str = "/camera/mount";
-/// The camera's axes turned as viewers want them; not read back.
+/// The camera's axes in the orientation that viewers expect; not read back.
 pub const CAMERA_OPTICAL: &str = "/camera/optical";
 /// Outlines of a target in the images; not read back.
 pub const TARGET: &str = "/estimate/target";
-/// What the camera saw.
+/// Camera images.
 pub const IMAGE: &str = "/camera/image";
-/// What each pixel shows.
+/// Label of each pixel.
 pub const TRUE_LABELS: &str = "/truth/labels";
 
 /// The fixed frame.

@@ -4,13 +4,13 @@ use crate::cdr::{CdrError, CdrReader, FromCdr};
 /// `sensor_msgs/CameraInfo`: how a camera projects. The centre of the first pixel is at (0, 0).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraInfo<'a> {
-    /// When, and the camera's optical frame.
+    /// Stamp, and the camera's optical frame.
     pub header: Header<'a>,
     /// Rows of the whole sensor.
     pub height: u32,
     /// Columns of the whole sensor.
     pub width: u32,
-    /// What the numbers of `d` mean: `plumb_bob`, …
+    /// Distortion model of `d`: `plumb_bob`, …
     pub distortion_model: &'a str,
     /// Distortion.
     pub d: Vec<f64>,
@@ -20,7 +20,7 @@ pub struct CameraInfo<'a> {
     pub r: [f64; 9],
     /// Projection of the rectified images, row by row, pixels.
     pub p: [f64; 12],
-    /// Columns and rows of the sensor that make one pixel of the image; 0 means 1.
+    /// Number of sensor columns and rows per image pixel; 0 means 1.
     pub binning: [u32; 2],
     /// Part of the sensor that the images show: first column, first row, columns, rows; all 0 for the whole.
     pub region: [u32; 4],

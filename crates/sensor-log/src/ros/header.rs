@@ -1,6 +1,6 @@
 use crate::cdr::{CdrError, CdrReader, FromCdr};
 
-/// `std_msgs/Header`: when, and in which frame.
+/// `std_msgs/Header`: stamp and frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Header<'a> {
     /// Seconds.

@@ -5,13 +5,13 @@ use crate::image::Pixels;
 /// `sensor_msgs/Image`: pixels as they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Image<'a> {
-    /// When, and the camera's optical frame.
+    /// Stamp, and the camera's optical frame.
     pub header: Header<'a>,
     /// Rows.
     pub height: u32,
     /// Columns.
     pub width: u32,
-    /// What the bytes of a pixel mean: `rgb8`, `mono8`, …
+    /// Pixel format: `rgb8`, `mono8`, …
     pub encoding: &'a str,
     /// Whether channels of several bytes have the most significant one first.
     pub is_bigendian: bool,
@@ -24,9 +24,9 @@ pub struct Image<'a> {
 /// `sensor_msgs/CompressedImage`: an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CompressedImage<'a> {
-    /// When, and the camera's optical frame.
+    /// Stamp, and the camera's optical frame.
     pub header: Header<'a>,
-    /// What recorders call its format; they do so in many ways.
+    /// Format name; recorders use many different ones.
     pub format: &'a str,
     /// The file.
     pub data: &'a [u8],

@@ -4,7 +4,7 @@ use crate::cdr::{CdrError, CdrReader, FromCdr};
 /// `sensor_msgs/LaserScan`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserScan<'a> {
-    /// When the first beam was sent, and the laser's frame: angles are about its z axis, from its x axis.
+    /// Stamp of the first beam, and the laser's frame: angles are about its z axis, from its x axis.
     pub header: Header<'a>,
     /// Direction of the first beam, radians.
     pub angle_min: f32,

@@ -1,7 +1,7 @@
-//! Messages of ROS 2 as they lie in bags, decoded without a copy where that is possible.
+//! ROS 2 messages as stored in bags, decoded without a copy where possible.
 //!
-//! [`RosSchema::named`] knows a message by the name of its type, [`RosSchema::decode`] reads its CDR bytes. [`open`](crate::open) does both for
-//! the MCAP files that `ros2 bag` writes; here it is for programs that get the bytes elsewhere.
+//! [`RosSchema::named`] finds a message by its type name, [`RosSchema::decode`] decodes its CDR bytes. [`open`](crate::open) does both for the MCAP
+//! files of `ros2 bag`; this module is for programs with another source of bytes.
 
 mod camera_info;
 mod geometry;

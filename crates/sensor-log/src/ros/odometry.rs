@@ -5,7 +5,7 @@ use crate::cdr::{CdrError, CdrReader, FromCdr};
 /// `nav_msgs/Odometry`, without its covariances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Odometry<'a> {
-    /// When, and the frame of the pose, which drifts.
+    /// Stamp, and the frame of the pose, which drifts.
     pub header: Header<'a>,
     /// The robot's frame.
     pub child_frame_id: &'a str,

@@ -47,21 +47,21 @@ pub enum RosSchema {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RosMessage<'a> {
-    /// What a laser saw.
+    /// A laser scan.
     LaserScan(LaserScan<'a>),
-    /// Where wheels, or another sensor of motion, say that the robot is.
+    /// Pose by wheels or another motion sensor.
     Odometry(Odometry<'a>),
-    /// What a camera saw, as pixels.
+    /// A camera image, as pixels.
     Image(Image<'a>),
-    /// What a camera saw, as a file.
+    /// A camera image, as a file.
     CompressedImage(CompressedImage<'a>),
-    /// How a camera projects.
+    /// Calibration of a camera.
     CameraInfo(CameraInfo<'a>),
     /// A pose, from a message with or without covariance.
     Pose(PoseStamped<'a>),
     /// A velocity, from a message with or without a header.
     Twist(TwistStamped<'a>),
-    /// Where frames are in others.
+    /// Poses of frames in other frames.
     Transforms(Vec<TransformStamped<'a>>),
 }
 
@@ -84,13 +84,11 @@ impl RosSchema {
         }
     }
 
-    /// Reads a message of this type.
+    /// Decodes a message of this type.
     ///
-    /// Nothing beyond the definition is looked at: recorders fill up to a multiple of some bytes. Memory grows with the bytes that are there,
-    /// whatever lengths they claim.
-    ///
+    /// Trailing bytes are ignored, because recorders pad messages. Allocation is bounded by the bytes present, not by the lengths they claim.
     /// # Errors
-    /// When the bytes are not plain CDR or end too early.
+    /// Returns an error if the bytes are not plain CDR or end too early.
     pub fn decode(self, bytes: &[u8]) -> Result<RosMessage<'_>, CdrError> {
         let cdr = &mut CdrReader::new(bytes)?;
         Ok(match self {

@@ -5,7 +5,7 @@ use crate::cdr::{CdrError, CdrReader, FromCdr};
 /// `geometry_msgs/PoseStamped`; of a `PoseWithCovarianceStamped` the same, without the covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseStamped<'a> {
-    /// When, and the frame of the pose.
+    /// Stamp, and the frame of the pose.
     pub header: Header<'a>,
     /// The pose.
     pub pose: Pose,
@@ -14,16 +14,16 @@ pub struct PoseStamped<'a> {
 /// `geometry_msgs/TwistStamped`, or a bare `Twist`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwistStamped<'a> {
-    /// When, and the frame of the velocity; a bare twist says neither.
+    /// Stamp, and the frame of the velocity; a bare twist has neither.
     pub header: Option<Header<'a>>,
     /// The velocity.
     pub twist: Twist,
 }
 
-/// `geometry_msgs/TransformStamped`: where one frame is in another.
+/// `geometry_msgs/TransformStamped`: pose of one frame in another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransformStamped<'a> {
-    /// When, and the parent.
+    /// Stamp and parent frame.
     pub header: Header<'a>,
     /// The frame that is placed.
     pub child_frame_id: &'a str,

@@ -1,8 +1,7 @@
-/// One sweep of a planar laser: a range for every beam, at equal angles.
+/// One scan of a planar laser: a range for every beam, at equal angles.
 ///
-/// Ranges stay as the device gave them: NaN, infinite, zero, negative and those of [`range_max`](Self::range_max) or more mean that
-/// nothing came back. [`echoes`](Self::echoes) passes over them.
-///
+/// Ranges are stored as measured: NaN, infinite, zero, negative and those of [`range_max`](Self::range_max) or more mean no echo.
+/// [`echoes`](Self::echoes) skips them.
 /// ```
 /// use wayfix_sensor_log::LaserScan;
 /// let scan = LaserScan {
@@ -21,9 +20,9 @@ pub struct LaserScan {
     pub angle_min: f64,
     /// From one beam to the next, radians; negative for a clockwise sweep.
     pub angle_increment: f64,
-    /// Ranges from here on are no echo, metres; infinite where the log does not say.
+    /// Ranges from here on are no echo, m; infinite if the log does not state it.
     pub range_max: f64,
-    /// Time from one beam to the next, seconds; the stamp is that of the first. 0 where the log does not say.
+    /// Time between beams, s; the stamp is that of the first. 0 if the log does not state it.
     pub beam_period: f64,
     /// Metres, in the order of the beams.
     pub ranges: Vec<f64>,
@@ -42,7 +41,7 @@ impl LaserScan {
         beams.filter(move |(_, range)| is_echo(**range)).map(|(beam, range)| (self.bearing(beam), *range))
     }
 
-    /// Whether the numbers that hold for all beams are numbers; ranges may be anything.
+    /// Whether the numbers common to all beams are finite; ranges may have any value.
     pub(crate) fn has_finite_angles(&self) -> bool {
         [self.angle_min, self.angle_increment, self.beam_period].iter().all(|number| number.is_finite())
             && !self.range_max.is_nan()

@@ -3,8 +3,7 @@ use std::fmt;
 
 use super::LaserScan;
 
-/// What scans there are; `Display` prints it for people.
-///
+/// Scan statistics; `Display` prints them for people.
 /// ```
 /// use wayfix_sensor_log::{LaserScan, ScanSummary};
 /// let mut summary = ScanSummary::default();
@@ -16,11 +15,11 @@ use super::LaserScan;
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct ScanSummary {
-    /// How many scans have so many beams.
+    /// Number of scans by number of beams.
     pub sizes: BTreeMap<usize, u64>,
     /// Beams of all scans.
     pub n_beams: u64,
-    /// Beams that did not come back.
+    /// Number of beams without echo.
     pub n_without_echo: u64,
 }
 

@@ -3,28 +3,28 @@ use std::ops::RangeInclusive;
 
 use crate::Stamp;
 
-/// What is wrong with the stamp of a row.
+/// Fault of a row's stamp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ClockFault {
-    /// It is far from those of the rows around it.
+    /// The stamp is far from its neighbours.
     Outlier,
-    /// The clock was set back by so many nanoseconds, and goes on from here.
+    /// The clock was set back by this many nanoseconds, and continues from there.
     SetBack(u64),
 }
 
-/// No logger holds a row back for longer: a minute.
+/// Maximum delay of a row in a logger: a minute.
 const LONGEST_DELAY: u64 = 60 * 1_000_000_000;
 /// No log has a longer pause in it: a day.
 const LONGEST_PAUSE: u64 = 86_400 * 1_000_000_000;
 /// NTP sets a clock that is off by more than 128 ms, and slews one that is off by less (RFC 5905, the step threshold).
 const SMALLEST_STEP: u64 = 128_000_000;
-/// Two rows may be late together; three in order that repeat earlier times, or stand at an end of the log, are a part of it.
+/// One or two rows may be late; three ordered rows that repeat earlier times, or are at an end of the log, form a part.
 const MIN_PART: usize = 3;
 
-/// The faults of a clock, with the indices of the rows they begin at, from the stamps of a log in the order of its rows.
+/// The faults of a clock, with the index of the first row of each, from the stamps of a log in row order.
 ///
-/// Rows that are only out of order have no fault. A clock that jumps and comes back leaves outliers between; one that is set back repeats
-/// times that were there before, or leaves the range of the log for good.
+/// Rows that are only out of order have no fault. A clock that jumps and returns leaves outliers in between; one that is set back repeats earlier
+/// times, or leaves the range of the log permanently.
 pub(super) fn clock_faults(stamps: &[Stamp]) -> Vec<(usize, ClockFault)> {
     let mut faults = outliers(stamps);
     let is_outlier: BTreeSet<usize> = faults.iter().map(|(index, _)| *index).collect();
@@ -35,14 +35,14 @@ pub(super) fn clock_faults(stamps: &[Stamp]) -> Vec<(usize, ClockFault)> {
     faults
 }
 
-/// Stretches of rows without which the log goes on as before, and a few rows at its ends that no pause explains.
+/// Sections of rows without which the log is continuous, and short sections at its ends that no pause explains.
 fn outliers(stamps: &[Stamp]) -> Vec<(usize, ClockFault)> {
     let parts = parts(stamps);
     let mut kept: Vec<(usize, usize)> = Vec::new();
     let mut position_of_end: BTreeMap<Stamp, usize> = BTreeMap::new();
     let mut out = Vec::new();
     for (start, end) in parts {
-        // The clock comes back to where an earlier part ended: what is between is out.
+        // The clock returns to the end of an earlier part: everything in between is an outlier.
         let near = around(stamps[start], LONGEST_DELAY);
         if let Some(position) = position_of_end.range(near).map(|(_, position)| *position).max() {
             for part in kept.drain(position + 1..) {
@@ -106,7 +106,7 @@ fn steps_back(rows: &[(usize, Stamp)]) -> Vec<(usize, ClockFault)> {
     steps
 }
 
-/// Whether the first rows go through times that were there before: stamps of `before` lie between theirs.
+/// Whether the first rows repeat earlier times: stamps of `before` lie between theirs.
 ///
 /// Rows that are only late fill a gap.
 fn repeats(rows: &[(usize, Stamp)], before: &BTreeSet<Stamp>) -> bool {

@@ -1,11 +1,11 @@
 use crate::{Problem, ProblemKind, ReadReport, Stamp, TruePosition};
 
-/// A fix whose steps from the one before and to the one after are both longer is a jump of the receiver, metres.
+/// Limit of the two steps around a fix, m; if both are longer, the fix is a jump of the receiver.
 const MAX_STEP_M: f64 = 30.0;
 
-/// The fixes of `file`, each with its row, without jumps, which go into the report.
+/// The fixes of `file`, each with its row, without jumps, which the report lists.
 ///
-/// Only a fix between two others is judged: one long step alone may be a gap in the reception.
+/// Only a fix between two others is tested: one long step may be a gap in reception.
 pub(super) fn drop_jumps(
     file: &str,
     fixes: Vec<(u64, Stamp, TruePosition)>,
@@ -36,7 +36,7 @@ fn step(from: &TruePosition, to: &TruePosition) -> f64 {
 mod tests {
     use super::*;
 
-    /// x of the fixes that stay, and the rows of the others.
+    /// x of the kept fixes, and the rows of the others.
     fn kept(xs: &[f64]) -> (Vec<f64>, Vec<u64>) {
         let fix = |(row, x): (usize, &f64)| (row as u64, Stamp::default(), TruePosition { x: *x, y: 0.0 });
         let mut report = ReadReport { rows_read: xs.len() as u64, ..Default::default() };

@@ -1,12 +1,12 @@
 use super::row::RowError;
 use crate::{LaserScan, ProblemKind, ReadReport};
 
-/// SICK scanners give 81.91 m where nothing came back, older ones 51.16 m; nobody measures that far indoors.
+/// Range limit, m. SICK scanners return 81.91 m for no echo, older ones 51.16 m, and indoor ranges are shorter.
 const RANGE_MAX_M: f64 = 50.0;
 
-/// The scan of a laser that looks ahead over half a circle, from the right.
+/// The scan of a forward-looking laser with a half-circle field of view, from the right.
 ///
-/// With 180 or 360 beams, in steps of a whole or half degree, the last one of the half circle is missing. Any other number of beams spans it.
+/// With 180 or 360 beams, in steps of a whole or half degree, the last beam of the half circle is missing. Any other number of beams spans it.
 pub(crate) fn half_circle(ranges: Vec<f64>) -> Result<LaserScan, RowError> {
     let angle_increment = match ranges.len() {
         180 | 181 => 1.0_f64.to_radians(),
@@ -26,12 +26,12 @@ pub(crate) fn half_circle(ranges: Vec<f64>) -> Result<LaserScan, RowError> {
     })
 }
 
-/// Whether a scan of so many beams is surely that of a half circle.
+/// Whether a scan with this number of beams certainly covers a half circle.
 pub(crate) fn is_half_circle(n_beams: usize) -> bool {
     matches!(n_beams, 180 | 181 | 360 | 361)
 }
 
-/// Warns of a field of view that is assumed: only the numbers of beams of a SICK scanner tell it.
+/// Warns of an assumed field of view: only the beam counts of a SICK scanner determine it.
 pub(crate) fn warn_of_assumed_field_of_view(n_beams: usize, report: &mut ReadReport) {
     if !is_half_circle(n_beams) {
         let text = format!(

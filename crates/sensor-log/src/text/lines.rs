@@ -5,8 +5,7 @@ use super::row::RowError;
 use crate::formats::compressed::{TextReader, end_of_damaged, open_text};
 use crate::{LogEnd, LogError, Problem, ProblemKind, ReadReport};
 
-/// No row of a known format comes near: scanners of 1,440 beams print some 20 kB with their remissions. What is longer is garbage and must
-/// not fill the memory.
+/// Maximum length of a row, in bytes. Rows of known formats are shorter: scanners of 1,440 beams print about 20 kB with remissions.
 const MAX_LINE_BYTES: usize = 64 << 10;
 
 /// The rows of a text file: neither blank nor a `#` comment.
@@ -37,7 +36,7 @@ impl<R: BufRead> Lines<R> {
         Self { reader, path: path.into(), number: 0, n_bytes: 0, buffer: Vec::new(), after_cr: false }
     }
 
-    /// Hands every row to `read_row`; what it refuses goes into the report.
+    /// Passes every row to `read_row`; rejected rows go into the report.
     pub(crate) fn for_each_row(
         self,
         report: &mut ReadReport,
@@ -46,7 +45,7 @@ impl<R: BufRead> Lines<R> {
         self.for_each_numbered_row(report, |_, row| read_row(row))
     }
 
-    /// Hands every row with its number to `read_row`; what it refuses goes into the report.
+    /// Passes every row with its number to `read_row`; rejected rows go into the report.
     pub(crate) fn for_each_numbered_row(
         mut self,
         report: &mut ReadReport,
@@ -98,12 +97,12 @@ impl<R: BufRead> Lines<R> {
         self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Bytes of text read so far.
+    /// Number of text bytes read so far.
     pub(crate) fn n_bytes(&self) -> u64 {
         self.n_bytes
     }
 
-    /// How the log ends when reading it failed: what was read before stays, if the file itself is damaged.
+    /// End of the log after a read error; a damaged file keeps the records read before.
     pub(crate) fn end_after(&self, error: LogError) -> Result<LogEnd, LogError> {
         match &error {
             LogError::Io { source, .. } => end_of_damaged(&self.path, source, self.n_bytes).ok_or(error),
@@ -111,8 +110,8 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// Fills the buffer with one line without its end, passes over what exceeds the limit; gives the length with the end, 0 at the end of the
-    /// file. Lines end in LF, CR LF or, as on old Macs, CR.
+    /// Fills the buffer with one line without its end, and skips the part beyond the limit. Returns the length with the end, 0 at the end of the
+    /// file. Lines end in LF, CR LF or CR.
     fn read_line(&mut self) -> io::Result<usize> {
         self.buffer.clear();
         let mut n_bytes = 0;
@@ -125,7 +124,7 @@ impl<R: BufRead> Lines<R> {
             if chunk.is_empty() {
                 break;
             }
-            // The LF of a CR LF is not a line of its own.
+            // The LF of a CR LF is no line end of its own.
             let n_left_over = usize::from(std::mem::take(&mut self.after_cr) && chunk[0] == b'\n');
             let text = &chunk[n_left_over..];
             let length = text.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
@@ -144,7 +143,7 @@ impl<R: BufRead> Lines<R> {
 }
 
 impl ReadReport {
-    /// A row that was read, or what is wrong with it.
+    /// Counts a row as read, or with its problem.
     pub(super) fn count_row(&mut self, file: &str, row: u64, read: Result<(), RowError>) {
         match read {
             Ok(()) => self.rows_read += 1,

@@ -1,8 +1,8 @@
 //! Plain range-bearing logs: `L id x y` landmark, `P x y heading` true pose, `O dx dy dheading` increment in the robot frame,
-//! `Z id range bearing` detection; `Z -1 …` or `Z ? …` when the sensor does not tell things apart.
+//! `Z id range bearing` detection; `Z -1 …` or `Z ? …` for a detection without identity.
 //!
-//! There are no stamps. Within a step the order is `P`, `O`, `Z…`; a line that cannot follow in that order begins the next step, and
-//! step `k` (from 0) gets the stamp `k × 0.1 s`.
+//! There are no stamps. Within a step the order is `P`, `O`, `Z…`; a line that cannot follow in that order begins the next step, and step `k`
+//! (from 0) gets the stamp `k × 0.1 s`.
 
 use std::path::Path;
 
@@ -56,7 +56,7 @@ fn parse(row: &str) -> Result<Line, RowError> {
     })
 }
 
-/// Lines so far, cut into steps.
+/// The lines so far, divided into steps.
 #[derive(Default)]
 struct Steps {
     landmarks: Vec<Record>,

@@ -4,9 +4,9 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 
 use crate::{Data, Detection, Record, Stamp, Target, WriteReport};
 
-/// Writes the records of one stamp as one step. The stamps themselves are lost: the format has none.
+/// Writes the records of one stamp as one step. The format has no stamps, so they are lost.
 ///
-/// Every step gets an `O` line, if need be of no motion, so that the steps stay apart.
+/// Every step gets an `O` line, with zero motion if necessary, to separate the steps.
 pub(crate) fn write(
     out: &mut impl Write,
     records: impl IntoIterator<Item = Record>,

@@ -6,21 +6,20 @@ use super::Lines;
 use super::row::{columns, number, stamp};
 use crate::{LogError, ReadReport, Stamp};
 
-/// How two poses of a robot truly lie to each other: what the SLAM benchmark of Freiburg judges a trajectory by [Kümmerle et al. 2009].
+/// True relative pose of two robot poses: the SLAM benchmark of Freiburg scores trajectories by these [Kümmerle et al. 2009].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relation {
-    /// When the robot was at the first pose.
+    /// Stamp of the first pose.
     pub from: Stamp,
-    /// When it was at the second.
+    /// Stamp of the second pose.
     pub to: Stamp,
     /// The second pose in the frame of the first.
     pub pose: Pose2<f64>,
 }
 
-/// Reads `t1 t2 x y z roll pitch yaw` lines: seconds, metres, radians. Height, roll and pitch are passed over.
+/// Reads lines `t1 t2 x y z roll pitch yaw`: seconds, metres, radians. Ignores height, roll and pitch.
 ///
-/// The stamps are those of the original log; a log that rounds them differently is met by taking the nearest pose within 10 ms.
-///
+/// The stamps are those of the original log; for logs with other rounding, use the nearest pose within 10 ms.
 /// ```
 /// # let folder = tempfile::tempdir()?;
 /// # let path = folder.path().join("intel.relations");
@@ -33,7 +32,7 @@ pub struct Relation {
 /// ```
 ///
 /// # Errors
-/// When the file cannot be read. Single bad lines are in the report.
+/// Returns an error if the file cannot be read. Single bad lines are in the report.
 pub fn read_relations(path: impl AsRef<Path>) -> Result<(Vec<Relation>, ReadReport), LogError> {
     let mut relations = Vec::new();
     let mut report = ReadReport::default();

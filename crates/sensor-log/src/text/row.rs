@@ -3,7 +3,7 @@ use std::str::FromStr;
 use crate::formats::format::shortened;
 use crate::{ProblemKind, Stamp};
 
-/// Why a row is not used.
+/// Reason why a row is unusable.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RowError {
     pub(crate) kind: ProblemKind,
@@ -55,7 +55,7 @@ pub(crate) fn number(column: &str) -> Result<f64, RowError> {
     }
 }
 
-/// A range as it comes: NaN and infinity mean that nothing came back.
+/// A range as printed: NaN and infinity mean no echo.
 pub(crate) fn range(column: &str) -> Result<f64, RowError> {
     parse(column, "a range")
 }

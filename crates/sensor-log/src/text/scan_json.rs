@@ -1,7 +1,8 @@
-//! Scans with their poses as one JSON object: `{"map": {"976052890.244111": {"range": […], "theta": …, "x": …, "y": …}, …}}`, the keys seconds.
+//! Scans with their poses as one JSON object: `{"map": {"976052890.244111": {"range": […], "theta": …, "x": …, "y": …}, …}}`, with keys in
+//! seconds.
 //!
-//! Whether the poses are odometry or corrected, the file does not say: each comes out as a pose and as the motion since the scan before.
-//! The raw log of the Intel Research Lab is spread in this form.
+//! The file does not state whether the poses are odometry or corrected: each gives a pose and the motion since the previous scan. The raw log of the
+//! Intel Research Lab is distributed in this form.
 
 use std::io::Read;
 use std::path::Path;
@@ -18,7 +19,7 @@ use crate::formats::compressed::{end_of_damaged, open_text};
 use crate::formats::format::shortened;
 use crate::{Data, Format, LaserScan, LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record, Stamp};
 
-/// No log in this form is larger; what is must not fill the memory.
+/// Maximum size of a file, in bytes; it bounds the memory used.
 const MAX_BYTES: u64 = 256 << 20;
 
 /// All records, sorted by time.
@@ -47,7 +48,7 @@ pub(crate) fn read(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Res
     Ok(scans.into_iter().flat_map(to_records).collect())
 }
 
-/// The text of a file that may be compressed, as far as it can be read.
+/// The readable part of the text of a file that may be compressed.
 fn read_text(path: &Path, report: &mut ReadReport) -> Result<Vec<u8>, LogError> {
     let mut text = Vec::new();
     if let Err(error) = open_text(path)?.take(MAX_BYTES + 1).read_to_end(&mut text) {
@@ -61,7 +62,7 @@ fn read_text(path: &Path, report: &mut ReadReport) -> Result<Vec<u8>, LogError> 
     Ok(text)
 }
 
-/// What stands in the text for a number that is not finite.
+/// Replacement in the text for a number that is not finite.
 const NOT_FINITE: &str = "";
 
 /// Python writes `NaN`, `Infinity` and `-Infinity`, which JSON has no words for: an empty string of the same length with its blanks takes their place.
@@ -98,7 +99,7 @@ fn entries(text: &[u8], report: &mut ReadReport) -> Vec<(String, Value)> {
     let mut json = Deserializer::from_slice(text);
     let read = Document(&mut entries).deserialize(&mut json).and_then(|()| json.end());
     match read {
-        // A file that unpacks only in part has said so.
+        // A truncated file is already reported.
         Err(error) if report.end == LogEnd::Complete => {
             let line_start = text.split_inclusive(|byte| *byte == b'\n').take(error.line().saturating_sub(1));
             let byte = line_start.map(<[u8]>::len).sum::<usize>() + error.column();
@@ -133,7 +134,7 @@ fn pose_number(value: &Value) -> Result<f64, RowError> {
     }
 }
 
-/// NaN, infinity and null mean that nothing came back.
+/// NaN, infinity and null mean no echo.
 fn beam(value: &Value) -> Result<f64, RowError> {
     match value {
         Value::Null => Ok(f64::NAN),
@@ -152,7 +153,7 @@ impl RowError {
     }
 }
 
-/// Collects the entries of `map` as they come, so that those before a damage are not lost.
+/// Collects the entries of `map` one by one, so that those before a damage are kept.
 struct Document<'a>(&'a mut Vec<(String, Value)>);
 struct Scans<'a>(&'a mut Vec<(String, Value)>);
 

@@ -1,10 +1,10 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
-/// Finds the odometry between scans, also in logs that a mapping program has corrected.
+/// Finds the odometry between scans, also in logs corrected by a mapping program.
 ///
-/// Such a program writes the corrected pose into the odometry of the scan, too, and a log corrected by GMapping then goes on with
-/// `ODOM` lines from there: each stretch between two scans begins at the corrected pose and ends, at the stamp of the next scan, where
-/// odometry alone would be. That end is the odometry; where no `ODOM` line has the stamp of the scan, the scan's own is.
+/// Such a program also writes the corrected pose into the odometry of the scan. A log corrected by GMapping then continues with `ODOM` lines from
+/// there: each section between two scans begins at the corrected pose and ends, at the stamp of the next scan, at the pose of odometry
+/// alone. That end is the odometry; if no `ODOM` line has the stamp of the scan, the scan's own pose is used.
 #[derive(Default)]
 pub(super) struct ScanOdometry {
     at_last_scan: Option<Pose2<f64>>,
@@ -24,7 +24,7 @@ impl ScanOdometry {
         Some(start.inverse().compose(&reached))
     }
 
-    /// Where the odometry leads to at a scan.
+    /// The odometry pose at a scan.
     pub(super) fn reached(&mut self, seconds: f64, odometry: Pose2<f64>) -> Pose2<f64> {
         match self.last_line.take() {
             Some((at, pose)) if at == seconds => pose,

@@ -1,15 +1,15 @@
 use super::clock_faults::{ClockFault, clock_faults};
 use crate::{Problem, ProblemKind, ReadReport, Stamp};
 
-/// Something of a row of a text file: its line, its time, and what it says.
+/// Content of a row of a text file, with its line and its time.
 pub(super) struct Timed<T> {
     pub(super) row: u64,
     pub(super) stamp: Stamp,
     pub(super) item: T,
 }
 
-/// The rows of a file in the order of time. Rows whose stamp is far from all others are left out; where the clock is set back, the rows
-/// are cut and the longest stretch is read. Rows that are only out of order are sorted. All of that goes into the report.
+/// The rows of a file in time order. Skips rows whose stamp is far from all others. If the clock is set back, the longest stretch is read. Sorts
+/// rows that are only out of order. All of it is reported.
 pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut ReadReport) -> Vec<Timed<T>> {
     let stamps: Vec<Stamp> = rows.iter().map(|row| row.stamp).collect();
     let mut faults = clock_faults(&stamps).into_iter().peekable();

@@ -34,7 +34,7 @@ pub(crate) fn read(path: &Path, kind: PoseKind, report: &mut ReadReport) -> Resu
     Ok(in_time_order(&file, rows, report).into_iter().map(to_record).collect())
 }
 
-/// Where the columns t, x, y, z, qx, qy, qz, qw are.
+/// Positions of the columns t, x, y, z, qx, qy, qz, qw.
 type Order = [usize; 8];
 
 const ORDER: Order = [0, 1, 2, 3, 4, 5, 6, 7];
@@ -42,7 +42,7 @@ const ORDER: Order = [0, 1, 2, 3, 4, 5, 6, 7];
 /// The columns of a file, as the first line that names them has them.
 fn order_of(path: &Path) -> Result<Order, LogError> {
     let mut beginning = Vec::new();
-    // A file that cannot be unpacked says so when its rows are read.
+    // Decompression errors are reported when the rows are read.
     let _ = open_text(path)?.take(HEADER_BYTES).read_to_end(&mut beginning);
     let beginning = String::from_utf8_lossy(&beginning).into_owned();
     Ok(beginning.lines().find_map(order_in).unwrap_or(ORDER))
@@ -79,7 +79,7 @@ fn parse(row: &str, order: &Order, kind: PoseKind) -> Result<Record, RowError> {
     Ok(Record { stamp, data: kind.data(pose) })
 }
 
-/// Writes true and estimated poses alike; the format does not tell them apart.
+/// Writes true and estimated poses, which the format does not distinguish.
 pub(crate) fn write(
     out: &mut impl Write,
     records: impl IntoIterator<Item = Record>,

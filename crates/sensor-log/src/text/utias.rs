@@ -38,7 +38,7 @@ fn robot_of_file(name: &str) -> Option<u32> {
     number.parse().ok()
 }
 
-/// The robot asked for, or the only one there is.
+/// The requested robot, or the only one.
 pub(crate) fn choose_robot(folder: &Path, asked: Option<u32>) -> Result<u32, LogError> {
     if fs::metadata(folder).map_err(|source| LogError::io(folder, source))?.is_file() {
         let reason = "a UTIAS set is a folder; give the folder that holds Barcodes.dat".to_owned();
@@ -117,7 +117,7 @@ fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, Lo
     .map(to_records)
 }
 
-/// Rows of the same stamp are one look, in the order of the file.
+/// Rows of equal stamp form one scan, in file order.
 fn read_detections(
     path: &Path,
     targets: &BTreeMap<u32, Target>,

@@ -6,7 +6,7 @@
 //! | `trees.csv` | `t_s,range_m,bearing_rad,diameter_m`: trunks in the laser scans; bearing 0 to the right, π/2 ahead; a fifth column `landmark`, which may be there, says which tree it is, and is empty where nobody knows |
 //! | `gps.csv` | `t_s,x_m,y_m`: fixes of the antenna; the file may be missing |
 //!
-//! Bearings come out as REP 103 has them, 0 ahead, and are those of the laser, which sits 3.78 m ahead of the rear axle and 0.5 m left.
+//! Bearings follow REP 103, 0 ahead, and are relative to the laser, which is 3.78 m ahead of the rear axle and 0.5 m left.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,7 +26,7 @@ const ODOMETRY: &str = "odometry.csv";
 const TREES: &str = "trees.csv";
 const GPS: &str = "gps.csv";
 
-/// Whether the folder holds the set.
+/// Whether the folder contains the set.
 pub(crate) fn is_in(folder: &Path) -> bool {
     [ODOMETRY, TREES].iter().all(|name| folder.join(name).is_file())
 }
@@ -55,7 +55,7 @@ fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, Lo
     Ok(rows.into_iter().map(to_record).collect())
 }
 
-/// Rows of the same stamp are one look, in the order of the file.
+/// Rows of equal stamp form one scan, in file order.
 fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     let take = |[t, range, bearing, diameter]: [&str; 4], target: Target| {
         let (stamp, range, width) = (stamp(t)?, number(range)?, number(diameter)?);
@@ -85,7 +85,7 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
     Ok(looks.into_iter().flat_map(to_records).collect())
 }
 
-/// Whether the header says that rows name their tree.
+/// Whether the header has a column of tree identities.
 fn is_labelled(path: &Path) -> Result<bool, LogError> {
     let mut lines = Lines::open(path)?;
     let header = lines.next_row()?;
@@ -123,7 +123,7 @@ fn read_rows<T, const N: usize>(
     Ok(in_time_order(&file, rows, report))
 }
 
-/// Columns that mean something else would give a log that looks right and is not.
+/// Rejects unexpected columns, which would give a plausible but wrong log.
 fn check_header<R: std::io::BufRead, const N: usize>(
     lines: &mut Lines<R>,
     path: &Path,

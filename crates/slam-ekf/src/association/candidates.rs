@@ -6,7 +6,7 @@ use crate::{
     PredictedMeasurement, RobotDim, SlamAlloc,
 };
 
-/// A landmark that an observation may be of.
+/// A candidate landmark for an observation.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate<M: LandmarkModel>
 where

@@ -25,8 +25,8 @@ pub struct JointCompatibilityParams {
     pub probability: f64,
     /// NIS above which an observation is certainly of no landmark in the map. In between it is ignored.
     pub certainly_new: f64,
-    /// By how much the NIS of a pairing must be below that of every other candidate of the observation; otherwise the observation is ambiguous
-    /// and ignored. 0 always takes the best. Parallel walls and rows of trees need more.
+    /// Minimum difference between the NIS of a pairing and those of all other candidates of the observation; otherwise the observation is ambiguous
+    /// and ignored. 0 always takes the best. Parallel walls and rows of trees need a larger value.
     pub ambiguity_margin: f64,
     /// Maximum number of pairings tried per scan. When it is reached, the best set so far is used. Unlike a limit in milliseconds, it gives
     /// the same result on every machine.
@@ -94,7 +94,7 @@ impl JointCompatibility {
         Ok(Self { params, gates: vec![first.threshold()], ids: NewIds::default(), n_cut_short: 0 })
     }
 
-    /// The same rule, numbering new landmarks from `next_id` on: it continues another rule.
+    /// The same rule with new landmark numbers from `next_id` on; it continues another rule.
     pub fn numbering_from(self, next_id: u32) -> Self {
         Self { ids: NewIds::from(next_id), ..self }
     }
@@ -114,7 +114,7 @@ impl JointCompatibility {
     fn prepare_gates(&mut self, dimension: usize) {
         for degrees in self.gates.len() + 1..=dimension {
             let gate = ChiSquaredGate::from_probability(degrees, self.params.probability);
-            // The quantile grows with the degrees of freedom; where its computation gives up, the last one is stricter.
+            // The quantile grows with the degrees of freedom. If its computation fails, the last one is used; it is stricter.
             let last = self.gates.last().copied().unwrap_or(0.0);
             self.gates.push(gate.map_or(last, |gate| gate.threshold()));
         }
@@ -155,7 +155,7 @@ where
     }
 }
 
-/// Whether a landmark that no other observation takes fits almost as well.
+/// Whether a landmark not taken by another observation fits almost as well.
 fn has_alternative<M: LandmarkModel>(
     candidates: &[Candidate<M>],
     chosen: usize,

@@ -18,7 +18,7 @@ where
     gates: &'a [f64],
     trials_left: usize,
     joint: JointInnovation,
-    /// For every open observation so far: the candidate that it is paired with.
+    /// The paired candidate of every open observation so far.
     chosen: Vec<Option<&'a Candidate<M>>>,
     n_paired: usize,
     /// For every observation, the prediction that it is paired with in the best set so far.
@@ -61,7 +61,7 @@ where
         self.trials_left == 0
     }
 
-    /// Branch and bound without recursion: `next` is the branch to take of each open observation on the way down.
+    /// Branch and bound without recursion: `next` is the next branch of each open observation.
     pub(super) fn run(&mut self) {
         let mut next = vec![0];
         while let (Some(branch), false) = (next.last_mut(), self.is_cut_short()) {

@@ -63,7 +63,7 @@ impl NearestNeighbour {
         Ok(Self { params, ids: NewIds::default() })
     }
 
-    /// The same rule, numbering new landmarks from `next_id` on: it continues another rule.
+    /// The same rule with new landmark numbers from `next_id` on; it continues another rule.
     pub fn numbering_from(self, next_id: u32) -> Self {
         Self { ids: NewIds::from(next_id), ..self }
     }

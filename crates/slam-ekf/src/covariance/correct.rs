@@ -43,10 +43,10 @@ impl JointCovariance {
     }
 }
 
-/// The share of the variances that a predicted variance is the sum and difference of below which it counts as noise.
+/// Relative size below which a predicted variance, a sum and difference of variances, counts as rounding noise.
 ///
-/// Robot and landmark can each be uncertain by kilometres and their relative position certain to millimetres; the difference in `f64`
-/// is then rounding. Thousands of roundings, a share of ε each, are far below this share, and it is far below every real noise.
+/// Robot and landmark can each be uncertain by kilometres while their relative position is certain to millimetres; the difference in `f64` is
+/// then rounding. Thousands of roundings of ε each are far below this share, and every real noise is far above it.
 const SMALLEST_SHARE: f64 = 1e-12;
 
 #[cfg(test)]

@@ -7,13 +7,13 @@ use nalgebra::{
 
 use super::ROUNDING;
 
-/// A covariance that grows, in a storage that grows by half, so a new landmark seldom moves the matrix. The robot comes first.
+/// A covariance that grows in a storage that grows by half, so a new landmark rarely moves the matrix. The robot comes first.
 #[derive(Clone, Debug)]
 pub(crate) struct JointCovariance {
     storage: DMatrix<f64>,
     dimension: usize,
-    /// The beginning of the storage to come, zeroed a little with every landmark: fresh pages of memory cost more than all else in a step,
-    /// and the step that moves the matrix would pay for all of them.
+    /// The beginning of the next storage, zeroed in parts with every landmark. Fresh memory pages are the largest cost of a step; this spreads
+    /// them over many steps.
     next: Vec<f64>,
 }
 
@@ -162,7 +162,7 @@ impl JointCovariance {
         self.dimension = dimension;
     }
 
-    /// What a product $`J P_{rr} J^T`$ may have lost by rounding, where far away and sure of the way are added up.
+    /// Bound of the rounding error of a product $`J P_{rr} J^T`$ in which large terms cancel.
     fn rounding<D: DimName, R: DimName>(&self, jacobian: &OMatrix<f64, D, R>) -> OMatrix<f64, D, D>
     where
         DefaultAllocator: Allocator<D, D> + Allocator<D, R>,
@@ -176,7 +176,7 @@ impl JointCovariance {
         )
     }
 
-    /// Makes room for `dimension` states, and readies some of the room that comes after it.
+    /// Makes room for `dimension` states, and prepares part of the next storage.
     fn reserve(&mut self, dimension: usize) {
         let capacity = self.storage.ncols();
         let larger = capacity + capacity.div_ceil(2);
@@ -198,8 +198,8 @@ impl JointCovariance {
     }
 }
 
-/// Rows to store for a matrix of this size: an odd number of cache lines, so that the entries of a row do not all compete for the same
-/// few places of a cache.
+/// Rows to store for a matrix of this size: an odd number of cache lines, so that the entries of a row map to different
+/// cache sets.
 fn stride(dimension: usize) -> usize {
     dimension.next_multiple_of(16) + 8
 }

@@ -33,7 +33,7 @@ impl MapCovariance {
         }
     }
 
-    /// Covariance of one state with another, each by its row of the matrix.
+    /// Covariance of two states, given by their rows of the matrix.
     pub(crate) fn entry(&self, one: usize, other: usize) -> f64 {
         match self {
             Self::Full(full) => full.matrix()[(one, other)],
@@ -130,7 +130,7 @@ impl MapCovariance {
         }
     }
 
-    /// [`JointCovariance::correct`]. The step is the one of the means as the filter holds them.
+    /// [`JointCovariance::correct`]. Returns the step of the means.
     pub(crate) fn correct(
         &mut self,
         jacobian: &SparseJacobian,

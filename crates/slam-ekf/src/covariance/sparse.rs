@@ -57,7 +57,7 @@ impl SparseJacobian {
         touched.map(|(offset, coefficients)| *offset..offset + coefficients.len())
     }
 
-    /// The same rows for states in another order: `place` says where a block starts there.
+    /// The same rows for a different order of the states: `place` gives the new start of a block.
     pub(super) fn relocated(&self, place: impl Fn(usize) -> usize) -> Self {
         let mut relocated = self.clone();
         for row in &mut relocated.rows {

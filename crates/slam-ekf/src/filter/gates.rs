@@ -16,7 +16,7 @@ impl Gates {
         thresholds.map(Self).map_err(out_of_range)
     }
 
-    /// For measurements of this dimension; 0, which nothing passes, beyond the largest dimension.
+    /// Threshold for measurements of this dimension; beyond the largest dimension 0, which rejects all.
     pub(super) fn threshold(&self, dimension: usize) -> f64 {
         dimension.checked_sub(1).and_then(|index| self.0.get(index)).copied().unwrap_or(0.0)
     }

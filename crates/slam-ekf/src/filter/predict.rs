@@ -37,7 +37,7 @@ where
     }
 }
 
-/// Beyond this a variance says nothing (1e15 km²) and its products would overflow.
+/// Upper bound of a variance (1e15 km²); products of larger ones would overflow.
 pub(super) const LARGEST_VARIANCE: f64 = 1e36;
 
 /// Refuses matrices that are not symmetric positive semidefinite; zero variances are valid. The rounding tolerance applies to correlations:

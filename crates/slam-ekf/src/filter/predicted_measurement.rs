@@ -19,7 +19,7 @@ where
     /// $`H P H^T`$: covariance of the prediction, without the noise of the sensor.
     pub covariance: TangentMatrix<M::Measurement>,
     pub(super) robot_jacobian: Jacobian<M::Measurement, M::Robot>,
-    /// Where the landmark's block starts and the derivative by it; `None` for anchors.
+    /// Start of the landmark's block and the derivative by it; `None` for anchors.
     pub(super) landmark_jacobian: Option<Block<Jacobian<M::Measurement, M::Landmark>>>,
     /// Contribution of a retired landmark's position error to the measurement noise; zero for all others.
     pub(super) landmark_noise: TangentMatrix<M::Measurement>,

@@ -196,5 +196,5 @@ fn is_semidefinite(covariance: &DMatrix<f64>) -> bool {
     Cholesky::new(correlations).is_some()
 }
 
-/// An eigenvalue of the correlations that is above minus this counts as zero. The filter itself stays within some thousand roundings.
+/// Eigenvalues of the correlation matrix above minus this count as zero. The filter's own rounding stays within some thousand ε.
 const SLACK: f64 = 1e-9;

@@ -11,7 +11,7 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 /// The models are not linear, so a landmark is excluded only beyond [`MARGIN`] times the bound.
 #[derive(Clone, Debug)]
 pub(crate) struct SearchRegion<L> {
-    /// The landmark that the measurement would start.
+    /// The landmark that the measurement would initialize.
     place: L,
     /// Standard deviation of its position, m for points.
     deviation: f64,

@@ -92,7 +92,7 @@ where
     /// An empty map and a robot whose pose in a given world is uncertain.
     ///
     /// # Errors
-    /// As [`new`](Self::new), or if the covariance is not symmetric positive semidefinite.
+    /// Returns the errors of [`new`](Self::new), or if the covariance is not symmetric positive semidefinite.
     pub fn with_start_covariance(
         model: M,
         params: SlamParams,

@@ -52,7 +52,7 @@ where
         self.covariance.move_robot(&transport, &TangentMatrix::<M::Robot>::zeros());
     }
 
-    /// The robot's mean goes to `corrected`; its error there is the one that moves the world as far as before.
+    /// Sets the robot's mean to `corrected`; its error there moves the world by the same displacement as before.
     fn transport_robot(&mut self, before: &M::Robot, corrected: M::Robot) {
         let turned = self.model.robot_symmetry(&corrected) - self.model.robot_symmetry(before);
         let transport = turned * self.world_motion_of_error(before);
@@ -72,7 +72,7 @@ where
         Cholesky::new(normal).map_or_else(|| projection.clone() * 0.0, |normal| normal.solve(&projection))
     }
 
-    /// The correction moves the world as far as it moves the robot, and everything on from there.
+    /// The correction displaces the world as it displaces the robot, and moves every landmark relative to that.
     fn step_with_the_world(&mut self, step: &DVector<f64>) {
         let before = self.robot.clone();
         let by_error = self.world_motion_of_error(&before);
@@ -94,9 +94,9 @@ where
     }
 }
 
-/// Where a point comes to when the world moves by `world` meanwhile, and the point's own error takes it by `step` to first order.
+/// The new position of a point when the world moves by `world` and the point's own error moves it by `step`, to first order.
 ///
-/// $`\dot p = s + (g(p) - g(p_0))\, ξ`$ over unit time, one midpoint step: exact for what stays where it is, and for turns to their third order.
+/// $`\dot p = s + (g(p) - g(p_0))\, ξ`$ over unit time, one midpoint step: exact for a point that does not move, third order in turns.
 fn carry<X: Manifold<Scalar = f64, Dim: DimName>>(
     point: &X,
     directions: impl Fn(&X) -> DMatrix<f64>,

@@ -3,7 +3,7 @@ use std::fmt;
 /// A motion of the whole world that no measurement has observed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnobservableDirection {
-    /// Named motions and how much of each, the largest first and 1; per m and per rad.
+    /// Named motions with their shares, the largest first and equal to 1; per m and per rad.
     pub parts: Vec<(&'static str, f64)>,
 }
 

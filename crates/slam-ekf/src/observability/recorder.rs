@@ -42,7 +42,7 @@ use crate::{EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Rob
 pub struct ObservabilityRecorder {
     /// $`Φ`$.
     transition: DMatrix<f64>,
-    /// Where each landmark's block starts in $`J`$.
+    /// Start of each landmark's block in $`J`$.
     blocks: BTreeMap<LandmarkId, usize>,
     information: DMatrix<f64>,
     directions: &'static [&'static str],
@@ -168,7 +168,7 @@ impl ObservabilityRecorder {
         true
     }
 
-    /// Offsets of robot and landmarks in $`J`$, which grows by those that are new.
+    /// Offsets of robot and landmarks in $`J`$, which grows by the new landmarks.
     fn places(&mut self, landmarks: &[LandmarkId], size: usize) -> Vec<usize> {
         let mut places: Vec<usize> = (0..self.transition.nrows()).collect();
         for id in landmarks {

@@ -4,17 +4,17 @@ use wayfix_sensor_log::{LogError, Record, topics};
 use super::CmlSystem;
 use crate::system::{self, EstimateLog, EstimateWriter};
 
-/// The views, the path and the references of an appearance map beside the records, for viewers.
+/// Writes the views, the path and the references of an appearance map beside the records, for viewers.
 pub type CmlEstimateLog = EstimateLog<CmlDrawing>;
 
-/// What [`CmlEstimateLog`] has drawn so far.
+/// State of the drawing of [`CmlEstimateLog`].
 #[derive(Default)]
 pub struct CmlDrawing {
     n_written: usize,
     path: Vec<Pose2<f64>>,
 }
 
-/// The whole path and the references are written with every so many views.
+/// Number of views between two writes of the whole path and the references.
 const PERIOD: usize = 20;
 
 impl system::Drawing for CmlDrawing {

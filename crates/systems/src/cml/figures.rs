@@ -5,7 +5,7 @@ use wayfix_evaluation::{
     report::{Metric, Run},
 };
 
-/// The figures and events of a run, ready for the report. Names as in the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &mut CmlRun) -> Run {
     let mut metrics = errors(run);
     let frames = run.system.frames();
@@ -24,7 +24,7 @@ pub fn summarize(run: &mut CmlRun) -> Run {
     Run { metrics, timings, events: run.system.events().counts(), notes, ..Run::default() }
 }
 
-/// What was done, in a sentence.
+/// Description of the task in one sentence.
 pub fn task(task: Task) -> &'static str {
     match task {
         Task::ConcurrentMapBuilding => {
@@ -61,7 +61,7 @@ fn errors(run: &CmlRun) -> Vec<Metric> {
     metrics
 }
 
-/// How far off the place of the view is that looks most like it: without a filter, without odometry.
+/// Distance from the true position to the reference nearest in appearance, m: no filter, no odometry.
 fn nearest_error((frame, sample): &(&FrameResult, Sample)) -> Option<f64> {
     let (_, [x, y]) = frame.nearest?;
     Some((x - sample.truth.x()).hypot(y - sample.truth.y()))

@@ -1,6 +1,6 @@
 use wayfix_evaluation::plot::{LinesPlot, Series};
 
-/// Shares of the steps whose errors fall into classes of equal width, as outlines; what lies beyond is in the last class.
+/// Shares of the steps by error, in classes of equal width, as outlines. The last class holds all larger errors.
 pub fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> LinesPlot {
     const N: usize = 40;
     let width = most_m / N as f64;

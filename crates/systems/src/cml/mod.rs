@@ -1,8 +1,7 @@
-//! Appearance maps: places that are learned, recognized and forgotten by their looks, with
-//! [`AppearanceLocalizer`](wayfix_appearance_cml::AppearanceLocalizer).
+//! Appearance maps with [`AppearanceLocalizer`](wayfix_appearance_cml::AppearanceLocalizer): learn places, recognize them and forget them.
 //!
-//! A [`Plan`] of a log or of a [`Recording`](recording::Recording) says what is taught and what is localized, [`run`] does it with a [`CmlSystem`];
-//! [`summarize`] gives the figures, [`pictures`] the pictures.
+//! A [`Plan`] of a log or of a [`Recording`](recording::Recording) selects the views to learn and to localize, [`run`] executes it with a
+//! [`CmlSystem`], [`summarize`] gives the figures and [`pictures`] the pictures.
 
 mod estimates;
 mod figures;

@@ -5,10 +5,10 @@ use rand_distr::StandardNormal;
 use wayfix_appearance_cml::OdometryNoise;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 
-/// Not the stream of any other draw.
+/// Random stream of the odometry noise, different from all other streams.
 const STREAM: u64 = 3;
 
-/// The increments of a path, each in the body frame before it, with noise that grows with the way and with the turn.
+/// Increments of a path, each in the body frame before it, with noise that grows with distance and turn.
 pub fn synthetic_odometry(path: &[Pose2<f64>], noise: &OdometryNoise, seed: u64) -> Vec<Pose2<f64>> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(STREAM);

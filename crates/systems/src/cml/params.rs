@@ -4,22 +4,22 @@ use wayfix_appearance_cml::{LocalizerParams, OdometryNoise, PanoramaParams};
 
 use crate::system::VELOCITY_HOLD;
 
-/// Everything that `wayfix run cml` is tuned by. What a file of parameters does not name keeps its default.
+/// Parameters of `wayfix run cml`. Keys that a parameter file omits keep their defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CmlParams {
-    /// A velocity holds for this long after its stamp, s; then the motion is unknown. The default is the command time-out of ROS 2
+    /// Time after its stamp for which a velocity holds, s; then the motion is unknown. The default is the command time-out of ROS 2
     /// navigation.
     pub velocity_hold: f64,
-    /// By how much odometry is stamped later than images that show the same, s; negative where it is stamped earlier.
+    /// Delay of the odometry stamps relative to images of the same motion, s; negative if odometry is stamped early.
     pub odometry_delay: f64,
-    /// What is known of the poses that a map is taught with.
+    /// Uncertainty of the poses of the training views.
     pub taught_pose: PoseSigmas,
-    /// What is known of the start.
+    /// Uncertainty of the start pose.
     pub start: PoseSigmas,
-    /// How a folder of frames, which has no odometry, comes by one.
+    /// Synthetic odometry for a folder of frames, which has none.
     pub synthetic_odometry: SyntheticOdometry,
-    /// How panoramas are described.
+    /// Parameters of the panorama descriptors.
     pub views: PanoramaParams,
     /// The localizer.
     pub localizer: LocalizerParams,
@@ -43,9 +43,9 @@ impl Default for CmlParams {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PoseSigmas {
-    /// Of x and y, metres.
+    /// Of x and y, m.
     pub position: f64,
-    /// Of the heading, radians.
+    /// Of the heading, rad.
     pub heading: f64,
 }
 
@@ -55,13 +55,13 @@ impl Default for PoseSigmas {
     }
 }
 
-/// Odometry made of a path: its increments, smoothed, with noise.
+/// Odometry computed from a path: its smoothed increments with noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SyntheticOdometry {
-    /// Standard deviation of the Gaussian that smooths the path, in frames: what measures a path trembles, wheels do not. As much as the path
-    /// trembles, when not given.
+    /// Standard deviation of the Gaussian that smooths the path, in frames; it removes measurement noise that wheels do not have.
+    /// Estimated from the path if not given.
     pub smoothing_frames: Option<f64>,
-    /// The noise; as much as the localizer reckons with, unless said otherwise.
+    /// Noise of the increments; the default is the noise that the localizer assumes.
     pub noise: OdometryNoise,
 }

@@ -1,10 +1,10 @@
 use super::{CmlRun, FrameResult, histogram::histogram};
 use wayfix_evaluation::plot::{LinesPlot, MapPlot, Picture, PlotError, Series};
 
-/// Path and references, errors as a histogram and over time, how alike the best reference was, how many there were.
+/// Plots the path with the references, error histogram and error over time, distance to the best reference, and number of references.
 ///
 /// # Errors
-/// When a picture cannot be drawn.
+/// Returns an error if a picture cannot be drawn.
 pub fn pictures(run: &CmlRun) -> Result<Vec<Picture>, PlotError> {
     let samples = run.samples();
     let mut pictures = vec![map(run).draw()?];

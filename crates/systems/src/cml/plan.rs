@@ -11,40 +11,40 @@ use super::{
 use crate::system::{HeldVelocity, PlausibleIncrement, check_velocity};
 use wayfix_evaluation::errors::TrueTrack;
 
-/// What a run is made of: what the map is taught before it, and the records that it then goes through.
+/// Contents of a run: the training views, and the records to process after training.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
-    /// Views with their poses.
+    /// Training views with their poses.
     pub training_views: Vec<(EncodedImage, Pose2<f64>)>,
     /// In time order.
     pub records: Vec<Record>,
     /// Remarks for the user.
     pub notes: Vec<String>,
-    /// Whether the headings of the truth were measured, not taken from the path.
+    /// Whether the true headings were measured rather than computed from the path.
     pub headings_are_measured: bool,
 }
 
-/// How the camera is read.
+/// How to read the camera.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CameraChoice {
-    /// The ring of raw omnidirectional images.
+    /// The ring of a raw omnidirectional image.
     pub donut: Option<Donut>,
-    /// Which way columns go; found from the turns when not given.
+    /// Turning sense of the panorama columns; determined from the turns if not given.
     pub sense: Option<TurnSense>,
 }
 
-/// σ of a heading that nobody knows, rad.
+/// σ of an unknown heading, rad.
 const ANY_HEADING: f64 = 3.0;
 
-/// Frames that are compared to find which way columns go: enough to hold some turns.
+/// Number of frames compared to find the turning sense of the columns.
 const N_EVIDENCE: usize = 400;
 
 impl Plan {
-    /// From folders of frames. Every `withhold`-th frame is localized and the others are taught; with `learn_from`, its frames are taught and all
-    /// others localized; with `withhold` 0, nothing is taught. Sets which way the columns go.
+    /// Builds a plan from folders of frames. Every `withhold`-th frame is localized and the others are learned. With `learn_from`, its frames are
+    /// learned and all others localized. With `withhold` 0, no frame is learned. Sets the turning sense of the columns.
     ///
     /// # Errors
-    /// When no frame can be read.
+    /// Returns an error if no frame can be read.
     pub fn of_recording(
         recording: &Recording,
         learn_from: Option<&Recording>,
@@ -75,7 +75,7 @@ impl Plan {
         }
         if heading == Heading::Unknown {
             params.taught_pose.heading = ANY_HEADING;
-            // A map that grows on the way has nothing else to learn from.
+            // A map that grows during the run has no training views.
             if learn_from.is_some() || withhold > 0 {
                 params.localizer.learning = Learning::Static;
             }
@@ -101,7 +101,7 @@ impl Plan {
         Ok(Self { training_views, records, notes, headings_are_measured: heading == Heading::Given })
     }
 
-    /// Columns and rows of the first view that shows something, as a reader makes panoramas.
+    /// Columns and rows of the panorama of the first usable view.
     pub fn first_size(&self, reader: &mut ViewReader) -> Option<(usize, usize)> {
         let images = self.records.iter().filter_map(|record| match &record.data {
             Data::Image(image) => Some(image),
@@ -113,11 +113,11 @@ impl Plan {
         reader.size()
     }
 
-    /// From the records of a log: every `withhold`-th image is localized and the others are taught where the log has true poses; with 0 nothing
-    /// is taught. Sets which way the columns go.
+    /// Builds a plan from the records of a log. If it has true poses, every `withhold`-th image is localized and the others are learned; with 0 no
+    /// image is learned. Sets the turning sense of the columns.
     ///
     /// # Errors
-    /// When views are to be taught and the log has no true poses.
+    /// Returns an error if views are to be learned and the log has no true poses.
     pub fn of_log(
         records: Vec<Record>,
         withhold: usize,
@@ -176,7 +176,7 @@ fn records(
     records
 }
 
-/// The images of a log with the heading that odometry has at them; impossible odometry is passed over, and the system refuses it.
+/// Images of a log with the odometry heading at each. Skips impossible odometry, which the system rejects and reports.
 fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage, f64)> {
     let (mut held, mut plausible) = (HeldVelocity::default(), PlausibleIncrement::default());
     let mut pose = Pose2::new(0.0, 0.0, 0.0);
@@ -204,7 +204,7 @@ fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage,
     headings
 }
 
-/// What the turns of the first views say; those that show nothing are passed over.
+/// Turn evidence of the first views; skips unusable views.
 fn evidence<'a>(
     images: impl Iterator<Item = (&'a EncodedImage, f64)>,
     params: &CmlParams,

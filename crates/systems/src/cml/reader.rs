@@ -2,16 +2,16 @@ use anyhow::{Result, anyhow};
 use wayfix_appearance_cml::{Donut, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams};
 use wayfix_sensor_log::EncodedImage;
 
-/// Makes descriptors of a camera's images: panoramas, or raw images whose ring is unwrapped first.
+/// Computes descriptors of camera images: panoramas, or raw images whose ring is unwrapped first.
 #[derive(Clone, Debug)]
 pub struct ViewReader {
     params: PanoramaParams,
     donut: Option<Donut>,
-    /// Made for the size of the first image.
+    /// Created for the size of the first image.
     features: Option<PanoramaFeatures>,
 }
 
-/// Columns of a panorama to each sector, and most rows to each ring, when a ring is unwrapped.
+/// Panorama columns per sector, and the maximum number of rows per ring, of an unwrapped ring.
 const OVERSAMPLING: usize = 3;
 
 impl ViewReader {
@@ -20,7 +20,7 @@ impl ViewReader {
         Self { params, donut, features: None }
     }
 
-    /// How views are described.
+    /// Parameters of the descriptors.
     pub fn params(&self) -> &PanoramaParams {
         &self.params
     }
@@ -33,7 +33,7 @@ impl ViewReader {
     /// The panorama of an image.
     ///
     /// # Errors
-    /// When the image cannot be decoded, or has no such ring.
+    /// Returns an error if the image cannot be decoded, or has no such ring.
     pub fn panorama(&self, image: &EncodedImage) -> Result<Panorama> {
         let decoded = image.decode_rgb()?;
         let (width, height) = (decoded.width as usize, decoded.height as usize);
@@ -45,10 +45,10 @@ impl ViewReader {
         Ok(donut.unwrap_image(width, height, picture.pixels(), n_columns, n_rows)?)
     }
 
-    /// What an image looks like.
+    /// The descriptor of an image.
     ///
     /// # Errors
-    /// As [`panorama`](Self::panorama), and when it is of another size than the first, blank or saturated.
+    /// Returns the errors of [`panorama`](Self::panorama), and when it is of another size than the first, blank or saturated.
     pub fn describe(&mut self, image: &EncodedImage) -> Result<PanoramaDescriptor> {
         let panorama = self.panorama(image)?;
         let size = (panorama.n_columns(), panorama.n_rows());
@@ -57,7 +57,7 @@ impl ViewReader {
             None => {
                 let features = PanoramaFeatures::new(self.params, size.0, size.1)
                     .map_err(|error| anyhow!("panoramas of {} × {} pixels: {error}", size.0, size.1))?;
-                // A camera is known by its first view that shows something.
+                // The first view with content fixes the size.
                 features.describe(&panorama)?;
                 &*self.features.insert(features)
             }

@@ -12,48 +12,48 @@ use super::{CmlParams, CmlSystem, FrameResult, Plan, PoseSigmas, system::gaussia
 use crate::system::{DriveStep, KnownStart, ODOMETRY, System, check_overlap, drive, without_odometry_delay};
 use wayfix_evaluation::errors::{Sample, TrueTrack};
 
-/// What a run does with its views.
+/// Task of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
-    /// The map grows while the robot localizes in it, from a known start.
+    /// Builds the map while localizing in it, from a known start.
     ConcurrentMapBuilding,
-    /// Views with known poses are taught first, others are localized then.
+    /// Learns views with known poses, then localizes others.
     LearnThenLocalize,
-    /// Views are localized in a map that was saved.
+    /// Localizes views in a saved map.
     LocalizeInSavedMap,
 }
 
-/// Where the robot is at the first view.
+/// Start pose of the robot at the first view.
 #[derive(Clone, Debug)]
 pub enum StartPlace {
-    /// Near there, as well as [`CmlParams::start`] says.
+    /// Near this pose, with the uncertainty [`CmlParams::start`].
     Near(Pose2<f64>),
-    /// There, in a map that has no other frame than the one that the start gives it.
+    /// At exactly this pose, which defines the frame of a new map.
     Exactly(Pose2<f64>),
     /// Anywhere in the map.
     Anywhere,
-    /// Where the saved state has it.
+    /// The pose of the saved state.
     Saved(Start),
 }
 
-/// Views that went through the localizer, beside the truth.
+/// Localized views and the truth.
 pub struct CmlRun {
-    /// What was done.
+    /// The task.
     pub task: Task,
     /// The system in its last state.
     pub system: CmlSystem,
     /// True poses, where there are any.
     pub truth: TrueTrack,
-    /// Whether true headings were measured.
+    /// Whether the true headings were measured.
     pub headings_are_measured: bool,
     /// Remarks for the user.
     pub notes: Vec<String>,
 }
 
-/// Teaches the training views of a plan, puts the robot at its start and takes the records through, showing each step to `observe`.
+/// Learns the training views of a plan, sets the start pose and processes the records, showing each step to `observe`.
 ///
 /// # Errors
-/// When there is no image, or none that could be used.
+/// Returns an error if there is no usable image.
 pub fn run(
     mut system: CmlSystem,
     plan: &Plan,
@@ -87,19 +87,19 @@ pub fn run(
     })
 }
 
-/// The true pose where the first motion or view is, or led back to there by odometry from the first true pose after it.
+/// The true pose at the first motion or view. If truth begins later, odometry extrapolates its first pose back.
 pub fn first_true_pose(records: &[Record]) -> Option<Pose2<f64>> {
     let (_, moves) = ODOMETRY;
     let first =
         records.iter().position(|record| moves(&record.data) || matches!(record.data, Data::Image(_)))?;
-    // An increment leads from the record before it.
+    // An increment begins at the record before it.
     let is_increment = matches!(records[first].data, Data::OdometryIncrement(_));
     let begin = if is_increment { first.saturating_sub(1) } else { first };
     let start = KnownStart::at(records[begin].stamp, &TrueTrack::from_records(records), records)?;
     Some(start.pose)
 }
 
-/// How well a start is known that defines the frame of a map.
+/// Uncertainty of a start pose that defines the frame of a map.
 const EXACT: PoseSigmas = PoseSigmas { position: 1e-3, heading: 1e-3 };
 
 fn begin(start: StartPlace, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
@@ -108,7 +108,7 @@ fn begin(start: StartPlace, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
         StartPlace::Saved(start) => start,
         StartPlace::Exactly(pose) => Start::Known(gaussian(&pose, &EXACT)?),
         StartPlace::Near(pose) => {
-            // As far off the truth as it is said to be.
+            // Draws the start error from the stated uncertainty.
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let mut normal = |sigma: f64| sigma * rng.sample::<f64, _>(StandardNormal);
             let error =
@@ -119,7 +119,7 @@ fn begin(start: StartPlace, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
 }
 
 impl CmlRun {
-    /// Views that were localized, with the true pose at their stamp.
+    /// Localized views with the true pose at their stamp.
     pub fn samples(&self) -> Vec<(&FrameResult, Sample)> {
         let sample = |frame: &FrameResult| {
             let (pose, truth) = (frame.pose.as_ref()?, self.truth.at(frame.stamp)?);

@@ -10,42 +10,42 @@ use wayfix_sensor_log::{Record, Stamp};
 use super::{CmlSystem, PanoramaLocalizer};
 use crate::saved::write_atomically;
 
-/// Why a map could not be written or read.
+/// Errors of writing and reading a map.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SavedViewsError {
-    /// The operating system refuses.
+    /// An operating-system error.
     #[error("{}", path.display())]
     Io {
-        /// What was read or written.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// The operating-system error.
         source: io::Error,
     },
-    /// The bytes are no map that can be used here.
+    /// The file contains no usable map.
     #[error("{}", path.display())]
     Archive {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: ArchiveError,
     },
-    /// There is nothing to save: no view was ever seen.
+    /// No view was processed, so there is nothing to save.
     #[error("no view was seen, so there is no map to save")]
     NoView,
 }
 
-/// Reads a map. A journal that was interrupted is used as far as it is whole.
+/// Reads a map. An interrupted journal is used up to its last complete entry.
 ///
 /// # Errors
-/// When the file cannot be read, is damaged, or of another version.
+/// Returns an error if the file cannot be read, is damaged, or has an unsupported version.
 pub fn read_map(path: &Path) -> Result<MapArchive, SavedViewsError> {
     let bytes = fs::read(path).map_err(|source| SavedViewsError::Io { path: path.to_owned(), source })?;
     MapArchive::from_bytes(&bytes)
         .map_err(|source| SavedViewsError::Archive { path: path.to_owned(), source })
 }
 
-/// Whether the end of a map is missing, in words.
+/// A message if the end of the map is missing.
 pub fn end_note(archive: &MapArchive) -> Option<String> {
     match archive.end() {
         ArchiveEnd::Whole => None,
@@ -55,13 +55,12 @@ pub fn end_note(archive: &MapArchive) -> Option<String> {
     }
 }
 
-/// Saves the map while it is learned, every so often by the clock of the log, and at the end.
+/// Saves the map periodically, in the time of the log, and at the end.
 ///
-/// The whole map is written in the stead of the old file, atomically; then what changes is appended to it as a journal, until the journal is longer
-/// than the map.
+/// A save replaces the old file atomically. Later changes are appended as a journal, until the journal is longer than the map.
 pub struct MapSaver {
     path: PathBuf,
-    /// Seconds of the log between two saves; only at the end, when not given.
+    /// Log time between two saves, s; `None` saves only at the end.
     period: Option<f64>,
     saved_at: Option<Stamp>,
     open: Option<OpenJournal>,
@@ -76,12 +75,12 @@ struct OpenJournal {
 }
 
 impl MapSaver {
-    /// A saver to `path`, every `period` seconds of the log's time.
+    /// Creates a saver that writes to `path` every `period` seconds of log time.
     pub fn new(path: PathBuf, period: Option<f64>) -> Self {
         Self { path, period, saved_at: None, open: None, failure: None }
     }
 
-    /// Saves when it is time. A failure is kept until [`finish`](Self::finish).
+    /// Saves if the period has passed. A failure is kept until [`finish`](Self::finish).
     pub fn observe(&mut self, record: &Record, system: &CmlSystem) {
         let Some(period) = self.period else { return };
         let first = *self.saved_at.get_or_insert(record.stamp);
@@ -91,10 +90,10 @@ impl MapSaver {
         }
     }
 
-    /// Saves the last state, as a whole.
+    /// Saves the final state as a whole.
     ///
     /// # Errors
-    /// When that or anything before could not be written.
+    /// Returns an error if this or any previous save failed.
     pub fn finish(mut self, system: &CmlSystem) -> Result<(), SavedViewsError> {
         self.snapshot(system)?;
         self.failure.map_or(Ok(()), Err)
@@ -128,7 +127,7 @@ impl MapSaver {
         open.n_appended += bytes.len();
         let written = open.file.write_all(&bytes).and_then(|()| open.file.sync_data());
         if let Err(source) = written {
-            // What is half written must not be followed by anything.
+            // Do not append to a partial entry.
             self.open = None;
             return Err(self.io(source));
         }

@@ -14,7 +14,7 @@ use crate::system::{
     Events, HeldVelocity, PlausibleIncrement, Stopwatch, System, check_velocity, warn_of_lag,
 };
 
-/// The localizer of panoramas with the index that does not compare with every reference.
+/// The localizer of panoramas with an index, which avoids comparing with every reference.
 pub type PanoramaLocalizer = AppearanceLocalizer<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
 /// Its map.
 pub type PanoramaMap = AppearanceMap<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
@@ -27,35 +27,35 @@ pub struct CmlSystem {
     velocity_hold: f64,
     plausible: PlausibleIncrement,
     odometry: Option<Pose2<f64>>,
-    /// Where odometry alone puts the robot at each view, from the first record on.
+    /// Dead-reckoned pose at each view, from the first record on.
     dead_reckoning: Vec<(Stamp, Pose2<f64>)>,
-    /// How far the robot has come by odometry alone.
+    /// Dead-reckoned motion since the first record.
     moved: Pose2<f64>,
     last_view: Option<PanoramaDescriptor>,
-    /// By how much the robot has turned from the view before, by the views alone, rad.
+    /// Turn since the view before, estimated from the views alone, rad.
     seen_turns: Vec<Option<f64>>,
     frames: Vec<FrameResult>,
     events: Events,
 }
 
-/// What one view gave.
+/// Result of one view.
 #[derive(Clone, Debug)]
 pub struct FrameResult {
-    /// When it was taken.
+    /// Capture time.
     pub stamp: Stamp,
-    /// The most probable place, with covariance in its own frame; `None` while nothing is known.
+    /// The most probable pose, with covariance in its body frame; `None` while the pose is unknown.
     pub pose: Option<Gaussian<Pose2<f64>>>,
-    /// Whether it is the only one.
+    /// Whether it is the only hypothesis.
     pub is_certain: bool,
-    /// Where odometry alone would have it; `None` without a known start.
+    /// Dead-reckoned pose; `None` without a known start.
     pub odometry: Option<Pose2<f64>>,
-    /// The reference that looks most like the view before anything was learned from it: its distance, and where it was seen.
+    /// The most similar reference before learning from this view: its distance, and the position where it was learned.
     pub nearest: Option<(f64, [f64; 2])>,
-    /// Places that looked like the view.
+    /// Number of places that match the view.
     pub n_sightings: usize,
-    /// References of the map afterwards.
+    /// Number of references in the map after the view.
     pub n_references: usize,
-    /// Computing time from the decoded image on.
+    /// Computing time after decoding.
     pub step: Duration,
 }
 
@@ -81,7 +81,7 @@ impl CmlSystem {
         })
     }
 
-    /// What every view so far gave.
+    /// Results of all views so far.
     pub fn frames(&self) -> &[FrameResult] {
         &self.frames
     }
@@ -91,17 +91,17 @@ impl CmlSystem {
         &self.localizer
     }
 
-    /// How views are described, and the size of the panoramas.
+    /// The reader of the views; it holds the panorama size.
     pub fn reader(&self) -> &ViewReader {
         &self.reader
     }
 
-    /// Warns by how much odometry lags the views, if their turns determine it; `delay` is what is corrected already, s.
+    /// Warns if the turns of the views show that odometry lags; `delay` is the delay already corrected, s.
     pub(super) fn warn_of_lag(&mut self, delay: f64) {
         warn_of_lag(&mut self.events, &self.dead_reckoning, &self.seen_turns, delay);
     }
 
-    /// Adds a reference view with a known pose; a refused view is counted and left out.
+    /// Adds a reference view with a known pose; counts and skips an unusable view.
     ///
     /// # Errors
     /// Returns an error if the pose or a sigma is invalid, or if no reference number is left.
@@ -140,7 +140,7 @@ impl CmlSystem {
         Ok(())
     }
 
-    /// Moves the robot on with the velocity that holds.
+    /// Predicts the pose to `stamp` with the held velocity.
     fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
         let Some(held) = self.velocity.until(stamp, self.velocity_hold) else { return Ok(()) };
         if held.unknown_seconds > 0.0 {
@@ -196,7 +196,7 @@ impl CmlSystem {
     }
 }
 
-/// A pose that is known so well.
+/// A Gaussian with this mean and these standard deviations.
 pub(super) fn gaussian(pose: &Pose2<f64>, sigmas: &PoseSigmas) -> anyhow::Result<Gaussian<Pose2<f64>>> {
     Ok(Gaussian::from_sigmas(*pose, &Vector3::new(sigmas.position, sigmas.position, sigmas.heading))?)
 }

@@ -6,17 +6,17 @@ use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
 use super::{ColorSystem, FrameResult};
 use crate::system::{self, EstimateLog, EstimateWriter};
 
-/// The camera's images, the path and the particles beside the records, for viewers.
+/// Writes the camera's images, the path and the particles beside the records, for viewers.
 pub type ColorEstimateLog = EstimateLog<ColorDrawing>;
 
-/// What [`ColorEstimateLog`] has drawn so far.
+/// State of the drawing of [`ColorEstimateLog`].
 #[derive(Default)]
 pub struct ColorDrawing {
     n_written: usize,
     path: Vec<Pose2<f64>>,
 }
 
-/// The whole path is written with every so many frames.
+/// Number of frames between two writes of the whole path.
 const PATH_PERIOD: usize = 20;
 /// Ellipses are drawn at two standard deviations.
 const SIGMAS: f64 = 2.0;

@@ -8,10 +8,10 @@ use wayfix_evaluation::{
     report::{Metric, Run},
 };
 
-/// Fewer labelled pixels of a colour in an image give no rate of their own.
+/// Minimum number of labelled pixels of a colour in an image for a rate of its own.
 const MIN_PIXELS: u64 = 20;
 
-/// The figures and events of a run, ready for the report. Names as in the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &mut ColorRun) -> Run {
     let mut metrics = localization(run);
     metrics.extend(classification(run));
@@ -47,7 +47,7 @@ fn localization(run: &ColorRun) -> Vec<Metric> {
     metrics
 }
 
-/// What odometry alone would have had, from the same start.
+/// Error of dead reckoning from the same start.
 fn odometry(run: &ColorRun) -> Option<Metric> {
     let pairs: Option<Vec<(Pose2<f64>, Pose2<f64>)>> =
         run.samples().into_iter().map(|(frame, sample)| Some((frame.odometry?, sample.truth))).collect();

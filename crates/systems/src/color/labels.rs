@@ -2,7 +2,7 @@ use wayfix_color_map::ColorId;
 use wayfix_color_model::{Classifier, YuvImage};
 use wayfix_sensor_log::DecodedImage;
 
-/// Of the pixels that truly show each map colour, how many were classified as that colour.
+/// Number of labelled pixels of each map colour that were classified correctly.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LabelCounts {
     /// `(right, all)` of each colour, in the order of the map.
@@ -10,7 +10,7 @@ pub struct LabelCounts {
 }
 
 impl LabelCounts {
-    /// Share of all labelled pixels that were classified rightly; `None` without any.
+    /// Share of all labelled pixels that were classified correctly; `None` without labelled pixels.
     pub fn rate(&self) -> Option<f64> {
         let (right, all) =
             self.by_color.iter().fold((0, 0), |sum, counts| (sum.0 + counts.0, sum.1 + counts.1));
@@ -24,9 +24,9 @@ impl LabelCounts {
     }
 }
 
-/// Classifies every labelled pixel; those that show nothing of the map do not count, as in [Schulz & Fox 2004, V.A].
+/// Classifies every labelled pixel; background pixels do not count, as in [Schulz & Fox 2004, V.A].
 ///
-/// `None` when the labels are of another size than the image.
+/// Returns `None` if labels and image differ in size.
 pub fn tally(
     image: &YuvImage,
     labels: &DecodedImage,
@@ -46,7 +46,7 @@ pub fn tally(
     Some(LabelCounts { by_color })
 }
 
-/// Mean over images of the rate of a colour, with the images that show less than `min_pixels` of it left out.
+/// Mean rate of a colour over the images that show at least `min_pixels` of it.
 pub fn rate_of<'a>(
     counts: impl IntoIterator<Item = &'a LabelCounts>,
     color: ColorId,

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use wayfix_color_map::{ColorMap, Shape};
 use wayfix_sensor_log::read_text;
 
-/// Reads a map of coloured surfaces, TOML or (with the ending .json) JSON.
+/// Reads a map of coloured surfaces from TOML or, with the extension `.json`, from JSON.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read or parsed, or if a surface is invalid.

@@ -1,6 +1,6 @@
-//! Adaptive colour localization on logs: where the robot stands on a coloured field, and what today's light does to the colours.
+//! Adaptive colour localization on logs: the robot's pose on a coloured field, and the effect of the light on the colours.
 //!
-//! [`run`] takes the records of a log, a map and priors through a [`ColorSystem`]; [`summarize`] gives the figures, [`pictures`] the pictures.
+//! [`run`] passes the records of a log through a [`ColorSystem`] with a map and priors; [`summarize`] gives the figures, [`pictures`] the pictures.
 
 mod estimates;
 mod figures;

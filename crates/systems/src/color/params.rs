@@ -2,40 +2,40 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_color_model::{Background, Drift, LocalizerParams, Unseen, YuvStandard};
 
-/// Everything that `wayfix run color` is tuned by. What a file of parameters does not name keeps its default.
+/// Parameters of `wayfix run color`. Keys that a parameter file omits keep their defaults.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ColorSystemParams {
-    /// What YUV is.
+    /// The YUV standard of the images.
     pub yuv: YuvStandard,
-    /// Variance of the pixels of a colour in an image (Y, U, V), in place of the one that belongs to the priors.
+    /// Variance of a colour's pixels within an image (Y, U, V); overrides that of the priors.
     pub pixel_noise: Option<[f64; 3]>,
-    /// Variance of an image's mean of a colour (Y, U, V), in place of the one that belongs to the priors.
+    /// Variance of a colour's mean in an image (Y, U, V); overrides that of the priors.
     pub mean_noise: Option<[f64; 3]>,
-    /// How the light changes by itself.
+    /// Process noise of the light.
     pub drift: Drift,
-    /// What becomes of colours that an image does not show.
+    /// Treatment of colours that an image does not show.
     pub unseen: Unseen,
-    /// Probability that the light is not switched from one frame to the next.
+    /// Probability that the light does not switch between two frames.
     pub light_persistence: f64,
-    /// By how much odometry is stamped later than images that show the same, s; negative where it is stamped earlier.
+    /// Delay of the odometry stamps relative to images of the same motion, s; negative if odometry is stamped early.
     pub odometry_delay: f64,
-    /// What is known of the start where the log has true poses.
+    /// Uncertainty of the start pose, if the log has true poses.
     pub start: StartParams,
     /// The particle filter.
     pub localizer: LocalizerParams,
-    /// What shows nothing of the map.
+    /// Model of the pixels that show no map surface.
     #[serde(skip)]
     pub background: Background,
 }
 
-/// What is known of the start.
+/// Uncertainty of the start pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct StartParams {
-    /// Standard deviation of the position, metres.
+    /// Standard deviation of the position, m.
     pub position_sigma: f64,
-    /// Standard deviation of the heading, radians.
+    /// Standard deviation of the heading, rad.
     pub heading_sigma: f64,
 }
 

@@ -5,13 +5,13 @@ use wayfix_sensor_log::{EncodedImage, Stamp};
 use super::{ColorRun, ColorSystem, field_lines};
 use wayfix_evaluation::plot::{FilmFrame, FilmStrip, Picture};
 
-/// Frames of the film, each of which stands for a part of the run.
+/// Frames of the film; each represents a part of the run.
 const N_FRAMES: usize = 6;
-/// Frames beside each other; two rows hold all.
+/// Frames per row; there are two rows.
 const FRAMES_A_ROW: usize = 3;
 /// Width of a frame, pixels.
 const WIDTH: usize = 480;
-/// What is seen around the field, metres.
+/// Margin around the field, m.
 const MARGIN: f64 = 0.4;
 const PAPER: [u8; 3] = [246, 247, 249];
 const LINES: [u8; 3] = [190, 196, 204];
@@ -19,9 +19,9 @@ const PARTICLES: [u8; 3] = [31, 119, 180];
 const ESTIMATE: [u8; 3] = [240, 160, 0];
 const TRUTH: [u8; 3] = [214, 39, 40];
 
-/// The particles on the field at some moments of a run: watched while it goes, drawn when it is over.
+/// The particles on the field at some moments of a run, recorded during the run and drawn afterwards.
 ///
-/// Of each sixth of the run it is the moment with the most particles, which is when the robot knows least.
+/// Of each sixth of the run it shows the moment with the most particles, where the uncertainty is largest.
 pub struct ParticleFilm {
     n_camera_frames: usize,
     kept: [Option<Moment>; N_FRAMES],
@@ -34,12 +34,12 @@ struct Moment {
 }
 
 impl ParticleFilm {
-    /// For a log of so many camera frames.
+    /// Creates a film for a log of this many camera frames.
     pub fn new(n_camera_frames: usize) -> Self {
         Self { n_camera_frames, kept: [const { None }; N_FRAMES] }
     }
 
-    /// Looks at the system; to be called after every record.
+    /// Records the state of the system; call it after every record.
     pub fn observe(&mut self, system: &ColorSystem) {
         let (Some(frame), Some(localizer)) = (system.frames().last(), system.localizer()) else { return };
         let kept = &mut self.kept[part_of(system.frames().len() - 1, self.n_camera_frames)];
@@ -53,7 +53,7 @@ impl ParticleFilm {
     /// The film.
     ///
     /// # Errors
-    /// When a frame cannot be encoded.
+    /// Returns an error if a frame cannot be encoded.
     pub fn draw(&self, run: &ColorRun) -> Result<Picture> {
         let field = field_lines(run.system.map());
         let sheet = Sheet::around(&field);
@@ -81,12 +81,12 @@ impl ParticleFilm {
     }
 }
 
-/// Which part of the run a camera frame is in; a log may have more frames than it was said to have.
+/// The part of the run of a camera frame; a log may have more frames than announced.
 fn part_of(frame: usize, n_camera_frames: usize) -> usize {
     (frame * N_FRAMES / n_camera_frames.max(1)).min(N_FRAMES - 1)
 }
 
-/// Pixels over a part of the plane, y up.
+/// Pixels of a part of the plane, y up.
 #[derive(Clone)]
 struct Sheet {
     left: f64,
@@ -97,7 +97,7 @@ struct Sheet {
 }
 
 impl Sheet {
-    /// White, of a size that shows all of the lines; a square of the plane's origin where there are none.
+    /// A white sheet that shows all of the lines, or a square around the origin if there are none.
     fn around(lines: &[Vec<(f64, f64)>]) -> Self {
         let range = |of: fn(&(f64, f64)) -> f64| {
             let values = lines.iter().flatten().map(of);
@@ -110,7 +110,7 @@ impl Sheet {
         Self { left, top, pixels_per_meter, height, pixels: vec![PAPER; WIDTH * height] }
     }
 
-    /// A pose as a disc with a line ahead.
+    /// Draws a pose as a disc with a heading line.
     fn pose(&mut self, pose: &Pose2<f64>, ink: [u8; 3]) {
         let (sin, cos) = pose.heading().sin_cos();
         let ahead = 20.0 / self.pixels_per_meter;
@@ -122,7 +122,7 @@ impl Sheet {
         for pair in points.windows(2) {
             let &[(x0, y0), (x1, y1)] = pair else { continue };
             let length = (x1 - x0).hypot(y1 - y0) * self.pixels_per_meter;
-            // What is longer than any field can be is not drawn pixel by pixel.
+            // Bound the number of steps of a line.
             let n_steps = length.ceil().clamp(1.0, 10_000.0);
             for k in 0..=n_steps as usize {
                 let share = k as f64 / n_steps;
@@ -131,7 +131,7 @@ impl Sheet {
         }
     }
 
-    /// A disc of a radius in pixels; what is outside of the sheet, or nowhere, is not drawn.
+    /// Draws a disc with a radius in pixels; clips it to the sheet.
     fn disc(&mut self, [x, y]: [f64; 2], radius: f64, ink: [u8; 3]) {
         let (column, row) = ((x - self.left) * self.pixels_per_meter, (self.top - y) * self.pixels_per_meter);
         let reach = radius.ceil() as i64;

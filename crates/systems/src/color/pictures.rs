@@ -12,10 +12,10 @@ use wayfix_evaluation::{
     },
 };
 
-/// Path on the field, errors with their 3σ bands, the colours' UV ellipses, the light over time.
+/// Plots the path on the field, errors with 3σ bands, the UV ellipses of the colours, and the light over time.
 ///
 /// # Errors
-/// When a picture cannot be drawn.
+/// Returns an error if a picture cannot be drawn.
 pub fn pictures(run: &ColorRun) -> Result<Vec<Picture>, PlotError> {
     let samples = run.samples();
     let mut pictures = vec![path(run, &samples).draw()?];
@@ -49,10 +49,10 @@ pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> 
     map.colors().iter().enumerate().map(ellipse).collect()
 }
 
-/// Camera frames beside what they were classified as, evenly over the log.
+/// Camera frames beside their classification, spread evenly over the log.
 ///
 /// # Errors
-/// When an image cannot be decoded or a picture not be drawn.
+/// Returns an error if an image cannot be decoded or a picture not be drawn.
 pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<Picture> {
     let images: Vec<(f64, &EncodedImage)> = records
         .iter()
@@ -66,7 +66,7 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<P
         ..FilmStrip::default()
     };
     let (mut seen, mut classified) = (Vec::new(), Vec::new());
-    // The light is that at the end of the log: frames near it show how the run ended.
+    // Classifies with the light at the end of the log, so early frames may look wrong.
     for k in 0..n_frames.min(images.len()) {
         let (seconds, image) = images[images.len() * (k + 1) / (n_frames.min(images.len()) + 1)];
         let decoded = image.decode_rgb()?;
@@ -84,7 +84,7 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<P
     Ok(film.draw()?)
 }
 
-/// What a label is drawn with: the first colours as those of the four-legged league, others in a circle of hues.
+/// Display colour of a label: the first ones as in the four-legged league, others spread over the hues.
 fn paint(label: u8) -> [u8; 3] {
     const PAINTS: [[u8; 3]; 8] = [
         [40, 140, 60],

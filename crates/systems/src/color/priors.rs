@@ -1,4 +1,4 @@
-//! What the colours may look like before anything is seen, learned or read.
+//! Priors of the colours, learned or read.
 
 use std::path::Path;
 
@@ -15,15 +15,15 @@ use wayfix_sensor_log::read_text;
 
 use super::ColorSystemParams;
 
-/// Dark and bright, learned from the 44 simulated venues of the four-legged league ([`learn_from_simulation`]).
+/// Dark and bright priors, learned from the 44 simulated venues of the four-legged league ([`learn_from_simulation`]).
 const BUILT_IN: &str = include_str!("../../data/four-legged-priors.json");
-/// Seed of the training venues; no log comes from it.
+/// Seed of the training venues; no log uses it.
 const TRAINING_SEED: u64 = 2004;
 
-/// The priors for the colours of the four-legged league that come with the application.
+/// The built-in priors for the colours of the four-legged league.
 ///
 /// # Errors
-/// Never in practice: a test reads them.
+/// None in practice; a test reads the priors.
 pub fn built_in() -> Result<LightingPriors> {
     serde_json::from_str(BUILT_IN).context("the built-in priors are not usable")
 }
@@ -31,16 +31,16 @@ pub fn built_in() -> Result<LightingPriors> {
 /// Reads priors from a JSON file, as `--write-priors` writes them.
 ///
 /// # Errors
-/// When the file cannot be read or is not of this form.
+/// Returns an error if the file cannot be read or is not valid JSON of this form.
 pub fn read(path: &Path) -> Result<LightingPriors> {
     let text = read_text(path).with_context(|| format!("cannot read priors from {}", path.display()))?;
     serde_json::from_str(&text).with_context(|| format!("the priors in {} are not usable", path.display()))
 }
 
-/// Learns `k` priors from the simulated training venues, darkest first: what the built-in ones (`k` = 2) were made by.
+/// Learns `k` priors from the simulated training venues, darkest first. The built-in priors were made with `k` = 2.
 ///
 /// # Errors
-/// When learning fails.
+/// Returns an error if learning fails.
 pub fn learn_from_simulation(k: usize) -> Result<LightingPriors> {
     let venues: Vec<TrainingVenue> = TrainingParams::default()
         .gather(ChaCha8Rng::seed_from_u64(TRAINING_SEED))?
@@ -67,10 +67,10 @@ fn training_venue(venue: wayfix_scene_sim::league::TrainingVenue) -> TrainingVen
     }
 }
 
-/// A bank of one lighting filter a prior, with a chain that seldom switches.
+/// A bank with one lighting filter per prior, with a Markov chain that rarely switches.
 ///
 /// # Errors
-/// When a prior or a parameter is not usable.
+/// Returns an error if a prior or a parameter is invalid.
 pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<LightingBank> {
     let lighting = LightingParams {
         pixel_noise: params.pixel_noise.map_or(priors.pixel_noise(), Vector3::from),

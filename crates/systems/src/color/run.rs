@@ -17,7 +17,7 @@ use crate::{
 };
 use wayfix_evaluation::errors::{Sample, TrueTrack};
 
-/// A log that went through colour localization, beside the truth that the log holds.
+/// Results of colour localization on a log, with the truth of the log.
 pub struct ColorRun {
     /// The system in its last state.
     pub system: ColorSystem,
@@ -25,13 +25,13 @@ pub struct ColorRun {
     pub truth: TrueTrack,
 }
 
-/// Takes the records of a log through the localizer and shows each step to `observe`.
+/// Processes the records of a log with the localizer and shows each step to `observe`.
 ///
-/// `start` is where the search begins; `None` is near the first true pose, a draw of the stated uncertainty away from it, or anywhere when
-/// the log has no truth.
+/// `start` is the start pose. With `None` the start is drawn around the first true pose with the stated uncertainty; without truth the search
+/// is global.
 ///
 /// # Errors
-/// When there is no image, or none that could be used.
+/// Returns an error if there is no usable image.
 pub fn run(
     records: &[Record],
     map: Arc<ColorMap>,
@@ -67,14 +67,14 @@ pub fn run(
     Ok(ColorRun { system, truth })
 }
 
-/// How many camera frames a log has.
+/// Number of camera frames in a log.
 pub fn n_images(records: &[Record]) -> usize {
     records.iter().filter(|record| matches!(record.data, Data::Image(_))).count()
 }
 
-/// A start as far off the truth as it is said to be.
+/// A start pose drawn around the truth with the stated uncertainty.
 fn guess(truth: &Pose2<f64>, params: &ColorSystemParams, seed: u64) -> Pose2<f64> {
-    // Not the stream that the particles are drawn from.
+    // Uses a different stream than the particles.
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(1);
     let mut normal = |sigma: f64| sigma * rng.sample::<f64, _>(StandardNormal);

@@ -13,10 +13,10 @@ use wayfix_sensor_log::{CameraInfo, Data, EncodedImage, Record, Stamp};
 use super::{ColorSystemParams, LabelCounts, tally};
 use crate::system::{Events, PlausibleIncrement, Stopwatch, System};
 
-/// What is known of the start.
+/// Knowledge of the start pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StartPose {
-    /// About here, as far off as [`StartParams`](super::StartParams) says.
+    /// Near this pose, with the uncertainty of [`StartParams`](super::StartParams).
     Near(Pose2<f64>),
     /// Anywhere on the field.
     Anywhere,
@@ -48,35 +48,35 @@ struct Pending {
     since: Option<Stamp>,
 }
 
-/// What one frame gave.
+/// Result of one frame.
 #[derive(Clone, Debug)]
 pub struct FrameResult {
-    /// When it was taken.
+    /// Capture time.
     pub stamp: Stamp,
-    /// Where the robot is, with covariance in its own frame.
+    /// The pose estimate, with covariance in its body frame.
     pub pose: Gaussian<Pose2<f64>>,
-    /// What that is worth.
+    /// Quality of the estimate.
     pub fix: Fix,
-    /// Where odometry alone would have it; `None` without a known start.
+    /// Dead-reckoned pose; `None` without a known start.
     pub odometry: Option<Pose2<f64>>,
     /// Effective number of particles.
     pub effective_particles: f64,
     /// Number of particles.
     pub n_particles: usize,
-    /// How much better the estimate explains the image than the colours that it shows on average, nats a pixel.
+    /// Log likelihood of the image at the estimate relative to its average colours, nats per pixel.
     pub fit: f64,
-    /// Log of the mean likelihood ratio to the background, nats a pixel.
+    /// Log of the mean likelihood ratio to the background, nats per pixel.
     pub log_evidence_per_pixel: f64,
     /// Probability of each light of the bank.
     pub light_probabilities: Vec<f64>,
-    /// Classified pixels, where the log has true labels.
+    /// Classification counts, if the log has true labels.
     pub labelled: Option<LabelCounts>,
-    /// Computing time from the decoded image on.
+    /// Computing time after decoding.
     pub step: Duration,
 }
 
 impl ColorSystem {
-    /// A system that has seen nothing yet.
+    /// Creates a system before its first record.
     pub fn new(
         map: Arc<ColorMap>,
         bank: LightingBank,
@@ -107,7 +107,7 @@ impl ColorSystem {
         }
     }
 
-    /// What every frame so far gave.
+    /// Results of all frames so far.
     pub fn frames(&self) -> &[FrameResult] {
         &self.frames
     }
@@ -117,18 +117,18 @@ impl ColorSystem {
         self.localizer.as_ref()
     }
 
-    /// The light that the localizer holds for the most probable; the prior's before the first frame.
+    /// The most probable light of the localizer; the prior before the first frame.
     pub fn light(&self) -> &LightingBank {
         self.localizer.as_ref().map_or(&self.bank, ColorLocalizer::light)
     }
 
-    /// What the map's colours look like in an image by now.
+    /// Current colour densities of the map's colours.
     fn colors(&self) -> Vec<ColorDensity> {
         let light = self.light();
         self.params.localizer.pixels.shaded(light.member(light.active()).colors())
     }
 
-    /// What it is tuned by.
+    /// Parameters of the system.
     pub fn params(&self) -> &ColorSystemParams {
         &self.params
     }
@@ -138,10 +138,10 @@ impl ColorSystem {
         &self.map
     }
 
-    /// The image classified under the light of the moment: the map's colours, 255 for background.
+    /// Classifies the image with the current light: the map's colours, 255 for background.
     ///
     /// # Errors
-    /// When a colour's density has no peak.
+    /// Returns an error if a colour's density has no peak.
     pub fn classified(&mut self, image: &YuvImage) -> Result<Vec<u8>, String> {
         let colors = self.colors();
         let table = match self.table.take() {
@@ -163,7 +163,7 @@ impl ColorSystem {
         let so_far = self.pending.increment.unwrap_or(Pose2::new(0.0, 0.0, 0.0));
         self.pending.increment = Some(so_far.compose(increment));
         if self.pending.since.is_some() {
-            self.odometry = self.odometry.map(|pose| pose.compose(increment)); // the start is where the first image is
+            self.odometry = self.odometry.map(|pose| pose.compose(increment)); // the start is the pose at the first image
         }
         Ok(())
     }
@@ -225,7 +225,7 @@ impl ColorSystem {
                 OdometryStep { increment: self.pending.increment, seconds: stamp.seconds_since(since) };
             localizer.predict(&step, &mut self.rng)?;
         }
-        // What has been predicted must not be predicted again, whatever becomes of the image.
+        // The motion is already predicted, whether or not the image is usable.
         self.pending = Pending { increment: None, since: Some(stamp) };
         Ok(localizer.update(image, mount, &mut self.rng)?)
     }

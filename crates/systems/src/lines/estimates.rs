@@ -3,15 +3,15 @@ use wayfix_sensor_log::{Data, Drawing, LogError, Record, Shape, topics};
 use super::{LineSystem, ScanWalls};
 use crate::system::{self, EstimateLog, EstimateWriter};
 
-/// The walls of every scan beside the records, for viewers.
+/// Writes the walls of every scan beside the records, for viewers.
 pub type LineLog = EstimateLog<LineDrawing>;
 
-/// What [`LineLog`] has drawn so far.
+/// State of the drawing of [`LineLog`].
 pub struct LineDrawing {
     n_written: usize,
-    /// Walls of the scan before: those that the next has not are drawn over with nothing.
+    /// Number of walls of the scan before; surplus ones are overwritten with nothing.
     n_walls: usize,
-    /// What the walls are given in: the laser's frame once the log has placed it, else the robot's.
+    /// Frame of the walls: the laser's frame once the log has given its mounting, else the robot's.
     frame: &'static str,
 }
 

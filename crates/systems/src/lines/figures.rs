@@ -4,7 +4,7 @@ use super::{LineSystem, WallScore};
 use crate::system::System;
 use wayfix_evaluation::report::{Metric, Run};
 
-/// The figures and events of a run, ready for the report. Names as in the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(system: &mut LineSystem) -> Run {
     let n_used = system.scans().len() as f64;
     let segments = || system.scans().iter().flat_map(|scan| &scan.segments);
@@ -37,7 +37,7 @@ fn beside_truth(score: WallScore) -> Vec<Metric> {
     ]
 }
 
-/// Root of the mean squared distance of the echoes from the walls that were fitted to them.
+/// RMS distance of the echoes from the walls fitted to them, m.
 fn residual_rms<'a>(segments: impl Iterator<Item = &'a Segment>) -> Option<f64> {
     let (sum, n_points) = segments.fold((0.0, 0.0), |(sum, n_points), segment| {
         let n = segment.n_points as f64;

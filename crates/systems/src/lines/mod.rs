@@ -1,7 +1,7 @@
-//! Walls in the scans of a log: what a laser sees, as lines with their ends.
+//! Walls in the scans of a log: line segments fitted to laser echoes.
 //!
 //! [`LineSystem`] takes the records, [`summarize`] gives the figures, [`pictures`] the pictures, [`LineLog`] the scans and walls for viewers;
-//! [`WallScore`] compares with true walls, [`simplification`] makes chains short.
+//! [`WallScore`] compares with true walls, [`simplification`] measures polyline simplification.
 
 mod estimates;
 mod figures;

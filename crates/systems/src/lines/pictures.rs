@@ -3,13 +3,13 @@ use nalgebra::Vector2;
 use super::{LineSystem, ScanWalls};
 use wayfix_evaluation::plot::{MapPlot, Picture, PlotError};
 
-/// So many scans are drawn, evenly over the log.
+/// Number of scans drawn, spread evenly over the log.
 const N_SCANS: usize = 3;
 
-/// All walls where the log says that they were seen from, and some scans with their walls.
+/// Plots all walls of scans with a known pose, and some scans with their walls.
 ///
 /// # Errors
-/// When a picture cannot be drawn.
+/// Returns an error if a picture cannot be drawn.
 pub fn pictures(system: &LineSystem) -> Result<Vec<Picture>, PlotError> {
     let scans = system.scans();
     let mut pictures = Vec::new();

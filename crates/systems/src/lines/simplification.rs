@@ -12,10 +12,10 @@ use wayfix_evaluation::report::{Metric, Run};
 
 type Chain = Vec<Vector2<f64>>;
 
-/// Douglas-Peucker, plain and with hulls, on `n_chains` random chains of four kinds, and the time on the plain one's worst case.
+/// Compares plain Douglas-Peucker with the convex-hull variant on `n_chains` random chains of four kinds, and times the worst case of the plain one.
 ///
 /// # Errors
-/// When a chain is refused.
+/// Returns an error if a chain is invalid.
 pub fn simplification(n_chains: u32, seed: u64) -> Result<Run> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (mut n_differ, mut kept, mut points, mut excess) = (0, 0, 0, f64::NEG_INFINITY);
@@ -41,7 +41,7 @@ pub fn simplification(n_chains: u32, seed: u64) -> Result<Run> {
     Ok(Run { metrics, timings, ..Run::default() })
 }
 
-/// How far the farthest point is from the line through the kept points on both its sides; `None` when all were kept.
+/// Distance of the farthest point from the line through the kept points on both sides; `None` if all were kept.
 fn farthest(chain: &[Vector2<f64>], kept: &[usize]) -> Option<f64> {
     let pieces = kept.windows(2).filter_map(|pair| {
         let (from, to) = (chain[pair[0]], chain[pair[1]]);
@@ -55,7 +55,7 @@ fn farthest(chain: &[Vector2<f64>], kept: &[usize]) -> Option<f64> {
     pieces.reduce(f64::max)
 }
 
-/// A walk, which crosses itself, a spiral, a comb or a zigzag, in turn; metres.
+/// A random walk (which crosses itself), spiral, comb or zigzag, in turn; m.
 fn random_chain<R: Rng + ?Sized>(k: u32, rng: &mut R) -> Chain {
     let n = rng.random_range(2..400);
     let size = rng.random_range(0.5..5.0);
@@ -82,7 +82,7 @@ fn random_chain<R: Rng + ?Sized>(k: u32, rng: &mut R) -> Chain {
     }
 }
 
-/// Spikes that become smaller: every split takes one point off.
+/// Spikes of decreasing size: every split takes off one point.
 fn zigzag(n: u32) -> Chain {
     let height = |k: u32| f64::from(k % 2) * 1e3 * (1.0 - f64::from(k) / f64::from(n));
     (0..n).map(|k| Vector2::new(f64::from(k), height(k))).collect()

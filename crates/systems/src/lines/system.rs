@@ -6,7 +6,7 @@ use wayfix_sensor_log::{Data, LaserScan, Record, Stamp, TrueWall};
 
 use crate::system::{Events, Stopwatch, System, largest_echo};
 
-/// Finds the walls of every scan of a log.
+/// Extracts the walls of every scan of a log.
 pub struct LineSystem {
     extractor: Extractor,
     pose: Option<(Stamp, Pose2<f64>)>,
@@ -20,23 +20,23 @@ pub struct LineSystem {
 /// A scan and the walls in it.
 #[derive(Clone, Debug)]
 pub struct ScanWalls {
-    /// When it was taken.
+    /// Capture time.
     pub stamp: Stamp,
-    /// Where the laser was, if the log says so for this very stamp; truth before estimates.
+    /// Pose of the laser, if the log has one at this stamp; truth takes precedence over estimates.
     pub pose: Option<Pose2<f64>>,
-    /// What came back: bearing, radians, and range, metres.
+    /// Echoes: bearing, rad, and range, m.
     pub echoes: Vec<(f64, f64)>,
-    /// The walls, in the frame of the sensor.
+    /// Walls in the sensor frame.
     pub segments: Vec<Segment>,
-    /// How long the search took.
+    /// Computing time.
     pub step: Duration,
 }
 
 impl LineSystem {
-    /// Looks for walls as `params` say.
+    /// Creates a system with these extraction parameters.
     ///
     /// # Errors
-    /// When a parameter makes no sense.
+    /// Returns an error if a parameter makes no sense.
     pub fn new(params: Params) -> Result<Self, LineError> {
         let extractor = Extractor::new(params)?;
         Ok(Self {
@@ -50,17 +50,17 @@ impl LineSystem {
         })
     }
 
-    /// The scans that walls were looked for in, in the order of the log.
+    /// The processed scans, in log order.
     pub fn scans(&self) -> &[ScanWalls] {
         &self.scans
     }
 
-    /// The true walls that the log gives.
+    /// The true walls of the log.
     pub fn true_walls(&self) -> &[TrueWall] {
         &self.true_walls
     }
 
-    /// Scans of the log, with those that could not be used; the events say why.
+    /// Number of scans in the log, including unusable ones, which the events explain.
     pub fn n_scans(&self) -> u64 {
         self.n_scans
     }

@@ -7,33 +7,33 @@ use wayfix_sensor_log::TrueWall;
 
 use super::ScanWalls;
 
-/// The walls found beside the true ones, over all scans with a pose.
+/// Score of extracted walls against true walls, over all scans with a pose.
 ///
-/// A segment is of the true wall that both its ends are nearest to, if that is within 0.15 m. It is within 2σ if
-/// $`d^2 = Δ^T P^{-1} Δ \le 4`$ for the difference $`Δ`$ of $`(ρ, α)`$ in the sensor's frame: 86.5 % of them, were every covariance right.
+/// A segment matches the true wall nearest to both its ends, if within 0.15 m. It is within 2σ if
+/// $`d^2 = Δ^T P^{-1} Δ \le 4`$ for the difference $`Δ`$ of $`(ρ, α)`$ in the sensor frame: 86.5 % of them if every covariance is correct.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WallScore {
-    /// Segments of a true wall.
+    /// Segments that match a true wall.
     pub n_true: usize,
-    /// Segments of no true wall.
+    /// Segments that match no true wall.
     pub n_false: usize,
     /// Those of `n_true` within 2σ.
     pub n_within_2_sigma: usize,
-    /// Sum of $`d^2`$ over `n_true`; its mean is 2, were every covariance right.
+    /// Sum of $`d^2`$ over `n_true`; its mean is 2 if every covariance is correct.
     pub squared_sum: f64,
-    /// True walls in sight, scan by scan: with at least 10 echoes within 3 cm that are nearest to this wall and span at least 0.6 m.
+    /// Visible true walls, summed over scans: at least 10 echoes within 3 cm that are nearest to this wall and span at least 0.6 m.
     pub n_visible: usize,
-    /// Those of `n_visible` that no segment of the scan is of.
+    /// Visible true walls without a matching segment.
     pub n_missed: usize,
 }
 
 const SAME_WALL_M: f64 = 0.15;
 const ON_WALL_M: f64 = 0.03;
-/// Twice what [`Params`](wayfix_line_extract::Params) ask of a wall.
+/// Twice the limits of [`Params`](wayfix_line_extract::Params).
 const IN_SIGHT: (usize, f64) = (10, 0.6);
 
 impl WallScore {
-    /// Compares the walls of scans with the true ones; `None` when there is nothing to compare.
+    /// Compares the walls of scans with the true ones; `None` if there are none to compare.
     pub fn of(scans: &[ScanWalls], truth: &[TrueWall]) -> Option<Self> {
         let mut score = Self::default();
         for scan in scans {
@@ -70,7 +70,7 @@ impl WallScore {
     }
 }
 
-/// Walls with enough echoes on them, by what the laser truly saw.
+/// Walls with enough echoes on them.
 fn visible_walls(scan: &ScanWalls, truth: &[Wall]) -> Vec<usize> {
     let mut places: Vec<Vec<f64>> = vec![Vec::new(); truth.len()];
     for (bearing, range) in &scan.echoes {
@@ -95,7 +95,7 @@ fn nearest(walls: &[Wall], distance: impl Fn(&Wall) -> f64) -> Option<(usize, f6
     distances.min_by(|(_, a), (_, b)| a.total_cmp(b))
 }
 
-/// A true wall in the sensor's frame.
+/// A true wall in the sensor frame.
 struct Wall {
     start: Vector2<f64>,
     end: Vector2<f64>,
@@ -106,13 +106,13 @@ impl Wall {
         Self { start: pose.inverse_transform(&wall.start), end: pose.inverse_transform(&wall.end) }
     }
 
-    /// Metres from its start to the foot of a point.
+    /// Distance along the wall from its start to the foot of a point, m.
     fn along(&self, point: &Vector2<f64>) -> f64 {
         let wall = self.end - self.start;
         (point - self.start).dot(&wall) / wall.norm()
     }
 
-    /// Metres to its nearest point.
+    /// Distance of a point to the wall, m.
     fn distance(&self, point: &Vector2<f64>) -> f64 {
         let wall = self.end - self.start;
         let share = (point - self.start).dot(&wall) / wall.norm_squared().max(f64::MIN_POSITIVE);
@@ -135,7 +135,7 @@ mod tests {
 
     use super::*;
 
-    /// A wall 2 m ahead of a robot at (1, 1) that looks along y, seen by 61 beams `off` metres too far.
+    /// A wall 2 m ahead of a robot at (1, 1) with heading along y, seen by 61 beams `off` metres too far.
     fn scan(off: f64) -> ScanWalls {
         let step = 1_f64.to_radians();
         let bearing = |beam: usize| (beam as f64 - 30.0) * step;
@@ -160,7 +160,7 @@ mod tests {
         let right = score(0.0);
         assert_eq!((right.n_true, right.n_within_2_sigma, right.n_visible, right.n_missed), (1, 1, 1, 0));
         assert!(right.squared_sum < 1e-12);
-        // 61 echoes of 1 cm: 10 mm are some 7σ, and still the same wall.
+        // 61 echoes of 1 cm: 10 mm is about 7σ, and the wall still matches.
         let beside = score(0.01);
         assert_eq!((beside.n_true, beside.n_within_2_sigma, beside.n_false), (1, 0, 0));
         let elsewhere = score(0.3);

@@ -4,10 +4,10 @@ use std::{
     path::Path,
 };
 
-/// Replaces a file as a whole: whatever happens, and whenever, afterwards there is the old or the new one.
+/// Replaces a file atomically: after a crash either the old or the new file exists, complete.
 ///
-/// The bytes go to a temporary file in the same folder and to the disk, then its name takes the place of the old one, then the
-/// folder goes to the disk. Losing power in between leaves a file `.NAME.….saving` behind, which may be deleted.
+/// Writes the bytes to a temporary file in the same folder, syncs it, renames it, then syncs the folder. A power loss in between leaves a file
+/// `.NAME.….saving`, which may be deleted.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "no file name"))?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -19,13 +19,13 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(folder)
 }
 
-/// A rename is on the disk when the folder is.
+/// A rename is durable once the folder is synced.
 #[cfg(unix)]
 fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
-/// Folders cannot be opened there, and renames need no such help.
+/// This platform cannot open folders, and renames need no sync.
 #[cfg(not(unix))]
 fn sync_folder(_: &Path) -> io::Result<()> {
     Ok(())

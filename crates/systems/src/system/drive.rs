@@ -4,20 +4,20 @@ use wayfix_sensor_log::{Record, Stamp};
 
 use super::System;
 
-/// What an observer of [`drive`] sees after each record.
+/// State shown to an observer of [`drive`] after each record.
 #[derive(Clone, Copy, Debug)]
 pub struct DriveStep<'a, S> {
     /// The system after the record.
     pub system: &'a S,
-    /// The record, at the stamp at which the system took it.
+    /// The record, with the stamp at which the system took it.
     pub record: &'a Record,
-    /// The record after it.
+    /// The next record.
     pub next: Option<&'a Record>,
 }
 
-/// Passes records through a system and shows it to `observe` after each; records that go back in time are refused and counted.
+/// Passes records through a system and shows each step to `observe`. Rejects and counts records that go back in time.
 ///
-/// Records may be read one by one: no more than two are kept.
+/// Records may be read one by one: at most two are kept.
 pub fn drive<S: System, R: Borrow<Record>>(
     system: &mut S,
     records: impl IntoIterator<Item = R>,
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
     use crate::system::Events;
 
-    /// Takes velocities forward, refuses the others.
+    /// Passes records in time order and rejects the others.
     #[derive(Default)]
     struct OneWay {
         taken: Vec<u64>,

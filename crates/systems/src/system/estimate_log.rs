@@ -2,24 +2,24 @@ use std::path::Path;
 
 use wayfix_sensor_log::{Data, Format, LogError, McapFile, MessageWriter, Record, Sinks, topics};
 
-/// What estimates are drawn with, wherever they go.
+/// Writer of estimates, to files or viewers.
 pub type EstimateWriter = MessageWriter<Sinks>;
 
-/// Poses in the log that another program estimated, beside those of ours.
+/// Topic of pose estimates in the log that come from another program.
 pub const OTHER_POSES: &str = "/other/pose";
 
-/// What a system's estimates look like in a viewer.
+/// Draws a system's estimates for a viewer.
 pub trait Drawing: Default {
     /// The system.
     type System;
 
-    /// Whether it draws where the robot is. Poses that another program estimated are then kept apart, on [`OTHER_POSES`].
+    /// Whether it draws the robot's pose. Pose estimates of other programs then go to [`OTHER_POSES`].
     const DRAWS_POSES: bool = true;
 
-    /// Adds what the system made of `record`, which is written already.
+    /// Draws the system's state after `record`, which is already written.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns an error if writing fails.
     fn draw(
         &mut self,
         record: &Record,
@@ -28,7 +28,7 @@ pub trait Drawing: Default {
     ) -> Result<(), LogError>;
 }
 
-/// Writes the estimates of a system beside the records of its log, into an MCAP file or to viewers, Foxglove and Rerun.
+/// Writes the estimates of a system beside the records of its log, to an MCAP file or to the viewers Foxglove and Rerun.
 pub struct EstimateLog<D: Drawing> {
     writer: EstimateWriter,
     drawing: D,
@@ -36,10 +36,10 @@ pub struct EstimateLog<D: Drawing> {
 }
 
 impl<D: Drawing> EstimateLog<D> {
-    /// Creates the file; `origin` is the format that the records come from.
+    /// Creates the file; `origin` is the format of the source log.
     ///
     /// # Errors
-    /// When it cannot be created.
+    /// Returns an error if the file cannot be created.
     pub fn create(path: &Path, origin: Format) -> Result<Self, LogError> {
         Self::new(vec![Box::new(McapFile::create(path)?)], origin)
     }
@@ -47,24 +47,24 @@ impl<D: Drawing> EstimateLog<D> {
     /// Writes into all of `sinks`.
     ///
     /// # Errors
-    /// When one of them fails.
+    /// Returns an error if a sink fails.
     pub fn new(sinks: Sinks, origin: Format) -> Result<Self, LogError> {
         let mut writer = MessageWriter::into_sink(sinks);
         writer.origin(origin)?;
         Ok(Self { writer, drawing: D::default(), failure: None })
     }
 
-    /// Writes a record of the log and what the system made of it. A failure is kept until [`finish`](Self::finish).
+    /// Writes a record of the log and the estimates after it. A failure is kept until [`finish`](Self::finish).
     pub fn observe(&mut self, record: &Record, system: &D::System) {
         if self.failure.is_none() {
             self.failure = self.write(record, system).err();
         }
     }
 
-    /// Completes what was written.
+    /// Finishes writing.
     ///
     /// # Errors
-    /// When anything could not be written.
+    /// Returns an error if any write failed.
     pub fn finish(self) -> Result<(), LogError> {
         match self.failure {
             Some(failure) => Err(failure),
@@ -80,7 +80,7 @@ impl<D: Drawing> EstimateLog<D> {
             _ => self.writer.record(record),
         };
         match written {
-            Err(LogError::NotFinite { .. }) => {} // refused by the system and counted there
+            Err(LogError::NotFinite { .. }) => {} // rejected by the system and counted there
             written => written?,
         }
         self.drawing.draw(record, system, &mut self.writer)

@@ -2,7 +2,7 @@ use std::{collections::BTreeMap, fmt};
 
 use wayfix_sensor_log::{Stamp, Warning};
 
-/// How often each kind of event happened, and the first records that could not be used.
+/// Event counts by kind, and the first unusable records.
 ///
 /// ```
 /// use wayfix_systems::system::Events;
@@ -26,19 +26,19 @@ pub struct Events {
 /// A record, or one of its detections, that the system could not use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// Its place among the log's records, from 0.
+    /// Index of the record in the log, from 0.
     pub index: usize,
     /// Its stamp.
     pub stamp: Stamp,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
-/// More than this many refusals are counted, not listed.
+/// Maximum number of listed refusals; the others are only counted.
 const MOST_LISTED: usize = 20;
 
 impl Events {
-    /// Tells which record the events from now on belong to.
+    /// Sets the record of the following events.
     pub fn at_record(&mut self, index: usize, stamp: Stamp) {
         self.record = (index, stamp);
     }
@@ -46,11 +46,11 @@ impl Events {
     pub fn count(&mut self, name: &'static str) {
         self.add(name, 1);
     }
-    /// Counts `n` events of a kind; 0 makes the kind known.
+    /// Counts `n` events of a kind; 0 registers the kind.
     pub fn add(&mut self, name: &'static str, n: u64) {
         *self.counts.entry(name).or_default() += n;
     }
-    /// Counts an event, and lists the record with the reason why it, or a part of it, could not be used.
+    /// Counts an event, and lists the current record with the reason why it, or a part of it, is unusable.
     pub fn refuse(&mut self, name: &'static str, reason: String) {
         self.count(name);
         self.n_refusals += 1;
@@ -59,7 +59,7 @@ impl Events {
             self.refusals.push(Refusal { index, stamp, reason });
         }
     }
-    /// Counts an event, and tells the user what was assumed or is doubtful; each text once.
+    /// Counts an event and adds a warning for the user; each text appears once.
     pub fn warn(&mut self, name: &'static str, text: impl Into<String>) {
         self.count(name);
         let warning = Warning { name, text: text.into() };
@@ -67,11 +67,11 @@ impl Events {
             self.warnings.push(warning);
         }
     }
-    /// What the user should know, in the order in which it came up.
+    /// Warnings for the user, in order of occurrence.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
-    /// How often a kind of event happened.
+    /// Count of a kind of event.
     pub fn get(&self, name: &str) -> u64 {
         self.counts.get(name).copied().unwrap_or(0)
     }
@@ -79,11 +79,11 @@ impl Events {
     pub fn counts(&self) -> BTreeMap<String, u64> {
         self.counts.iter().map(|(name, n)| ((*name).to_owned(), *n)).collect()
     }
-    /// The first refusals.
+    /// The first refusals, up to a limit.
     pub fn refusals(&self) -> &[Refusal] {
         &self.refusals
     }
-    /// How many refusals there were, listed or not.
+    /// Number of refusals, listed or not.
     pub fn n_refusals(&self) -> u64 {
         self.n_refusals
     }

@@ -3,16 +3,16 @@ use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{Stamp, Velocity};
 
-/// No robot is faster, m/s and rad/s; a velocity moves the robot until the next one, so it must be possible.
+/// Largest accepted speed, m/s, and turn rate, rad/s. An impossible velocity would move the robot until the next one.
 pub const FASTEST: f64 = 1e3;
 
-/// A velocity holds for this long after its stamp unless a parameter says otherwise, s: the command time-out of ROS 2 navigation.
+/// Default time after its stamp for which a velocity holds, s: the command time-out of ROS 2 navigation.
 pub const VELOCITY_HOLD: f64 = 1.0;
 
-/// A velocity that is finite and possible.
+/// Accepts a velocity that is finite and at most [`FASTEST`].
 ///
 /// # Errors
-/// The velocity in words when it is not.
+/// Returns a description of a rejected velocity.
 pub fn check_velocity(velocity: Velocity) -> Result<Velocity, String> {
     let Velocity { linear, angular } = velocity;
     if linear.abs() <= FASTEST && angular.abs() <= FASTEST {
@@ -31,28 +31,28 @@ pub struct HeldVelocity {
 struct Held {
     /// Stamp of the velocity, nanoseconds.
     stamp: u64,
-    /// The motion up to here is used, nanoseconds.
+    /// End of the motion already used, nanoseconds.
     used_until: u64,
     linear: f64,
     angular: f64,
 }
 
-/// The motion over a stretch of time.
+/// The motion over an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeldMotion {
     /// The motion while the velocity holds.
     pub increment: Pose2<f64>,
-    /// How long it holds, s.
+    /// Time for which the velocity holds, s.
     pub seconds: f64,
-    /// How long the motion is unknown after that, s.
+    /// Time after that with unknown motion, s.
     pub unknown_seconds: f64,
 }
 
 impl HeldVelocity {
-    /// Holds a velocity from `stamp` on.
+    /// Sets the velocity from `stamp` on.
     ///
     /// # Errors
-    /// When it is not [`check_velocity`]; the one before holds on.
+    /// Returns an error if [`check_velocity`] rejects it; the previous velocity remains.
     pub fn hold(&mut self, stamp: Stamp, velocity: Velocity) -> Result<(), String> {
         let Velocity { linear, angular } = check_velocity(velocity)?;
         let stamp = stamp.nanoseconds();
@@ -60,7 +60,7 @@ impl HeldVelocity {
         Ok(())
     }
 
-    /// The motion since the last call up to `stamp`; `None` when there is no velocity or no time has passed.
+    /// The motion from the last call to `stamp`; `None` without a velocity or if no time has passed.
     ///
     /// The velocity holds for `longest` seconds after its stamp.
     pub fn until(&mut self, stamp: Stamp, longest: f64) -> Option<HeldMotion> {

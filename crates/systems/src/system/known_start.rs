@@ -4,19 +4,19 @@ use wayfix_sensor_log::{Data, Record, Stamp};
 
 use super::HeldVelocity;
 
-/// The pose at which a run starts, as the truth has it.
+/// The true pose at the start of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownStart {
     /// The true pose at the start.
     pub pose: Pose2<f64>,
-    /// How long after the start the truth begins, s; odometry leads back from there.
+    /// Time from the start to the first true pose, s; odometry bridges it.
     pub seconds_late: f64,
 }
 
 impl KnownStart {
-    /// The true pose at `at`. Where truth begins later, its first pose, led back to `at` by the odometry of the log.
+    /// The true pose at `at`. If truth begins later, odometry extrapolates its first pose back to `at`.
     ///
-    /// `None` when no truth is usable, or no odometry leads back.
+    /// Returns `None` if no truth is usable or odometry does not cover the interval.
     pub fn at(at: Stamp, truth: &TrueTrack, records: &[Record]) -> Option<Self> {
         if let Some(pose) = truth.at(at) {
             return Some(Self { pose, seconds_late: 0.0 });
@@ -27,13 +27,13 @@ impl KnownStart {
     }
 }
 
-/// The motion by the odometry of a log; `None` when it has none.
+/// Motion between two times from the odometry of a log; `None` without odometry.
 fn motion_between(records: &[Record], from: Stamp, to: Stamp) -> Option<Pose2<f64>> {
     let has_increments = records.iter().any(|record| matches!(record.data, Data::OdometryIncrement(_)));
     if has_increments { by_increments(records, from, to) } else { by_velocities(records, from, to) }
 }
 
-/// An increment that is partly outside counts in proportion to time.
+/// An increment partly outside the interval counts in proportion to time.
 fn by_increments(records: &[Record], from: Stamp, to: Stamp) -> Option<Pose2<f64>> {
     let mut moved = Pose2::identity();
     let mut before: Option<Stamp> = None;
@@ -63,7 +63,7 @@ fn by_velocities(records: &[Record], from: Stamp, to: Stamp) -> Option<Pose2<f64
             *so_far = so_far.compose(&motion.increment);
         }
         if held.hold(record.stamp, velocity).is_ok() && record.stamp < from {
-            let _ = held.until(from, f64::INFINITY); // what is before the stretch
+            let _ = held.until(from, f64::INFINITY); // skip the motion before the interval
         }
     }
     let rest = held.until(to, f64::INFINITY);

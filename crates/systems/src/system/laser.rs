@@ -1,9 +1,9 @@
 use wayfix_sensor_log::LaserScan;
 
-/// No laser on a robot sees farther, m: what a scan without a limit is cut at.
+/// Range limit for a scan that states none, m.
 const FARTHEST_ECHO: f64 = 1e5;
 
-/// The largest range of a scan that is an echo: a range of `range_max` is none.
+/// The largest range of a scan that is an echo; `range_max` itself is no echo.
 pub fn largest_echo(scan: &LaserScan) -> f64 {
     scan.range_max.next_down().min(FARTHEST_ECHO)
 }

@@ -1,4 +1,4 @@
-//! One way through: records in time order → a [`System`] → estimates, events and figures.
+//! The common pipeline: records in time order → a [`System`] → estimates, events and figures.
 
 mod drive;
 mod estimate_log;
@@ -28,22 +28,22 @@ pub use stopwatch::Stopwatch;
 
 use wayfix_sensor_log::Record;
 
-/// An estimator behind a log: takes the records it understands, in time order, and counts what happens.
+/// An estimator that processes a log: takes the records that it supports, in time order, and counts events.
 ///
-/// **Laws**: a record that cannot be used changes nothing and is counted with its reason; the same records give the same bits.
+/// **Laws**: a record that cannot be used changes nothing and is counted with its reason; equal records give equal bits.
 pub trait System {
     /// Takes one record.
     ///
     /// # Errors
-    /// Why the record was refused; the system is as it was before it.
+    /// Returns the reason if the record is rejected; the system state is unchanged.
     fn take(&mut self, record: &Record) -> Result<(), String>;
-    /// Uses what waited for a later record; there is none.
+    /// Processes data that waits for a later record, at the end of the log.
     ///
     /// # Errors
-    /// Why what waited could not be used.
+    /// Returns the reason if that data cannot be used.
     fn finish(&mut self) -> Result<(), String> {
         Ok(())
     }
-    /// What has happened so far.
+    /// Events so far.
     fn events(&mut self) -> &mut Events;
 }

@@ -2,14 +2,14 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::Pose2;
 
-/// How the robot has moved so far, which tells how far it may be where nothing tells its motion.
+/// Statistics of the robot's motion so far. They bound its motion while odometry is missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionStatistics {
     /// Time with a known motion, s.
     seconds: f64,
     /// Integrals of the squared speed and turn rate.
     squared_rates: [f64; 2],
-    /// Integrals of the squared changes of both, and the time that they cover, s.
+    /// Integrals of the squared changes of both, and their total time, s.
     squared_changes: [f64; 2],
     seconds_of_changes: f64,
     /// Speed and turn rate of the last increment.
@@ -17,7 +17,7 @@ pub struct MotionStatistics {
 }
 
 impl MotionStatistics {
-    /// Adds an increment that took `seconds`.
+    /// Adds an increment that lasts `seconds`.
     pub fn add(&mut self, increment: &Pose2<f64>, seconds: f64) {
         if seconds.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
             return;
@@ -36,21 +36,20 @@ impl MotionStatistics {
         self.last = Some(rates);
     }
 
-    /// Covariance of the motion over `seconds` of which nothing is known: the robot moves at its RMS speed and turn rate in an unknown
-    /// direction.
+    /// Covariance of an unknown motion over `seconds`: the robot moves at its RMS speed and turn rate in an unknown direction.
     pub fn unknown_motion(&self, seconds: f64) -> Matrix3<f64> {
         self.covariance(self.squared_rates, self.seconds, seconds)
     }
 
-    /// Covariance of a motion that is interpolated between two odometry records, `before` seconds after one and `after` seconds before the
+    /// Covariance of a motion interpolated between two odometry records, `before` seconds after one and `after` seconds before the
     /// other.
     ///
-    /// A constant acceleration $`a`$ leaves the line between them by $`\tfrac{1}{2} a\, t_1 t_2`$; $`a`$ is the RMS acceleration so far.
+    /// A constant acceleration $`a`$ deviates from linear interpolation by $`\tfrac{1}{2} a\, t_1 t_2`$; $`a`$ is the RMS acceleration so far.
     pub fn interpolation(&self, before: f64, after: f64) -> Matrix3<f64> {
         self.covariance(self.squared_changes, self.seconds_of_changes, 0.5 * before * after)
     }
 
-    /// Whether every number is one, as in a state that was saved.
+    /// Whether every number is finite; used to check a saved state.
     pub fn is_finite(&self) -> bool {
         let numbers =
             self.squared_rates.iter().chain(&self.squared_changes).chain(self.last.iter().flatten());

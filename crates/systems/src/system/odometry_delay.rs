@@ -4,9 +4,9 @@ use wayfix_sensor_log::{Record, Stamp};
 
 use super::ODOMETRY;
 
-/// The records of a log whose odometry is stamped `delay` seconds too late, each at its own time and in time order.
+/// The records of a log with the odometry stamped `delay` seconds earlier, sorted by time.
 ///
-/// A delay of 0 changes nothing; a negative one is odometry that is stamped too early.
+/// A delay of 0 changes nothing; a negative delay moves odometry to later stamps.
 pub fn without_odometry_delay(records: &[Record], delay: f64) -> Cow<'_, [Record]> {
     if delay == 0.0 {
         return Cow::Borrowed(records);
@@ -22,7 +22,7 @@ pub fn without_odometry_delay(records: &[Record], delay: f64) -> Cow<'_, [Record
         record
     };
     let mut records: Vec<Record> = records.iter().map(shifted).collect();
-    // What is seen at a stamp is seen after the motion up to it.
+    // At equal stamps, motion precedes observations.
     records.sort_by_key(|record| (record.stamp, !is_odometry(&record.data)));
     Cow::Owned(records)
 }

@@ -3,16 +3,16 @@ use wayfix_sensor_log::Stamp;
 
 use super::Events;
 
-/// Lags are looked for up to this, s: a transport delay, and not another clock.
+/// Largest lag searched, s: larger offsets indicate another clock.
 const LARGEST_LAG: f64 = 1.0;
-/// More lags than this are not compared, to either side.
+/// Maximum number of lags compared on each side.
 const MOST_PERIODS: f64 = 50.0;
-/// χ² with one degree of freedom exceeds this once in a million: what a lag gains in log likelihood, doubled.
+/// χ² threshold with one degree of freedom at probability 1e-6, for twice the gain in log likelihood.
 const LIKELIHOOD_RATIO_THRESHOLD: f64 = 23.9;
 
-/// Odometry that is stamped later than what scans or images show is said, with the parameter that corrects it; `delay` is its value so far.
+/// Warns if odometry is stamped late relative to scans or images, and names the parameter that corrects it; `delay` is its current value.
 ///
-/// `odometry` is where odometry alone puts the robot at each scan or image, `seen_turns` by how much it has turned there since the one before by the
+/// `odometry` is the dead-reckoned pose at each scan or image; `seen_turns` is the turn since the previous one, estimated from
 /// scans or images alone, rad.
 pub fn warn_of_lag(
     events: &mut Events,
@@ -29,15 +29,15 @@ pub fn warn_of_lag(
     }
 }
 
-/// By how much odometry lags, s: the shift, in whole scans, at which the turns of odometry agree best with `seen_turns`.
+/// Lag of the odometry, s: the shift, in whole scans, at which the turns of odometry agree best with `seen_turns`.
 ///
-/// `None` when no shift does so for sure, as where the robot goes straight.
+/// Returns `None` if no shift is significant, for example on a straight path.
 fn odometry_lag(track: &[(Stamp, Pose2<f64>)], seen_turns: &[Option<f64>]) -> Option<f64> {
     let odometry = Turns::of(track);
     let pairs = track.windows(2).zip(seen_turns.iter().skip(1));
     let stretches: Vec<(f64, f64, f64)> = pairs
         .filter_map(|(pair, seen)| Some((odometry.seconds(pair[0].0), odometry.seconds(pair[1].0), (*seen)?)))
-        // The same stretches count at every lag.
+        // Every lag is scored on the same intervals.
         .filter(|(begin, end, _)| *begin >= 2.0 * LARGEST_LAG && *end <= odometry.last() - 2.0 * LARGEST_LAG)
         .collect();
     let disagreement = |lag: f64| -> f64 {
@@ -52,14 +52,14 @@ fn odometry_lag(track: &[(Stamp, Pose2<f64>)], seen_turns: &[Option<f64>]) -> Op
     let lags = (-n_periods..=n_periods).map(|n| f64::from(n) * period);
     let (_, lag) = lags.map(|lag| (disagreement(lag), lag)).min_by(|a, b| a.0.total_cmp(&b.0))?;
     let gain = stretches.len() as f64 * (disagreement(0.0) / disagreement(lag)).ln();
-    // A shift that helps in both directions is no lag: it only smooths noise.
+    // A shift that helps in both directions only smooths noise and is no lag.
     (gain > LIKELIHOOD_RATIO_THRESHOLD && disagreement(-lag) > disagreement(0.0)).then_some(lag)
 }
 
-/// The heading that odometry has made, at the scans and between them.
+/// Heading by odometry, interpolated between the scans.
 struct Turns {
     start: Stamp,
-    /// Time since the start, s, and heading without wraps.
+    /// Time since the start, s, and unwrapped heading, rad.
     headings: Vec<(f64, f64)>,
 }
 
@@ -85,7 +85,7 @@ impl Turns {
         self.headings.last().map_or(0.0, |(seconds, _)| *seconds)
     }
 
-    /// The heading at a time, interpolated; before the first and after the last it stays.
+    /// The heading at a time, interpolated; constant before the first and after the last.
     fn at(&self, seconds: f64) -> f64 {
         let next = self.headings.partition_point(|(at, _)| *at <= seconds);
         let before = next.checked_sub(1).and_then(|index| self.headings.get(index));
@@ -107,7 +107,7 @@ mod tests {
         amplitude * (1.3 * seconds).sin()
     }
 
-    /// The lag that is found for a robot that turns this way and that, twenty seconds at 10 Hz, with odometry that lags by `lag`.
+    /// The lag found for a robot with an oscillating turn rate, twenty seconds at 10 Hz, with odometry delayed by `lag`.
     fn found_lag(lag: f64, amplitude: f64) -> Option<f64> {
         let seconds: Vec<f64> = (0..200).map(|step| f64::from(step) * 0.1).collect();
         let at = |seconds: &f64| {
@@ -116,7 +116,7 @@ mod tests {
         };
         let track: Vec<_> = seconds.iter().map(at).collect();
         let turns = seconds.windows(2).map(|pair| heading(pair[1], amplitude) - heading(pair[0], amplitude));
-        // The scans err by a milliradian, this way and that.
+        // The scans err by ±1 mrad, alternating.
         let noisy = turns.zip([1e-3, -1e-3].into_iter().cycle()).map(|(turn, error)| Some(turn + error));
         odometry_lag(&track, &[None].into_iter().chain(noisy).collect::<Vec<_>>())
     }

@@ -6,17 +6,17 @@ use super::VELOCITY_HOLD;
 /// A kind of record, for messages.
 pub type NamedKind<'a> = (&'a str, fn(&Data) -> bool);
 
-/// What moves a robot.
+/// Records that move a robot.
 pub const ODOMETRY: NamedKind<'static> =
     ("odometry", |data| matches!(data, Data::OdometryIncrement(_) | Data::Velocity(_) | Data::Ackermann(_)));
 
-/// Checks that two kinds of record overlap in time, where a log has both.
+/// Checks that two kinds of record overlap in time, if a log has both.
 ///
 /// # Errors
-/// Both intervals when they have no time in common: the records are of different clocks or different drives.
+/// Returns both intervals if they are disjoint: the records come from different clocks or drives.
 pub fn check_overlap(records: &[Record], first: NamedKind<'_>, second: NamedKind<'_>) -> Result<()> {
     let (Some(a), Some(b)) = (span(records, first.1), span(records, second.1)) else { return Ok(()) };
-    // A velocity tells of the time after it as well.
+    // A velocity also covers the time after it.
     if a.0.seconds_since(b.1) <= VELOCITY_HOLD && b.0.seconds_since(a.1) <= VELOCITY_HOLD {
         return Ok(());
     }

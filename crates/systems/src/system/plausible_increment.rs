@@ -3,22 +3,22 @@ use wayfix_sensor_log::Stamp;
 
 use super::FASTEST;
 
-/// No robot goes farther from one record to the next, m, where the time between them is not known.
+/// Largest accepted distance between two records, m, if the time between them is unknown.
 const FARTHEST: f64 = 1e5;
-/// Stamps of drivers are no more exact than this, s.
+/// Assumed stamp jitter of drivers, s.
 const JITTER: f64 = 0.01;
 
-/// Tells increments of odometry that a robot can make from those that none can.
+/// Rejects odometry increments that are physically impossible.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlausibleIncrement {
     last: Option<Stamp>,
 }
 
 impl PlausibleIncrement {
-    /// Checks an increment that ends at `stamp` and begins at the last one that passed.
+    /// Checks an increment that ends at `stamp` and begins at the last accepted one.
     ///
     /// # Errors
-    /// The increment in words when it is not finite or faster than [`FASTEST`]; the one before stays the last.
+    /// Returns a description if the increment is not finite or exceeds [`FASTEST`]; the last accepted stamp stays.
     pub fn check(&mut self, stamp: Stamp, increment: &Pose2<f64>) -> Result<(), String> {
         let seconds = self.last.map(|last| stamp.seconds_since(last).max(0.0));
         let farthest = seconds.map_or(FARTHEST, |seconds| (FASTEST * (seconds + JITTER)).min(FARTHEST));

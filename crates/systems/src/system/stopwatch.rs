@@ -1,6 +1,6 @@
 use std::time::{Duration, Instant};
 
-/// The one clock of the application: it measures how long a step takes and never touches an estimate.
+/// The only clock of the application: it measures computing time and does not affect estimates.
 #[derive(Clone, Copy, Debug)]
 pub struct Stopwatch(Instant);
 

@@ -2,63 +2,63 @@ use std::{io, path::PathBuf};
 
 use wayfix_visual_tracking::TrackingError;
 
-/// Why a target cannot be followed.
+/// Errors of following a target.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrackError {
     /// A file cannot be read.
     #[error("cannot read {}", path.display())]
     Read {
-        /// Which one.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
-    /// A text does not say where a box is.
+    /// A text describes no valid box.
     #[error("{text:?} is no box: {reason}")]
     NotABox {
         /// The text.
         text: String,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
-    /// A line of a list of boxes is not usable.
+    /// A line of a box list is invalid.
     #[error("line {line}")]
     Line {
-        /// Counted from 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The reason.
         source: Box<TrackError>,
     },
-    /// A file is not usable as a mask.
+    /// A file is not a valid mask.
     #[error("{} is no mask: {reason}", path.display())]
     NotAMask {
-        /// Which one.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
-    /// Nobody says where the target is at the beginning.
+    /// The start position of the target is unknown.
     #[error(
         "no frame that could be used has a true box: say with --init where the target is in the first one"
     )]
     NoStart,
-    /// Not a single frame could be used.
+    /// No frame is usable.
     #[error("no frame could be used{because}")]
     NoFrame {
-        /// What the first one was refused for, after a colon.
+        /// The reason of the first refusal, after a colon.
         because: String,
     },
-    /// The tracker cannot begin with what it was given.
+    /// The tracker cannot start with the given target.
     #[error("the tracker cannot begin with the {init} in a frame of {width} x {height} pixels")]
     Start {
-        /// What it was given.
+        /// The given start.
         init: String,
-        /// Of the first frame.
+        /// Width of the first frame.
         width: u32,
-        /// Of the first frame.
+        /// Height of the first frame.
         height: u32,
-        /// What the tracker says.
+        /// The tracker's error.
         source: TrackingError,
     },
     /// A picture could not be written.

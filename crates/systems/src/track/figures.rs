@@ -4,7 +4,7 @@ use super::TrackRun;
 use crate::system::System;
 use wayfix_evaluation::report::{Metric, Run};
 
-/// The figures and events of a run, ready for the report. Names as in the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &mut TrackRun) -> Run {
     let (score, totals) = (run.system.score(), *run.system.totals());
     let judged = [
@@ -37,7 +37,7 @@ pub fn summarize(run: &mut TrackRun) -> Run {
     Run { metrics, timings, events: run.system.events().counts(), notes, ..Run::default() }
 }
 
-/// What a list of true boxes of another length means.
+/// A note if the list of true boxes has another length than the sequence.
 fn coverage(n_true: usize, n_frames: usize) -> Option<String> {
     match n_true {
         0 => None,

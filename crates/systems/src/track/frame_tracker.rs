@@ -4,21 +4,21 @@ use wayfix_visual_tracking::{
     ColorSpace, ContourTracker, CorrelationTracker, HeadTracker, RgbImage, Target, Tracker, TrackingError,
 };
 
-/// Any tracker, behind one type.
+/// A tracker of any method.
 pub trait FrameTracker {
-    /// Takes the next picture.
+    /// Processes the next image.
     ///
     /// # Errors
-    /// As [`Tracker::track`].
+    /// Returns the errors of [`Tracker::track`].
     fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError>;
 
-    /// The colours of what is followed, for trackers that know them.
+    /// Colour distribution of the target, for trackers that model it.
     fn colors(&self) -> Option<TargetColors> {
         None
     }
 }
 
-/// Where the colours of a target are in a colour space.
+/// Distribution of the target's colours in a colour space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TargetColors {
     /// The space.
@@ -41,7 +41,7 @@ impl FrameTracker for HeadTracker {
     }
 }
 
-/// A contour tracker, and the space of its colours.
+/// A contour tracker and its colour space.
 pub(super) struct ContourFrameTracker {
     pub(super) tracker: ContourTracker,
     pub(super) space: ColorSpace,
@@ -60,7 +60,7 @@ impl FrameTracker for ContourFrameTracker {
     }
 }
 
-/// What the axes of a space are called.
+/// Axis names of a colour space.
 pub(super) fn axis_names(space: ColorSpace) -> [&'static str; 3] {
     match space {
         ColorSpace::Rgb => ["R", "G", "B"],

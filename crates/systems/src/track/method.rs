@@ -6,22 +6,22 @@ use wayfix_visual_tracking::{
 
 use super::{FrameTracker, Start, TrackParams, frame_tracker::ContourFrameTracker};
 
-/// Which tracker follows the target.
+/// Tracking method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// A correlation filter over gradients and colours: a box around anything.
+    /// A correlation filter over gradients and colours: a box around any target.
     #[default]
     Box,
-    /// An ellipse by its colours and its rim, as of a head in front of a room.
+    /// An ellipse fitted by its colours and its rim, such as a head in a room.
     Head,
-    /// CONDENSATION in colour space, validated by an affine contour: the outline of a target of a shape of its own.
+    /// CONDENSATION in colour space, validated by an affine contour: the outline of a target of arbitrary shape.
     Contour,
-    /// The same with colours that stay as they were at the start.
+    /// The same with colours fixed at the start.
     ContourFixedColors,
     /// The same without the contour: the target is the blob of its colours.
     ContourColorOnly,
-    /// The same without colours: a snake on the edges of the picture.
+    /// The same without colours: a snake on the image edges.
     ContourShapeOnly,
 }
 
@@ -38,10 +38,10 @@ impl Method {
         }
     }
 
-    /// A tracker that begins in the first picture.
+    /// Starts a tracker in the first image.
     ///
     /// # Errors
-    /// What the tracker says of its start or its parameters.
+    /// Returns the tracker's error if its start or its parameters are invalid.
     pub fn begin(
         self,
         params: &TrackParams,

@@ -1,7 +1,7 @@
-//! A target followed through pictures: the command `wayfix run track`.
+//! Target tracking in image sequences: the command `wayfix run track`.
 //!
-//! A [`TrackSystem`] takes the images of a log one by one through the tracker of a [`Method`]; [`TrueBoxes`] say where the target truly
-//! was, and a [`Score`] how well it was followed; [`summarize`] gives the figures and [`pictures`] the pictures. Nothing grows with the
+//! A [`TrackSystem`] passes the images of a log one by one to the tracker of a [`Method`]. [`TrueBoxes`] holds the true target boxes and
+//! [`Score`] the tracking accuracy; [`summarize`] gives the figures and [`pictures`] the pictures. Memory use is independent of the
 //! number of frames.
 //!
 //! ```

@@ -4,7 +4,7 @@ use wayfix_visual_tracking::{ContourTrackerParams, CorrelationTrackerParams, Hea
 
 use crate::settings::over_defaults;
 
-/// Everything that `wayfix run track` is tuned by; none of it depends on the recording.
+/// Parameters of `wayfix run track`, independent of the recording.
 ///
 /// ```
 /// use wayfix_systems::track::TrackParams;
@@ -25,10 +25,10 @@ pub struct TrackParams {
 }
 
 impl TrackParams {
-    /// The defaults, with what a TOML text names in their place.
+    /// The defaults, overridden by the values of a TOML text.
     ///
     /// # Errors
-    /// When the text is no TOML, or names a key that does not exist or a value of another kind.
+    /// Returns an error if the text is not valid TOML, or contains an unknown key or a value of the wrong type.
     pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
         over_defaults(&Self::default(), text)
     }

@@ -3,18 +3,18 @@ use wayfix_sensor_log::{Data, Log, ProblemKind, Record};
 use super::{RunHistory, TrackError, TrackSystem};
 use crate::system::{DriveStep, System, drive};
 
-/// A log that went through a tracker.
+/// Results of a tracker on a log.
 pub struct TrackRun {
     /// The system in its last state.
     pub system: TrackSystem,
-    /// What can be drawn of it.
+    /// Data kept for the pictures.
     pub run_history: RunHistory,
 }
 
-/// Takes the images of a log through a tracker, one at a time, and shows it with each record to `observe`.
+/// Processes the images of a log with a tracker, one at a time, and shows each record with the system to `observe`.
 ///
 /// # Errors
-/// When the tracker cannot begin, nobody says where the target is, or no frame could be used.
+/// Returns an error if the tracker cannot start, the start of the target is unknown, or no frame is usable.
 pub fn run(
     mut system: TrackSystem,
     log: &mut Log,
@@ -23,7 +23,7 @@ pub fn run(
     let mut run_history = RunHistory::default();
     let mut kept = Ok(());
     drive(&mut system, log.by_ref(), |DriveStep { system, record, .. }| {
-        // Other records leave the frame as it was.
+        // Only image records change the frame.
         if let (Ok(()), Data::Image(_), Some(frame)) = (&kept, &record.data, system.frame()) {
             kept = run_history.observe(frame);
         }
@@ -33,7 +33,7 @@ pub fn run(
         return Err(failure);
     }
     kept?;
-    // Frames that could not be read at the end leave no gap that a later one shows.
+    // Count unreadable frames at the end of the sequence, which no later index reveals.
     let unreadable = log.report().problems.get(&ProblemKind::UnreadableImage).copied().unwrap_or(0);
     let shown = system.events().get("frame_unreadable");
     system.pass_over(system.n_frames() + unreadable.saturating_sub(shown) as usize);

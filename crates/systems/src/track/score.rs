@@ -5,9 +5,9 @@ const N_THRESHOLDS: usize = 21;
 /// Distance of the centres within which a frame counts as precise, pixels. [Wu, Lim & Yang 2013]
 const NEAR_PX: f64 = 20.0;
 
-/// How well boxes were followed, summed up frame by frame.
+/// Tracking accuracy of boxes, accumulated frame by frame.
 ///
-/// A frame without an estimate has overlap 0 and is not near.
+/// A frame without an estimate has overlap 0 and is not precise.
 ///
 /// ```
 /// use wayfix_systems::track::Score;
@@ -32,7 +32,7 @@ pub struct Score {
 }
 
 impl Score {
-    /// Counts a frame in which the target is in sight; `None` is a frame without an estimate.
+    /// Counts a frame with a visible target; `None` is a frame without an estimate.
     pub fn add(&mut self, estimate: Option<&BoundingBox>, truth: &BoundingBox) {
         self.n_frames += 1;
         let Some(estimate) = estimate else { return };
@@ -48,7 +48,7 @@ impl Score {
         self.center_error_sum += distance;
     }
 
-    /// How many frames were counted.
+    /// Number of counted frames.
     pub fn n_frames(&self) -> u64 {
         self.n_frames
     }
@@ -63,12 +63,12 @@ impl Score {
         self.per_frame(self.n_above.iter().sum::<u64>() as f64 / N_THRESHOLDS as f64)
     }
 
-    /// Share of the frames whose centre is at most 20 pixels off.
+    /// Share of the frames with a centre error of at most 20 pixels.
     pub fn precision(&self) -> Option<f64> {
         self.per_frame(self.n_near as f64)
     }
 
-    /// How far the centre is off on average, in pixels, over the frames with an estimate.
+    /// Mean centre error in pixels, over the frames with an estimate.
     pub fn center_error_mean(&self) -> Option<f64> {
         (self.n_estimated > 0).then(|| self.center_error_sum / self.n_estimated as f64)
     }

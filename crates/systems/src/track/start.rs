@@ -5,7 +5,7 @@ use wayfix_visual_tracking::{BitMask, BoundingBox, RgbImage, TrackingError};
 
 use super::TrackError;
 
-/// Where a target is in the first picture.
+/// Position of the target in the first image.
 ///
 /// ```
 /// use wayfix_systems::track::Start;
@@ -16,17 +16,17 @@ use super::TrackError;
 /// ```
 #[derive(Clone, Debug)]
 pub enum Start {
-    /// In this box.
+    /// A bounding box.
     Box(BoundingBox),
-    /// These pixels are it.
+    /// A mask of the target's pixels.
     Mask(BitMask),
 }
 
 impl Start {
-    /// The mask in a picture file: every pixel that is not black is of the target.
+    /// Reads a mask from an image file: every pixel that is not black belongs to the target.
     ///
     /// # Errors
-    /// [`TrackError::Read`], and [`TrackError::NotAMask`] for a file that is no picture or one too large.
+    /// Returns [`TrackError::Read`], or [`TrackError::NotAMask`] if the file is no image or is too large.
     pub fn read_mask(path: &Path) -> Result<Self, TrackError> {
         let bytes = fs::read(path).map_err(|source| TrackError::Read { path: path.to_owned(), source })?;
         let wrong = |reason: String| TrackError::NotAMask { path: path.to_owned(), reason };
@@ -38,10 +38,10 @@ impl Start {
         BitMask::from_fn(width, height, is_on).map(Self::Mask).map_err(|error| wrong(error.to_string()))
     }
 
-    /// The box around the target.
+    /// The bounding box of the target.
     ///
     /// # Errors
-    /// When a mask is empty.
+    /// Returns an error if a mask is empty.
     pub fn bounding_box(&self) -> Result<BoundingBox, TrackingError> {
         match self {
             Self::Box(bounds) => Ok(*bounds),
@@ -52,10 +52,10 @@ impl Start {
         }
     }
 
-    /// The box around the target in a picture.
+    /// The bounding box of the target in an image.
     ///
     /// # Errors
-    /// When a mask is empty or not as large as the picture.
+    /// Returns an error if a mask is empty or differs from the image in size.
     pub(super) fn box_in(&self, picture: &RgbImage) -> Result<BoundingBox, TrackingError> {
         if let Self::Mask(mask) = self {
             let sizes = [
@@ -71,7 +71,7 @@ impl Start {
         self.bounding_box()
     }
 
-    /// In a few words.
+    /// Short description.
     pub(super) fn name(&self) -> String {
         match self {
             Self::Box(bounds) => {

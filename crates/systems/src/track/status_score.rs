@@ -1,12 +1,12 @@
-/// Overlap below which a box is off its target.
+/// A box with less overlap is off its target.
 const OFF_BELOW: f64 = 0.2;
-/// Overlap from which on a box is on its target. [Everingham et al. 2010]
+/// A box with at least this overlap is on its target. [Everingham et al. 2010]
 const ON_FROM: f64 = 0.5;
 
-/// How often a tracker is wrong about whether it has its target.
+/// Error rates of a tracker's lost status.
 ///
-/// Overlap is intersection over union of the true box and the box that the tracker gives, also while it says that the target is lost. A target that
-/// is out of the picture has overlap 0.
+/// Overlap is the intersection over union of the true box and the tracker's box, also while the tracker reports the target lost. A target
+/// outside the image has overlap 0.
 ///
 /// ```
 /// use wayfix_systems::track::StatusScore;
@@ -37,7 +37,7 @@ impl StatusScore {
         }
     }
 
-    /// Takes in the counts of another run.
+    /// Adds the counts of another run.
     pub fn merge(&mut self, other: &Self) {
         self.n_off += other.n_off;
         self.n_off_tracked += other.n_off_tracked;
@@ -45,12 +45,12 @@ impl StatusScore {
         self.n_on_lost += other.n_on_lost;
     }
 
-    /// Share of the frames with overlap below 0.2 that are called tracked; 0 when there are none.
+    /// Share of the frames with overlap below 0.2 that are reported as tracked; 0 without such frames.
     pub fn false_tracked_share(&self) -> f64 {
         self.n_off_tracked as f64 / self.n_off.max(1) as f64
     }
 
-    /// Share of the frames with overlap 0.5 or more that are called lost; 0 when there are none.
+    /// Share of the frames with overlap 0.5 or more that are reported as lost; 0 without such frames.
     pub fn false_lost_share(&self) -> f64 {
         self.n_on_lost as f64 / self.n_on.max(1) as f64
     }

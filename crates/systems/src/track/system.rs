@@ -9,11 +9,10 @@ use super::{
 };
 use crate::system::{Events, Stopwatch, System};
 
-/// A tracker, fed with the images of a log.
+/// A tracker that processes the images of a log.
 ///
-/// It begins in the first frame that can be read, with the box or mask it is given, or else with the first true box. A frame that cannot be read or
-/// is refused has no estimate: where the truth is known it counts with overlap 0, like a frame in which the tracker says that it has lost
-/// the target.
+/// It starts in the first readable frame, with the given box or mask, or else with the first true box. An unreadable or rejected frame has no
+/// estimate. If its truth is known, it counts with overlap 0, like a frame in which the tracker reports the target lost.
 pub struct TrackSystem {
     setup: TrackSetup,
     rng: ChaCha8Rng,
@@ -28,39 +27,39 @@ pub struct TrackSystem {
     events: Events,
 }
 
-/// Which tracker follows what.
+/// Setup of a [`TrackSystem`].
 #[derive(Clone, Debug, Default)]
 pub struct TrackSetup {
     /// The tracker.
     pub method: Method,
     /// Its parameters.
     pub params: TrackParams,
-    /// Where the target is in the first frame; `None` is in its first true box.
+    /// Position of the target in the first frame; `None` uses the first true box.
     pub init: Option<Start>,
-    /// Where it truly is.
+    /// The true boxes.
     pub truth: TrueBoxes,
-    /// Frames a second of a folder, whose stamps tell the number of each frame; without it frames are counted.
+    /// Frame rate of a folder, in Hz. It gives the frame number from the stamp; without it, frames are counted.
     pub rate_hz: Option<f64>,
 }
 
-/// What one frame gave.
+/// Result of one frame.
 #[derive(Clone, Debug)]
 pub struct FrameResult {
-    /// Its number in the sequence, from 0, with those that could not be read.
+    /// Frame number in the sequence, from 0, including unreadable frames.
     pub index: usize,
-    /// When it was taken.
+    /// Capture time.
     pub stamp: Stamp,
     /// The pixels.
     pub picture: RgbImage,
-    /// What the tracker says.
+    /// The tracker's estimate.
     pub target: Target,
-    /// What is known.
+    /// The truth of this frame.
     pub truth: Truth,
-    /// Overlap with the truth, 0 when the tracker says that it has lost the target; `None` where there is no true box.
+    /// Overlap with the truth, 0 if the tracker reports the target lost; `None` without a true box.
     pub iou: Option<f64>,
-    /// The colours of the target, where the tracker knows them.
+    /// Colour distribution of the target, if the tracker models it.
     pub colors: Option<TargetColors>,
-    /// Computing time of the tracker, without decoding; zero in the frame it begins with.
+    /// Computing time of the tracker, without decoding; zero in the first frame.
     pub step: Duration,
 }
 
@@ -75,7 +74,7 @@ pub(super) struct Totals {
 }
 
 impl TrackSystem {
-    /// A system that has seen nothing yet.
+    /// Creates a system before its first image.
     pub fn new(setup: TrackSetup, seed: u64) -> Self {
         let mut events = Events::default();
         if let Some(doubt) = setup.truth.unusable_lines_message() {
@@ -96,27 +95,27 @@ impl TrackSystem {
         }
     }
 
-    /// What the newest frame gave; `None` when it had no estimate.
+    /// Result of the newest frame; `None` if it has no estimate.
     pub fn frame(&self) -> Option<&FrameResult> {
         self.last.as_ref()
     }
 
-    /// How well the target was followed so far.
+    /// Tracking accuracy so far.
     pub fn score(&self) -> &Score {
         &self.score
     }
 
-    /// How often the tracker was wrong about whether it has the target.
+    /// Error rates of the lost status so far.
     pub fn status_score(&self) -> &StatusScore {
         &self.status_score
     }
 
-    /// What is known of the target.
+    /// The true boxes.
     pub fn truth(&self) -> &TrueBoxes {
         &self.setup.truth
     }
 
-    /// How many frames there were so far, with those that could not be read.
+    /// Number of frames so far, including unreadable ones.
     pub fn n_frames(&self) -> usize {
         self.next_index
     }
@@ -129,12 +128,12 @@ impl TrackSystem {
         self.tracker.is_some()
     }
 
-    /// Why the tracker could not begin, once.
+    /// Takes the error that kept the tracker from starting.
     pub(super) fn take_failure(&mut self) -> Option<TrackError> {
         self.failure.take()
     }
 
-    /// Counts the frames before `index` that never came, because they could not be read.
+    /// Counts the missing, unreadable frames before `index`.
     pub(super) fn pass_over(&mut self, index: usize) {
         while self.next_index < index {
             self.without_estimate();
@@ -174,7 +173,7 @@ impl TrackSystem {
         }
     }
 
-    /// What the tracker says of a frame; `None` before the first box.
+    /// Tracks the target in a frame; `None` before the first box.
     fn follow(&mut self, image: &EncodedImage) -> Result<Option<(RgbImage, Target, Duration)>, String> {
         if self.failure.is_some() {
             return Err("the tracker could not begin".to_owned());

@@ -4,31 +4,31 @@ use wayfix_visual_tracking::BoundingBox;
 
 use super::TrackError;
 
-/// Where the target truly was, frame by frame.
+/// True boxes of the target, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrueBoxes {
     frames: Vec<Truth>,
     n_unusable: usize,
-    /// The first lines that are no box.
+    /// The first invalid lines.
     unusable: Vec<String>,
 }
 
-/// So many unusable lines are named.
+/// Maximum number of invalid lines that are named.
 const MOST_NAMED: usize = 3;
 
-/// What is known of one frame.
+/// Truth of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Truth {
-    /// The target is here.
+    /// The target is in this box.
     At(BoundingBox),
-    /// It is not in the picture.
+    /// The target is not in the image.
     Absent,
-    /// Nothing.
+    /// The truth is unknown.
     Unknown,
 }
 
 impl Truth {
-    /// Where the target is, if it is known and in the picture.
+    /// The true box, if it is known and in the image.
     pub fn target(self) -> Option<BoundingBox> {
         match self {
             Self::At(target) => Some(target),
@@ -36,32 +36,32 @@ impl Truth {
         }
     }
 
-    /// Whether the target is known to be out of the picture.
+    /// Whether the target is known to be outside the image.
     pub fn is_absent(self) -> bool {
         self == Self::Absent
     }
 
-    /// Whether nothing is known.
+    /// Whether the truth is unknown.
     pub fn is_unknown(self) -> bool {
         self == Self::Unknown
     }
 }
 
 impl TrueBoxes {
-    /// One box a line, line k being frame k, each as [`parse_box`] takes it. Nothing is known of the frame of a line that is blank or no box.
+    /// Reads one box per line, line k for frame k, as in [`parse_box`]. The truth of a frame with a blank or invalid line is unknown.
     /// A first line without a number is a header. Empty lines at the end do not count.
     ///
     /// # Errors
-    /// [`TrackError::Read`], and [`TrackError::Line`] for the first line when no line is a box.
+    /// Returns [`TrackError::Read`], or [`TrackError::Line`] for the first line if no line is a box.
     pub fn read(path: &Path) -> Result<Self, TrackError> {
         let read = fs::read(path).map_err(|source| TrackError::Read { path: path.into(), source })?;
         Self::parse(&String::from_utf8_lossy(&read))
     }
 
-    /// The same from a text.
+    /// Parses the same format from a text.
     ///
     /// # Errors
-    /// [`TrackError::Line`].
+    /// Returns [`TrackError::Line`].
     pub fn parse(text: &str) -> Result<Self, TrackError> {
         let text = text.trim_start_matches('\u{feff}').trim_end();
         let mut found = Self::default();
@@ -89,7 +89,7 @@ impl TrueBoxes {
         }
     }
 
-    /// What is wrong with lines that are no box.
+    /// A message about invalid lines.
     pub(super) fn unusable_lines_message(&self) -> Option<String> {
         (self.n_unusable > 0).then(|| {
             let (n, named) = (self.n_unusable, self.unusable.join(", "));
@@ -100,24 +100,24 @@ impl TrueBoxes {
         })
     }
 
-    /// What is known of a frame, counted from 0.
+    /// Truth of a frame, counted from 0.
     pub fn at(&self, frame: usize) -> Truth {
         self.frames.get(frame).copied().unwrap_or(Truth::Unknown)
     }
 
-    /// How many frames are spoken of.
+    /// Number of frames.
     pub fn len(&self) -> usize {
         self.frames.len()
     }
 
-    /// Whether none is.
+    /// Whether there are no frames.
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }
 }
 
-/// A box from four numbers `x,y,w,h` or from eight, the corners `x1,y1 … x4,y4` of a quadrangle, whose upright bounding box it is; with
-/// commas, semicolons, tabs or blanks between them. `None` where the target is not in the picture: not a number, or without an extent.
+/// Parses a box from four numbers `x,y,w,h` or from the eight corner coordinates `x1,y1 … x4,y4` of a quadrangle, whose bounding box it returns.
+/// Separators are commas, semicolons, tabs or blanks. Returns `None` for an absent target: NaN or zero extent.
 ///
 /// ```
 /// use wayfix_systems::track::parse_box;
@@ -128,7 +128,7 @@ impl TrueBoxes {
 /// ```
 ///
 /// # Errors
-/// [`TrackError::NotABox`] for other counts, for what is no number, and for a negative extent.
+/// Returns [`TrackError::NotABox`] for another count of numbers, a non-number or a negative extent.
 pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackError> {
     let wrong = |reason: String| TrackError::NotABox { text: text.chars().take(80).collect(), reason };
     let words = text.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty());
@@ -145,14 +145,14 @@ pub fn parse_box(text: &str) -> Result<Option<BoundingBox>, TrackError> {
     BoundingBox::from_corner(x, y, width, height).map(Some).map_err(|error| wrong(error.to_string()))
 }
 
-/// A line of words, as `x,y,w,h`.
+/// Whether a line consists of words, such as `x,y,w,h`.
 fn is_header(line: &str) -> bool {
     let mut words =
         line.split([',', ';', '\t', ' ']).map(str::trim).filter(|word| !word.is_empty()).peekable();
     words.peek().is_some() && words.all(|word| word.parse::<f64>().is_err())
 }
 
-/// Left, top, width and height of the upright box around points.
+/// Left, top, width and height of the bounding box of points.
 fn around(corners: [[f64; 2]; 4]) -> [f64; 4] {
     let least = |k: usize| corners.iter().map(|corner| corner[k]).fold(f64::INFINITY, f64::min);
     let most = |k: usize| corners.iter().map(|corner| corner[k]).fold(f64::NEG_INFINITY, f64::max);

@@ -3,10 +3,10 @@ use wayfix_condensation::ActionChoice;
 use super::{Trial, ViewsRun};
 use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 
-/// The same drives, start by start and goal by goal, with actions chosen greedily and by what they are expected to tell.
+/// Compares greedy and informed choice of actions on the same drives, with equal starts and goals.
 ///
-/// A drive that never became certain counts with all the moves it made, so that neither way gains by leaving drives out. Differences are greedy
-/// minus informed, with the paired 95 % interval: above 0 the informed choice saves moves.
+/// A drive that never became certain counts with all its moves, so neither choice gains by excluding drives. Differences are greedy minus
+/// informed, with the paired 95 % interval: above 0 the informed choice saves moves.
 pub fn compare_choices(greedy: &ViewsRun, informed: &ViewsRun) -> Vec<Metric> {
     let certain = |trial: &Trial| trial.report.steps_to_certainty.unwrap_or(trial.report.steps) as f64;
     let all = |trial: &Trial| trial.report.steps as f64;
@@ -22,7 +22,7 @@ pub fn compare_choices(greedy: &ViewsRun, informed: &ViewsRun) -> Vec<Metric> {
     metrics
 }
 
-/// The choice that is compared with the greedy one.
+/// The choice compared with the greedy one.
 pub const INFORMED: ActionChoice = ActionChoice::Informed { hypotheses: 16 };
 
 fn saved(name: &str, greedy: &ViewsRun, informed: &ViewsRun, figure: impl Fn(&Trial) -> f64) -> Vec<Metric> {

@@ -4,74 +4,74 @@ use wayfix_condensation::CondensationError;
 use wayfix_scene_sim::SimError;
 use wayfix_sensor_log::ImageError;
 
-/// Why views could not be learned or driven through.
+/// Errors of learning views and of driving between them.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewsError {
     /// A file cannot be read.
     #[error("cannot read {}", path.display())]
     Read {
-        /// Which one.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
-    /// A file is no picture of a known kind.
+    /// A file is no image of a known format.
     #[error("{} is neither JPEG nor PNG", path.display())]
     NotAPicture {
-        /// Which one.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// A picture is damaged.
+    /// An image is damaged.
     #[error("{} is damaged", path.display())]
     Image {
-        /// Which one.
+        /// Path of the file.
         path: PathBuf,
-        /// In what way.
+        /// The decoding error.
         source: ImageError,
     },
-    /// A picture shows the same everywhere.
+    /// An image is uniform.
     #[error("the {which} has one grey value only: all its views look the same")]
     NoContrast {
         /// The learned scene or the real one.
         which: &'static str,
     },
-    /// The scene that was learned and the one that is seen are not of one size.
+    /// The learned and the real scene differ in size.
     #[error(
         "the learned scene has {learned:?} pixels, the real one {real:?}: they must show the same from the same place"
     )]
     Sizes {
-        /// Width and height that were learned.
+        /// Width and height of the learned scene.
         learned: (usize, usize),
-        /// Width and height that are seen.
+        /// Width and height of the real scene.
         real: (usize, usize),
     },
-    /// More hypotheses than memory is meant for.
+    /// There are more hypotheses than the memory limit allows.
     #[error("{n_states} places in {n_conditions} lights are more than {max} hypotheses: take a larger step")]
     TooManyStates {
-        /// Places.
+        /// Number of places.
         n_states: usize,
-        /// Lights that each place is tried in.
+        /// Number of light conditions per place.
         n_conditions: usize,
-        /// Most products of the two.
+        /// Largest allowed product of the two.
         max: usize,
     },
-    /// Two traverses that should show the same places have too few pictures.
+    /// Two traverses of the same places have too few images.
     #[error("{}: {n_learned} pictures learned and {n_seen} seen, at least {min} of each are needed", folder.display())]
     TooFewPictures {
-        /// Folder of both.
+        /// Folder of both traverses.
         folder: PathBuf,
-        /// Of the first traverse.
+        /// Number of images of the first traverse.
         n_learned: usize,
-        /// Of the second.
+        /// Number of images of the second traverse.
         n_seen: usize,
-        /// Least number of both.
+        /// Minimum number for both.
         min: usize,
     },
-    /// A scene cannot be composed, or not be seen like that.
+    /// A scene cannot be composed or rendered.
     #[error(transparent)]
     Scenery(#[from] SimError),
-    /// The library refused.
+    /// An error of the library.
     #[error(transparent)]
     Condensation(#[from] CondensationError),
 }

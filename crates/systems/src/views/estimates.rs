@@ -8,16 +8,16 @@ use super::{
 };
 use crate::system::EstimateWriter;
 
-/// What is believed, as a picture of the places.
+/// Topic of the belief, as an image of the places.
 const BELIEF: &str = "/estimate/belief";
-/// A move takes a second: nothing tells how long a robot needs.
+/// Assumed duration of a move, since the log has no time.
 const NANOSECONDS_A_MOVE: u64 = 1_000_000_000;
 
-/// Shows the drive that was unsure for longest to viewers: the scene with the view that the robot has, the one that it believes most in and that
-/// of the goal, and the belief over the places, once a move.
+/// Shows viewers the drive that was uncertain for longest. Each move shows the scene with the current, the most probable and the goal view,
+/// and the belief over the places.
 ///
 /// # Errors
-/// When the drive cannot be repeated, a picture not be encoded or one of `sinks` fails.
+/// Returns an error if the drive cannot be repeated, an image cannot be encoded or a sink fails.
 pub fn draw_drive(run: &ViewsRun, real: &Picture, seed: u64, sinks: Sinks) -> Result<()> {
     let (width, height) = (real.width() as u32, real.height() as u32);
     let scene = EncodedImage::jpeg(width, height, real.pixels().as_flattened(), JPEG_QUALITY)?;
@@ -53,7 +53,7 @@ impl Drawing {
     }
 }
 
-/// The view of a state in the scene.
+/// Outline of a state's view in the scene.
 fn outline(system: &ViewSystem, state: usize, ink: [u8; 3]) -> Result<ImageOutline, ViewsError> {
     let [x, y] = <[usize; 2]>::from(system.views().corner(state)?).map(|pixel| pixel as f64);
     let [width, height] = <[usize; 2]>::from(system.views().view_size()).map(|pixels| pixels as f64);

@@ -2,7 +2,7 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use wayfix_condensation::{Dominance, Fft6, Hist6, JoinedFeature, MeanVar, ViewFeature};
 
-/// What is measured of a view. [Kasprzak & Szynkiewicz, Sec. 3]
+/// Feature measured in a view. [Kasprzak & Szynkiewicz, Sec. 3]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FeatureKind {
@@ -10,16 +10,16 @@ pub enum FeatureKind {
     MeanVar,
     /// Moduli of the first six Fourier components along the rows.
     Fft6,
-    /// Three dominating grey values and their shares.
+    /// The three dominant grey values and their shares.
     Hist6,
-    /// All eighteen numbers of the three.
+    /// All eighteen numbers of the three features.
     Joined,
 }
 
 impl FeatureKind {
-    /// The paper's three.
+    /// The three features of the paper.
     pub const OF_THE_PAPER: [Self; 3] = [Self::MeanVar, Self::Fft6, Self::Hist6];
-    /// Those, and all of them joined.
+    /// These three, and their concatenation.
     pub const ALL: [Self; 4] = [Self::MeanVar, Self::Fft6, Self::Hist6, Self::Joined];
 
     /// Its name in figures.
@@ -42,7 +42,7 @@ impl FeatureKind {
         }
     }
 
-    /// The feature; `dominance` is what the histogram's numbers are.
+    /// The feature; `dominance` defines the numbers of the histogram.
     pub fn feature(self, dominance: Dominance) -> Box<dyn ViewFeature + Send> {
         match self {
             Self::MeanVar => Box::new(MeanVar),

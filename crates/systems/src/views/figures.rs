@@ -8,7 +8,7 @@ use wayfix_evaluation::{
     report::{Metric, Run},
 };
 
-/// The figures and events of a run, ready for the report. Names as in the contract of `docs/architecture.md`.
+/// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
 pub fn summarize(run: &ViewsRun) -> Run {
     let trials = &run.trials;
     let count = |is: &dyn Fn(&Trial) -> bool| trials.iter().filter(|trial| is(trial)).count();
@@ -58,7 +58,7 @@ fn is_beside(run: &ViewsRun, trial: &Trial) -> bool {
     x.abs_diff(goal_x).max(y.abs_diff(goal_y)) == 1
 }
 
-/// Which trials failed, for those who want to look at one.
+/// The failed trials, for inspection.
 fn failures(trials: &[Trial]) -> Option<String> {
     const LISTED: usize = 5;
     let failed: Vec<String> = (0_u32..)

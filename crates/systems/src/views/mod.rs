@@ -1,9 +1,9 @@
-//! State condensation on pictures: in which of the views of a scene the robot is, from what the whole view looks like.
+//! State condensation on images: estimates which view of a scene the robot sees, from global image features.
 //!
-//! A [`ViewSystem`] learns one picture of a scene and drives in another one, seen on another day; [`run`] makes many drives between random
+//! A [`ViewSystem`] learns one image of a scene and drives in another image of it, taken later. [`run`] makes many drives between random
 //! places, [`summarize`] gives their figures and [`pictures`] shows them.
-//! [`composed`] makes scenes that need no file, [`p_value_metrics`] and
-//! [`compare_choices`] make ours.
+//! [`composed`] makes scenes that need no file. [`p_value_metrics`] and
+//! [`compare_choices`] compute further metrics.
 //!
 //! ```
 //! use wayfix_systems::views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams};

@@ -4,16 +4,16 @@ use wayfix_condensation::{AppearanceParams, Picture, light_match};
 
 use super::{ViewsError, ViewsParams};
 
-/// How today's light is made that of learning.
+/// Normalization of the current light to that of learning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Normalization {
-    /// Not at all: the views are taken as they come.
+    /// None: the views are used as they are.
     None,
-    /// By the statistics of the whole real scene, as the paper presumes; a robot that sees one view at a time has not got them.
+    /// By the statistics of the whole real scene, as in the paper; a robot that sees one view at a time does not have them.
     #[default]
     WholeScene,
-    /// Not before the run: the light is estimated together with the place, from the views seen so far.
+    /// During the run: the light is estimated jointly with the place, from the views so far.
     Online,
 }
 
@@ -27,7 +27,7 @@ impl Normalization {
         }
     }
 
-    /// How appearance is learned for it.
+    /// Parameters of the appearance learned for this normalization.
     pub fn appearance(self, params: &ViewsParams) -> &AppearanceParams {
         match self {
             Self::None | Self::WholeScene => &params.whole_scene,
@@ -35,10 +35,10 @@ impl Normalization {
         }
     }
 
-    /// The real scene as features are taken of it.
+    /// The real scene, normalized for the features.
     ///
     /// # Errors
-    /// [`ViewsError::NoContrast`] when there is nothing to match light by.
+    /// Returns [`ViewsError::NoContrast`] if there is no contrast to match.
     pub fn apply(self, real: &Picture, learned: &Picture) -> Result<Picture, ViewsError> {
         match self {
             Self::None | Self::Online => Ok(real.clone()),

@@ -4,7 +4,7 @@ use wayfix_condensation::{AppearanceParams, Dominance, LocalizerParams, Navigato
 
 use crate::settings::over_defaults;
 
-/// Everything that `wayfix run views` is tuned by; none of it depends on the scene.
+/// Parameters of `wayfix run views`, independent of the scene.
 ///
 /// ```
 /// use wayfix_systems::views::ViewsParams;
@@ -16,15 +16,15 @@ use crate::settings::over_defaults;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ViewsParams {
-    /// What the numbers of `hist6` are.
+    /// Definition of the numbers of `hist6`.
     pub dominance: Dominance,
     /// When a run ends, and how actions are chosen.
     pub navigator: NavigatorParams,
-    /// What is assumed of a run.
+    /// Parameters of the localizer.
     pub localizer: LocalizerParams,
-    /// What is learned for views normalized by the whole scene, or not at all.
+    /// Appearance for views normalized by the whole scene, or not normalized.
     pub whole_scene: AppearanceParams,
-    /// What is learned for light that is estimated together with the place.
+    /// Appearance for light that is estimated jointly with the place.
     pub online: AppearanceParams,
 }
 
@@ -41,10 +41,10 @@ impl Default for ViewsParams {
 }
 
 impl ViewsParams {
-    /// The defaults, with what a TOML text names in their place.
+    /// The defaults, overridden by the values of a TOML text.
     ///
     /// # Errors
-    /// When the text is no TOML, or names a key that does not exist or a value of another kind.
+    /// Returns an error if the text is not valid TOML, or contains an unknown key or a value of the wrong type.
     pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
         over_defaults(&Self::default(), text)
     }

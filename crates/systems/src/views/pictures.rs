@@ -7,21 +7,21 @@ use wayfix_sensor_log::{EncodedImage, ImageError};
 use super::{Step, Trial, ViewSystem, ViewsRun};
 use wayfix_evaluation::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, Series};
 
-/// Moves after which the belief is shown, beside the last.
+/// Moves after which the belief is shown, besides the last.
 const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];
-/// Frames of a film beside each other; two rows hold all.
+/// Film frames per row; there are two rows.
 const FRAMES_A_ROW: usize = 3;
-/// Pixels a place of a belief map.
+/// Pixels per place of a belief map.
 const CELL: usize = 12;
 pub(super) const TRUTH: [u8; 3] = [214, 39, 40];
 pub(super) const GOAL: [u8; 3] = [24, 140, 60];
 pub(super) const BEST: [u8; 3] = [240, 160, 0];
 pub(super) const JPEG_QUALITY: u8 = 85;
 
-/// The scene learned and seen, the belief in the drive that was unsure for longest, and how fast all of them became certain.
+/// Plots the learned and the real scene, the belief in the drive that was uncertain for longest, and the convergence of all drives.
 ///
 /// # Errors
-/// When a picture cannot be encoded or drawn.
+/// Returns an error if a picture cannot be encoded or drawn.
 pub fn pictures(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> Result<Vec<Picture>> {
     Ok(vec![
         scenes(learned, real)?,
@@ -33,7 +33,7 @@ pub fn pictures(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> R
 /// Belief over the places after 0, 1, 2, 6 and 16 moves and at the end of a trial. [Kasprzak & Szynkiewicz, Fig. 6]
 ///
 /// # Errors
-/// When the trial cannot be driven or a picture not be encoded.
+/// Returns an error if the trial cannot be driven or an image cannot be encoded.
 pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture> {
     let grid = *system.views().grid();
     let mut maps = Vec::new();
@@ -65,14 +65,14 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture
     Ok(film.draw()?)
 }
 
-/// What is believed at a moment, with the true place, the best and the goal.
+/// The belief after a step, with the true place, the best and the goal.
 pub(super) fn belief_image(grid: &Grid, step: &Step<'_>) -> Result<EncodedImage, ImageError> {
     let marks = [(step.goal, GOAL), (step.localizer.best().state, BEST), (step.at, TRUTH)];
     let pixels = belief_map(grid, step.localizer.belief(), &marks);
     EncodedImage::png_rgb((grid.columns() * CELL) as u32, (grid.rows() * CELL) as u32, &pixels)
 }
 
-/// A square a place, darker where belief is larger. The marks of one place lie inside each other, the last outermost.
+/// One square per place, darker for larger belief. The marks of one place are nested, the last outermost.
 fn belief_map(grid: &Grid, belief: &[f64], marks: &[(usize, [u8; 3])]) -> Vec<u8> {
     let most = belief.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let width = grid.columns() * CELL;
@@ -86,7 +86,7 @@ fn belief_map(grid: &Grid, belief: &[f64], marks: &[(usize, [u8; 3])]) -> Vec<u8
     (0..width * grid.rows() * CELL).flat_map(pixel).collect()
 }
 
-/// White for nothing, dark blue for 1, and in between by the logarithm down to a millionth.
+/// White for 0, dark blue for 1, logarithmic in between down to 1e-6.
 pub fn shade(share: f64) -> [u8; 3] {
     const PAPER: [f64; 3] = [246.0, 247.0, 249.0];
     const INK: [f64; 3] = [8.0, 48.0, 107.0];
@@ -94,7 +94,7 @@ pub fn shade(share: f64) -> [u8; 3] {
     std::array::from_fn(|c| (PAPER[c] + depth * (INK[c] - PAPER[c])).round() as u8)
 }
 
-/// The trial that became certain last; one that never did is the slowest of all.
+/// The trial that became certain last; one that never did is the slowest.
 pub(super) fn slowest(trials: &[Trial]) -> u64 {
     let steps = |trial: &Trial| trial.report.steps_to_certainty.unwrap_or(usize::MAX);
     let slowest = (0_u64..).zip(trials).max_by_key(|(index, trial)| (steps(trial), Reverse(*index)));
@@ -116,10 +116,10 @@ fn scenes(learned: &Pixels, real: &Pixels) -> Result<Picture> {
     Ok(film.draw()?)
 }
 
-/// How belief in the true place grows over the drives.
+/// Growth of the belief in the true place over the drives.
 fn certainty(trials: &[Trial]) -> LinesPlot {
     let n_moves = trials.iter().map(|trial| trial.belief_in_truth.len()).max().unwrap_or(0);
-    // A drive that is over keeps what it ended with.
+    // A finished drive keeps its last value.
     let at = |trial: &Trial, moves: usize| {
         let last = trial.belief_in_truth.len().saturating_sub(1);
         trial.belief_in_truth.get(moves.min(last)).copied().unwrap_or(f64::NAN)

@@ -6,25 +6,25 @@ use wayfix_condensation::Picture;
 use super::{Setup, Trial, ViewSystem, ViewsError, ViewsParams};
 use crate::system::Stopwatch;
 
-/// Drives between random places of a scene that was learned.
+/// Drives between random places of a learned scene.
 #[derive(Clone, Debug)]
 pub struct ViewsRun {
-    /// What was learned and is seen.
+    /// The learned and the real scene.
     pub system: ViewSystem,
-    /// In their order.
+    /// The trials, in order.
     pub trials: Vec<Trial>,
-    /// How long learning took.
+    /// Duration of learning.
     pub learning: Duration,
-    /// How long all drives took.
+    /// Duration of all drives.
     pub driving: Duration,
 }
 
-/// Learns `learned`, and drives `n_trials` times through `real`, in parallel; `done` is called after each drive.
+/// Learns `learned`, then drives `n_trials` times through `real`, in parallel; calls `done` after each drive.
 ///
-/// The figures do not depend on the number of threads: each drive has a generator of its own.
+/// The results do not depend on the number of threads: each drive has its own generator.
 ///
 /// # Errors
-/// As [`ViewSystem::learn`].
+/// Returns the errors of [`ViewSystem::learn`].
 pub fn run(
     learned: &Picture,
     real: &Picture,

@@ -1,11 +1,11 @@
 use super::{ViewSystem, ViewsError};
 use wayfix_evaluation::report::Metric;
 
-/// How distinct the learned views are and how alike the views of one place: the paper's Tables 1 and 2, with our test in the place of its
+/// Distinctness of the learned views and similarity of views of one place: the paper's Tables 1 and 2, with our test in place of its
 /// unnamed one ([`Appearance::p_value`](wayfix_condensation::Appearance::p_value)).
 ///
 /// # Errors
-/// [`ViewsError::Condensation`].
+/// Returns [`ViewsError::Condensation`].
 pub fn p_value_metrics(system: &ViewSystem) -> Result<Vec<Metric>, ViewsError> {
     let appearance = system.appearance();
     let between = appearance.p_values_between_states().map_or(f64::NAN, |p| p.mean);

@@ -9,26 +9,26 @@ use wayfix_condensation::{
 
 use super::{FeatureKind, Normalization, ViewsError, ViewsParams};
 
-/// Places times lights of which a look takes about half a second.
+/// Maximum product of places and lights; one update then takes about half a second.
 const MAX_HYPOTHESES: usize = 500_000;
 
-/// Streams of a seed from here on are of moves that go wrong, those below of starts, goals and choices.
+/// First random stream of failed moves; lower streams are for starts, goals and choices.
 const SLIPS: u64 = 1 << 32;
 
-/// How a scene is divided into views, and what is measured of them.
+/// Division of a scene into views, and the feature measured in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
     /// Width and height of a view, pixels.
     pub view: usize,
     /// Pixels between neighbouring views.
     pub step: usize,
-    /// What is measured.
+    /// The feature.
     pub feature: FeatureKind,
-    /// How light is made that of learning.
+    /// Normalization of the light.
     pub normalization: Normalization,
 }
 
-/// A scene that was learned, and the same scene as it is seen now. Only the world of a trial knows where the robot is.
+/// A learned scene, and the same scene as it is now. Only the simulated world of a trial knows the true place.
 #[derive(Clone, Debug)]
 pub struct ViewSystem {
     views: ViewGrid,
@@ -41,15 +41,15 @@ pub struct ViewSystem {
 /// One drive from a random place to a random goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// Where it began.
+    /// First place.
     pub start: usize,
-    /// Where it should end.
+    /// Goal place.
     pub goal: usize,
-    /// Where it ended.
+    /// Last place.
     pub end: usize,
-    /// What the robot thinks.
+    /// Report of the navigator.
     pub report: RunReport,
-    /// Belief in the true place after every look.
+    /// Belief in the true place after every update.
     pub belief_in_truth: Vec<f64>,
 }
 
@@ -57,20 +57,20 @@ pub struct Trial {
 pub struct Step<'a> {
     /// Moves so far.
     pub number: usize,
-    /// Where the robot is.
+    /// True place of the robot.
     pub at: usize,
-    /// Where it wants to go.
+    /// Goal place.
     pub goal: usize,
     /// The belief.
     pub localizer: &'a Localizer,
 }
 
 impl ViewSystem {
-    /// Learns `learned` and looks at `real`.
+    /// Learns `learned` and computes the features of `real`.
     ///
     /// # Errors
-    /// [`ViewsError::Sizes`], [`ViewsError::NoContrast`], [`ViewsError::TooManyStates`]; [`ViewsError::Condensation`] when no view fits into the
-    /// scene or a parameter is out of its range.
+    /// Returns [`ViewsError::Sizes`], [`ViewsError::NoContrast`], [`ViewsError::TooManyStates`], or [`ViewsError::Condensation`] if no view fits
+    /// into the scene or a parameter is out of range.
     pub fn learn(
         learned: &Picture,
         real: &Picture,
@@ -96,31 +96,31 @@ impl ViewSystem {
         let feature = setup.feature.feature(params.dominance);
         let source = SceneViews::new(learned, &views)?;
         let appearance = Arc::new(Appearance::learn(&source, &*feature, appearance_params)?);
-        Localizer::new(Arc::clone(&appearance), params.localizer)?; // refuses bad parameters now, not in the first trial
+        Localizer::new(Arc::clone(&appearance), params.localizer)?; // rejects invalid parameters before the first trial
         let seen = feature.extract_all(&setup.normalization.apply(real, learned)?, &views)?;
         let navigator = Navigator::new(*views.grid(), params.navigator)?;
         Ok(Self { views, appearance, seen, navigator, params: params.clone() })
     }
 
-    /// The views.
+    /// The grid of views.
     pub fn views(&self) -> &ViewGrid {
         &self.views
     }
 
-    /// What was learned.
+    /// The learned appearance.
     pub fn appearance(&self) -> &Appearance {
         &self.appearance
     }
 
-    /// The features of every view as it is now.
+    /// The features of every view of the real scene.
     pub fn seen(&self) -> &FeatureTable {
         &self.seen
     }
 
-    /// Drives trial number `index`, whose start, goal and random actions the seed decides; `watch` is shown every look.
+    /// Drives trial number `index`; the seed determines its start, goal and random actions. Calls `watch` after every update.
     ///
     /// # Errors
-    /// [`ViewsError::Condensation`].
+    /// Returns [`ViewsError::Condensation`].
     pub fn trial(&self, seed: u64, index: u64, mut watch: impl FnMut(Step<'_>)) -> Result<Trial, ViewsError> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(index);
@@ -144,18 +144,18 @@ impl ViewSystem {
 }
 
 impl Trial {
-    /// Whether the robot says that it is at the goal, and is. Unsure is no success.
+    /// Whether the robot reports the goal and is there. An uncertain end is no success.
     pub fn succeeded(&self) -> bool {
         self.report.arrival == Arrival::Reached && self.end == self.goal
     }
 
-    /// Whether the robot says that it is at the goal, and is not.
+    /// Whether the robot reports the goal and is not there.
     pub fn is_false_arrival(&self) -> bool {
         self.report.arrival == Arrival::Reached && self.end != self.goal
     }
 }
 
-/// The robot as it really is.
+/// True state of the robot in a trial.
 struct Drive<'a> {
     grid: Grid,
     seen: &'a FeatureTable,
@@ -165,7 +165,7 @@ struct Drive<'a> {
 }
 
 impl World<Move> for Drive<'_> {
-    /// As often as the model says nothing happens, or another action.
+    /// Executes an action; with the model's probabilities nothing happens, or another action.
     fn act(&mut self, action: Move) {
         let u: f64 = self.rng.random();
         let done = match u {

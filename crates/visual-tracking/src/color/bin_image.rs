@@ -29,7 +29,7 @@ impl BinImage {
     /// The bins of a picture.
     ///
     /// # Errors
-    /// [`TrackingError::Extent`] when the picture has no pixels, or more than a [`BitMask`](crate::BitMask) may have.
+    /// Returns [`TrackingError::Extent`] if the picture has no pixels, or more than a [`BitMask`](crate::BitMask) may have.
     pub fn new(quantizer: &ColorQuantizer, picture: &RgbImage) -> Result<Self, TrackingError> {
         Self::within(quantizer, picture, &PixelRect::whole(picture))
     }
@@ -37,7 +37,7 @@ impl BinImage {
     /// The bins of a part of a picture.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and [`TrackingError::Outside`] when the part is not inside.
+    /// Returns the errors of [`new`](Self::new), and [`TrackingError::Outside`] if the part exceeds the image.
     pub fn within(
         quantizer: &ColorQuantizer,
         picture: &RgbImage,
@@ -68,7 +68,7 @@ impl BinImage {
         self.bins.len() / self.width
     }
 
-    /// How many bins there are to be in.
+    /// Number of bins.
     pub fn n_bins(&self) -> usize {
         self.n_bins
     }
@@ -83,7 +83,7 @@ impl BinImage {
         self.bins.chunks_exact(self.width)
     }
 
-    /// One row of bins; the caller knows that there is one.
+    /// One row of bins; the caller ensures that it exists.
     pub(super) fn row(&self, v: usize) -> &[u16] {
         &self.bins[v * self.width..][..self.width]
     }

@@ -23,7 +23,7 @@ impl BinSet {
         Self::of_size(quantizer.n_bins())
     }
 
-    /// The bins in which there is at least one point of the colour space; points that are nowhere (NaN) count for nothing.
+    /// The bins that contain at least one point of the colour space; NaN points are ignored.
     pub fn from_points(quantizer: &ColorQuantizer, points: impl IntoIterator<Item = [f64; 3]>) -> Self {
         let mut set = Self::empty(quantizer);
         for bin in points.into_iter().filter_map(|point| quantizer.bin_of_point(point)) {
@@ -39,17 +39,17 @@ impl BinSet {
         set
     }
 
-    /// The bins of which `on` is true, out of as many as a quantizer has.
+    /// The bins for which `on` is true, among those of a quantizer.
     pub fn from_fn(quantizer: &ColorQuantizer, on: impl FnMut(u16) -> bool) -> Self {
         Self::from_predicate(quantizer.n_bins(), on)
     }
 
-    /// How many bins there are, on or off.
+    /// Number of bins, on or off.
     pub fn n_bins(&self) -> usize {
         self.n_bins
     }
 
-    /// How many bins are on.
+    /// Number of bins that are on.
     pub fn len(&self) -> usize {
         self.words.iter().map(|word| word.count_ones() as usize).sum()
     }
@@ -59,7 +59,7 @@ impl BinSet {
         self.words.iter().all(|&word| word == 0)
     }
 
-    /// Switches a bin on; one that does not exist stays away.
+    /// Switches a bin on; ignores a bin that does not exist.
     pub fn insert(&mut self, bin: u16) {
         if usize::from(bin) < self.n_bins {
             self.words[usize::from(bin / 64)] |= 1 << (bin % 64);
@@ -83,8 +83,7 @@ impl BinSet {
         self.words.iter().enumerate().flat_map(|(i, &word)| ones(word).map(move |bit| (64 * i + bit) as u16))
     }
 
-    /// The set and all bins that touch it, also at edges and corners; hues go round. The quantizer is the one whose
-    /// bins they are.
+    /// The set and all bins adjacent to it, also at edges and corners; hues wrap around. `quantizer` must be the one of the bins.
     pub fn dilated(&self, quantizer: &ColorQuantizer) -> Self {
         let mut set = self.clone();
         for axis in 0..3 {

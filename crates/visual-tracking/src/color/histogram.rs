@@ -2,8 +2,7 @@ use super::{BinImage, BinSet, ColorQuantizer};
 use crate::error::{check_size, checked, probability};
 use crate::{BitMask, TrackingError};
 
-/// How many pixels of each colour bin there are, as a count of pixels or blended from several.
-///
+/// Number of pixels per colour bin, as counts or as a blend of counts.
 /// ```
 /// use wayfix_visual_tracking::{BinImage, ColorHistogram, ColorQuantizer, ColorSpace, RgbImage};
 /// let quantizer = ColorQuantizer::new(ColorSpace::Rgb, [2, 2, 2])?;
@@ -20,7 +19,7 @@ use crate::{BitMask, TrackingError};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorHistogram {
-    // Whole numbers up to 2^53 are exact, so that counting up and down again leaves nothing behind.
+    // Whole numbers up to 2^53 are exact, so adding and removing pixels leaves no rounding error.
     counts: Vec<f64>,
 }
 
@@ -38,7 +37,7 @@ impl ColorHistogram {
     /// Of the pixels that are on in a mask.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when image and mask differ in size.
+    /// Returns [`TrackingError::Dimension`] if image and mask differ in size.
     pub fn of_mask(image: &BinImage, mask: &BitMask) -> Result<Self, TrackingError> {
         mask.check_size((image.width(), image.height()))?;
         Ok(Self::counted(image.n_bins(), mask.runs().map(|(v, run)| &image.row(v)[run])))
@@ -47,7 +46,7 @@ impl ColorHistogram {
     /// From counts of one's own, one a bin.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] and, for a count that is negative or not finite, [`TrackingError::Parameter`].
+    /// Returns [`TrackingError::Dimension`] and, for a count that is negative or not finite, [`TrackingError::Parameter`].
     pub fn from_counts(quantizer: &ColorQuantizer, counts: Vec<f64>) -> Result<Self, TrackingError> {
         check_size("counts", quantizer.n_bins(), counts.len())?;
         for &count in &counts {
@@ -66,11 +65,10 @@ impl ColorHistogram {
         self.counts.iter().sum()
     }
 
-    /// How much of this histogram, the candidate's, is in the model's: $`\sum_i \min(C_i, M_i) / \sum_i C_i`$, from 0 to 1; 0 without pixels.
-    /// [Swain & Ballard 1991; Andrade-Cetto & Sanfeliu, Eq. 28]
-    ///
+    /// Share of this histogram, the candidate's, that is in the model's: $`\sum_i \min(C_i, M_i) / \sum_i C_i`$, from 0 to 1; 0 without
+    /// pixels. [Swain & Ballard 1991; Andrade-Cetto & Sanfeliu, Eq. 28]
     /// # Errors
-    /// [`TrackingError::Dimension`] when they differ in the number of bins.
+    /// Returns [`TrackingError::Dimension`] if they differ in the number of bins.
     pub fn intersection(&self, model: &Self) -> Result<f64, TrackingError> {
         check_size("histogram", self.counts.len(), model.counts.len())?;
         let (mut shared, mut total) = ([0.0; LANES], [0.0; LANES]);
@@ -88,8 +86,8 @@ impl ColorHistogram {
     /// Adapts a model to a candidate: $`M ← (1 - a) M + a C`$. [Andrade-Cetto & Sanfeliu, Eq. 29]
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] as [`intersection`](Self::intersection), [`TrackingError::Parameter`] when `rate` is not
-    /// between 0 and 1.
+    /// Returns [`TrackingError::Dimension`] as [`intersection`](Self::intersection), or [`TrackingError::Parameter`] if `rate` is not between 0
+    /// and 1.
     pub fn blend(&mut self, candidate: &Self, rate: f64) -> Result<(), TrackingError> {
         check_size("histogram", self.counts.len(), candidate.counts.len())?;
         let rate = probability("rate of adaptation", rate)?;
@@ -99,10 +97,9 @@ impl ColorHistogram {
         Ok(())
     }
 
-    /// The same shares of another total, such as 1, or the pixels of a candidate of another size; unchanged without pixels.
-    ///
+    /// The histogram scaled to another total, such as 1 or the pixel count of a candidate; unchanged without pixels.
     /// # Errors
-    /// [`TrackingError::Parameter`] when `total` is not finite and positive.
+    /// Returns [`TrackingError::Parameter`] if `total` is not finite and positive.
     pub fn scaled_to(&self, total: f64) -> Result<Self, TrackingError> {
         checked("total of a histogram", total, total.is_finite() && total > 0.0, "finite and positive")?;
         let factor = match self.total() {
@@ -112,7 +109,7 @@ impl ColorHistogram {
         Ok(Self { counts: self.counts.iter().map(|count| count * factor).collect() })
     }
 
-    /// The bins that count more than `threshold`; with 0 those that have a pixel.
+    /// The bins with more than `threshold` pixels; with 0 those that have a pixel.
     pub fn bins_above(&self, threshold: f64) -> BinSet {
         let above = |bin: u16| self.counts[usize::from(bin)] > threshold;
         BinSet::from_predicate(self.counts.len(), above)
@@ -123,12 +120,12 @@ impl ColorHistogram {
         bins.iter().for_each(|&bin| self.counts[usize::from(bin)] += 1.0);
     }
 
-    /// Takes pixels back that were counted.
+    /// Removes pixels that were counted.
     pub(super) fn remove(&mut self, bins: &[u16]) {
         bins.iter().for_each(|&bin| self.counts[usize::from(bin)] -= 1.0);
     }
 
-    /// Counts pieces of rows, in integers: where many pixels in a row share a bin, sums of floats would wait ten times as long for one another.
+    /// Counts parts of rows in integers: where many pixels in a row share a bin, chained float sums would take ten times as long.
     pub(super) fn counted<'a>(n_bins: usize, pieces: impl IntoIterator<Item = &'a [u16]>) -> Self {
         let mut counts = vec![0_u32; n_bins];
         for piece in pieces {

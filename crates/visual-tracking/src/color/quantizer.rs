@@ -23,7 +23,7 @@ pub struct ColorQuantizer {
     tables: Tables,
 }
 
-/// How a coordinate becomes part of an index, in 32 bits, since conversion to 64 takes several instructions.
+/// Map of a coordinate to a part of an index, in 32 bits, because conversion to 64 takes several instructions.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     n: f64,
@@ -31,7 +31,7 @@ struct Axis {
     stride: u32,
 }
 
-/// Where an axis is a function of one small whole number, its bins are looked up: one cache line or two per pixel instead of divisions.
+/// Tables for axes that are functions of one small whole number: one or two cache lines per pixel instead of divisions.
 #[derive(Clone, Debug)]
 enum Tables {
     /// Of $`R`$, $`G`$ and $`B`$.
@@ -48,10 +48,9 @@ enum Tables {
 const HUE_ROW: usize = 1021;
 
 impl ColorQuantizer {
-    /// With so many bins an axis.
-    ///
+    /// Creates a quantizer with these numbers of bins per axis.
     /// # Errors
-    /// [`TrackingError::Parameter`] when an axis has no bin, or all together are more than 65536.
+    /// Returns [`TrackingError::Parameter`] if an axis has no bin, or all together are more than 65536.
     pub fn new(space: ColorSpace, bins: [usize; 3]) -> Result<Self, TrackingError> {
         for n in bins {
             checked("bins of an axis", n as f64, (1..=65536).contains(&n), "between 1 and 65536")?;
@@ -90,8 +89,7 @@ impl ColorQuantizer {
         bin[0]
     }
 
-    /// The bin of a point, whose coordinates are cut to $`[0, 1]`$ as a camera saturates, the hue turned into it; none for
-    /// NaN or an infinite hue.
+    /// The bin of a point. Coordinates are clamped to $`[0, 1]`$, the hue wraps around; `None` for NaN or an infinite hue.
     pub fn bin_of_point(&self, point: [f64; 3]) -> Option<u16> {
         let mut bin = 0;
         for (axis, x) in point.into_iter().enumerate() {
@@ -115,7 +113,7 @@ impl ColorQuantizer {
         [0, 1, 2].map(|axis| (axes[axis] as f64 + 0.5) / self.axes[axis].n)
     }
 
-    /// The bins of many pixels; `bins` is as long as `pixels`.
+    /// The bins of many pixels; `bins` and `pixels` have equal length.
     pub(super) fn bins_of_pixels(&self, pixels: &[[u8; 3]], bins: &mut [u16]) {
         match &self.tables {
             Tables::Rgb(tables) => fill(pixels, bins, |rgb| {
@@ -123,7 +121,7 @@ impl ColorQuantizer {
             }),
             Tables::Opponent(tables) => fill(pixels, bins, |rgb| {
                 let [r, g, b] = rgb.map(usize::from);
-                // The masks cost nothing and show that no look-up is out of bounds.
+                // The masks cost nothing and prove to the compiler that every index is in bounds.
                 tables.0[(255 + b - g) & 511] + tables.1[(255 + g - r) & 511] + tables.2[(r + g + b) & 1023]
             }),
             Tables::Hsi(hues) => fill(pixels, bins, |rgb| {
@@ -140,7 +138,7 @@ impl ColorQuantizer {
         }
     }
 
-    /// What a coordinate adds to the index of the bin. Conversion to integers saturates, which cuts to the range.
+    /// Contribution of a coordinate to the bin index. The integer conversion saturates, which clamps to the range.
     #[inline]
     fn offset(&self, axis: usize, x: f64) -> u16 {
         let Axis { n, last, stride } = self.axes[axis];
@@ -167,7 +165,7 @@ impl ColorQuantizer {
     }
 }
 
-/// Two quantizers are the same when they divide the same space alike; the tables follow from that.
+/// Two quantizers are equal if they divide the same space equally; the tables follow from that.
 impl PartialEq for ColorQuantizer {
     fn eq(&self, other: &Self) -> bool {
         self.space == other.space && self.bins() == other.bins()

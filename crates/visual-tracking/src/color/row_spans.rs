@@ -24,10 +24,9 @@ pub struct RowSpans {
 const MAX_EXTENT: f64 = 16384.0;
 
 impl RowSpans {
-    /// The pixels whose middles are at most the semi-axes `[a, b]` away, $`(u / a)^2 + (v / b)^2 ≤ 1`$ from the middle of the centre pixel.
-    ///
+    /// The pixels whose centres lie in the ellipse with semi-axes `[a, b]`, $`(u / a)^2 + (v / b)^2 ≤ 1`$ from the middle of the centre pixel.
     /// # Errors
-    /// [`TrackingError::Parameter`] when a semi-axis is not positive or above 16384 pixels.
+    /// Returns [`TrackingError::Parameter`] if a semi-axis is not positive or above 16384 pixels.
     pub fn ellipse([a, b]: [f64; 2]) -> Result<Self, TrackingError> {
         for semi_axis in [a, b] {
             let valid = semi_axis > 0.0 && semi_axis <= MAX_EXTENT;
@@ -41,7 +40,7 @@ impl RowSpans {
     /// So many columns and rows; of an even number, one more is left of or above the centre.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] when a side is zero or above 32768 pixels.
+    /// Returns [`TrackingError::Parameter`] if a side is zero or above 32768 pixels.
     pub fn rectangle(width: usize, height: usize) -> Result<Self, TrackingError> {
         for side in [width, height] {
             let valid = side > 0 && side as f64 <= 2.0 * MAX_EXTENT;
@@ -61,7 +60,7 @@ impl RowSpans {
         self.spans.get(usize::try_from(row.checked_sub(self.top)?).ok()?).cloned()
     }
 
-    /// How many pixels it covers.
+    /// Number of pixels.
     pub fn area(&self) -> usize {
         self.spans.iter().map(|span| (span.end - span.start) as usize).sum()
     }

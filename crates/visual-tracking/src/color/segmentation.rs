@@ -8,10 +8,10 @@ impl BinImage {
     /// The pixels whose bin is on: $`S(u, v) = 1`$ where $`H(r, g, b) > 0`$. [Andrade-Cetto & Sanfeliu, Sec. 3.3]
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when the set is of another number of bins.
+    /// Returns [`TrackingError::Dimension`] if the set has another number of bins.
     pub fn segment(&self, set: &BinSet) -> Result<BitMask, TrackingError> {
         check_size("set of bins", self.n_bins(), set.n_bins())?;
-        // A byte a bin is looked up faster than a bit.
+        // A byte per bin allows a faster look-up than a bit.
         let mut on = vec![0_u8; self.n_bins()];
         set.iter().for_each(|bin| on[usize::from(bin)] = 1);
         let word = |bins: &[u16]| {
@@ -22,13 +22,11 @@ impl BinImage {
         Ok(BitMask::from_words(self.width(), self.height(), words))
     }
 
-    /// [`segment`](Self::segment) for many sets at once, in one pass over the picture for every 64 of them.
+    /// [`segment`](Self::segment) for many sets at once, in one pass over the image for every 64 of them.
     ///
-    /// One look-up tells of 64 sets whether they have a pixel's bin; 64 pixels of that are a square of bits, which turned over its diagonal
-    /// is a word of every mask.
-    ///
+    /// One look-up gives the membership of a pixel's bin in 64 sets. 64 pixels give a square of bits; its transpose holds one word of every mask.
     /// # Errors
-    /// As [`segment`](Self::segment).
+    /// Returns the errors of [`segment`](Self::segment).
     pub fn segment_all(&self, sets: &[BinSet]) -> Result<Vec<BitMask>, TrackingError> {
         for set in sets {
             check_size("set of bins", self.n_bins(), set.n_bins())?;
@@ -64,7 +62,7 @@ fn members(sets: &[BinSet], n_bins: usize) -> Vec<u64> {
     members
 }
 
-/// Swaps bit `i` of word `k` with bit `k` of word `i`: halves of the square change places across the diagonal, then halves of those.
+/// Swaps bit `i` of word `k` with bit `k` of word `i`, by recursive exchange of half blocks across the diagonal.
 fn transpose(square: &mut [u64; 64]) {
     let mut width = 32;
     let mut low = u64::MAX >> 32;

@@ -2,11 +2,10 @@ use std::ops::Range;
 
 use super::{BinImage, ColorHistogram, RowSpans};
 
-/// The histogram of a shape that moves over an image: from one place to the next only the pixels are counted that the two do not share.
+/// The histogram of a shape that moves over an image: each move counts only the pixels in which the two positions differ.
 /// [Birchfield 1998; Andrade-Cetto & Sanfeliu, Sec. 3.2]
 ///
-/// What of the shape is beyond the edges has no pixels.
-///
+/// Parts of the shape outside the image contribute no pixels.
 /// ```
 /// use wayfix_visual_tracking::{BinImage, ColorQuantizer, ColorSpace, RgbImage, RowSpans, SlidingHistogram};
 /// let bytes = (0..3 * 40 * 30).map(|i| (i * i / 7) as u8).collect();
@@ -28,7 +27,7 @@ pub struct SlidingHistogram<'a> {
 }
 
 impl<'a> SlidingHistogram<'a> {
-    /// Counts the pixels of a shape whose centre is in column and row `center`.
+    /// Counts the pixels of a shape centred in column and row `center`.
     pub fn new(image: &'a BinImage, spans: RowSpans, center: [i64; 2]) -> Self {
         let rows = spans.rows_within(center, image.height());
         let covered = rows.map(|v| &image.row(v)[spans.columns_within(center, v, image.width())]);
@@ -42,13 +41,13 @@ impl<'a> SlidingHistogram<'a> {
         exchange(self.image, &mut self.histogram, (&self.spans, before), (&self.spans, center));
     }
 
-    /// Gives the shape another form, such as another size.
+    /// Changes the shape, for example its size.
     pub fn reshape(&mut self, spans: RowSpans) {
         let before = std::mem::replace(&mut self.spans, spans);
         exchange(self.image, &mut self.histogram, (&before, self.center), (&self.spans, self.center));
     }
 
-    /// Where the centre is.
+    /// Position of the centre.
     pub fn center(&self) -> [i64; 2] {
         self.center
     }
@@ -71,7 +70,7 @@ impl<'a> SlidingHistogram<'a> {
 
 type Placed<'a> = (&'a RowSpans, [i64; 2]);
 
-/// Takes back the pixels that are only under the old shape, then counts those only under the new one.
+/// Removes the pixels that are only under the old shape, then adds those only under the new one.
 fn exchange(image: &BinImage, histogram: &mut ColorHistogram, old: Placed<'_>, new: Placed<'_>) {
     let rows = |(spans, center): Placed<'_>| spans.rows_within(center, image.height());
     let columns = |(spans, center): Placed<'_>, v| spans.columns_within(center, v, image.width());
@@ -83,7 +82,7 @@ fn exchange(image: &BinImage, histogram: &mut ColorHistogram, old: Placed<'_>, n
     }
 }
 
-/// What of `a` is left of and right of `b`.
+/// The parts of `a` left of and right of `b`.
 fn difference(a: &Range<usize>, b: &Range<usize>) -> [Range<usize>; 2] {
     let part = |start: usize, end: usize| start..end.max(start);
     [part(a.start, a.end.min(b.start)), part(a.start.max(b.end), a.end)]

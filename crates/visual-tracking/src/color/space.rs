@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 pub enum ColorSpace {
     /// $`(R, G, B) / 255`$.
     Rgb,
-    /// $`(R, G, B) / (R + G + B)`$; black is grey. The third is what the first two leave, one bin is enough for it.
+    /// $`(R, G, B) / (R + G + B)`$; black is grey. The third follows from the first two, so one bin is enough for it.
     NormalizedRgb,
     /// Hue, saturation, intensity: $`H = \operatorname{atan2}(\sqrt 3 (G - B), 2R - G - B) / 2π`$ in $`[0, 1)`$, 0 for grey,
     /// $`S = 1 - 3 \min(R, G, B) / (R + G + B)`$, $`I = (R + G + B) / 765`$. [Gonzalez & Woods, Sec. 6.2]

@@ -8,13 +8,13 @@ use super::search::in_other_light;
 use super::{ContourTracker, TrackingCues};
 use crate::{BinSet, BitMask, ColorCloud, ColorState, Outline, RgbImage, TrackStatus, TrackingError};
 
-/// Where the target was found, and what is to be learned from it.
+/// Result of a search for the target, and the data to learn from it.
 pub(super) struct Found {
     pub(super) candidate: Candidate,
     pub(super) quality: f64,
     /// Whether the contour jumped to the whole of a target of which it had a part.
     pub(super) regrown: bool,
-    /// Where it is not the snake that says.
+    /// The outline, if it is not the snake's.
     pub(super) outline: Option<Outline>,
     pub(super) cloud: Option<ColorCloud>,
     pub(super) samples: Samples,
@@ -31,7 +31,7 @@ impl ContourTracker {
         let Some(scene) = scene else { return Ok(None) };
         if self.params.cues == TrackingCues::Shape {
             let (candidate, samples) = (Candidate::of_edges(&scene), self.samples.clone());
-            // Area and quality say nothing where no edge is found.
+            // Area and quality are meaningless without an edge.
             let quality = candidate.agreement.score(&self.params).min(candidate.agreement.affine);
             return Ok(Some(Found {
                 candidate,
@@ -81,7 +81,7 @@ impl ContourTracker {
         self.finish(&scene, seen.candidate, &states[best], &set, &seen.mask, self.samples.clone()).map(Some)
     }
 
-    /// What the next picture shall be compared with.
+    /// Stores the reference for the next image.
     fn finish(
         &self,
         scene: &Scene<'_>,

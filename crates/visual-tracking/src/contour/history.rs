@@ -2,10 +2,10 @@ use std::collections::VecDeque;
 
 use super::reference::Reference;
 
-/// Pictures between something that covers the target and the loss of it, half a second: what was learned meanwhile is not to be trusted.
+/// Images kept for a restart, half a second: references learned during an occlusion that ends in a loss are unreliable.
 const LENGTH: usize = 12;
 
-/// How the target looked in the last pictures.
+/// The references of the last images.
 #[derive(Clone, Debug)]
 pub(super) struct History(VecDeque<Reference>);
 
@@ -21,7 +21,7 @@ impl History {
         self.0.push_back(reference.clone());
     }
 
-    /// The oldest, of which nothing that followed is left.
+    /// Returns the oldest reference and drops all later ones.
     pub(super) fn restart(&mut self) -> &Reference {
         self.0.truncate(1);
         &self.0[0]

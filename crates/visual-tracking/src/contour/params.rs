@@ -1,7 +1,7 @@
 use crate::error::{checked, probability};
 use crate::{ColorSpace, ColorVector, SnakeParams, TrackingError};
 
-/// What a [`ContourTracker`](crate::ContourTracker) goes by.
+/// Cues that a [`ContourTracker`](crate::ContourTracker) uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
@@ -16,8 +16,8 @@ pub enum TrackingCues {
     Shape,
 }
 
-/// Parameters of a [`ContourTracker`](crate::ContourTracker). The defaults are for pictures of some 320 × 240 pixels at 10 to 60 a second and
-/// were not chosen on any one recording.
+/// Parameters of a [`ContourTracker`](crate::ContourTracker). The defaults are for images of about 320 × 240 pixels at 10 to 60 Hz and are not
+/// tuned to any one recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -28,7 +28,7 @@ pub enum TrackingCues {
 pub struct ContourTrackerParams {
     /// Which cues are used. Default both.
     pub cues: TrackingCues,
-    /// Whether the colours are followed; otherwise they stay as they were at the start. Default true.
+    /// Whether the colours adapt; otherwise they stay fixed at the start values. Default true.
     pub adapts: bool,
     /// Space of the colours. Default [`ColorSpace::Opponent`].
     pub color_space: ColorSpace,
@@ -39,7 +39,7 @@ pub struct ContourTrackerParams {
     /// Share of the samples that start from the colours found in the last picture and not from the samples of before; 0 is plain
     /// CONDENSATION. Default 0.5.
     pub anchored_share: f64,
-    /// How much of its velocity the colour state keeps, from 0 to 1. Default 0.5.
+    /// Share of the velocity that the colour state keeps, from 0 to 1. Default 0.5.
     pub damping: f64,
     /// Noise of the colour state per picture: centroid (3), magnitudes (3), in units of the colour space, and angles (2) in radians.
     /// Default 0.015 each, 0.006 each, 0.05 each.
@@ -47,27 +47,27 @@ pub struct ContourTrackerParams {
     /// A bin is the target's if it is this many times as frequent among the predicted colours as around the target; 0 takes every bin with
     /// a colour in it, as the paper does. Default 1.
     pub background_odds: f64,
-    /// How much the colours of before still count in the set of colours, carried along with the change of light: a part of the target that
-    /// one contour missed is not forgotten at once. 0 forgets them, as the paper does. Default 0.8.
+    /// Weight of the previous colours in the set of colours, adapted to the change of light, so that a part of the target missed by one
+    /// contour is kept. 0 drops them, as in the paper. Default 0.8.
     pub color_memory: f64,
     /// Most points in a colour set. Default 512.
     pub max_colors: usize,
-    /// $`μ_1, μ_2, μ_3`$: what the affine similarity, the area and the Euler number count. Default 1, 1, 0.5.
+    /// $`μ_1, μ_2, μ_3`$: weights of the affine similarity, the area and the Euler number. Default 1, 1, 0.5.
     pub mu: [f64; 3],
     /// $`σ`$ of the weights. Default 0.15.
     pub sigma: f64,
-    /// $`μ`$ of the predicted area, how much of its change goes on. Default 0.5.
+    /// $`μ`$ of the predicted area: share of its last change that is extrapolated. Default 0.5.
     pub area_gain: f64,
-    /// How much the mean area of the last seconds counts in the predicted area, against a contour that shrinks or grows step by step; 0 is
-    /// the paper's. Default 0.3.
+    /// Weight of the mean area of the last seconds in the predicted area, against gradual shrinking or growing of the contour; 0 as in the
+    /// paper. Default 0.3.
     pub area_memory: f64,
     /// An Euler number this far from 1 makes a segmentation worthless. Default 10.
     pub euler_number_range: f64,
     /// Radius of closing and opening in pixels; 0 leaves the segmentation as it is. Default 1.
     pub morphology_radius: usize,
-    /// How the snake is fitted.
+    /// Parameters of the snake fit.
     pub snake: SnakeParams,
-    /// How far from the segmented boundary the final contour looks for an edge of the picture, in pixels; 0 leaves it there. Default 2.
+    /// Distance from the segmented boundary within which the final contour searches for an image edge, in pixels; 0 disables it. Default 2.
     pub band_radius: usize,
     /// The change of colour over two pixels that is an edge, in grey values (root of the sum of squares over the channels). Default 20.
     pub edge_contrast: f64,
@@ -75,8 +75,7 @@ pub struct ContourTrackerParams {
     pub lost_below: f64,
     /// From this quality on, times the likeness of the colours, it is found again. Default 0.75.
     pub found_above: f64,
-    /// Hypotheses about the colours when the whole picture is searched, besides those about the strength of the
-    /// light. Default 12.
+    /// Number of colour hypotheses for a search in the whole image, in addition to those of the light intensity. Default 12.
     pub n_search_samples: usize,
 }
 
@@ -111,8 +110,8 @@ impl Default for ContourTrackerParams {
 }
 
 impl ContourTrackerParams {
-    /// The method as it was published: no model of the background, no memory of colours and areas, samples only from samples, in bins as large
-    /// as the dynamics and a hundred samples can fill.
+    /// The published method: no background model, no memory of colours and areas, and samples drawn from samples only, in bins as
+    /// large as the dynamics and a hundred samples can fill.
     pub fn as_published() -> Self {
         Self {
             background_odds: 0.0,
@@ -126,7 +125,7 @@ impl ContourTrackerParams {
     }
 
     /// # Errors
-    /// [`TrackingError::Parameter`] with the first parameter that is out of range.
+    /// Returns [`TrackingError::Parameter`] with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), TrackingError> {
         let count = |what, n: usize, most: usize| {
             checked(what, n as f64, (1..=most).contains(&n), "at least 1, and not beyond measure")

@@ -6,15 +6,14 @@ use crate::{BinSet, BitMask, ColorCloud, TrackingError};
 /// Share of the expected area that the pixels of a new colour set must have.
 const LEAST_SHARE: f64 = 0.25;
 
-/// Support of a contour from which on nothing covers the target.
+/// Support of a contour from which on the target counts as unoccluded.
 pub(super) const SEEN_ALL_ROUND: f64 = 0.8;
 
 impl Scene<'_> {
-    /// The colours inside the contour of the best candidate; none when there are too few pixels to tell.
+    /// The colours inside the contour of the best candidate; `None` if there are too few pixels.
     ///
-    /// Pixels at the rim are mixed with the background and left out. With a background model so are bins that are more frequent outside,
-    /// and, unless the contour is seen nearly all round, bins that do not touch one of the best hypothesis: they may be of what covers the
-    /// target.
+    /// Pixels at the rim are mixed with the background and excluded. With a background model, bins more frequent outside are excluded too. Unless
+    /// almost the whole contour is visible, so are bins that do not touch one of the best hypothesis, because they may belong to an occluder.
     pub(super) fn colors_of(
         &self,
         candidate: &Candidate,

@@ -1,6 +1,6 @@
 use crate::{AffineMap, AffineSnake, ColorCloud, PrincipalColors, TrackingError};
 
-/// What was found in the last picture, with which the next one is compared.
+/// Result of the last image, with which the next one is compared.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Reference {
     /// $`\mathcal C_{t-1}`$.
@@ -17,10 +17,10 @@ pub(super) struct Reference {
     pub(super) steady_area: f64,
 }
 
-/// How much of the newest motion counts.
+/// Weight of the newest motion.
 const MOTION_GAIN: f64 = 0.6;
 
-/// How much of the newest area counts in the mean: a memory of 50 pictures.
+/// Weight of the newest area in the mean: a time constant of 50 images.
 const STEADY_GAIN: f64 = 0.02;
 
 impl Reference {
@@ -31,12 +31,12 @@ impl Reference {
         Ok(Self { cloud, colors, snake, motion: [0.0; 2], areas: [area; 2], steady_area: area })
     }
 
-    /// Where the snake is expected.
+    /// Predicted map of the snake.
     pub(super) fn expected_map(&self) -> AffineMap {
         self.snake.map().shifted(self.motion)
     }
 
-    /// $`\tilde A_t = A_{t-1} + μ (A_{t-1} - A_{t-2})`$, at most half as large or twice as large as the last one, and a share of the mean.
+    /// $`\tilde A_t = A_{t-1} + μ (A_{t-1} - A_{t-2})`$, limited to 0.5 to 2 times the last area, mixed with a share of the mean.
     pub(super) fn expected_area(&self, gain: f64, memory: f64) -> f64 {
         let [last, before] = self.areas;
         let next = (last + gain * (last - before)).clamp(0.5 * last, 2.0 * last);
@@ -53,7 +53,7 @@ impl Reference {
         Ok(())
     }
 
-    /// The snake somewhere else, at rest.
+    /// Sets the snake to another position, at rest.
     pub(super) fn jump_to(&mut self, map: &AffineMap, area: f64) -> Result<(), TrackingError> {
         self.snake = self.snake.moved_to(map)?;
         (self.motion, self.areas) = ([0.0; 2], [area; 2]);

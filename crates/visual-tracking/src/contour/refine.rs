@@ -2,15 +2,15 @@ use super::{Agreement, TrackingCues, hypotheses::candidate::Candidate, scene::Sc
 use crate::Element;
 use crate::{BitMask, ColorEdges, SnakeParams, TrackingError};
 
-/// Overlap of contour and segmentation from which on nothing speaks against either.
+/// Overlap of contour and segmentation from which on both count as consistent.
 pub(super) const COVERED: f64 = 0.7;
 
-/// How much worse the area may agree after refinement.
+/// Accepted loss of area agreement by refinement.
 const AREA_SLACK: f64 = 0.05;
 
 impl Candidate {
-    /// The candidate on the edges of the picture near the boundary of its mask: the snake fitted to $`∇I · \mathrm{dil}(∇S)`$. Where there is
-    /// too little of an edge, or the area would agree less, it stays as it is.
+    /// Refines the candidate on the image edges near the boundary of its mask: the snake fitted to $`∇I · \mathrm{dil}(∇S)`$. The candidate
+    /// is unchanged if there is too little of an edge, or if the area would agree less.
     pub(super) fn refined(mut self, scene: &Scene<'_>, mask: &BitMask) -> Self {
         let params = scene.params;
         if params.band_radius == 0 || params.cues != TrackingCues::ColorAndShape {
@@ -33,8 +33,7 @@ impl Candidate {
 }
 
 impl Scene<'_> {
-    /// How sure one can be that the target is where a candidate says, from 0 to 1: the score of its agreement, less where the contour and the
-    /// segmentation do not cover each other.
+    /// Confidence in a candidate, from 0 to 1: the score of its agreement, reduced if contour and segmentation do not overlap.
     pub(super) fn confidence(&self, candidate: &Candidate, mask: &BitMask) -> Result<f64, TrackingError> {
         let score = candidate.agreement.score(self.params);
         if self.params.cues != TrackingCues::ColorAndShape {

@@ -8,7 +8,7 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// The part of a picture within `margin` pixels of a box; none when the box itself is outside.
+    /// The part of an image within `margin` pixels of a box; `None` if the box is outside.
     pub(super) fn around(
         picture: &RgbImage,
         quantizer: &ColorQuantizer,

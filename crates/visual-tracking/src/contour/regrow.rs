@@ -6,15 +6,15 @@ use crate::{BitMask, TrackingError};
 /// Support and overlap from which on a larger contour is beyond doubt.
 const BEYOND_DOUBT: f64 = 0.9;
 
-/// How much larger than expected a target may turn out to be.
+/// Maximum ratio of the new to the expected area.
 const MOST_GROWTH: f64 = 2.5;
 
 impl Candidate {
-    /// The contour that has all of a blob of which this one has lost a part; none when nothing says so.
+    /// A contour around a whole blob of which the current contour has lost a part; `None` without evidence for it.
     ///
-    /// A part of the target that the light changes quickly is left out, the contour takes the edge of that light for the target's, and from then on
-    /// its area is what it expects: it stays there when the light is even again. What gives it away is a side without an edge and a
-    /// blob that goes on beyond it. Something else of the target's colours at its side, as a snail's neck, does not have the shape that goes with it.
+    /// A quick change of light can exclude a part of the target. The contour then fits the edge of the light, and its area becomes the
+    /// expected one, so it stays there after the light is even again. Signs of this are a side without an edge and a blob that continues beyond
+    /// it. Other objects of the target's colours beside it do not match its shape.
     pub(super) fn regrown(&self, scene: &Scene<'_>, mask: &BitMask) -> Result<Option<Self>, TrackingError> {
         let blob = mask.area() as f64;
         let may_have_shrunk = scene.params.cues == TrackingCues::ColorAndShape

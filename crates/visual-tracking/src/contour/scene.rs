@@ -2,14 +2,14 @@ use super::{ContourTrackerParams, reference::Reference, region::Region};
 use crate::Element;
 use crate::{AffineMap, BinSet, BitMask, ColorQuantizer, ColorState, Connectivity, RgbImage, TrackingError};
 
-/// What all hypotheses about one picture share.
+/// Data shared by all hypotheses about one image.
 pub(super) struct Scene<'a> {
     pub(super) params: &'a ContourTrackerParams,
     pub(super) quantizer: &'a ColorQuantizer,
     pub(super) picture: &'a RgbImage,
     pub(super) reference: &'a Reference,
     pub(super) region: Region,
-    /// Where the snake starts.
+    /// Initial map of the snake.
     pub(super) start: AffineMap,
     /// The pixels that the target is expected to cover.
     pub(super) expected: BitMask,
@@ -18,14 +18,14 @@ pub(super) struct Scene<'a> {
     pub(super) background: Vec<f32>,
 }
 
-/// Least distance in pixels from the expected target to the edge of the region and to what counts as background.
+/// Minimum distance in pixels from the expected target to the edge of the region and to the background.
 const LEAST_MARGIN: f64 = 8.0;
 
 /// Pixels of the smallest target.
 pub(super) const LEAST_PIXELS: usize = 4;
 
 impl<'a> Scene<'a> {
-    /// Round the place where the target is expected; none when that is outside the picture.
+    /// The region around the expected target; `None` if that is outside the image.
     pub(super) fn around_target(
         params: &'a ContourTrackerParams,
         quantizer: &'a ColorQuantizer,
@@ -58,7 +58,7 @@ impl<'a> Scene<'a> {
         }))
     }
 
-    /// The bins that a hypothesis gives the target: those with a colour in them, and more of them than the background has.
+    /// The target's bins under a hypothesis: those that contain colours, more of them than the background.
     pub(super) fn bin_set(&self, state: &ColorState) -> BinSet {
         let warp = state.warp_from(&self.reference.colors);
         let total = self.reference.cloud.n_pixels() as f32;
@@ -77,8 +77,8 @@ impl<'a> Scene<'a> {
         set
     }
 
-    /// The target in the segmentation by a set of bins: the blob that overlaps most with where it is expected, and those whose middle is
-    /// expected to be a part of it.
+    /// The target in the segmentation by a set of bins: the blob with the largest overlap with the expected position, and those whose centre
+    /// lies in the expected target.
     pub(super) fn target_mask(&self, set: &BinSet) -> Option<BitMask> {
         let blobs = self.segment(set).blobs(Connectivity::Eight);
         let main = blobs.most_overlapping(&self.expected).expect("invariant: one region for all")?;

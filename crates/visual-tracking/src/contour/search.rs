@@ -7,16 +7,16 @@ use crate::{
     RgbImage, TrackingError,
 };
 
-/// How much smaller or larger than before a target may be when it is found again.
+/// Allowed ratio of the area to the previous one, for a target found again.
 const AREA_RANGE: std::ops::Range<f64> = 0.4..2.5;
 
-/// How much more one side of a target may be stretched than its area says.
+/// Maximum stretch of one side of a target, relative to its change in size.
 const MAX_STRETCH: f64 = 1.4;
 
-/// Strengths of light to try above that of before, and as many below: steps of a fifth.
+/// Number of light intensities to try above the last one, and the same below: steps of a fifth.
 const N_GAINS: i32 = 6;
 
-/// Most blobs that are looked at for one hypothesis.
+/// Maximum number of blobs tested per hypothesis.
 const MAX_BLOBS: usize = 4;
 
 /// A blob that may be the target.
@@ -27,7 +27,7 @@ pub(super) struct BlobCandidate {
 }
 
 impl<'a> Scene<'a> {
-    /// The whole picture; nothing is known of the place. What is common in all of it counts as background.
+    /// The whole image, without a prior position. Colours frequent in all of it count as background.
     pub(super) fn whole(
         params: &'a ContourTrackerParams,
         quantizer: &'a ColorQuantizer,
@@ -51,7 +51,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The best blob of a hypothesis, anywhere, by its score times the likeness of its colours.
+    /// The best blob of a hypothesis, anywhere, by its score times the similarity of its colours.
     pub(super) fn find(&self, state: &ColorState) -> Option<BlobCandidate> {
         let blobs = self.segment(&self.bin_set(state)).blobs(Connectivity::Eight);
         let ratio = |area: usize| area as f64 / self.expected_area;
@@ -76,7 +76,7 @@ impl<'a> Scene<'a> {
         candidate.agreement.score(self.params)
     }
 
-    /// The snake laid on a blob in each of the ways that [`placements`] gives, and fitted.
+    /// Fits the snake to a blob from each of the [`placements`].
     pub(super) fn placed_on(&self, mask: &BitMask) -> Option<Candidate> {
         let fitted = placements(&self.reference.snake, mask, self.region.rect.corner());
         let fitted = fitted.iter().map(|start| Candidate::of_mask(self, start, mask));
@@ -84,8 +84,8 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Maps that lay a snake on a blob of a region with this corner: in its middle, of its area, and turned as it is; and with the axes of the snake along
-/// those of the blob, either way round, stretched by as much as the blob is, within bounds.
+/// Initial maps of a snake on a blob of a region with this corner: centred, of equal area, with unchanged orientation; and with the axes
+/// aligned with those of the blob, in both directions, stretched like the blob within bounds.
 fn placements(snake: &AffineSnake, mask: &BitMask, corner: (usize, usize)) -> Vec<AffineMap> {
     let last = snake.map();
     let scale = (mask.area() as f64 / snake.area_at(last)).sqrt();
@@ -119,7 +119,7 @@ fn axes(points: &[[f64; 2]]) -> (Matrix2<f64>, Vector2<f64>) {
     (Matrix2::new(cos, -sin, sin, cos), spread)
 }
 
-/// Where stronger light scales colours from; none in a space in which it does not.
+/// The fixed point of colours when the light intensity changes; `None` in a space that has none.
 pub(super) fn black(space: ColorSpace) -> Option<Vector3<f64>> {
     matches!(space, ColorSpace::Rgb | ColorSpace::Yuv | ColorSpace::Opponent)
         .then(|| Vector3::from(space.convert([0; 3])))

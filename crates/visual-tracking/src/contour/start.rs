@@ -11,17 +11,16 @@ use crate::{
     Outline, RgbImage, TrackStatus, TrackingError,
 };
 
-/// Corners of the ellipse that stands for a target of unknown shape.
+/// Number of corners of the ellipse used for a target of unknown shape.
 const N_ELLIPSE: usize = 80;
 
 /// The blob in a box must agree with it that well (intersection over union of the boxes) to be the target.
 const LEAST_IOU: f64 = 0.75;
 
-/// Half the width of limbs that are no part of the body, in sides of the box.
+/// Half the width of limbs that are excluded from the body, in sides of the box.
 const LIMB: f64 = 0.08;
 
-/// It must fill so much of its convex hull to be a body with some notches, which a few colours that the target shares with what is
-/// behind it leave; and so much not to have any.
+/// Minimum share of the convex hull that a body with notches fills; colours shared with the background cause notches.
 const LEAST_SOLIDITY: f64 = 0.75;
 const SOLID: f64 = 0.95;
 
@@ -29,7 +28,7 @@ impl ContourTracker {
     /// Starts from an outline in the first picture.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] for parameters out of range, [`TrackingError::Empty`] when no pixel of the picture is inside.
+    /// Returns [`TrackingError::Parameter`] if a parameter is out of range, or [`TrackingError::Empty`] if no image pixel is inside.
     pub fn from_outline(
         picture: &RgbImage,
         outline: &Outline,
@@ -54,7 +53,7 @@ impl ContourTracker {
     /// Starts from a mask of the first picture, the largest blob in it.
     ///
     /// # Errors
-    /// As [`from_outline`](Self::from_outline), and [`TrackingError::Dimension`] when the mask is not as large as the picture.
+    /// Returns the errors of [`from_outline`](Self::from_outline), and [`TrackingError::Dimension`] if mask and image differ in size.
     pub fn from_mask(
         picture: &RgbImage,
         mask: &BitMask,
@@ -65,11 +64,10 @@ impl ContourTracker {
         Self::from_outline(picture, &outline_of_mask(mask)?, params)
     }
 
-    /// Starts from a box in the first picture. The outline is that of the blob in it whose colours are more frequent in the box than round
-    /// it; where that does not fill the box, the ellipse that does.
-    ///
+    /// Starts from a box in the first image. The outline is that of the blob whose colours are more frequent inside the box than around it.
+    /// If the blob does not fill the box, the inscribed ellipse is used.
     /// # Errors
-    /// As [`from_outline`](Self::from_outline).
+    /// Returns the errors of [`from_outline`](Self::from_outline).
     pub fn from_box(
         picture: &RgbImage,
         bounds: &BoundingBox,
@@ -80,8 +78,8 @@ impl ContourTracker {
     }
 }
 
-/// The outline of what a box is drawn round: the blob of the colours that are more frequent in the ellipse in the box than round the box,
-/// without notches, if it fills the box, else that ellipse.
+/// The outline of the target in a box: the blob of the colours that are more frequent in the inscribed ellipse than around the box,
+/// without notches, if it fills the box, else the ellipse.
 fn outline_in_box(
     picture: &RgbImage,
     quantizer: &ColorQuantizer,
@@ -98,7 +96,7 @@ fn outline_in_box(
     let inner = region.shares(&region.inside(ellipse.points())?);
     let outer = region.shares(&box_mask.dilated(Element::Square { radius: 2 }).not());
     let set = BinSet::from_fn(quantizer, |bin| inner[usize::from(bin)] > outer[usize::from(bin)]);
-    // Closes small gaps in the colours of the target and cuts off what is thin beside it.
+    // Closes small gaps in the colours of the target and removes thin parts.
     let limb = (LIMB * (bounds.width() * bounds.height()).sqrt()).max(1.0) as usize;
     let closed = region.segment(&set).and(&box_mask)?.closed(Element::Square { radius: 2 });
     let blobs = closed
@@ -110,7 +108,7 @@ fn outline_in_box(
     Ok(body.filter(|body| body.bounding_box().iou(bounds) >= LEAST_IOU).unwrap_or(ellipse))
 }
 
-/// The outline of the largest blob of a mask as large as a picture.
+/// The outline of the largest blob of a full-size mask.
 fn outline_of_mask(mask: &BitMask) -> Result<Outline, TrackingError> {
     let blobs = mask.blobs(Connectivity::Eight);
     let blob = blobs.largest().and_then(|largest| blobs.mask(largest));

@@ -12,16 +12,15 @@ use crate::{
     Tracker, TrackingError,
 };
 
-/// Follows a target by its colours, which change, and its contour, which moves only by affine maps: CONDENSATION in colour space,
-/// validated by the contour. [Andrade-Cetto & Sanfeliu, section 3.3]
+/// Tracks a target by its colours, which change, and its contour, which moves by affine maps: CONDENSATION in colour space, validated by
+/// the contour. [Andrade-Cetto & Sanfeliu, section 3.3]
 ///
-/// Every sample is a hypothesis about the colours. It warps the colours of the last picture, switches on the bins they fall into,
-/// segments the picture, lays an affine snake on the blob of the target and is weighed by how well that agrees with the contour and the
-/// area of before. The best one is refined on the edges of the picture; what lies inside is the reference for the next picture.
+/// Every sample is a hypothesis about the colours. It warps the colours of the last image, selects their bins, segments the image and fits an
+/// affine snake to the target's blob. Its weight is the agreement with the previous contour and area. The best hypothesis is refined on the image
+/// edges; its interior is the reference for the next image.
 ///
-/// When the target is not recognized where it was expected, the whole picture is searched. It is [`TrackStatus::Lost`] when it is not found there
-/// either, with its shape and with colours that are alike; nothing is learned from such a picture.
-///
+/// If the target is not recognized at the expected position, the whole image is searched. The status is [`TrackStatus::Lost`] if the search
+/// finds no blob of its shape and similar colours; the tracker does not learn from such an image.
 /// ```
 /// use rand::SeedableRng;
 /// use wayfix_visual_tracking::{BoundingBox, ContourTracker, ContourTrackerParams, RgbImage, Tracker, TrackStatus};
@@ -58,7 +57,7 @@ impl ContourTracker {
         Self { dynamics, ..self }
     }
 
-    /// The parameters of the target's colours, $`\mathbf m`$, $`\boldsymbol λ`$ and the axes, as they were seen last: the path of Fig. 13.
+    /// The last observed parameters of the target's colours, $`\mathbf m`$, $`\boldsymbol λ`$ and the axes: the path of Fig. 13.
     pub fn colors(&self) -> &PrincipalColors {
         &self.reference.colors
     }
@@ -92,7 +91,7 @@ impl ContourTracker {
         Ok(target(&outline, TrackStatus::Tracked, found.quality))
     }
 
-    /// The target is not where it was expected: it is looked for everywhere.
+    /// Searches the whole image for a target that is not at its expected position.
     fn look_again<R: Rng + ?Sized>(
         &mut self,
         picture: &RgbImage,
@@ -100,7 +99,7 @@ impl ContourTracker {
         rng: &mut R,
     ) -> Result<Target, TrackingError> {
         let outline = self.reference.snake.outline();
-        // What was just not good enough to go on with is not what is sought.
+        // Excludes the candidate that was just rejected.
         let here = here.filter(|_| self.status == TrackStatus::Lost);
         self.miss()?;
         let quality = |found: &Option<Found>| found.as_ref().map_or(0.0, |found| found.quality);
@@ -135,7 +134,7 @@ impl Tracker for ContourTracker {
     /// One step of CONDENSATION.
     ///
     /// # Errors
-    /// [`TrackingError::Dimension`] when the picture is not as large as the first one.
+    /// Returns [`TrackingError::Dimension`] if image and first image differ in size.
     fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, rng: &mut R) -> Result<Target, TrackingError> {
         check_size("width of the picture", self.size.0, picture.width() as usize)?;
         check_size("height of the picture", self.size.1, picture.height() as usize)?;

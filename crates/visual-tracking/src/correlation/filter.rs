@@ -1,8 +1,7 @@
 use super::channels::lane::ComplexLane;
 use super::channels::planes::{PlaneFourier, Planes, Spectrum};
 
-/// A correlation filter whose support is the target: what lies around it is only there to be told apart.
-///
+/// A correlation filter with the target as its support; its surroundings serve only as negative examples.
 /// ```math
 /// f = \arg\min_f \tfrac12 ‖\sum_d f_d ⋆ x_d − y‖² + \tfrac{μ}{2} \sum_d ‖f_d − f_d^{t−1}‖², \qquad f_d = 0 \text{ outside the target}
 /// ```
@@ -17,7 +16,7 @@ pub(super) struct CorrelationFilter {
     support: Vec<f32>,
 }
 
-/// How a filter is learned.
+/// Parameters of filter learning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Learning {
     /// $`μ`$, in units of the mean energy of a frequency of the sample.
@@ -30,7 +29,7 @@ pub(super) struct Learning {
 const ROUNDS: usize = 2;
 
 impl CorrelationFilter {
-    /// For grids of `side` cells; `sigma` is the width of the desired response in cells, `support` is 1 on the target and 0 elsewhere.
+    /// For grids of `side` cells; `sigma` is the width of the desired response in cells, `support` is 1 on the target and 0 outside.
     pub(super) fn new(side: usize, sigma: f64, support: Vec<f32>) -> Self {
         let fourier = PlaneFourier::new(side);
         let mut planes = Planes::zeros(side, 1);
@@ -43,12 +42,12 @@ impl CorrelationFilter {
         Self { fourier, desired, support }
     }
 
-    /// The transform the samples come from.
+    /// The Fourier transform of the samples.
     pub(super) fn fourier(&self) -> &PlaneFourier {
         &self.fourier
     }
 
-    /// How a filter answers to a sample at every shift in cells, row by row with shift zero at the top left; about 1 at the target.
+    /// Response of a filter to a sample at every shift in cells, row by row with shift zero at the top left; about 1 at the target.
     pub(super) fn response(&self, filter: &Spectrum, sample: &Spectrum) -> Vec<f32> {
         let mut sums = vec![ComplexLane::default(); self.fourier.n_bins()];
         for (f, x) in filter.groups().zip(sample.groups()) {
@@ -120,7 +119,7 @@ impl CorrelationFilter {
         }
     }
 
-    /// The filter nearest to `free + dual` that vanishes outside the support, and what is left as the new dual.
+    /// The filter nearest to `free + dual` that vanishes outside the support, and the remainder as the new dual.
     fn constrained(&self, mut free: Spectrum, dual: &Spectrum) -> (Spectrum, Spectrum) {
         for (value, u) in free.bins.iter_mut().zip(&dual.bins) {
             *value = *value + *u;
@@ -146,7 +145,7 @@ mod tests {
 
     const SIDE: usize = 24;
 
-    /// Noise of energy 1, moved round by so many cells.
+    /// Noise of energy 1, shifted cyclically by this number of cells.
     fn sample(shift: [usize; 2]) -> Planes {
         let mut planes = Planes::zeros(SIDE, 2);
         let scale = 1.0 / ((2 * 8 * SIDE * SIDE) as f32 / 12.0).sqrt();

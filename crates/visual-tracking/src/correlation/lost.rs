@@ -7,7 +7,7 @@ use super::window::{Pose, SIDE};
 use crate::RgbImage;
 
 impl CorrelationTracker {
-    /// Where the trusted filter recognizes the target, if it does: in sight or, when it has not for a while, in another place in turn.
+    /// Pose at which the trusted filter recognizes the target, if any: in the window or, after some images without it, at the next place of a scan.
     pub(super) fn recognized_elsewhere(
         &self,
         picture: &RgbImage,
@@ -48,7 +48,7 @@ impl CorrelationTracker {
         (self.n_lost, self.n_without_evidence, self.n_recentering) = (0, 0, N_RECENTERING_FRAMES);
     }
 
-    /// Where in what is seen `around` a pose a filter recognizes the target, if it does.
+    /// Pose at which a filter recognizes the target in the window `around` a pose, if any.
     fn recognized_by(
         &self,
         filter: &Spectrum,
@@ -66,7 +66,7 @@ impl CorrelationTracker {
         (self.recognized(evidence) && self.has_target_colors(&sample)).then_some((pose, sample, evidence))
     }
 
-    /// One place after the other, so that the whole picture is looked at again and again.
+    /// Places in turn, so that the whole image is searched repeatedly.
     fn place(&self, turn: usize) -> [f64; 2] {
         let tiles = self.recognizer.window.tiles(self.picture_size, self.pose.scale);
         tiles[turn % tiles.len()]

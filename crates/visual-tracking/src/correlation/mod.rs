@@ -1,4 +1,4 @@
-//! A target followed by how its shape and its colours stand out from what is around it.
+//! A tracker that separates the shape and colours of a target from its surroundings.
 
 mod channels;
 mod filter;

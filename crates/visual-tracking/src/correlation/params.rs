@@ -1,11 +1,11 @@
 use crate::TrackingError;
 use crate::error::{checked, probability};
 
-/// How a [`CorrelationTracker`](super::CorrelationTracker) sees, learns and doubts.
+/// Parameters of a [`CorrelationTracker`](super::CorrelationTracker).
 ///
-/// The defaults were chosen on OTB "David" and on photographs pasted into photographs that move, turn, grow, deform, and are lit and
-/// hidden. There the mean overlap is flat: halving or doubling one parameter changes it by 0.01 or less in most sequences; what it decides
-/// is now and then whether a target is found again after it was hidden.
+/// The defaults were chosen on OTB "David" and on synthetic sequences of photographs that move, rotate, grow, deform, and change in light
+/// and occlusion. The mean overlap is flat there: halving or doubling one parameter changes it by 0.01 or less in most sequences. The main
+/// effect is whether a target is sometimes found again after an occlusion.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -14,11 +14,11 @@ use crate::error::{checked, probability};
     serde(default, deny_unknown_fields)
 )]
 pub struct CorrelationTrackerParams {
-    /// Side of the window the target is looked for in, in sides of a square of the target's area. Default 4.
+    /// Side of the search window, in sides of a square of the target's area. Default 4.
     pub padding: f64,
     /// Width of the response that is desired at the target, in sides of the target. Default 1/16.
     pub response_width: f64,
-    /// How much a filter keeps to the one before, in units of the energy of a picture. Default 2.5.
+    /// Weight of the previous filter in learning, in units of the energy of an image. Default 2.5.
     pub inertia: f64,
     /// Weight by which the filter's two domains are brought to agree, in the same units. Default 0.2.
     pub penalty: f64,
@@ -26,11 +26,11 @@ pub struct CorrelationTrackerParams {
     pub color_share: f64,
     /// Share of the grey values, the rest being gradients. Default 0.05.
     pub grey_share: f64,
-    /// Weight of the colour histograms beside the filter when the target is looked for. Default 0.3.
+    /// Weight of the colour histograms relative to the filter in the search. Default 0.3.
     pub color_weight: f64,
     /// Rate at which the colour histograms follow. Default 0.04.
     pub color_rate: f64,
-    /// Standard deviation of how far a target moves between two pictures, in sides of the target. Default 2.
+    /// Standard deviation of the motion of a target between two images, in sides of the target. Default 2.
     pub motion_width: f64,
     /// Scales that are compared, an odd number. Default 17.
     pub n_scales: usize,
@@ -38,7 +38,7 @@ pub struct CorrelationTrackerParams {
     pub scale_step: f64,
     /// Rate at which the filter over scales follows. Default 0.025.
     pub scale_rate: f64,
-    /// Standing out, in standard deviations of the response, below which there is no evidence of the target. Noise reaches 5 to 9.
+    /// Peak-to-sidelobe ratio, in standard deviations of the response, below which there is no evidence of the target. Noise reaches 5 to 9.
     /// Default 10.
     pub no_evidence_below: f64,
     /// Pictures in a row without evidence after which the target is lost. Default 8.
@@ -47,11 +47,11 @@ pub struct CorrelationTrackerParams {
     pub learn_above: f64,
     /// Standing out above which a target is recognized, after an occlusion or a loss. Default 15.
     pub recognize_above: f64,
-    /// Share of the usual response that it takes for that, too; three fifths of it suffice for a lost target. Default 0.5.
+    /// Minimum share of the typical response for recognition; three fifths of it suffice for a lost target. Default 0.5.
     pub recognize_share: f64,
-    /// Share of the usual agreement of colours below which something is not the target unless its shape is recognized. Default 0.5.
+    /// Share of the typical colour agreement below which a target must also be recognized by its shape. Default 0.5.
     pub color_agreement_share: f64,
-    /// Pictures after which a changed target is believed to be the target, if what it was is not seen elsewhere. Default 60.
+    /// Images after which a changed target is accepted, if its old appearance is not found in another place. Default 60.
     pub forget_after: usize,
     /// Places beside the last one that are searched in each picture while the target is lost. Default 2.
     pub n_searches: usize,

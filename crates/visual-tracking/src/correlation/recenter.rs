@@ -3,18 +3,18 @@ use super::tracker::CorrelationTracker;
 use super::window::SIDE;
 use crate::RgbImage;
 
-/// Pictures after a target was found again in which it may come further into sight, a second or two.
+/// Images after a recovery in which more of the target may become visible, a second or two.
 pub(super) const N_RECENTERING_FRAMES: usize = 40;
-/// By how much the share of the target's colours must be larger in another place.
+/// Minimum gain in the share of the target's colours for a move.
 const CLEARLY: f64 = 0.03;
-/// How far away that place may be, as a standard deviation, in sides of the target.
+/// Standard deviation of the move, in sides of the target.
 const REACH: f64 = 0.5;
 
 impl CorrelationTracker {
-    /// Moves the box of a target that was found a moment ago to where most of its colours are.
+    /// Moves the box of a recently recovered target to the position with most of its colours.
     ///
-    /// What comes out from behind something is found when a part of it is in sight, and what has turned is found by what looks as it did. A filter
-    /// that learns it there keeps it there, beside the middle; the colours say where the rest has come out.
+    /// An occluded target is found when a part of it is visible, and a rotated one at the part that still matches. A filter learned there would
+    /// keep the offset from the middle; the colours show the visible rest.
     pub(super) fn recenter(&mut self, picture: &RgbImage) {
         if self.n_recentering == 0 {
             return;

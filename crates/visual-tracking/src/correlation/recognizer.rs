@@ -8,7 +8,7 @@ use super::window::{Pose, SIDE, Window};
 use crate::RgbImage;
 use crate::picture::rgb_pixels;
 
-/// Sees the window around a pose, and what a filter recognizes in it.
+/// Samples the window around a pose and applies filters to it.
 #[derive(Clone, Debug)]
 pub(super) struct Recognizer {
     pub(super) window: Window,
@@ -16,18 +16,18 @@ pub(super) struct Recognizer {
     shares: Shares,
 }
 
-/// What is seen around a pose.
+/// Sample of the window around a pose.
 #[derive(Clone, Debug)]
 pub(super) struct WindowSample {
     pub(super) patch: Patch,
     pub(super) spectrum: Spectrum,
 }
 
-/// How much a filter recognizes in the middle of what is seen.
+/// Response of a filter in the middle of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FilterResponse {
     pub(super) value: f64,
-    /// How far the value stands out of the rest, in standard deviations; 0 if there is a higher one elsewhere.
+    /// Peak-to-sidelobe ratio of the value, in standard deviations; 0 if there is a higher value elsewhere.
     pub(super) peak_to_sidelobe: f64,
 }
 
@@ -50,7 +50,7 @@ impl Recognizer {
         self.sample(self.window.patch(picture, pose))
     }
 
-    /// What a patch of the window shows.
+    /// Computes the sample of a patch.
     pub(super) fn sample(&self, patch: Patch) -> WindowSample {
         let features = features(&patch, self.window.taper(), self.shares);
         WindowSample { spectrum: self.filter.fourier().forward(&features), patch }

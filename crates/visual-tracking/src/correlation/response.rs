@@ -5,7 +5,7 @@ pub(super) struct Peak {
     pub(super) shift: [f64; 2],
     /// The response there.
     pub(super) value: f64,
-    /// By how many standard deviations of the rest the peak rises above its mean. [Bolme et al. 2010, sec. 3.5]
+    /// Height of the peak above the mean of the rest, in standard deviations of the rest. [Bolme et al. 2010, sec. 3.5]
     pub(super) peak_to_sidelobe: f64,
 }
 
@@ -29,8 +29,8 @@ impl Peak {
     }
 }
 
-/// Where a Gaussian through three values at −1, 0, 1 has its top, the middle one being the highest; where a value is not positive, a
-/// parabola. A parabola alone answers a fifth too little, which adds up when every picture is learned where it was found.
+/// Maximum of a Gaussian through three values at −1, 0, 1 with the largest in the middle; of a parabola if a value is not positive. A
+/// parabola underestimates the offset by a fifth, which would accumulate because every image is learned at its estimate.
 pub(super) fn vertex(before: f64, at: f64, after: f64) -> f64 {
     let [before, at, after] =
         if before.min(after) > 0.0 { [before, at, after].map(libm::log) } else { [before, at, after] };

@@ -146,7 +146,7 @@ impl ScaleFilter {
 mod tests {
     use super::*;
 
-    /// Blobs seen from so much nearer, the same point in the middle.
+    /// An image of blobs enlarged by a factor about the centre.
     fn zoomed(factor: f64) -> RgbImage {
         let value = |i: usize| {
             let off = |at: usize| (at as f64 + 0.5 - 60.0) / factor;
@@ -163,7 +163,7 @@ mod tests {
         let mut filter = ScaleFilter::new(17, 1.03, size);
         filter.learn(&zoomed(1.0), center, size, 1.0);
         for factor in [0.9, 0.97, 1.0, 1.05, 1.12] {
-            // the taper over scales pulls towards none, so that a large step takes two looks
+            // the taper over scales is biased towards no change, so a large step takes two updates
             let shown = zoomed(factor);
             let first = filter.factor(&shown, center, size);
             let found = first * filter.factor(&shown, center, size.map(|side| side * first));

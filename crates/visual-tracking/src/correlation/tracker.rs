@@ -15,29 +15,29 @@ use crate::{RgbImage, TrackingError};
 
 /// Sides below which a target has no shape, in pixels.
 const MIN_SIDE: f64 = 3.0;
-/// How much larger than the picture a target may grow, as something that comes close does.
+/// Maximum size of a target relative to the image; a close object may exceed it.
 const MAX_SHARE: f64 = 1.5;
-/// Rate at which the response that is usual follows.
+/// Rate at which the typical response adapts.
 const TYPICAL_RATE: f64 = 0.05;
 
-/// Follows what a box encloses by its shape, its colours and its size: anything, in colour or grey, from the first box alone.
+/// Tracks an arbitrary target by its shape, its colours and its size, in colour or grey, from its first box alone.
 ///
-/// Each picture is looked at in a square window around the last place. Position: the peak of
+/// Each image is sampled in a square window around the last position. Position: the peak of
 ///
 /// ```math
 /// (1 − w) \sum_d f_d ⋆ x_d + w \, \overline{p(c)}
 /// ```
 ///
-/// where $`x_d`$ are gradient-orientation, grey and colour channels, $`f`$ is a correlation filter that vanishes outside the target and
-/// stays near the one before [Galoogahi et al. 2017; Li et al. 2018], and $`p(c)`$ the ratio of the colour histograms of target and
-/// surroundings [Bertinetto et al. 2016]. Size: a correlation filter over scales [Danelljan et al. 2017]. Whatever is found is learned,
-/// if it stands out of the rest of the response. The filter that recognized the target last beyond doubt is kept: when something passes
-/// in front and is learned, the kept one finds the target where it comes out again. What the kept filter does not recognize and what has other
-/// colours is not learned. The target is [`Lost`](TrackStatus::Lost) when such a thing hardly stands out, or nothing does for some pictures. It
-/// is then looked for in the whole picture, upright and turned, and found where shape and colours agree.
+/// where $`x_d`$ are gradient-orientation, grey and colour channels. $`f`$ is a correlation filter that vanishes outside the target and stays near
+/// the previous one [Galoogahi et al. 2017; Li et al. 2018]. $`p(c)`$ is the ratio of the colour histograms of target and surroundings [Bertinetto
+/// et al. 2016]. Size: a correlation filter over scales [Danelljan et al. 2017].
 ///
-/// The memory does not grow, and nothing is random: the generator of [`Tracker::track`] is not used.
+/// Every result with a distinct peak is learned. The last filter that recognized the target beyond doubt is kept: after an occluder was learned,
+/// the kept filter finds the target where it reappears. A result is not learned if the kept filter does not recognize it and its colours
+/// differ. The target is [`Lost`](TrackStatus::Lost) if such a result has no distinct peak, or if no result has one for some images. The tracker then
+/// searches the whole image, upright and rotated, and requires agreement of shape and colours.
 ///
+/// Memory use is constant and no step is random: the generator of [`Tracker::track`] is not used.
 /// ```
 /// use rand::SeedableRng;
 /// use rand_chacha::ChaCha8Rng;
@@ -69,30 +69,29 @@ pub struct CorrelationTracker {
     pub(super) pose: Pose,
     /// The filter as it was learned last.
     pub(super) current: Spectrum,
-    /// What the window showed when the target was learned last.
+    /// The window at the last learning step.
     pub(super) learned: Patch,
-    /// The filter when the target was last recognized beyond doubt.
+    /// The filter at the last recognition beyond doubt.
     pub(super) trusted: Spectrum,
     /// Pictures since then.
     pub(super) n_untrusted: usize,
-    /// The response that is usual for the target.
+    /// Typical response at the target.
     pub(super) typical_response: f64,
-    /// The agreement of colours that is usual for it.
+    /// Typical colour agreement at the target.
     pub(super) typical_color_agreement: f64,
     /// Pictures in a row without evidence.
     pub(super) n_without_evidence: usize,
     /// Pictures since the target was lost; 0 while it is not.
     pub(super) n_lost: usize,
-    /// Pictures in which a target that was found again may come further into sight.
+    /// Remaining images in which more of a recovered target may become visible.
     pub(super) n_recentering: usize,
 }
 
 impl CorrelationTracker {
-    /// Starts from the box around the target in the first picture; what of it lies outside the picture is cut off.
-    ///
+    /// Starts from the box around the target in the first image; the box is clipped to the image.
     /// # Errors
-    /// [`TrackingError::Parameter`] for a parameter out of its range and a target smaller than 3 pixels,
-    /// [`TrackingError::OutsidePicture`] for a box beyond the picture, [`TrackingError::Empty`] when all is of one colour.
+    /// Returns [`TrackingError::Parameter`] if a parameter is out of range or the target is smaller than 3 pixels, [`TrackingError::OutsidePicture`]
+    /// if the box is outside the image, or [`TrackingError::Empty`] if the image is uniform.
     pub fn new(
         picture: &RgbImage,
         target: BoundingBox,
@@ -143,7 +142,7 @@ impl CorrelationTracker {
     /// One picture of a target in sight; the quality.
     fn follow(&mut self, picture: &RgbImage) -> f64 {
         let around = self.recognizer.sample_at(picture, self.pose);
-        // What looks exactly as it was learned has not moved and teaches nothing. The fraction of a cell that a peak is off even then would add up.
+        // An unchanged patch has not moved and adds no information. The fraction of a cell by which even its peak is off would accumulate.
         if around.patch == self.learned {
             self.n_without_evidence = 0;
             return self.recognizer.evidence(&self.current, &around).value / self.typical_response;
@@ -159,7 +158,7 @@ impl CorrelationTracker {
         }
         let evidence = self.recognizer.evidence(&self.current, &sample);
         let is_unlike = !self.recognized(trust) && !self.has_target_colors(&sample);
-        // what may be something else must show more
+        // a dissimilar result needs a higher response
         let least = if is_unlike { self.params.recognize_above } else { self.params.no_evidence_below };
         if evidence.peak_to_sidelobe < least {
             self.n_without_evidence += 1;
@@ -201,13 +200,13 @@ impl CorrelationTracker {
     }
 
     pub(super) fn recognized(&self, evidence: FilterResponse) -> bool {
-        // a lost target has changed more since it was learned, and nothing is given up for it
+        // a lost target has changed more since it was learned, and a lower threshold carries no risk
         let share = self.params.recognize_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
         evidence.peak_to_sidelobe > self.params.recognize_above
             && evidence.value > share * self.typical_response
     }
 
-    /// Whether the colours in the middle of what is seen may be the target's.
+    /// Whether the colours in the middle of a sample may be the target's.
     pub(super) fn has_target_colors(&self, sample: &WindowSample) -> bool {
         self.is_typical(self.agreement(sample))
     }

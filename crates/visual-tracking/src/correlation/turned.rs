@@ -8,19 +8,19 @@ use super::tracker::CorrelationTracker;
 use super::window::{Pose, SIDE, Window};
 use crate::RgbImage;
 
-/// Angles at which a lost target is looked for; a filter recognizes what is turned by half of the angle between two.
+/// Angles searched for a lost target; a filter recognizes rotations of up to half the step.
 const N_ANGLES: usize = 12;
-/// How many of them in one picture.
+/// Angles searched per image.
 const N_AT_ONCE: usize = 6;
-/// Pixels along a target in the small picture in which its colours are looked for.
+/// Pixels along a target in the small image used for the colour search.
 const COARSE: f64 = 12.0;
-/// How much more a turned target must stand out than an upright one: there are so many more places where chance could show it.
+/// Factor on the required peak of a rotated target: the search has many more places for a chance match.
 const STRICTER: f64 = 1.25;
 
 impl CorrelationTracker {
-    /// Looks for a lost target that has turned meanwhile, where the picture is most of its colours; the quality.
+    /// Searches for a lost, rotated target at the position with most of its colours; returns the quality.
     ///
-    /// What is found is learned afresh as it stands there, for a filter knows one posture only.
+    /// The filter is relearned at the result, because it covers one orientation only.
     pub(super) fn search_turned(&mut self, picture: &RgbImage) -> f64 {
         let from = Pose { center: self.most_alike(picture), ..self.pose };
         let surroundings = self.recognizer.window.surroundings(picture, from);
@@ -48,7 +48,7 @@ impl CorrelationTracker {
         peak.value / self.typical_response
     }
 
-    /// Learns the target afresh as it stands there.
+    /// Relearns the target at a pose.
     pub(super) fn relearn(&mut self, picture: &RgbImage, pose: Pose, sample: &WindowSample) {
         let learning = Learning { inertia: 0.0, penalty: self.params.penalty as f32 };
         self.current = self.recognizer.filter.learned(None, &sample.spectrum, learning);

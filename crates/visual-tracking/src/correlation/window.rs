@@ -9,14 +9,14 @@ pub(super) const SIDE: usize = 48;
 /// Pixels along the window once it is resampled.
 pub(super) const PIXELS: usize = SIDE * CELL;
 
-/// Where the target is, in pixels of the picture, and how large beside the first one.
+/// Position of the target, in image pixels, and its size relative to the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
     pub(super) center: [f64; 2],
     pub(super) scale: f64,
 }
 
-/// The square around the target that the tracker looks at: a grid of cells, the same for every size of the target.
+/// The search square around the target: a grid of cells, the same for every size of the target.
 #[derive(Clone, Debug)]
 pub(super) struct Window {
     /// Size of the target at scale 1, in pixels of the picture.
@@ -27,7 +27,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// `padding` times as wide as a square of the target's area, and wider than the target in any case.
+    /// `padding` times as wide as a square of the target's area, and always wider than the target.
     pub(super) fn around(size: [f64; 2], padding: f64) -> Self {
         let side = (padding * (size[0] * size[1]).sqrt()).max(1.6 * size[0].max(size[1]));
         let hann = |i: usize| 0.5 - 0.5 * libm::cos(TAU * (i as f64 + 0.5) / SIDE as f64);
@@ -55,12 +55,12 @@ impl Window {
         (self.size[0] * self.size[1]).sqrt() * SIDE as f64 / self.side
     }
 
-    /// What the picture shows in the window.
+    /// The patch of the image in the window.
     pub(super) fn patch(&self, picture: &RgbImage, pose: Pose) -> Patch {
         Patch::sampled(picture, pose.center, [self.side * pose.scale; 2], (PIXELS, PIXELS))
     }
 
-    /// What the picture shows in the window and a little around it, so that the window can be [turned](Self::turned).
+    /// The patch of the image in an enlarged window, which can be [rotated](Self::turned).
     pub(super) fn surroundings(&self, picture: &RgbImage, pose: Pose) -> Patch {
         let pixels = (PIXELS as f64 * SQRT_2).ceil() as usize;
         let extent = self.side * pose.scale * pixels as f64 / PIXELS as f64;
@@ -79,7 +79,7 @@ impl Window {
         Pose { center, ..pose }
     }
 
-    /// 1 in cells of the target, 0 elsewhere, a share in cells that it covers in part.
+    /// 1 in cells of the target, 0 outside, a share in cells that it partly covers.
     pub(super) fn support(&self) -> Vec<f32> {
         let covered = |i: usize, axis: usize| {
             let cells = self.size[axis] * SIDE as f64 / self.side;
@@ -89,7 +89,7 @@ impl Window {
         (0..SIDE * SIDE).map(|i| (covered(i % SIDE, 0) * covered(i / SIDE, 1)) as f32).collect()
     }
 
-    /// How likely shifts are, in the order of a response: a Gaussian of `width` sides of the target.
+    /// Prior probability of shifts, in the order of a response: a Gaussian of `width` sides of the target.
     pub(super) fn shift_prior(&self, width: f64) -> Vec<f32> {
         let sigma = width * self.target_cells();
         let along: Vec<f64> = (0..SIDE).map(|i| libm::exp(-0.5 * (signed(i) / sigma).powi(2))).collect();

@@ -4,17 +4,15 @@ use super::{ColorState, ColorWarp, PrincipalColors};
 use crate::TrackingError;
 use crate::error::checked;
 
-/// Cells per axis in which colours are put together: finer than any histogram that is made of them, so that a warped cloud has no gaps.
+/// Cells per axis in which colours are merged: finer than any histogram computed from them, so that a warped cloud has no gaps.
 const N_CELLS: f64 = 64.0;
 
 /// Pixels below which a remembered point is forgotten.
 const FADED: f64 = 0.5;
 
-/// The colours that belong to the target, $`\mathcal C_t`$, as points of the colour space with the number of pixels each stands for.
-/// [Andrade-Cetto & Sanfeliu, section 3.3]
+/// The target's colours, $`\mathcal C_t`$, as points of the colour space with pixel counts. [Andrade-Cetto & Sanfeliu, section 3.3]
 ///
-/// Pixels of nearly the same colour are one point, so that the cloud stays small however large the target is.
-///
+/// Pixels of nearly equal colour are one point, so the size of the cloud does not grow with the target.
 /// ```
 /// use wayfix_visual_tracking::ColorCloud;
 /// let cloud = ColorCloud::from_colors([[0.2, 0.5, 0.5], [0.201, 0.5, 0.5], [0.6, 0.5, 0.5]], 1000)?;
@@ -31,7 +29,7 @@ impl ColorCloud {
     /// Of the colours of pixels, every axis from 0 to 1. Of more than `max_points` the rarest are left out.
     ///
     /// # Errors
-    /// [`TrackingError::Empty`] without colours or points, [`TrackingError::NotFinite`].
+    /// Returns [`TrackingError::Empty`] without colours or points, [`TrackingError::NotFinite`].
     pub fn from_colors(
         colors: impl IntoIterator<Item = [f64; 3]>,
         max_points: usize,
@@ -40,10 +38,9 @@ impl ColorCloud {
         Self::from_counted(counted, max_points)
     }
 
-    /// Of colours that stand for several pixels each, not necessarily a whole number.
-    ///
+    /// A cloud of colours with a pixel count each, not necessarily a whole number.
     /// # Errors
-    /// As [`from_colors`](Self::from_colors), and [`TrackingError::Parameter`] for a count below zero.
+    /// Returns the errors of [`from_colors`](Self::from_colors), and [`TrackingError::Parameter`] for a count below zero.
     pub fn from_counted(
         colors: impl IntoIterator<Item = (Vector3<f64>, f64)>,
         max_points: usize,
@@ -82,34 +79,32 @@ impl ColorCloud {
         &self.points
     }
 
-    /// How many pixels each point stands for.
+    /// Pixel count of each point.
     pub fn counts(&self) -> &[f64] {
         &self.counts
     }
 
-    /// How many points there are.
+    /// Number of points.
     pub fn n_points(&self) -> usize {
         self.points.len()
     }
 
-    /// How many pixels there are.
+    /// Number of pixels.
     pub fn n_pixels(&self) -> f64 {
         self.counts.iter().sum()
     }
 
-    /// Its parameters; axes continue those of `previous`.
-    ///
+    /// Principal colours of the cloud; axes continue those of `previous`.
     /// # Errors
-    /// As [`PrincipalColors::of`].
+    /// Returns the errors of [`PrincipalColors::of`].
     pub fn principal(&self, previous: Option<&PrincipalColors>) -> Result<PrincipalColors, TrackingError> {
         PrincipalColors::of(&self.points, &self.counts, previous)
     }
 
-    /// The cloud with what an older one had, carried along by the change from `before` to `now` and counting `memory` times as much. Points
-    /// that stand for less than `FADED` pixels are forgotten.
-    ///
+    /// Merges the cloud with an older one, warped by the change from `before` to `now` and weighted by `memory`. Points with fewer than `FADED`
+    /// pixels are dropped.
     /// # Errors
-    /// As [`from_counted`](Self::from_counted).
+    /// Returns the errors of [`from_counted`](Self::from_counted).
     pub(crate) fn with_memory_of(
         &self,
         older: &Self,

@@ -11,7 +11,7 @@ type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
 /// $`\mathbf s = [\mathbf x; \dot{\mathbf x}]`$ and standard normal $`\mathbf w`$. [Andrade-Cetto & Sanfeliu, section 3.3,
 /// "Probabilistic propagation of samples"]
 ///
-/// The velocity is the last change, so $`A`$ and $`B`$ have two block rows that say the same:
+/// The velocity is the last change, so $`A`$ and $`B`$ have two equivalent block rows:
 /// $`A = \begin{bmatrix} F_x & F_v \\ F_x - I & F_v \end{bmatrix}`$ and $`B = [L; L]`$.
 ///
 /// ```
@@ -31,11 +31,10 @@ pub struct ColorDynamics {
 }
 
 impl ColorDynamics {
-    /// $`F_x = I`$, $`F_v = d I`$: the velocity is kept, times a `damping` $`d`$ from 0 (a random walk) to 1, and every number of the state
-    /// gets noise of its own standard deviation per picture.
-    ///
+    /// $`F_x = I`$, $`F_v = d I`$: the velocity is kept, times a `damping` $`d`$ from 0 (a random walk) to 1. Every component of the state has noise
+    /// with its own standard deviation per image.
     /// # Errors
-    /// [`TrackingError::Parameter`] when a number is out of its range.
+    /// Returns [`TrackingError::Parameter`] if a number is out of its range.
     pub fn constant_velocity(damping: f64, sigma: &ColorVector) -> Result<Self, TrackingError> {
         crate::error::probability("damping of the colour velocity", damping)?;
         for &sigma in sigma {
@@ -52,7 +51,7 @@ impl ColorDynamics {
     /// From $`F_x`$, $`F_v`$ and $`L`$.
     ///
     /// # Errors
-    /// [`TrackingError::NotFinite`].
+    /// Returns [`TrackingError::NotFinite`].
     pub fn from_matrices(
         from_value: Square,
         from_velocity: Square,

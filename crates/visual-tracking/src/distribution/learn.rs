@@ -5,14 +5,14 @@ use crate::TrackingError;
 
 type Square = SMatrix<f64, COLOR_DIM, COLOR_DIM>;
 
-/// What a training sequence says about how colours change.
+/// Colour dynamics learned from a training sequence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearnedDynamics {
     /// $`A`$ and $`B`$.
     pub dynamics: ColorDynamics,
-    /// Covariance of what the dynamics leave unexplained, $`L Lᵀ`$.
+    /// Covariance of the residuals of the dynamics, $`L Lᵀ`$.
     pub residual_covariance: SMatrix<f64, COLOR_DIM, COLOR_DIM>,
-    /// How many steps it was learned from.
+    /// Number of steps in the training sequence.
     pub n_steps: usize,
 }
 
@@ -21,12 +21,12 @@ impl ColorDynamics {
     /// $`\min_F \sum_t \| \mathbf x_t - F_x \mathbf x_{t-1} - F_v \dot{\mathbf x}_{t-1} \|^2 + κ \| F - F_0 \|^2`$, and $`L Lᵀ`$ is the
     /// covariance of the residuals. [Andrade-Cetto & Sanfeliu, section 3.3: "A and B are estimated a priori from a training sequence"]
     ///
-    /// `ridge` $`κ ≥ 0`$ pulls towards $`F_0`$, constant velocity: what never changed in the training sequence then goes on not changing. It is
+    /// `ridge` $`κ ≥ 0`$ pulls towards $`F_0`$, constant velocity: a quantity constant in the training sequence then stays constant. It is
     /// in units of the squared states; 0 is plain least squares and needs a sequence in which all 16 numbers vary. The angles of the
-    /// series are to be added up from picture to picture ([`PrincipalColors::angles_since`](super::PrincipalColors::angles_since)).
+    /// series must be accumulated from image to image ([`PrincipalColors::angles_since`](super::PrincipalColors::angles_since)).
     ///
     /// # Errors
-    /// [`TrackingError::Empty`] with less than 18 states (16 unknowns a row), [`TrackingError::NotFinite`], and
+    /// Returns [`TrackingError::Empty`] with less than 18 states (16 unknowns a row), [`TrackingError::NotFinite`], and
     /// [`TrackingError::Parameter`] for a negative ridge or, with ridge 0, for a sequence that leaves something open.
     pub fn learn(series: &[ColorVector], ridge: f64) -> Result<LearnedDynamics, TrackingError> {
         crate::error::checked("ridge", ridge, ridge.is_finite() && ridge >= 0.0, "finite, not negative")?;
@@ -38,7 +38,7 @@ impl ColorDynamics {
                 return Err(TrackingError::NotFinite { what: "colour state", index, value });
             }
         }
-        // What constant velocity leaves: its regression on the state is F - F_0.
+        // Residuals of constant velocity: their regression on the state is F - F_0.
         let steps = || series.windows(3).map(|x| (regressor(&x[0], &x[1]), x[2] - (x[1] * 2.0 - x[0])));
         let mut gram = SMatrix::<f64, 16, 16>::identity() * ridge;
         let mut cross = SMatrix::<f64, 16, COLOR_DIM>::zeros();
@@ -73,7 +73,7 @@ fn regressor(before: &ColorVector, now: &ColorVector) -> SMatrix<f64, 16, 1> {
     )
 }
 
-/// Whether the pivots span less than 1e12, so that at least four digits of the solution hold.
+/// Whether the ratio of the pivots is below 1e12, so that at least four digits of the solution are accurate.
 fn well_conditioned(factor: &Cholesky<f64, nalgebra::Const<16>>) -> bool {
     let pivots = factor.l_dirty().diagonal();
     pivots.min() > pivots.max() * 1e-6
@@ -129,7 +129,7 @@ mod tests {
         let learned = ColorDynamics::learn(&series(n, 3), 0.0).unwrap();
         let standard_error = 1.0 / (n as f64).sqrt();
         let difference = learned.dynamics.transition() - truth().transition();
-        // Of 256 numbers the largest lies within five standard errors all but surely.
+        // The largest of 256 numbers almost always lies within five standard errors.
         assert!(difference.amax() < 10.0 * standard_error, "{}", difference.amax());
         let noise = truth().noise();
         let covariance = noise * noise.transpose();

@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Rotation3, SymmetricEigen, Vector3};
 
 use crate::TrackingError;
 
-/// Variance below which axes are not told apart: a step of an 8-bit channel, uniformly spread, $`(1/255)^2 / 12`$.
+/// Variance below which axes are not distinguished: a step of an 8-bit channel, uniformly spread, $`(1/255)^2 / 12`$.
 const TIE: f64 = 1.0 / (255.0 * 255.0 * 12.0);
 
 /// Centroid and principal components of a set of colours: $`\mathbf m`$, $`\boldsymbol λ`$ and the axes that go with them.
@@ -30,16 +30,16 @@ pub struct PrincipalColors {
 }
 
 impl PrincipalColors {
-    /// Of weighted colours.
+    /// The principal axes of weighted colours.
     ///
-    /// With `previous` the axes keep their identity: each is the one that continues the axis of the same number, with the same sign.
-    /// Where the colours do not say which way an axis points, because they have no extent there or the same extent all round, it stays
-    /// where it was: the eigenvectors are those of $`C + ε\, U \operatorname{diag}(2, 1, 0)\, Uᵀ`$, with the axes $`U`$ of before and a
+    /// With `previous` the axes keep their identity: each continues the axis of the same number, with the same sign. If the colours do not
+    /// determine the direction of an axis, because they have no extent there or equal extents in several directions, the previous
+    /// direction remains: the eigenvectors are those of $`C + ε\, U \operatorname{diag}(2, 1, 0)\, Uᵀ`$, with the previous axes $`U`$ and a
     /// variance $`ε`$ that 8-bit colours cannot resolve. Without `previous`, $`U`$ is the identity and axes are in falling order.
     ///
     /// # Errors
-    /// [`TrackingError::Empty`] without weight, [`TrackingError::Dimension`] when lists differ in length,
-    /// [`TrackingError::NotFinite`], and [`TrackingError::Parameter`] for a negative weight.
+    /// Returns [`TrackingError::Empty`] without weight, [`TrackingError::Dimension`] if lists differ in length, [`TrackingError::NotFinite`], or
+    /// [`TrackingError::Parameter`] for a negative weight.
     pub fn of(
         colors: &[Vector3<f64>],
         weights: &[f64],
@@ -104,7 +104,7 @@ fn matched(vectors: &Matrix3<f64>, before: &Matrix3<f64>) -> Matrix3<f64> {
     let mut axes =
         Matrix3::from_fn(|row, i| vectors[(row, order[i])] * 1_f64.copysign(cosines[(i, order[i])]));
     if axes.determinant() < 0.0 {
-        // The axis whose sign is the least certain.
+        // The axis with the least certain sign.
         let least = (0..3).fold(0, |least, i| {
             if cosines[(i, order[i])].abs() < cosines[(least, order[least])].abs() { i } else { least }
         });
@@ -141,7 +141,7 @@ mod tests {
         let mut previous =
             PrincipalColors::of(&ellipsoid(&turn(0.0), [0.2, 0.1, 0.05]), &[1.0; 6], None).unwrap();
         for step in 1..=63 {
-            // On the way round the second axis grows beyond the first.
+            // During the rotation the second axis becomes longer than the first.
             let colors = ellipsoid(&turn(f64::from(step) * 0.1), [0.2, 0.1 + 0.003 * f64::from(step), 0.05]);
             let next = PrincipalColors::of(&colors, &[1.0; 6], Some(&previous)).unwrap();
             assert!(next.axes.angle_to(&previous.axes) < 0.3, "step {step}");
@@ -171,7 +171,7 @@ mod tests {
         let next =
             PrincipalColors::of(&ellipsoid(&turn, [0.2, 0.1, 0.05]), &[1.0; 6], Some(&previous)).unwrap();
         let [theta, phi] = next.angles_since(&previous);
-        // What ties the axes to those of before pulls by ε over the gap of the variances, 1.3e-6 / 0.03 of the angle here, twice.
+        // The prior of the previous axes biases the angle by ε over the gap of the variances, 1.3e-6 / 0.03 here, twice.
         assert!((theta - 0.2).abs() < 1e-4 && (phi - 0.1).abs() < 1e-4, "{theta} {phi}");
     }
 

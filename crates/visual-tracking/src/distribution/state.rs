@@ -8,7 +8,7 @@ pub const COLOR_DIM: usize = 8;
 /// $`[\mathbf m, \boldsymbol λ, θ, φ]`$.
 pub type ColorVector = SVector<f64, COLOR_DIM>;
 
-/// What one sample says about the colours of the target: $`\mathbf x = [\mathbf mᵀ, \boldsymbol λᵀ, θ, φ]ᵀ`$ and its change per picture.
+/// Colour state of one sample: $`\mathbf x = [\mathbf mᵀ, \boldsymbol λᵀ, θ, φ]ᵀ`$ and its change per picture.
 /// [Andrade-Cetto & Sanfeliu, section 3.3]
 ///
 /// The angles are against the axes of a reference distribution, so a state means something only beside it.
@@ -57,7 +57,7 @@ impl ColorState {
         [self.value[6], self.value[7]]
     }
 
-    /// The affine map that carries the colours of the reference into those that this state says:
+    /// The affine map from the reference's colours to those of this state:
     /// $`\mathbf c ↦ \mathbf m' + U R(θ, φ) \operatorname{diag}(λ'_i / λ_i)\, Uᵀ (\mathbf c - \mathbf m)`$.
     pub fn warp_from(&self, reference: &PrincipalColors) -> ColorWarp {
         let [theta, phi] = self.angles();

@@ -1,9 +1,9 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// Magnitudes below this are those of a flat set, and are not stretched: a step of an 8-bit channel.
+/// Smaller magnitudes are those of a flat set, which is not stretched: one step of an 8-bit channel.
 const FLAT: f64 = 1.0 / 255.0;
 
-/// How far one step may stretch or shrink an axis.
+/// Maximum factor by which one step stretches or shrinks an axis.
 const MAX_SCALE: f64 = 3.0;
 
 /// An affine map of the colour space. [`ColorState::warp_from`](super::ColorState::warp_from) makes it.
@@ -26,12 +26,12 @@ impl ColorWarp {
         Self { linear, offset: to - linear * from }
     }
 
-    /// By how much to stretch an axis of magnitude `from` for it to have magnitude `to`; bounded, and 1 where there is nothing to stretch.
+    /// Factor that stretches an axis from magnitude `from` to `to`; bounded, and 1 for a flat axis.
     pub(super) fn scale(from: f64, to: f64) -> f64 {
         (to.max(FLAT) / from.max(FLAT)).clamp(1.0 / MAX_SCALE, MAX_SCALE)
     }
 
-    /// Where a colour goes.
+    /// Maps a colour.
     pub fn apply(&self, color: &Vector3<f64>) -> Vector3<f64> {
         self.linear * color + self.offset
     }

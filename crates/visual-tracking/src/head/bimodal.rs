@@ -6,8 +6,8 @@ const IN_SIGHT: f64 = 0.05;
 /// Share of its mode below which a bin is forgotten.
 const FORGOTTEN: f64 = 1e-5;
 
-/// The colours of a head in one or two modes, such as skin and hair, each a distribution over its own bins. How much of either is in sight
-/// changes when the head turns, and does not count.
+/// The colours of a head in one or two modes, such as skin and hair, each a distribution over its own bins. The proportion of the modes
+/// changes when the head turns and is not part of the model.
 #[derive(Clone, Debug)]
 pub(super) struct BimodalHistogram {
     /// The mode that a bin belongs to: that of the nearer mean colour.
@@ -20,7 +20,7 @@ pub(super) struct BimodalHistogram {
 }
 
 impl BimodalHistogram {
-    /// From the counts of a head's colours; with `bimodal`, parted at the two mean colours that describe it best (2-means).
+    /// Builds the model from the counts of a head's colours; `bimodal` splits them by 2-means.
     pub(super) fn new(
         quantizer: &ColorQuantizer,
         head: &[f64],
@@ -47,7 +47,7 @@ impl BimodalHistogram {
     /// φ(C) = \frac{\sum_i \min(C(i), m_{k(i)} M(i))}{\sum_i C(i)}, \qquad m_k = \sum_{i \in k} C(i)
     /// ```
     ///
-    /// over the bins that the model knows. With one mode, of all pixels, this is [Andrade-Cetto & Sanfeliu 2004, Eq. 28].
+    /// over the bins of the model. With one mode, of all pixels, this is [Andrade-Cetto & Sanfeliu 2004, Eq. 28].
     pub(super) fn intersection(&self, candidate: &ColorHistogram, n_pixels: usize) -> f64 {
         let counts = candidate.counts();
         let mut masses = [n_pixels as f64, 0.0];
@@ -86,7 +86,7 @@ impl BimodalHistogram {
     }
 }
 
-/// For every bin the nearer of two means; they start at the darkest and the brightest colours and end after at most ten rounds.
+/// Assigns every bin to the nearer of two means, which start at the darkest and the brightest colours; at most ten iterations.
 fn two_means(quantizer: &ColorQuantizer, counts: &[f64]) -> Vec<u8> {
     let centers: Vec<[f64; 3]> = (0..counts.len()).map(|bin| quantizer.center_of_bin(bin as u16)).collect();
     let occupied = || centers.iter().zip(counts).filter(|(_, count)| **count > 0.0);

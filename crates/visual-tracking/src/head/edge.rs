@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use crate::RgbImage;
 
-/// Points along an ellipse at which the gradient is looked at.
+/// Number of points on an ellipse at which the gradient is evaluated.
 const N_POINTS: usize = 64;
 
 /// The gradient of the grey values of a picture.

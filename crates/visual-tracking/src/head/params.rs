@@ -1,7 +1,7 @@
 use crate::TrackingError;
 use crate::error::{checked, probability};
 
-/// How a [`HeadTracker`](super::HeadTracker) searches, adapts and doubts.
+/// Parameters of a [`HeadTracker`](super::HeadTracker).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -12,9 +12,9 @@ use crate::error::{checked, probability};
 pub struct HeadTrackerParams {
     /// Bins of the axes $`B − G`$, $`G − R`$ and $`R + G + B`$. Default 32, 32, 8.
     pub bins: [usize; 3],
-    /// Two modes, skin and hair, whose proportion may change; else one histogram as it is. Default true.
+    /// Whether to use two modes, skin and hair, of variable proportion; otherwise one histogram. Default true.
     pub bimodal: bool,
-    /// How far around the predicted place is searched, in semi-axes of the ellipse. Default 0.5.
+    /// Search radius around the predicted position, in semi-axes of the ellipse. Default 0.5.
     pub search_radius: f64,
     /// Factor between the three sizes that are compared. Default 1.04.
     pub scale_step: f64,

@@ -1,6 +1,6 @@
 use crate::RgbImage;
 
-/// Knows how large the head is, such as a stereo camera that measures how far away it is.
+/// Source of the size of the head, for example a stereo camera that measures its distance.
 ///
 /// ```
 /// use wayfix_visual_tracking::{RgbImage, ScaleSource};

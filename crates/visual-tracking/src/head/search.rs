@@ -43,7 +43,7 @@ impl Search<'_> {
         Ok(self.better(self.candidates(coarse.center, step, 1, &[coarse.semi_axes])?))
     }
 
-    /// Ellipses on a grid; the histogram of each comes from its neighbour's.
+    /// Ellipses on a grid; each histogram is updated from its neighbour's.
     fn candidates(
         &self,
         around: [i64; 2],
@@ -58,7 +58,7 @@ impl Search<'_> {
             let mut sliding = SlidingHistogram::new(self.bins, spans, around);
             for j in -n..=n {
                 for i in -n..=n {
-                    // there and back, so that neighbours overlap
+                    // alternate the direction, so that successive ellipses overlap
                     let i = if (j + n) % 2 == 0 { i } else { -i };
                     let center = [around[0] + i * step, around[1] + j * step];
                     if !self.contains(center) {

@@ -3,10 +3,10 @@ use std::f64::consts::SQRT_2;
 use crate::TrackingError;
 use crate::{BinImage, ColorHistogram, RowSpans, SlidingHistogram};
 
-/// The counts of a head without the colours of what is around it: those that are more frequent, by share, in the ring outside the ellipse.
+/// The counts of a head without the colours that are more frequent, by share, in the ring outside the ellipse.
 ///
-/// The ring has the area of the ellipse. A box that is too large has background at its rim; its colours would be a mode of the head, and
-/// background alone would be the head. Where no colour is left, the head has those of its surroundings, and all are kept.
+/// The ring and the ellipse have equal areas. A box that is too large contains background at its rim; the background's colours would become a
+/// mode of the head. If no colour is left, all are kept.
 pub(super) fn own_colors(
     bins: &BinImage,
     head: &ColorHistogram,

@@ -19,14 +19,13 @@ const MIN_SEMI_AXIS: f64 = 3.0;
 /// Points of an outline.
 const N_OUTLINE: usize = 48;
 
-/// Follows a head as an upright ellipse, by the colours inside and the gradient across its rim.
-/// [Andrade-Cetto & Sanfeliu 2004, sec. 3.2; Birchfield 1998]
+/// Tracks a head as an upright ellipse, by the colours inside and the gradient across its rim. [Andrade-Cetto & Sanfeliu 2004, sec. 3.2;
+/// Birchfield 1998]
 ///
-/// Around the place that a constant velocity predicts, every ellipse is compared by histogram intersection with the colours of the head,
-/// [Eq. 28] counted from one ellipse to the next only where they differ, and by the gradient across it; both scaled to their range, the
-/// highest sum wins. The colours adapt [Eq. 29] where the intersection is high. Skin and hair are two modes: their proportion changes when
-/// the head turns, so it does not count. Colours that are more frequent around the ellipse than in it are not the head's. The size comes from a [`ScaleSource`] or from the search.
-///
+/// Every ellipse around the constant-velocity prediction is scored by histogram intersection with the colours of the head [Eq. 28], updated
+/// incrementally between ellipses, and by the gradient across its rim. Both are scaled to their range; the highest sum wins. The colours adapt
+/// [Eq. 29] where the intersection is high. Skin and hair are two modes of variable proportion. Colours that are more frequent around the
+/// ellipse than in it are excluded. The size comes from a [`ScaleSource`] or from the search.
 /// ```
 /// use rand::SeedableRng;
 /// use rand_chacha::ChaCha8Rng;
@@ -58,7 +57,7 @@ pub struct HeadTracker<S = LocalScale> {
     state: HeadState,
 }
 
-/// Where the head is.
+/// Estimated state of the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HeadState {
     center: [i64; 2],
@@ -72,7 +71,7 @@ impl HeadTracker {
     /// Starts from the box around the head in the first picture.
     ///
     /// # Errors
-    /// [`TrackingError::Parameter`] for a parameter out of its range or a head less than 6 pixels wide,
+    /// Returns [`TrackingError::Parameter`] for a parameter out of its range or a head less than 6 pixels wide,
     /// [`TrackingError::OutsidePicture`] for a box beyond the picture.
     pub fn new(
         picture: &RgbImage,
@@ -88,7 +87,7 @@ impl HeadTracker {
     /// Starts from the pixels of the head in the first picture.
     ///
     /// # Errors
-    /// As [`new`](Self::new); [`TrackingError::Empty`] without a pixel, [`TrackingError::Dimension`] when mask and picture differ
+    /// Returns the errors of [`new`](Self::new), [`TrackingError::Empty`] for an empty mask, or [`TrackingError::Dimension`] if mask and image differ
     /// in size.
     pub fn from_mask(
         picture: &RgbImage,
@@ -123,7 +122,7 @@ impl HeadTracker {
 }
 
 impl<S: ScaleSource> HeadTracker<S> {
-    /// The same tracker with another source of the scale.
+    /// Replaces the source of the scale.
     pub fn with_scale_source<T: ScaleSource>(self, scale_source: T) -> HeadTracker<T> {
         let Self { params, picture_size, quantizer, model, base, state, .. } = self;
         HeadTracker { params, picture_size, quantizer, model, scale_source, base, state }

@@ -30,7 +30,7 @@ impl BitMask {
     /// No pixel is on.
     ///
     /// # Errors
-    /// [`TrackingError::Extent`] when a side is zero, or there are more than $`2^{28}`$ pixels.
+    /// Returns [`TrackingError::Extent`] if a side is zero, or there are more than $`2^{28}`$ pixels.
     pub fn empty(width: usize, height: usize) -> Result<Self, TrackingError> {
         check_extent(width, height)?;
         Ok(Self { width, height, words: vec![0; width.div_ceil(64) * height] })
@@ -39,7 +39,7 @@ impl BitMask {
     /// Every pixel is on.
     ///
     /// # Errors
-    /// As [`empty`](Self::empty).
+    /// Returns the errors of [`empty`](Self::empty).
     pub fn full(width: usize, height: usize) -> Result<Self, TrackingError> {
         Ok(Self::empty(width, height)?.not())
     }
@@ -47,7 +47,7 @@ impl BitMask {
     /// The pixels of column `u` and row `v` for which `on(u, v)` is true.
     ///
     /// # Errors
-    /// As [`empty`](Self::empty).
+    /// Returns the errors of [`empty`](Self::empty).
     pub fn from_fn(
         width: usize,
         height: usize,
@@ -85,7 +85,7 @@ impl BitMask {
     /// Switches a pixel on or off.
     ///
     /// # Errors
-    /// [`TrackingError::Outside`] beyond the edges.
+    /// Returns [`TrackingError::Outside`] beyond the edges.
     pub fn set(&mut self, u: usize, v: usize, on: bool) -> Result<(), TrackingError> {
         if u >= self.width || v >= self.height {
             return Err(TrackingError::Outside { pixel: (u, v), size: (self.width, self.height) });
@@ -95,26 +95,23 @@ impl BitMask {
         Ok(())
     }
 
-    /// The pixels that are on here and there.
-    ///
+    /// Intersection of the masks.
     /// # Errors
-    /// [`TrackingError::Dimension`] when the sizes differ.
+    /// Returns [`TrackingError::Dimension`] if the sizes differ.
     pub fn and(&self, other: &Self) -> Result<Self, TrackingError> {
         self.zip(other, |a, b| a & b)
     }
 
-    /// The pixels that are on here or there.
-    ///
+    /// Union of the masks.
     /// # Errors
-    /// As [`and`](Self::and).
+    /// Returns the errors of [`and`](Self::and).
     pub fn or(&self, other: &Self) -> Result<Self, TrackingError> {
         self.zip(other, |a, b| a | b)
     }
 
-    /// The pixels that are on here and not there.
-    ///
+    /// Difference: the pixels on here and off there.
     /// # Errors
-    /// As [`and`](Self::and).
+    /// Returns the errors of [`and`](Self::and).
     pub fn and_not(&self, other: &Self) -> Result<Self, TrackingError> {
         self.zip(other, |a, b| a & !b)
     }
@@ -131,10 +128,9 @@ impl BitMask {
         Self { words, ..*self }
     }
 
-    /// The pixels of a rectangle; what of it is beyond the edges is off.
-    ///
+    /// The pixels of a rectangle; pixels beyond the edges are off.
     /// # Errors
-    /// As [`empty`](Self::empty).
+    /// Returns the errors of [`empty`](Self::empty).
     pub fn crop(
         &self,
         corner: (usize, usize),
@@ -162,7 +158,7 @@ impl BitMask {
         self.rows().enumerate().flat_map(|(v, row)| runs(row).map(move |run| (v, run)))
     }
 
-    /// From rows of words; the caller sees to their number and to zeros in the padding.
+    /// Builds a mask from rows of words; the caller ensures their number and zeros in the padding.
     pub(crate) fn from_words(width: usize, height: usize, words: Vec<u64>) -> Self {
         debug_assert_eq!(words.len(), width.div_ceil(64) * height);
         Self { width, height, words }

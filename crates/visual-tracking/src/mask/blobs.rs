@@ -25,9 +25,9 @@ pub struct Blobs {
 /// A connected part of a mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blob {
-    /// How many pixels it has.
+    /// Number of pixels.
     pub area: usize,
-    /// The smallest rectangle that holds it.
+    /// The bounding rectangle.
     pub rect: PixelRect,
 }
 
@@ -39,7 +39,7 @@ struct Run {
 }
 
 impl Blobs {
-    /// How many there are.
+    /// Number of blobs.
     pub fn len(&self) -> usize {
         self.blobs.len()
     }
@@ -78,10 +78,9 @@ impl Blobs {
         (0..self.len()).min_by(closer)
     }
 
-    /// The one that shares the most pixels with a mask; none when no one shares any.
-    ///
+    /// The blob that shares the most pixels with a mask; `None` if none shares any.
     /// # Errors
-    /// [`TrackingError::Dimension`] when the mask is of another size.
+    /// Returns [`TrackingError::Dimension`] if the mask differs in size.
     pub fn most_overlapping(&self, mask: &BitMask) -> Result<Option<usize>, TrackingError> {
         mask.check_size(self.size)?;
         let mut shared = vec![0; self.len()];
@@ -91,7 +90,7 @@ impl Blobs {
         Ok(first_max(shared.iter().copied()).filter(|&blob| shared[blob] > 0))
     }
 
-    /// The pixels of one blob; none when there is no such blob.
+    /// The pixels of one blob; `None` if it does not exist.
     pub fn mask(&self, blob: usize) -> Option<BitMask> {
         (blob < self.len()).then(|| self.union(|i| i == blob))
     }
@@ -124,7 +123,7 @@ impl BitMask {
             for columns in runs(words) {
                 let blob = parents.len();
                 parents.push(blob);
-                // Runs come from the left: one above that ends before this one ends before all that follow.
+                // Runs come from left to right: one above that ends before this one ends before all later ones.
                 while above.start < above.end && ends_before(&all[above.start].columns, &columns) {
                     above.start += 1;
                 }
@@ -138,7 +137,7 @@ impl BitMask {
         gather((self.width(), self.height()), all, &mut parents)
     }
 
-    /// How many parts of what is off are enclosed by what is on.
+    /// Number of enclosed parts of the background.
     pub fn n_holes(&self, connectivity: Connectivity) -> usize {
         self.not().blobs(connectivity.dual()).iter().filter(|blob| self.encloses(&blob.rect)).count()
     }
@@ -167,7 +166,7 @@ impl BitMask {
 /// Numbers the roots in the order in which they appear, and adds up their runs.
 fn gather(size: (usize, usize), mut runs: Vec<Run>, parents: &mut [usize]) -> Blobs {
     let mut blobs: Vec<Blob> = Vec::new();
-    // A root comes before all that hang on it.
+    // A root precedes all members of its tree.
     let mut numbers = vec![0; runs.len()];
     for (i, run) in runs.iter_mut().enumerate() {
         let root = root(parents, i);
@@ -185,13 +184,13 @@ fn gather(size: (usize, usize), mut runs: Vec<Run>, parents: &mut [usize]) -> Bl
     Blobs { size, runs, blobs }
 }
 
-/// Makes one tree of two; the earlier root stays one.
+/// Joins two trees; the earlier root stays the root.
 fn join(parents: &mut [usize], a: usize, b: usize) {
     let (a, b) = (root(parents, a), root(parents, b));
     parents[a.max(b)] = a.min(b);
 }
 
-/// The root of a tree, which is brought nearer on the way.
+/// The root of a tree, with path shortening.
 fn root(parents: &mut [usize], mut i: usize) -> usize {
     while parents[i] != i {
         parents[i] = parents[parents[i]];
@@ -200,7 +199,7 @@ fn root(parents: &mut [usize], mut i: usize) -> usize {
     i
 }
 
-/// How far `x` is from `start .. end`.
+/// Distance of `x` from `start .. end`.
 fn outside(x: f64, start: f64, end: f64) -> f64 {
     (start - x).max(x - end).max(0.0)
 }

@@ -9,7 +9,7 @@ pub enum Connectivity {
 }
 
 impl Connectivity {
-    /// How the pixels that are off hang together where those that are on do so by this one: a closed curve must part the plane.
+    /// Connectivity of the background for this connectivity of the foreground: a closed curve must separate the plane.
     pub fn dual(self) -> Self {
         match self {
             Self::Four => Self::Eight,

@@ -4,11 +4,10 @@ use crate::BitMask;
 const AROUND: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
 impl BitMask {
-    /// The outer contour of the blob that comes first row by row, followed clockwise from its first pixel: pixels `[u, v]`, each a neighbour of
-    /// the next and the last of the first, by side or corner. Empty without pixels.
+    /// The outer contour of the first blob in row order, clockwise from its first pixel: pixels `[u, v]`, each adjacent to the next and the last
+    /// to the first, by side or corner. Empty without pixels.
     ///
-    /// Where the blob is one pixel thin the contour goes there and back and names pixels twice. [Moore's neighbour tracing]
-    ///
+    /// Where the blob is one pixel thin the contour runs in both directions and lists pixels twice. [Moore's neighbour tracing]
     /// ```
     /// use wayfix_visual_tracking::BitMask;
     /// let mask = BitMask::from_fn(9, 9, |u, v| (2..5).contains(&u) && (3..6).contains(&v))?;
@@ -19,12 +18,12 @@ impl BitMask {
     pub fn outer_contour(&self) -> Vec<[usize; 2]> {
         let Some(start) = self.first_pixel() else { return Vec::new() };
         let mut contour = vec![start];
-        // Left of and above the first pixel nothing is on.
+        // No pixel left of or above the first one is on.
         let Some(first) = self.next_around(start, 0) else { return contour };
         let (mut pixel, mut direction) = (start, first);
         loop {
             pixel = neighbour(pixel, direction);
-            // The neighbour that was found off last is beside the step just made; behind it the search goes on.
+            // The last neighbour that was off is beside the step just made; the search continues after it.
             direction = self.next_around(pixel, direction + 7 - direction % 2).unwrap_or(direction);
             if pixel == start && direction == first {
                 return contour;

@@ -2,12 +2,11 @@ use super::Connectivity;
 use crate::BitMask;
 
 impl BitMask {
-    /// The Euler number: blobs less holes, by counting locally.
+    /// The Euler number: blobs minus holes, computed by local counting.
     ///
-    /// A run that begins is a piece more, a piece of two rows in common joins two: $`E_4 = \sum_v r(A_v) - \sum_v r(A_v ∩ A_{v+1})`$ with
-    /// $`r`$ the number of runs. Corners join as well in $`E_8 = E_4 - Q_D`$ with $`Q_D`$ squares of 2 × 2 that hold just one of their diagonals.
-    /// This is the count by squares of [Gray 1971], summed so that three population counts a word do.
-    ///
+    /// Every run adds a piece, and every overlap of two rows joins two: $`E_4 = \sum_v r(A_v) - \sum_v r(A_v ∩ A_{v+1})`$ with $`r`$ the number of
+    /// runs. Corners join as well in $`E_8 = E_4 - Q_D`$ with $`Q_D`$ squares of 2 × 2 that contain exactly one of their diagonals. This is the
+    /// count by squares of [Gray 1971], arranged for three population counts per word.
     /// ```
     /// use wayfix_visual_tracking::{BitMask, Connectivity};
     /// let ring = BitMask::from_fn(5, 5, |u, v| u.abs_diff(2).max(v.abs_diff(2)) == 1)?;
@@ -28,7 +27,7 @@ impl BitMask {
     }
 }
 
-/// Bits whose neighbour on the left is off.
+/// Number of bits whose left neighbour is off.
 fn n_runs(row: impl Iterator<Item = u64>) -> u64 {
     let mut before = 0;
     let mut n = 0;

@@ -2,7 +2,7 @@ use super::runs::runs;
 use crate::{BitMask, PixelRect, TrackingError};
 
 impl BitMask {
-    /// How many pixels are on.
+    /// Number of pixels that are on.
     pub fn area(&self) -> usize {
         self.words().iter().map(|word| word.count_ones() as usize).sum()
     }
@@ -33,7 +33,7 @@ impl BitMask {
         (n > 0).then(|| [twice_u, twice_v].map(|twice| twice as f64 / (2 * n) as f64))
     }
 
-    /// The smallest rectangle that holds all pixels that are on; none without pixels.
+    /// The bounding rectangle of the pixels that are on; `None` without pixels.
     pub fn bounding_rect(&self) -> Option<PixelRect> {
         let is_on = |row: &&[u64]| row.iter().any(|&word| word != 0);
         let top = self.rows().position(|row| is_on(&row))?;
@@ -46,10 +46,9 @@ impl BitMask {
         Some(PixelRect { left, top, width: end - left, height })
     }
 
-    /// How many pixels are on in both.
-    ///
+    /// Number of pixels that are on in both masks.
     /// # Errors
-    /// [`TrackingError::Dimension`] when the sizes differ.
+    /// Returns [`TrackingError::Dimension`] if the sizes differ.
     pub fn overlap(&self, other: &Self) -> Result<usize, TrackingError> {
         other.check_size(self.size())?;
         Ok(self.words().iter().zip(other.words()).map(|(a, b)| (a & b).count_ones() as usize).sum())
@@ -58,7 +57,7 @@ impl BitMask {
     /// Intersection over union: 1 for equal masks, 0 for masks apart and for two empty ones.
     ///
     /// # Errors
-    /// As [`overlap`](Self::overlap).
+    /// Returns the errors of [`overlap`](Self::overlap).
     pub fn iou(&self, other: &Self) -> Result<f64, TrackingError> {
         let shared = self.overlap(other)?;
         let union = self.area() + other.area() - shared;

@@ -1,7 +1,7 @@
 use super::bit_mask::padding;
 use crate::BitMask;
 
-/// What a mask is dilated and eroded with; a radius of 0 is a single pixel.
+/// Structuring element; a radius of 0 is a single pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Element {
     /// $`(2r + 1)^2`$ pixels.
@@ -47,7 +47,7 @@ impl BitMask {
         self.not().dilated(element).not()
     }
 
-    /// Without what is too thin for the element: eroded, then dilated.
+    /// Opening: erosion, then dilation; it removes parts thinner than the element.
     pub fn opened(&self, element: Element) -> Self {
         self.eroded(element).dilated(element)
     }
@@ -100,8 +100,7 @@ impl BitMask {
     }
 }
 
-/// Shifts that together reach `radius`, each at most one more than what is reached, so that no gap is left: not even at an edge, beyond which
-/// there is nothing to shift back in.
+/// Shifts that sum to `radius`, each at most one more than the sum so far, so that the dilation has no gap, even at an image edge.
 fn steps(radius: usize, longest: usize) -> impl Iterator<Item = usize> {
     let mut reached = 0;
     std::iter::from_fn(move || {
@@ -111,7 +110,7 @@ fn steps(radius: usize, longest: usize) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Every column together with those `step` before and behind it, `step` below 64.
+/// Combines every column with those `step` before and after it, for `step` below 64.
 fn spread(row: &mut [u64], step: usize) {
     let mut before = 0;
     for i in 0..row.len() {

@@ -2,9 +2,8 @@ use super::runs::fill;
 use crate::{BitMask, TrackingError};
 
 impl BitMask {
-    /// The pixels whose middles are inside a closed polygon with corners `[u, v]` in pixels; where it crosses itself, those inside an odd number
-    /// of times. What is beyond the edges is cut off; polygons that share a side share no pixel.
-    ///
+    /// The pixels whose centres are inside a closed polygon with corners `[u, v]` in pixels, by the even-odd rule. The polygon is clipped to the
+    /// mask; polygons with a common side share no pixel.
     /// ```
     /// use wayfix_visual_tracking::BitMask;
     /// let triangle = BitMask::from_polygon(40, 40, &[[0.0, 0.0], [20.0, 0.0], [0.0, 20.0]])?;
@@ -32,7 +31,7 @@ impl BitMask {
             }
         }
         crossings.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        // Every row is entered as often as it is left.
+        // Every row has an even number of crossings.
         for pair in crossings.chunks_exact(2) {
             let (from, to) = (first_middle(pair[0].1, width), first_middle(pair[1].1, width));
             fill(mask.row_mut(pair[0].0), from..to);
@@ -41,7 +40,7 @@ impl BitMask {
     }
 }
 
-/// The first whole number whose middle is not before `x`, at most `limit`. Converting saturates.
+/// The first pixel whose centre is not before `x`, at most `limit`. The conversion saturates.
 fn first_middle(x: f64, limit: usize) -> usize {
     ((x - 0.5).ceil() as usize).min(limit)
 }

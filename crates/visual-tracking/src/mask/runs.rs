@@ -28,7 +28,7 @@ pub(super) fn fill(row: &mut [u64], run: Range<usize>) {
     }
 }
 
-/// How many columns of a run are on.
+/// Number of columns of a run that are on.
 pub(super) fn count(row: &[u64], run: Range<usize>) -> usize {
     let words = row.iter().enumerate().take(run.end.div_ceil(64)).skip(run.start / 64);
     words.map(|(i, word)| (word & within(&run, i)).count_ones() as usize).sum()
@@ -41,7 +41,7 @@ fn within(run: &Range<usize>, i: usize) -> u64 {
     if rest >= 64 { from } else { from & !(u64::MAX << rest) }
 }
 
-/// The first bit at or behind `from` that differs from those of `off`.
+/// The first bit at or after `from` that differs from those of `off`.
 fn next_one(row: &[u64], from: usize, off: u64) -> Option<usize> {
     let mut i = from / 64;
     let mut word = (row.get(i)? ^ off) & (u64::MAX << (from % 64));

@@ -17,7 +17,7 @@ pub struct AffineMap {
 }
 
 impl AffineMap {
-    /// Where a point goes.
+    /// Maps a point.
     pub fn apply(&self, point: [f64; 2]) -> [f64; 2] {
         (self.linear * Vector2::from(point) + self.translation).into()
     }

@@ -5,7 +5,7 @@ use super::{AffineMap, EdgeSearch, Outline};
 use crate::TrackingError;
 use crate::error::checked;
 
-/// How a snake is fitted.
+/// Parameters of the snake fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(
@@ -16,8 +16,8 @@ use crate::error::checked;
 pub struct SnakeParams {
     /// Points along the contour. Default 80.
     pub n_points: usize,
-    /// How far along the normals an edge is looked for at first, in radii of a circle of the same area, but 3 pixels at least; it shrinks to
-    /// a quarter. Default 0.5.
+    /// Initial search distance for an edge along the normals, in radii of a circle of equal area, at least 3 pixels; it shrinks to a
+    /// quarter. Default 0.5.
     pub search_distance: f64,
     /// A point this near to an edge is on it, in pixels. Default 1.5.
     pub tolerance: f64,
@@ -36,7 +36,7 @@ impl Default for SnakeParams {
 
 impl SnakeParams {
     /// # Errors
-    /// [`TrackingError::Parameter`] with the first parameter that is out of range.
+    /// Returns [`TrackingError::Parameter`] with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), TrackingError> {
         let n_points = self.n_points as f64;
         checked("n_points", n_points, (8..=10_000).contains(&self.n_points), "from 8 to 10000")?;
@@ -65,9 +65,8 @@ impl SnakeParams {
     }
 }
 
-/// A contour that keeps the shape it had at first up to an affine map, $`\mathbf r_i = M \mathbf q_i + \mathbf t`$.
-/// [Andrade-Cetto & Sanfeliu, section 3.1: "a restriction to the classical snake minimization procedure, to obtain affine deformations only"]
-///
+/// A contour with a fixed shape up to an affine map, $`\mathbf r_i = M \mathbf q_i + \mathbf t`$. [Andrade-Cetto & Sanfeliu, section 3.1:
+/// "a restriction to the classical snake minimization procedure, to obtain affine deformations only"]
 /// ```
 /// use wayfix_visual_tracking::{AffineSnake, BitMask, BoundingBox, MaskEdges, Outline, SnakeParams};
 /// let params = SnakeParams::default();
@@ -89,22 +88,21 @@ pub struct AffineSnake {
     map: AffineMap,
 }
 
-/// Where a snake came to rest.
+/// Result of a snake fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnakeFit {
     /// The map from the shape of the snake into the picture.
     pub map: AffineMap,
-    /// $`Φ_\text{affine}`$: the share of the points in sight that lie on an edge; 0 when none is in sight.
+    /// $`Φ_\text{affine}`$: the share of the visible points that lie on an edge; 0 if no point is visible.
     pub support: f64,
     /// The share of the points that are in sight.
     pub visible: f64,
 }
 
 impl AffineSnake {
-    /// A snake with the shape of an outline, which it lies on.
-    ///
+    /// A snake with the shape and the position of an outline.
     /// # Errors
-    /// [`TrackingError::Parameter`] for parameters out of range or an outline of less than four square pixels.
+    /// Returns [`TrackingError::Parameter`] for parameters out of range or an outline of less than four square pixels.
     pub fn new(outline: &Outline, params: &SnakeParams) -> Result<Self, TrackingError> {
         params.validate()?;
         let outline = outline.resampled(params.n_points)?;
@@ -117,20 +115,19 @@ impl AffineSnake {
         Ok(Self { shape, map })
     }
 
-    /// Where it lies: the map from its shape, of the area of a unit circle round the origin, into the picture.
+    /// The current map from the shape, which has the area of the unit circle and is centred at the origin, to the image.
     pub fn map(&self) -> &AffineMap {
         &self.map
     }
 
-    /// The area that a map gives it, in square pixels.
+    /// The area under a map, in square pixels.
     pub fn area_at(&self, map: &AffineMap) -> f64 {
         std::f64::consts::PI * map.linear.determinant().abs()
     }
 
-    /// Lays it somewhere else.
-    ///
+    /// Sets the map.
     /// # Errors
-    /// [`TrackingError::Parameter`] when the map turns the shape over or flattens it.
+    /// Returns [`TrackingError::Parameter`] if the map turns the shape over or flattens it.
     pub fn moved_to(&self, map: &AffineMap) -> Result<Self, TrackingError> {
         self.outline_at(map)?;
         checked("determinant", map.linear.determinant(), map.linear.determinant() > 0.0, "positive")?;
@@ -142,10 +139,9 @@ impl AffineSnake {
         self.outline_at(&self.map).expect("invariant: the snake encloses an area")
     }
 
-    /// The contour that a map gives.
-    ///
+    /// The contour under a map.
     /// # Errors
-    /// As [`Outline::from_points`].
+    /// Returns the errors of [`Outline::from_points`].
     pub fn outline_at(&self, map: &AffineMap) -> Result<Outline, TrackingError> {
         Outline::from_points(self.shape.iter().map(|point| map.apply((*point).into())).collect())
     }

@@ -1,12 +1,12 @@
 use crate::picture::rgb_pixels;
 use crate::{BitMask, RgbImage};
 
-/// Where an edge is, seen from a point of a contour: what a snake is drawn to.
+/// Source of edges near a point of a contour, for fitting a snake.
 pub trait EdgeSearch {
     /// Signed distance in pixels from `point` along the unit vector `normal` to the edge, if there is one within `reach`.
     fn find(&self, point: [f64; 2], normal: [f64; 2], reach: f64) -> Option<f64>;
 
-    /// Whether anything can be said about a point; one outside the picture is neither on an edge nor off it.
+    /// Whether edges are known at a point; a point outside the image counts neither as on an edge nor as off it.
     fn covers(&self, point: [f64; 2]) -> bool;
 }
 
@@ -28,7 +28,7 @@ pub struct MaskEdges<'a> {
 }
 
 impl<'a> MaskEdges<'a> {
-    /// Of a mask whose top left pixel is pixel `corner` of the picture.
+    /// Edges of a mask whose top left pixel is pixel `corner` of the image.
     pub fn new(mask: &'a BitMask, corner: (usize, usize)) -> Self {
         Self { mask, corner }
     }
@@ -48,7 +48,7 @@ impl<'a> MaskEdges<'a> {
 impl EdgeSearch for MaskEdges<'_> {
     fn find(&self, point: [f64; 2], normal: [f64; 2], reach: f64) -> Option<f64> {
         let on = |step: f64| self.is_on([point[0] + step * normal[0], point[1] + step * normal[1]]);
-        // Out of the target or back into it, whichever leads to the boundary.
+        // Searches outwards from inside the target, or inwards from outside.
         let starts_inside = on(0.0)?;
         let direction = if starts_inside { 1.0 } else { -1.0 };
         let mut step = 1.0;
@@ -76,13 +76,13 @@ pub struct ColorEdges<'a> {
 }
 
 impl<'a> ColorEdges<'a> {
-    /// Edges of a picture whose colour changes by at least `least_contrast` grey values (root of the sum of squares over the channels) over
-    /// two pixels.
+    /// Edges of an image whose colour changes by at least `least_contrast` grey values (root of the sum of squares over the channels) over two
+    /// pixels.
     pub fn new(picture: &'a RgbImage, least_contrast: f64) -> Self {
         Self { picture, band: None, least_contrast }
     }
 
-    /// Only the edges within a mask whose top left pixel is pixel `corner` of the picture.
+    /// Restricts the edges to a mask whose top left pixel is pixel `corner` of the image.
     pub fn within(self, band: &'a BitMask, corner: (usize, usize)) -> Self {
         Self { band: Some(MaskEdges::new(band, corner)), ..self }
     }
@@ -133,7 +133,7 @@ impl EdgeSearch for ColorEdges<'_> {
     }
 }
 
-/// Where between -½ and ½ the parabola through a value and its neighbours has its top.
+/// Position between -½ and ½ of the vertex of the parabola through a value and its neighbours.
 fn vertex(values: &[f64], i: usize) -> f64 {
     let (Some(&next), Some(&before)) = (values.get(i + 1), i.checked_sub(1).and_then(|i| values.get(i)))
     else {

@@ -2,10 +2,10 @@ use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
 
 use super::{AffineMap, EdgeSearch, SnakeFit, SnakeParams};
 
-/// The start is hardly kept in place, only as far as no edge says otherwise: motion is what a snake is for.
+/// Weak prior on the start position, only for points without edges: a snake must be free to move.
 const PLACE_STIFFNESS: f64 = 2e-4;
 
-/// By how much a step shrinks the radius in which edges count, and the share of it that stays.
+/// Factor by which a step shrinks the radius of the edges, and its final share.
 const SHRINK: f64 = 0.6;
 const LAST_REACH: f64 = 0.25;
 
@@ -15,7 +15,7 @@ const STIFF: f64 = 10.0;
 /// A step of less than this many pixels is the last.
 const STILL: f64 = 0.02;
 
-/// Least area of a snake in square pixels: there is nothing to fit in less.
+/// Minimum area of a snake in square pixels.
 pub(super) const LEAST_AREA: f64 = 4.0;
 
 pub(super) fn fit(
@@ -82,7 +82,7 @@ fn numbers(map: &AffineMap) -> Vector6<f64> {
     Vector6::new(m[(0, 0)], m[(0, 1)], m[(1, 0)], m[(1, 1)], t.x, t.y)
 }
 
-/// Whether a map keeps the bounds that [`AffineSnake::fit`](super::AffineSnake::fit) promises.
+/// Whether a map satisfies the bounds of [`AffineSnake::fit`](super::AffineSnake::fit).
 fn is_sound(map: &AffineMap, start: &AffineMap) -> bool {
     let growth = map.linear.determinant() / start.linear.determinant();
     let area = std::f64::consts::PI * map.linear.determinant();
@@ -107,7 +107,7 @@ fn support(shape: &[Vector2<f64>], map: &AffineMap, edges: &impl EdgeSearch, tol
     (share(n_supported, n_seen), share(n_seen, shape.len()))
 }
 
-/// Every point of the shape, where it lies and the unit normal there, pointing out.
+/// Every point of the shape, with its position and the unit outward normal.
 fn along<'a>(
     shape: &'a [Vector2<f64>],
     map: &'a AffineMap,
@@ -156,7 +156,7 @@ mod tests {
         let snake = snake();
         let fit = snake.fit(snake.map(), &MaskEdges::new(&mask, (0, 0)), &SnakeParams::default());
         let outline = snake.outline_at(&fit.map).unwrap();
-        // The neck begins at 87 and reaches to 120; the snake gives way by less than its tolerance.
+        // The neck extends from 87 to 120; the snake moves by less than its tolerance.
         let right = outline.points().iter().map(|point| point[0]).fold(0.0, f64::max);
         assert!(right < 87.0 + 2.0, "{right}");
     }

@@ -1,11 +1,9 @@
 use crate::BoundingBox;
 use crate::{AffineMap, BitMask, TrackingError};
 
-/// A closed polygon around a target; points `[u, v]` in pixels, where the pixel in column `u` and row `v` covers
-/// $`[u, u+1) × [v, v+1)`$.
+/// A closed polygon around a target; points `[u, v]` in pixels, where the pixel in column `u` and row `v` covers $`[u, u+1) × [v, v+1)`$.
 ///
-/// The points go round so that the signed area in picture coordinates (v down) is positive, whichever way they came.
-///
+/// The points are ordered so that the signed area in image coordinates (v down) is positive, for either input order.
 /// ```
 /// use wayfix_visual_tracking::Outline;
 /// let square = Outline::from_points(vec![[0.0, 0.0], [0.0, 4.0], [4.0, 4.0], [4.0, 0.0]])?;
@@ -23,7 +21,7 @@ impl Outline {
     /// From the corners of a polygon in order.
     ///
     /// # Errors
-    /// [`TrackingError::NotFinite`], and [`TrackingError::Parameter`] when the area is less than one square pixel.
+    /// Returns [`TrackingError::NotFinite`], or [`TrackingError::Parameter`] if the area is less than one square pixel.
     pub fn from_points(mut points: Vec<[f64; 2]>) -> Result<Self, TrackingError> {
         for (index, point) in points.iter().enumerate() {
             if let Some(&value) = point.iter().find(|value| value.is_nan() || value.abs() >= 1e9) {
@@ -41,15 +39,15 @@ impl Outline {
     /// The ellipse that fills a box, as a polygon of `n_points` corners.
     ///
     /// # Errors
-    /// As [`from_points`](Self::from_points).
+    /// Returns the errors of [`from_points`](Self::from_points).
     pub fn ellipse(bounds: &BoundingBox, n_points: usize) -> Result<Self, TrackingError> {
         let ([u, v], (a, b)) = (bounds.center(), (bounds.width() / 2.0, bounds.height() / 2.0));
         let angle = |i: usize| std::f64::consts::TAU * i as f64 / n_points as f64;
         Self::from_points((0..n_points).map(|i| [u + a * angle(i).cos(), v + b * angle(i).sin()]).collect())
     }
 
-    /// The outer contour of a mask with one blob, whose top left pixel is pixel `corner` of the picture: round the rim of its pixels, without
-    /// their steps. `None` for a mask without a pixel or too thin to have an inside.
+    /// The outer contour of a mask with one blob, whose top left pixel is pixel `corner` of the image: along the rim of its pixels, without
+    /// their steps. `None` for an empty mask or one too thin to enclose an area.
     pub fn of_mask(mask: &BitMask, corner: (usize, usize)) -> Option<Self> {
         let middle = |[u, v]: [usize; 2]| [(u + corner.0) as f64 + 0.5, (v + corner.1) as f64 + 0.5];
         let middles = Self::from_points(mask.outer_contour().into_iter().map(middle).collect()).ok()?;
@@ -69,7 +67,7 @@ impl Outline {
         signed_area(&self.points)
     }
 
-    /// Centre of mass of what is enclosed.
+    /// Centre of mass of the enclosed area.
     pub fn centroid(&self) -> [f64; 2] {
         let origin = self.points[0];
         let mut sum = [0.0; 2];
@@ -102,7 +100,7 @@ impl Outline {
     /// `n_points` points at equal distances along the outline.
     ///
     /// # Errors
-    /// As [`from_points`](Self::from_points): so few points may not enclose anything.
+    /// Returns the errors of [`from_points`](Self::from_points): so few points may not enclose anything.
     pub fn resampled(&self, n_points: usize) -> Result<Self, TrackingError> {
         let length: f64 = edges(&self.points).map(|(p, q)| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
         let step = length / n_points.max(1) as f64;
@@ -122,7 +120,7 @@ impl Outline {
     /// Each point replaced by the mean of itself and `reach` neighbours on either side: takes the steps of pixels off a contour.
     ///
     /// # Errors
-    /// As [`from_points`](Self::from_points): what is thin may vanish.
+    /// Returns the errors of [`from_points`](Self::from_points): a thin outline may vanish.
     pub fn smoothed(&self, reach: usize) -> Result<Self, TrackingError> {
         let n = self.points.len();
         let reach = reach.min((n - 1) / 2);
@@ -176,7 +174,7 @@ impl Outline {
     /// The outline under an affine map.
     ///
     /// # Errors
-    /// As [`from_points`](Self::from_points): the map may flatten it.
+    /// Returns the errors of [`from_points`](Self::from_points): the map may flatten it.
     pub fn mapped(&self, map: &AffineMap) -> Result<Self, TrackingError> {
         Self::from_points(self.points.iter().map(|point| map.apply(*point)).collect())
     }
@@ -187,7 +185,7 @@ fn edges(points: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_
     points.iter().copied().zip(points.iter().copied().cycle().skip(1))
 }
 
-/// The shoelace formula, about the first point so that no digits are lost far from the origin.
+/// The shoelace formula, about the first point to avoid loss of precision far from the origin.
 fn signed_area(points: &[[f64; 2]]) -> f64 {
     let Some(origin) = points.first() else { return 0.0 };
     let cross = |p: [f64; 2], q: [f64; 2]| {

@@ -8,10 +8,10 @@ use super::input::Topics;
 
 /// Write a log in another format.
 ///
-/// A ROS 2 bag becomes MCAP in Foxglove's schemas; of each kind of record one topic is taken (`--topic`).
+/// A ROS 2 bag becomes MCAP with Foxglove's schemas; one topic of each kind of record is converted (`--topic`).
 ///
-/// MCAP keeps everything, and where the records come from; Foxglove and Rerun open it. What the other formats have no place for is
-/// left out and counted: range-bearing text has no stamps, velocities and scans, TUM has poses only.
+/// MCAP stores everything, including the origin of the records; Foxglove and Rerun open it. Records that another format cannot store are skipped and
+/// counted: range-bearing text has no stamps, velocities and scans, TUM has only poses.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Arguments {
@@ -19,10 +19,10 @@ pub(super) struct Arguments {
     input: PathBuf,
     /// The file to write: .mcap, .txt (range-bearing lines) or .tum (poses).
     output: PathBuf,
-    /// How the input is stored: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: found out by looking].
+    /// Input format: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: detected from the content].
     #[arg(long, value_name = "FORMAT")]
     from: Option<Format>,
-    /// How to store the output: mcap, range-bearing or tum [default: what its ending says].
+    /// Output format: mcap, range-bearing or tum [default: from the file extension].
     #[arg(long, value_name = "FORMAT")]
     to: Option<Format>,
     /// Which robot, in sets of several.

@@ -6,13 +6,13 @@ use wayfix_sensor_log::{Format, LogSummary, OpenOptions};
 
 use super::input::Topics;
 
-/// Tell what a log holds: kinds of records and their rates, landmarks, robots, what could not be read.
+/// Show the content of a log: kinds of records with their rates, landmarks, robots, and read problems.
 #[derive(clap::Args)]
 #[command(after_long_help = FORMATS)]
 pub(super) struct Arguments {
     /// The log: a file, or the folder of a UTIAS set, of Victoria Park or of images.
     path: PathBuf,
-    /// How it is stored: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: found out by looking].
+    /// Input format: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: detected from the content].
     #[arg(long)]
     format: Option<Format>,
     /// Which robot, in sets of several.
@@ -60,7 +60,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What `wayfix run` can do with a log; what it lacks, where that is nothing.
+/// The systems of `wayfix run` that can use a log; if there are none, the missing records.
 fn usable_for(summary: &LogSummary) -> Vec<String> {
     let has = |kinds: &[&str]| kinds.iter().any(|kind| summary.kinds.contains_key(kind));
     let steps = has(&["velocity", "odometry increment"]);

@@ -8,18 +8,18 @@ use super::renamed::present_name;
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]
 pub(super) struct Topics {
-    /// A topic of a ROS 2 bag to read, where several hold the same kind of record; may be given once for each kind [default: of each kind
+    /// A topic of a ROS 2 bag to read, if several hold the same kind of record; may be given once for each kind [default: of each kind
     /// the topic with the most messages, see `wayfix info`].
     #[arg(long = "topic", value_name = "NAME")]
     pub(super) topics: Vec<String>,
 }
 
-/// What the figures are of: the log, or the files of it.
+/// Name of the input for the report: the log or its files.
 pub(super) fn name_of(log: &[PathBuf]) -> String {
     log.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
 }
 
-/// Parameters from a TOML file; the error names the file and the key, or the line where the text is no TOML.
+/// Parameters from a TOML file; the error names the file and the key, or the line where the text is not valid TOML.
 pub(super) fn read_toml<P>(path: &Path, parse: impl Fn(&str) -> Result<P, toml::de::Error>) -> Result<P> {
     let text = read_text(path).with_context(|| format!("cannot read parameters from {}", path.display()))?;
     let read = parse(&text).map_err(|error| {
@@ -28,7 +28,7 @@ pub(super) fn read_toml<P>(path: &Path, parse: impl Fn(&str) -> Result<P, toml::
     read.with_context(|| format!("parameters in {} are not usable", path.display()))
 }
 
-/// What an unknown name is called now, or the name most like it, if any is: of "unknown field `a`, expected one of `b`, `c`".
+/// The present name of an unknown key, or the most similar name, from a message "unknown field `a`, expected one of `b`, `c`".
 fn hint(message: &str) -> Option<String> {
     let names = message.strip_prefix("unknown ").map(|rest| rest.split('`').skip(1).step_by(2))?;
     let mut names = names.map(|name| name.trim());
@@ -42,7 +42,7 @@ fn hint(message: &str) -> Option<String> {
     alike.max_by(|a, b| likeness(a).total_cmp(&likeness(b))).map(|name| format!("\ndid you mean `{name}`?"))
 }
 
-/// What a slip of the finger leaves: one or two letters of a word wrong, swapped or missing.
+/// Minimum similarity of a mistyped word: one or two letters wrong, swapped or missing.
 const ALIKE: f64 = 0.8;
 
 #[cfg(test)]

@@ -9,13 +9,13 @@ use wayfix_evaluation::terminal::print_message;
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]
 pub(super) struct LiveArguments {
-    /// Show the run as it goes: its messages on a WebSocket that Foxglove opens [address: 127.0.0.1:8765].
+    /// Show the run live: its messages on a WebSocket that Foxglove opens [address: 127.0.0.1:8765].
     ///
-    /// PORT, IP or IP:PORT. It is seen on this machine alone unless an address says otherwise. The run begins when a viewer is there; its
-    /// end stays in view until the last one has gone. It does not go faster than `--pace`.
+    /// PORT, IP or IP:PORT. Only this machine can connect unless an address allows others. The run begins when a viewer connects; afterwards the
+    /// server keeps running until the last viewer disconnects. It runs at most as fast as `--pace`.
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1, default_missing_value = "127.0.0.1", value_parser = address)]
     live: Option<SocketAddr>,
-    /// How fast `--live` goes: 1 as the log was recorded, 4 four times as fast, 0 as fast as it is computed.
+    /// Speed of `--live`: 1 as recorded, 4 four times as fast, 0 as fast as it is computed.
     #[arg(
         long,
         value_name = "FACTOR",
@@ -33,7 +33,7 @@ pub(super) struct Live {
 }
 
 impl LiveArguments {
-    /// Starts the server where one is wanted, and tells where it is.
+    /// Starts the server if requested, and prints its address.
     pub(super) fn start(&self) -> Result<Option<Live>> {
         let Some(address) = self.live else { return Ok(None) };
         let live = Live { pace: Pace::new(self.pace)?, server: LiveServer::start(address)? };
@@ -46,7 +46,7 @@ impl LiveArguments {
 }
 
 impl Live {
-    /// Takes messages; returns when a viewer is there.
+    /// A message sink; returns when a viewer is connected.
     pub(super) fn sink(&self) -> Box<dyn MessageSink> {
         self.server.wait_for_viewer();
         self.server.sink(self.pace)

@@ -23,15 +23,15 @@ use clap::{CommandFactory, Parser, Subcommand};
 /// Probabilistic robot localization on your logs.
 ///
 /// Examples:
-///   wayfix info slam_100.txt                      what a log holds
+///   wayfix info slam_100.txt                      content of a log
 ///   wayfix run slam --log slam_100.txt            trajectory and map, with figures where the log has truth
 ///   wayfix run slam --log MRCLAM_Dataset7 --robot 1 --out results
 ///   wayfix run lines --log intel.log.gz           walls in laser scans
 ///   wayfix run color --log color_dark.mcap --map four-legged-field.toml
-///   wayfix run views --scene china.jpg             where in a picture a camera looks, learned in other light
+///   wayfix run views --scene china.jpg             which view of a scene a camera sees, in other light
 ///   wayfix run track --frames David/img --init 129,80,64,78
-///                                                 a target in every picture, from where it is in the first
-///   wayfix run cml --frames route --poses poses.csv  where a robot is, by what places look like all round
+///                                                 a target in every image, from its box in the first
+///   wayfix run cml --frames route --poses poses.csv  pose of a robot from panoramic images
 ///   wayfix convert slam_100.txt slam_100.mcap      for Foxglove and Rerun
 #[derive(Parser)]
 #[command(name = "wayfix", version, verbatim_doc_comment)]
@@ -40,7 +40,7 @@ struct Arguments {
     command: Command,
 }
 
-/// What an argument structure says of itself is its help; the groups say it here.
+/// The doc comment of an argument structure is its help; groups have it here.
 #[derive(Subcommand)]
 enum Command {
     /// Run a system on a log.
@@ -65,10 +65,9 @@ enum Run {
     Cml(Box<run::run_cml::Arguments>),
 }
 
-/// Whether a command line, with the name of the program first, is one that the program takes. For tests of what is documented.
-///
+/// Whether the program accepts a command line, which begins with its name. For tests of the documentation.
 /// # Errors
-/// What is wrong with it.
+/// Returns the error message of `clap` if the command line is invalid.
 #[doc(hidden)]
 pub fn parses<T: Into<std::ffi::OsString> + Clone>(
     command_line: impl IntoIterator<Item = T>,
@@ -76,13 +75,13 @@ pub fn parses<T: Into<std::ffi::OsString> + Clone>(
     Arguments::command().try_get_matches_from(command_line).map(|_| ())
 }
 
-/// The commands and their options as `clap` knows them. For tests of what is documented.
+/// The commands and their options as `clap` defines them. For tests of the documentation.
 #[doc(hidden)]
 pub fn commands() -> clap::Command {
     Arguments::command()
 }
 
-/// Parses the command line, does what it says, and tells errors on standard error; 0, 1 (it failed) or 2 (wrong usage).
+/// Parses and executes the command line, and prints errors to standard error. Returns 0, 1 (failure) or 2 (wrong usage).
 pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(system) => run(*system),

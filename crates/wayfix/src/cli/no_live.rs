@@ -1,4 +1,4 @@
-//! What `live.rs` is in a build without the feature: `--live` says how to get it.
+//! Replacement of `live.rs` in a build without the feature: `--live` explains how to get it.
 
 use anyhow::Result;
 use wayfix_sensor_log::MessageSink;

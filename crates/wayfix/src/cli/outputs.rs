@@ -16,15 +16,15 @@ use wayfix_systems::system::{Drawing, EstimateLog};
 
 /// The estimates beside the report.
 const ESTIMATES: &str = "estimates.mcap";
-/// How Foxglove should show them.
+/// File of the Foxglove layout.
 const LAYOUT: &str = "foxglove-layout.json";
 
-/// Where the results of a `wayfix run` go: standard output, and where they are wanted a folder and viewers.
+/// Destinations of the results of a `wayfix run`: standard output, and optionally a folder and viewers.
 pub(super) struct Outputs<'a> {
     suite: &'static str,
     common: &'a Common,
     live: Option<Live>,
-    /// Beside the report, when it was written.
+    /// Log file beside the report, if written.
     log: Option<&'static str>,
 }
 
@@ -42,7 +42,7 @@ impl<'a> Outputs<'a> {
         self.common.out.as_ref().map(|out| out.join(name))
     }
 
-    /// Where messages go; nowhere without a folder and without a live view. Returns when there is somebody to see the latter.
+    /// Destinations of messages; none without a folder and without a live view. Waits for the first live viewer.
     pub(super) fn sinks(&mut self) -> Result<Sinks> {
         let mut sinks: Sinks = Vec::new();
         if let Some(path) = self.file(ESTIMATES) {
@@ -53,13 +53,13 @@ impl<'a> Outputs<'a> {
         Ok(sinks)
     }
 
-    /// Draws the estimates, where somebody will see them.
+    /// Draws the estimates, if there is a folder or a viewer.
     pub(super) fn estimates<D: Drawing>(&mut self, origin: Format) -> Result<Option<EstimateLog<D>>> {
         let sinks = self.sinks()?;
         Ok(if sinks.is_empty() { None } else { Some(EstimateLog::new(sinks, origin)?) })
     }
 
-    /// Prints the figures, writes the report where there is a folder for it, and stays until viewers have gone.
+    /// Prints the figures, writes the report if there is a folder, and waits until all viewers have disconnected.
     pub(super) fn show(self, mut run: Run, pictures: impl FnOnce() -> Result<Vec<Picture>>) -> Result<()> {
         let Common { json, seed, .. } = *self.common;
         if self.common.out.is_some() {

@@ -16,16 +16,16 @@ use wayfix_systems::{
     walls::WallSlamParams,
 };
 
-/// Print the parameters of a system with their defaults, units and meanings: a file for `--params`.
+/// Print the parameters of a system with their defaults, units and descriptions: a template for `--params`.
 ///
-/// A file of parameters need only name what differs from the defaults; a key that does not exist is an error. `--schema` prints the JSON
-/// schema instead, by which editors complete and check such files.
+/// A parameter file only needs the keys that differ from the defaults; an unknown key is an error. `--schema` prints the JSON schema
+/// instead, with which editors complete and check such files.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) struct Arguments {
     /// The system.
     system: SystemName,
-    /// The robot whose defaults are shown, for `slam`.
+    /// The robot profile whose defaults are shown, for `slam`.
     #[arg(long, value_enum, value_name = "NAME", default_value = "generic")]
     profile: Profile,
     /// Print the JSON schema.

@@ -3,7 +3,7 @@ use wayfix_sensor_log::{Log, LogEnd, ReadReport, Record, Warning};
 use wayfix_evaluation::terminal::print_message;
 use wayfix_systems::system::Events;
 
-/// All records of a log; tells what could not be read and what was assumed.
+/// Reads all records of a log; prints read problems and assumptions.
 pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
     let (records, read) = log.read_all();
     if !read.is_clean() {
@@ -12,7 +12,7 @@ pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
     (records, read)
 }
 
-/// Names what was refused and what the run assumed, counts what could not be read, and gives all warnings for the report.
+/// Prints refusals and assumptions of the run, counts read problems, and returns all warnings for the report.
 pub(super) fn add_read_problems(events: &mut Events, read: &ReadReport) -> Vec<String> {
     for refusal in events.refusals() {
         print_message(format!("refused {refusal}"));
@@ -21,7 +21,7 @@ pub(super) fn add_read_problems(events: &mut Events, read: &ReadReport) -> Vec<S
     if n_unlisted > 0 {
         print_message(format!("refused … and {n_unlisted} more"));
     }
-    events.warnings().iter().for_each(print_message); // those of the log were told when it was read
+    events.warnings().iter().for_each(print_message); // those of the log were printed when it was read
     events.add("log_problem", read.n_problems());
     if read.end != LogEnd::Complete {
         events.count("log_incomplete");

@@ -1,6 +1,6 @@
-//! Parameters that had another name: an old file of parameters is told the new one.
+//! Renamed parameters: an old parameter file gets a hint with the new name.
 
-/// Old name, new name. An old name may have become several.
+/// Old name, new name. An old name may have several new ones.
 const RENAMED: [(&str, &str); 44] = [
     ("active", "active_forgetting"),
     ("alike_share", "color_agreement_share"),
@@ -48,7 +48,7 @@ const RENAMED: [(&str, &str); 44] = [
     ("with_things", "with_unmapped_objects"),
 ];
 
-/// The present name of what a file calls `old`, among the names that may stand there.
+/// The new name of `old`, among the allowed names.
 pub(super) fn present_name<'a>(old: &str, allowed: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let new: Vec<&str> = RENAMED.iter().filter(|(name, _)| *name == old).map(|(_, new)| *new).collect();
     allowed.into_iter().find(|name| new.contains(name))

@@ -12,32 +12,32 @@ use wayfix_scene_sim::{
     scenery::{ImagingConditions, RgbPicture, Scenery},
 };
 
-/// Make pictures to try a system on, when there are no recordings at hand.
+/// Make images to try a system on, if there are no recordings.
 ///
-/// Logs with a laser, wheels, a camera or panoramas need no making: they lie in the folder `fixtures` of the repository.
+/// Logs with a laser, wheels, a camera or panoramas are in the folder `fixtures` of the repository.
 #[derive(clap::Subcommand)]
 #[command(after_long_help = EXAMPLES)]
 pub(super) enum Command {
     /// A target under changing light, for `run track`: frames, true boxes, and the mask of the target in the first frame.
     Film {
-        /// What is filmed.
+        /// The film.
         #[arg(value_parser = PossibleValuesParser::new(Film::ALL.map(|film| film.name)))]
         name: String,
         /// Folder for `frames/`, `truth.txt` and `mask.png`.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
-        /// What happens to the target on the way.
+        /// Event that affects the target during the film.
         #[arg(long, value_name = "WHAT", default_value = Incident::None.name(),
               value_parser = PossibleValuesParser::new(Incident::ALL.map(Incident::name)))]
         incident: String,
-        /// How many frames, 25 a second.
+        /// Number of frames, 25 per second.
         #[arg(long, value_name = "N", default_value_t = 175)]
         frames: usize,
         /// Seed of textures, paths, light and noise.
         #[arg(long, value_name = "N", default_value_t = 1)]
         seed: u64,
     },
-    /// A large picture and the same on another day, for `run views`: learned.png and real.png.
+    /// A large image and the same scene on another day, for `run views`: learned.png and real.png.
     Scene {
         /// Which one, after the paper's scenes of these names.
         #[arg(value_parser = PossibleValuesParser::new(Scenery::ALL.map(|scene| scene.name)))]
@@ -96,7 +96,7 @@ fn shoot(film: &Film, out: &Path) -> Result<()> {
     fs::write(&path, truth).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// The box of the whole target, hidden parts included; zeros when nothing of it can be seen.
+/// The box of the whole target, hidden parts included; zeros if the target is not visible.
 fn true_box(frame: &Frame) -> String {
     let seen = frame.visible.bounding_box().and_then(|_| frame.target.bounding_box());
     let [x, y, width, height] = seen.unwrap_or_default();

@@ -9,7 +9,7 @@ use wayfix_systems::system::check_overlap;
 // No documentation: it would become that of every command that takes these arguments.
 #[derive(clap::Args)]
 pub(super) struct TruthFile {
-    /// True poses in place of those of the log: `t x y z qx qy qz qw` lines (TUM), on the clock of the log.
+    /// True poses that replace those of the log: `t x y z qx qy qz qw` lines (TUM), on the clock of the log.
     #[arg(long, value_name = "FILE")]
     pub(super) truth: Option<PathBuf>,
 }
@@ -22,7 +22,7 @@ impl TruthFile {
     }
 }
 
-/// True poses and positions of the log give way to those of the file.
+/// Replaces the true poses and positions of the log by those of the file.
 fn with_truth(mut records: Vec<Record>, path: &Path) -> Result<Vec<Record>> {
     let options = OpenOptions { format: Some(Format::Tum), poses: PoseKind::True, ..OpenOptions::default() };
     let (poses, _) = read_all(wayfix_sensor_log::open(path, &options)?);
@@ -32,7 +32,7 @@ fn with_truth(mut records: Vec<Record>, path: &Path) -> Result<Vec<Record>> {
     }
     records.retain(|record| !is_true(&record.data));
     records.extend(poses);
-    records.sort_by_key(|record| record.stamp); // at equal stamps the log's order stays, and truth comes last
+    records.sort_by_key(|record| record.stamp); // at equal stamps the log's order is kept, and truth comes last
     check_overlap(
         &records,
         ("the truth", |data| matches!(data, Data::TruePose(_))),

@@ -12,10 +12,10 @@ use wayfix_sensor_log::{ChannelKey, Message};
 
 use super::backlog::Backlog;
 
-/// Who is watching what.
+/// The viewers and their subscriptions.
 ///
-/// The server would pass a message on to those who have subscribed by then. Here it goes to each of them by name, under one lock with what new
-/// ones get of the past, so that nobody misses or gets a message twice.
+/// The server would pass a message to the current subscribers. Instead it goes to each of them by name, under the same lock as the replay to
+/// new ones, so that every viewer gets every message once.
 #[derive(Default)]
 pub(super) struct Audience {
     state: Mutex<State>,
@@ -50,13 +50,13 @@ impl Audience {
         Ok(())
     }
 
-    /// Returns when somebody is watching.
+    /// Returns when a viewer is connected.
     pub(super) fn wait_for_viewer(&self) {
         let nobody = |state: &mut State| state.n_viewers == 0;
         drop(self.changed.wait_while(self.state(), nobody));
     }
 
-    /// Returns when nobody has been watching for a while; who loads the page again is back before.
+    /// Returns when no viewer was connected for `grace`, which covers a page reload.
     pub(super) fn wait_until_all_left(&self, grace: Duration) {
         let mut state = self.state();
         loop {
@@ -73,7 +73,7 @@ impl Audience {
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
-        // Nothing in here leaves the state half changed.
+        // A panic leaves the state consistent.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 const MOST_MESSAGES: usize = 512;
 const MOST_BYTES: usize = 16 << 20;
 
-/// What a viewer gets that subscribes later than the first message came.
+/// Past messages for late subscribers.
 ///
-/// A topic is announced with its first message, so no viewer can be there in time. The first one gets all of it (the latest 512 messages,
-/// or 16 MiB), a later one the last message: the map, the calibration and the walls are there for it too.
+/// A topic is announced with its first message, so every viewer subscribes late. The first subscriber gets all of it (the latest 512 messages, or 16
+/// MiB), a later one the last message, which includes the map, the calibration and the walls.
 #[derive(Debug, Default)]
 pub(super) struct Backlog {
     /// Log time, ns, and bytes.
@@ -26,7 +26,7 @@ impl Backlog {
         }
     }
 
-    /// Shows what is kept to a new subscriber.
+    /// Sends the stored messages to a new subscriber.
     pub(super) fn replay(&mut self, mut send: impl FnMut(u64, &[u8])) {
         self.messages.iter().for_each(|(time, data)| send(*time, data));
         self.was_heard = true;

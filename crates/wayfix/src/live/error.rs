@@ -1,21 +1,21 @@
 use std::{io, net::SocketAddr};
 
-/// Why nothing can be served.
+/// Errors of the live server.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LiveError {
     /// Another program listens there.
     #[error("{address} is in use by another program: end that one, or choose another port")]
     InUse {
-        /// Where it should have been.
+        /// The requested address.
         address: SocketAddr,
     },
-    /// The operating system refuses.
+    /// An operating-system error.
     #[error("cannot listen on {address}: {source}")]
     Bind {
-        /// Where it should have been.
+        /// The requested address.
         address: SocketAddr,
-        /// What the system says.
+        /// The operating-system error.
         source: io::Error,
     },
     /// The server does not start.

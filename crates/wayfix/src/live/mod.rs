@@ -1,7 +1,7 @@
-//! A run as it goes, in viewers: the messages that go into the MCAP file, on a WebSocket that Foxglove opens.
+//! Live view of a run: the messages of the MCAP file, on a WebSocket that Foxglove opens.
 //!
 //! [`LiveServer`] listens, its [`sink`](LiveServer::sink) is one of the [`Sinks`](wayfix_sensor_log::Sinks) of an
-//! [`EstimateLog`](wayfix_systems::system::EstimateLog). No system knows of it. Behind the feature `live`.
+//! [`EstimateLog`](wayfix_systems::system::EstimateLog). The systems do not depend on it. Requires the feature `live`.
 
 mod audience;
 mod backlog;

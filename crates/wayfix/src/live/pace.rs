@@ -5,11 +5,10 @@ use wayfix_sensor_log::Stamp;
 use super::LiveError;
 use wayfix_systems::system::Stopwatch;
 
-/// Nobody wants to look at nothing for longer; a first stamp of 0 before those of today would be a pause of decades.
+/// Longest pause between messages; a first stamp of 0 before present-day stamps would pause for decades.
 const LONGEST_PAUSE: Duration = Duration::from_secs(5);
 
-/// Holds messages back until their time has come.
-///
+/// Delays messages to the pace of the log.
 /// ```
 /// use wayfix::live::Pace;
 /// assert!(Pace::new(2.0).is_ok());
@@ -25,15 +24,14 @@ pub struct Pace {
 struct Begun {
     since: Stopwatch,
     latest: Stamp,
-    /// When the latest message was due, after the first.
+    /// Due time of the latest message, after the first.
     due: Duration,
 }
 
 impl Pace {
-    /// `factor` times as fast as the log was recorded; 0: nothing is held back. Pauses of more than five seconds are cut to five.
-    ///
+    /// `factor` times as fast as the log was recorded; 0 disables the delay. Pauses longer than five seconds are cut to five.
     /// # Errors
-    /// [`LiveError::Pace`].
+    /// Returns [`LiveError::Pace`].
     pub fn new(factor: f64) -> Result<Self, LiveError> {
         if !factor.is_finite() || factor < 0.0 {
             return Err(LiveError::Pace { factor });
@@ -41,13 +39,13 @@ impl Pace {
         Ok(Self { factor, begun: None })
     }
 
-    /// Returns when what has this stamp is due; the first is due at once.
+    /// Waits until a message with this stamp is due; the first is due at once.
     pub fn wait_for(&mut self, stamp: Stamp) {
         let (since, due) = self.due(stamp);
         thread::sleep(due.saturating_sub(since.elapsed()));
     }
 
-    /// When it is due, after when.
+    /// The due time, and its reference.
     fn due(&mut self, stamp: Stamp) -> (Stopwatch, Duration) {
         let factor = self.factor;
         let start = || Begun { since: Stopwatch::start(), latest: stamp, due: Duration::ZERO };

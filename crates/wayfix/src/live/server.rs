@@ -17,10 +17,9 @@ use super::{
 /// Who loads the page of a viewer again is back within this time.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// A WebSocket on which Foxglove, and whatever else speaks its protocol, sees a run as it goes.
+/// A WebSocket on which Foxglove, and other programs with its protocol, show a run live.
 ///
-/// It only tells: viewers cannot change or publish anything.
-///
+/// It is read-only: viewers cannot change or publish anything.
 /// ```
 /// use wayfix::live::{LiveError, LiveServer, Pace};
 /// # use wayfix_systems::{points::PointFrontEnd, slam::SlamEstimateLog};
@@ -40,13 +39,13 @@ pub struct LiveServer {
 }
 
 impl LiveServer {
-    /// Where it listens unless told otherwise: this machine alone, the port that Foxglove offers first.
+    /// Default address: this machine only, with Foxglove's default port.
     pub const ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(std::net::Ipv4Addr::LOCALHOST), 8765);
 
     /// Listens at `address`.
     ///
     /// # Errors
-    /// [`LiveError::InUse`], [`LiveError::Bind`], [`LiveError::Server`].
+    /// Returns [`LiveError::InUse`], [`LiveError::Bind`], [`LiveError::Server`].
     pub fn start(address: SocketAddr) -> Result<Self, LiveError> {
         let (context, audience) = (Context::new(), Arc::new(Audience::default()));
         let listener = Arc::clone(&audience);
@@ -71,12 +70,12 @@ impl LiveServer {
         Ok(Self { context, handle: Arc::new(handle), audience, address })
     }
 
-    /// Where it listens.
+    /// The listening address.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// What a viewer opens.
+    /// The URL for viewers.
     pub fn url(&self) -> String {
         format!("ws://{}", self.address)
     }
@@ -92,12 +91,12 @@ impl LiveServer {
         })
     }
 
-    /// Returns when somebody is watching.
+    /// Returns when a viewer is connected.
     pub fn wait_for_viewer(&self) {
         self.audience.wait_for_viewer();
     }
 
-    /// Returns when nobody is watching any more.
+    /// Returns when no viewer is connected.
     pub fn wait_until_all_left(&self) {
         self.audience.wait_until_all_left(GRACE);
     }

@@ -6,10 +6,10 @@ use wayfix_sensor_log::{LogError, Message, MessageSink, Stamp};
 use super::{Pace, audience::Audience};
 use wayfix_systems::system::Stopwatch;
 
-/// Viewers are told the time of the log this often at most: one that is told faster than it reads would be cut off.
+/// Minimum period of clock messages to viewers; a viewer that reads more slowly would be disconnected.
 const CLOCK_PERIOD: Duration = Duration::from_millis(20);
 
-/// Passes messages on to the viewers, each when its time has come.
+/// Passes messages to the viewers at their due times.
 pub(super) struct LiveSink {
     pub(super) context: Arc<Context>,
     pub(super) server: Arc<WebSocketServerHandle>,
@@ -18,7 +18,7 @@ pub(super) struct LiveSink {
     pub(super) clock: Clock,
 }
 
-/// The time of the log as the viewers know it.
+/// The log time last sent to the viewers.
 #[derive(Default)]
 pub(super) struct Clock {
     latest: Stamp,

@@ -43,7 +43,7 @@ fn in_place(page: &Source, part: &str, sources: &[Source]) -> Vec<Finding> {
 struct Row<'a> {
     run: &'a str,
     figure: &'a str,
-    /// Whether it stands there for a figure of a paper, which the code knows and not the plan.
+    /// Whether it has a paper's value that is in the code and not in the plan.
     is_compared: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What an author leaves behind: notes without an issue, debug prints, paths of one machine.
+//! Leftovers: notes without an issue, debug prints, paths of one machine.
 
 use super::super::code::{has_word, without_comments_and_strings};
 use super::super::{Finding, Source};

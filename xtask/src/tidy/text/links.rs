@@ -1,4 +1,4 @@
-//! Relative links in Markdown lead somewhere, and the changelog has a place for what comes next.
+//! Relative links in Markdown have targets, and the changelog has a section for unreleased changes.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -42,7 +42,7 @@ fn links(text: &str) -> Vec<(usize, &str)> {
     files.filter(|(_, file)| !file.is_empty() && !file.contains(':')).collect()
 }
 
-/// Where in a Markdown text the targets of its links stand, without those in code.
+/// Ranges of the link targets in a Markdown text, without those in code.
 pub(crate) fn link_targets(text: &str) -> Vec<Range<usize>> {
     let mut targets = Vec::new();
     let (mut fenced, mut offset) = (false, 0);
@@ -60,7 +60,7 @@ pub(crate) fn link_targets(text: &str) -> Vec<Range<usize>> {
     targets
 }
 
-/// The path that a relative link means in the file `from`.
+/// The path of a relative link in the file `from`.
 pub(crate) fn resolve(from: &str, target: &str) -> String {
     let mut parts: Vec<&str> = from.split('/').collect();
     parts.pop();

@@ -1,4 +1,4 @@
-//! Texts: words, pages, links, figures, what is left over.
+//! Checks of texts: words, pages, links, figures, leftovers.
 
 pub(super) mod figures;
 pub(super) mod leftovers;

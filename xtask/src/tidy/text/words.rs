@@ -2,7 +2,7 @@
 
 use super::super::{Finding, Source};
 
-/// What is not written, in lower case, and what is written in its place. In two halves, so that this file does not find itself.
+/// Words to avoid, in lower case, with replacements. In two halves, so that this file does not match itself.
 const WORDS: [(&str, &str); 14] = [
     (concat!("who", "ever"), "name the subject: the robot, the filter, the caller"),
     (concat!("ous", "ted"), "previous hypothesis"),
@@ -19,9 +19,9 @@ const WORDS: [(&str, &str); 14] = [
     (concat!("never", "_twice"), "one detection per landmark"),
     (concat!("last", "_look"), "keyframe"),
 ];
-/// Where old names stand beside the new ones.
+/// Files that list old names beside the new ones.
 const OLD_NAMES: [&str; 2] = ["CHANGELOG.md", "crates/wayfix/src/cli/renamed.rs"];
-/// What is about to be rewritten: two folders, and a test with their names.
+/// Files to be rewritten: two folders, and a test with their names.
 pub(in crate::tidy) const EXCEPT: [&str; 3] = [
     "crates/appearance-cml/src/localizer/",
     "crates/color-model/src/localizer/",
@@ -48,7 +48,7 @@ fn in_line<'a>(source: &'a Source, (index, line): (usize, &str)) -> impl Iterato
         .map(move |(word, instead)| Finding::new(&source.path, index + 1, format!("`{word}`"), instead))
 }
 
-/// Whether `word` stands in `line`, not as a part of a longer word.
+/// Whether `line` contains `word`, not as a part of a longer word.
 fn is_word(line: &str, word: &str) -> bool {
     line.match_indices(word).any(|(start, _)| {
         let before = line[..start].chars().next_back();

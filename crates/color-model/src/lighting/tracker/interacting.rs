@@ -11,17 +11,17 @@ use super::{
 };
 use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter};
 
-/// The interacting multiple model filter for a light that is switched now and then.
+/// The interacting multiple model filter for a light that switches occasionally.
 ///
-/// Its models share one state, so a light of the bank cannot rest while another is on. What they differ in is how the state moves: it drifts, or it
-/// has just been switched to one of the bank's lights, of which no more than the prior is known. [Blom & Bar-Shalom 1988]
+/// Its models share one state, so an inactive light of the bank cannot keep its own. They differ in the motion of the state: it drifts, or
+/// it switches to one of the bank's lights and restarts at its prior. [Blom & Bar-Shalom 1988]
 #[derive(Clone)]
 pub struct ImmTracker {
     filter: Imm<LightMotion, Sequential>,
     noise: Noise,
 }
 
-/// As [`ImmTracker`], with mixing put off until after the next image, so that a switch is judged by two. [Bar-Shalom et al. 2001, §11.6.5]
+/// As [`ImmTracker`], with mixing after the next image, so that two images determine a switch. [Bar-Shalom et al. 2001, §11.6.5]
 #[derive(Clone)]
 pub struct Gpb2Tracker {
     filter: Gpb2<LightMotion, Sequential>,
@@ -36,16 +36,16 @@ struct Noise {
 }
 
 impl ImmTracker {
-    /// Starts from the mixture of the bank's priors. Noise and drift are those of the first member; the probability of a switch is the chain's mean.
-    ///
+    /// Starts from the mixture of the bank's priors. Noise and drift are those of the first member; the probability of a switch is the chain's
+    /// mean.
     /// # Errors
-    /// When the priors have no common Gaussian.
+    /// Returns an error if the priors have no common Gaussian.
     pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
         Ok(Self { filter: Imm::new(motions, chain, Sequential, &start)?, noise })
     }
 
-    /// How probable it is that the light drifts, and that it has just been switched to each member of the bank.
+    /// Probabilities that the light drifts, and that it has just switched to each member of the bank.
     pub fn probabilities(&self) -> Vec<f64> {
         self.filter.model_probabilities()
     }
@@ -55,7 +55,7 @@ impl Gpb2Tracker {
     /// As [`ImmTracker::new`].
     ///
     /// # Errors
-    /// When the priors have no common Gaussian.
+    /// Returns an error if the priors have no common Gaussian.
     pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
         Ok(Self { filter: Gpb2::new(motions, chain, Sequential, &start)?, noise })
@@ -85,7 +85,7 @@ impl Models {
         let row = switching(bank.chain());
         Ok(Self {
             motions: std::iter::once(drift).chain(switches).collect(),
-            // A switch is as likely after any image, whatever has been on.
+            // The probability of a switch does not depend on the last model.
             chain: MarkovChain::new(&vec![row.clone(); row.len()], &row)?,
             start,
             noise: Noise { n_colors: bank.n_colors(), mean: params.mean_noise, pixel: params.pixel_noise },
@@ -93,7 +93,7 @@ impl Models {
     }
 }
 
-/// Probability that the light drifts on, and that it is switched to each member: means over the members that it may come from.
+/// Probabilities that the light drifts on, and that it switches to each member: means over the previous members.
 fn switching(chain: &MarkovChain) -> Vec<f64> {
     let n = chain.n_models();
     let mean = |probability: &dyn Fn(usize) -> f64| (0..n).map(probability).sum::<f64>() / n as f64;

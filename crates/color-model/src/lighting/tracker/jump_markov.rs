@@ -9,9 +9,8 @@ use super::{
 };
 use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter};
 
-/// The switching filter of [Schulz & Fox 2004, §III.A.3]: a filter for each light, of which only the active one learns; the likeliest histories of
-/// which one was active when are kept, instead of particles that sample them.
-///
+/// The switching filter of [Schulz & Fox 2004, §III.A.3]: one filter per light, of which only the active one learns. It keeps the most probable
+/// histories of the active light, instead of particles that sample them.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
 /// use wayfix_color_model::{ColorMeans, JumpMarkovTracker, LightTracker, LightingBank, LightingFilter, LightingParams};
@@ -40,10 +39,9 @@ pub struct JumpMarkovTracker {
 }
 
 impl JumpMarkovTracker {
-    /// Starts from what the bank's members know. Noise is that of the first member.
-    ///
+    /// Starts from the state of the bank's members. Noise is that of the first member.
     /// # Errors
-    /// When no history is to be kept.
+    /// Returns an error if no history is to be kept.
     pub fn new(bank: &LightingBank, params: JumpMarkovParams) -> Result<Self, ColorModelError> {
         let belief = |light: &LightingFilter| {
             Gaussian::from_parts_unchecked(light.mean().clone(), light.covariance().clone())
@@ -65,12 +63,12 @@ impl JumpMarkovTracker {
         self.filter.selected()
     }
 
-    /// How probable it is that each light is on.
+    /// Probability of each light.
     pub fn probabilities(&self) -> Vec<f64> {
         self.filter.model_probabilities()
     }
 
-    /// What is believed of the light that is most probably on.
+    /// Estimate of the most probable light.
     pub fn estimate(&self) -> Gaussian<DVector<f64>> {
         self.filter.estimate()
     }

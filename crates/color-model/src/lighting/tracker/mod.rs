@@ -1,4 +1,4 @@
-//! Lights that are switched, followed from known poses: one interface to several ways, so that they can be compared on the same images.
+//! Tracking of switched lights with known poses: one interface for several filters, so that they can be compared on the same images.
 
 mod interacting;
 mod jump_markov;
@@ -11,32 +11,29 @@ pub use jump_markov::JumpMarkovTracker;
 use super::{ColorDensity, ColorMeans};
 use crate::ColorModelError;
 
-/// Follows the light from the colour means of image after image, poses (and with them labels) being known.
-///
-/// | tracker | what it remembers | cost of an image |
+/// Tracks the light from the colour means of successive images; poses, and hence labels, are known.
+/// | tracker | state | cost of an image |
 /// | --- | --- | --- |
 /// | [`LightingFilter`](super::LightingFilter) | one Gaussian for all lights | one update |
 /// | [`JumpMarkovTracker`] | a Gaussian for each light of the bank; one that comes back is known already | histories × members |
 /// | [`ImmTracker`] | one Gaussian a model, mixed: a switch starts from that light's prior again | members + 1 |
 /// | [`Gpb2Tracker`] | the same, mixed one image later | (members + 1)² |
 ///
-/// **Laws**: a call that fails changes nothing; without images [`colors`](Self::colors) become ever less certain, never more.
+/// **Laws**: a call that fails changes nothing; without images [`colors`](Self::colors) never become more certain.
 pub trait LightTracker {
     /// Lets `seconds` pass.
     ///
     /// # Errors
-    /// When the time is negative or not finite.
+    /// Returns an error if the time is negative or not finite.
     fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError>;
 
-    /// Learns from what an image shows. One that shows no colour says nothing.
-    ///
+    /// Updates the light with an image. An image without map colours has no effect.
     /// # Errors
-    /// When there are more or fewer colours, or a mean is not finite.
+    /// Returns an error if there are more or fewer colours, or a mean is not finite.
     fn update(&mut self, means: &ColorMeans) -> Result<(), ColorModelError>;
 
-    /// How the pixels of each colour are distributed now (Eq. 9), in the order of the map.
-    ///
+    /// Current distributions of the pixels of each colour (Eq. 9), in map order.
     /// # Errors
-    /// When the belief has no mean any more.
+    /// Returns an error if the belief has no mean any more.
     fn colors(&self) -> Result<Vec<ColorDensity>, ColorModelError>;
 }

@@ -1,4 +1,4 @@
-//! The lighting filter in the words of `wayfix-kalman`: how the light moves, and what an image shows of it.
+//! The lighting filter in terms of `wayfix-kalman`: motion model and measurement model of the light.
 
 use std::sync::Arc;
 
@@ -10,12 +10,12 @@ use wayfix_kalman::LinearSensor;
 use super::super::Drift;
 use crate::{ColorMeans, ColorModelError, LightingFilter};
 
-/// What the light does in some seconds (the control).
+/// Motion of the light over an interval (the control).
 #[derive(Clone, Debug)]
 pub(super) enum LightMotion {
     /// It drifts.
     Drift { drift: Drift, prior: Arc<Gaussian<DVector<f64>>> },
-    /// It is switched to another one, of which no more than the prior is known.
+    /// The light switches to another one and restarts at its prior.
     Switch { to: Arc<Gaussian<DVector<f64>>> },
 }
 
@@ -65,7 +65,7 @@ impl MotionModel for LightMotion {
 
 pub(super) type ColorSensor = LinearSensor<DVector<f64>, DVector<f64>>;
 
-/// The rows of the state that an image shows, and their values; nothing of an image without colours.
+/// The rows of the state that an image shows, and their values; `None` for an image without map colours.
 pub(super) fn seen(
     means: &ColorMeans,
     noise: &Vector3<f64>,

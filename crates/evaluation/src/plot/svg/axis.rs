@@ -1,4 +1,4 @@
-/// How an axis spaces its numbers.
+/// Scale of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Equal differences, equal distances.
@@ -9,14 +9,14 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// The number on the ruler, `None` when it cannot be drawn.
+    /// Position on the scale; `None` if the value cannot be drawn.
     fn apply(self, value: f64) -> Option<f64> {
         let scaled = match self {
             Self::Linear => value,
             Self::Log10 if value > 0.0 => value.log10(),
             Self::Log10 => return None,
         };
-        // Beyond this, differences of two values overflow; nothing measured is that large.
+        // Differences of larger values could overflow.
         (scaled.abs() < 1e150).then_some(scaled)
     }
 }
@@ -25,13 +25,13 @@ impl Scale {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::plot) struct Axis {
     scale: Scale,
-    /// Ends on the ruler (logarithms when the scale is logarithmic).
+    /// Ends on the scale (logarithms for a logarithmic one).
     low: f64,
     high: f64,
 }
 
 impl Axis {
-    /// The axis that shows every drawable value with `padding` (a share of the range) on both sides; `None` when there is none.
+    /// The axis that covers every drawable value with `padding` (a share of the range) on both sides; `None` without values.
     pub(in crate::plot) fn covering(
         values: impl IntoIterator<Item = f64>,
         scale: Scale,
@@ -56,7 +56,7 @@ impl Axis {
         Self { scale: Scale::Linear, low, high }
     }
 
-    /// Where `value` lies: 0 at the low end, 1 at the high end; `None` when it cannot be drawn.
+    /// Relative position of `value`: 0 at the low end, 1 at the high end; `None` if it cannot be drawn.
     pub(in crate::plot) fn fraction(&self, value: f64) -> Option<f64> {
         Some((self.scale.apply(value)? - self.low) / (self.high - self.low))
     }

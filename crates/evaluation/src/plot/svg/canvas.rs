@@ -10,7 +10,7 @@ use super::decimate::Pixel;
 use super::ink::Ink;
 use super::markup::escape;
 
-/// The backend knows whole units only; ten of them a pixel keep ellipses round and slow lines smooth.
+/// Backend units per pixel. The backend has whole units only; ten per pixel keep ellipses round and flat lines smooth.
 const UNITS_PER_PIXEL: f64 = 10.0;
 /// Pixels.
 pub(in crate::plot) const FONT_SIZE: f64 = 13.5;
@@ -46,7 +46,7 @@ pub(in crate::plot) fn paint(
     Ok(Picture { title: title.to_owned(), alt, width, height, svg })
 }
 
-/// Gives the backend's text its own root element and the page's colours, and takes out what every element repeats.
+/// Replaces the root element and the colours of the backend's text, and removes repeated attributes.
 fn dress(svg: &str, (width, height): (u32, u32), (units_x, units_y): (u32, u32), alt: &str) -> String {
     let body = svg.split_once('>').map_or("", |(_, body)| body);
     let body = [
@@ -110,7 +110,7 @@ impl Brush<'_> {
             Anchor::Middle => HPos::Center,
             Anchor::Right => HPos::Right,
         };
-        // 124 is what the backend writes as 100, which `dress` leaves out: the root element has the true size.
+        // The backend writes 124 as 100, which `dress` removes: the root element has the true size.
         let font = FontDesc::new(FontFamily::SansSerif, 124.0, FontStyle::Normal);
         let colour = ink.marker(1.0);
         let style = TextStyle::from(font).color(&colour).pos(Pos::new(h_pos, VPos::Center));

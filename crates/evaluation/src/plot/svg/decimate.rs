@@ -1,11 +1,11 @@
-//! Thinning of series to what a picture can show. All points are in pixels.
+//! Thinning of series to the resolution of a picture. All points are in pixels.
 
 /// A point in pixels.
 pub(in crate::plot) type Pixel = (f64, f64);
 
-/// Keeps the lowest and the highest point of every pixel column, in the order in which they came, and both ends.
+/// Keeps the lowest and the highest point of every pixel column, in the original order, and both ends.
 ///
-/// A drawn line covers the same pixels as before, so that no peak is lost.
+/// A line through them covers the same pixels as before, so no peak is lost.
 pub(in crate::plot) fn column_extremes(points: &[Pixel], column_width: f64) -> Vec<Pixel> {
     let mut kept = Vec::new();
     kept.extend(points.first());
@@ -24,8 +24,8 @@ pub(in crate::plot) fn column_extremes(points: &[Pixel], column_width: f64) -> V
     kept
 }
 
-/// Drops points that lie within `tolerance` pixels of the line through their kept neighbours [Douglas & Peucker 1973], with a coarser
-/// tolerance when more than `budget` points would stay.
+/// Drops points within `tolerance` pixels of the line through their kept neighbours [Douglas & Peucker 1973], with a larger tolerance if
+/// more than `budget` points remain.
 pub(in crate::plot) fn simplify_path(points: &[Pixel], tolerance: f64, budget: usize) -> Vec<Pixel> {
     let mut tolerance = tolerance;
     let mut path = douglas_peucker(points, tolerance);
@@ -41,7 +41,7 @@ fn douglas_peucker(points: &[Pixel], tolerance: f64) -> Vec<Pixel> {
     let mut keep = vec![false; points.len()];
     keep[0] = true;
     keep[last] = true;
-    // An explicit stack: a recursion as deep as the path is long would overflow.
+    // An explicit stack: recursion over a long path could overflow.
     let mut spans = vec![(0, last)];
     while let Some((start, end)) = spans.pop() {
         let farthest = (start + 1..end)

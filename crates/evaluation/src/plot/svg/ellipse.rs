@@ -1,5 +1,5 @@
-/// Points on the ellipse of `sigmas` standard deviations, first and last the same: $`μ + k L (\cos φ, \sin φ)`$ with the Cholesky factor
-/// $`L`$; none when the covariance is not positive definite.
+/// Points on the ellipse of `sigmas` standard deviations, closed: $`μ + k L (\cos φ, \sin φ)`$ with the Cholesky factor $`L`$; `None` if
+/// the covariance is not positive definite.
 pub(in crate::plot) fn ellipse(
     center: (f64, f64),
     covariance: [[f64; 2]; 2],

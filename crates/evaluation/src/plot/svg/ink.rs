@@ -10,7 +10,7 @@ pub(crate) const DARK_PALETTE: &str = "--paper:#15171a;--text:#e3e5e8;--muted:#9
 /// Number of colours for data.
 const N_DATA_INKS: u8 = 6;
 
-/// What a mark is drawn with; the page decides the colour.
+/// Ink of a mark; the page defines its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::plot) enum Ink {
     Text,
@@ -33,7 +33,7 @@ impl Ink {
         Self::Data((index % usize::from(N_DATA_INKS)) as u8)
     }
 
-    /// A colour that only stands for this ink in what the SVG backend writes; [`Ink::replace_markers`] takes it out again.
+    /// A placeholder colour for this ink in the output of the SVG backend; [`Ink::replace_markers`] removes it.
     pub(in crate::plot) fn marker(self, opacity: f64) -> RGBAColor {
         RGBColor(0xF0, 0x0D, self.code()).mix(opacity)
     }

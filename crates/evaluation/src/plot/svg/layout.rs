@@ -5,7 +5,7 @@ use super::ink::Ink;
 use super::legend::Legend;
 use super::panel::{Panel, Rect};
 
-/// Width of every picture: two fit side by side on a desk, and one on a telephone stays readable.
+/// Width of every picture, px: two fit side by side on a desktop screen, and one is readable on a phone.
 pub(in crate::plot) const WIDTH: f64 = 520.0;
 /// Room for numbers at the left edge, and for half a number at the right one.
 pub(in crate::plot) const LEFT: f64 = 52.0;
@@ -17,7 +17,7 @@ pub(in crate::plot) const FOOTING: f64 = 42.0;
 /// Width of every panel.
 pub(in crate::plot) const PANEL_WIDTH: f64 = WIDTH - LEFT - RIGHT;
 
-/// What surrounds the panels of a picture.
+/// Title, labels and legend around the panels of a picture.
 pub(in crate::plot) struct Frame<'a> {
     pub(in crate::plot) title: &'a str,
     pub(in crate::plot) alt: String,
@@ -61,7 +61,7 @@ impl Frame<'_> {
 /// Numbers below a panel that is not the last.
 const BETWEEN: f64 = 24.0;
 
-/// The picture that says there is nothing to draw.
+/// A picture with the text "no data".
 pub(in crate::plot) fn no_data(title: &str) -> Result<Picture, PlotError> {
     const HEIGHT: f64 = 120.0;
     paint(title, format!("{title}: no data"), (WIDTH, HEIGHT), |brush| {

@@ -3,7 +3,7 @@ use super::canvas::{Anchor, Brush, FONT_SIZE};
 use super::decimate::Pixel;
 use super::ink::Ink;
 
-/// What a legend draws before its text.
+/// Symbol before the text of a legend entry.
 #[derive(Clone, Copy)]
 pub(in crate::plot) enum Mark {
     Line(Ink),
@@ -29,12 +29,12 @@ impl Legend {
         self
     }
 
-    /// The same, only when `shown`.
+    /// Adds the entry only if `shown`.
     pub(in crate::plot) fn with_if(self, shown: bool, mark: Mark, name: &str) -> Self {
         if shown { self.with(mark, name) } else { self }
     }
 
-    /// Height in pixels when set `width` wide.
+    /// Height in pixels at a width of `width`.
     pub(in crate::plot) fn height(&self, width: f64) -> f64 {
         self.positions(width).last().map_or(0.0, |(_, y)| y + ROW_HEIGHT)
     }
@@ -85,7 +85,7 @@ impl Mark {
     }
 }
 
-/// A generous guess: nobody but the reader's browser knows its fonts.
+/// An upper estimate of the text width; the browser's font is unknown.
 fn text_width(text: &str) -> f64 {
     0.56 * FONT_SIZE * text.chars().count() as f64
 }

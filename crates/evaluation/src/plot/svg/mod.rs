@@ -1,4 +1,4 @@
-//! What every plot is drawn with: canvas, axes, panels, ink.
+//! Common parts of the plots: canvas, axes, panels, inks.
 
 pub(super) mod axis;
 pub(super) mod canvas;

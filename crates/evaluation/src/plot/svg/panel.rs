@@ -13,7 +13,7 @@ pub(in crate::plot) struct Rect {
     pub(in crate::plot) height: f64,
 }
 
-/// One pair of axes and what is drawn between them.
+/// A pair of axes with its content.
 pub(in crate::plot) struct Panel<'a, 'b> {
     brush: &'a Brush<'b>,
     rect: Rect,
@@ -49,7 +49,7 @@ impl<'a, 'b> Panel<'a, 'b> {
         Ok(())
     }
 
-    /// A series whose x grows: every peak stays visible.
+    /// Draws a series with increasing x; every peak stays visible.
     pub(in crate::plot) fn series(
         &self,
         points: &[(f64, f64)],
@@ -120,7 +120,7 @@ impl<'a, 'b> Panel<'a, 'b> {
         self.visible(at).map_or(Ok(()), |pixel| self.brush.cross(pixel, arm, ink))
     }
 
-    /// Where a point lies on the picture; `None` when it cannot be drawn.
+    /// Pixel position of a point; `None` if it cannot be drawn.
     pub(in crate::plot) fn to_pixel(&self, (x, y): (f64, f64)) -> Option<Pixel> {
         let (x, y) = (self.x.fraction(x)?, self.y.fraction(y)?);
         Some((self.rect.left + x * self.rect.width, self.rect.top + (1.0 - y) * self.rect.height))
@@ -137,7 +137,7 @@ impl<'a, 'b> Panel<'a, 'b> {
         (x.clamp(left, left + width), y.clamp(top, top + height))
     }
 
-    /// The visible stretches of a series; a lone point becomes a stretch a pixel long, or it would not be seen.
+    /// The drawable runs of a series; a single point becomes a run one pixel long, to stay visible.
     fn runs(&self, points: &[(f64, f64)]) -> Vec<Vec<Pixel>> {
         let pixels: Vec<Option<Pixel>> = points.iter().map(|point| self.visible(*point)).collect();
         pixels

@@ -1,4 +1,4 @@
-//! The report as one page that needs no network: styles, pictures and the few lines of script are inside.
+//! The report as one page that works offline: styles, pictures and a short script are embedded.
 
 mod overview;
 mod run;
@@ -43,7 +43,7 @@ fn anchor(k: usize, n: Option<usize>) -> String {
     n.map_or_else(|| format!("suite-{k}"), |n| format!("suite-{k}-run-{n}"))
 }
 
-/// A table in a box that scrolls by itself; each head is a text and whether its column is numeric.
+/// A table in a scrollable box; each head is a text and whether its column is numeric.
 fn table(label: &str, heads: &[(&str, bool)], rows: &str) -> String {
     let head = |(text, numeric): &(&str, bool)| {
         let class = if *numeric { " class=\"number\"" } else { "" };

@@ -36,7 +36,7 @@ fn remarks(run: &Run) -> String {
     error.chain(warnings).chain(notes).collect()
 }
 
-/// What a bound, a paper or a peer would say has columns where one of them says something.
+/// The columns for bounds, paper and peers appear only if at least one row has a value.
 fn metrics(run: &Run) -> String {
     let heads = [
         ("figure", false),
@@ -79,7 +79,7 @@ fn comparison(metric: &Metric) -> String {
     format!("{numbers}{}<td>{source}</td>{pass}", peer_cell(metric))
 }
 
-/// The figure, and how sure it is.
+/// The value with its uncertainty.
 fn value_cell(metric: &Metric) -> String {
     let cell = number_cell(Some(metric.value));
     match metric.spread {

@@ -5,12 +5,12 @@ use super::super::Job;
 use crate::cml::{self as experiments, Setup};
 use wayfix_evaluation::report::Run;
 
-/// What the plan says of a run.
+/// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
     experiment: Experiment,
-    /// How large it is.
+    /// Size of the full experiment.
     full: Setup,
     /// The same with `--quick`, where that is something else.
     quick: Option<Setup>,
@@ -27,11 +27,11 @@ enum Experiment {
     FourWeeks,
     /// Fig. 6.
     ThreeDays,
-    /// From anywhere in a known map.
+    /// Global localization in a known map.
     GlobalStart,
-    /// Carried elsewhere.
+    /// Kidnapped robots.
     Kidnapped,
-    /// Carried elsewhere, and what becomes of it.
+    /// Kidnapped robots after the relocalization.
     AfterRelocalization,
     /// People before the camera.
     Crowded,

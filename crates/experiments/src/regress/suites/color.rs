@@ -14,11 +14,11 @@ use wayfix_systems::{
     system::{DriveStep, System},
 };
 
-/// What the plan says of a run.
+/// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
-    /// What is done.
+    /// The experiment.
     #[serde(default)]
     experiment: Experiment,
     /// The map, relative to the folder of the plan.
@@ -26,9 +26,9 @@ struct Settings {
     map: PathBuf,
     /// A file of parameters, relative to the folder of the plan.
     params: Option<PathBuf>,
-    /// Kinds of light to learn priors for, one Gaussian each; the built-in priors, of two, where nothing is said.
+    /// Number of kinds of light to learn priors for, one Gaussian each; without it the built-in priors, of two, are used.
     lights: Option<usize>,
-    /// How many halls, for experiments over many.
+    /// Number of halls, for experiments over many.
     #[serde(default = "hundred")]
     n_seeds: u64,
     /// The same with `--quick`.
@@ -46,15 +46,15 @@ enum Experiment {
     Withheld,
     /// Jump Markov, IMM, GPB2 and a single filter while lights are switched.
     Switching,
-    /// From anywhere, in many halls.
+    /// Global localization, in many halls.
     GlobalStart,
     /// Carried away, in many halls.
     Kidnapped,
-    /// The drive of the log in halls that were not picked.
+    /// The drive of the log in random halls.
     OtherHallsDark,
     /// The same in bright light.
     OtherHallsBright,
-    /// Each colour withheld in turn in dark halls that were not picked.
+    /// Each colour withheld in turn, in random dark halls.
     WithheldHallsDark,
     /// The same in bright light.
     WithheldHallsBright,
@@ -116,7 +116,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
 }
 
 impl Settings {
-    /// Seeds beside those of the stored logs and of the training venues.
+    /// Seeds disjoint from those of the stored logs and of the training venues.
     fn seeds(&self, job: &Job<'_>) -> Range<u64> {
         const FIRST: u64 = 10_000;
         let n = if job.options.quick { self.n_seeds_quick } else { self.n_seeds };

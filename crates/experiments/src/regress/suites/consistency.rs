@@ -9,7 +9,7 @@ use crate::{
 };
 use wayfix_evaluation::report::{Metric, Run};
 
-/// What the plan says of a run.
+/// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, tag = "experiment", rename_all = "kebab-case")]
 enum Settings {
@@ -33,7 +33,7 @@ enum Settings {
     Laps { n_runs: u32, n_runs_quick: u32, laps: Laps },
 }
 
-/// Noise of the monobot: the paper gives none.
+/// Noise of the monobot: the paper states none.
 #[derive(Clone, Copy, Debug, Deserialize)]
 struct Noise {
     motion_noise: f64,

@@ -10,14 +10,14 @@ use wayfix_systems::{
     system::{DriveStep, System, drive},
 };
 
-/// What the plan says of a run.
+/// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
-    /// How walls are found; what is not named keeps its default.
+    /// Extraction parameters; omitted keys keep their defaults.
     #[serde(default)]
     params: Params,
-    /// Instead of a log: so many random chains are simplified.
+    /// Number of random chains to simplify, instead of a log.
     n_chains: Option<u32>,
 }
 

@@ -1,4 +1,4 @@
-//! The suites: how a planned run of each goes through its system.
+//! The suites: each runs its planned runs with its system.
 
 mod cml;
 mod color;

@@ -13,22 +13,22 @@ use wayfix_systems::{
     walls::{self, WallSlamParams},
 };
 
-/// What the plan says of a run.
+/// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
     /// Which robot, in sets of several.
     robot: Option<u32>,
-    /// How detections find their landmarks.
+    /// Data association.
     association: Option<AssociationRule>,
-    /// The robot's defaults, when they are not those of the log's format.
+    /// The robot profile, if it differs from that of the log's format.
     profile: Option<Profile>,
     /// A file of parameters, relative to the folder of the plan.
     params: Option<PathBuf>,
     /// Whether the landmarks are walls in laser scans.
     #[serde(default)]
     walls: bool,
-    /// Relations between poses that are known from elsewhere, relative to the folder of recordings.
+    /// File of known relations between poses, relative to the folder of recordings.
     relations: Option<PathBuf>,
 }
 

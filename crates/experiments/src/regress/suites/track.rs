@@ -10,18 +10,18 @@ use super::super::Job;
 use wayfix_evaluation::report::Run;
 use wayfix_systems::track::{self, Method, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes};
 
-/// What the plan says of a run.
+/// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Settings {
     /// A simulated film, instead of `data`.
     film: Option<String>,
-    /// What happens to its target.
+    /// Event that affects the target.
     incident: Option<String>,
-    /// How many seeds it has.
+    /// Number of seeds.
     #[serde(default = "twenty")]
     n_seeds: u64,
-    /// The same with `--quick`, and how many frames.
+    /// The same with `--quick`, and the number of frames.
     #[serde(default = "two")]
     n_seeds_quick: u64,
     #[serde(default = "fifty")]

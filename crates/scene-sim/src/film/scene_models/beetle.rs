@@ -51,7 +51,7 @@ impl Beetle {
         (160.0 + 90.0 * wide * cos, 120.0 + 58.0 * high * sin)
     }
 
-    /// It looks where it goes, more or less.
+    /// Its heading roughly follows its path.
     fn pose(&self, seconds: f64, aside: f64) -> Pose {
         let (before, after) = (self.place(seconds - 0.4), self.place(seconds + 0.4));
         let angle = libm::atan2(after.1 - before.1, after.0 - before.0) + 0.15 * self.turn.at(seconds);
@@ -66,7 +66,7 @@ impl SceneModel for Beetle {
         let size = Film::SIZE_PX;
         let pose = self.pose(seconds, aside);
         let (ground, light) = (self.ground.at(seconds), self.daylight.at(seconds));
-        // The shadow lies to the lower right of the body and is soft.
+        // The soft shadow is to the lower right of the body.
         let shadow = |x: f64, y: f64| {
             let depth = body(pose.to_body(x - 4.0, y - 4.0)) * pose.px();
             1.0 - 0.55 * (0.5 + depth / 5.0).clamp(0.0, 1.0)
@@ -90,7 +90,7 @@ impl SceneModel for Beetle {
     }
 }
 
-/// Wing cases, thorax and head; the head looks along the first axis.
+/// Wing cases, thorax and head; the head points along the first axis.
 fn body(spot: (f64, f64)) -> f64 {
     let wings = in_ellipse(spot, (-0.28, 0.0), (0.72, 0.50));
     let thorax = in_ellipse(spot, (0.42, 0.0), (0.30, 0.40));
@@ -131,7 +131,7 @@ fn shade(spot: (f64, f64), light: Color) -> Color {
     sheen(scaled(times(case, light), seam * rim), light, 0.6 * shine)
 }
 
-/// How much of the sky a smooth round back shows about one place.
+/// Reflection of the sky on a smooth round back near one point.
 fn gloss(spot: (f64, f64), centre: (f64, f64), width: f64) -> f64 {
     let (du, dv) = ((spot.0 - centre.0) / width, (spot.1 - centre.1) / (0.5 * width));
     libm::exp(-0.5 * (du * du + dv * dv))

@@ -9,7 +9,7 @@ use crate::random::{Source, Streams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
 use crate::scenery::noise::Noise;
 
-/// Seconds between fast changes of the target's colour, how long one takes, and by how much of a turn the hue changes.
+/// Time between fast changes of the target's colour, s, their duration, and the change of hue in turns.
 const CALM_S: f64 = 2.2;
 const CHANGE_S: f64 = 0.45;
 const CHANGE: f64 = 0.17;
@@ -63,7 +63,7 @@ impl Circles {
         Self { wall, circles }
     }
 
-    /// Where on the colour circle the target is: a slow swing, and now and then a fast change.
+    /// Hue of the target: a slow oscillation, with occasional fast changes.
     fn hue(&self, seconds: f64) -> f64 {
         let (past, within) = ((seconds / CALM_S).floor(), seconds.rem_euclid(CALM_S));
         let changing = ((within - (CALM_S - CHANGE_S)) / CHANGE_S).clamp(0.0, 1.0);

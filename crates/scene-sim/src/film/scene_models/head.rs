@@ -51,7 +51,7 @@ impl Head {
         Pose::new(centre, 0.25 * self.tilt.at(seconds), (0.76 * size, size))
     }
 
-    /// What is to be seen at a place of the unit disc of a ball that has turned by `yaw`: face, hair, and how it faces the light.
+    /// Appearance at a point of the unit disc of a ball turned by `yaw`: face, hair, and its shading.
     fn shade(&self, (u, v): (f64, f64), yaw: f64, from: f64) -> Color {
         let ahead = (1.0 - u * u - v * v).max(0.0).sqrt();
         let (sin, cos) = libm::sincos(yaw);

@@ -10,7 +10,7 @@ use super::{Film, Silhouette};
 use crate::random::Streams;
 use crate::scenery::canvas::{Canvas, Color};
 
-/// What is before the camera at one moment.
+/// The scene before the camera at one moment.
 pub(super) struct Scene {
     /// Linear radiance.
     pub(super) canvas: Canvas,
@@ -20,10 +20,10 @@ pub(super) struct Scene {
 
 /// A story.
 pub(super) trait SceneModel {
-    /// The scene, its target so many pixels to the right of where its path leads.
+    /// Renders the scene, with its target displaced by this many pixels to the right of its path.
     fn render(&self, seconds: f64, aside: f64) -> Scene;
 
-    /// The light that falls on what passes before the target.
+    /// The light on the occluder.
     fn light(&self, seconds: f64) -> Color;
 }
 

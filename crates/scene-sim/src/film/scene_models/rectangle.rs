@@ -12,15 +12,15 @@ use crate::scenery::noise::Noise;
 
 /// Focal length of the camera, in pixels.
 const FOCAL_PX: f64 = 330.0;
-/// Where the lamp hangs before the camera, in metres: x right, y down, z ahead.
+/// Position of the lamp in the camera frame, m: x right, y down, z ahead.
 const LAMP: [f64; 3] = [0.0, 0.02, 2.0];
-/// How wide the orbit is to the sides, up and down, and in depth; what is behind the lamp is higher in the picture.
+/// Semi-axes of the orbit, m: sideways, vertical, and in depth; points behind the lamp are higher in the image.
 const ORBIT_M: [f64; 3] = [0.52, 0.34, 0.36];
 /// Half of its width and of its height.
 const HALF_M: (f64, f64) = (0.21, 0.15);
 const RED: Color = [0.58, 0.17, 0.12];
 const LAMPLIGHT: Color = [1.0, 0.86, 0.66];
-/// Daylight that comes from the left behind the camera, and from everywhere.
+/// Daylight from the left behind the camera, and ambient light.
 const WINDOW_LIGHT: Color = [0.11, 0.13, 0.16];
 const WINDOW: [f64; 3] = [-0.7, -0.2, -0.68];
 /// Radiance a metre before the lamp.
@@ -78,7 +78,7 @@ impl Rectangle {
     /// The light that a matt white surface sends back.
     fn lit(&self, point: &Vector3<f64>, normal: &Vector3<f64>, power: f64) -> f64 {
         let to_lamp = Vector3::from(LAMP) - point;
-        // A bulb is no point: its light does not grow without end.
+        // The bulb's finite size limits its light.
         (power * normal.dot(&to_lamp.normalize()) / (to_lamp.norm_squared() + 0.02)).max(0.0)
     }
 
@@ -128,7 +128,7 @@ impl SceneModel for Rectangle {
     }
 }
 
-/// Where the rectangle is, and which way it faces.
+/// Position and normal of the rectangle.
 struct Plane {
     centre: Vector3<f64>,
     /// Towards the camera.
@@ -151,7 +151,7 @@ impl Plane {
         Self { centre, normal, along, across }
     }
 
-    /// Where the ray through a point of the picture meets the plane, in space and on it.
+    /// Intersection of the ray through an image point with the plane, in space and in plane coordinates.
     fn hit(&self, x: f64, y: f64) -> Option<(Vector3<f64>, (f64, f64))> {
         let ray = Vector3::new((x - 160.0) / FOCAL_PX, (y - 120.0) / FOCAL_PX, 1.0);
         let depth = self.normal.dot(&self.centre) / self.normal.dot(&ray);

@@ -15,7 +15,7 @@ const BROWN: Color = [0.24, 0.135, 0.06];
 /// Between the two colours of the shell.
 const NECK: Color = [0.35, 0.235, 0.115];
 const FOOT: Color = [0.16, 0.145, 0.11];
-/// Half the thickness of the neck, where it comes out, and how far it reaches at most; the shell has radius 1.
+/// Half the thickness of the neck, its base, and its maximum reach; the shell has radius 1.
 const NECK_HALF: f64 = 0.22;
 const NECK_ROOT: (f64, f64) = (0.72, 0.50);
 const NECK_REACH: f64 = 0.95;
@@ -23,8 +23,8 @@ const NECK_REACH: f64 = 0.95;
 const GROWTH: f64 = 2.2;
 const UMBILICUS: (f64, f64) = (-0.08, -0.05);
 
-/// A snail in clutter: the target is its shell; a neck of nearly the same colour goes in and out. [Andrade-Cetto, Fig. 12; Sect. 3.4, fourth
-/// sequence]
+/// A snail in clutter: the target is its shell; a neck of nearly the same colour extends and retracts. [Andrade-Cetto, Fig. 12; Sect. 3.4,
+/// fourth sequence]
 pub(super) struct Snail {
     ground: Ground,
     daylight: Daylight,
@@ -57,7 +57,7 @@ impl Snail {
         Pose::new(centre, 0.3 * self.tilt.at(seconds), (size, size * slim))
     }
 
-    /// Where the head is; the neck may be in to the last bit.
+    /// Position of the head; the neck may be fully retracted.
     fn tip(&self, seconds: f64) -> (f64, f64) {
         let out = (0.5 + 0.75 * self.neck.at(seconds)).clamp(0.0, 1.0);
         let nod = 0.25 * self.nod.at(seconds);

@@ -15,11 +15,11 @@ const LONGEST_M: f64 = 100_000.0;
 /// A grid of aisles: where people walk and robots drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aisles {
-    /// Where the aisles along y cross the x axis, growing, metres.
+    /// x of the aisles along y, increasing, m.
     pub(in crate::indoors) xs: Vec<f64>,
-    /// Where the aisles along x cross the y axis, growing, metres.
+    /// y of the aisles along x, increasing, m.
     pub(in crate::indoors) ys: Vec<f64>,
-    /// How far from the middle of an aisle a robot may drive, metres.
+    /// Maximum distance of a robot from the middle of an aisle, m.
     pub(in crate::indoors) max_lateral_offset_m: f64,
     /// Radius of its turns, metres.
     pub(in crate::indoors) turn_m: f64,
@@ -35,7 +35,7 @@ impl Aisles {
         (0..n * m).map(|i| [i % n, i / n]).collect()
     }
 
-    /// Where a crossing is, metres.
+    /// Position of a crossing, m.
     pub fn place(&self, [i, j]: Crossing) -> Vector2<f64> {
         Vector2::new(self.xs[i], self.ys[j])
     }
@@ -44,7 +44,7 @@ impl Aisles {
     /// aisle that was driven least, never straight back; left or right of the middle by chance. It ends at the first crossing after `length_m`.
     ///
     /// # Errors
-    /// When the length is no length.
+    /// Returns an error if the length is no length.
     pub fn tour<R: Rng + ?Sized>(&self, length_m: f64, rng: &mut R) -> Result<Route, SimError> {
         self.tour_from([0, 0], length_m, rng)
     }
@@ -52,7 +52,7 @@ impl Aisles {
     /// The same from another crossing.
     ///
     /// # Errors
-    /// When the length is no length, or there is no such crossing.
+    /// Returns an error if the length is no length, or there is no such crossing.
     pub fn tour_from<R: Rng + ?Sized>(
         &self,
         start: Crossing,
@@ -84,7 +84,7 @@ impl Aisles {
     /// Laps around everything, counter-clockwise from the same corner; left or right of the middle by chance.
     ///
     /// # Errors
-    /// When there are no laps, or more than the longest tour.
+    /// Returns an error if there are no laps, or more than the longest tour.
     pub fn laps<R: Rng + ?Sized>(&self, n_laps: usize, rng: &mut R) -> Result<Route, SimError> {
         check::positive("laps", n_laps as f64)?;
         check::count("laps", n_laps, 1000)?;
@@ -95,7 +95,7 @@ impl Aisles {
         self.route(&walk, rng)
     }
 
-    /// Where a tour starts: the middle of the corner's crossing, along x.
+    /// Start of a tour: the middle of the corner's crossing, along x.
     pub fn station(&self) -> Pose2<f64> {
         Pose2::new(self.xs[0], self.ys[0], 0.0)
     }
@@ -112,7 +112,7 @@ impl Aisles {
         (self.place(a) - self.place(b)).norm()
     }
 
-    /// Through the crossings, each straight stretch somewhere left or right of the middle; the first stretch starts in the middle.
+    /// A route through the crossings, with each straight stretch offset randomly from the middle; the first stretch starts in the middle.
     fn route<R: Rng + ?Sized>(&self, walk: &[Crossing], rng: &mut R) -> Result<Route, SimError> {
         let mut points = vec![self.place(walk[0])];
         let mut aside = 0.0;

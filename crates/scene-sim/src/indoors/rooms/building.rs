@@ -15,7 +15,7 @@ use crate::scenery::RgbPicture;
 use crate::world::{Wall, World};
 use crate::{SimError, check};
 
-/// Rooms with everything that stands in them, ready to be looked at: what [`Store`](crate::indoors::Store) and [`Lab`](crate::indoors::Lab) build.
+/// Rooms with their furniture: the result of [`Store`](crate::indoors::Store) and [`Lab`](crate::indoors::Lab).
 ///
 /// The origin is in the middle of the floor, x along its length.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,15 +38,14 @@ impl Building {
         self.size
     }
 
-    /// Where one can drive.
+    /// The drivable aisles.
     pub fn aisles(&self) -> &Aisles {
         &self.aisles
     }
 
-    /// The view from `pose` by the light of a usual day, when nobody is about.
-    ///
+    /// The view from `pose` in typical light, without people.
     /// # Errors
-    /// When the numbers do not make a camera, or the pose is not finite.
+    /// Returns an error if the numbers do not make a camera, or the pose is not finite.
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
@@ -69,7 +68,7 @@ impl Building {
         Ok(ViewRenderer::new(camera)?.render_view(self, &ambient_light, &[], pose, rng))
     }
 
-    /// Puts up a panel with a texture of its own between two heights.
+    /// Adds a panel with a texture between two heights.
     pub(in crate::indoors) fn put(
         &mut self,
         left: Vector2<f64>,
@@ -88,7 +87,7 @@ impl Building {
     }
 }
 
-/// Its walls and fronts as a plan, for a laser or a map; there are no landmarks.
+/// Its walls and fronts as a plan, for a laser or a map; it has no landmarks.
 impl World for Building {
     fn landmarks(&self) -> Vec<TrueLandmark> {
         Vec::new()

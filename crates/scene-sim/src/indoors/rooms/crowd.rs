@@ -5,14 +5,14 @@ use super::super::color::{Rgb8, about, from_hsv};
 use super::aisles::{Aisles, Crossing};
 use crate::random::deviate::{below, chance, uniform};
 
-/// Nobody comes nearer to the robot than this, metres.
+/// Minimum distance of people from the robot, m.
 const CLEARANCE_M: f64 = 0.6;
 /// Heights of hips, shoulders and crown, metres.
 pub(in crate::indoors) const HEIGHTS_M: [f64; 3] = [0.9, 1.45, 1.75];
 /// Half of a person's width, metres.
 pub(in crate::indoors) const HALF_WIDTH_M: f64 = 0.25;
 
-/// People who walk along the aisles, and stand and look.
+/// People who walk along the aisles, and stop.
 #[derive(Clone, Debug)]
 pub(in crate::indoors) struct Crowd {
     people: Vec<Person>,
@@ -24,7 +24,7 @@ struct Person {
     clothes: [Rgb8; 3],
     from: Crossing,
     to: Crossing,
-    /// How far on the way, metres.
+    /// Progress along the path, m.
     along_m: f64,
     aside_m: f64,
     speed_mps: f64,
@@ -66,7 +66,7 @@ impl Crowd {
         }
     }
 
-    /// Where everybody stands, and in what clothes; who would be run over steps aside.
+    /// Positions and clothes of all people; those in the robot's path step aside.
     pub(in crate::indoors) fn standing(
         &self,
         aisles: &Aisles,

@@ -35,7 +35,7 @@ pub(in crate::indoors) fn wall<R: Rng + ?Sized>(
     canvas.finish()
 }
 
-/// What is seen through a window: ground, trees and houses, sky.
+/// The scene outside a window: ground, trees and houses, sky.
 pub(in crate::indoors) fn outside<R: Rng + ?Sized>(length_m: f64, height_m: f64, rng: &mut R) -> Texture {
     let mut canvas = Canvas::new(length_m, height_m, [225, 235, 250]);
     let mut x = 0.0;

@@ -14,7 +14,7 @@ use crate::{SimError, check};
 /// Extent along x and y, metres. [Gross et al. 2004, Table 1]
 const SIZE_M: [f64; 2] = [15.0, 10.0];
 const CEILING_M: f64 = 3.0;
-/// Where the windows are along the wall of high y, and their lower and upper edge, metres.
+/// Windows along the wall of high y, and their lower and upper edge, m.
 const WINDOWS_M: [[f64; 2]; 4] = [[-7.0, -4.0], [-3.4, -0.4], [0.4, 3.4], [4.0, 7.0]];
 const SILL_M: [f64; 2] = [0.9, 2.5];
 /// Middles of the ways, metres.
@@ -38,7 +38,7 @@ const DESKS_M: [f64; 2] = [1.3, 0.9];
 pub struct Lab {
     /// Decides walls, windows and curtains.
     decor: u64,
-    /// What stands on each group of desks.
+    /// Objects on each group of desks.
     desks: [u64; 6],
 }
 
@@ -51,7 +51,7 @@ impl Lab {
     /// The same with other things on a share of the desks.
     ///
     /// # Errors
-    /// When the share is none.
+    /// Returns an error if the share is none.
     pub fn rearranged<R: Rng + ?Sized>(&self, share: f64, rng: &mut R) -> Result<Self, SimError> {
         check::share("share of the desks that are rearranged", share)?;
         let mut later = self.clone();
@@ -96,7 +96,7 @@ impl Lab {
     }
 }
 
-/// A hand's breadth before the wall, so that it hides it.
+/// Slightly in front of the wall, so that it hides it.
 fn put_window<R: Rng + ?Sized>(room: &mut Building, number: usize, [from, to]: [f64; 2], rng: &mut R) {
     let (length_m, height_m) = (to - from, SILL_M[1] - SILL_M[0]);
     let y = 0.5 * SIZE_M[1] - 0.1;

@@ -1,4 +1,4 @@
-//! Rooms, halls and stores, and what stands and walks in them.
+//! Rooms, halls and stores, with furniture and people.
 
 pub(super) mod aisles;
 pub(super) mod building;

@@ -12,15 +12,15 @@ pub(in crate::indoors) const SECTION_M: f64 = 1.0;
 const BOARD_SPACING_M: f64 = 0.4;
 /// The lowest board, metres.
 const FIRST_BOARD_M: f64 = 0.1;
-/// Kinds of goods that a department sells: few enough that shelves look alike.
+/// Kinds of goods per department: few, so that shelves look alike.
 const N_PRODUCTS: usize = 24;
 
-/// What one section of a shelf holds.
+/// Content of one section of a shelf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::indoors) struct Section {
     /// Whose goods.
     pub(in crate::indoors) department: u8,
-    /// Decides which goods, and how they stand; none is a section that has been cleared.
+    /// Selects the goods and their arrangement; `None` for an empty section.
     pub(in crate::indoors) goods: Option<u64>,
 }
 
@@ -39,7 +39,7 @@ pub(in crate::indoors) struct Assortment {
 }
 
 impl Assortment {
-    /// `n_departments` with a hue of their own each, about which their goods' colours lie.
+    /// `n_departments`, each with its own hue, around which the colours of its goods vary.
     pub(in crate::indoors) fn draw<R: Rng + ?Sized>(n_departments: usize, rng: &mut R) -> Self {
         let department = |_| {
             let hue = uniform(0.0, 1.0, rng);

@@ -18,11 +18,10 @@ use crate::random::deviate::{below, chance};
 const CEILING_M: f64 = 6.0;
 /// Edges and height of a stand with special offers, metres.
 const STAND_M: [f64; 2] = [0.6, 1.3];
-/// How far a robot may drive from the middle of an aisle, as a share of the aisle.
+/// Maximum offset of a robot from the middle of an aisle, as a share of the aisle.
 const PLAY: f64 = 0.15;
 
-/// A store on one day: shelves in rows, and what they hold.
-///
+/// A store on one day: rows of shelves and their goods.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_scene_sim::indoors::{Store, StoreParams};
@@ -35,11 +34,11 @@ const PLAY: f64 = 0.15;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Store {
     params: StoreParams,
-    /// Decides the assortment, the walls and what stands before the windows.
+    /// Selects the assortment, the walls and the objects in front of the windows.
     decor: u64,
     /// Shelf by shelf, the front of low y, then that of high y; then the two ends.
     fronts: Vec<[Vec<Section>; 4]>,
-    /// Whether there is a stand before the low and the high end of each shelf, and its looks.
+    /// Stands before the low and the high end of each shelf, and their appearance.
     stands: Vec<[Option<u64>; 2]>,
 }
 
@@ -73,9 +72,8 @@ impl Store {
         Ok(store)
     }
 
-    /// The same store some weeks later: each section is, with probability `share`, filled with other goods (6 of 10), exchanged with another
-    /// (3) or cleared (1), a cleared one filled again; each stand comes or goes with half of it.
-    ///
+    /// The same store some weeks later. With probability `share` each section gets other goods (6 of 10), is exchanged with another (3) or
+    /// cleared (1); a cleared one is filled again. Each stand is added or removed with half of that probability.
     /// # Errors
     /// Returns [`SimError::Parameter`] if `share` is not in [0, 1].
     pub fn rearranged<R: Rng + ?Sized>(&self, share: f64, rng: &mut R) -> Result<Self, SimError> {
@@ -207,7 +205,7 @@ impl Store {
     }
 }
 
-/// New goods, or, in one of three, the same as stand elsewhere.
+/// New goods, or, in one of three cases, goods of another section.
 fn goods<R: Rng + ?Sized>(known: &mut Vec<u64>, rng: &mut R) -> u64 {
     if chance(0.33, rng) && !known.is_empty() {
         return known[below(known.len(), rng)];

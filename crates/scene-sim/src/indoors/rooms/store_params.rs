@@ -15,7 +15,7 @@ pub struct StoreParams {
     pub length_m: f64,
     /// Extent along y, metres.
     pub width_m: f64,
-    /// Width of the aisles between the shelves at least; what is left over is shared out, metres.
+    /// Minimum width of the aisles between the shelves, m; the remaining space is divided equally.
     pub aisle_m: f64,
     /// The same of the aisles between the blocks, metres.
     pub cross_aisle_m: f64,
@@ -23,9 +23,9 @@ pub struct StoreParams {
     pub n_blocks: usize,
     /// Height of the shelves, metres.
     pub shelf_m: f64,
-    /// Departments, each with colours of its own.
+    /// Number of departments, each with its own colours.
     pub n_departments: usize,
-    /// Share of the shelf ends with a stand of special offers before them.
+    /// Share of the shelf ends with a stand of special offers.
     pub stand_share: f64,
 }
 
@@ -52,7 +52,7 @@ impl StoreParams {
     /// Whether the numbers make a store with a shelf at least.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::positive("length of the store (m)", self.length_m)?;
         check::at_most("length of the store (m)", self.length_m, LONGEST_M, "at most 500")?;
@@ -100,7 +100,7 @@ impl StoreParams {
         (low, low + size)
     }
 
-    /// Where the aisles along y and those along x have their middle.
+    /// Middle lines of the aisles along y and of those along x.
     pub(in crate::indoors) fn aisles(&self) -> (Vec<f64>, Vec<f64>) {
         let (gaps, shelf_m) = (self.gaps(), self.n_sections() as f64 * SECTION_M);
         let xs =

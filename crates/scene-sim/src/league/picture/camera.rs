@@ -3,26 +3,26 @@ use wayfix_color_map::Camera;
 use crate::league::Rgb;
 use crate::{SimError, check};
 
-/// The camera in a robot's head: optics, chip, and what its electronics make of the charge.
+/// The camera in a robot's head: optics, chip and image processing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraParams {
     /// Size and focal length. Default: that of an ERS-7, 208 × 160 pixels and 56.9° × 45.2°.
     pub camera: Camera,
-    /// How long the shutter is open, milliseconds. Default 10.
+    /// Exposure time, ms. Default 10.
     pub exposure_ms: u32,
     /// Signal, as a share of full scale, of radiance 1. Default 1.
     pub gain: f64,
     /// Gains of the three channels. Default 1.
     pub white_balance: Rgb,
-    /// How the automatic white balance drifts: σ of the logarithm of the gains of red and blue. Default 0.02.
+    /// Drift of the automatic white balance: σ of the logarithm of the gains of red and blue. Default 0.02.
     pub white_balance_drift: f64,
     /// Correlation time of that drift, seconds. Default 20.
     pub white_balance_correlation_s: f64,
     /// Share of red, green and blue lost in the corners of the picture. Default (0.58, 0.50, 0.18): corners are dark and bluish.
     pub vignetting: Rgb,
-    /// Share of each channel that comes from either of the others. Default 0.05.
+    /// Share of each channel that comes from each of the others. Default 0.05.
     pub crosstalk: f64,
-    /// Stray light: share of the picture's mean that every pixel gets. Default 0.015.
+    /// Stray light: share of the image mean added to every pixel. Default 0.015.
     pub flare: f64,
     /// Electrons at full scale: shot noise has σ = √(signal / electrons). Default 4000.
     pub full_well: f64,
@@ -36,7 +36,7 @@ pub struct CameraParams {
     pub jpeg_quality: u8,
 }
 
-/// How many pixels share one value of U and V.
+/// Chroma subsampling: pixels that share one value of U and V.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Chroma {
     /// Each has its own (4:4:4).
@@ -72,7 +72,7 @@ impl CameraParams {
     /// The camera of an ERS-7, with the defaults.
     ///
     /// # Errors
-    /// Passes on what [`Camera`] says; the numbers are constant, so it has nothing to say.
+    /// Returns the errors of [`Camera`]; none occur, because its numbers are constant.
     pub fn ers7() -> Result<Self, SimError> {
         Ok(Self::new(Camera::from_field_of_view(208, 160, 56.9_f64.to_radians(), 45.2_f64.to_radians())?))
     }
@@ -80,7 +80,7 @@ impl CameraParams {
     /// Whether the numbers make a camera.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         let n_pixels = self.camera.width() as usize * self.camera.height() as usize;
         check::count("pixels of the camera", n_pixels, 1 << 22)?;

@@ -9,11 +9,11 @@ use super::view::View;
 use crate::league::Rgb;
 use crate::space;
 
-/// Where in its pixel each ray passes (beyond its borders: the lens is a little soft) and when during the exposure.
+/// Position of each ray in its pixel (beyond its borders, for a soft lens) and its time in the exposure.
 const RAYS: [((f64, f64), f64); 4] =
     [((-0.10, 0.30), 0.125), ((0.70, -0.10), 0.375), ((0.30, 1.10), 0.625), ((1.10, 0.70), 0.875)];
 
-/// The light that falls on the chip, and what it comes from.
+/// Light on the chip, and its sources.
 pub(super) struct Exposure {
     layers: [Layer; RAYS.len()],
     camera: Camera,

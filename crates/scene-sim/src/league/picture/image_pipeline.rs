@@ -7,10 +7,10 @@ use crate::random::deviate::quick_normal;
 /// Entries of the table of the response.
 const STEPS: usize = 4096;
 
-/// From light to the bytes of a picture: what the chip and the electronics do.
+/// Converts light to image bytes: chip and electronics.
 pub(super) struct ImagePipeline {
     params: CameraParams,
-    /// What the lens lets through, row by row.
+    /// Transmission of the lens, row by row.
     lens: Vec<Rgb>,
     response: Vec<f64>,
 }
@@ -33,7 +33,7 @@ impl ImagePipeline {
         self.share_chroma(grey.map(|rgb| yuv::from_rgb(&rgb)).collect())
     }
 
-    /// The filters before the pixels are not those of the primaries.
+    /// The filters of the pixels differ from the primaries.
     fn mixed(&self, light: &Rgb) -> Rgb {
         let cross = self.params.crosstalk;
         light * (1.0 - 3.0 * cross) + Rgb::repeat(cross * light.sum())

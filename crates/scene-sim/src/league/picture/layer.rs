@@ -6,14 +6,14 @@ use super::view::{Affine, View};
 /// Surfaces in one plane, seen at the same depth but for rounding: the later one is on top.
 const SAME_DEPTH: f64 = 1.0 - 1e-9;
 
-/// What one bundle of rays meets: for each pixel the nearest surface and how near.
+/// First intersections of one bundle of rays: for each pixel the nearest surface and its nearness.
 ///
-/// A polygon is inside the planes through the eye and its edges, which are affine functions of the image point; so is the inverse of its
-/// depth. That is exact ray casting without casting rays one by one.
+/// A polygon is inside the planes through the eye and its edges, which are affine functions of the image point; so is the inverse of its depth.
+/// This equals ray casting without tracing single rays.
 pub(super) struct Layer {
-    /// 1 / (distance along the ray in units of its direction); 0 where nothing is met.
+    /// 1 / (distance along the ray in units of its direction); 0 without an intersection.
     pub(super) nearness: Vec<f64>,
-    /// Number of the surface; [`Layer::NOTHING`] where nothing is met.
+    /// Number of the surface; [`Layer::NOTHING`] without an intersection.
     pub(super) surface: Vec<u16>,
 }
 
@@ -71,7 +71,7 @@ impl Layer {
         }
     }
 
-    /// Something round about an upright axis: only columns between its tangent planes are asked for.
+    /// A body of revolution about a vertical axis: only columns between its tangent planes are tested.
     fn draw_round(
         &mut self,
         number: u16,

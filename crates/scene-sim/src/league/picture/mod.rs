@@ -1,4 +1,4 @@
-//! How light becomes a picture.
+//! Conversion of light to images.
 
 mod camera;
 mod camera_simulator;

@@ -5,18 +5,18 @@ use crate::league::{Backdrop, LightField, Rgb};
 
 /// Everything there is to see at one moment, and the light it is seen in.
 pub struct Scene<'a> {
-    /// What stands and lies about; of surfaces in one plane the later is on top. At most 65 535 are seen.
+    /// The surfaces; of those in one plane the later is on top. At most 65 535 are rendered.
     pub surfaces: Vec<Surface>,
     /// Diffuse reflectance of each map colour; colours beyond its end are black.
     pub paints: &'a [Rgb],
-    /// What shines.
+    /// The light.
     pub light: &'a dyn LightField,
-    /// What is behind.
+    /// The background.
     pub backdrop: &'a dyn Backdrop,
 }
 
 impl Scene<'_> {
-    /// What a point of a surface sends to the eye.
+    /// Radiance of a surface point towards the eye.
     pub(super) fn radiance(&self, surface: &Surface, point: &Vector3<f64>, eye: &Vector3<f64>) -> Rgb {
         let reflectance = match surface.material {
             Material::Map(color) => self.paints.get(usize::from(color.0)).copied().unwrap_or_default(),
@@ -26,7 +26,7 @@ impl Scene<'_> {
         reflectance.component_mul(&self.light.irradiance(point, &normal))
     }
 
-    /// What comes from behind everything.
+    /// Radiance of the background.
     pub(super) fn beyond(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> Rgb {
         let seen = self.backdrop.surface_hit(eye, direction);
         seen.reflectance.component_mul(&self.light.irradiance(&seen.point, &seen.normal))

@@ -31,10 +31,10 @@ pub enum Form {
     },
 }
 
-/// What a surface is painted with.
+/// Paint of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
-    /// A colour of the map; the venue says what it looks like.
+    /// A colour of the map; the venue defines its reflectance.
     Map(ColorId),
     /// A diffuse reflectance that no map lists.
     Unmapped(Rgb),
@@ -43,9 +43,9 @@ pub enum Material {
 /// Something to see.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// Where it is.
+    /// Shape and position.
     pub form: Form,
-    /// What it looks like.
+    /// Paint.
     pub material: Material,
 }
 
@@ -110,7 +110,7 @@ impl Form {
     }
 }
 
-/// Counter-clockwise corners make it point at who sees them so; not of unit length.
+/// Points at viewers who see the corners counter-clockwise; not of unit length.
 pub(super) fn plane_normal(corners: &[Vector3<f64>]) -> Vector3<f64> {
     let Some((first, rest)) = corners.split_first() else { return Vector3::zeros() };
     rest.windows(2).map(|pair| (pair[0] - first).cross(&(pair[1] - first))).sum()

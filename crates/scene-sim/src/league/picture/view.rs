@@ -7,7 +7,7 @@ pub(super) struct View {
     pub(super) eye: Vector3<f64>,
     to_world: Matrix3<f64>,
     camera: Camera,
-    /// Where in its pixel a ray passes; the centre is (0.5, 0.5).
+    /// Position of a ray in its pixel; the centre is (0.5, 0.5).
     pub(super) spot: (f64, f64),
 }
 
@@ -35,7 +35,7 @@ impl View {
         self.direction(column as f64 + self.spot.0, row as f64 + self.spot.1)
     }
 
-    /// What [`direction`](Self::direction) gives with `covector`, as a function of the image point.
+    /// The product of [`direction`](Self::direction) and `covector`, as a function of the image point.
     pub(super) fn affine(&self, covector: &Vector3<f64>) -> Affine {
         let own = self.to_world.tr_mul(covector);
         let (y, z) = (own.y / self.camera.fx(), own.z / self.camera.fy());

@@ -6,7 +6,7 @@ use super::HeadParams;
 use crate::random::deviate::{chance, normal, uniform};
 use crate::{plane, space};
 
-/// Where the robot looks.
+/// Gaze of the robot.
 #[derive(Clone, Debug)]
 pub(super) struct Head {
     params: HeadParams,
@@ -15,7 +15,7 @@ pub(super) struct Head {
     rates: Vector2<f64>,
     target: Target,
     left_s: f64,
-    /// How often it has looked at each landmark.
+    /// Number of gazes at each landmark.
     n_looks: Vec<u32>,
     /// Constant errors of pan, tilt and roll.
     biases: [f64; 3],
@@ -27,11 +27,11 @@ enum Target {
     Angles(Vector2<f64>),
 }
 
-/// Height of the camera in the usual stance, metres, for aiming only.
+/// Height of the camera in the nominal stance, m, for aiming only.
 const EYE_M: f64 = 0.22;
 /// Furthest tilt, up and down, radians.
 const TILT_LIMITS_RAD: [f64; 2] = [-0.35, 0.8];
-/// It looks a little below what it looks at, to have the carpet in view too, radians.
+/// Angle below the target of the gaze, to have the carpet in view too, rad.
 const AIM_BELOW_RAD: f64 = 0.12;
 
 impl Head {
@@ -47,7 +47,7 @@ impl Head {
         }
     }
 
-    /// Lets time pass: moves towards what it looks at, and now and then chooses something else among `landmarks`.
+    /// Advances the time: turns towards the target, and occasionally chooses another among `landmarks`.
     pub(super) fn step<R: Rng + ?Sized>(
         &mut self,
         step_s: f64,
@@ -67,7 +67,7 @@ impl Head {
         self.angles += self.rates * step_s;
     }
 
-    /// Turns it at once to where it wants to look.
+    /// Turns to the target at once.
     pub(super) fn settle(&mut self, body: &Pose2<f64>) {
         self.angles = self.wanted(body);
         self.rates = Vector2::zeros();
@@ -79,7 +79,7 @@ impl Head {
         space::yaw(self.angles.x + pan) * space::pitch(self.angles.y + tilt) * space::roll(roll)
     }
 
-    /// What the joints say that rotation is.
+    /// The rotation according to the joint angles.
     pub(super) fn reported_rotation(&self) -> UnitQuaternion<f64> {
         let old = self.angles - self.rates * self.params.lag_s;
         let quantum = self.params.quantum_rad;
@@ -99,7 +99,7 @@ impl Head {
         Vector2::new(angles.x.clamp(-pan, pan), angles.y.clamp(TILT_LIMITS_RAD[0], TILT_LIMITS_RAD[1]))
     }
 
-    /// The landmark in reach that it has looked at least, or the carpet; with none in reach, to one side.
+    /// The visible landmark with the fewest gazes, or the carpet; with no landmark in reach, to one side.
     fn choose<R: Rng + ?Sized>(
         &mut self,
         body: &Pose2<f64>,

@@ -17,8 +17,7 @@ const NOSE_M: [f64; 3] = [0.08, 0.0, 0.03];
 /// Correlation time of the slow part of the sway, seconds.
 const UNSTEADY_S: f64 = 1.0;
 
-/// A four-legged robot that walks about and looks around, a millisecond at a time.
-///
+/// A four-legged robot that walks and looks around, simulated in steps of a millisecond.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::Pose2;
@@ -39,7 +38,7 @@ pub struct Legged {
     sway: SwayParams,
     /// Phase of the stride, radians.
     phase: f64,
-    /// How strongly it sways, smoothed.
+    /// Strength of the sway, smoothed.
     strength: f64,
     unsteady: [GaussMarkov; 2],
     /// Roll and pitch beside the gait's, radians.
@@ -49,8 +48,7 @@ pub struct Legged {
 const STEP_S: f64 = 1e-3;
 
 impl Legged {
-    /// A robot at rest at `start`, or anywhere; it looks at `landmarks`.
-    ///
+    /// A robot at rest at `start`, or at a random pose; it looks at `landmarks`.
     /// # Errors
     /// Returns [`SimError::Parameter`] if a parameter is out of range.
     pub fn new(
@@ -85,12 +83,12 @@ impl Legged {
         self.wobble(streams);
     }
 
-    /// Where it truly stands.
+    /// True pose.
     pub fn pose(&self) -> Pose2<f64> {
         self.walker.pose
     }
 
-    /// Where its camera truly is in the world (x along the optical axis).
+    /// True pose of the camera in the world (x along the optical axis).
     pub fn camera_pose(&self) -> Pose3<f64> {
         let (sin, _) = libm::sincos(self.phase);
         let (sin_twice, cos_twice) = libm::sincos(2.0 * self.phase);
@@ -102,17 +100,17 @@ impl Legged {
         space::on_ground(&self.walker.pose).compose(&camera)
     }
 
-    /// What the joints say: the camera in the robot's frame on the ground, in the usual stance.
+    /// Camera pose according to the joint angles, in the robot frame on the ground, in the nominal stance.
     pub fn reported_mount(&self) -> Pose3<f64> {
         mounted(self.head.reported_rotation())
     }
 
-    /// What it believes to have moved since this was asked last.
+    /// Odometry since the last call.
     pub fn odometry(&mut self, seconds: f64, streams: &mut Streams) -> Pose2<f64> {
         self.odometry.take(seconds, streams.of(Source::Gait))
     }
 
-    /// Somebody lifts it and puts it elsewhere; its odometry notices nothing.
+    /// Kidnaps the robot; its odometry does not measure it.
     pub fn put(&mut self, pose: Pose2<f64>) {
         self.walker.put(pose);
         self.head.settle(&pose);

@@ -1,4 +1,4 @@
-//! The robot: four legs, a head that looks around, and odometry that guesses.
+//! The robot: four legs, a moving head, and odometry from commands.
 
 mod head;
 mod legged;

@@ -5,7 +5,7 @@ use super::GaitOdometryParams;
 use crate::random::GaussMarkov;
 use crate::random::deviate::uniform;
 
-/// What the robot makes of its commanded steps.
+/// Odometry from commanded steps.
 #[derive(Clone, Debug)]
 pub(super) struct GaitOdometry {
     params: GaitOdometryParams,

@@ -1,37 +1,37 @@
 use crate::random::NoiseShape;
 use crate::{SimError, check};
 
-/// A four-legged robot: how it walks, sways and turns its head, and what it knows of that.
+/// A four-legged robot: gait, sway, head motion, and its odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotParams {
-    /// How it walks.
+    /// Gait.
     pub walk: WalkParams,
-    /// How its body moves meanwhile.
+    /// Motion of the body.
     pub sway: SwayParams,
-    /// How it turns its head.
+    /// Motion of the head.
     pub head: HeadParams,
-    /// What it believes about its steps.
+    /// Odometry from steps.
     pub odometry: GaitOdometryParams,
 }
 
-/// Where it goes: from one random point of the field to the next, forwards or sideways, with turns and rests.
+/// Path: between random points of the field, forwards or sideways, with turns and rests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WalkParams {
     /// Speed, m/s; 0 never leaves its place. Default 0.25.
     pub speed_mps: f64,
     /// Turning rate, rad/s. Default 1.
     pub turn_radps: f64,
-    /// How fast it comes to a speed: time constant, seconds. Default 0.15.
+    /// Time constant of the speed, s. Default 0.15.
     pub lag_s: f64,
     /// Mean length of a rest, seconds. Default 0.5.
     pub rest_s: f64,
-    /// Share of ways that it walks without turning that way first. Default 0.25.
+    /// Share of legs of the path walked without turning first. Default 0.25.
     pub sideways_share: f64,
-    /// How far from the boards it stays, metres, at most 1. Default 0.35.
+    /// Distance from the boards, m, at most 1. Default 0.35.
     pub margin_m: f64,
 }
 
-/// What the joints of the head do not report: the body moves with the gait.
+/// Motion of the body with the gait, which the joints of the head do not measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwayParams {
     /// Length of one stride, seconds. Default 0.5.
@@ -53,13 +53,13 @@ pub struct HeadParams {
     pub speed_radps: f64,
     /// Furthest pan to either side, radians. Default 88°.
     pub pan_limit_rad: f64,
-    /// How long it looks at one thing on average, seconds. Default 0.5.
+    /// Mean time of a gaze, s. Default 0.5.
     pub dwell_s: f64,
-    /// Share of looks that go to the carpet ahead instead of a landmark. Default 0.15.
+    /// Share of gazes at the carpet ahead instead of a landmark. Default 0.15.
     pub down_share: f64,
     /// Resolution of the reported angles, radians; 0 for none. Default 0.25°.
     pub quantum_rad: f64,
-    /// How old reported angles are, seconds. Default 0.008.
+    /// Delay of reported angles, s. Default 0.008.
     pub lag_s: f64,
     /// σ of the constant error of pan, tilt and roll of the camera, radians. Default 0.35°.
     pub bias_rad: f64,
@@ -76,7 +76,7 @@ pub struct GaitOdometryParams {
     pub noise: f64,
     /// Shape of that error. Default Student's t with 4 degrees of freedom.
     pub noise_shape: NoiseShape,
-    /// σ of the turning that goes unnoticed with each metre, rad/m. Default 0.08.
+    /// σ of the unmeasured rotation per metre, rad/m. Default 0.08.
     pub drift_rad_per_m: f64,
     /// Correlation time of that drift, seconds. Default 8.
     pub drift_correlation_s: f64,
@@ -126,7 +126,7 @@ impl RobotParams {
     /// Whether the numbers make a robot.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         let Self { walk, sway, head, odometry } = self;
         check::not_negative("speed (m/s)", walk.speed_mps)?;

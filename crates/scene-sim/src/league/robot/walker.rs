@@ -9,7 +9,7 @@ use crate::league::field::spot;
 use crate::plane;
 use crate::random::deviate::{chance, uniform};
 
-/// Where the robot walks.
+/// Path of the robot.
 #[derive(Clone, Debug)]
 pub(super) struct Walker {
     params: WalkParams,
@@ -28,11 +28,11 @@ enum Task {
     Walk { to: Vector2<f64>, sideways: bool },
 }
 
-/// It has arrived when this close, metres.
+/// Distance from the goal at which it has arrived, m.
 const ARRIVED_M: f64 = 0.05;
-/// Ways shorter than this are not worth it, metres.
+/// Minimum distance of a new goal, m.
 const WORTH_M: f64 = 1.2;
-/// It has turned when this close, radians.
+/// Remaining angle at which a turn is complete, rad.
 const TURNED_RAD: f64 = 0.1;
 
 impl Walker {
@@ -52,18 +52,18 @@ impl Walker {
         Pose2::new(at.x, at.y, uniform(-PI, PI, rng))
     }
 
-    /// Puts it elsewhere, where it rests for a moment.
+    /// Moves it to another pose, where it rests for a moment.
     pub(super) fn put(&mut self, pose: Pose2<f64>) {
         *self = Self::new(self.params, pose);
     }
 
-    /// How fast it moves, as a share of its speeds; may exceed 1 when it walks and turns at once.
+    /// Speed as a share of its maximum speeds; may exceed 1 if it walks and turns at once.
     pub(super) fn activity(&self) -> f64 {
         let share = |now: f64, top: f64| if top > 0.0 { now / top } else { 0.0 };
         share(self.velocity.norm(), self.params.speed_mps) + share(self.turning.abs(), self.params.turn_radps)
     }
 
-    /// Lets time pass; what it moved, in its own frame before.
+    /// Advances the time; returns the motion in its frame before.
     pub(super) fn step<R: Rng + ?Sized>(&mut self, step_s: f64, rng: &mut R) -> Pose2<f64> {
         let (velocity, turning) = self.command(step_s, rng);
         let reached = step_s / (self.params.lag_s + step_s);
@@ -100,7 +100,7 @@ impl Walker {
         }
     }
 
-    /// Far enough to be worth the way, if luck will have it.
+    /// A random goal that is usually far enough.
     fn elsewhere<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector2<f64> {
         let mut to = spot(self.params.margin_m, rng);
         for _ in 0..10 {

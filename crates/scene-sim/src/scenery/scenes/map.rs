@@ -71,7 +71,7 @@ fn country(capitals: &[((f64, f64), Color)], (x, y): (f64, f64)) -> Color {
     mix([0.45, 0.30, 0.40], color, ((second - nearest) / 5.0).clamp(0.0, 1.0))
 }
 
-/// A way that bends a little at every step.
+/// A path that bends a little at every step.
 fn wander(start: (f64, f64), step: f64, n: usize, rng: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
     let mut heading = uniform(0.0, std::f64::consts::TAU, rng);
     let mut points = vec![start];

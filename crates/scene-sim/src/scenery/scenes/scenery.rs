@@ -36,13 +36,13 @@ impl Scenery {
     /// The scene of that name.
     ///
     /// # Errors
-    /// [`SimError::UnknownScenario`] when there is none.
+    /// Returns [`SimError::UnknownScenario`] if there is none.
     pub fn named(name: &str) -> Result<Self, SimError> {
         let found = Self::ALL.into_iter().find(|scenery| scenery.name == name);
         found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
     }
 
-    /// How many views it has.
+    /// Number of views.
     pub fn n_states(&self) -> usize {
         self.columns * self.rows
     }

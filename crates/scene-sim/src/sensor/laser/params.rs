@@ -8,9 +8,8 @@ use crate::{SimError, check};
 /// The most beams a scan has.
 const MOST_BEAMS: usize = 100_000;
 
-/// Everything about a laser scanner. The default is the data sheet of a SICK LMS 200 in a clean room: half a turn in steps of 1°, a
-/// statistical error of 5 mm, ranges in whole centimetres, a beam of 4.4 mrad; of its sins, only that beams mix what they hit at an edge.
-///
+/// Parameters of a laser scanner. The default is the data sheet of a SICK LMS 200 in a clean room: half a turn in steps of 1°, a statistical
+/// error of 5 mm, ranges in whole centimetres, a beam of 4.4 mrad. The only error source is the mixing of surfaces at edges.
 /// ```
 /// use wayfix_scene_sim::sensor::LaserParams;
 /// let params = LaserParams { n_beams: 361, beam_step_rad: 0.5_f64.to_radians(), ..Default::default() };
@@ -27,9 +26,9 @@ pub struct LaserParams {
     pub beam_step_rad: f64,
     /// Beams of a scan. Default 181.
     pub n_beams: usize,
-    /// What is farther away does not come back, metres. Default 30.
+    /// Maximum range of an echo, m. Default 30.
     pub max_range_m: f64,
-    /// What the device says of a beam that does not come back, metres; scans state it as their `range_max`. Default 81.91.
+    /// Range reported for no echo, m; scans state it as their `range_max`. Default 81.91.
     pub no_echo_m: f64,
     /// Standard deviation of the white range error. Default 0.005 m, not growing.
     pub range_noise: RangeSigma,
@@ -45,11 +44,11 @@ pub struct LaserParams {
     pub beam_width_rad: f64,
     /// Share of the beams on the edge between two surfaces that report a range in between. Default 0.5.
     pub mixed_share: f64,
-    /// Share of beams that do not come back, whatever they hit. Default 0.
+    /// Share of beams without echo, independent of the surface. Default 0.
     pub dropout_share: f64,
-    /// Share of beams that report a range anywhere before what they hit: dust, glare. Default 0.
+    /// Share of beams with a random range short of the surface: dust, glare. Default 0.
     pub spurious_share: f64,
-    /// Who stands in the way. Default nobody.
+    /// People in the field of view. Default none.
     pub people: People,
 }
 
@@ -80,7 +79,7 @@ impl LaserParams {
     /// Whether the numbers make a scanner.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::period("period of the scans (ms)", self.period_ms)?;
         check::finite("direction of the first beam (rad)", self.first_beam_rad)?;

@@ -3,16 +3,16 @@ use nalgebra::Vector2;
 use crate::random::{Source, Streams, deviate};
 use crate::{SimError, check, plane};
 
-/// People about the robot: round, and elsewhere in every scan.
+/// People around the robot: round, at new random positions in every scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct People {
-    /// Mean number in a scan, at most 100; who stands behind a wall is not seen. Default 0.
+    /// Mean number per scan, at most 100, including those hidden by walls. Default 0.
     pub mean: f64,
     /// Radius of a person, metres. Default 0.2.
     pub radius_m: f64,
-    /// How near they come, metres. Default 0.6.
+    /// Minimum distance, m. Default 0.6.
     pub nearest_m: f64,
-    /// How far away they are at most, metres. Default 5.
+    /// Maximum distance, m. Default 5.
     pub farthest_m: f64,
 }
 
@@ -46,14 +46,14 @@ impl People {
     }
 }
 
-/// Somebody, seen from above.
+/// A person, seen from above.
 pub(super) struct Person {
     centre: Vector2<f64>,
     radius_m: f64,
 }
 
 impl Person {
-    /// How far it is from the origin along the unit vector `direction` to the front.
+    /// Distance from the origin along the unit vector `direction` to the front.
     pub(super) fn distance(&self, direction: &Vector2<f64>) -> Option<f64> {
         let (along, beside) = (direction.dot(&self.centre), direction.perp(&self.centre));
         let half_chord = (self.radius_m * self.radius_m - beside * beside).sqrt();

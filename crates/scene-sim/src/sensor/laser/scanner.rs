@@ -48,7 +48,7 @@ impl Laser {
         Ok(Self { params })
     }
 
-    /// What the device reports of a beam.
+    /// Reported range of a beam.
     fn range(&self, bearing: f64, scene: &Scene<'_>, errors: &Errors) -> f64 {
         let hit = self.hit(bearing + self.params.bearing_sigma_rad * errors.direction, scene, errors);
         let Some(hit) = hit.filter(|hit| *hit <= self.params.max_range_m && !errors.lost) else {
@@ -61,7 +61,7 @@ impl Laser {
         quantized(range, self.params.quantum_m).clamp(0.0, self.params.max_range_m)
     }
 
-    /// How far the beam goes: to the surface in its middle, or on an edge to somewhere between the two that it falls on.
+    /// Length of the beam: to the surface in its middle, or at an edge to a point between the two surfaces that it hits.
     fn hit(&self, bearing: f64, scene: &Scene<'_>, errors: &Errors) -> Option<f64> {
         let half = 0.5 * self.params.beam_width_rad;
         let middle = scene.distance(bearing);
@@ -100,7 +100,7 @@ impl Sensor for Laser {
     }
 }
 
-/// What there is to hit.
+/// The surfaces.
 struct Scene<'a> {
     pose: Pose2<f64>,
     walls: &'a [Wall],
@@ -118,14 +118,14 @@ impl Scene<'_> {
     }
 }
 
-/// Everything random about one beam, drawn before it is known what it hits.
+/// All random numbers of one beam, drawn before its surface is known.
 struct Errors {
     direction: f64,
     range: f64,
-    /// Where between the two surfaces, if the beam mixes them.
+    /// Position between the two surfaces, if the beam mixes them.
     mixed: Option<f64>,
     lost: bool,
-    /// At which share of the way, if something in the air sends the beam back.
+    /// Share of the distance at which a particle reflects the beam, if any.
     spurious: Option<f64>,
 }
 

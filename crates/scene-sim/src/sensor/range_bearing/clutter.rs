@@ -4,19 +4,19 @@ use super::RangeBearingParams;
 use crate::random::{Source, Streams, deviate};
 use crate::{SimError, check};
 
-/// Reports of things that are not there: a Poisson number a look, uniform in range and bearing over the view.
+/// False detections: a Poisson number per scan, uniform in range and bearing over the field of view.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Clutter {
-    /// Mean number a look, at most 100. Default 0.
+    /// Mean number per scan, at most 100. Default 0.
     pub mean: f64,
-    /// What they pass for. Default nothing.
+    /// Their identity. Default none.
     pub label: ClutterLabel,
 }
 
-/// What a false report passes for.
+/// Identity of a false detection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum ClutterLabel {
-    /// Nothing.
+    /// No identity.
     #[default]
     Unlabelled,
     /// One of the world's landmarks, anyone.
@@ -31,7 +31,7 @@ impl Clutter {
         check::at_most("mean number of false detections", self.mean, 100.0, "at most 100")
     }
 
-    /// The false reports of one look.
+    /// The false detections of one scan.
     pub(super) fn draw(
         &self,
         params: &RangeBearingParams,

@@ -8,10 +8,9 @@ use crate::random::{Source, Streams, deviate};
 use crate::sensor::{Reading, Sensor, TrueState};
 use crate::{SimError, plane};
 
-/// The instrument to [`RangeBearingParams`]. One reading holds one look, in the order of bearings.
+/// The sensor of [`RangeBearingParams`]. One reading holds one scan, sorted by bearing.
 ///
-/// Every look draws the same number of deviates for every target of the world, in view or not.
-///
+/// Every scan draws the same number of deviates for every target of the world, visible or not.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::Pose2;
@@ -43,7 +42,7 @@ impl RangeBearingDetector {
         Ok(Self { params, drifts: Vec::new() })
     }
 
-    /// What the sensor reports of one target.
+    /// Detection of one target.
     fn detect(
         &self,
         (target, point): (Target, Vector2<f64>),
@@ -134,7 +133,7 @@ impl Errors {
         params.bearing_sigma_rad * self.white.1 + params.drift.bearing_sigma_rad * self.drift.1
     }
 
-    /// The identity that goes to the log.
+    /// The identity written to the log.
     fn labelled(&self, target: Target, landmark_ids: &[u32], labelled: bool) -> Target {
         match (target, self.mislabel) {
             _ if !labelled => Target::Unlabelled,

@@ -13,7 +13,7 @@ use crate::{SimError, check};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeBearingParams {
-    /// Time from one look to the next, milliseconds. Default 500.
+    /// Scan period, milliseconds. Default 500.
     pub period_ms: u32,
     /// Nearest range, metres. Default 0.1.
     pub min_range_m: f64,
@@ -29,25 +29,25 @@ pub struct RangeBearingParams {
     pub noise_shape: NoiseShape,
     /// Added to every range, metres. Default 0.
     pub range_bias_m: f64,
-    /// What every true range is multiplied with. Default 1.
+    /// Scale factor of true ranges. Default 1.
     pub range_scale: f64,
     /// Added to every bearing, radians. Default 0.
     pub bearing_bias_rad: f64,
     /// Errors that hang together in time. Default none.
     pub drift: DriftParams,
-    /// How late the stamp is, milliseconds. Default 0.
+    /// Delay of the stamp, milliseconds. Default 0.
     pub latency_ms: u32,
     /// Share of detections that are gross outliers. Default 0.
     pub outlier_share: f64,
-    /// Share of looks of which nothing reaches the log. (A look that sees nothing is logged, empty.) Default 0.
+    /// Share of scans missing from the log. (A scan without detections is logged, empty.) Default 0.
     pub dropout_share: f64,
     /// Share of targets in view that are not reported. Default 0.
     pub missed_share: f64,
     /// Reports of things that are not there. Default none.
     pub clutter: Clutter,
-    /// Share of landmark detections under another landmark's identity. Default 0.
+    /// Share of landmark detections with another landmark's identity. Default 0.
     pub mislabelled_share: f64,
-    /// Whether the sensor tells things apart. Default true.
+    /// Whether the sensor reads identities. Default true.
     pub labelled: bool,
 }
 
@@ -101,7 +101,7 @@ impl RangeBearingParams {
     /// Whether the numbers make a sensor.
     ///
     /// # Errors
-    /// Names the first that does not.
+    /// Returns an error with the first parameter that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
         check::period("period of the looks (ms)", self.period_ms)?;
         check::not_negative("nearest range (m)", self.min_range_m)?;

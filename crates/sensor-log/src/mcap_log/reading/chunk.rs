@@ -14,12 +14,12 @@ pub(in crate::mcap_log) struct ChunkRecords {
 }
 
 impl ChunkRecords {
-    /// A whole chunk; its checksum is verified before the first record comes out.
+    /// A complete chunk; its checksum is verified before the first record is returned.
     pub(in crate::mcap_log) fn whole(body: &[u8]) -> Self {
         Self::new(body, false)
     }
 
-    /// The beginning of a chunk: gives the records that are whole, without a checksum.
+    /// The beginning of a truncated chunk: returns its complete records, without a checksum.
     pub(in crate::mcap_log) fn cut(body: &[u8]) -> Self {
         Self::new(body, true)
     }
@@ -30,7 +30,7 @@ impl ChunkRecords {
             .with_skip_end_magic(true)
             .with_prevalidate_chunk_crcs(!is_truncated)
             .with_record_length_limit(MAX_RECORD_BYTES);
-        // The library reads chunks from a file, so the chunk becomes one again. A cut one claims more than there is.
+        // The library reads chunks from a file, so wrap it in one again. A truncated chunk claims a larger size.
         let claimed = if is_truncated { MAX_RECORD_BYTES as u64 } else { body.len() as u64 };
         let mut bytes = vec![op::CHUNK];
         bytes.extend(claimed.to_le_bytes());
@@ -38,7 +38,7 @@ impl ChunkRecords {
         Self { reader: LinearReader::new_with_options(options), bytes: Cursor::new(bytes), is_truncated }
     }
 
-    /// Whether the chunk ends too early, so that an error is expected.
+    /// Whether the chunk is truncated, so that an error is expected.
     pub(in crate::mcap_log) fn is_truncated(&self) -> bool {
         self.is_truncated
     }
@@ -53,7 +53,7 @@ impl ChunkRecords {
                 Err(error) => return Some(Err(error)),
                 Ok(LinearReadEvent::Record { opcode, data }) => return Some(Ok(take(opcode, data))),
                 Ok(LinearReadEvent::ReadRequest(n_wanted)) => {
-                    // Never more room than there are bytes to come; no bytes tell the reader that it is the end.
+                    // Limit the buffer to the remaining bytes; an empty one signals the end.
                     let n_left = self.bytes.get_ref().len() - self.bytes.position() as usize;
                     let n_read = match self.bytes.read(self.reader.insert(n_wanted.min(n_left))) {
                         Ok(n_read) => n_read,

@@ -12,7 +12,7 @@ use crate::fault::{Fault, finite, inconsistent};
 use crate::planar::heading_of;
 use crate::{Data, Detection, ProblemKind, Record, Stamp, Target, TrueLandmark, TrueWall, Velocity};
 
-/// The records in one message; a message without a stamp of its own takes the time at which it was logged.
+/// The records in one message; a message without a stamp gets its log time.
 pub(in crate::mcap_log) fn records(
     route: Route,
     bytes: &[u8],
@@ -91,7 +91,7 @@ fn pose_record(
 
 pub(in crate::mcap_log) fn planar(pose: &messages::Pose) -> Result<Pose2<f64>, Fault> {
     let position = pose.position.unwrap_or_default();
-    // A quaternion that is not there, or all zeros, means no rotation to most writers.
+    // Most writers use a missing or zero quaternion for no rotation.
     let q = pose.orientation.unwrap_or_default();
     let heading = heading_of([q.x, q.y, q.z, q.w]);
     finite([position.x, position.y, heading])?;

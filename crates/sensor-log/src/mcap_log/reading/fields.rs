@@ -1,6 +1,6 @@
-/// Reads little-endian fields off the front of a slice; `None` where it is too short.
+/// Reads little-endian fields from the front of a slice; `None` if it is too short.
 ///
-/// The general parser of the mcap crate reserves as many bytes as a string claims to have; this one borrows.
+/// The parser of the mcap crate allocates the claimed length of a string; this one borrows.
 pub(in crate::mcap_log) struct Fields<'a>(pub(in crate::mcap_log) &'a [u8]);
 
 impl<'a> Fields<'a> {

@@ -14,7 +14,7 @@ use crate::{Format, LogError};
 /// Messages are flushed in chunks of about this size: a crash loses no more.
 const CHUNK_BYTES: u64 = 256 << 10;
 
-/// An MCAP file that messages go into. The same messages give the same bytes: no compression, no clock, no library version.
+/// Writes messages to an MCAP file. Equal messages give equal bytes: no compression, no clock, no library version.
 pub struct McapFile<W: Write + Seek> {
     writer: mcap::Writer<W>,
     channels: BTreeMap<ChannelKey, Channel>,
@@ -29,7 +29,7 @@ impl McapFile<BufWriter<File>> {
     /// Creates the file, or replaces the one that is there.
     ///
     /// # Errors
-    /// When it cannot be created.
+    /// Returns an error if it cannot be created.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, LogError> {
         let path = path.as_ref();
         let file = File::create(path).map_err(|source| LogError::NotCreated { path: path.into(), source })?;
@@ -41,7 +41,7 @@ impl<W: Write + Seek> McapFile<W> {
     /// Writes to `out`.
     ///
     /// # Errors
-    /// When `out` fails.
+    /// Returns an error if `out` fails.
     pub fn new(out: W) -> Result<Self, LogError> {
         let writer = WriteOptions::new()
             .compression(None)

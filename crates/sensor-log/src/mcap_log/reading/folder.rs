@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use crate::{LogError, Warning};
 
-/// What a recorder of ROS 2 writes beside the files of a bag when it ends as it should.
+/// Metadata file that a ROS 2 recorder writes beside the files of a bag on a regular end.
 const METADATA: &str = "metadata.yaml";
 
-/// The files to read, and what the user should know of them: a recorder of ROS 2 makes a folder for each bag, with a file, or several
-/// where it splits them.
+/// The files to read, with warnings: a ROS 2 recorder creates a folder for each bag, with one file, or several if it splits them.
 pub(crate) fn files_of(path: &Path) -> Result<(Vec<PathBuf>, Vec<Warning>), LogError> {
     if !path.is_dir() {
         return Ok((vec![path.into()], Vec::new()));
@@ -57,7 +56,7 @@ pub(crate) fn files_in(folder: &Path) -> Result<Vec<PathBuf>, LogError> {
     Ok(files)
 }
 
-/// The files that the folder's metadata lists, each on a line of its own.
+/// The files listed in the folder's metadata, one per line.
 fn names_in_metadata(folder: &Path) -> Vec<String> {
     let Ok(text) = fs::read_to_string(folder.join(METADATA)) else { return Vec::new() };
     let items = text.lines().filter_map(|line| line.trim().strip_prefix("- "));

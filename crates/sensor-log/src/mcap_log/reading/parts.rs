@@ -7,10 +7,9 @@ use super::fields::Fields;
 use super::stream::{RecordStream, Step};
 use crate::{LogEnd, LogError};
 
-/// The files of one recording, message by message in the order in which they were logged.
+/// The files of one recording, merged message by message in log-time order.
 ///
-/// The messages of a file keep their order. A file is opened when its first message is due, so that of a recording that was split, however
-/// often, about one is open at a time.
+/// The messages of a file keep their order. A file is opened when its first message is due, so about one file of a split recording is open at a time.
 pub(in crate::mcap_log) struct Parts {
     waiting: VecDeque<Waiting>,
     open: Vec<Part>,
@@ -25,7 +24,7 @@ struct Waiting {
 struct Part {
     index: usize,
     stream: RecordStream,
-    /// Log time and body of the message that comes next, once it is known.
+    /// Log time and body of the next message, once it is read.
     next: Option<(u64, Vec<u8>)>,
     /// Log time of the message before.
     last_time: Option<u64>,
@@ -33,11 +32,11 @@ struct Part {
 
 /// A log time further ahead than this of the message before it in its file is wrong, nanoseconds: no recording pauses for a day.
 const LONGEST_PAUSE: u64 = 86_400 * 1_000_000_000;
-/// So many messages tell when a file begins, where the first may have a wrong log time.
+/// Number of messages used to find the start of a file, because the first may have a wrong log time.
 const FIRST_MESSAGES: usize = 10;
 
 impl Parts {
-    /// Files of which those without a message may come last.
+    /// Opens the files; those without a message come last.
     pub(in crate::mcap_log) fn open(paths: &[PathBuf]) -> Result<Self, LogError> {
         if let [path] = paths {
             let part = Part { index: 0, stream: RecordStream::open(path)?, next: None, last_time: None };
@@ -51,7 +50,7 @@ impl Parts {
         Ok(Self { waiting: waiting.into(), open: Vec::new() })
     }
 
-    /// Goes on to the next record and hands it, with the index of its file, to `take`; tells of which file the step is.
+    /// Advances to the next record and passes it, with the index of its file, to `take`; returns the file of the step.
     pub(in crate::mcap_log) fn step(&mut self, mut take: impl FnMut(usize, u8, &[u8])) -> (usize, Step) {
         if let Some(at) = self.open.iter().position(|part| part.next.is_none()) {
             let is_alone = self.open.len() == 1 && self.waiting.is_empty();
@@ -89,7 +88,7 @@ impl Parts {
         match RecordStream::open(&path) {
             Ok(stream) => {
                 self.open.push(Part { index, stream, next: None, last_time: Some(first_log_time) });
-                // Of messages of equal time, that of the earlier file comes first.
+                // At equal times, messages of the earlier file come first.
                 self.open.sort_by_key(|part| part.index);
                 Step::On
             }
@@ -97,7 +96,7 @@ impl Parts {
         }
     }
 
-    /// The end of a file is that of the recording only when it is the last.
+    /// The end of a file ends the recording only if it is the last file.
     fn after(&mut self, at: usize, step: Step) -> Step {
         let Step::End(end) = step else { return step };
         self.open.remove(at);
@@ -109,7 +108,7 @@ impl Parts {
     }
 }
 
-/// When the first message was logged; `u64::MAX` where there is none.
+/// Log time of the first message; `u64::MAX` without messages.
 fn first_log_time(path: &Path) -> Result<u64, LogError> {
     let mut stream = RecordStream::open(path)?;
     let mut times = Vec::new();

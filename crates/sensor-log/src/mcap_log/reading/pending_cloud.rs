@@ -3,7 +3,7 @@ use foxglove::messages::PointCloud;
 use super::super::{topics, writing::encode};
 use crate::{Data, LogError, Record, Stamp, TrueLandmark, TrueWall};
 
-/// Landmarks, or walls, in a row at one stamp: they become one cloud, so that viewers draw them together.
+/// Successive landmarks, or walls, of one stamp, collected into one cloud so that viewers draw them together.
 #[derive(Default)]
 pub(in crate::mcap_log) struct PendingCloud {
     stamp: Stamp,
@@ -12,7 +12,7 @@ pub(in crate::mcap_log) struct PendingCloud {
 }
 
 impl PendingCloud {
-    /// Whether a landmark or a wall belongs into the same cloud as those before it.
+    /// Whether a landmark or a wall belongs to the same cloud as the previous ones.
     pub(in crate::mcap_log) fn is_of_same_cloud(&self, record: &Record) -> bool {
         let same_kind = match record.data {
             Data::TrueWall(_) => self.landmarks.is_empty(),
@@ -21,7 +21,7 @@ impl PendingCloud {
         same_kind && record.stamp == self.stamp
     }
 
-    /// Takes a landmark or a wall; leaves out what is neither.
+    /// Adds a landmark or a wall; ignores other records.
     pub(in crate::mcap_log) fn push(&mut self, record: &Record) {
         self.stamp = record.stamp;
         match record.data {
@@ -31,7 +31,7 @@ impl PendingCloud {
         }
     }
 
-    /// The cloud with its topic and stamp; nothing when there is none.
+    /// The cloud with its topic and stamp; `None` if it is empty.
     pub(in crate::mcap_log) fn into_cloud(
         self,
     ) -> Result<Option<(&'static str, Stamp, PointCloud)>, LogError> {

@@ -23,9 +23,9 @@ pub(crate) struct McapRecords {
 }
 
 impl McapRecords {
-    /// Opens the files of the log at `source`; of ROS 2 messages those on the topics `wanted` are read, and of kinds of which none is wanted those on one topic each.
+    /// Opens the files of the log at `source`. Reads ROS 2 messages on the topics `wanted`, and for each other kind those of one topic.
     ///
-    /// A file of several that cannot be read is left out and reported.
+    /// An unreadable file among several is skipped and reported.
     pub(crate) fn open(
         source: &Path,
         files: &[PathBuf],
@@ -35,7 +35,7 @@ impl McapRecords {
         let files = &readable(files, report)?;
         let parts = Parts::open(files)?;
         let topics = topic_listing::topics(files)?;
-        // What is wrong with a file will be told where it is read.
+        // Problems of a file are reported when it is read.
         let tried = |topic_probes| topic_listing::passed(files, &topics, topic_probes).unwrap_or_default();
         let choice = Choice::among(&topics, wanted, tried).map_err(|error| error.of(source, &topics))?;
         Ok(Self {
@@ -45,17 +45,17 @@ impl McapRecords {
         })
     }
 
-    /// The topics of ROS 2 messages and what becomes of them.
+    /// The topics of ROS 2 messages and their use.
     pub(crate) fn topics(&self) -> &[Topic] {
         &self.topics
     }
 
-    /// The format that the records come from, when it was announced so far.
+    /// The original format of the records, if it was read so far.
     pub(crate) fn origin(&self) -> Option<Format> {
         self.messages.origin
     }
 
-    /// The next record in time order; trouble goes into the report.
+    /// The next record in time order; problems go into the report.
     pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         loop {
             if let Some(record) = self.messages.reorder.pop_ready() {
@@ -132,7 +132,7 @@ struct Messages {
     reorder: Reorder,
 }
 
-/// The clock was set back: what comes after that is left out.
+/// The clock was set back: later records are skipped.
 struct SetBack {
     topic: String,
     from: Stamp,
@@ -140,7 +140,7 @@ struct SetBack {
     n_left_out: u64,
 }
 
-/// What a file has announced so far: numbers of schemas and channels are its own.
+/// Schemas and channels of a file so far; each file numbers its own.
 #[derive(Default)]
 struct FileState {
     name: String,
@@ -155,7 +155,7 @@ struct Channel {
     route: Option<AnyRoute>,
 }
 
-/// What the messages of a channel become.
+/// Conversion of the messages of a channel.
 #[derive(Clone, Copy)]
 enum AnyRoute {
     Foxglove(Route),
@@ -274,7 +274,7 @@ impl Messages {
         self.trouble(file, kind, reason, report);
     }
 
-    /// Tells what is known at the end only.
+    /// Reports the facts known only at the end.
     fn finish(&mut self, report: &mut ReadReport) {
         let held = self
             .clocks

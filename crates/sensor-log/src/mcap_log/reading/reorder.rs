@@ -2,14 +2,14 @@ use std::collections::BTreeMap;
 
 use crate::{Data, Record, Stamp};
 
-/// Records held back so that one that comes late still finds its place.
+/// Number of records buffered to sort late ones.
 const WINDOW_RECORDS: usize = 256;
-/// Bytes of detections and images held back at most, so that large messages do not fill the memory.
+/// Maximum size of buffered detections and images, in bytes.
 const WINDOW_BYTES: usize = 32 << 20;
 
-/// Puts records that come slightly out of order back into it, with bounded memory.
+/// Sorts slightly out-of-order records, with bounded memory.
 ///
-/// Recorders write messages as they arrive; a camera's are older than an encoder's. Equal stamps keep the order of the file.
+/// Recorders write messages on arrival, and camera messages have a larger delay than encoder messages. Equal stamps keep the file order.
 #[derive(Debug, Default)]
 pub(in crate::mcap_log) struct Reorder {
     held: BTreeMap<(Stamp, u64), Record>,
@@ -51,7 +51,7 @@ impl Reorder {
     }
 }
 
-/// What a record holds besides itself.
+/// Heap size of a record, in bytes.
 fn n_bytes(record: &Record) -> usize {
     match &record.data {
         Data::Detections(detections) => size_of_val(detections.as_slice()),

@@ -13,7 +13,7 @@ pub(in crate::mcap_log) enum Route {
     DetectionWidths,
     Scan(ScanChannel),
     LaserMount,
-    /// Known, and nothing to read: the same scan as points.
+    /// Known and skipped: the same scan as points.
     ScanPoints,
     TruePose,
     TruePosition,
@@ -22,7 +22,7 @@ pub(in crate::mcap_log) enum Route {
     EstimatedPose,
     CameraInfo,
     CameraMount,
-    /// Known, and nothing to read: the turn is always the same.
+    /// Known and skipped: the rotation is constant.
     CameraOptical,
     Image,
     RawImage,
@@ -30,7 +30,7 @@ pub(in crate::mcap_log) enum Route {
 }
 
 impl Route {
-    /// The kind for a topic, when it has the schema that belongs there.
+    /// The kind of a topic, if it has the expected schema.
     pub(in crate::mcap_log) fn of<'a>(
         topic: &str,
         schema: &str,

@@ -10,21 +10,21 @@ use super::chunk::ChunkRecords;
 use crate::formats::unsupported_format;
 use crate::{Format, LogEnd, LogError};
 
-/// The records of an MCAP file in its order, those inside of chunks too; memory does not grow with the file.
+/// The records of an MCAP file in file order, including those in chunks; memory use does not grow with the file.
 pub(in crate::mcap_log) struct RecordStream {
     frames: Frames<BufReader<File>>,
     chunk: Option<ChunkRecords>,
 }
 
-/// What a step through the file came upon.
+/// Result of a step through the file.
 pub(in crate::mcap_log) enum Step {
     /// A record, or the beginning or end of a chunk.
     On,
-    /// A chunk that cannot be unpacked; what follows it can.
+    /// A chunk that cannot be unpacked; reading can continue after it.
     DamagedChunk(String),
     /// The last chunk breaks off; its beginning follows.
     Cut(LogEnd),
-    /// Nothing more.
+    /// The end.
     End(LogEnd),
 }
 

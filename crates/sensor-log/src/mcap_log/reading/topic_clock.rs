@@ -2,27 +2,27 @@ use std::collections::VecDeque;
 
 use crate::{Record, Stamp};
 
-/// A clock that goes back further than this was set, seconds; below, a message overtook another.
+/// Larger backward steps mean that the clock was set, s; smaller ones are messages out of order.
 const CLOCK_WAS_SET: f64 = 1.0;
 /// No recording pauses for longer, seconds: a stamp further ahead is wrong, unless the next ones go on from there.
 const LONGEST_PAUSE: f64 = 86_400.0;
-/// So many stamps in a row tell a clock that was set from single wrong stamps.
+/// Number of successive stamps that confirm a clock that was set, as opposed to single wrong stamps.
 const IN_A_ROW: usize = 10;
 
 /// Tells wrong stamps, and a clock that is set back, from the stamps of one topic.
 #[derive(Debug, Default)]
 pub(in crate::mcap_log) struct TopicClock {
     latest: Option<Stamp>,
-    /// Stamps of the last records that passed.
+    /// Stamps of the last accepted records.
     passed: VecDeque<Stamp>,
     /// Records that do not follow the ones before, in a row.
     held: Vec<Record>,
 }
 
-/// What becomes of a record and of those that were held before it.
+/// Decision about a record and those held before it.
 #[derive(Debug, Default, PartialEq)]
 pub(in crate::mcap_log) struct Checked {
-    /// They follow one another.
+    /// Accepted records, in sequence.
     pub(in crate::mcap_log) passed: Vec<Record>,
     /// Their stamps are wrong.
     pub(in crate::mcap_log) wrong: Vec<Record>,
@@ -49,25 +49,25 @@ impl TopicClock {
             return Checked { wrong, ..Checked::default() };
         }
         let held = std::mem::take(&mut self.held);
-        // Fewer records ahead of these than there are of these: the few ahead were wrong.
+        // If fewer records are ahead than are held here, the ones ahead were wrong.
         let first = held[0].stamp;
         let are_many_ahead = self.passed.iter().filter(|passed| **passed > first).count() >= IN_A_ROW;
         if ahead < 0.0 && are_many_ahead {
             let set_back = Some((latest, first));
             return Checked { wrong: [wrong, held].concat(), set_back, ..Checked::default() };
         }
-        // A pause of the recording, or the few stamps before were wrong.
+        // A pause of the recording, or the last few stamps were wrong.
         self.latest = Some(stamp);
         held.iter().for_each(|record| self.note(record.stamp));
         Checked { passed: held, wrong, set_back: None }
     }
 
-    /// The latest stamp that followed those before it.
+    /// The latest accepted stamp.
     pub(in crate::mcap_log) fn latest(&self) -> Option<Stamp> {
         self.latest
     }
 
-    /// What is held at the end of the log.
+    /// Releases the held records at the end of the log.
     pub(in crate::mcap_log) fn finish(&mut self) -> Vec<Record> {
         std::mem::take(&mut self.held)
     }

@@ -15,7 +15,7 @@ use crate::bag::{TopicInfo, TopicProbe};
 
 /// Opcode and length before each record, the two offsets and the checksum of the footer.
 const FOOTER_BYTES: i64 = 9 + 20;
-/// Summaries are small; what claims to be larger is not read.
+/// Maximum size of a summary that is read, in bytes.
 const MAX_SUMMARY_BYTES: u64 = 64 << 20;
 
 /// The topics of the files of a log in the order in which they are announced, each with the number of its messages.
@@ -32,16 +32,16 @@ pub(in crate::mcap_log) fn topics(files: &[PathBuf]) -> Result<Vec<TopicInfo>, L
     Ok(all)
 }
 
-/// The index at the end of the file tells; where there is none, as in a file that breaks off, the whole file is gone through.
+/// Uses the index at the end of the file; without one, as in a truncated file, scans the whole file.
 fn topics_of(path: &Path) -> Result<Vec<TopicInfo>, LogError> {
     match summary(path) {
         Ok(Some(topics)) => Ok(topics),
-        // What is wrong with the file will be told where it is read.
+        // Problems of the file are reported when it is read.
         Ok(None) | Err(_) => counted(path),
     }
 }
 
-/// Puts topics to a probe each and tells which passed; one that gives no answer to the end of the last file has failed.
+/// Probes topics and returns which passed; one without an answer by the end of the last file fails.
 pub(in crate::mcap_log) fn passed(
     files: &[PathBuf],
     topics: &[TopicInfo],
@@ -92,7 +92,7 @@ fn counted(path: &Path) -> Result<Vec<TopicInfo>, LogError> {
     Ok(announced.topics)
 }
 
-/// What the index says; `None` where it is missing or says nothing of messages.
+/// The topics in the index; `None` if it is missing or has no message counts.
 fn summary(path: &Path) -> io::Result<Option<Vec<TopicInfo>>> {
     let mut file = BufReader::new(File::open(path)?);
     let magic_bytes = MAGIC.len() as i64;
@@ -153,7 +153,7 @@ struct Announced {
 }
 
 impl Announced {
-    /// Takes a record; of a message it gives the topic and the bytes.
+    /// Processes a record; for a message returns the topic and the bytes.
     fn take<'a>(&mut self, opcode: u8, body: &'a [u8]) -> Option<(&TopicInfo, &'a [u8])> {
         let mut fields = Fields(body);
         match opcode {

@@ -19,7 +19,7 @@ pub struct Drawing {
     pub id: String,
     /// Red, green, blue and alpha in [0, 1].
     pub color: [f64; 4],
-    /// What it looks like.
+    /// Its shape.
     pub shape: Shape,
 }
 

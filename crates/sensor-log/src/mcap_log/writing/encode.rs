@@ -9,7 +9,7 @@ use super::super::topics;
 use crate::planar::quaternion_of;
 use crate::{Detection, LogError, Stamp, Target, TrueLandmark, TrueWall, Velocity};
 
-/// Bytes 0-15 hold what is read back, the rest lets viewers draw it.
+/// Bytes 0-15 are read back; the other columns are for viewers.
 const DETECTION_COLUMNS: [Column; 7] = [
     ("range", Float64),
     ("bearing", Float64),
@@ -22,7 +22,7 @@ const DETECTION_COLUMNS: [Column; 7] = [
 
 const LANDMARK_COLUMNS: [Column; 4] = [("x", Float64), ("y", Float64), ("z", Float64), ("id", Uint32)];
 
-/// The first three are what viewers draw.
+/// The first three are for viewers.
 const WALL_COLUMNS: [Column; 6] =
     [("x", Float64), ("y", Float64), ("z", Float64), ("end_x", Float64), ("end_y", Float64), ("id", Uint32)];
 

@@ -5,25 +5,25 @@ use crate::{Format, LogError, Stamp};
 /// A Foxglove message, encoded as protobuf.
 #[derive(Clone, Copy, Debug)]
 pub struct Message<'a> {
-    /// Where it belongs.
+    /// Topic of the message.
     pub topic: &'a str,
     /// Name of its schema, for instance `foxglove.PoseInFrame`.
     pub schema: &'a str,
     /// The schema itself: a file descriptor set.
     pub descriptors: &'a [u8],
-    /// What is the same for all messages of the channel.
+    /// Metadata common to all messages of the channel.
     pub metadata: &'a BTreeMap<String, String>,
-    /// When it was.
+    /// Time of the message.
     pub stamp: Stamp,
     /// Its bytes.
     pub data: &'a [u8],
 }
 
 impl Message<'_> {
-    /// How schemas and messages are encoded.
+    /// Encoding of schemas and messages.
     pub const ENCODING: &'static str = "protobuf";
 
-    /// The channel that it goes into.
+    /// The channel of the message.
     pub fn channel(&self) -> ChannelKey {
         ChannelKey {
             topic: self.topic.to_owned(),
@@ -33,7 +33,7 @@ impl Message<'_> {
     }
 }
 
-/// What tells channels apart.
+/// Identity of a channel.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ChannelKey {
     topic: String,
@@ -41,8 +41,7 @@ pub struct ChannelKey {
     metadata: BTreeMap<String, String>,
 }
 
-/// Where messages go: a file, a viewer, several of them.
-///
+/// Destination of messages: a file, a viewer, or several of them.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_sensor_log::{LogError, Message, MessageSink, MessageWriter, Stamp};
@@ -65,28 +64,26 @@ pub trait MessageSink {
     /// Takes a message.
     ///
     /// # Errors
-    /// When it cannot be passed on.
+    /// Returns an error if it cannot be passed on.
     fn message(&mut self, message: &Message<'_>) -> Result<(), LogError>;
 
-    /// Is told, before the first message, in which format the records were stored first.
-    ///
+    /// Announces the original format of the records, before the first message.
     /// # Errors
-    /// When that cannot be passed on.
+    /// Returns an error if that cannot be passed on.
     fn origin(&mut self, origin: Format) -> Result<(), LogError> {
         let _ = origin;
         Ok(())
     }
 
-    /// Nothing more comes.
-    ///
+    /// Ends the output.
     /// # Errors
-    /// When what was taken cannot be completed.
+    /// Returns an error if the output cannot be completed.
     fn finish(self: Box<Self>) -> Result<(), LogError> {
         Ok(())
     }
 }
 
-/// Several sinks, each of which gets everything.
+/// Several sinks; each gets every message.
 pub type Sinks = Vec<Box<dyn MessageSink>>;
 
 impl MessageSink for Sinks {

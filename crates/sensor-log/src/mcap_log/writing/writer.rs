@@ -23,10 +23,9 @@ pub struct MessageWriter<S: MessageSink> {
     pub(in crate::mcap_log) scan_frame: &'static str,
 }
 
-/// Writes records and things to draw into an MCAP file that Foxglove and Rerun open.
+/// Writes records and drawings to an MCAP file for Foxglove and Rerun.
 ///
-/// The same calls give the same bytes: no compression, no clock, no library version. [`finish`](MessageWriter::finish) completes the file.
-///
+/// Equal calls give equal bytes: no compression, no clock, no library version. [`finish`](MessageWriter::finish) completes the file.
 /// ```
 /// use std::io::Cursor;
 /// use wayfix_estimation_traits::Pose2;
@@ -45,7 +44,7 @@ impl McapWriter<BufWriter<File>> {
     /// Creates the file, or replaces the one that is there.
     ///
     /// # Errors
-    /// When it cannot be created.
+    /// Returns an error if it cannot be created.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, LogError> {
         Ok(Self::into_sink(McapFile::create(path)?))
     }
@@ -55,7 +54,7 @@ impl<W: Write + Seek> McapWriter<W> {
     /// Writes to `out`.
     ///
     /// # Errors
-    /// When `out` fails.
+    /// Returns an error if `out` fails.
     pub fn new(out: W) -> Result<Self, LogError> {
         Ok(Self::into_sink(McapFile::new(out)?))
     }
@@ -67,18 +66,17 @@ impl<S: MessageSink> MessageWriter<S> {
         Self { sink, pending_cloud: PendingCloud::default(), scan_frame: topics::BODY_FRAME }
     }
 
-    /// Where the messages go.
+    /// The destination of the messages.
     pub fn sink(&self) -> &S {
         &self.sink
     }
 
-    /// Says which format the records come from; reading gives it back as [`LogMeta::origin`](crate::LogMeta::origin).
+    /// Stores the original format of the records; reading returns it as [`LogMeta::origin`](crate::LogMeta::origin).
     ///
-    /// Call it before anything else is written: readers that stream meet it in time only there. MCAP as the origin leaves no trace,
-    /// since the file itself says so.
-    ///
+    /// Call it before anything else is written, because streaming readers need it first. MCAP as the origin is not stored, because it is the
+    /// format of the file.
     /// # Errors
-    /// When the output fails.
+    /// Returns an error if the output fails.
     pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
         self.sink.origin(origin)
     }
@@ -86,7 +84,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// A pose in `frame`, as `foxglove.PoseInFrame`.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn pose_in_frame(
         &mut self,
         topic: &str,
@@ -98,10 +96,9 @@ impl<S: MessageSink> MessageWriter<S> {
         self.message(topic, stamp, &message)
     }
 
-    /// Where the frame `child` is in the frame `parent`, as `foxglove.FrameTransform`; viewers need it to place what is given in `child`.
-    ///
+    /// Writes the pose of the frame `child` in the frame `parent`, as `foxglove.FrameTransform`; viewers need it to place data given in `child`.
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn frame_transform(
         &mut self,
         topic: &str,
@@ -123,7 +120,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// A path, as `foxglove.PosesInFrame`.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn poses_in_frame(
         &mut self,
         topic: &str,
@@ -142,7 +139,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Points in the plane, as `foxglove.PointCloud`.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn point_cloud(
         &mut self,
         topic: &str,
@@ -157,7 +154,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Ellipses, paths and markers, as `foxglove.SceneUpdate` (Foxglove draws them, Rerun 0.41 does not).
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn scene_update(
         &mut self,
         topic: &str,
@@ -169,10 +166,9 @@ impl<S: MessageSink> MessageWriter<S> {
         self.message(topic, stamp, &message)
     }
 
-    /// Outlines in the image of the same stamp, as `foxglove.ImageAnnotations`; none takes those before away.
-    ///
+    /// Writes outlines in the image of the same stamp, as `foxglove.ImageAnnotations`; an empty list removes the previous ones.
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn image_outlines(
         &mut self,
         topic: &str,
@@ -186,7 +182,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// A picture as it is stored, as `foxglove.CompressedImage`; JPEG or PNG.
     ///
     /// # Errors
-    /// As [`record`](Self::record).
+    /// Returns the errors of [`record`](Self::record).
     pub fn image(&mut self, topic: &str, stamp: Stamp, image: &EncodedImage) -> Result<(), LogError> {
         if image.format == ImageFormat::Pnm || ImageFormat::of_bytes(&image.bytes) != Some(image.format) {
             let (what, n_bytes) = ("image", image.bytes.len());
@@ -198,13 +194,13 @@ impl<S: MessageSink> MessageWriter<S> {
     /// Completes the file with its index, or whatever else the messages went into.
     ///
     /// # Errors
-    /// When the output fails.
+    /// Returns an error if the output fails.
     pub fn finish(mut self) -> Result<(), LogError> {
         self.flush_pending_cloud()?;
         Box::new(self.sink).finish()
     }
 
-    /// Keeps a landmark or a wall until another kind of record or stamp comes.
+    /// Holds a landmark or a wall until another kind of record or stamp comes.
     pub(in crate::mcap_log) fn hold(&mut self, record: &Record) -> Result<(), LogError> {
         if !self.pending_cloud.is_of_same_cloud(record) {
             self.flush_pending_cloud()?;
@@ -232,7 +228,7 @@ impl<S: MessageSink> MessageWriter<S> {
         self.message_with(topic, &BTreeMap::new(), stamp, message)
     }
 
-    /// A message on a channel with metadata; other metadata make another channel of the same topic.
+    /// A message on a channel with metadata; other metadata open another channel of the same topic.
     pub(in crate::mcap_log) fn message_with<M>(
         &mut self,
         topic: &str,

@@ -1,4 +1,4 @@
-//! Whether two rows of poses tell the same.
+//! Agreement of two rows of poses.
 
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 
@@ -23,7 +23,7 @@ pub(super) fn lasts(holds: impl Iterator<Item = bool>) -> bool {
     holds.into_iter().any(|now| std::mem::replace(&mut last, now) && now)
 }
 
-/// Whether the laser's poses are those of the odometry in another frame of the world.
+/// Whether the laser's poses are those of odometry in another world frame.
 pub(super) fn is_shifted(poses: &[ScanPoses]) -> bool {
     let frames: Vec<_> = poses.iter().map(|poses| poses.laser.compose(&poses.odometry.inverse())).collect();
     common(&frames).is_some()

@@ -13,20 +13,20 @@ use crate::text::row::stamp_of;
 use crate::text::scan_odometry::ScanOdometry;
 use crate::{LogError, ReadReport, Stamp};
 
-/// The parameters that say where the front laser is on the robot: ahead, to the left, m, and its heading, rad.
+/// Parameters of the front laser's pose on the robot: ahead, to the left, m, and its heading, rad.
 const MOUNT_PARAMETERS: [&str; 3] =
     ["robot_frontlaser_offset", "robot_frontlaser_side_offset", "robot_frontlaser_angular_offset"];
 
-/// What only the whole log tells: it is read twice.
+/// Properties that require the whole log, found in a first pass.
 #[derive(Default)]
 pub(super) struct FirstPass {
-    /// Where the laser is on the robot; the centre when nothing says otherwise.
+    /// Pose of the laser on the robot; the default is the centre.
     pub(super) mount: Option<Pose2<f64>>,
-    /// Where the laser's poses are in the robot's frame: at the mount, or at its centre.
+    /// Reference of the laser's poses in the robot frame: the mount, or the centre.
     pub(super) pose_mount: Option<Pose2<f64>>,
-    /// Whether the laser's poses are other than those of the odometry.
+    /// Whether the laser's poses differ from those of odometry.
     pub(super) poses_are_estimates: bool,
-    /// What is wrong with the stamps, by line.
+    /// Stamp faults by line.
     pub(super) faults: BTreeMap<u64, ClockFault>,
     /// First angle and step of the scans that state them, by their number of beams.
     pub(super) angles: BTreeMap<usize, (f64, f64)>,
@@ -34,19 +34,19 @@ pub(super) struct FirstPass {
     pub(super) odometry: Option<Trajectory>,
 }
 
-/// What is collected of the scans.
+/// Data collected from the scans.
 #[derive(Default)]
 struct Scans {
     /// Lines and stamps.
     stamps: Vec<(u64, Stamp)>,
     poses: Vec<ScanPoses>,
-    /// Whether the `ODOM` line at the scan tells of another odometry than the scan.
+    /// Whether the `ODOM` line at the scan disagrees with the scan's odometry.
     is_corrected: Vec<bool>,
     /// Numbers of beams of scans that do not state their angles.
     unstated: BTreeSet<usize>,
 }
 
-/// What is collected of the other lines.
+/// Data collected from the other lines.
 #[derive(Default)]
 struct Others {
     trajectory: Trajectory,
@@ -56,13 +56,13 @@ struct Others {
 }
 
 impl FirstPass {
-    /// Reads the log once; says what it takes from it.
+    /// Reads the log once and reports the assumptions.
     pub(super) fn of(path: &Path, report: &mut ReadReport) -> Result<Self, LogError> {
         let mut first_pass = Self::default();
         let (mut scans, mut raw, mut others) = (Scans::default(), Scans::default(), Others::default());
         let mut odometry = ScanOdometry::default();
         let mut lines = Lines::open(path)?;
-        // What is wrong with a line or the file, the second reading tells.
+        // Errors of lines and of the file are reported in the second pass.
         while let Ok(Some(row)) = lines.next_row() {
             let line = row.number;
             match row.text.and_then(parse) {
@@ -117,7 +117,7 @@ impl FirstPass {
         self.faults = faults.filter_map(|(index, fault)| Some((scans.stamps.get(index)?.0, fault))).collect();
     }
 
-    /// The laser's mount is the difference of the two poses, where that is the same throughout, else what the parameters say.
+    /// The laser's mount is the difference of the two poses if constant, else that of the parameters.
     fn judge_poses(&mut self, scans: &Scans, stated: Option<Pose2<f64>>, report: &mut ReadReport) {
         let apart = scans.poses.iter().map(|poses| poses.odometry.inverse().compose(&poses.laser));
         let difference = common(&apart.collect::<Vec<_>>());
@@ -184,7 +184,7 @@ impl Others {
         }
     }
 
-    /// What the parameters say, unless it is the centre.
+    /// The mount in the parameters, unless it is the centre.
     fn stated_mount(&self) -> Option<Pose2<f64>> {
         let [x, y, heading] = self.mount.map(Option::unwrap_or_default);
         Some(Pose2::new(x, y, heading)).filter(|mount| !is_same(mount, &centre()))

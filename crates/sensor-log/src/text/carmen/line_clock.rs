@@ -4,23 +4,23 @@ use crate::{ProblemKind, Stamp};
 /// Between two rows of which the second is not later, nanoseconds.
 const STEP_NANOSECONDS: u64 = 100_000_000;
 
-/// Stamps for a log whose order is that of its lines.
+/// Stamps for a log ordered by lines.
 ///
-/// Some loggers print seconds since 1970 with six digits, so that all rows have the same stamp, and some go back for a moment.
+/// Some loggers print seconds since 1970 with six digits, so that all rows have the same stamp, and some clocks go back briefly.
 #[derive(Default)]
 pub(super) struct LineClock {
     last: Option<Stamp>,
-    /// By how much the clock was set back so far, nanoseconds.
+    /// Total time by which the clock was set back so far, nanoseconds.
     set_back: u64,
 }
 
 impl LineClock {
-    /// The clock was set back before the next row: its stamps are moved so that time goes on.
+    /// Notes that the clock was set back before the next row; later stamps are moved on.
     pub(super) fn was_set_back(&mut self, nanoseconds: u64) {
         self.set_back = self.set_back.saturating_add(nanoseconds).saturating_add(STEP_NANOSECONDS);
     }
 
-    /// The stamp that a row gets: its own where it is later than the row before, else one made up, and a word about that.
+    /// The stamp of a row: its own if it is later than the previous one, else a replacement with a problem.
     pub(super) fn next(&mut self, own: Stamp) -> (Stamp, Result<(), RowError>) {
         let own = Stamp::from_nanoseconds(own.nanoseconds().saturating_add(self.set_back));
         let (stamp, verdict) = match self.last {

@@ -1,10 +1,10 @@
-//! Logs of the Carnegie Mellon Robot Navigation Toolkit (CARMEN), as the Robotics Data Set Repository (Radish) has them: one message a line.
+//! Logs of the Carnegie Mellon Robot Navigation Toolkit (CARMEN), as in the Robotics Data Set Repository (Radish): one message per line.
 //!
-//! `FLASER` and `ROBOTLASER1` are scans with the poses of the laser and of the robot's odometry, `ODOM` what the wheels say, and `RAWLASER1` a
-//! scan without poses, which is read where there are no others. The order is that of the lines, for not all logs have stamps to go by. A
-//! scan gives the robot's pose where that is another than the odometry, the motion since the scan before, and what the laser saw. In
-//! corrected logs, the motion is still that of the wheels (`scan_odometry.rs` says how). The log is read twice: what the poses are, where
-//! the laser is, and what is wrong with the clock only the whole log tells (`first_pass.rs`).
+//! `FLASER` and `ROBOTLASER1` are scans with the poses of the laser and of the robot's odometry, `ODOM` is wheel odometry, and `RAWLASER1` a
+//! scan without poses, which is read if there are no others. The records keep the order of the lines, because not all logs have reliable
+//! stamps. A scan gives the robot's pose if that differs from odometry, the motion since the previous scan, and the ranges. In corrected
+//! logs, the motion is still that of the wheels (see `scan_odometry.rs`). The log is read twice, because the kind of poses, the laser's mount
+//! and the clock faults depend on the whole log (`first_pass.rs`).
 
 mod agreement;
 mod first_pass;
@@ -45,7 +45,7 @@ pub(crate) struct CarmenLog {
 }
 
 impl CarmenLog {
-    /// Surveys the log; what it takes from it goes into the report.
+    /// Surveys the log; assumptions go into the report.
     pub(crate) fn open(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Result<Self, LogError> {
         let lines = Lines::open(path)?;
         Ok(Self {
@@ -60,7 +60,7 @@ impl CarmenLog {
         })
     }
 
-    /// The next record; trouble goes into the report.
+    /// The next record; problems go into the report.
     pub(crate) fn next(&mut self, report: &mut ReadReport) -> Option<Record> {
         while self.ready.is_empty() {
             let lines = self.lines.as_mut()?;
@@ -106,7 +106,7 @@ impl CarmenLog {
         self.ready.pop_front()
     }
 
-    /// A raw scan beside those with poses, and a scan that is logged once more by another message, are no scans of their own.
+    /// Raw scans in a log with posed scans, and scans repeated by another message, are ignored.
     fn why_ignored(&self, scan: &ScanRow) -> Option<String> {
         let word = scan.message.word();
         if scan.message == ScanMessage::Raw && self.first_pass.odometry.is_none() {
@@ -159,7 +159,7 @@ impl CarmenLog {
         verdict
     }
 
-    /// The robot's pose, unless it is the odometry; one that the caller says is true always.
+    /// The robot's pose, unless it is the odometry; always, if the caller declares it true.
     fn pose(&self, poses: &ScanPoses) -> Option<Data> {
         let is_told = self.first_pass.poses_are_estimates || self.poses == PoseKind::True;
         let robot = match &self.first_pass.pose_mount {

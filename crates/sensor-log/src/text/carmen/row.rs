@@ -40,7 +40,7 @@ pub(super) struct ScanRow {
     pub(super) message: ScanMessage,
     pub(super) seconds: f64,
     pub(super) scan: LaserScan,
-    /// Where laser and robot are; a raw scan does not say.
+    /// Poses of laser and robot; a raw scan has none.
     pub(super) poses: Option<ScanPoses>,
 }
 
@@ -68,9 +68,9 @@ impl ScanMessage {
 /// The two poses of a scan.
 #[derive(Clone, Copy)]
 pub(super) struct ScanPoses {
-    /// Where the laser is, corrected if the log is.
+    /// Pose of the laser, corrected in a corrected log.
     pub(super) laser: Pose2<f64>,
-    /// Where the robot's odometry is.
+    /// Odometry pose of the robot.
     pub(super) odometry: Pose2<f64>,
 }
 
@@ -138,7 +138,7 @@ fn stated_scan(mut rest: SplitAsciiWhitespace<'_>, message: ScanMessage) -> Resu
     Ok(ScanRow { message, seconds, scan, poses })
 }
 
-/// A number, and as many ranges.
+/// A number, and that many ranges.
 fn counted(rest: &mut SplitAsciiWhitespace<'_>) -> Result<Vec<f64>, RowError> {
     let count = number(rest.next().unwrap_or_default())?;
     let n_left = rest.clone().count();
@@ -151,7 +151,7 @@ fn counted(rest: &mut SplitAsciiWhitespace<'_>) -> Result<Vec<f64>, RowError> {
 
 /// The angle between two beams: the resolution, unless it misses the field of view by more than one beam.
 ///
-/// Scanners give one beam more or less than field divided by resolution.
+/// Scanners return one beam more or less than field divided by resolution.
 fn increment(field: f64, resolution: f64, n_beams: usize) -> Result<f64, RowError> {
     if n_beams < 2 {
         let reason = format!("{n_beams} beams have no field of view");

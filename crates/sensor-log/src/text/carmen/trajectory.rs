@@ -7,14 +7,14 @@ pub(super) struct Trajectory {
 }
 
 impl Trajectory {
-    /// A pose that is earlier than the one before is passed over.
+    /// Adds a pose; skips one that is earlier than the previous one.
     pub(super) fn push(&mut self, seconds: f64, pose: Pose2<f64>) {
         if self.poses.last().is_none_or(|(last, _)| *last < seconds) {
             self.poses.push((seconds, pose));
         }
     }
 
-    /// The pose at a time: interpolated between its neighbours, the nearest beyond the ends; `None` when there is none.
+    /// The pose at a time: interpolated, the nearest beyond the ends; `None` without poses.
     pub(super) fn at(&self, seconds: f64) -> Option<Pose2<f64>> {
         let after = self.poses.partition_point(|(at, _)| *at < seconds);
         let before = after.checked_sub(1).and_then(|index| self.poses.get(index));

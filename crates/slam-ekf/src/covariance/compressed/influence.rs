@@ -43,5 +43,5 @@ impl CompressedCovariance {
     }
 }
 
-/// Some tens of ε: what a variance of which everything is subtracted may leave.
+/// Remainder of a variance from which everything is subtracted: some tens of ε.
 const RANK_TOLERANCE: f64 = 1e-14;

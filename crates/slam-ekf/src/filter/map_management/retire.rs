@@ -11,7 +11,7 @@ where
     DefaultAllocator: Allocator<L::Dim, L::Dim>,
 {
     pub(in crate::filter) mean: L,
-    /// Its own marginal when it left.
+    /// Its marginal covariance when it was retired.
     pub(in crate::filter) covariance: TangentMatrix<L>,
 }
 

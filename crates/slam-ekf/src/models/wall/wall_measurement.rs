@@ -39,7 +39,7 @@ impl WallMeasurement {
         }
     }
 
-    /// How far the two pieces overlap along this one, metres; negative for a gap between them.
+    /// Overlap of the two pieces along this one, m; negative for a gap between them.
     pub fn overlap(&self, other: &Self) -> f64 {
         let stretch = |piece: &Self| {
             let [a, b] = piece.ends.map(|end| self.line.along(&end));

@@ -2,7 +2,7 @@ use std::str::FromStr;
 
 use super::table::{Table, plain};
 
-/// What a column holds.
+/// Quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Quantity {
     File,
@@ -16,10 +16,10 @@ pub(super) enum Quantity {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Column {
     pub(super) index: usize,
-    /// How many SI units its unit is.
+    /// Factor to SI units.
     pub(super) factor: f64,
     pub(super) unit: &'static str,
-    /// Whether no name says the unit.
+    /// Whether the unit is assumed rather than stated in the name.
     pub(super) is_assumed: bool,
 }
 
@@ -39,7 +39,7 @@ impl FromStr for ColumnNames {
     }
 }
 
-/// The columns of a table that hold something known.
+/// The recognized columns of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Columns {
     found: Vec<(Quantity, String, Column)>,
@@ -50,7 +50,7 @@ pub(super) const KNOWN: &str =
     "file, t_s (_ms, _us, _ns), x_m (_cm, _mm), y_m, heading_rad (theta, yaw; _deg)";
 
 impl Columns {
-    /// From the names in the header of the table, or from `given`.
+    /// Reads the column names from the header of the table, or from `given`.
     pub(super) fn of(table: &Table, given: Option<&ColumnNames>, option: &str) -> Result<Self, String> {
         let n = table.n_columns();
         let Some(names) = given.map(|given| &given.0).or(table.names.as_ref()) else {
@@ -78,13 +78,13 @@ impl Columns {
         self.found.iter().find(|(known, ..)| *known == quantity).map(|(.., column)| *column)
     }
 
-    /// A column that must be there.
+    /// Returns a required column.
     pub(super) fn need(&self, quantity: Quantity, name: &str) -> Result<Column, String> {
         self.get(quantity)
             .ok_or_else(|| format!("no column {name} among {}; known are {KNOWN}", self.names.join(", ")))
     }
 
-    /// `t in ms, x in cm`, of the columns whose unit is stated, or assumed.
+    /// Units as `t in ms, x in cm`, of the columns with stated or with assumed units.
     pub(super) fn units(&self, is_assumed: bool) -> Option<String> {
         let with_unit = self
             .found
@@ -136,7 +136,7 @@ fn words(name: &str) -> (&str, Option<Unit>) {
     (base, Some(unit))
 }
 
-/// What a column of this name holds, and its unit where the name says it.
+/// Quantity of a column of this name, and its unit if the name states it.
 fn meaning(name: &str) -> Option<(Quantity, Option<Unit>)> {
     let (base, unit) = words(name);
     let quantity = match base {

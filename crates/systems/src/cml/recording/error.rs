@@ -2,16 +2,16 @@ use std::{io, path::PathBuf};
 
 use wayfix_sensor_log::LogError;
 
-/// Why a folder of frames and a table of poses make no recording.
+/// Errors of combining a folder of frames with a table of poses.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The operating system refuses.
+    /// An operating-system error.
     #[error("{}", path.display())]
     Io {
-        /// What was read.
+        /// Path that was read.
         path: PathBuf,
-        /// What the system says.
+        /// The operating-system error.
         source: io::Error,
     },
     /// The folder cannot be read.
@@ -20,27 +20,27 @@ pub enum RecordingError {
     /// There is nothing to read.
     #[error("{}: no {what}", path.display())]
     Nothing {
-        /// Where.
+        /// The path.
         path: PathBuf,
-        /// Of what.
+        /// The kind of input that is missing.
         what: &'static str,
     },
-    /// A table cannot be understood.
+    /// A table cannot be parsed.
     #[error("{}: {reason}", path.display())]
     Table {
-        /// Which one.
+        /// Path of the table.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// Frames and poses cannot be brought together.
+    /// Frames and poses cannot be matched.
     #[error("{n_frames} frames and {n_poses} poses: {reason}")]
     Unmatched {
         /// Frames in the folder.
         n_frames: usize,
         /// Rows of the table.
         n_poses: usize,
-        /// What is missing.
+        /// The reason.
         reason: &'static str,
     },
 }

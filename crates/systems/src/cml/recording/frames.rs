@@ -11,52 +11,52 @@ use super::{
     stamps::{self, Stamps, file_name},
 };
 
-/// A frame, and where it was taken.
+/// A frame with its pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Name of its file.
     pub name: String,
-    /// When, s.
+    /// Time, s.
     pub seconds: f64,
-    /// Where, m.
+    /// Position, m.
     pub position: [f64; 2],
-    /// The camera's heading, rad, where the table has it.
+    /// Heading of the camera, rad, if the table has it.
     pub heading: Option<f64>,
     /// The picture.
     pub image: EncodedImage,
 }
 
-/// A folder of frames with their poses, in the order in which they were taken.
+/// A folder of frames with poses, in capture order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// Those with a pose.
+    /// Frames with a pose.
     pub frames: Vec<Frame>,
-    /// How many images of the folder have none.
+    /// Number of images without a pose.
     pub n_without_pose: usize,
-    /// Which rows and images were left out, and what was assumed.
+    /// Skipped rows and images, and assumptions made.
     pub read: ReadReport,
-    /// What the tables say of their units.
+    /// Units of the tables.
     pub notes: Vec<String>,
 }
 
 /// The tables of a folder of frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables<'a> {
-    /// Poses.
+    /// Table of poses.
     pub poses: &'a Path,
-    /// Names of its columns, where it has none.
+    /// Column names, for a table without a header.
     pub columns: Option<&'a ColumnNames>,
-    /// Times of the frames; `None` is the table beside them.
+    /// Table of frame times; `None` searches the folder of the frames.
     pub stamps: Option<&'a Path>,
-    /// Names of its columns, where it has none.
+    /// Column names of the stamps, for a table without a header.
     pub stamp_columns: Option<&'a ColumnNames>,
 }
 
 impl Recording {
-    /// Reads the images of a folder and the tables that say when and where they were taken. Rows and images that cannot be used are left out.
+    /// Reads the images of a folder and the tables of their times and poses. Skips unusable rows and images.
     ///
     /// # Errors
-    /// When a table cannot be understood, or fewer than two frames have an image and a pose.
+    /// Returns an error if a table cannot be parsed, or fewer than two frames have an image and a pose.
     pub fn read(folder: &Path, tables: &Tables<'_>) -> Result<Self, RecordingError> {
         let files = image_files(folder)?;
         let names: Vec<String> = files.iter().map(|path| name_of(path)).collect();
@@ -71,7 +71,7 @@ impl Recording {
         };
         let stamps = match found.map(|path| stamps::read(&path, tables.stamp_columns, &mut read, &mut notes))
         {
-            // Poses by file need no times.
+            // Poses matched by file name need no times.
             Some(Err(_)) if tables.stamps.is_none() && is_by_file(&rows) => None,
             stamps => stamps.transpose()?,
         };
@@ -119,10 +119,10 @@ struct Placed {
     heading: Option<f64>,
 }
 
-/// Frames without a clock are taken to be so far apart, s.
+/// Assumed time between frames without stamps, s.
 const STEP: f64 = 0.1;
 
-/// The pose of each frame that has one: by the file that its row names, else by time, else row by row.
+/// The pose of each frame, matched by the file name in its row, else by time, else by row order.
 fn place(
     names: &[String],
     rows: &[Option<PoseRow>],
@@ -171,8 +171,8 @@ fn times(rows: &[Option<PoseRow>]) -> Vec<f64> {
     times
 }
 
-/// The longest time between two poses over which they are interpolated, s: as with truth, or where the table is slower, its own period and a half,
-/// so that one missing row is a gap.
+/// The longest interval between two poses that is interpolated, s: the limit for truth, or 1.5 periods of a slower table. One missing row
+/// is then a gap.
 fn longest_gap(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
@@ -184,19 +184,19 @@ fn by_file<'a>(rows: impl Iterator<Item = &'a PoseRow>) -> BTreeMap<String, &'a 
     named.flat_map(|(name, row)| keys(&name).into_iter().map(move |key| (key, row))).collect()
 }
 
-/// What a file may be called: by its name, without its extension, by the number in it.
+/// Keys that match a file: its name, its name without extension, the number in it.
 fn keys(name: &str) -> Vec<String> {
     // In `1.05` the dot is a decimal point.
     let is_extension = |end: &str| end.bytes().any(|byte| byte.is_ascii_alphabetic());
     let stem = name.rsplit_once('.').filter(|(_, end)| is_extension(end)).map_or(name, |(stem, _)| stem);
     let digits = stem.trim_start_matches(|c: char| !c.is_ascii_digit());
     let mut keys = vec![name.to_owned(), stem.to_owned()];
-    // `view_010` and a row that says `10`.
+    // Matches `view_010` with a row that says `10`.
     keys.extend(digits.parse::<u64>().ok().map(|number| number.to_string()));
     keys
 }
 
-/// Along a straight line between the two rows around a time, headings along the shorter arc.
+/// Interpolates linearly between the two rows around a time; headings along the shorter arc.
 fn interpolated(rows: &[PoseRow], seconds: f64, longest_gap: f64) -> Option<Placed> {
     let after = rows.partition_point(|row| row.time < Some(seconds));
     let late = rows.get(after)?;

@@ -1,4 +1,4 @@
-//! Recordings that are folders of frames with a table of poses, as many who record panoramas keep them.
+//! Recordings stored as a folder of frames with a table of poses.
 
 mod columns;
 mod error;

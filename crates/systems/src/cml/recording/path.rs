@@ -2,28 +2,28 @@ use wayfix_estimation_traits::Pose2;
 
 use super::{Frame, smoothed, smoothing_of};
 
-/// Where headings come from.
+/// Source of the headings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heading {
-    /// The table has them.
+    /// The table contains them.
     Given,
-    /// The camera looks along the path.
+    /// The camera points along the path.
     AlongPath,
-    /// The camera never turns: panoramas that are aligned with a compass.
+    /// The camera does not turn: panoramas aligned with a compass.
     Fixed,
-    /// The camera turns on its own, and nobody knows how.
+    /// The camera turns independently of the path; its heading is unknown.
     Unknown,
 }
 
 impl Heading {
-    /// What to begin with: the table's, where every frame has one, else along the path.
+    /// The initial assumption: the table's headings if every frame has one, else along the path.
     pub fn of(frames: &[Frame]) -> Self {
         if frames.iter().all(|frame| frame.heading.is_some()) { Self::Given } else { Self::AlongPath }
     }
 }
 
-/// The poses of frames as they were measured, and smoothed by a Gaussian of `sigma` frames, as much as they tremble where it is not given: wheels do
-/// not tremble as measurements do.
+/// Poses of the frames as measured, and smoothed by a Gaussian of `sigma` frames. Without `sigma`, it is estimated from the measurement noise
+/// of the path.
 pub(in crate::cml) fn poses(
     frames: &[Frame],
     heading: Heading,
@@ -45,7 +45,7 @@ pub(in crate::cml) fn poses(
     (measured.collect(), smooth.collect())
 }
 
-/// Directions of a path; where it stands still, that of before.
+/// Directions of a path; while it stands still, the last direction.
 fn tangents(x: &[f64], y: &[f64]) -> Vec<f64> {
     let n = x.len();
     let ends = |index: usize| (index.saturating_sub(1), (index + 1).min(n - 1));
@@ -56,7 +56,7 @@ fn tangents(x: &[f64], y: &[f64]) -> Vec<f64> {
         sorted.sort_by(f64::total_cmp);
         0.1 * sorted.get(n / 2).copied().unwrap_or(0.0)
     };
-    // Before the first move it looks where it will go.
+    // Before the first motion, use its direction.
     let first = lengths.iter().position(|length| *length > standing).unwrap_or(0);
     lengths.iter_mut().take(first).for_each(|length| *length = 0.0);
     let mut heading = lengths.get(first).map_or(0.0, |_| {

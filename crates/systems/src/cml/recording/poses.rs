@@ -23,9 +23,9 @@ pub(super) struct PoseRow {
     pub(super) heading: Option<f64>,
 }
 
-/// The poses of a table, `None` for each row that cannot be used; those go into the report, and so do assumed units.
+/// The poses of a table, `None` for each unusable row. The report lists these rows and the assumed units.
 ///
-/// Columns are known by the names in the header, or by `names` where the table has none. A unit is what the name says, else SI.
+/// Column names come from the header, or from `names` for a table without one. The unit comes from the name; the default is SI.
 pub(super) fn read(
     path: &Path,
     names: Option<&ColumnNames>,

@@ -1,50 +1,50 @@
 use wayfix_appearance_cml::{Descriptor, PanoramaDescriptor};
 use wayfix_estimation_traits::wrap_angle;
 
-/// How well the turns that views show agree with those of a path: the mean disagreement, rad, of views described with clockwise columns.
+/// Agreement of the turns in the views with those of the path: mean disagreement, rad, with descriptors of clockwise columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnEvidence {
-    /// When columns go clockwise.
+    /// If columns run clockwise.
     pub clockwise: f64,
-    /// When they go counterclockwise.
+    /// If columns run counterclockwise.
     pub counterclockwise: f64,
-    /// When the camera does not turn at all.
+    /// If the camera does not turn.
     pub fixed: f64,
 }
 
-/// Frames between the two views that are compared: near ones look alike, far ones have turned.
+/// Frame distances of the compared pairs of views. Near views look alike, far views have turned.
 const LAGS: [usize; 5] = [2, 4, 8, 16, 32];
-/// A larger disagreement is a comparison that went wrong, and counts as much, rad.
+/// Upper bound of a disagreement, rad; a larger one is a failed comparison.
 const MOST: f64 = 0.5;
-/// A smaller turn is as likely to be a trembling of the path, rad.
+/// Smaller turns of the path may be noise and are skipped, rad.
 const LEAST_TURN: f64 = 0.25;
-/// Views that differ by more than this share of what views of anywhere differ by are not of the same place.
+/// Views whose distance exceeds this share of the typical distance show different places.
 const ALIKE: f64 = 0.8;
-/// Turns at random disagree by 0.46 rad in the mean, with what [`MOST`] cuts off; those of a path that trembles by half of that.
+/// Random turns disagree by 0.46 rad on average, with [`MOST`] as bound; those of a noisy path by half of that.
 const UNRELATED: f64 = 0.35;
-/// Fewer turns tell nothing.
+/// Fewer turns are not conclusive.
 const ENOUGH: usize = 10;
-/// Comparisons of a lag; more tell nothing new.
+/// Maximum number of comparisons per lag.
 const N_COMPARED: usize = 400;
 
 impl TurnEvidence {
-    /// Whether the camera never turns, by far.
+    /// Whether the camera clearly never turns.
     pub fn is_fixed(&self) -> bool {
         self.fixed < 0.5 * self.clockwise.min(self.counterclockwise)
     }
 
-    /// Whether the views turn in ways that have nothing to do with the path.
+    /// Whether the turns of the views are unrelated to the path.
     pub fn is_unrelated(&self) -> bool {
         self.fixed.min(self.clockwise).min(self.counterclockwise) > UNRELATED
     }
 
-    /// Whether columns go counterclockwise.
+    /// Whether columns run counterclockwise.
     pub fn is_counterclockwise(&self) -> bool {
         self.counterclockwise < self.clockwise
     }
 }
 
-/// Compares views that follow each other with the headings of a path; `None` where too few views of the same place have turned.
+/// Compares the turns between successive views with the headings of a path; `None` if too few pairs of the same place turn.
 pub fn turn_evidence(views: &[PanoramaDescriptor], headings: &[f64]) -> Option<TurnEvidence> {
     let n = views.len().min(headings.len());
     let alike = ALIKE * typical_distance(&views[..n])?;
@@ -71,7 +71,7 @@ pub fn turn_evidence(views: &[PanoramaDescriptor], headings: &[f64]) -> Option<T
     (n_turns >= ENOUGH).then_some(TurnEvidence { clockwise, counterclockwise, fixed })
 }
 
-/// The median distance of views that have nothing to do with each other.
+/// The median distance of unrelated views.
 fn typical_distance(views: &[PanoramaDescriptor]) -> Option<f64> {
     let half = views.len() / 2;
     let mut distances: Vec<f64> = (0..half)

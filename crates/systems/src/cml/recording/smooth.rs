@@ -1,7 +1,6 @@
 use wayfix_evaluation::plot::statistics::median;
 
-/// Values along a path smoothed by a Gaussian of `sigma` steps; near the ends a straight line through what is left stands in for the mean, so
-/// that ends do not shrink.
+/// Smooths values along a path by a Gaussian of `sigma` steps. A local straight line avoids shrinkage at the ends.
 pub fn smoothed(values: &[f64], sigma: f64) -> Vec<f64> {
     if sigma <= 0.0 || !sigma.is_finite() {
         return values.to_vec();
@@ -10,7 +9,7 @@ pub fn smoothed(values: &[f64], sigma: f64) -> Vec<f64> {
     (0..values.len()).map(|index| local_line(values, index, sigma, reach)).collect()
 }
 
-/// The value at `index` of the straight line fitted to the neighbours, weighted by nearness.
+/// The value at `index` of a straight line fitted to the neighbours, weighted by nearness.
 fn local_line(values: &[f64], index: usize, sigma: f64, reach: usize) -> f64 {
     let (mut w, mut wd, mut wdd, mut wv, mut wdv) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let from = index.saturating_sub(reach);
@@ -27,15 +26,15 @@ fn local_line(values: &[f64], index: usize, sigma: f64, reach: usize) -> f64 {
     if determinant > 1e-9 * w * w { (wdd * wv - wd * wdv) / determinant } else { wv / w }
 }
 
-/// The smoothing, in frames, that leaves headings along a path trembling by 1° or so: what its steps tremble by tells how much that is.
+/// The smoothing, in frames, that reduces the noise of path headings to about 1°, estimated from the noise of the steps.
 ///
-/// The trembling σ of positions comes from second differences, as a median, so that curves do not count. A straight line through
+/// The noise σ of positions comes from the median second difference, which excludes curves. A straight line through
 /// $`n`$ frames of step $`s`$ has a heading wrong by about $`σ / (s n^{3/2})`$.
 pub fn smoothing_of(x: &[f64], y: &[f64]) -> f64 {
     let steps = x.windows(2).zip(y.windows(2)).map(|(x, y)| (x[1] - x[0]).hypot(y[1] - y[0]));
     let bend = |values: &[f64]| values[0] - 2.0 * values[1] + values[2];
     let bends = x.windows(3).zip(y.windows(3)).map(|(x, y)| bend(x).hypot(bend(y)));
-    // A second difference of white noise has 6 times its variance, the length of two such a median of 1.18.
+    // A second difference of white noise has 6 times its variance; the median length in two dimensions is 1.18 σ.
     let trembling = median(bends).unwrap_or(f64::NAN) / (1.18 * 6_f64.sqrt());
     let ratio = trembling / (HEADING_SIGMA * median(steps).unwrap_or(f64::NAN));
     if ratio.is_finite() {
@@ -80,7 +79,7 @@ mod tests {
             let (x, y) = arc(tremble);
             smoothing_of(&x, &y)
         });
-        // The arc itself bends by 0.0004 a step of 0.02: a seventh of what would need a frame.
+        // The arc itself bends by 0.0004 per step of 0.02, a seventh of the bend that would need a frame of smoothing.
         assert!(
             smoothing[0] <= 0.6 && smoothing[0] < smoothing[1] && smoothing[1] < smoothing[2],
             "{smoothing:?}"

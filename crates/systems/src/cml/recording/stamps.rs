@@ -12,10 +12,10 @@ use super::{
     table::Table,
 };
 
-/// When each frame was taken, s, by the name of its file.
+/// Time of each frame, s, by file name.
 pub(super) type Stamps = BTreeMap<String, f64>;
 
-/// A table with a column of times and one of file names, known by their names.
+/// Reads a table with a named column of times and one of file names.
 pub(super) fn read(
     path: &Path,
     names: Option<&ColumnNames>,
@@ -30,7 +30,7 @@ pub(super) fn read(
     Ok(stamps)
 }
 
-/// The table of stamps beside the frames: the first file of text there, but `poses`, that names the first frame.
+/// Finds the table of stamps beside the frames: the first text file, except `poses`, that names the first frame.
 pub(super) fn find(folder: &Path, poses: &Path, a_frame: &str) -> Option<PathBuf> {
     let mut candidates: Vec<PathBuf> =
         fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path()).collect();
@@ -70,7 +70,7 @@ fn parse(table: &Table, columns: &Columns, report: &mut ReadReport) -> Result<St
     }
 }
 
-/// Without the folders that a table may name.
+/// The file name without folders.
 pub(super) fn file_name(path: &str) -> String {
     path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned()
 }

@@ -7,20 +7,20 @@ use super::{
     columns::{Column, Columns},
 };
 
-/// A text of rows and columns: comma, semicolon, tab or blanks between them, `#` before remarks, a row of names first or none.
+/// A text table: cells separated by comma, semicolon, tab or blanks; comments after `#`; the header row is optional.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Table {
-    /// Lower case, without what is in brackets being lost: `Time [s]` is `time s`.
+    /// In lower case; the text in brackets is kept: `Time [s]` is `time s`.
     pub(super) names: Option<Vec<String>>,
-    /// Each with the number of its line, from 1.
+    /// Cells of each row with its line number, from 1.
     pub(super) rows: Vec<(usize, Vec<String>)>,
     /// The file's name.
     file: String,
-    /// Of the header, else of most rows.
+    /// Number of columns of the header, else of most rows.
     n_columns: usize,
 }
 
-/// No table of poses is larger; a file that is something else must not fill the memory.
+/// Maximum size of a table file, in bytes; it bounds the memory used.
 const MAX_BYTES: u64 = 256 << 20;
 
 impl Table {
@@ -53,7 +53,7 @@ impl Table {
             let cells = cells(line);
             let is_names = cells.iter().all(|cell| cell.parse::<f64>().is_err()) && cells.len() > 1;
             if rows.is_empty() && is_names && !has_file_name(&cells) {
-                // The last line of names wins: files may begin with remarks.
+                // The last header line wins, because files may begin with remarks.
                 names = Some(cells.iter().map(|cell| plain(cell)).collect());
             } else if !is_remark {
                 rows.push((index + 1, cells));
@@ -80,7 +80,7 @@ impl Table {
         }
     }
 
-    /// A cell in SI units.
+    /// The value of a cell in SI units.
     pub(super) fn number(&self, cells: &[String], column: Column) -> Result<f64, String> {
         let cell = cells.get(column.index).map_or("", String::as_str);
         let value = cell.parse::<f64>().map(|value| value * column.factor);
@@ -88,7 +88,7 @@ impl Table {
         value.ok_or_else(|| format!("{:?} is not a finite number", cell.chars().take(40).collect::<String>()))
     }
 
-    /// Counts a row as one that cannot be used.
+    /// Counts a row as unusable.
     pub(super) fn leave_out(&self, line: usize, reason: String, report: &mut ReadReport) {
         report.rows_read = report.rows_read.saturating_sub(1);
         let kind =
@@ -96,13 +96,13 @@ impl Table {
         report.add(Problem { file: self.file.clone(), row: line as u64, kind, reason });
     }
 
-    /// The first row of this table that was left out.
+    /// The first skipped row of this table.
     pub(super) fn first_problem(&self, report: &ReadReport) -> String {
         let first = report.examples.iter().find(|problem| problem.file == self.file);
         first.map_or_else(String::new, |problem| format!("line {}: {}", problem.row, problem.reason))
     }
 
-    /// Says in which units the columns are, as stated or as assumed.
+    /// Reports the units of the columns, stated or assumed.
     pub(super) fn say_units(
         &self,
         columns: &Columns,

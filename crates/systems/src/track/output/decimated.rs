@@ -1,6 +1,6 @@
 use std::convert::Infallible;
 
-/// Values at even distances of a stream whose length is not known: when there are too many, every second one goes.
+/// Evenly spaced values of a stream of unknown length: if there are too many, every second one is dropped.
 #[derive(Clone, Debug)]
 pub(in crate::track) struct Decimated<T> {
     most: usize,
@@ -10,7 +10,7 @@ pub(in crate::track) struct Decimated<T> {
 }
 
 impl<T> Decimated<T> {
-    /// Keeps at most `most` of them, and from then on at least half as many.
+    /// Keeps at most `most` values, and at least half as many once full.
     pub(in crate::track) fn new(most: usize) -> Self {
         Self { most: most.max(2), stride: 1, n_seen: 0, kept: Vec::new() }
     }
@@ -20,10 +20,10 @@ impl<T> Decimated<T> {
         let Ok(()) = self.offer(|| Ok::<_, Infallible>(value));
     }
 
-    /// Offers the next value, which is made only when it is kept.
+    /// Offers the next value, which is computed only if it is kept.
     ///
     /// # Errors
-    /// What `make` says.
+    /// Returns the error of `make`.
     pub(in crate::track) fn offer<E>(&mut self, make: impl FnOnce() -> Result<T, E>) -> Result<(), E> {
         let wanted = self.n_seen.is_multiple_of(self.stride);
         self.n_seen += 1;
@@ -46,12 +46,12 @@ impl<T> Decimated<T> {
         Ok(())
     }
 
-    /// What was kept, in order.
+    /// The kept values, in order.
     pub(in crate::track) fn kept(&self) -> &[T] {
         &self.kept
     }
 
-    /// One in so many was kept.
+    /// Stride between kept values.
     pub(in crate::track) fn stride(&self) -> usize {
         self.stride
     }

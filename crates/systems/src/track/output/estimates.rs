@@ -12,7 +12,7 @@ use super::super::{FrameResult, TrackSystem, Truth};
 use super::{overlay, run_history::outline};
 use crate::system::EstimateWriter;
 
-/// Writes the images and the outlines in them to an MCAP file or to viewers, and the boxes to a text of the form that truth has.
+/// Writes images with outlines to an MCAP file or to viewers, and boxes to a text in the format of the truth.
 pub struct TrackLog {
     writer: EstimateWriter,
     boxes: Box<dyn Write>,
@@ -21,10 +21,10 @@ pub struct TrackLog {
 }
 
 impl TrackLog {
-    /// Creates both files; `origin` is the format that the records come from.
+    /// Creates both files; `origin` is the format of the source log.
     ///
     /// # Errors
-    /// When one cannot be created.
+    /// Returns an error if a file cannot be created.
     pub fn create(log: &Path, boxes: &Path, origin: Format) -> Result<Self> {
         let file = File::create(boxes).with_context(|| format!("cannot create {}", boxes.display()))?;
         Self::new(vec![Box::new(McapFile::create(log)?)], Box::new(BufWriter::new(file)), origin)
@@ -33,24 +33,24 @@ impl TrackLog {
     /// Writes images and outlines into all of `sinks`.
     ///
     /// # Errors
-    /// When one of them fails.
+    /// Returns an error if a sink fails.
     pub fn new(sinks: Sinks, boxes: Box<dyn Write>, origin: Format) -> Result<Self> {
         let mut writer = MessageWriter::into_sink(sinks);
         writer.origin(origin)?;
         Ok(Self { writer, boxes, n_lines: 0, failure: None })
     }
 
-    /// Writes an image of the log and what the tracker made of it. A failure is kept until [`finish`](Self::finish).
+    /// Writes an image of the log and the tracker's outline. A failure is kept until [`finish`](Self::finish).
     pub fn observe(&mut self, record: &Record, system: &TrackSystem) {
         if self.failure.is_none() {
             self.failure = self.write(record, system).err();
         }
     }
 
-    /// Completes both; so many frames there were.
+    /// Finishes both outputs; `n_frames` is the number of frames.
     ///
     /// # Errors
-    /// When anything could not be written.
+    /// Returns an error if any write failed.
     pub fn finish(mut self, n_frames: usize) -> Result<()> {
         if let Some(failure) = self.failure {
             return Err(failure);
@@ -80,7 +80,7 @@ impl TrackLog {
         Ok(())
     }
 
-    /// Lines for the frames before `index` that had no estimate.
+    /// Writes lines for the frames before `index` without an estimate.
     fn fill_up(&mut self, index: usize) -> Result<()> {
         while self.n_lines < index {
             self.n_lines += 1;

@@ -1,4 +1,4 @@
-//! What a run of a tracker draws and writes.
+//! Pictures and files of a tracker run.
 
 pub(super) mod decimated;
 pub(super) mod estimates;

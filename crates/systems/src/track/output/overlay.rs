@@ -1,4 +1,4 @@
-//! Lines drawn into pictures.
+//! Draws lines into images.
 
 use image::{Rgb, RgbImage};
 use wayfix_visual_tracking::BoundingBox;
@@ -14,14 +14,14 @@ pub(in crate::track) fn corners(target: &BoundingBox) -> [[f64; 2]; 4] {
     [[left, top], [right, top], [right, bottom], [left, bottom]]
 }
 
-/// Draws a closed line, a pixel wide, as far as it lies in the picture.
+/// Draws a closed line one pixel wide, clipped to the image.
 pub(in crate::track) fn draw(picture: &mut RgbImage, points: &[[f64; 2]], color: [u8; 3]) {
     let [width, height] = [picture.width(), picture.height()].map(f64::from);
     let reach = 2.0 * (width + height);
     for (k, from) in points.iter().enumerate() {
         let to = points[(k + 1) % points.len()];
         let (du, dv) = (to[0] - from[0], to[1] - from[1]);
-        // A line that is far longer than the picture is not worth its steps.
+        // Bound the number of steps of a line much longer than the image.
         let n_steps = du.abs().max(dv.abs()).ceil().clamp(1.0, reach);
         for step in 0..n_steps as usize {
             let share = step as f64 / n_steps;

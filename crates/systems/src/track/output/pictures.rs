@@ -4,13 +4,13 @@ use wayfix_evaluation::plot::{
     EllipsesPlot, FilmFrame, FilmStrip, LinesPlot, NamedEllipse, Picture, PlotError, Series,
 };
 
-/// Frames of the film beside each other.
+/// Film frames per row.
 const FRAMES_A_ROW: usize = 3;
 
-/// Frames with the target drawn in, the overlap with the truth over the frames, and the path of the target's colour where it is known.
+/// Plots frames with the target outline, the overlap with the truth over the frames, and the path of the target's colour if known.
 ///
 /// # Errors
-/// When a picture cannot be drawn.
+/// Returns an error if a picture cannot be drawn.
 pub fn pictures(run_history: &RunHistory) -> Result<Vec<Picture>, PlotError> {
     let mut pictures = vec![film(run_history).draw()?, overlap(run_history).draw()?];
     if let Some(colors) = run_history.points.kept().iter().find_map(|point| point.colors) {
@@ -56,7 +56,7 @@ fn overlap(run_history: &RunHistory) -> LinesPlot {
     }
 }
 
-/// The colour distribution along its path, as ellipses over two planes of the space. [Andrade-Cetto, Figs. 8 and 13]
+/// The colour distribution along its path, as ellipses in two planes of the space. [Andrade-Cetto, Figs. 8 and 13]
 fn clouds(run_history: &RunHistory, names: [&str; 3]) -> EllipsesPlot {
     let plane = |v: usize| {
         let ellipse = |(index, colors): &(usize, TargetColors)| NamedEllipse {
@@ -74,7 +74,7 @@ fn clouds(run_history: &RunHistory, names: [&str; 3]) -> EllipsesPlot {
     }
 }
 
-/// Where the mean of the target's colours was.
+/// The path of the target's mean colour.
 fn color_path(run_history: &RunHistory, names: [&str; 3]) -> LinesPlot {
     let axis = |c: usize| {
         let point = |point: &Point| Some((point.index as f64, point.colors?.mean[c]));

@@ -4,14 +4,14 @@ use wayfix_visual_tracking::{Target, TrackStatus};
 use super::super::{FrameResult, TargetColors, Truth};
 use super::{decimated::Decimated, overlay};
 
-/// Frames of the film, and points of the curves, at most.
+/// Maximum number of film frames.
 const MOST_FRAMES: usize = 12;
 const MOST_POINTS: usize = 4000;
-/// Colour distributions along their path, at most: each has an ink of its own.
+/// Maximum number of colour distributions along their path; each has its own ink.
 const MOST_CLOUDS: usize = 6;
 const JPEG_QUALITY: u8 = 85;
 
-/// What is kept of a run to be drawn, of even a very long one.
+/// Data of a run kept for the pictures, of bounded size.
 pub struct RunHistory {
     pub(in crate::track) film: Decimated<(usize, EncodedImage)>,
     pub(in crate::track) points: Decimated<Point>,
@@ -40,10 +40,10 @@ impl Default for RunHistory {
 }
 
 impl RunHistory {
-    /// Takes the next frame in.
+    /// Adds the next frame.
     ///
     /// # Errors
-    /// When its picture cannot be encoded.
+    /// Returns an error if its picture cannot be encoded.
     pub fn observe(&mut self, frame: &FrameResult) -> Result<(), ImageError> {
         let (index, colors) = (frame.index, frame.colors);
         let point = Point { index, iou: frame.iou, quality: frame.target.quality, colors };

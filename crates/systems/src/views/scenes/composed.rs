@@ -3,10 +3,10 @@ use wayfix_scene_sim::scenery::{ImagingConditions, RgbPicture, Scenery};
 
 use super::super::ViewsError;
 
-/// A composed scene as it is learned, and as it looks on a visit.
+/// A composed scene as it is learned, and as it looks on a later visit.
 ///
 /// # Errors
-/// [`ViewsError::Scenery`] when the visit is no camera.
+/// Returns [`ViewsError::Scenery`] if the visit has an invalid camera.
 pub fn composed(
     scenery: &Scenery,
     imaging_conditions: &ImagingConditions,

@@ -1,4 +1,4 @@
-//! The pictures in which a camera looks around.
+//! Images of scenes in which a camera moves.
 
 pub(super) mod composed;
 pub(super) mod real_scene;

@@ -1,11 +1,11 @@
 use rayon::prelude::*;
 use wayfix_condensation::Picture;
 
-/// Every so many pixels each way are compared.
+/// Step between compared pixels, in both directions.
 const STRIDE: usize = 4;
 
-/// By how much a camera moved between two pictures of one size, on the whole: `real` shows at `(x, y)` what `learned` shows at
-/// `(x + dx, y + dy)`. The shift, in whole pixels up to `reach` each way, at which the grey values correlate most.
+/// Mean camera shift between two images of one size: `real` shows at `(x, y)` what `learned` shows at
+/// `(x + dx, y + dy)`. The shift, in whole pixels up to `reach` in each direction, maximizes the correlation of the grey values.
 ///
 /// ```
 /// use wayfix_systems::views::mean_shift;
@@ -18,7 +18,7 @@ const STRIDE: usize = 4;
 /// ```
 pub fn mean_shift(learned: &Picture, real: &Picture, reach: usize) -> (i32, i32) {
     let (width, height) = (learned.width().min(real.width()), learned.height().min(real.height()));
-    // Less than half of the picture in common says nothing.
+    // At least half of each image side must overlap.
     let reach = |length: usize| reach.min(length / 2) as i32;
     let best_of_row = |dy: i32| {
         let alike = |dx: i32| (correlation(learned, real, (width, height), (dx, dy)), (dx, dy));
@@ -31,13 +31,13 @@ pub fn mean_shift(learned: &Picture, real: &Picture, reach: usize) -> (i32, i32)
 
 type Scored = (f64, (i32, i32));
 
-/// The higher correlation, or the shorter of two shifts that are as good.
+/// Orders by correlation; of equal ones the shorter shift wins.
 fn better(a: &Scored, b: &Scored) -> std::cmp::Ordering {
     let length = |(dx, dy): (i32, i32)| dx * dx + dy * dy;
     a.0.total_cmp(&b.0).then(length(b.1).cmp(&length(a.1)))
 }
 
-/// Pearson's correlation over the overlap; −1 where one of the two has no contrast.
+/// Pearson's correlation over the overlap; −1 if an image has no contrast.
 fn correlation(learned: &Picture, real: &Picture, size: (usize, usize), (dx, dy): (i32, i32)) -> f64 {
     let inside = |by: i32, length: usize| {
         let (start, end) = ((-by).max(0) as usize, length - by.max(0) as usize);

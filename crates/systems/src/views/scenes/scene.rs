@@ -5,19 +5,19 @@ use wayfix_sensor_log::{EncodedImage, ImageFormat};
 
 use super::super::ViewsError;
 
-/// A picture from a file, and what reading it as eight bits of red, green and blue changed.
+/// An image from a file, and the changes made on conversion to eight-bit RGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scene {
     /// The picture.
     pub picture: Picture,
-    /// What was lost or made up, a phrase each.
+    /// Conversions that changed the image, a phrase each.
     pub remarks: Vec<&'static str>,
 }
 
-/// Reads a JPEG or PNG file. Grey becomes colour, deeper channels are rounded to eight bits, transparency is dropped; the remarks say so.
+/// Reads a JPEG or PNG file. Grey becomes colour, deeper channels are rounded to eight bits and transparency is dropped; the remarks list it.
 ///
 /// # Errors
-/// [`ViewsError::Read`], [`ViewsError::NotAPicture`], [`ViewsError::Image`].
+/// Returns [`ViewsError::Read`], [`ViewsError::NotAPicture`], [`ViewsError::Image`].
 pub fn read_scene(path: &Path) -> Result<Scene, ViewsError> {
     let bytes = fs::read(path).map_err(|source| ViewsError::Read { path: path.into(), source })?;
     let format =

@@ -1,8 +1,7 @@
 use super::super::ContourTrackerParams;
 
-/// How well a segmentation agrees with what is known of the target, each from 0 to 1. [Andrade-Cetto & Sanfeliu, section 3.3, "Measure and
-/// weight"]
-///
+/// Agreement of a segmentation with the known target, each part from 0 to 1.
+/// [Andrade-Cetto & Sanfeliu, section 3.3, "Measure and weight"]
 /// ```
 /// use wayfix_visual_tracking::{Agreement, ContourTrackerParams};
 /// let perfect = Agreement { affine: 1.0, area: Agreement::of_areas(400.0, 400.0), quality: Agreement::of_euler_number(1, 10.0) };
@@ -22,10 +21,10 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Nothing agrees.
+    /// No agreement.
     pub(in crate::contour) const NONE: Self = Self { affine: 0.0, area: 0.0, quality: 0.0 };
 
-    /// $`Φ_\text{area} = 1 - |\tilde A - A| / \max(\tilde A, A)`$. The paper prints the fraction alone, which would reward a wrong area.
+    /// $`Φ_\text{area} = 1 - |\tilde A - A| / \max(\tilde A, A)`$. The paper prints only the fraction, which would reward a wrong area.
     pub fn of_areas(predicted: f64, area: f64) -> f64 {
         let larger = predicted.max(area);
         if larger > 0.0 { 1.0 - (predicted - area).abs() / larger } else { 0.0 }

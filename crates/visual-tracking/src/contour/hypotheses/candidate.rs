@@ -1,7 +1,7 @@
 use super::super::{Agreement, scene::Scene};
 use crate::{AffineMap, BitMask, ColorEdges, ColorState, Connectivity, MaskEdges, TrackingCues};
 
-/// Where the target would be if a hypothesis about its colours were true.
+/// Estimate of the target under a hypothesis about its colours.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::contour) struct Candidate {
     pub(in crate::contour) map: AffineMap,
@@ -18,7 +18,7 @@ impl Candidate {
         }
     }
 
-    /// Weighs a segmentation of the target, with the snake laid on a start.
+    /// Scores a segmentation of the target, with the snake fitted from a start.
     pub(in crate::contour) fn of_mask(scene: &Scene<'_>, start: &AffineMap, mask: &BitMask) -> Self {
         let params = scene.params;
         let (map, area, affine) = match params.cues {
@@ -59,7 +59,7 @@ impl Candidate {
     }
 }
 
-/// What is out of the picture supports nothing: from half of the contour in sight on it costs nothing, below that everything, gradually.
+/// Weight of the visible share of the contour: 1 from one half on, decreasing to 0 below that.
 fn in_sight(visible: f64) -> f64 {
     (2.0 * visible).min(1.0)
 }

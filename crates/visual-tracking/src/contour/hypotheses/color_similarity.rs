@@ -4,13 +4,12 @@ use super::super::{scene::Scene, search::black};
 use super::candidate::Candidate;
 use crate::{BitMask, ColorState, PrincipalColors, TrackingError};
 
-/// By how much colours may differ that are the same, as a share of an axis: noise, and what the light does beyond growing stronger.
+/// Difference of equal colours, as a share of an axis: noise, and changes of light other than intensity.
 const SAME: f64 = 0.02;
 
 impl Scene<'_> {
-    /// How alike the colours inside a candidate's contour are to those of a hypothesis, from 0 to 1: the overlap of the two Gaussians
+    /// Similarity of the colours inside a candidate's contour to those of a hypothesis, from 0 to 1: the overlap of the two Gaussians
     /// [Bhattacharyya 1943],
-    ///
     /// ```math
     /// \int \sqrt{p\,q} = \left(\frac{\sqrt{|P||Q|}}{|S|}\right)^{1/2} \exp\left(-\tfrac18 d^\top S^{-1} d\right), \qquad S = \tfrac12 (P + Q).
     /// ```
@@ -50,7 +49,7 @@ fn covariance(colors: &PrincipalColors, gain: f64) -> Matrix3<f64> {
     axes * Matrix3::from_diagonal(&variances) * axes.transpose()
 }
 
-/// Of two Gaussians with the means `apart`.
+/// Overlap of two Gaussians whose means differ by `apart`.
 fn overlap(apart: &Vector3<f64>, p: &Matrix3<f64>, q: &Matrix3<f64>) -> f64 {
     let mean = (p + q) * 0.5;
     let Some(cholesky) = mean.cholesky() else { return 0.0 };

@@ -3,13 +3,13 @@
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
-/// What `job` makes of every item.
+/// Maps every item with `job`.
 #[cfg(feature = "parallel")]
 pub(in crate::contour) fn map_each<T: Sync, O: Send>(items: &[T], job: impl Fn(&T) -> O + Sync) -> Vec<O> {
     items.par_iter().map(&job).collect()
 }
 
-/// What `job` makes of every item.
+/// Maps every item with `job`.
 #[cfg(not(feature = "parallel"))]
 pub(in crate::contour) fn map_each<T: Sync, O: Send>(items: &[T], job: impl Fn(&T) -> O + Sync) -> Vec<O> {
     items.iter().map(job).collect()

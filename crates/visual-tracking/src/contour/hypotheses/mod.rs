@@ -1,4 +1,4 @@
-//! Hypotheses about the colours, and how well each agrees with the contour.
+//! Hypotheses about the colours, and their agreement with the contour.
 
 pub(super) mod agreement;
 pub(super) mod candidate;

@@ -4,7 +4,7 @@ use wayfix_particle::{ParticleSet, Systematic};
 use super::super::ContourTrackerParams;
 use crate::{ColorDynamics, ColorState, PrincipalColors, TrackingError};
 
-/// The samples $`\mathbf s_{t-1}^{(n)}`$ with their weights, and what the last picture showed of the colours.
+/// The samples $`\mathbf s_{t-1}^{(n)}`$ with their weights, and the colours measured in the last image.
 #[derive(Clone, Debug)]
 pub(in crate::contour) struct Samples {
     particles: ParticleSet<ColorState>,
@@ -12,10 +12,10 @@ pub(in crate::contour) struct Samples {
     n_drifts: usize,
 }
 
-/// Pictures without a measurement after which the samples spread no more: with more, anything of the right shape would be the target.
+/// Number of images without a measurement after which the samples stop spreading; otherwise any object of the right shape would match.
 const MAX_DRIFTS: usize = 5;
 
-/// How much of the newest change of colours counts in their measured velocity.
+/// Weight of the newest change of colours in the measured velocity.
 const VELOCITY_GAIN: f64 = 0.5;
 
 impl Samples {
@@ -28,9 +28,9 @@ impl Samples {
         Ok(Self { particles: ParticleSet::new(vec![measured; n_samples])?, measured, n_drifts: 0 })
     }
 
-    /// Sampling by weight and propagation: the hypotheses about the next picture, of equal weight.
+    /// Draws samples by weight and propagates them: hypotheses of equal weight about the next image.
     ///
-    /// A share of them starts from the measured colours; the first two of these are what the dynamics expect and no change at all.
+    /// A share of them starts from the measured colours; its first two are the prediction of the dynamics and no change at all.
     pub(in crate::contour) fn predicted<R: Rng + ?Sized>(
         &self,
         dynamics: &ColorDynamics,
@@ -52,7 +52,7 @@ impl Samples {
         Ok(states)
     }
 
-    /// The samples one picture later, when there was nothing to weigh them by: they spread.
+    /// Propagates the samples over an image without a measurement: they spread.
     pub(in crate::contour) fn drift<R: Rng + ?Sized>(&mut self, dynamics: &ColorDynamics, rng: &mut R) {
         if self.n_drifts < MAX_DRIFTS {
             self.n_drifts += 1;
@@ -70,7 +70,7 @@ impl Samples {
         Ok(Self { particles, measured: self.measured, n_drifts: 0 })
     }
 
-    /// The colours of the last picture become what all angles are counted from.
+    /// Makes the colours of the last image the reference of all angles.
     pub(in crate::contour) fn measure(&mut self, before: &PrincipalColors, now: &PrincipalColors) {
         let angles = now.angles_since(before);
         let mut change = ColorState::at_rest(now).value - ColorState::at_rest(before).value;

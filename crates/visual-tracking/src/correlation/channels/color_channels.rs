@@ -20,12 +20,12 @@ pub(in crate::correlation) fn color_channels(patch: &Patch, cell: usize) -> Vec<
     channels
 }
 
-/// Adds `share` of a pixel to the classes: what is coloured of it to the two nearest hues, the rest to dark and bright.
+/// Adds `share` of a pixel to the classes: the coloured part to the two nearest hues, the rest to dark and bright.
 #[inline(always)]
 fn add_classes(&[r, g, b]: &[f32; 3], share: f32, classes: &mut [f32; N_COLOR]) {
     let (most, least) = (r.max(g).max(b), r.min(g).min(b));
     let chroma = most - least;
-    // a quarter of full scale is added so that the hue of the dark, which is noise, does not count
+    // adding a quarter of full scale suppresses the hue of dark pixels, which is noise
     let colored = (2.0 * chroma / (most + 64.0)).min(1.0);
     let bright = most / 255.0;
     classes[N_HUES] += share * (1.0 - colored) * (1.0 - bright);

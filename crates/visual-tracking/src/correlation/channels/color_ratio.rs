@@ -2,17 +2,16 @@ use super::patch::Patch;
 
 /// Bins along each of red, green and blue.
 const BINS: usize = 16;
-/// Mass without which a bin says nothing, in pixels of either region.
+/// Prior mass of a bin, in pixels of either region; bins with less are not informative.
 const UNSEEN: f32 = 1e-3;
 /// The two regions of a patch.
 const TARGET: usize = 0;
 const AROUND: usize = 1;
-/// Strengths of light in which colours are compared: so many steps up and as many down, of this factor.
+/// Light intensities in which colours are compared: number of steps up and down, of this factor.
 const N_GAINS: i32 = 3;
 const GAIN_STEP: f32 = 1.2;
 
-/// How much more a colour belongs to the target than to what is around it. [Bertinetto et al. 2016]
-///
+/// Ratio of a colour's frequency in the target to that in its surroundings. [Bertinetto et al. 2016]
 /// ```math
 /// p(c) = \frac{h_f(c)}{h_f(c) + h_b(c)}
 /// ```
@@ -29,7 +28,7 @@ impl ColorRatio {
         Self { target: vec![0.0; BINS.pow(3)], around: vec![0.0; BINS.pow(3)] }
     }
 
-    /// Learns a patch with the target of `size` pixels in the middle; at rate 1 forgetting what was before.
+    /// Learns a patch with the target of `size` pixels in the middle; rate 1 replaces the previous histograms.
     pub(in crate::correlation) fn learn(&mut self, patch: &Patch, size: [f64; 2], rate: f32) {
         let mut counts = [vec![0.0_f32; BINS.pow(3)], vec![0.0_f32; BINS.pow(3)]];
         let mut totals = [0.0_f32; 2];
@@ -48,8 +47,8 @@ impl ColorRatio {
         }
     }
 
-    /// How much the colours in the middle of a patch, where the target of `size` pixels would be, are those of the target: the intersection
-    /// of the histograms [Swain & Ballard 1991], in the strength of light in which it is largest.
+    /// Agreement of the colours in the middle of a patch with those of the target of `size` pixels: the intersection of the histograms
+    /// [Swain & Ballard 1991], at the light intensity that maximizes it.
     pub(in crate::correlation) fn agreement(&self, patch: &Patch, size: [f64; 2]) -> f64 {
         let inside: Vec<&[f32; 3]> =
             regions(patch, size).filter(|(region, _)| *region == TARGET).map(|(_, pixel)| pixel).collect();
@@ -72,8 +71,8 @@ impl ColorRatio {
     }
 }
 
-/// The pixels of the target of `size` pixels in the middle of a patch, and of what is around it; the corners of a box are rarely target, its
-/// rim is anyone's.
+/// The pixels of the target of `size` pixels in the middle of a patch, and of its surroundings. The corners of a box rarely belong to the
+/// target, and its rim is ambiguous.
 fn regions(patch: &Patch, size: [f64; 2]) -> impl Iterator<Item = (usize, &[f32; 3])> {
     let off = |i: usize, n: usize, side: f64| (i as f64 + 0.5 - n as f64 / 2.0).abs() / side * 2.0;
     patch.pixels.iter().enumerate().filter_map(move |(i, pixel)| {

@@ -15,9 +15,9 @@ pub(in crate::correlation) struct Shares {
     pub(in crate::correlation) color: f32,
 }
 
-/// Gradient, grey and colour channels of a square patch, tapered towards the border; the energy of each kind is its share, the whole is 1.
+/// Gradient, grey and colour channels of a square patch, tapered towards the border. Each kind has its share of a total energy of 1.
 ///
-/// A patch without any structure gives zeros.
+/// A uniform patch gives zeros.
 pub(in crate::correlation) fn features(patch: &Patch, taper: &[f32], shares: Shares) -> Planes {
     let side = patch.width / CELL;
     let n_cells = side * side;

@@ -2,8 +2,8 @@ use std::f64::consts::TAU;
 
 use super::lane::{ComplexLane, lane};
 
-/// The discrete Fourier transform of one length $`2^a 3^b`$, of eight channels at once: Stockham's form with radices 4, 3 and 2, which
-/// needs no reordering. The same bits on every machine: nothing is chosen at run time.
+/// The discrete Fourier transform of one length $`2^a 3^b`$, of eight channels at once: Stockham's form with radices 4, 3 and 2, which needs no
+/// reordering. It gives equal bits on every machine because nothing is chosen at run time.
 #[derive(Clone, Debug)]
 pub(in crate::correlation) struct Fourier {
     stages: Vec<Stage>,
@@ -36,7 +36,7 @@ impl Fourier {
         Self { stages, len }
     }
 
-    /// $`X_k = \sum_j x_j e^{-2πi jk/n}`$ in place; `scratch` is as long as `data`.
+    /// $`X_k = \sum_j x_j e^{-2πi jk/n}`$ in place; `scratch` and `data` have equal length.
     pub(in crate::correlation) fn forward(&self, data: &mut [ComplexLane], scratch: &mut [ComplexLane]) {
         let (data, scratch) = (&mut data[..self.len], &mut scratch[..self.len]);
         for (i, stage) in self.stages.iter().enumerate() {
@@ -91,7 +91,7 @@ impl Stage {
         }
     }
 
-    /// Frequency `k` of the `s`-th transform to be joined, `j` being its place; frequency 0 needs no turn.
+    /// Frequency `k` of the `s`-th transform to combine, with index `j`; frequency 0 needs no rotation.
     #[inline(always)]
     fn part(&self, from: &[ComplexLane], j: usize, k: usize, s: usize) -> ComplexLane {
         let value = from[j * self.done + k];

@@ -7,7 +7,7 @@ const N_SIGNED: usize = 18;
 const N_UNSIGNED: usize = N_SIGNED / 2;
 /// Channels of a cell: signed and unsigned orientations, and the energy against each of the four blocks around it.
 pub(in crate::correlation) const N_GRADIENT: usize = N_SIGNED + N_UNSIGNED + 4;
-/// No orientation may have more of a block's energy than this; contrast beyond it says nothing about shape.
+/// Upper bound of an orientation's share of a block's energy; higher contrast carries no information about shape.
 const CLIP: f32 = 0.2;
 
 /// Histograms of gradient orientations over cells of `cell × cell` pixels, contrast-normalized against four blocks of 2 × 2 cells.
@@ -88,7 +88,7 @@ fn orientation_histograms(patch: &Patch, cell: usize, columns: usize, rows: usiz
     histograms
 }
 
-/// The two cells nearest to a pixel and their shares; at the border the one cell there is gets both.
+/// The two cells nearest to a pixel and their shares; at the border the only cell gets both.
 #[inline(always)]
 fn neighbours(pixel: usize, cell: usize, n_cells: usize) -> ((usize, f32), (usize, f32)) {
     let at = (pixel as f32 + 0.5) / cell as f32 + 0.5; // in cells, one too many so that it is positive
@@ -110,7 +110,7 @@ fn steepest(left: &[f32; 3], right: &[f32; 3], up: &[f32; 3], down: &[f32; 3]) -
     best
 }
 
-/// The direction of a vector from 0 to 2π, to 0.004 rad: a fifth of a per cent of what an orientation bin is wide.
+/// The direction of a vector from 0 to 2π, accurate to 0.004 rad, far below the width of an orientation bin.
 #[inline(always)]
 fn angle(x: f32, y: f32) -> f32 {
     let (small, large) = (x.abs().min(y.abs()), x.abs().max(y.abs()));
@@ -156,7 +156,7 @@ mod tests {
         };
         let (bright, dim) = (gradient_channels(&patch(1.0), 4), gradient_channels(&patch(0.5), 4));
         for (a, b) in bright.iter().flatten().zip(dim.iter().flatten()) {
-            assert!((a - b).abs() < 0.01, "{a} {b}"); // only the noise floor tells them apart
+            assert!((a - b).abs() < 0.01, "{a} {b}"); // only the noise floor distinguishes them
         }
     }
 }

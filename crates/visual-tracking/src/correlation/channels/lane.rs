@@ -1,6 +1,6 @@
 use std::ops::{Add, Sub};
 
-/// Channels that are computed side by side; a loop over so many becomes two vector instructions on the smallest x86-64.
+/// Number of channels processed together; a loop over them compiles to two vector instructions on baseline x86-64.
 pub(in crate::correlation) const LANES: usize = 8;
 
 /// The values of eight channels at one place.

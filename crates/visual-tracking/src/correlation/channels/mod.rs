@@ -1,4 +1,4 @@
-//! What a window shows as channels, and their spectra.
+//! Feature channels of a window, and their spectra.
 
 pub(super) mod color_channels;
 pub(super) mod color_ratio;

@@ -49,8 +49,8 @@ impl Patch {
         Self { width, height, pixels }
     }
 
-    /// The square of `side` pixels in the middle, turned: what lies along `angle` (radians, from the first axis to the second) comes to lie
-    /// along the first axis. What it needs must be inside.
+    /// The square of `side` pixels in the middle, rotated: direction `angle` (rad, from the first axis to the second) becomes the first axis.
+    /// The rotated square must lie inside.
     pub(in crate::correlation) fn turned(&self, angle: f64, side: usize) -> Self {
         let (sin, cos) = (libm::sin(angle) as f32, libm::cos(angle) as f32);
         let off = |i: usize| i as f32 + 0.5 - 0.5 * side as f32;

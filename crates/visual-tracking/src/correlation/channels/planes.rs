@@ -8,7 +8,7 @@ pub(in crate::correlation) struct Planes {
     pub(in crate::correlation) cells: Vec<Lane>,
 }
 
-/// What [`Planes`] are in the frequency domain: the columns $`k_x ≤ n/2`$, one after the other, since the rest are their conjugates.
+/// Spectrum of [`Planes`]: the columns $`k_x ≤ n/2`$ in order; the rest are their conjugates.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::correlation) struct Spectrum {
     pub(in crate::correlation) bins: Vec<ComplexLane>,

@@ -19,22 +19,22 @@ use wayfix_systems::{
     system::{DriveStep, Stopwatch, System},
 };
 
-/// Adaptive colour localization: where the robot stands on a coloured field, and what today's light does to the colours.
+/// Adaptive colour localization: estimates the robot's pose on a coloured field, and the effect of the light on the colours.
 ///
-/// The log holds camera images, the camera's calibration, where the joints say the camera is, and odometry; the map says which surfaces
-/// have which colour. No colour is calibrated: priors say what colours may look like, dark or bright, and the filter finds out.
+/// The log holds camera images, the camera's calibration, its pose from the joint angles, and odometry; the map holds the colours of the surfaces.
+/// Colours need no calibration: priors describe dark and bright light, and the filter estimates the actual one.
 ///
-/// Where the log holds true poses, the search starts near the first one (0.5 m and 17° in standard deviation) and the figures tell how far the
-/// estimate is off: `position_mean_m`, `heading_mean_deg`, beside `odometry_position_mean_m` for odometry alone from the same start. Where it
-/// holds true labels, `classification_rate` is the share of labelled pixels that are recognized. Without truth these figures are absent.
+/// If the log holds true poses, the search starts near the first one (0.5 m and 17° in standard deviation) and the figures include the errors of the
+/// estimate, `position_mean_m` and `heading_mean_deg`, and `odometry_position_mean_m` for odometry alone from the same start. With true labels,
+/// `classification_rate` is the share of labelled pixels that are classified correctly. Without truth these figures are absent.
 ///
-/// Records that cannot be used are left out, counted in the events and named on standard error; the run goes on.
+/// Unusable records are skipped, counted in the events and listed on standard error; the run continues.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct Arguments {
     /// The log, an MCAP file; it may be a ROS 2 bag with rectified images and the transforms from the robot to its camera.
     ///
-    /// Given several times, the files of one recording; of a ROS 2 bag that was split, the folder does.
+    /// Repeat it for the files of one recording; for a split ROS 2 bag give the folder.
     #[arg(long, value_name = "PATH", required_unless_present_any = ["write_priors", "print_params"])]
     log: Vec<PathBuf>,
     #[command(flatten)]
@@ -44,14 +44,14 @@ pub(in crate::cli) struct Arguments {
     /// The map: coloured polygons and posts, TOML or JSON.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["write_priors", "print_params"])]
     map: Option<PathBuf>,
-    /// What the colours may look like, one Gaussian a kind of light, as JSON [default: dark and bright light on the colours of the
-    /// four-legged league].
+    /// Priors of the colours, one Gaussian per kind of light, as JSON [default: dark and bright light on the colours of the four-legged
+    /// league].
     #[arg(long, value_name = "FILE")]
     priors: Option<PathBuf>,
     /// Write the built-in priors to a file, and end: the form of one's own.
     #[arg(long, value_name = "FILE")]
     write_priors: Option<PathBuf>,
-    /// Where the robot is at the first image: `anywhere`, or x,y,heading in metres and degrees [default: near the first true pose, else
+    /// Start pose at the first image: `anywhere`, or x,y,heading in metres and degrees [default: near the first true pose, else
     /// anywhere].
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
     start: Option<StartArgument>,

@@ -18,20 +18,20 @@ use wayfix_systems::{
     system::{DriveStep, Stopwatch, System, drive},
 };
 
-/// Walls: the straight pieces in every laser scan of a log, with their ends.
+/// Walls: the straight segments in every laser scan of a log, with their ends.
 ///
-/// The figures are how many scans there are, how many could not be used (`n_skipped`, the events and standard error say why), walls per scan,
-/// how far the echoes are off their walls (root mean square), and the time that the search takes. Where the log has true walls, also how many walls
-/// are within 2σ of the true ones, how many are false, and how many true ones were found.
+/// The figures are the number of scans, the number of skipped scans (`n_skipped`, with reasons in the events and on standard error), walls per scan,
+/// the RMS distance of the echoes from their walls, and the computing time. If the log has true walls, also the number of walls within 2σ of the
+/// true ones, of false walls, and of true walls found.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct Arguments {
     /// The log: CARMEN, scans as JSON, or MCAP, which may be a ROS 2 bag; text may be compressed with gzip.
     ///
-    /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
+    /// Repeat it for the MCAP files of one recording; for a split ROS 2 bag give the folder.
     #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     log: Vec<PathBuf>,
-    /// How the log is stored: carmen, scan-json or mcap [default: found out by looking].
+    /// Input format: carmen, scan-json or mcap [default: detected from the content].
     #[arg(long)]
     format: Option<Format>,
     #[command(flatten)]

@@ -19,18 +19,18 @@ use wayfix_systems::{
     track::{self, Method, Start, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
 };
 
-/// Tracking: where a target is in every picture, from where it is in the first one.
+/// Tracking: estimates the position of a target in every image, from its position in the first one.
 ///
-/// A box is four numbers, left, top, width and height in pixels, or eight, the corners of a quadrangle, whose upright bounding box counts;
-/// commas, tabs or blanks between them. In a file of true boxes line k is frame k; where the target is out of the picture the line says
-/// 0,0,0,0 or NaN; if there are fewer lines than frames, nothing is known of the rest.
+/// A box is four numbers, left, top, width and height in pixels, or eight, the corners of a quadrangle, whose bounding box is used; separators are
+/// commas, tabs or blanks. In a file of true boxes line k is frame k. A line 0,0,0,0 or NaN means that the target is outside the image. Frames after
+/// the last line have no truth.
 ///
-/// `iou_mean` is the mean overlap (intersection over union) with the true boxes over all frames from the first one on, `success_auc` the
-/// share of frames with more overlap than each of 0, 0.05, …, 1, averaged, `precision_20px` the share of those whose centre is at most 20
-/// pixels off. A frame counts with overlap 0 when the tracker says that the target is lost (`n_lost`), and when it cannot be read or is
-/// refused (`n_without_estimate`). `false_tracked_share` is the share of the frames with overlap below 0.2 that the tracker calls tracked,
-/// `false_lost_share` that of the frames with overlap 0.5 or more that it calls lost. Frames without a true box are not judged. Without --truth these figures are absent. `frame_mean_ms` is
-/// the time of the tracker, without decoding.
+/// `iou_mean` is the mean overlap (intersection over union) with the true boxes over all frames from the first one on. `success_auc` is the share of
+/// frames with more overlap than each of 0, 0.05, …, 1, averaged. `precision_20px` is the share of frames with a centre error of at most 20 pixels.
+/// A frame has overlap 0 if the tracker reports the target lost (`n_lost`), or if it cannot be read or is refused (`n_without_estimate`).
+/// `false_tracked_share` is the share of the frames with overlap below 0.2 reported as tracked, `false_lost_share` that of the frames with overlap
+/// 0.5 or more reported as lost. Frames without a true box do not count. Without --truth these figures are absent. `frame_mean_ms` is the computing
+/// time of the tracker, without decoding.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct Arguments {
@@ -40,10 +40,10 @@ pub(in crate::cli) struct Arguments {
     /// A log with images, an MCAP file, instead of --frames; several are the files of one recording.
     #[arg(long, value_name = "PATH")]
     log: Vec<PathBuf>,
-    /// Where the target is in the first frame: x,y,w,h or eight numbers [default: the first true box].
+    /// Position of the target in the first frame: x,y,w,h or eight numbers [default: the first true box].
     #[arg(long, value_name = "BOX", allow_hyphen_values = true, required_unless_present_any = ["init_mask", "truth", "print_params"])]
     init: Option<BoxArgument>,
-    /// The same as a picture of the size of the frames, in which the target is not black: its outline, which `contour` needs not guess.
+    /// The same as a mask image of the size of the frames, in which the target is not black; it gives `contour` the exact outline.
     #[arg(long, value_name = "FILE", conflicts_with = "init")]
     init_mask: Option<PathBuf>,
     /// True boxes, one line a frame.

@@ -17,17 +17,17 @@ use wayfix_systems::{
     views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams},
 };
 
-/// State condensation: in which of the views of a scene a robot is, from what the whole view looks like.
+/// State condensation: estimates which view of a scene a robot sees, from global image features.
 ///
-/// A picture is divided into overlapping views, one every --step pixels; each is a place. The robot learns a few numbers of every view, is
-/// put somewhere in the same scene on another day (other light, some pixels aside), and drives to a goal one view a move until it believes
-/// that it is there. This is repeated --trials times with random starts and goals.
+/// An image is divided into overlapping views, one every --step pixels; each is a place. The robot learns the features of every view. It starts at a
+/// random place of the same scene on another day (other light, some pixels aside) and drives to a goal, one view per move, until it reports the goal
+/// as reached. This is repeated --trials times with random starts and goals.
 ///
-/// Without --learn-from the other day is made of the picture itself: gain 0.7, offset 20, gamma 1.3, a shift of 4,3 pixels, unless options
-/// say otherwise. With --learn-from both pictures are taken as they are, and the options come on top where given.
+/// Without --learn-from the other day is computed from the image: gain 0.7, offset 20, gamma 1.3, a shift of 4,3 pixels, unless options override
+/// them. With --learn-from both images are used as they are, and options apply only if given.
 ///
-/// `successes` counts the drives that say "I am at the goal" and are; one that stays unsure is none. `steps_mean` are the moves of a drive,
-/// `steps_to_certainty_mean` those until confidence is first as high as a robot asks for that stops (0.999).
+/// `successes` counts the drives that report the goal and are there; a drive that ends uncertain is no success. `steps_mean` is the mean number of
+/// moves of a drive, `steps_to_certainty_mean` that until the belief first reaches 0.999, the confidence required to stop.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub(in crate::cli) struct Arguments {
@@ -43,10 +43,10 @@ pub(in crate::cli) struct Arguments {
     /// Pixels between neighbouring views.
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = positive())]
     step: u64,
-    /// What is measured of a view.
+    /// Feature measured in a view.
     #[arg(long, value_enum, value_name = "NAME", default_value = "mean-var")]
     feature: FeatureKind,
-    /// How today's light is made that of learning.
+    /// Normalization of the current light to that of learning.
     #[arg(long, value_enum, value_name = "HOW", default_value = "whole-scene")]
     normalization: Normalization,
     /// Drives with random start and goal.
@@ -61,13 +61,13 @@ pub(in crate::cli) struct Arguments {
     /// Bend of the real scene's tone curve [default: 1.3, or 1 with --learn-from].
     #[arg(long, value_name = "EXPONENT", allow_hyphen_values = true)]
     gamma: Option<f64>,
-    /// Pixels that the real camera stands to the right and down [default: 4,3, or 0,0 with --learn-from].
+    /// Shift of the real camera to the right and down, pixels [default: 4,3, or 0,0 with --learn-from].
     #[arg(long, value_name = "DX,DY", allow_hyphen_values = true)]
     shift: Option<Shift>,
-    /// Look by how much the camera of --scene stood aside of that of --learn-from on the whole, up to N pixels each way, and take that out.
+    /// Estimate the mean shift of the camera of --scene relative to that of --learn-from, up to N pixels in each direction, and remove it.
     #[arg(long, value_name = "N", value_parser = positive(), requires = "learn_from")]
     register: Option<u64>,
-    /// Of moves that lead equally near to the goal take the one that is expected to show most, comparing the N best places.
+    /// Among moves that lead equally near to the goal, take the one with the largest expected information, comparing the N best places.
     #[arg(long, value_name = "N")]
     informed: Option<usize>,
     #[command(flatten)]
@@ -162,7 +162,7 @@ impl Arguments {
     }
 }
 
-/// A picture; what reading it changed is told.
+/// Reads an image and prints conversions that changed it.
 fn read(path: &Path) -> Result<wayfix_condensation::Picture> {
     let scene = views::read_scene(path)?;
     for remark in scene.remarks {

@@ -5,21 +5,21 @@ use serde::Deserialize;
 
 use wayfix_systems::views::Normalization;
 
-/// What the plan says of a run.
+/// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Settings {
-    /// What is done.
+    /// The experiment.
     #[serde(default)]
     pub(super) experiment: Experiment,
     /// A composed scene, instead of `data`.
     pub(super) scene: Option<String>,
-    /// How it is seen.
+    /// The imaging conditions.
     #[serde(default)]
     pub(super) imaging_conditions: ImagingConditionsKind,
-    /// The scene that was learned, beside the one of the run, when it is another picture.
+    /// Image of the learned scene, if it differs from that of the run.
     pub(super) learn_from: Option<PathBuf>,
-    /// How far the camera may have moved on the whole, pixels; that is measured and taken out.
+    /// Maximum mean camera shift that is estimated and removed, pixels.
     pub(super) register: Option<usize>,
     /// Width and height of a view, pixels.
     #[serde(default = "view")]
@@ -27,7 +27,7 @@ pub(super) struct Settings {
     /// Pixels between neighbouring views.
     #[serde(default = "step")]
     pub(super) step: usize,
-    /// How light is made that of learning; every way listed is driven.
+    /// Normalizations of the light; each one listed is run.
     #[serde(default = "normalizations")]
     pub(super) normalization: Vec<Normalization>,
     /// Drives of every feature.
@@ -49,7 +49,7 @@ pub(super) enum Experiment {
     Corridor,
 }
 
-/// How a composed scene is seen.
+/// Imaging conditions of a composed scene.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum ImagingConditionsKind {

@@ -6,12 +6,12 @@ use crate::regress::Job;
 use wayfix_evaluation::report::{Metric, Run};
 use wayfix_systems::views::{self, Normalization, Setup, ViewSystem};
 
-/// The paper's three tables on a composed scene. Its figures stand beside ours with the whole scene normalized, which it presumes.
+/// The paper's three tables on a composed scene. Its figures are compared with ours for the whole-scene normalization, which it assumes.
 pub(super) fn tables(job: &Job<'_>, settings: &Settings) -> Result<Run> {
     let scenes = Scenes::compose(settings)?;
     let paper = PaperScene::named(settings.scene()?);
     let statistics = |setup: &Setup, system: &ViewSystem| match setup.normalization {
-        // The learned features of the first of many lights are not what a view is compared with.
+        // With several lights, a view is not compared with the learned features of the first one.
         Normalization::Online => Ok(Vec::new()),
         Normalization::None | Normalization::WholeScene => Ok(views::p_value_metrics(system)?),
     };

@@ -12,28 +12,28 @@ use crate::cli::{
 };
 use wayfix_systems::cml::{Task, recording::ColumnNames};
 
-/// Appearance maps: learn what places look like all round, and localize in what was learned.
+/// Appearance maps: learn places by panoramic images, and localize in the map.
 ///
 /// Views are panoramas (a column for each direction, a row for each height), or raw images of an omnidirectional camera with `--center` and
-/// `--radii`. What happens with them, the first line of the output says again:
+/// `--radii`. The options determine the task, which the first line of the output states:
 ///
 /// * **Concurrent map building and localization**: a log without more options. The map grows from nothing while the robot localizes in it; the
 ///   start is known.
 ///
-/// * **Learn, then localize**: a folder of frames with poses, or `--withhold N`: every N-th view is localized and never taught, the others are
-///   taught with their poses before. With `--learn-from`, another traverse is taught and all views of this one are localized.
+/// * **Learn, then localize**: a folder of frames with poses, or `--withhold N`: every N-th view is localized and never learned; the others are
+///   learned before, with their poses. With `--learn-from`, another traverse is learned and all views of this one are localized.
 ///
 /// * **Localize in a saved map**: `--map`, or `--resume` to go on where the robot was.
 ///
 /// Poses come as a table, with comma, semicolon, tab or blanks between the columns. Its first row names them: file or frame, t or time, x, y,
-/// heading or theta or yaw, with units as in t_ms, x_cm, yaw_deg (else s, m, rad). `--columns` names those of a table without such a row. Poses
-/// belong to frames by file, else by time, else row by row. Where poses are by time, the table of `time, file` beside the frames says when each
-/// was taken (or `--stamps`). Poses are interpolated over at most 0.5 s, or 1.5 periods of a slower table. Other frames have no pose.
+/// heading or theta or yaw, with units as in t_ms, x_cm, yaw_deg (else s, m, rad). `--columns` names those of a table without such a row. Poses are
+/// matched with frames by file, else by time, else row by row. For a match by time, a table of `time, file` beside the frames (or `--stamps`) gives
+/// the frame times. Poses are interpolated over at most 0.5 s, or 1.5 periods of a slower table. Other frames have no pose.
 ///
-/// Frames have no wheels: odometry is made of the smoothed path, with noise drawn by `--seed`; its standard deviations are parameters.
+/// Frames have no odometry: it is computed from the smoothed path, with noise drawn by `--seed`; its standard deviations are parameters.
 ///
-/// Figures: error_mean_m, error_median_m, error_max_m over the localized views, against nearest_view_error_mean_m of the most alike reference alone and
-/// odometry_error_mean_m; n_references; step_mean_us. Views that cannot be used are left out, counted in the events and named on standard error.
+/// Figures: error_mean_m, error_median_m, error_max_m over the localized views, with nearest_view_error_mean_m of the most similar reference alone
+/// and odometry_error_mean_m; n_references; step_mean_us. Unusable views are skipped, counted in the events and listed on standard error.
 #[derive(clap::Args)]
 #[command(after_long_help = EXAMPLES, group(clap::ArgGroup::new("input").required(true).multiple(true).args(["log", "frames", "print_params"])))]
 pub(crate) struct Arguments {
@@ -57,7 +57,7 @@ pub(crate) struct Arguments {
     /// The table of `time, file` of the frames [default: the one beside them].
     #[arg(long, value_name = "FILE", requires = "frames")]
     pub(super) stamps: Option<PathBuf>,
-    /// A folder of frames of another traverse, which is taught in place of this one.
+    /// A folder of frames of another traverse, which is learned instead of this one.
     #[arg(
         long,
         value_name = "DIR",
@@ -72,7 +72,7 @@ pub(crate) struct Arguments {
     /// The table of its times.
     #[arg(long, value_name = "FILE", requires = "learn_from")]
     pub(super) learn_stamps: Option<PathBuf>,
-    /// Teach the views with their true poses, but for every N-th, which is localized; 0 teaches none and builds the map as the robot goes
+    /// Learn the views with their true poses, except every N-th, which is localized; 0 learns none and builds the map during the run
     /// [default: 5 for frames, 0 for a log].
     #[arg(long, value_name = "N")]
     pub(super) withhold: Option<usize>,
@@ -97,8 +97,8 @@ pub(crate) struct Arguments {
     /// anywhere; for a new map the first true pose, else 0,0,0].
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true)]
     pub(super) start: Option<StartArgument>,
-    /// What is forgotten: `active` also what is not seen where it should be, `passive` what is not seen any more, `none` keeps a learned map as it is
-    /// [default: as the parameters say].
+    /// Forgetting: `active` also removes references not seen where expected, `passive` removes references no longer seen, `none`
+    /// keeps a learned map unchanged [default: from the parameters].
     #[arg(long, value_enum)]
     pub(super) forgetting: Option<ForgettingArgument>,
     /// Raw images: centre of their ring, pixels right and down.
@@ -107,10 +107,10 @@ pub(crate) struct Arguments {
     /// Raw images: inner and outer radius of their ring, pixels.
     #[arg(long, value_name = "INNER,OUTER", requires = "center", value_parser = pair)]
     pub(super) radii: Option<[f64; 2]>,
-    /// Raw images: the innermost ring shows what is highest, as with a lens that looks up; not the outermost.
+    /// Raw images: the inner radius shows the highest elevation, as with an upward-looking lens; default: the outer radius.
     #[arg(long, requires = "center")]
     pub(super) inner_up: bool,
-    /// Which way the columns of a panorama go round [default: found from the turns of the robot].
+    /// Turning sense of the panorama columns [default: determined from the turns of the robot].
     #[arg(long, value_enum)]
     pub(super) column_order: Option<ColumnsArgument>,
     #[command(flatten)]
@@ -163,7 +163,7 @@ impl FromStr for StartArgument {
     }
 }
 
-/// Frames of a folder of which every so many is withheld.
+/// Every N-th frame of a folder is withheld, by default.
 const WITHHOLD: usize = 5;
 
 impl Arguments {

@@ -83,7 +83,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is to be done, and how reading it went.
+/// The task, and the read report.
 struct Input {
     plan: Plan,
     read: ReadReport,
@@ -111,7 +111,7 @@ impl Arguments {
                 "--forgetting none keeps the map as it is, and there is none: teach one (--withhold, --learn-from) or give one (--map)"
             );
         }
-        // A saved map knows which way its columns go.
+        // A saved map stores the turning sense of its columns.
         let saved_sense = saved.map(|archive| archive.params().views.sense);
         let told = self.column_order.map(|columns| match columns {
             ColumnsArgument::Clockwise => TurnSense::Clockwise,
