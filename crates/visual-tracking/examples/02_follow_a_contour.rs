@@ -1,5 +1,5 @@
 //! How well the contour tracker follows simulated targets, as it is and without one of its parts:
-//! `cargo run --release -p wayfix-visual-tracking --example 05_follow_a_contour -- [FILM|all] [SEEDS]`.
+//! `cargo run --release -p wayfix-visual-tracking --example 02_follow_a_contour -- [FILM|all] [SEEDS]`.
 //!
 //! The first contour is the true one. Overlap is the intersection of contour and target over their union, 0 where the target is lost.
 

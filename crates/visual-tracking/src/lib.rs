@@ -24,7 +24,10 @@ mod snake;
 mod tracker;
 
 pub use bounding_box::BoundingBox;
-pub use color::{BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram};
+pub use color::{
+    BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, CustomColorSpace, RowSpans,
+    SlidingHistogram,
+};
 pub use contour::{Agreement, ContourTracker, ContourTrackerParams, TrackingCues};
 pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
 pub use distribution::{

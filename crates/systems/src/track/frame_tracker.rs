@@ -59,15 +59,3 @@ impl FrameTracker for ContourFrameTracker {
         Some(TargetColors { space: self.space, mean: colors.mean, covariance })
     }
 }
-
-/// Axis names of a colour space.
-pub(super) fn axis_names(space: ColorSpace) -> [&'static str; 3] {
-    match space {
-        ColorSpace::Rgb => ["R", "G", "B"],
-        ColorSpace::NormalizedRgb => ["r", "g", "b"],
-        ColorSpace::Hsi => ["H", "S", "I"],
-        ColorSpace::Yuv => ["Y", "U", "V"],
-        ColorSpace::Opponent => ["B − G", "G − R", "R + G + B"],
-        _ => ["first axis", "second axis", "third axis"],
-    }
-}

@@ -2,6 +2,7 @@
 
 mod bin_image;
 mod bin_set;
+mod custom_space;
 mod histogram;
 mod quantizer;
 mod row_spans;
@@ -11,6 +12,7 @@ mod space;
 
 pub use bin_image::BinImage;
 pub use bin_set::BinSet;
+pub use custom_space::CustomColorSpace;
 pub use histogram::ColorHistogram;
 pub use quantizer::ColorQuantizer;
 pub use row_spans::RowSpans;

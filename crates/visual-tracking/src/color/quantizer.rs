@@ -160,7 +160,7 @@ impl ColorQuantizer {
                     |green_blue| (-510..=510).map(move |red_rest| self.offset(0, hue(green_blue, red_rest)));
                 Tables::Hsi((-255..=255).flat_map(row).collect())
             }
-            ColorSpace::NormalizedRgb | ColorSpace::Yuv => Tables::None,
+            ColorSpace::NormalizedRgb | ColorSpace::Yuv | ColorSpace::Custom(_) => Tables::None,
         }
     }
 }

@@ -1,5 +1,7 @@
 use std::f64::consts::TAU;
 
+use super::CustomColorSpace;
+
 /// Three coordinates of a colour, each scaled to $`[0, 1]`$ over all 8-bit colours.
 ///
 /// ```
@@ -29,13 +31,16 @@ pub enum ColorSpace {
     /// $`(B - G, G - R, R + G + B)`$, the first two with 0.5 for grey. [Andrade-Cetto & Sanfeliu, Sec. 3.2]
     #[default]
     Opponent,
+    /// A space of the user's own.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    Custom(CustomColorSpace),
 }
 
 /// Thousandths of red, green and blue in luma. [ITU-R BT.601]
 const LUMA: [f64; 3] = [299.0, 587.0, 114.0];
 
 impl ColorSpace {
-    /// All of them.
+    /// The spaces of this crate.
     pub const ALL: [Self; 5] = [Self::Rgb, Self::NormalizedRgb, Self::Hsi, Self::Yuv, Self::Opponent];
 
     /// The coordinates of an 8-bit colour.
@@ -63,12 +68,38 @@ impl ColorSpace {
                 [luma / 255e3, difference(blue, LUMA[2]), difference(red, LUMA[0])]
             }
             Self::Opponent => [signed(bi - gi), signed(gi - ri), brightness(ri + gi + bi)],
+            Self::Custom(space) => (space.convert)([r, g, b]),
         }
     }
 
     /// Whether 0 and 1 of an axis are the same, as they are for the hue.
     pub fn is_circular(self, axis: usize) -> bool {
-        self == Self::Hsi && axis == 0
+        match self {
+            Self::Hsi => axis == 0,
+            Self::Custom(space) => space.circular_axis == Some(axis),
+            _ => false,
+        }
+    }
+
+    /// Whether stronger light scales the coordinates of a colour from those of black.
+    pub fn scales_with_light(self) -> bool {
+        match self {
+            Self::Rgb | Self::Yuv | Self::Opponent => true,
+            Self::NormalizedRgb | Self::Hsi => false,
+            Self::Custom(space) => space.scales_with_light,
+        }
+    }
+
+    /// The names of the axes.
+    pub fn axis_names(self) -> [&'static str; 3] {
+        match self {
+            Self::Rgb => ["R", "G", "B"],
+            Self::NormalizedRgb => ["r", "g", "b"],
+            Self::Hsi => ["H", "S", "I"],
+            Self::Yuv => ["Y", "U", "V"],
+            Self::Opponent => ["B − G", "G − R", "R + G + B"],
+            Self::Custom(space) => space.axis_names,
+        }
     }
 }
 

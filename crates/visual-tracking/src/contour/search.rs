@@ -121,8 +121,7 @@ fn axes(points: &[[f64; 2]]) -> (Matrix2<f64>, Vector2<f64>) {
 
 /// The fixed point of colours when the light intensity changes; `None` in a space that has none.
 pub(super) fn black(space: ColorSpace) -> Option<Vector3<f64>> {
-    matches!(space, ColorSpace::Rgb | ColorSpace::Yuv | ColorSpace::Opponent)
-        .then(|| Vector3::from(space.convert([0; 3])))
+    space.scales_with_light().then(|| Vector3::from(space.convert([0; 3])))
 }
 
 /// The colours of a reference in light of other strengths, from a third to three times as strong. Empty in a space in which stronger light

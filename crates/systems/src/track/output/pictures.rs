@@ -1,4 +1,4 @@
-use super::super::{RunHistory, TargetColors, frame_tracker::axis_names};
+use super::super::{RunHistory, TargetColors};
 use super::run_history::Point;
 use wayfix_evaluation::plot::{
     EllipsesPlot, FilmFrame, FilmStrip, LinesPlot, NamedEllipse, Picture, PlotError, Series,
@@ -14,7 +14,7 @@ const FRAMES_A_ROW: usize = 3;
 pub fn pictures(run_history: &RunHistory) -> Result<Vec<Picture>, PlotError> {
     let mut pictures = vec![film(run_history).draw()?, overlap(run_history).draw()?];
     if let Some(colors) = run_history.points.kept().iter().find_map(|point| point.colors) {
-        let names = axis_names(colors.space);
+        let names = colors.space.axis_names();
         pictures.push(clouds(run_history, names).draw()?);
         pictures.push(color_path(run_history, names).draw()?);
     }
