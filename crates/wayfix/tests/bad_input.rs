@@ -85,7 +85,7 @@ fn an_identity_seen_twice_in_one_look_counts_once() {
     let n_detections = text.lines().filter(|line| line.starts_with('Z')).count();
     assert_eq!(outcome.event("duplicate"), n_detections as u64);
     assert_eq!(outcome.metric("n_rejected"), n_detections as f64);
-    assert!(outcome.stderr.contains("a second time in one look"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("a second time in one scan"), "{}", outcome.stderr);
     assert!(outcome.stderr.contains(&format!("and {} more", n_detections - 20)), "{}", outcome.stderr);
     assert_eq!(outcome.metric("ate_rmse_m"), clean.metric("ate_rmse_m"));
 }

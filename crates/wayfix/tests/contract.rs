@@ -144,7 +144,7 @@ fn help_teaches_the_options_and_shows_examples() {
         (vec!["--help"], "wayfix info slam_100.txt"),
         (vec!["run", "slam", "--help"], "ate_aligned_rmse_m"),
         (vec!["run", "slam", "--help"], "range_sigma = 0.10"),
-        (vec!["convert", "--help"], "MCAP keeps everything"),
+        (vec!["convert", "--help"], "MCAP stores everything"),
         (vec!["info", "--help"], "UTIAS"),
     ] {
         let outcome = wayfix(&arguments);

@@ -169,7 +169,9 @@ impl PointFrontEnd {
         }
         self.advance_to(self.exposure(stamp), estimator)?;
         let stopwatch = Stopwatch::start();
-        let report = estimator.update(&observations)?;
+        let report = estimator.update(&observations, |RangeBearing { range, bearing }| {
+            format!("a range of {range} m at {} rad", bearing.radians())
+        })?;
         estimator.step += stopwatch.elapsed();
         // The filter is at the exposure of the sensor; the estimate is at its stamp.
         let motion = ScaledMotion(SequentialMotion(self.params.velocity));

@@ -80,10 +80,11 @@ where
         Ok(())
     }
 
-    /// Corrects robot and map by the observations of one scan. Counts what became of them.
+    /// Corrects robot and map by the observations of one scan. Counts what became of them; `describe` says what an unusable one measured.
     pub(crate) fn update(
         &mut self,
         observations: &[Observation<M::Measurement>],
+        describe: impl Fn(&M::Measurement) -> String,
     ) -> Result<StepReport<M::Measurement>, String> {
         let report = self.filter.update(observations, &mut self.association);
         let report = report.map_err(|error| error.to_string())?;
@@ -93,7 +94,9 @@ where
         for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
             let name = event_name(outcome);
             match outcome {
-                Outcome::Unusable => self.events.refuse(name, format!("{measurement:?} is not usable")),
+                Outcome::Unusable => {
+                    self.events.refuse(name, format!("{} is not usable", describe(measurement)))
+                }
                 Outcome::Duplicate { landmark } if self.association.rule() == AssociationRule::Known => {
                     self.events.refuse(name, format!("landmark {landmark} a second time in one scan"));
                 }

@@ -267,7 +267,13 @@ impl WallFrontEnd {
                 self.predict_to_scan(estimator)?;
                 self.last_keyframe = Some(KeyframeScan { scan, cloud });
                 self.laser_heading = Some(0.0);
-                nis(&estimator.update(&observations)?)
+                nis(&estimator.update(&observations, |wall| {
+                    format!(
+                        "a wall with the ends {:?}, {:?}, m",
+                        wall.ends[0].as_slice(),
+                        wall.ends[1].as_slice()
+                    )
+                })?)
             };
         estimator.step += stopwatch.elapsed();
         self.add_stamped_estimate(stamp, corrected, estimator);

@@ -228,7 +228,7 @@ fn invalid_parameters_and_options_are_refused_by_name() {
 #[test]
 fn help_teaches() {
     let outcome = wayfix(["run", "views", "--help"]);
-    for taught in ["steps_to_certainty_mean", "--learn-from left.png", "estimated together"] {
+    for taught in ["steps_to_certainty_mean", "--learn-from left.png", "estimated jointly"] {
         assert!(outcome.stdout.contains(taught), "{taught}: {}", outcome.stdout);
     }
 }

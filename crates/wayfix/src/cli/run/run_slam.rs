@@ -52,7 +52,7 @@ pub(in crate::cli) struct Arguments {
     /// Given several times, the MCAP files of one recording; of a ROS 2 bag that was split, the folder does.
     #[arg(long, value_name = "PATH", required_unless_present = "print_params")]
     pub(in crate::cli) log: Vec<PathBuf>,
-    /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: found out by looking].
+    /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: detected from the content].
     #[arg(long)]
     pub(in crate::cli) format: Option<Format>,
     /// Which robot, in sets of several.
