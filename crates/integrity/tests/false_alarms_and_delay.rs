@@ -1,4 +1,5 @@
 //! False alarms and delays over Gaussian measurements, beside the known values of the tests.
+#![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

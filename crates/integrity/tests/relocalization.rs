@@ -1,4 +1,5 @@
 //! A robot in a corridor of cells that is moved, and one that is not.
+#![allow(clippy::unwrap_used, reason = "a panic is the verdict of a test, in its helpers too")]
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

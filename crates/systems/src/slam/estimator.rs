@@ -95,7 +95,7 @@ where
             let name = event_name(outcome);
             match outcome {
                 Outcome::Unusable => {
-                    self.events.refuse(name, format!("{} is not usable", describe(measurement)))
+                    self.events.refuse(name, format!("{} is not usable", describe(measurement)));
                 }
                 Outcome::Duplicate { landmark } if self.association.rule() == AssociationRule::Known => {
                     self.events.refuse(name, format!("landmark {landmark} a second time in one scan"));
