@@ -59,7 +59,7 @@ impl IndoorParams {
     }
 }
 
-/// A robot with manually calibrated wheels: errors of 0.3 % in distance and 10⁻⁴ rad per metre in heading (σ), in addition to slip,
+/// A robot with manually calibrated wheels: errors of 0.3 % in distance and 10⁻⁴ rad/m in heading (σ), in addition to slip,
 /// which turns it by 0.1° on the first metre and by 1° over 100 m.
 pub fn calibrated_robot<R: Rng + ?Sized>(rng: &mut R) -> DriveParams {
     robot([3e-3 * normal(rng), 1e-4 * normal(rng)])

@@ -7,8 +7,8 @@ use wayfix_slam_ekf::{
 };
 
 use super::{
-    MountingParams, OdometryKind, PointSlamParams, commands::Commands, drawing, memory::PointMemory,
-    sequential_motion::SequentialMotion, unknown_motion::UnknownMotion,
+    MountingParams, OdometryKind, PointSlamParams, commands::Commands, drawing,
+    sequential_motion::SequentialMotion, state::PointState, unknown_motion::UnknownMotion,
 };
 use crate::{
     slam::{AssociationRule, ChosenRule, Estimator, FrontEnd, SlamSystem, nis},
@@ -86,7 +86,7 @@ type Points = Estimator<PointSensor>;
 
 impl FrontEnd for PointFrontEnd {
     type Model = PointSensor;
-    type Memory = PointMemory;
+    type State = PointState;
 
     fn take(&mut self, record: &Record, estimator: &mut Points) -> Result<(), String> {
         let stamp = record.stamp;
@@ -111,8 +111,8 @@ impl FrontEnd for PointFrontEnd {
         drawing::draw_map(filter, stamp, writer)
     }
 
-    fn memory(&self) -> PointMemory {
-        PointMemory::of(self)
+    fn state(&self) -> PointState {
+        PointState::of(self)
     }
 }
 

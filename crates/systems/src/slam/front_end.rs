@@ -13,8 +13,8 @@ where
 {
     /// Robot, landmark and measurement.
     type Model: LandmarkModel + Clone;
-    /// What it remembers between two records.
-    type Memory: FrontEndMemory;
+    /// What it keeps between two records.
+    type State: FrontEndState;
 
     /// Takes a record: predicts and updates.
     ///
@@ -46,11 +46,11 @@ where
     ) -> Result<(), LogError>;
 
     /// All that it needs to go on.
-    fn memory(&self) -> Self::Memory;
+    fn state(&self) -> Self::State;
 }
 
 /// What a front end saves, and which kind of map it belongs to.
-pub trait FrontEndMemory: Serialize + DeserializeOwned {
+pub trait FrontEndState: Serialize + DeserializeOwned {
     /// The robot's state in words, and its dimension.
     const ROBOT: (&str, usize);
     /// The same of a landmark.

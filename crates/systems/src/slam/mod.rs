@@ -23,7 +23,7 @@ pub(crate) use estimator::nis;
 pub use estimator::{Estimator, StampedEstimate};
 use event_name::event_name;
 pub(crate) use figures::summary;
-pub use front_end::{FrontEnd, FrontEndMemory};
+pub use front_end::{FrontEnd, FrontEndState};
 pub(crate) use pictures::pictures_with;
 pub use run::SlamRun;
 pub(crate) use saved::check_association;

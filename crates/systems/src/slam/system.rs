@@ -29,7 +29,7 @@ pub(crate) const FIRST_ANCHOR: u32 = 1 << 31;
 pub type StateOf<F> = SlamState<
     <<F as FrontEnd>::Model as LandmarkModel>::Robot,
     <<F as FrontEnd>::Model as LandmarkModel>::Landmark,
-    <F as FrontEnd>::Memory,
+    <F as FrontEnd>::State,
 >;
 
 impl<F: FrontEnd> SlamSystem<F>
@@ -40,7 +40,7 @@ where
         Self { front_end, estimator, taken_until: Stamp::default(), resumed_at: None }
     }
 
-    /// The system with a saved map; the front end has restored its memory already.
+    /// The system with a saved map; the front end has its saved state already.
     pub(crate) fn resumed(
         self,
         filter: Snapshot<<F::Model as LandmarkModel>::Robot, <F::Model as LandmarkModel>::Landmark>,
@@ -72,7 +72,7 @@ where
             next_id: self.estimator.association.next_id(),
             taken_until: self.front_end.settled_until(self.taken_until).nanoseconds(),
             dead_reckoning: self.estimator.dead_reckoning,
-            front_end: self.front_end.memory(),
+            front_end: self.front_end.state(),
         }
     }
 

@@ -10,7 +10,7 @@ use wayfix_slam_ekf::{
 };
 
 use super::{
-    KeyframeThreshold, WallMemory, WallSlamParams, drawing,
+    KeyframeThreshold, WallSlamParams, WallState, drawing,
     odometry::{Motion, Odometry},
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
@@ -104,7 +104,7 @@ pub(super) type Walls = Estimator<WallModel>;
 
 impl FrontEnd for WallFrontEnd {
     type Model = WallModel;
-    type Memory = WallMemory;
+    type State = WallState;
 
     fn take(&mut self, record: &Record, estimator: &mut Walls) -> Result<(), String> {
         match &record.data {
@@ -152,8 +152,8 @@ impl FrontEnd for WallFrontEnd {
         drawing::draw_map(filter, stamp, writer)
     }
 
-    fn memory(&self) -> WallMemory {
-        WallMemory::of(self)
+    fn state(&self) -> WallState {
+        WallState::of(self)
     }
 }
 

@@ -76,7 +76,7 @@ pub struct GaitOdometryParams {
     pub noise: f64,
     /// Shape of that error. Default Student's t with 4 degrees of freedom.
     pub noise_shape: NoiseShape,
-    /// σ of the unmeasured rotation per metre, rad/m. Default 0.08.
+    /// σ of the unmeasured rotation per distance, rad/m. Default 0.08.
     pub drift_rad_per_m: f64,
     /// Correlation time of that drift, seconds. Default 8.
     pub drift_correlation_s: f64,

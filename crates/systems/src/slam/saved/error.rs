@@ -7,7 +7,7 @@ use wayfix_slam_ekf::SlamError;
 #[non_exhaustive]
 pub enum SavedMapError {
     /// The operating system refuses.
-    #[error("{}: {source}", path.display())]
+    #[error("{}", path.display())]
     Io {
         /// What was read or written.
         path: PathBuf,

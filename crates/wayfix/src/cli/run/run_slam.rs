@@ -13,7 +13,7 @@ use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 use wayfix_systems::{
     points::{self, PointSlamParams, Profile, SavedMap},
     slam::{
-        AssociationRule, FrontEnd, FrontEndMemory, Saver, SlamEstimateLog, SlamRun, SlamState, SlamSystem,
+        AssociationRule, FrontEnd, FrontEndState, Saver, SlamEstimateLog, SlamRun, SlamState, SlamSystem,
         StateOf,
     },
     system::{DriveStep, Stopwatch},
@@ -196,7 +196,7 @@ where
 
 impl Arguments {
     /// The map of `--resume`.
-    pub(super) fn saved_map<R, L, S: FrontEndMemory>(&self) -> Result<Option<SlamState<R, L, S>>>
+    pub(super) fn saved_map<R, L, S: FrontEndState>(&self) -> Result<Option<SlamState<R, L, S>>>
     where
         SlamState<R, L, S>: Serialize + DeserializeOwned,
     {

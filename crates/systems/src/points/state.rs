@@ -5,16 +5,16 @@ use wayfix_slam_ekf::{ScaledPose, SlamError};
 
 use super::{PointFrontEnd, PointSlamParams, PointSystem};
 use crate::{
-    slam::{FrontEndMemory, SavedMapError, SlamState, check_association},
+    slam::{FrontEndState, SavedMapError, SlamState, check_association},
     system::{MotionStatistics, check_velocity},
 };
 
 /// A map of points.
-pub type SavedMap = SlamState<ScaledPose, Vector2<f64>, PointMemory>;
+pub type SavedMap = SlamState<ScaledPose, Vector2<f64>, PointState>;
 
 /// All that a [`PointFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PointMemory {
+pub struct PointState {
     /// The time of the filter's state, nanoseconds: earlier than the last record where the sensor is late.
     pub time: u64,
     /// The kind of odometry that moves the robot; unknown before the first.
@@ -25,7 +25,7 @@ pub struct PointMemory {
     pub motion: MotionStatistics,
 }
 
-impl FrontEndMemory for PointMemory {
+impl FrontEndState for PointState {
     const ROBOT: (&str, usize) = ("planar pose with range scale", 4);
     const LANDMARK: (&str, usize) = ("point in the plane", 2);
 }
@@ -53,7 +53,7 @@ impl OdometryKind {
     }
 }
 
-impl PointMemory {
+impl PointState {
     pub(super) fn of(front_end: &PointFrontEnd) -> Self {
         let command =
             |(stamp, velocity): (Stamp, Velocity)| (stamp.nanoseconds(), velocity.linear, velocity.angular);
@@ -73,7 +73,7 @@ impl PointSystem {
     /// Returns an error if the map has another association rule, or holds invalid numbers.
     pub(super) fn resume(params: PointSlamParams, saved: SavedMap) -> Result<Self, SavedMapError> {
         let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end } = saved;
-        let PointMemory { time, odometry, commands, motion } = front_end;
+        let PointState { time, odometry, commands, motion } = front_end;
         check_association(params.association, association)?;
         let stamp = Stamp::from_nanoseconds;
         let mut system =

@@ -10,14 +10,14 @@ use super::{
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan},
 };
-use crate::slam::{AssociationRule, FrontEndMemory, SavedMapError, SlamState, check_association};
+use crate::slam::{AssociationRule, FrontEndState, SavedMapError, SlamState, check_association};
 
 /// A map of walls.
-pub type SavedWalls = SlamState<DriftingPose, Wall, WallMemory>;
+pub type SavedWalls = SlamState<DriftingPose, Wall, WallState>;
 
 /// All that a [`WallFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WallMemory {
+pub struct WallState {
     /// Where the laser is on the robot.
     pub laser: Option<[f64; 3]>,
     /// Where the log placed it last, if the parameters do not.
@@ -51,12 +51,12 @@ pub struct SavedScan {
     pub beam_step: Option<Pose2<f64>>,
 }
 
-impl FrontEndMemory for WallMemory {
+impl FrontEndState for WallState {
     const ROBOT: (&str, usize) = ("planar pose with heading drift", 4);
     const LANDMARK: (&str, usize) = ("wall in the plane", 2);
 }
 
-impl WallMemory {
+impl WallState {
     pub(super) fn of(front_end: &WallFrontEnd) -> Self {
         Self {
             laser: front_end.params.laser,
@@ -113,21 +113,20 @@ impl WallSystem {
         saved: SavedWalls,
         asked: Option<AssociationRule>,
     ) -> anyhow::Result<Self> {
-        let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end: memory } =
-            saved;
+        let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end: state } = saved;
         check_association(asked, association)?;
-        memory.check()?;
-        let laser_follows_log = params.laser.is_none() && memory.laser_follows_log;
-        let laser = params.laser.or(memory.laser);
+        state.check()?;
+        let laser_follows_log = params.laser.is_none() && state.laser_follows_log;
+        let laser = params.laser.or(state.laser);
         let params = WallSlamParams { association, laser, ..params };
         let mut system =
-            Self::with_walls(params, dead_reckoning, &Matrix3::zeros(), memory.moves_by_velocity)?;
+            Self::with_walls(params, dead_reckoning, &Matrix3::zeros(), state.moves_by_velocity)?;
         let front_end = &mut system.front_end;
-        front_end.relative_motion = memory.relative_motion;
-        front_end.last_keyframe = memory.last_keyframe.map(SavedScan::keyframe).transpose()?;
-        front_end.odometry = memory.odometry;
+        front_end.relative_motion = state.relative_motion;
+        front_end.last_keyframe = state.last_keyframe.map(SavedScan::keyframe).transpose()?;
+        front_end.odometry = state.odometry;
         (front_end.current_laser_mount, front_end.laser_follows_log) =
-            (memory.current_laser_mount, laser_follows_log);
+            (state.current_laser_mount, laser_follows_log);
         Ok(system.resumed(filter, next_id, taken_until)?)
     }
 }
