@@ -15,8 +15,8 @@ use wayfix_appearance_cml::{
     PanoramaParams, ReferenceId, ReferenceSearch,
 };
 use wayfix_scene_sim::{
-    indoors::{IndoorDrive, IndoorParams, Store, StoreParams, calibrated_robot},
-    random::Streams,
+    indoors::{IndoorDrive, IndoorParams, RetailStore, RetailStoreParams, calibrated_robot},
+    random::RandomStreams,
 };
 
 const SEED: u64 = 3;
@@ -58,7 +58,7 @@ fn main() {
         );
         report(&format!("within 0.5 of {size}"), mean_of(&seen, |view| index.within(view, 0.5).len()));
         let costs: Vec<_> = seen.iter().map(|view| nearest(view).1).collect();
-        let share = |count: fn(&wayfix_appearance_cml::SearchCost) -> usize| {
+        let share = |count: fn(&wayfix_appearance_cml::SearchStatistics) -> usize| {
             let sum: usize = costs.iter().map(count).sum();
             100.0 * sum as f64 / (size * costs.len()) as f64
         };
@@ -82,13 +82,15 @@ fn main() {
 /// Views of a tour, and of another one through the same store.
 fn drives() -> (Vec<Panorama>, Vec<Panorama>) {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
-    let shape = StoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..StoreParams::home_store() };
-    let building = Store::draw(shape, &mut rng).expect("a store").building();
+    let shape =
+        RetailStoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..RetailStoreParams::home_store() };
+    let building = RetailStore::draw(shape, &mut rng).expect("a store").building();
     let mut drive = |metres: f64| -> Vec<Panorama> {
         let route = building.aisles().tour(metres, &mut rng).expect("aisles");
         let params =
             IndoorParams { drive: calibrated_robot(&mut rng), n_people: 20, ..IndoorParams::default() };
-        let steps = IndoorDrive::new(&building, route, params, Streams::new(rng.clone())).expect("a route");
+        let steps =
+            IndoorDrive::new(&building, route, params, RandomStreams::new(rng.clone())).expect("a route");
         let size = |view: &Panorama| assert_eq!((view.n_columns(), view.n_rows()), (120, 20));
         steps
             .map(|step| Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb))

@@ -13,28 +13,33 @@ mod search;
 mod state;
 mod views;
 
-pub use archive::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapAndState, MapArchive};
+pub use archive::{
+    MapAndState, MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal, MapArchiveParams,
+};
 pub use error::AppearanceError;
 pub(crate) use fusion::update_heading;
-pub use fusion::{Combination, FusionParams, PoseSource, PositionFix, Weighting, combine, fuse};
+pub use fusion::{
+    FusionParams, GaussianFusionRule, MixtureWeighting, PoseSource, PositionFix, combine, fuse,
+};
 pub use localizer::{
     AppearanceLocalizer, Event, Learning, LocalizerParams, Motion, Observation, Proof, RelocationParams,
     Start, UpdateOutcome, smooth,
 };
 pub(crate) use model::HeadingMeasurement;
 pub use model::{
-    AppearanceMap, Forgetting, ForgettingParams, ForgettingUncertainty, LagSample, MapParams, MapUpdate,
-    PlaceComponent, PlaceMatch, PlaceUpdate, Reference, ViewScale, interpolate, similarity, superpose,
+    AppearanceMap, AppearanceMapParams, ForgettingMode, ForgettingParams, ForgettingUncertainty, MapUpdate,
+    PlaceComponent, PlaceMatch, PlaceUpdateRule, ReferenceView, ViewDifferenceSample, ViewDistanceScale,
+    interpolate, similarity, superpose,
 };
 pub use search::{
-    AppearanceIndex, BoundTable, Bounded, Descriptor, LinearSearch, Match, NoTable, ReferenceId,
-    ReferenceSearch, SearchCost, ViewDifference,
+    AppearanceIndex, BoundTable, Descriptor, LinearSearch, LowerBoundedDistance, NoBoundTable, ReferenceId,
+    ReferenceMatch, ReferenceSearch, SearchStatistics, ViewDifference,
 };
 pub use state::{
     MixtureReductionParams, OdometryNoise, PoseHypothesis, UnimodalParams, propagate, separation_squared,
     simplify, unimodal,
 };
 pub use views::{
-    Donut, Normalization, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaProbe,
-    PanoramaTable, RingOrder, Tone, TurnSense,
+    AzimuthDirection, BrightnessNormalization, IntensityScale, OmnidirectionalRing, Panorama,
+    PanoramaBoundTable, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, PanoramaQuery, RingOrientation,
 };

@@ -3,17 +3,18 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceIndex, AppearanceMap, ArchiveEnd, ArchiveError, ArchiveParams, Journal, LagSample, MapArchive,
-    PanoramaDescriptor, PanoramaParams, ReferenceSearch, Tone,
+    AppearanceIndex, AppearanceMap, IntensityScale, MapArchive, MapArchiveEnd, MapArchiveError,
+    MapArchiveJournal, MapArchiveParams, PanoramaDescriptor, PanoramaParams, ReferenceSearch,
+    ViewDifferenceSample,
 };
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 type Map = AppearanceMap<PanoramaDescriptor, AppearanceIndex<PanoramaDescriptor>>;
-type Parts = (Map, Option<Mixture<Pose2<f64>>>);
+type Parts = (Map, Option<GaussianMixture<Pose2<f64>>>);
 
-fn params() -> ArchiveParams {
-    ArchiveParams { views: PanoramaParams::default(), size: (120, 3) }
+fn params() -> MapArchiveParams {
+    MapArchiveParams { views: PanoramaParams::default(), size: (120, 3) }
 }
 
 fn pose(step: usize) -> Gaussian<Pose2<f64>> {
@@ -29,7 +30,7 @@ fn view(step: usize) -> PanoramaDescriptor {
 fn learn(map: &mut Map, steps: std::ops::Range<usize>) {
     for step in steps {
         map.teach(view(step), &pose(step)).unwrap();
-        map.scale_mut().add_near(LagSample { lag: 0.3, distance: 0.2 + 0.001 * step as f64 });
+        map.scale_mut().add_near(ViewDifferenceSample { lag: 0.3, distance: 0.2 + 0.001 * step as f64 });
         map.scale_mut().add_far(1.0 + 0.001 * step as f64);
     }
 }
@@ -40,18 +41,18 @@ fn map() -> Map {
     map
 }
 
-fn state() -> Mixture<Pose2<f64>> {
-    Mixture::from_weights(vec![(0.75, pose(2)), (0.25, pose(5))]).unwrap()
+fn state() -> GaussianMixture<Pose2<f64>> {
+    GaussianMixture::from_weights(vec![(0.75, pose(2)), (0.25, pose(5))]).unwrap()
 }
 
-fn assert_same(parts: &Parts, map: &Map, state: Option<&Mixture<Pose2<f64>>>) {
+fn assert_same(parts: &Parts, map: &Map, state: Option<&GaussianMixture<Pose2<f64>>>) {
     assert_eq!(parts.0.references(), map.references());
     assert_eq!(parts.0.scale(), map.scale());
     assert_eq!(parts.0.next_id(), map.next_id());
     for id in map.references().keys() {
         assert_eq!(parts.0.search().get(*id), map.search().get(*id));
     }
-    let components = |state: &Mixture<Pose2<f64>>| state.components().to_vec();
+    let components = |state: &GaussianMixture<Pose2<f64>>| state.components().to_vec();
     assert_eq!(parts.1.as_ref().map(components), state.map(components));
 }
 
@@ -62,7 +63,7 @@ fn bytes() -> Vec<u8> {
 #[test]
 fn what_was_saved_comes_back() {
     let archive = MapArchive::from_bytes(&bytes()).unwrap();
-    assert_eq!((archive.end(), archive.len(), archive.params()), (ArchiveEnd::Whole, 6, &params()));
+    assert_eq!((archive.end(), archive.len(), archive.params()), (MapArchiveEnd::Whole, 6, &params()));
     assert_same(&archive.into_map(&params()).unwrap(), &map(), Some(&state()));
 }
 
@@ -70,7 +71,7 @@ fn what_was_saved_comes_back() {
 fn a_journal_brings_the_map_up_to_date() {
     let mut map = map();
     let mut bytes = MapArchive::to_bytes(&params(), &map, None);
-    let mut journal = Journal::after(&map);
+    let mut journal = MapArchiveJournal::after(&map);
     let before = bytes.len();
     learn(&mut map, 6..9);
     bytes.extend(journal.changes(&map, Some(&state())));
@@ -90,9 +91,9 @@ fn a_cut_anywhere_in_an_entry_leaves_what_is_before_it() {
     for length in 0..whole.len() {
         match MapArchive::from_bytes(&whole[..length]) {
             Ok(archive) => {
-                if let ArchiveEnd::Interrupted { whole_bytes } = archive.end() {
+                if let MapArchiveEnd::Interrupted { whole_bytes } = archive.end() {
                     let again = MapArchive::from_bytes(&whole[..whole_bytes]).unwrap();
-                    assert_eq!((again.end(), again.len()), (ArchiveEnd::Whole, archive.len()));
+                    assert_eq!((again.end(), again.len()), (MapArchiveEnd::Whole, archive.len()));
                 }
                 let n = archive.len();
                 let parts: Parts = archive.into_map(&params()).unwrap();
@@ -100,7 +101,7 @@ fn a_cut_anywhere_in_an_entry_leaves_what_is_before_it() {
                 lengths.insert(n);
             }
             Err(error) => {
-                let early = matches!(error, ArchiveError::NotAMap | ArchiveError::Header);
+                let early = matches!(error, MapArchiveError::NotAMap | MapArchiveError::Header);
                 assert!(early && length < 70, "{length}: {error}");
             }
         }
@@ -113,7 +114,7 @@ fn zeros_at_the_end_are_what_was_not_written() {
     let whole = bytes();
     let longer = [&whole[..], &[0; 100]].concat();
     let archive = MapArchive::from_bytes(&longer).unwrap();
-    assert_eq!(archive.end(), ArchiveEnd::Interrupted { whole_bytes: whole.len() });
+    assert_eq!(archive.end(), MapArchiveEnd::Interrupted { whole_bytes: whole.len() });
     assert_eq!(archive.len(), 6);
 }
 
@@ -125,14 +126,14 @@ fn every_flipped_bit_is_found() {
         flipped[bit / 8] ^= 1 << (bit % 8);
         match MapArchive::from_bytes(&flipped) {
             Err(error) => match bit / 64 {
-                0 => assert_eq!(error, ArchiveError::NotAMap),
+                0 => assert_eq!(error, MapArchiveError::NotAMap),
                 _ => assert!(
-                    !matches!(error, ArchiveError::NotAMap | ArchiveError::Content { .. }),
+                    !matches!(error, MapArchiveError::NotAMap | MapArchiveError::Content { .. }),
                     "{bit}: {error}"
                 ),
             },
             // The length of the last entry, made larger, is an entry cut short: nothing can follow it.
-            Ok(archive) => assert!(matches!(archive.end(), ArchiveEnd::Interrupted { .. }), "bit {bit}"),
+            Ok(archive) => assert!(matches!(archive.end(), MapArchiveEnd::Interrupted { .. }), "bit {bit}"),
         }
     }
 }
@@ -141,16 +142,25 @@ fn every_flipped_bit_is_found() {
 fn another_version_and_other_parameters_are_named() {
     let mut newer = bytes();
     newer[8] = 9;
-    assert_eq!(MapArchive::from_bytes(&newer).unwrap_err(), ArchiveError::Version { found: 9, known: 3 });
+    assert_eq!(MapArchive::from_bytes(&newer).unwrap_err(), MapArchiveError::Version { found: 9, known: 3 });
     let good = params();
     for (params, named) in [
-        (ArchiveParams { size: (240, 3), ..good }, "size of the panorama"),
-        (ArchiveParams { views: PanoramaParams { tone: Tone::Linear, ..good.views }, ..good }, "tone"),
-        (ArchiveParams { views: PanoramaParams { n_harmonics: 8, ..good.views }, ..good }, "n_harmonics"),
-        (ArchiveParams { views: PanoramaParams { smoothing: 0.0, ..good.views }, ..good }, "smoothing"),
+        (MapArchiveParams { size: (240, 3), ..good }, "size of the panorama"),
+        (
+            MapArchiveParams {
+                views: PanoramaParams { intensity_scale: IntensityScale::Linear, ..good.views },
+                ..good
+            },
+            "tone",
+        ),
+        (MapArchiveParams { views: PanoramaParams { n_harmonics: 8, ..good.views }, ..good }, "n_harmonics"),
+        (
+            MapArchiveParams { views: PanoramaParams { smoothing_sigma: 0.0, ..good.views }, ..good },
+            "smoothing",
+        ),
     ] {
         let refused = MapArchive::from_bytes(&bytes()).unwrap().into_map::<AppearanceIndex<_>>(&params);
-        assert!(matches!(refused, Err(ArchiveError::Parameters { what, .. }) if what == named), "{named}");
+        assert!(matches!(refused, Err(MapArchiveError::Parameters { what, .. }) if what == named), "{named}");
     }
 }
 

@@ -10,14 +10,17 @@ use wayfix_appearance_cml::{
     AppearanceError, AppearanceLocalizer, LocalizerParams, PoseHypothesis, PoseSource, PositionFix, Start,
 };
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 type Localizer = AppearanceLocalizer<FieldView>;
 
 struct Weightless;
 
 impl PoseSource for Weightless {
-    fn hypotheses(&self, _: Option<&Mixture<Pose2<f64>>>) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    fn hypotheses(
+        &self,
+        _: Option<&GaussianMixture<Pose2<f64>>>,
+    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
         Ok(vec![PoseHypothesis::new(f64::NAN, known(Pose2::new(0.0, 0.0, 0.0)))])
     }
 }
@@ -25,7 +28,10 @@ impl PoseSource for Weightless {
 struct Singular;
 
 impl PoseSource for Singular {
-    fn hypotheses(&self, _: Option<&Mixture<Pose2<f64>>>) -> Result<Vec<PoseHypothesis>, AppearanceError> {
+    fn hypotheses(
+        &self,
+        _: Option<&GaussianMixture<Pose2<f64>>>,
+    ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
         let flat = Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), Matrix3::zeros());
         Ok(vec![PoseHypothesis::new(0.5, flat)])
     }

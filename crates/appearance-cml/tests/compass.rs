@@ -6,7 +6,7 @@ use common::{Field, FieldView, N_STEPS, beside, between, known};
 use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use wayfix_appearance_cml::{AppearanceLocalizer, Learning, LocalizerParams, MapParams, Start};
+use wayfix_appearance_cml::{AppearanceLocalizer, AppearanceMapParams, Learning, LocalizerParams, Start};
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
 use wayfix_gaussian_core::Gaussian;
 
@@ -50,7 +50,7 @@ fn heading_error(seed: u64, params: LocalizerParams) -> (f64, usize) {
 #[test]
 fn who_recognizes_no_place_is_turned_the_right_way_all_the_same() {
     // Nothing matches, so that odometry alone would keep the heading as wrong as it was.
-    let map = MapParams { match_limit: Some(1e-3), ..MapParams::default() };
+    let map = AppearanceMapParams { match_limit: Some(1e-3), ..AppearanceMapParams::default() };
     let params = LocalizerParams { learning: Learning::Static, map, ..LocalizerParams::default() };
     let errors: Vec<f64> = (0..N_SEEDS)
         .map(|seed| {

@@ -7,8 +7,8 @@ use nalgebra::Vector2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
-    AppearanceLocalizer, Event, FusionParams, Learning, LocalizerParams, RelocationParams, Start,
-    UpdateOutcome, Weighting,
+    AppearanceLocalizer, Event, FusionParams, Learning, LocalizerParams, MixtureWeighting, RelocationParams,
+    Start, UpdateOutcome,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
@@ -121,8 +121,8 @@ fn steps_until_relocated(seed: u64) -> Option<usize> {
     let far = |step: usize| Pose2::new(100.0, 0.0, 0.0).compose(&beside(step, 0.0));
     let start = Start::Known(known(far(0)));
     // Nothing new is weighed against what is believed, so that the second belief alone decides.
-    let weighting = Weighting::Evidence { missed: 0.2, appeared: 0.0 };
-    let fusion = FusionParams { weighting, ..FusionParams::default() };
+    let weighting = MixtureWeighting::Evidence { missed: 0.2, appeared: 0.0 };
+    let fusion = FusionParams { mixture_weighting: weighting, ..FusionParams::default() };
     let params = LocalizerParams { fusion, ..*taught.params() };
     let mut localizer = Localizer::with_map(params, taught.into_map(), start).expect("valid");
     for step in 0..31 + TRAVEL {
@@ -168,7 +168,7 @@ fn n_alike(match_share: f64, start: impl Fn(Pose2<f64>) -> Start) -> usize {
 #[test]
 fn lost_robot_searches_with_a_wider_match_limit() {
     let wider = RelocationParams::default().match_share;
-    let as_ever = LocalizerParams::default().map.match_share;
+    let as_ever = LocalizerParams::default().map.match_limit_fraction;
     assert!(n_alike(wider, |_| Start::Anywhere) > n_alike(as_ever, |_| Start::Anywhere));
     let told = |at| Start::Known(known(at));
     assert_eq!(n_alike(wider, told), n_alike(as_ever, told));

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use wayfix_appearance_cml::{
-    AppearanceMap, Descriptor, Forgetting, ForgettingParams, ForgettingUncertainty, MapParams, PlaceUpdate,
-    ViewDifference, similarity,
+    AppearanceMap, AppearanceMapParams, Descriptor, ForgettingMode, ForgettingParams, ForgettingUncertainty,
+    PlaceUpdateRule, ViewDifference, similarity,
 };
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
@@ -25,22 +25,22 @@ fn at(x: f64) -> Gaussian<Pose2<f64>> {
 }
 
 /// The printed rules with E^max = 1 and round numbers.
-fn printed() -> MapParams {
-    MapParams {
+fn printed() -> AppearanceMapParams {
+    AppearanceMapParams {
         match_limit: Some(1.0),
         learning_rate: 0.5,
         min_weight: 0.01,
         active_forgetting: ForgettingParams {
             rate: 0.4,
             radius: Some(2.0),
-            gain: Some(0.1),
-            ..MapParams::as_published().active_forgetting
+            full_rate_sigma: Some(0.1),
+            ..AppearanceMapParams::as_published().active_forgetting
         },
-        ..MapParams::as_published()
+        ..AppearanceMapParams::as_published()
     }
 }
 
-fn map_of(views: &[(f64, f64)], params: &MapParams) -> AppearanceMap<Tone> {
+fn map_of(views: &[(f64, f64)], params: &AppearanceMapParams) -> AppearanceMap<Tone> {
     let mut map = AppearanceMap::default();
     for (tone, x) in views {
         map.learn(Tone(*tone), &at(*x), params).expect("a good pose");
@@ -94,7 +94,7 @@ fn what_is_not_seen_any_more_is_forgotten_only_actively() {
     let active = map_of(&[(0.0, 0.0), (3.0, 1.0)], &printed());
     // Eqs. 18-19: b = 0.4 · (1 − 1/2) · 0.1/(0.1 + 0.1).
     assert!((weights(&active)[0][0] - 0.5 * 0.9).abs() < 1e-12);
-    let passive = MapParams { forgetting: Forgetting::Passive, ..printed() };
+    let passive = AppearanceMapParams { forgetting_mode: ForgettingMode::Passive, ..printed() };
     assert_eq!(weights(&map_of(&[(0.0, 0.0), (3.0, 1.0)], &passive))[0], [0.5]);
     let far = map_of(&[(0.0, 0.0), (3.0, 2.5)], &printed());
     assert_eq!(weights(&far)[0], [0.5], "beyond the radius nothing is forgotten");
@@ -103,8 +103,11 @@ fn what_is_not_seen_any_more_is_forgotten_only_actively() {
 #[test]
 fn what_a_place_errs_by_does_not_slow_forgetting() {
     let uncertainty = ForgettingUncertainty::AgainstPlace;
-    let params = MapParams {
-        active_forgetting: ForgettingParams { uncertainty, ..printed().active_forgetting },
+    let params = AppearanceMapParams {
+        active_forgetting: ForgettingParams {
+            uncertainty_measure: uncertainty,
+            ..printed().active_forgetting
+        },
         ..printed()
     };
     // As uncertain as the place itself: at full rate, b = 0.4 · (1 − 1/2).
@@ -121,20 +124,28 @@ fn what_a_place_errs_by_does_not_slow_forgetting() {
 
 #[test]
 fn forgotten_references_go_and_the_map_stays_bounded() {
-    let params = MapParams {
-        active_forgetting: ForgettingParams { rate: 1.0, gain: Some(10.0), ..printed().active_forgetting },
+    let params = AppearanceMapParams {
+        active_forgetting: ForgettingParams {
+            rate: 1.0,
+            full_rate_sigma: Some(10.0),
+            ..printed().active_forgetting
+        },
         ..printed()
     };
     let map = map_of(&[(0.0, 0.0), (3.0, 0.0)], &params);
     assert_eq!(map.len(), 1, "the old view of this very spot is gone at once");
-    let few = MapParams { max_references: 3, ..printed() };
+    let few = AppearanceMapParams { max_references: 3, ..printed() };
     let many: Vec<(f64, f64)> = (0..9).map(|k| (2.0 * f64::from(k), 10.0 * f64::from(k))).collect();
     assert_eq!(map_of(&many, &few).len(), 3);
 }
 
 #[test]
 fn residuals_correct_places_without_drawing_them_together() {
-    let params = MapParams { place_update: PlaceUpdate::Residual, insertion: 10.0, ..printed() };
+    let params = AppearanceMapParams {
+        place_update: PlaceUpdateRule::Residual,
+        insertion_distance_factor: 10.0,
+        ..printed()
+    };
     let mut map: AppearanceMap<Tone> = AppearanceMap::default();
     for k in 0..5 {
         let view = Tone(0.1 * f64::from(k));

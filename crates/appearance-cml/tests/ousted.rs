@@ -6,7 +6,7 @@ use common::{Field, FieldView, beside, between, drifting, known};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_appearance_cml::{
-    AppearanceLocalizer, Event, FusionParams, LocalizerParams, RelocationParams, Start, Weighting,
+    AppearanceLocalizer, Event, FusionParams, LocalizerParams, MixtureWeighting, RelocationParams, Start,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
@@ -37,9 +37,9 @@ fn drive(seed: u64, ousted_way: f64) -> Drive {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let [aisle, here, strange, gap] = std::array::from_fn(|_| Field::new(&mut rng));
     // Nothing new is weighed against what is believed, so that the second belief alone decides.
-    let weighting = Weighting::Evidence { missed: 0.2, appeared: 0.0 };
+    let weighting = MixtureWeighting::Evidence { missed: 0.2, appeared: 0.0 };
     let params = LocalizerParams {
-        fusion: FusionParams { weighting, ..FusionParams::default() },
+        fusion: FusionParams { mixture_weighting: weighting, ..FusionParams::default() },
         relocation: RelocationParams { ousted_way, ..RelocationParams::default() },
         ..LocalizerParams::default()
     };

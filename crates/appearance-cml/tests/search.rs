@@ -4,8 +4,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
-    AppearanceError, AppearanceIndex, BoundTable, Bounded, Descriptor, LinearSearch, PanoramaDescriptor,
-    PanoramaTable, ReferenceId, ReferenceSearch,
+    AppearanceError, AppearanceIndex, BoundTable, Descriptor, LinearSearch, LowerBoundedDistance,
+    PanoramaBoundTable, PanoramaDescriptor, ReferenceId, ReferenceSearch,
 };
 
 const QUERY_SEED: u64 = 17;
@@ -99,8 +99,8 @@ fn answers_are_those_of_the_linear_scan_100_000_times() {
 fn bounds_keep_their_order() {
     let mut walk = Walk::new(QUERY_SEED);
     let views: Vec<PanoramaDescriptor> = (0..120).map(|_| walk.next()).collect();
-    let invariants: Vec<Vec<f64>> = views.iter().map(Bounded::invariants).collect();
-    let mut table = PanoramaTable::default();
+    let invariants: Vec<Vec<f64>> = views.iter().map(LowerBoundedDistance::invariants).collect();
+    let mut table = PanoramaBoundTable::default();
     views.iter().enumerate().for_each(|(slot, view)| table.put(slot, view));
     for (a, b) in (0..120 * 120).map(|pair| (pair / 120, pair % 120)) {
         let difference = invariants[a].iter().zip(&invariants[b]).map(|(x, y)| (x - y).powi(2));

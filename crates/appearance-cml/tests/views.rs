@@ -4,7 +4,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_appearance_cml::{
-    AppearanceError, Descriptor, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, TurnSense,
+    AppearanceError, AzimuthDirection, Descriptor, Panorama, PanoramaDescriptor, PanoramaFeatures,
+    PanoramaParams,
 };
 
 const COLUMNS: usize = 120;
@@ -46,7 +47,7 @@ fn view_distance_is_zero_to_itself_and_symmetric() {
 #[test]
 fn smoothing_brings_views_nearer_and_nothing_further() {
     let distances = |smoothing| {
-        let features = features(PanoramaParams { smoothing, ..PanoramaParams::default() });
+        let features = features(PanoramaParams { smoothing_sigma: smoothing, ..PanoramaParams::default() });
         let views: Vec<PanoramaDescriptor> =
             scenes(8).iter().map(|scene| features.describe(scene).unwrap()).collect();
         views[1..].iter().map(|view| views[0].compare(view).distance).collect::<Vec<f64>>()
@@ -70,8 +71,8 @@ fn the_triangle_inequality_holds() {
 
 #[test]
 fn rotated_view_gives_the_turn_and_the_same_distance() {
-    for (sense, sign) in [(TurnSense::Clockwise, -1.0), (TurnSense::Counterclockwise, 1.0)] {
-        let features = features(PanoramaParams { sense, ..PanoramaParams::default() });
+    for (sense, sign) in [(AzimuthDirection::Clockwise, -1.0), (AzimuthDirection::Counterclockwise, 1.0)] {
+        let features = features(PanoramaParams { azimuth_direction: sense, ..PanoramaParams::default() });
         let views = scenes(2);
         let [here, there] = [0, 1].map(|index: usize| features.describe(&views[index]).unwrap());
         for n in 0..COLUMNS {
@@ -148,8 +149,8 @@ fn parameters_outside_their_range_are_named() {
         (PanoramaParams { n_sectors: 2, ..good }, "n_sectors"),
         (PanoramaParams { n_harmonics: 1, ..good }, "n_harmonics"),
         (PanoramaParams { n_harmonics: 61, ..good }, "n_harmonics"),
-        (PanoramaParams { smoothing: f64::NAN, ..good }, "smoothing"),
-        (PanoramaParams { smoothing: -1.0, ..good }, "smoothing"),
+        (PanoramaParams { smoothing_sigma: f64::NAN, ..good }, "smoothing"),
+        (PanoramaParams { smoothing_sigma: -1.0, ..good }, "smoothing"),
         (PanoramaParams { min_contrast: f64::NAN, ..good }, "min_contrast"),
         (PanoramaParams { max_saturated: -0.1, ..good }, "max_saturated"),
     ] {

@@ -8,7 +8,7 @@ use std::{hint::black_box, sync::Arc};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_color_map::{
-    Camera, ColorMap, Projector, Span, ViewError,
+    Camera, ColorMap, MapRenderer, PixelSpan, RenderError,
     nalgebra::{UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::Pose3;
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // That of an ERS-7, and a camera of today.
     for (width, height) in [(208, 160), (640, 480)] {
         let camera = Camera::from_field_of_view(width, height, 56.9_f64.to_radians(), 45.2_f64.to_radians())?;
-        let mut projector = Projector::new(Arc::clone(&map), camera);
+        let mut projector = MapRenderer::new(Arc::clone(&map), camera);
         let poses = poses();
 
         let (mut n_spans, mut n_pixels) = (0, 0_usize);
@@ -70,7 +70,7 @@ fn poses() -> Vec<Pose3<f64>> {
 }
 
 /// A consumer that costs next to nothing.
-fn add(sum: &mut usize, span: Span) {
+fn add(sum: &mut usize, span: PixelSpan) {
     *sum += usize::from(span.end - span.start) * span.color.index();
 }
 
@@ -78,8 +78,8 @@ fn add(sum: &mut usize, span: Span) {
 fn report(
     job: &str,
     poses: &[Pose3<f64>],
-    mut view: impl FnMut(&Pose3<f64>) -> Result<usize, ViewError>,
-) -> Result<(), ViewError> {
+    mut view: impl FnMut(&Pose3<f64>) -> Result<usize, RenderError>,
+) -> Result<(), RenderError> {
     let mut best = f64::INFINITY;
     for _ in 0..15 {
         #[allow(clippy::disallowed_methods, reason = "a benchmark measures time")]

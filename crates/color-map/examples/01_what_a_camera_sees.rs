@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use wayfix_color_map::{
-    Band, Camera, ColorId, ColorMap, Projector, Shape,
+    Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PostBand,
     nalgebra::{UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::Pose3;
@@ -15,7 +15,7 @@ const LETTERS: [char; 4] = ['.', 'w', 'Y', 'P'];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let camera = Camera::from_field_of_view(96, 40, 57_f64.to_radians(), 45_f64.to_radians())?;
-    let mut projector = Projector::new(Arc::new(one_end()?), camera);
+    let mut projector = MapRenderer::new(Arc::new(one_end()?), camera);
 
     // In the middle of the field, 20 cm up, looking 10° to the left of the goal and 5° down.
     let (pitch, yaw) = (5_f64.to_radians(), 10_f64.to_radians());
@@ -42,13 +42,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn one_end() -> Result<ColorMap, wayfix_color_map::MapError> {
+fn one_end() -> Result<ColorMap, wayfix_color_map::ColorMapError> {
     let [green, white, yellow, pink] = [0, 1, 2, 3].map(ColorId);
-    let floor = |color, x: [f64; 2], y: [f64; 2]| Shape::Polygon {
+    let floor = |color, x: [f64; 2], y: [f64; 2]| ColoredShape::Polygon {
         color,
         vertices: [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| Vector3::new(x[i], y[j], 0.0)).to_vec(),
     };
-    let panel = |color, from: [f64; 2], to: [f64; 2], height| Shape::Polygon {
+    let panel = |color, from: [f64; 2], to: [f64; 2], height| ColoredShape::Polygon {
         color,
         vertices: vec![
             Vector3::new(from[0], from[1], 0.0),
@@ -57,7 +57,8 @@ fn one_end() -> Result<ColorMap, wayfix_color_map::MapError> {
             Vector3::new(from[0], from[1], height),
         ],
     };
-    let bands = vec![Band { color: yellow, from: 0.2, to: 0.3 }, Band { color: pink, from: 0.3, to: 0.4 }];
+    let bands =
+        vec![PostBand { color: yellow, from: 0.2, to: 0.3 }, PostBand { color: pink, from: 0.3, to: 0.4 }];
     let shapes = vec![
         floor(green, [-2.4, 2.4], [-1.35, 1.35]),
         floor(white, [2.05, 2.1], [-0.3, 0.3]), // later, so on top
@@ -67,7 +68,7 @@ fn one_end() -> Result<ColorMap, wayfix_color_map::MapError> {
         panel(white, [2.1, 0.3], [2.1, 1.35], 0.1),
         panel(white, [2.1, -1.35], [2.1, -0.3], 0.1),
         panel(white, [-2.1, 1.35], [2.1, 1.35], 0.1),
-        Shape::Post { x: 2.1, y: 1.5, radius: 0.05, bands },
+        ColoredShape::Post { x: 2.1, y: 1.5, radius: 0.05, bands },
     ];
     ColorMap::new(COLORS.map(String::from).to_vec(), shapes)
 }

@@ -4,7 +4,7 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use wayfix_color_map::{Band, Camera, ColorId, ColorMap, Projector, Shape, Span};
+use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PixelSpan, PostBand};
 use wayfix_estimation_traits::{LieGroup, Pose3};
 
 /// Columns and rows that a colour reaches, ends excluded.
@@ -15,11 +15,11 @@ struct Bounds {
 }
 
 impl Bounds {
-    fn of(span: Span) -> Self {
+    fn of(span: PixelSpan) -> Self {
         Self { columns: span.start..span.end, rows: span.row..span.row + 1 }
     }
 
-    fn add(&mut self, span: Span) {
+    fn add(&mut self, span: PixelSpan) {
         self.columns = self.columns.start.min(span.start)..self.columns.end.max(span.end);
         self.rows = self.rows.start.min(span.row)..self.rows.end.max(span.row + 1);
     }
@@ -28,13 +28,14 @@ impl Bounds {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (pink, cyan) = (ColorId(0), ColorId(1));
     // A beacon two metres ahead; its bands meet at the height of the eye.
-    let bands = vec![Band { color: pink, from: -0.1, to: 0.0 }, Band { color: cyan, from: 0.0, to: 0.1 }];
-    let beacon = Shape::Post { x: 2.0, y: 0.0, radius: 0.05, bands };
+    let bands =
+        vec![PostBand { color: pink, from: -0.1, to: 0.0 }, PostBand { color: cyan, from: 0.0, to: 0.1 }];
+    let beacon = ColoredShape::Post { x: 2.0, y: 0.0, radius: 0.05, bands };
     let map = ColorMap::new(vec!["pink".into(), "cyan".into()], vec![beacon])?;
     let camera = Camera::new(208, 160, 192.0, 192.0, 104.0, 80.0)?;
 
     let mut bounds: BTreeMap<ColorId, Bounds> = BTreeMap::new();
-    Projector::new(Arc::new(map), camera).spans(&Pose3::identity(), &mut |span| {
+    MapRenderer::new(Arc::new(map), camera).spans(&Pose3::identity(), &mut |span| {
         bounds.entry(span.color).and_modify(|bounds| bounds.add(span)).or_insert_with(|| Bounds::of(span));
     })?;
     println!("{bounds:?}");

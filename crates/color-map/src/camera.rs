@@ -1,6 +1,6 @@
 use nalgebra::{Vector2, Vector3};
 
-use crate::ViewError;
+use crate::RenderError;
 
 /// Most pixels a side.
 const MAX_SIDE: u32 = 16384;
@@ -21,7 +21,7 @@ const MAX_PIXELS: f64 = 1e6;
 /// assert_eq!((ahead.x, ahead.y), (104.0, 80.0));
 /// let again = camera.project(&camera.ray(10.5, 20.5)).unwrap();
 /// assert!((again.x - 10.5).abs() < 1e-12 && (again.y - 20.5).abs() < 1e-12);
-/// # Ok::<(), wayfix_color_map::ViewError>(())
+/// # Ok::<(), wayfix_color_map::RenderError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -37,9 +37,9 @@ impl Camera {
     /// A camera of `width` × `height` pixels with focal lengths and the optical axis' place, all in pixels.
     ///
     /// # Errors
-    /// [`ViewError::Camera`]: sides outside 1 to 16384, focal lengths outside (0, 1e6], an axis beyond ±1e6, anything NaN.
-    pub fn new(width: u32, height: u32, fx: f64, fy: f64, cx: f64, cy: f64) -> Result<Self, ViewError> {
-        let error = |what, value, must| Err(ViewError::Camera { what, value, must });
+    /// [`RenderError::Camera`]: sides outside 1 to 16384, focal lengths outside (0, 1e6], an axis beyond ±1e6, anything NaN.
+    pub fn new(width: u32, height: u32, fx: f64, fy: f64, cx: f64, cy: f64) -> Result<Self, RenderError> {
+        let error = |what, value, must| Err(RenderError::Camera { what, value, must });
         for (what, side) in [("width, pixels", width), ("height, pixels", height)] {
             if !(1..=MAX_SIDE).contains(&side) {
                 return error(what, f64::from(side), "from 1 to 16384");
@@ -66,12 +66,12 @@ impl Camera {
         height: u32,
         horizontal_rad: f64,
         vertical_rad: f64,
-    ) -> Result<Self, ViewError> {
+    ) -> Result<Self, RenderError> {
         for (what, angle) in
             [("horizontal angle, rad", horizontal_rad), ("vertical angle, rad", vertical_rad)]
         {
             if !(angle > 0.0 && angle < std::f64::consts::PI) {
-                return Err(ViewError::Camera { what, value: angle, must: "above 0 and below π" });
+                return Err(RenderError::Camera { what, value: angle, must: "above 0 and below π" });
             }
         }
         let (cx, cy) = (0.5 * f64::from(width), 0.5 * f64::from(height));
@@ -82,7 +82,7 @@ impl Camera {
     /// The camera for images averaged over squares of `by` × `by` pixels; incomplete squares at the right and at the bottom are
     /// dropped.
     /// # Errors
-    /// [`ViewError::Camera`]: no square fits into the image, or `by` is 0.
+    /// [`RenderError::Camera`]: no square fits into the image, or `by` is 0.
     ///
     /// ```
     /// # use nalgebra::Vector3;
@@ -91,9 +91,9 @@ impl Camera {
     /// let small = camera.shrunk(2)?;
     /// let (point, half) = (Vector3::new(2.0, 0.3, 0.1), small.project(&Vector3::new(2.0, 0.3, 0.1)).unwrap());
     /// assert!((camera.project(&point).unwrap() / 2.0 - half).norm() < 1e-12);
-    /// # Ok::<(), wayfix_color_map::ViewError>(())
+    /// # Ok::<(), wayfix_color_map::RenderError>(())
     /// ```
-    pub fn shrunk(&self, by: u32) -> Result<Self, ViewError> {
+    pub fn shrunk(&self, by: u32) -> Result<Self, RenderError> {
         let side = |n: u32| n.checked_div(by).unwrap_or(0);
         let share = 1.0 / f64::from(by.max(1));
         let [fx, fy, cx, cy] = [self.fx, self.fy, self.cx, self.cy].map(|value| value * share);

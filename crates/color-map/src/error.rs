@@ -1,7 +1,7 @@
 /// Errors of building a map. `shape` is the index of the invalid shape.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum MapError {
+pub enum ColorMapError {
     /// More colours than a label image can represent.
     #[error("{got} colours, at most {limit} are possible")]
     TooManyColors {
@@ -127,7 +127,7 @@ pub enum MapError {
 /// Errors of rendering a view. No span was emitted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum ViewError {
+pub enum RenderError {
     /// A parameter of the camera is out of range.
     #[error("camera: {what} is {value}, must be {must}")]
     Camera {

@@ -1,4 +1,4 @@
-use crate::{ColorId, Span, ViewError};
+use crate::{ColorId, PixelSpan, RenderError};
 
 /// A map colour, or none, for every pixel.
 ///
@@ -10,7 +10,7 @@ use crate::{ColorId, Span, ViewError};
 /// assert_eq!(labels.get(1, 0), Some(ColorId(0)));
 /// assert_eq!(labels.count(ColorId(2)), 2);
 /// assert_eq!(labels.to_codes(), [0, 1, 3, 3]);
-/// # Ok::<(), wayfix_color_map::ViewError>(())
+/// # Ok::<(), wayfix_color_map::RenderError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LabelImage {
@@ -28,11 +28,11 @@ impl LabelImage {
     /// Labels from bytes, row by row from the top.
     ///
     /// # Errors
-    /// Returns [`ViewError::Size`] if their number is not `width * height`.
-    pub fn from_codes(width: u32, height: u32, codes: &[u8]) -> Result<Self, ViewError> {
+    /// Returns [`RenderError::Size`] if their number is not `width * height`.
+    pub fn from_codes(width: u32, height: u32, codes: &[u8]) -> Result<Self, RenderError> {
         let expected = width as usize * height as usize;
         if codes.len() != expected {
-            return Err(ViewError::Size { width, height, expected, got: codes.len() });
+            return Err(RenderError::Size { width, height, expected, got: codes.len() });
         }
         Ok(Self {
             width,
@@ -74,7 +74,7 @@ impl LabelImage {
         self.pixels.iter().filter(|&&pixel| pixel == Some(color)).count()
     }
 
-    pub(crate) fn paint(&mut self, span: Span) {
+    pub(crate) fn paint(&mut self, span: PixelSpan) {
         let row = usize::from(span.row) * self.width as usize;
         self.pixels[row + usize::from(span.start)..row + usize::from(span.end)].fill(Some(span.color));
     }

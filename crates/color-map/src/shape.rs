@@ -4,7 +4,7 @@ use crate::ColorId;
 
 /// A coloured thing in a map. Metres, in the world frame.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum ColoredShape {
     /// A flat convex surface, visible from both sides.
     ///
     /// Polygons on one plane are decals: a later one covers an earlier one, seen from either side.
@@ -26,13 +26,13 @@ pub enum Shape {
         /// Radius of the cylinder that the prism approximates.
         radius: f64,
         /// Colours from the bottom up; they may leave gaps.
-        bands: Vec<Band>,
+        bands: Vec<PostBand>,
     },
 }
 
-/// One colour of a [`Shape::Post`], between two heights.
+/// One colour of a [`ColoredShape::Post`], between two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Band {
+pub struct PostBand {
     /// Its colour.
     pub color: ColorId,
     /// Lower end, metres above the carpet.

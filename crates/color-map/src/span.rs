@@ -2,7 +2,7 @@ use crate::ColorId;
 
 /// A run of pixels in one row whose centres show one colour: columns `start..end`, never empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Span {
+pub struct PixelSpan {
     /// Row of the image, 0 at the top.
     pub row: u16,
     /// First column.

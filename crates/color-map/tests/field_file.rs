@@ -2,13 +2,13 @@
 
 mod support;
 
-use wayfix_color_map::{ColorMap, Shape};
+use wayfix_color_map::{ColorMap, ColoredShape};
 
 #[test]
 fn the_field_reads_and_comes_back_from_both_formats() {
     let field = support::field();
     assert_eq!(field.colors(), ["green", "white", "yellow", "cyan", "pink"]);
-    let posts = field.shapes().iter().filter(|shape| matches!(shape, Shape::Post { .. })).count();
+    let posts = field.shapes().iter().filter(|shape| matches!(shape, ColoredShape::Post { .. })).count();
     assert_eq!(posts, 6);
 
     let again: ColorMap = toml::from_str(&toml::to_string(&field).unwrap()).unwrap();

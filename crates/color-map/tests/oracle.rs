@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{cast_labels, first_difference, random_camera, random_pose};
 use wayfix_color_map::{
-    Band, Camera, ColorId, ColorMap, Projector, Shape,
+    Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PostBand,
     nalgebra::{Quaternion, UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::{LieGroup, Pose3};
@@ -29,7 +29,7 @@ fn compare(map: &Arc<ColorMap>, n: usize, reach: f64, rng: &mut ChaCha8Rng) -> f
     for i in 0..n {
         let camera = random_camera(rng);
         let pose = random_pose(rng, reach);
-        let got = Projector::new(Arc::clone(map), camera).labels(&pose).expect("a valid pose");
+        let got = MapRenderer::new(Arc::clone(map), camera).labels(&pose).expect("a valid pose");
         let expected = cast_labels(map, &camera, &pose);
         assert_eq!(first_difference(&got, &expected), None, "view {i}: {pose:?} {camera:?}");
         n_labelled += got.pixels().iter().flatten().count();
@@ -55,7 +55,7 @@ fn surfaces_that_pierce_each_other() {
         for i in 0..n {
             let mut corner = || Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0));
             let vertices = vec![corner(), corner(), corner()];
-            shapes.push(Shape::Polygon { color: ColorId(i % N_COLORS), vertices });
+            shapes.push(ColoredShape::Polygon { color: ColorId(i % N_COLORS), vertices });
         }
         let map = Arc::new(ColorMap::new(names(), shapes).unwrap());
         let share = compare(&map, 150, 1.5, &mut rng);
@@ -75,7 +75,7 @@ fn a_cycle_of_hiding() {
             corner(1.5, 0.8, -0.5),
             corner(-1.5, 0.8, 0.5),
         ];
-        Shape::Polygon { color: ColorId(color), vertices }
+        ColoredShape::Polygon { color: ColorId(color), vertices }
     };
     let third = std::f64::consts::TAU / 3.0;
     let shapes = vec![board(0, 0.0), board(1, third), board(2, 2.0 * third)];
@@ -88,7 +88,7 @@ fn a_cycle_of_hiding() {
 fn posts_cut_by_planes() {
     let mut rng = ChaCha8Rng::seed_from_u64(46);
     let mut shapes = Vec::new();
-    let square = |color, z: f64, slope: f64| Shape::Polygon {
+    let square = |color, z: f64, slope: f64| ColoredShape::Polygon {
         color: ColorId(color),
         vertices: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|[x, y]| Vector3::new(x, y, z + slope * x))
@@ -101,10 +101,10 @@ fn posts_cut_by_planes() {
         let mut band = |k| {
             let from = z + if k == 2 { 0.1 } else { 0.0 };
             z = from + rng.random_range(0.05..0.4);
-            Band { color: color(k), from, to: z }
+            PostBand { color: color(k), from, to: z }
         };
         let bands = vec![band(0), band(1), band(2)];
-        shapes.push(Shape::Post { x, y, radius: rng.random_range(0.05..0.3), bands });
+        shapes.push(ColoredShape::Post { x, y, radius: rng.random_range(0.05..0.3), bands });
     }
     let map = Arc::new(ColorMap::new(names(), shapes).unwrap());
     assert!(compare(&map, 600, 1.5, &mut rng) > 0.2);
@@ -114,7 +114,7 @@ fn posts_cut_by_planes() {
 /// that shows one colour from all of them must show it from the grid, too.
 #[test]
 fn on_a_grid() {
-    let board = |color, x: f64, y: f64, z: f64| Shape::Polygon {
+    let board = |color, x: f64, y: f64, z: f64| ColoredShape::Polygon {
         color: ColorId(color),
         vertices: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
             .map(|[right, up]| Vector3::new(x, y - right, z + up))
@@ -128,7 +128,7 @@ fn on_a_grid() {
         board(3, 2.0, 0.0, -1.0),
     ];
     let mut shapes = front.to_vec();
-    shapes.push(Shape::Polygon {
+    shapes.push(ColoredShape::Polygon {
         color: ColorId(4),
         vertices: [[-3.0, -3.0], [3.0, -3.0], [3.0, 3.0], [-3.0, 3.0]]
             .map(|[y, z]| Vector3::new(4.0, y, z))
@@ -137,9 +137,9 @@ fn on_a_grid() {
     let map = Arc::new(ColorMap::new(names(), shapes).unwrap());
     // Pixel centres at multiples of 1/8 m on the front boards.
     let camera = Camera::new(33, 33, 16.0, 16.0, 16.5, 16.5).unwrap();
-    let mut projector = Projector::new(Arc::clone(&map), camera);
+    let mut projector = MapRenderer::new(Arc::clone(&map), camera);
     for (y, z) in [(0.0, 0.0), (0.125, 0.0), (0.0, -0.25), (0.5, 0.125)] {
-        let labels_at = |dy: f64, dz: f64, projector: &mut Projector| {
+        let labels_at = |dy: f64, dz: f64, projector: &mut MapRenderer| {
             let pose = Pose3 { translation: Vector3::new(0.0, y + dy, z + dz), ..Pose3::identity() };
             projector.labels(&pose).unwrap()
         };
@@ -158,7 +158,7 @@ fn on_a_grid() {
 /// A floor that walls cut into many pieces stays one floor: nothing shows through the seams, not even where a ray hits one exactly.
 #[test]
 fn no_gap_between_the_pieces_of_a_surface() {
-    let mut shapes = vec![Shape::Polygon {
+    let mut shapes = vec![ColoredShape::Polygon {
         color: ColorId(0),
         vertices: [[-6.0, -6.0], [6.0, -6.0], [6.0, 6.0], [-6.0, 6.0]]
             .map(|[x, y]| Vector3::new(x, y, 0.0))
@@ -170,12 +170,12 @@ fn no_gap_between_the_pieces_of_a_surface() {
         for (x, y) in [(1.0, 0.0), (0.0, 1.0), (0.6, 0.8)] {
             let corner = |along: f64, z: f64| Vector3::new(at * y + along * x, at * x - along * y, z);
             let vertices = vec![corner(2.5, -0.1), corner(2.6, -0.1), corner(2.6, 0.1), corner(2.5, 0.1)];
-            shapes.push(Shape::Polygon { color: ColorId(1), vertices });
+            shapes.push(ColoredShape::Polygon { color: ColorId(1), vertices });
         }
     }
     let map = Arc::new(ColorMap::new(names(), shapes).unwrap());
     let camera = Camera::new(97, 65, 16.0, 16.0, 48.5, 32.5).unwrap();
-    let mut projector = Projector::new(map, camera);
+    let mut projector = MapRenderer::new(map, camera);
     let mut rng = ChaCha8Rng::seed_from_u64(47);
     // Straight down on a camera whose rays hit multiples of 1/16 m, of 1/8 m, and between.
     let down = Quaternion::new(1.0, 0.0, 1.0, 0.0);
@@ -194,7 +194,7 @@ fn no_gap_between_the_pieces_of_a_surface() {
 fn boxes() -> impl Strategy<Value = ColorMap> {
     let cell = (0.05..0.95, 0.05..0.95, 0.1..0.9, 0.05..1.5, any::<bool>());
     prop::collection::vec(cell, 1..10).prop_map(|cells| {
-        let mut shapes = vec![Shape::Polygon {
+        let mut shapes = vec![ColoredShape::Polygon {
             color: ColorId(0),
             vertices: [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]]
                 .map(|[x, y]| Vector3::new(x, y, 0.0))
@@ -206,8 +206,8 @@ fn boxes() -> impl Strategy<Value = ColorMap> {
             let color = |face: usize| ColorId(1 + ((i + face) % 6) as u8);
             if round {
                 let radius = 0.4 * place;
-                let bands = vec![Band { color: color(0), from: 0.0, to: height }];
-                shapes.push(Shape::Post { x: corner.x + 0.5, y: corner.y + 0.5, radius, bands });
+                let bands = vec![PostBand { color: color(0), from: 0.0, to: height }];
+                shapes.push(ColoredShape::Post { x: corner.x + 0.5, y: corner.y + 0.5, radius, bands });
                 continue;
             }
             for axis in 0..3 {
@@ -218,7 +218,7 @@ fn boxes() -> impl Strategy<Value = ColorMap> {
                         (share[(axis + 1) % 3], share[(axis + 2) % 3]) = (a, b);
                         corner + size.component_mul(&share)
                     });
-                    shapes.push(Shape::Polygon {
+                    shapes.push(ColoredShape::Polygon {
                         color: color(axis * 2 + usize::from(far)),
                         vertices: vertices.to_vec(),
                     });
@@ -244,7 +244,7 @@ proptest! {
         let pose = Pose3 { translation: Vector3::from(at), rotation };
         let camera = Camera::from_field_of_view(70, 50, 1.3, 1.0).unwrap();
         let map = Arc::new(map);
-        let got = Projector::new(Arc::clone(&map), camera).labels(&pose).unwrap();
+        let got = MapRenderer::new(Arc::clone(&map), camera).labels(&pose).unwrap();
         prop_assert_eq!(first_difference(&got, &cast_labels(&map, &camera, &pose)), None);
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use wayfix_color_map::{
-    Band, Camera, ColorId, ColorMap, LabelImage, Projector, Shape, Span,
+    Camera, ColorId, ColorMap, ColoredShape, LabelImage, MapRenderer, PixelSpan, PostBand,
     nalgebra::{UnitQuaternion, Vector3},
 };
 use wayfix_estimation_traits::{LieGroup, Pose3};
@@ -12,20 +12,20 @@ const RED: ColorId = ColorId(0);
 const BLUE: ColorId = ColorId(1);
 const GREY: ColorId = ColorId(2);
 
-fn map(shapes: Vec<Shape>) -> Arc<ColorMap> {
+fn map(shapes: Vec<ColoredShape>) -> Arc<ColorMap> {
     Arc::new(ColorMap::new(["red", "blue", "grey"].map(String::from).to_vec(), shapes).expect("a valid map"))
 }
 
 /// A board across the x axis, between two y and two z.
-fn board(color: ColorId, x: f64, y: [f64; 2], z: [f64; 2]) -> Shape {
+fn board(color: ColorId, x: f64, y: [f64; 2], z: [f64; 2]) -> ColoredShape {
     let corners = [[y[0], z[0]], [y[1], z[0]], [y[1], z[1]], [y[0], z[1]]];
-    Shape::Polygon { color, vertices: corners.map(|[y, z]| Vector3::new(x, y, z)).to_vec() }
+    ColoredShape::Polygon { color, vertices: corners.map(|[y, z]| Vector3::new(x, y, z)).to_vec() }
 }
 
 /// A rectangle on the floor.
-fn rug(color: ColorId, x: [f64; 2], y: [f64; 2]) -> Shape {
+fn rug(color: ColorId, x: [f64; 2], y: [f64; 2]) -> ColoredShape {
     let corners = [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
-    Shape::Polygon { color, vertices: corners.map(|[x, y]| Vector3::new(x, y, 0.0)).to_vec() }
+    ColoredShape::Polygon { color, vertices: corners.map(|[x, y]| Vector3::new(x, y, 0.0)).to_vec() }
 }
 
 /// 100 pixels of focal length, the axis in the middle of 100 × 80 pixels.
@@ -34,7 +34,7 @@ fn camera() -> Camera {
 }
 
 fn see(map: &Arc<ColorMap>, pose: &Pose3<f64>) -> LabelImage {
-    Projector::new(Arc::clone(map), camera()).labels(pose).expect("a valid pose")
+    MapRenderer::new(Arc::clone(map), camera()).labels(pose).expect("a valid pose")
 }
 
 fn at(x: f64, y: f64, z: f64) -> Pose3<f64> {
@@ -47,8 +47,8 @@ fn a_wall_at_two_metres() {
     // The first column with its centre at or right of 29.8 is 30, of 62.5 it is 62; the rows are 24 to 59.
     let map = map(vec![board(RED, 2.0, [-0.25, 0.404], [-0.4, 0.31])]);
     let mut spans = Vec::new();
-    Projector::new(map, camera()).spans(&Pose3::identity(), &mut |span| spans.push(span)).unwrap();
-    let expected: Vec<_> = (24..60).map(|row| Span { row, start: 30, end: 62, color: RED }).collect();
+    MapRenderer::new(map, camera()).spans(&Pose3::identity(), &mut |span| spans.push(span)).unwrap();
+    let expected: Vec<_> = (24..60).map(|row| PixelSpan { row, start: 30, end: 62, color: RED }).collect();
     assert_eq!(spans, expected);
 }
 
@@ -59,7 +59,7 @@ fn the_camera_looks_where_its_pose_says() {
     let corners = [[-0.404, -0.4], [0.25, -0.4], [0.25, 0.31], [-0.404, 0.31]];
     let vertices = corners.map(|[x, z]| Vector3::new(x, 2.0, z)).to_vec();
     let labels = see(
-        &map(vec![Shape::Polygon { color: RED, vertices }]),
+        &map(vec![ColoredShape::Polygon { color: RED, vertices }]),
         &Pose3 { rotation: turned, ..at(0.0, 0.0, 0.0) },
     );
     assert_eq!(labels.count(RED), 32 * 36);
@@ -116,8 +116,9 @@ fn what_is_behind_beside_and_above_is_not_seen() {
 
 #[test]
 fn bands_of_a_post_are_above_each_other() {
-    let bands = vec![Band { color: RED, from: 0.0, to: 0.2 }, Band { color: BLUE, from: 0.2, to: 0.4 }];
-    let post = Shape::Post { x: 1.0, y: 0.0, radius: 0.05, bands };
+    let bands =
+        vec![PostBand { color: RED, from: 0.0, to: 0.2 }, PostBand { color: BLUE, from: 0.2, to: 0.4 }];
+    let post = ColoredShape::Post { x: 1.0, y: 0.0, radius: 0.05, bands };
     let labels = see(&map(vec![post]), &at(0.0, 0.0, 0.2));
     // The border is at the eye's height: the horizon. Half the width, at the silhouette, is 100 tan(asin(0.05)) = 5.006 for the cylinder; the
     // prism that stands for it lies within 0.7 % outside and 1.3 % inside of that: 4.94 to 5.04, which covers the same pixel centres.
@@ -132,8 +133,9 @@ fn bands_of_a_post_are_above_each_other() {
 
 #[test]
 fn a_post_is_not_seen_from_inside() {
-    let bands = vec![Band { color: RED, from: 0.0, to: 1.0 }];
-    let labels = see(&map(vec![Shape::Post { x: 0.0, y: 0.0, radius: 0.3, bands }]), &at(0.0, 0.0, 0.5));
+    let bands = vec![PostBand { color: RED, from: 0.0, to: 1.0 }];
+    let labels =
+        see(&map(vec![ColoredShape::Post { x: 0.0, y: 0.0, radius: 0.3, bands }]), &at(0.0, 0.0, 0.5));
     assert_eq!(labels.count(RED), 0);
 }
 
@@ -142,14 +144,14 @@ fn a_wide_image_is_covered_across_its_words() {
     let camera = Camera::new(16384, 2, 100.0, 100.0, 8192.0, 1.0).unwrap();
     let map =
         map(vec![board(RED, 1.0, [-200.0, 200.0], [-1.0, 1.0]), board(BLUE, 0.5, [-0.1, 0.1], [-1.0, 1.0])]);
-    let labels = Projector::new(map, camera).labels(&Pose3::identity()).unwrap();
+    let labels = MapRenderer::new(map, camera).labels(&Pose3::identity()).unwrap();
     assert_eq!((labels.count(BLUE), labels.count(RED)), (2 * 40, 2 * (16384 - 40)));
 }
 
 #[test]
 fn a_projector_remembers_nothing_of_the_last_view() {
     let map = map(vec![rug(GREY, [-2.0, 2.0], [-2.0, 2.0]), board(RED, 1.0, [-0.5, 0.5], [0.0, 0.5])]);
-    let mut projector = Projector::new(Arc::clone(&map), camera());
+    let mut projector = MapRenderer::new(Arc::clone(&map), camera());
     let first = projector.labels(&at(0.0, 0.1, 0.3)).unwrap();
     projector.labels(&at(-1.0, 0.0, 0.4)).unwrap();
     assert_eq!(projector.labels(&at(0.0, 0.1, 0.3)).unwrap(), first);

@@ -9,10 +9,11 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use wayfix_color_map::{Camera, ColorMap, Projector};
+use wayfix_color_map::{Camera, ColorMap, MapRenderer};
 use wayfix_color_model::{
-    Classifier, ColorLocalizer, ColorMeans, Frame, LightingBank, LightingFilter, LightingParams,
-    LocalizerParams, LookUpTable, PixelParams, PixelSums, Start, YuvImage, gather,
+    ColorLocalizer, ColorLookUpTable, ColorMeans, LightingBank, LightingFilter, LightingParams,
+    LocalizerParams, PixelClassifier, PixelLikelihoodParams, PixelSums, PrefixSumImage, Start, YuvImage,
+    gather,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -37,10 +38,10 @@ fn main() {
     }
     .compose(&mount);
     let image = picture(&map, camera, &camera_pose);
-    let frame = Frame::new(&image).expect("not too wide");
+    let frame = PrefixSumImage::new(&image).expect("not too wide");
 
-    report("frame sums 208x160", 50, || Frame::new(&image).map(|frame| frame.n_pixels()));
-    let mut projector = Projector::new(Arc::clone(&map), camera);
+    report("frame sums 208x160", 50, || PrefixSumImage::new(&image).map(|frame| frame.n_pixels()));
+    let mut projector = MapRenderer::new(Arc::clone(&map), camera);
     report("spans of a view", 2000, || {
         let mut n = 0;
         projector.spans(&camera_pose, &mut |span| n += usize::from(span.end - span.start)).map(|()| n)
@@ -56,13 +57,13 @@ fn main() {
     let lit = bank();
     report("lighting update", 2000, || lit.clone().update_member(1, &means));
 
-    let light = PixelParams::default().shaded(lit.member(1).colors());
+    let light = PixelLikelihoodParams::default().shaded(lit.member(1).colors());
     report("classify 208x160, exact", 20, || {
-        Classifier::new(light.iter().copied()).map(|exact| exact.classify_image(&image))
+        PixelClassifier::new(light.iter().copied()).map(|exact| exact.classify_image(&image))
     });
-    let table = LookUpTable::new(light.clone(), None).expect("a proper light");
+    let table = ColorLookUpTable::new(light.clone(), None).expect("a proper light");
     report("classify 208x160, table", 50, || table.classify_image(&image));
-    report("compile the table", 3, || LookUpTable::new(light.clone(), None));
+    report("compile the table", 3, || ColorLookUpTable::new(light.clone(), None));
 
     let params = LocalizerParams { min_particles: 1000, ..LocalizerParams::default() };
     let start = Start::Near(Gaussian::from_sigmas(body, &Vector3::new(0.05, 0.05, 0.05)).expect("sigmas"));
@@ -76,7 +77,7 @@ fn main() {
 
 /// The map in its light, with some noise, in front of grey.
 fn picture(map: &Arc<ColorMap>, camera: Camera, pose: &Pose3<f64>) -> YuvImage {
-    let labels = Projector::new(Arc::clone(map), camera).labels(pose).expect("a finite pose");
+    let labels = MapRenderer::new(Arc::clone(map), camera).labels(pose).expect("a finite pose");
     let paint = |(at, label): (usize, &Option<wayfix_color_map::ColorId>)| {
         let noise = (at * 7919 % 13) as f64 - 6.0;
         label.map_or([110.0, 128.0, 128.0], |color| LIGHT[color.index()]).map(|value| (value + noise) as u8)

@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use wayfix_color_model::{
-    ColorDensity, ColorMeans, ColorModelError, LightTracker, LightingFilter, LightingParams,
+    ColorDensity, ColorMeans, ColorModelError, LightingFilter, LightingParams, LightingTracker,
 };
 use wayfix_gaussian_core::Gaussian;
 
@@ -13,7 +13,7 @@ struct RunningMean {
     colors: Vec<ColorDensity>,
 }
 
-impl LightTracker for RunningMean {
+impl LightingTracker for RunningMean {
     fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         // The law: without images, colours become less certain.
         for color in &mut self.colors {
@@ -37,7 +37,7 @@ impl LightTracker for RunningMean {
 }
 
 /// Ten images of a light that grows; the second colour is in sight in the last one only. How far off is it before that?
-fn surprise(tracker: &mut impl LightTracker) -> Result<f64, ColorModelError> {
+fn surprise(tracker: &mut impl LightingTracker) -> Result<f64, ColorModelError> {
     for k in 0..10 {
         tracker.predict(1.0)?;
         let brightness = 100.0 + 5.0 * f64::from(k);

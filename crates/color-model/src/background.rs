@@ -1,9 +1,9 @@
 /// Colour distribution of pixels that show no map surface.
 ///
 /// Densities of two poses are comparable only if both explain every pixel of the image; a pixel without a label counts as background. Uniform over
-/// the $`256^3`$ colours unless learned. For a custom one, use [`Background::Histogram`] with pixels known to be outside the map.
+/// the $`256^3`$ colours unless learned. For a custom one, use [`BackgroundColorModel::Histogram`] with pixels known to be outside the map.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Background {
+pub enum BackgroundColorModel {
     /// All YUV values are equally likely.
     #[default]
     Uniform,
@@ -14,14 +14,14 @@ pub enum Background {
 const CELLS: usize = 1 << 12;
 const COLOURS: f64 = 16_777_216.0;
 
-impl Background {
+impl BackgroundColorModel {
     /// Learns from pixels outside the map; without pixels the density is uniform.
     /// ```
-    /// use wayfix_color_model::Background;
-    /// let wall = Background::learned([[200, 120, 130]; 5000].iter().copied());
-    /// assert!(wall.log_density([201, 121, 131]) > Background::Uniform.log_density([201, 121, 131]) + 5.0);
+    /// use wayfix_color_model::BackgroundColorModel;
+    /// let wall = BackgroundColorModel::from_pixels([[200, 120, 130]; 5000].iter().copied());
+    /// assert!(wall.log_density([201, 121, 131]) > BackgroundColorModel::Uniform.log_density([201, 121, 131]) + 5.0);
     /// ```
-    pub fn learned(pixels: impl IntoIterator<Item = [u8; 3]>) -> Self {
+    pub fn from_pixels(pixels: impl IntoIterator<Item = [u8; 3]>) -> Self {
         let mut counts = vec![1.0; CELLS];
         for pixel in pixels {
             counts[cell(pixel)] += 1.0;
@@ -50,8 +50,8 @@ mod tests {
 
     #[test]
     fn densities_sum_to_one_over_all_colours() {
-        let learned = Background::learned([[10, 20, 30], [10, 20, 31], [250, 0, 255]]);
-        for background in [learned, Background::Uniform] {
+        let learned = BackgroundColorModel::from_pixels([[10, 20, 30], [10, 20, 31], [250, 0, 255]]);
+        for background in [learned, BackgroundColorModel::Uniform] {
             let centre = |k: usize| [(k >> 8) as u8 * 16, ((k >> 4) & 15) as u8 * 16, (k & 15) as u8 * 16];
             let sum: f64 =
                 (0..CELLS).map(|k| background.log_density(centre(k)).exp() * COLOURS / CELLS as f64).sum();

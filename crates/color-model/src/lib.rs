@@ -10,24 +10,25 @@ mod localizer;
 mod prior;
 mod yuv;
 
-pub use background::Background;
-pub use classify::{Blob, Classifier, LookUpTable, find_blobs};
+pub use background::BackgroundColorModel;
+pub use classify::{ColorBlob, ColorLookUpTable, PixelClassifier, find_blobs};
 pub use error::ColorModelError;
-pub use frame::{Frame, PixelSums};
+pub use frame::{PixelSums, PrefixSumImage};
 pub use lighting::{
-    Choice, ColorDensity, ColorMeans, Drift, Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker,
-    LightingBank, LightingFilter, LightingParams, Unseen,
+    ColorDensity, ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker,
+    LightingBank, LightingDrift, LightingFilter, LightingParams, LightingTracker, SelectedLightingFilter,
+    UnseenColorRule,
 };
 pub use likelihood::{
-    FeatureLikelihood, FeatureParams, PixelLight, PixelLikelihood, PixelParams, SpanLikelihood, SumDensity,
-    ViewLikelihood, gather,
+    CameraPoseLikelihood, FeatureLikelihood, FeatureLikelihoodParams, LightErrorCorrelation, PixelLikelihood,
+    PixelLikelihoodParams, PixelSpanLikelihood, PixelSumDensity, gather,
 };
 pub use localizer::{
     AcquisitionParams, CameraError, CameraLocation, CameraNoise, ColorLocalizer, Fix, FrameOutcome,
     HiddenViews, LocalizerParams, OdometryNoise, OdometryStep, PoseEstimate, Start,
 };
 pub use prior::{
-    KMeans, LightingPriors, PixelSpread, PriorError, PriorParams, TrainingVenue, k_means, learn_priors,
-    split_by_brightness,
+    KMeans, LightingPriorError, LightingPriors, PooledPixelVariance, PriorLearningParams, TrainingVenue,
+    k_means, learn_priors, split_by_brightness,
 };
 pub use yuv::{YuvImage, YuvStandard};

@@ -7,8 +7,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, random_prior};
 use wayfix_color_model::{
-    Classifier, ColorMeans, ColorModelError, Drift, LightingBank, LightingFilter, LightingParams, YuvImage,
-    YuvStandard,
+    ColorMeans, ColorModelError, LightingBank, LightingDrift, LightingFilter, LightingParams,
+    PixelClassifier, YuvImage, YuvStandard,
 };
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::MarkovChain;
@@ -49,11 +49,14 @@ fn parameters_without_a_meaning_are_refused() {
     let good = LightingParams::default();
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
         let noise = Vector3::new(1.0, bad, 1.0);
-        refused(prior.clone(), LightingParams { pixel_noise: noise, ..good });
-        refused(prior.clone(), LightingParams { mean_noise: noise, ..good });
-        refused(prior.clone(), LightingParams { drift: Drift::TowardsPrior(bad), ..good });
+        refused(prior.clone(), LightingParams { pixel_color_variance: noise, ..good });
+        refused(prior.clone(), LightingParams { mean_color_variance: noise, ..good });
+        refused(prior.clone(), LightingParams { lighting_drift: LightingDrift::TowardsPrior(bad), ..good });
         if !(0.0..1e12).contains(&bad) {
-            refused(prior.clone(), LightingParams { drift: Drift::RandomWalk(noise), ..good });
+            refused(
+                prior.clone(),
+                LightingParams { lighting_drift: LightingDrift::RandomWalk(noise), ..good },
+            );
         }
     }
 }
@@ -79,7 +82,7 @@ fn what_is_refused_leaves_the_light_as_it_was() {
     assert!(light.update(&ColorMeans::default()).is_err());
     assert_eq!(before, (light.mean().clone(), light.covariance().clone()));
     assert!(
-        Classifier::new([light.color(wayfix_color_map::ColorId(200))]).is_err(),
+        PixelClassifier::new([light.color(wayfix_color_map::ColorId(200))]).is_err(),
         "a colour that is not there"
     );
 }
@@ -95,13 +98,17 @@ fn hostile_steps_leave_every_colour_a_finite_density() {
             prior = Gaussian::new(prior.mean().clone(), all).unwrap();
         }
         let drift = if run % 3 == 0 {
-            Drift::TowardsPrior(10.0_f64.powi(rng.random_range(-6..6)))
+            LightingDrift::TowardsPrior(10.0_f64.powi(rng.random_range(-6..6)))
         } else {
-            Drift::RandomWalk(Vector3::repeat(10.0_f64.powi(rng.random_range(-12..12))))
+            LightingDrift::RandomWalk(Vector3::repeat(10.0_f64.powi(rng.random_range(-12..12))))
         };
         let noise = Vector3::from_fn(|_, _| 10.0_f64.powi(rng.random_range(-4..8)));
-        let params =
-            LightingParams { pixel_noise: noise, mean_noise: noise, drift, ..LightingParams::default() };
+        let params = LightingParams {
+            pixel_color_variance: noise,
+            mean_color_variance: noise,
+            lighting_drift: drift,
+            ..LightingParams::default()
+        };
         let mut light = filter(prior, params);
         for _ in 0..1000 {
             light.predict(10.0_f64.powi(rng.random_range(-9..9))).unwrap();

@@ -7,10 +7,10 @@ use rand::{RngExt, SeedableRng, distr::Distribution};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, noisy, random_prior};
 use wayfix_color_map::ColorId;
-use wayfix_color_model::{Drift, LightingFilter, LightingParams, Unseen};
+use wayfix_color_model::{LightingDrift, LightingFilter, LightingParams, UnseenColorRule};
 use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor};
 
-const WALK: Drift = Drift::RandomWalk(Vector3::new(4.0, 1.0, 1.0));
+const WALK: LightingDrift = LightingDrift::RandomWalk(Vector3::new(4.0, 1.0, 1.0));
 
 /// The rows that an image shows, as a sensor of the general filter.
 fn sensor(n_colors: usize, hidden: u32, noise: &Vector3<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
@@ -26,7 +26,7 @@ fn scalar_updates_are_the_joint_update_of_the_general_filter() {
     let mut rng = ChaCha8Rng::seed_from_u64(401);
     for n_colors in [1, 2, 5, 9] {
         let prior = random_prior(n_colors, &mut rng);
-        let params = LightingParams { drift: WALK, ..LightingParams::default() };
+        let params = LightingParams { lighting_drift: WALK, ..LightingParams::default() };
         let mut ours = filter(prior.clone(), params);
         let seconds = 0.04;
         let walk = DVector::from_fn(3 * n_colors, |i, _| [4.0, 1.0, 1.0][i % 3] * seconds);
@@ -34,8 +34,8 @@ fn scalar_updates_are_the_joint_update_of_the_general_filter() {
         let mut general = KalmanFilter::new(motion, prior.clone()).expect("valid by construction");
         for _ in 0..60 {
             let hidden = rng.random_range(0..(1 << n_colors) - 1);
-            let truth = noisy(prior.mean(), &params.mean_noise, &mut rng);
-            let (matrix, noise) = sensor(n_colors, hidden, &params.mean_noise);
+            let truth = noisy(prior.mean(), &params.mean_color_variance, &mut rng);
+            let (matrix, noise) = sensor(n_colors, hidden, &params.mean_color_variance);
             let z = &matrix * &truth;
             ours.predict(seconds).expect("valid by construction");
             general.predict(None).expect("valid by construction");
@@ -60,7 +60,7 @@ fn colour_densities_are_covariance_blocks_plus_pixel_noise() {
     for (color, density) in light.colors().enumerate() {
         let block = prior.covariance().fixed_view::<3, 3>(3 * color, 3 * color);
         assert_eq!((density.covariance - block)[(1, 0)], 0.0);
-        assert_eq!(density.covariance[(1, 1)], block[(1, 1)] + light.params().pixel_noise.y);
+        assert_eq!(density.covariance[(1, 1)], block[(1, 1)] + light.params().pixel_color_variance.y);
         assert_eq!(density.mean, prior.mean().fixed_rows::<3>(3 * color).into_owned());
     }
 }
@@ -81,9 +81,13 @@ fn only_regression_shrinks_unseen_colours() {
     }
     let prior = wayfix_gaussian_core::Gaussian::new(support::stacked(&BRIGHT), covariance)
         .expect("valid by construction");
-    let still = LightingParams { drift: Drift::RandomWalk(Vector3::zeros()), ..LightingParams::default() };
+    let still = LightingParams {
+        lighting_drift: LightingDrift::RandomWalk(Vector3::zeros()),
+        ..LightingParams::default()
+    };
     let mut exact = filter(prior.clone(), still);
-    let mut regressing = filter(prior.clone(), LightingParams { unseen: Unseen::Regress, ..still });
+    let mut regressing =
+        filter(prior.clone(), LightingParams { unseen_colors: UnseenColorRule::Regress, ..still });
     let before = volume(&exact, 4);
     let n_images = 50;
     for _ in 0..n_images {
@@ -93,17 +97,20 @@ fn only_regression_shrinks_unseen_colours() {
     }
     assert_eq!(volume(&exact, 4), before, "nothing was said about pink");
     // As if pink had been seen 50 times: along each axis λ becomes at most ν / 50.
-    assert!(volume(&regressing, 4) <= still.mean_noise.product() / f64::from(n_images).powi(3));
+    assert!(volume(&regressing, 4) <= still.mean_color_variance.product() / f64::from(n_images).powi(3));
     assert_eq!(exact.color(ColorId(4)).mean, regressing.color(ColorId(4)).mean);
 }
 
 #[test]
 fn an_unseen_colour_keeps_what_its_correlations_leave_open() {
     let prior = common_gain(&BRIGHT, 0.3);
-    let still = LightingParams { drift: Drift::RandomWalk(Vector3::zeros()), ..LightingParams::default() };
+    let still = LightingParams {
+        lighting_drift: LightingDrift::RandomWalk(Vector3::zeros()),
+        ..LightingParams::default()
+    };
     let (mut exact, mut regressing) = (
         filter(prior.clone(), still),
-        filter(prior.clone(), LightingParams { unseen: Unseen::Regress, ..still }),
+        filter(prior.clone(), LightingParams { unseen_colors: UnseenColorRule::Regress, ..still }),
     );
     // As many looks at the other four as make them certain.
     for _ in 0..10_000 {
@@ -127,7 +134,7 @@ fn printed_and_exact_filter_agree_when_all_colours_are_seen() {
     let mut rng = ChaCha8Rng::seed_from_u64(403);
     let prior = random_prior(5, &mut rng);
     let mut exact = filter(prior.clone(), LightingParams::default());
-    let regress = LightingParams { unseen: Unseen::Regress, ..LightingParams::default() };
+    let regress = LightingParams { unseen_colors: UnseenColorRule::Regress, ..LightingParams::default() };
     let mut regressing = filter(prior.clone(), regress);
     for light in [&mut exact, &mut regressing] {
         light.predict(0.1).expect("valid by construction");
@@ -139,7 +146,10 @@ fn printed_and_exact_filter_agree_when_all_colours_are_seen() {
 #[test]
 fn the_estimate_moves_to_the_truth_and_knows_how_far_it_is_off() {
     let mut rng = ChaCha8Rng::seed_from_u64(404);
-    let still = LightingParams { drift: Drift::RandomWalk(Vector3::zeros()), ..LightingParams::default() };
+    let still = LightingParams {
+        lighting_drift: LightingDrift::RandomWalk(Vector3::zeros()),
+        ..LightingParams::default()
+    };
     let (n_venues, n_images) = (400, 20);
     let mut nees = 0.0;
     for _ in 0..n_venues {
@@ -147,7 +157,7 @@ fn the_estimate_moves_to_the_truth_and_knows_how_far_it_is_off() {
         let truth = prior.sampler().sample(&mut rng);
         let mut light = filter(prior, still);
         for _ in 0..n_images {
-            let seen = noisy(&truth, &still.mean_noise, &mut rng);
+            let seen = noisy(&truth, &still.mean_color_variance, &mut rng);
             light.update(&means(&seen, rng.random_range(0..32))).expect("valid by construction");
         }
         let error = light.mean() - &truth;
@@ -163,8 +173,9 @@ fn the_estimate_moves_to_the_truth_and_knows_how_far_it_is_off() {
 #[test]
 fn five_hundred_frames_without_a_colour_never_make_it_surer() {
     let prior = common_gain(&BRIGHT, 0.3);
-    for drift in [WALK, Drift::TowardsPrior(5.0)] {
-        let mut light = filter(prior.clone(), LightingParams { drift, ..LightingParams::default() });
+    for drift in [WALK, LightingDrift::TowardsPrior(5.0)] {
+        let mut light =
+            filter(prior.clone(), LightingParams { lighting_drift: drift, ..LightingParams::default() });
         light.update(&means(&(prior.mean() * 0.8), 0)).expect("valid by construction");
         let nothing = means(prior.mean(), 0b11111);
         for _ in 0..500 {
@@ -180,8 +191,8 @@ fn five_hundred_frames_without_a_colour_never_make_it_surer() {
             let ratio = now.covariance.determinant() / prior.covariance.determinant();
             match drift {
                 // 20 s are four time constants: e⁻⁸ of the difference is left, and never is it wider.
-                Drift::TowardsPrior(_) => assert!((0.99..=1.0 + 1e-12).contains(&ratio), "{ratio}"),
-                Drift::RandomWalk(_) => {}
+                LightingDrift::TowardsPrior(_) => assert!((0.99..=1.0 + 1e-12).contains(&ratio), "{ratio}"),
+                LightingDrift::RandomWalk(_) => {}
             }
         }
     }
@@ -190,8 +201,8 @@ fn five_hundred_frames_without_a_colour_never_make_it_surer() {
 #[test]
 fn drift_depends_on_the_time_and_not_on_the_number_of_steps() {
     let prior = common_gain(&BRIGHT, 0.3);
-    for drift in [WALK, Drift::TowardsPrior(3.0)] {
-        let params = LightingParams { drift, ..LightingParams::default() };
+    for drift in [WALK, LightingDrift::TowardsPrior(3.0)] {
+        let params = LightingParams { lighting_drift: drift, ..LightingParams::default() };
         let mut once = filter(prior.clone(), params);
         once.update(&means(&(prior.mean() * 0.9), 0b01100)).expect("valid by construction");
         let mut often = once.clone();

@@ -151,9 +151,9 @@ fn invalid_parameters_are_refused_before_the_first_frame() {
     for value in [f64::NAN, -1.0] {
         refused(&|params| params.acquisition.elsewhere = value);
         refused(&|params| params.acquisition.hopeless = value);
-        refused(&|params| params.pixels.uniform_share = value);
-        refused(&|params| params.pixels.uneven_brightness = value);
-        refused(&|params| params.pixels.uneven_chroma = value);
+        refused(&|params| params.pixels.uniform_background_share = value);
+        refused(&|params| params.pixels.brightness_variation = value);
+        refused(&|params| params.pixels.chroma_variation = value);
     }
     for shrink in [0, 81, u32::MAX] {
         refused(&|params| params.acquisition.shrink = shrink);

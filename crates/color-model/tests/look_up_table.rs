@@ -7,8 +7,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, normal};
 use wayfix_color_model::{
-    Background, Classifier, ColorDensity, LightingFilter, LightingParams, LookUpTable, PixelParams, YuvImage,
-    find_blobs,
+    BackgroundColorModel, ColorDensity, ColorLookUpTable, LightingFilter, LightingParams, PixelClassifier,
+    PixelLikelihoodParams, YuvImage, find_blobs,
 };
 
 /// A view of the field as a cheap camera has it: patches of the five colours and of clutter, shaded, vignetted, blurred at edges, with noise.
@@ -21,7 +21,7 @@ fn frame(light: &LightingFilter, rng: &mut ChaCha8Rng) -> YuvImage {
             (rng.random_range(0.0..208.0), rng.random_range(0.0..160.0), color)
         })
         .collect();
-    let noise = light.params().pixel_noise.map(f64::sqrt);
+    let noise = light.params().pixel_color_variance.map(f64::sqrt);
     let pixels = (0..width * height).map(|at| {
         let (u, v) = (f64::from(at % width), f64::from(at / width));
         let mut by_distance: Vec<(f64, &Vector3<f64>)> =
@@ -48,7 +48,7 @@ fn light(gain: f64) -> LightingFilter {
 
 /// What the localizer classifies by.
 fn densities(light: &LightingFilter) -> Vec<ColorDensity> {
-    PixelParams::default().shaded(light.colors())
+    PixelLikelihoodParams::default().shaded(light.colors())
 }
 
 #[test]
@@ -56,12 +56,12 @@ fn the_table_agrees_with_the_classifier_on_natural_frames() {
     let mut rng = ChaCha8Rng::seed_from_u64(441);
     for gain in [0.7, 1.0] {
         let light = light(gain);
-        for background in [None, Some(Background::Uniform)] {
-            let mut classifier = Classifier::new(densities(&light)).unwrap();
+        for background in [None, Some(BackgroundColorModel::Uniform)] {
+            let mut classifier = PixelClassifier::new(densities(&light)).unwrap();
             if let Some(background) = &background {
                 classifier = classifier.with_background(background.clone());
             }
-            let table = LookUpTable::new(densities(&light), background.clone()).unwrap();
+            let table = ColorLookUpTable::new(densities(&light), background.clone()).unwrap();
             let (mut equal, mut total) = (0, 0);
             for _ in 0..6 {
                 let frame = frame(&light, &mut rng);
@@ -81,7 +81,7 @@ fn the_table_agrees_with_the_classifier_on_natural_frames() {
 #[test]
 fn cells_hold_what_is_most_probable_at_their_centres() {
     let light = light(0.9);
-    let table = LookUpTable::new(densities(&light), None).unwrap();
+    let table = ColorLookUpTable::new(densities(&light), None).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(442);
     let log = |density: &ColorDensity, at: Vector3<f64>| {
         let factor = density.covariance.cholesky().unwrap();
@@ -103,7 +103,7 @@ fn cells_hold_what_is_most_probable_at_their_centres() {
 #[test]
 fn the_table_follows_the_light_and_only_then() {
     let mut light = light(1.0);
-    let mut table = LookUpTable::new(densities(&light), None).unwrap();
+    let mut table = ColorLookUpTable::new(densities(&light), None).unwrap();
     assert!(!table.rebuild_if_changed(densities(&light)).unwrap());
     // A change far below a quarter of a standard deviation.
     light.update(&means(light.mean(), 0)).unwrap();
@@ -123,7 +123,7 @@ fn the_table_follows_the_light_and_only_then() {
     // Compiled anew when it settled: the same table as a fresh one where the light is as it was compiled for.
     table.rebuild_above = 0.0;
     table.rebuild_if_changed(densities(&light)).unwrap();
-    let fresh = LookUpTable::new(densities(&light), None).unwrap();
+    let fresh = ColorLookUpTable::new(densities(&light), None).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(443);
     assert!((0..10_000).all(|_| {
         let pixel = rng.random();
@@ -141,8 +141,10 @@ fn a_more_frequent_background_takes_more() {
     let density =
         ColorDensity { mean: Vector3::new(100.0, 128.0, 128.0), covariance: Matrix3::identity() * 50.0 };
     let labels = |share| {
-        let classifier =
-            Classifier::new([density]).unwrap().with_background_share(Background::Uniform, share).unwrap();
+        let classifier = PixelClassifier::new([density])
+            .unwrap()
+            .with_background_share(BackgroundColorModel::Uniform, share)
+            .unwrap();
         (0..=255).filter(|y| classifier.classify([*y, 128, 128]).is_some()).count()
     };
     // |y - 100| < (2 · 50 · (ln 2²⁴ - 1.5 ln 2π·50 - ln odds))^½, both sides and the middle.
@@ -153,7 +155,7 @@ fn a_more_frequent_background_takes_more() {
         assert_eq!(labels(share), 2 * radius(share / (1.0 - share)).floor() as usize + 1);
     }
     for bad in [0.0, 1.0, -0.5, f64::NAN] {
-        let classifier = Classifier::new([density]).unwrap();
-        assert!(classifier.with_background_share(Background::Uniform, bad).is_err());
+        let classifier = PixelClassifier::new([density]).unwrap();
+        assert!(classifier.with_background_share(BackgroundColorModel::Uniform, bad).is_err());
     }
 }

@@ -6,8 +6,8 @@ use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::ColorId;
 use wayfix_color_model::{
-    ColorMeans, LightingFilter, LightingParams, LightingPriors, PixelSpread, PriorError, PriorParams,
-    TrainingVenue, learn_priors, split_by_brightness,
+    ColorMeans, LightingFilter, LightingParams, LightingPriorError, LightingPriors, PooledPixelVariance,
+    PriorLearningParams, TrainingVenue, learn_priors, split_by_brightness,
 };
 
 const COLORS: [&str; 3] = ["green", "white", "pink"];
@@ -50,10 +50,10 @@ fn venues_are_split_where_the_light_is() {
 #[test]
 fn only_the_joint_prior_predicts_an_unseen_colour() {
     let rng = &mut ChaCha8Rng::seed_from_u64(12);
-    let joint = learn_priors(&colors(), &venues(rng), 2, &PriorParams::default(), rng).unwrap();
+    let joint = learn_priors(&colors(), &venues(rng), 2, &PriorLearningParams::default(), rng).unwrap();
     let params = LightingParams {
-        pixel_noise: joint.pixel_noise(),
-        mean_noise: joint.mean_noise(),
+        pixel_color_variance: joint.pixel_color_variance(),
+        mean_color_variance: joint.mean_color_variance(),
         ..Default::default()
     };
     let errors = |priors: &LightingPriors, rng: &mut ChaCha8Rng| -> f64 {
@@ -81,20 +81,22 @@ fn only_the_joint_prior_predicts_an_unseen_colour() {
 fn noise_is_learned_where_the_data_carry_it() {
     let rng = &mut ChaCha8Rng::seed_from_u64(14);
     let mut venues = venues(rng);
-    let params = PriorParams::default();
+    let params = PriorLearningParams::default();
     let priors = learn_priors(&colors(), &venues, 1, &params, rng).unwrap();
-    assert_eq!(priors.pixel_noise(), params.pixel_noise);
+    assert_eq!(priors.pixel_color_variance(), params.pixel_color_variance);
     // Uniform in ±2: variance 4/3, from 30 venues of 3 colours with 4 images each: 270 degrees of freedom, and the relative error of a
     // variance of uniform numbers is √(0.8 / 270) = 0.054 or little more; five of them.
     assert!(
-        (priors.mean_noise() / (4.0 / 3.0)).iter().all(|ratio| (ratio - 1.0).abs() < 0.3),
+        (priors.mean_color_variance() / (4.0 / 3.0)).iter().all(|ratio| (ratio - 1.0).abs() < 0.3),
         "{}",
-        priors.mean_noise()
+        priors.mean_color_variance()
     );
-    venues[0].pixels = Some(PixelSpread { variances: Vector3::repeat(10.0), degrees_of_freedom: 1000.0 });
-    venues[1].pixels = Some(PixelSpread { variances: Vector3::repeat(40.0), degrees_of_freedom: 2000.0 });
+    venues[0].pixels =
+        Some(PooledPixelVariance { variances: Vector3::repeat(10.0), degrees_of_freedom: 1000.0 });
+    venues[1].pixels =
+        Some(PooledPixelVariance { variances: Vector3::repeat(40.0), degrees_of_freedom: 2000.0 });
     assert_eq!(
-        learn_priors(&colors(), &venues, 1, &params, rng).unwrap().pixel_noise(),
+        learn_priors(&colors(), &venues, 1, &params, rng).unwrap().pixel_color_variance(),
         Vector3::repeat(30.0)
     );
 }
@@ -102,21 +104,26 @@ fn noise_is_learned_where_the_data_carry_it() {
 #[test]
 fn venues_that_make_no_prior_are_refused() {
     let rng = &mut ChaCha8Rng::seed_from_u64(15);
-    let params = PriorParams::default();
+    let params = PriorLearningParams::default();
     let good = venues(rng);
-    let mut learn =
-        |venues: &[TrainingVenue], k, params: &PriorParams| learn_priors(&colors(), venues, k, params, rng);
-    assert!(matches!(learn(&[], 1, &params), Err(PriorError::TooFew { .. })));
-    assert!(matches!(learn(&good, 0, &params), Err(PriorError::TooFew { .. })));
-    assert!(matches!(learn(&good[..1], 2, &params), Err(PriorError::TooFew { .. })));
+    let mut learn = |venues: &[TrainingVenue], k, params: &PriorLearningParams| {
+        learn_priors(&colors(), venues, k, params, rng)
+    };
+    assert!(matches!(learn(&[], 1, &params), Err(LightingPriorError::TooFew { .. })));
+    assert!(matches!(learn(&good, 0, &params), Err(LightingPriorError::TooFew { .. })));
+    assert!(matches!(learn(&good[..1], 2, &params), Err(LightingPriorError::TooFew { .. })));
     for bad in [-0.1, 1.0, f64::NAN, f64::INFINITY] {
-        assert!(learn(&good, 2, &PriorParams { color_correlation: bad, ..params.clone() }).is_err());
+        assert!(learn(&good, 2, &PriorLearningParams { color_correlation: bad, ..params.clone() }).is_err());
     }
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(learn(&good, 2, &PriorParams { pseudo_venues: bad, ..params.clone() }).is_err());
+        assert!(learn(&good, 2, &PriorLearningParams { n_pseudo_venues: bad, ..params.clone() }).is_err());
         assert!(
-            learn(&good, 2, &PriorParams { mean_noise: Some(Vector3::repeat(bad)), ..params.clone() })
-                .is_err()
+            learn(
+                &good,
+                2,
+                &PriorLearningParams { mean_color_variance: Some(Vector3::repeat(bad)), ..params.clone() }
+            )
+            .is_err()
         );
     }
     let without = |color: u8| -> Vec<TrainingVenue> {
@@ -128,28 +135,28 @@ fn venues_that_make_no_prior_are_refused() {
     };
     assert_eq!(
         learn(&without(1), 2, &params),
-        Err(PriorError::UnseenColor { group: 0, color: "white".to_owned() })
+        Err(LightingPriorError::UnseenColor { group: 0, color: "white".to_owned() })
     );
     let mut blank = good.clone();
     blank[4].images.clear();
-    assert!(matches!(learn(&blank, 2, &params), Err(PriorError::Blank { .. })));
+    assert!(matches!(learn(&blank, 2, &params), Err(LightingPriorError::Blank { .. })));
     let mut wild = good.clone();
     wild[4].images[0] = ColorMeans::new([(Some(Vector3::repeat(f64::NAN)), 1), (None, 0), (None, 0)]);
-    assert!(matches!(learn(&wild, 2, &params), Err(PriorError::OutOfRange { .. })));
+    assert!(matches!(learn(&wild, 2, &params), Err(LightingPriorError::OutOfRange { .. })));
     wild[4].images[0] = ColorMeans::new([(None, 0)]);
-    assert!(matches!(learn(&wild, 2, &params), Err(PriorError::Dimension { .. })));
+    assert!(matches!(learn(&wild, 2, &params), Err(LightingPriorError::Dimension { .. })));
     let single: Vec<TrainingVenue> = good
         .iter()
         .map(|venue| TrainingVenue { images: venue.images[..1].to_vec(), ..venue.clone() })
         .collect();
-    assert!(matches!(learn(&single, 2, &params), Err(PriorError::UnknownScatter)));
+    assert!(matches!(learn(&single, 2, &params), Err(LightingPriorError::UnknownScatter)));
 }
 
 #[cfg(feature = "serde")]
 #[test]
 fn a_file_gives_the_same_priors_and_a_spoiled_one_gives_none() {
     let rng = &mut ChaCha8Rng::seed_from_u64(16);
-    let priors = learn_priors(&colors(), &venues(rng), 2, &PriorParams::default(), rng).unwrap();
+    let priors = learn_priors(&colors(), &venues(rng), 2, &PriorLearningParams::default(), rng).unwrap();
     let text = serde_json::to_string(&priors).unwrap();
     let read: LightingPriors = serde_json::from_str(&text).unwrap();
     // serde_json reads a number back to within one unit in the last place.
@@ -163,7 +170,7 @@ fn a_file_gives_the_same_priors_and_a_spoiled_one_gives_none() {
     assert!(spoil("/members/1/covariance/0/0", (-1.0).into()).contains("not positive definite"));
     assert!(spoil("/members/0/mean", vec![1.0; 6].into()).contains("dimension"));
     assert!(spoil("/colors", vec!["green"].into()).contains("expected 3, got 9"));
-    assert!(spoil("/pixel_noise/1", 0.0.into()).contains("variance"));
+    assert!(spoil("/pixel_color_variance/1", 0.0.into()).contains("variance"));
     assert!(spoil("/members", serde_json::json!([])).contains("members"));
     assert!(spoil("/members/0/covariance/3", vec![1.0].into()).contains("row"));
 }

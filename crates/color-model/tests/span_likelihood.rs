@@ -6,10 +6,10 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_color_map::{Band, Camera, ColorId, ColorMap, Projector, Shape};
+use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PostBand};
 use wayfix_color_model::{
-    ColorDensity, ColorModelError, Frame, PixelLight, PixelLikelihood, PixelParams, SpanLikelihood,
-    ViewLikelihood, YuvImage,
+    CameraPoseLikelihood, ColorDensity, ColorModelError, LightErrorCorrelation, PixelLikelihood,
+    PixelLikelihoodParams, PixelSpanLikelihood, PrefixSumImage, YuvImage,
 };
 use wayfix_estimation_traits::Pose3;
 
@@ -19,19 +19,19 @@ const ROWS: u32 = 40;
 /// Carpet, two goals and three beacons: every kind of shape, surfaces that hide each other.
 fn field() -> Arc<ColorMap> {
     let colors = ["green", "white", "yellow", "cyan", "pink"].map(str::to_owned).to_vec();
-    let board = |color, corners: [[f64; 3]; 4]| Shape::Polygon {
+    let board = |color, corners: [[f64; 3]; 4]| ColoredShape::Polygon {
         color: ColorId(color),
         vertices: corners.map(Vector3::from).to_vec(),
     };
     let goal = |color, x: f64| board(color, [[x, -0.3, 0.0], [x, 0.3, 0.0], [x, 0.3, 0.3], [x, -0.3, 0.3]]);
-    let beacon = |x, y, top| Shape::Post {
+    let beacon = |x, y, top| ColoredShape::Post {
         x,
         y,
         radius: 0.05,
         bands: vec![
-            Band { color: ColorId(1), from: 0.0, to: 0.2 },
-            Band { color: ColorId(4), from: 0.2, to: 0.3 },
-            Band { color: ColorId(top), from: 0.3, to: 0.4 },
+            PostBand { color: ColorId(1), from: 0.0, to: 0.2 },
+            PostBand { color: ColorId(4), from: 0.2, to: 0.3 },
+            PostBand { color: ColorId(top), from: 0.3, to: 0.4 },
         ],
     };
     let shapes = vec![
@@ -83,13 +83,13 @@ fn nats([y, u, v]: [u8; 3]) -> Option<f64> {
 }
 
 /// The largest difference, relative to the larger of the value and of one nat a labelled image.
-fn largest_difference(params: PixelParams, n_poses: usize) -> f64 {
+fn largest_difference(params: PixelLikelihoodParams, n_poses: usize) -> f64 {
     let mut rng = ChaCha8Rng::seed_from_u64(20_261_121);
     let image = image(&mut rng);
-    let frame = Frame::with_background(&image, nats).expect("valid by construction");
-    let projector = || Projector::new(field(), camera());
+    let frame = PrefixSumImage::with_background(&image, nats).expect("valid by construction");
+    let projector = || MapRenderer::new(field(), camera());
     let mut plain = PixelLikelihood::new(&image, nats, projector(), params).expect("valid by construction");
-    let mut spans = SpanLikelihood::new(&frame, projector(), params).expect("valid by construction");
+    let mut spans = PixelSpanLikelihood::new(&frame, projector(), params).expect("valid by construction");
     let (mut largest, mut n_seen) = (0.0_f64, 0);
     for _ in 0..n_poses {
         let (pose, light) = (pose(&mut rng), light(&mut rng));
@@ -102,15 +102,15 @@ fn largest_difference(params: PixelParams, n_poses: usize) -> f64 {
 }
 
 /// Untempered, without a floor: the plain product of Eq. 16.
-fn product() -> PixelParams {
+fn product() -> PixelLikelihoodParams {
     let independent_pixels = f64::from(COLUMNS * ROWS);
     let floor = f64::INFINITY;
-    PixelParams {
-        light: PixelLight::Each,
+    PixelLikelihoodParams {
+        light_error_correlation: LightErrorCorrelation::Each,
         independent_pixels,
-        floor,
-        edge_margin: 0,
-        ..PixelParams::default()
+        log_likelihood_floor: floor,
+        edge_margin_pixels: 0,
+        ..PixelLikelihoodParams::default()
     }
 }
 
@@ -123,18 +123,18 @@ fn spans_are_pixels_to_nine_digits() {
 
 #[test]
 fn so_they_are_with_floor_and_margin() {
-    let floored = PixelParams { floor: 3.0, ..product() };
+    let floored = PixelLikelihoodParams { log_likelihood_floor: 3.0, ..product() };
     assert!(largest_difference(floored, 1000) < 1e-9);
-    let inner = PixelParams { edge_margin: 2, ..product() };
+    let inner = PixelLikelihoodParams { edge_margin_pixels: 2, ..product() };
     assert!(largest_difference(inner, 300) < 1e-9);
 }
 
 #[test]
 fn frames_of_another_size_are_refused() {
     let small = YuvImage::new(8, 8, vec![[0; 3]; 64]).expect("valid by construction");
-    let frame = Frame::new(&small).expect("valid by construction");
-    let projector = || Projector::new(field(), camera());
+    let frame = PrefixSumImage::new(&small).expect("valid by construction");
+    let projector = || MapRenderer::new(field(), camera());
     let expected = ColorModelError::FrameSize { expected: (52, 40), got: (8, 8) };
-    assert_eq!(SpanLikelihood::new(&frame, projector(), product()).err(), Some(expected.clone()));
+    assert_eq!(PixelSpanLikelihood::new(&frame, projector(), product()).err(), Some(expected.clone()));
     assert_eq!(PixelLikelihood::new(&small, nats, projector(), product()).err(), Some(expected));
 }

@@ -9,11 +9,11 @@ use rand::{RngExt, SeedableRng, distr::Distribution};
 use rand_chacha::ChaCha8Rng;
 use support::{BRIGHT, common_gain, filter, means, noisy, stacked};
 use wayfix_color_model::{
-    ColorMeans, ColorModelError, Drift, Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker,
-    LightingBank, LightingFilter, LightingParams,
+    ColorMeans, ColorModelError, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker,
+    LightingBank, LightingDrift, LightingFilter, LightingParams, LightingTracker,
 };
 use wayfix_gaussian_core::moment_matched;
-use wayfix_kalman::{JumpMarkovParams, MarkovChain};
+use wayfix_kalman::{JumpMarkovFilterParams, MarkovChain};
 
 /// Two lights; the dark one has two fifths of the brightness and colour.
 fn dark() -> Vec<[f64; 3]> {
@@ -83,18 +83,18 @@ fn single() -> LightingFilter {
     filter(moment_matched(&[0.5, 0.5], &priors).expect("valid by construction"), LightingParams::default())
 }
 
-fn trackers() -> Vec<(&'static str, Box<dyn LightTracker>)> {
-    let jump_markov =
-        JumpMarkovTracker::new(&bank(), JumpMarkovParams::default()).expect("valid by construction");
+fn trackers() -> Vec<(&'static str, Box<dyn LightingTracker>)> {
+    let jump_markov = JumpMarkovLightingTracker::new(&bank(), JumpMarkovFilterParams::default())
+        .expect("valid by construction");
     vec![
         ("single", Box::new(single())),
         ("jump Markov", Box::new(jump_markov)),
-        ("IMM", Box::new(ImmTracker::new(&bank()).expect("valid by construction"))),
-        ("GPB2", Box::new(Gpb2Tracker::new(&bank()).expect("valid by construction"))),
+        ("IMM", Box::new(ImmLightingTracker::new(&bank()).expect("valid by construction"))),
+        ("GPB2", Box::new(Gpb2LightingTracker::new(&bank()).expect("valid by construction"))),
     ]
 }
 
-fn error_of_pink(tracker: &dyn LightTracker, truth: &DVector<f64>) -> f64 {
+fn error_of_pink(tracker: &dyn LightingTracker, truth: &DVector<f64>) -> f64 {
     (tracker.colors().expect("valid by construction")[4].mean - truth.fixed_rows::<3>(12)).norm()
 }
 
@@ -111,7 +111,7 @@ fn switching_filters_predict_a_colour_unseen_since_the_switch() {
     for (at, light) in switches.iter().enumerate() {
         for frame in 0..30 {
             let hidden = if at < 2 { 0 } else { 0b11100 };
-            let seen = means(&noisy(&lights[*light], &params.mean_noise, &mut rng), hidden);
+            let seen = means(&noisy(&lights[*light], &params.mean_color_variance, &mut rng), hidden);
             for (k, (_, tracker)) in trackers.iter_mut().enumerate() {
                 tracker.predict(0.04).unwrap();
                 tracker.update(&seen).unwrap();
@@ -138,13 +138,15 @@ fn without_switches_one_light_is_a_kalman_filter_for_all() {
     let bank = LightingBank::new(vec![only.clone()], MarkovChain::sticky(1, 1.0).unwrap()).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(423);
     let mut plain = only;
-    let mut jump_markov = JumpMarkovTracker::new(&bank, JumpMarkovParams::default()).unwrap();
-    let mut imm = ImmTracker::new(&bank).unwrap();
-    let mut gpb2 = Gpb2Tracker::new(&bank).unwrap();
+    let mut jump_markov = JumpMarkovLightingTracker::new(&bank, JumpMarkovFilterParams::default()).unwrap();
+    let mut imm = ImmLightingTracker::new(&bank).unwrap();
+    let mut gpb2 = Gpb2LightingTracker::new(&bank).unwrap();
     for _ in 0..50 {
-        let seen =
-            means(&noisy(&stacked(&BRIGHT), &plain.params().mean_noise, &mut rng), rng.random_range(0..31));
-        let others: [&mut dyn LightTracker; 3] = [&mut jump_markov, &mut imm, &mut gpb2];
+        let seen = means(
+            &noisy(&stacked(&BRIGHT), &plain.params().mean_color_variance, &mut rng),
+            rng.random_range(0..31),
+        );
+        let others: [&mut dyn LightingTracker; 3] = [&mut jump_markov, &mut imm, &mut gpb2];
         plain.predict(0.04).unwrap();
         plain.update(&seen).unwrap();
         for other in others {
@@ -187,13 +189,15 @@ fn trackers_refuse_and_stay_and_become_unsure_in_the_dark() {
 
 #[test]
 fn a_walk_makes_the_trackers_as_wide_as_the_filter() {
-    let walk = Drift::RandomWalk(nalgebra::Vector3::new(4.0, 1.0, 1.0));
-    let light =
-        filter(common_gain(&BRIGHT, 0.15), LightingParams { drift: walk, ..LightingParams::default() });
+    let walk = LightingDrift::RandomWalk(nalgebra::Vector3::new(4.0, 1.0, 1.0));
+    let light = filter(
+        common_gain(&BRIGHT, 0.15),
+        LightingParams { lighting_drift: walk, ..LightingParams::default() },
+    );
     let bank = LightingBank::new(vec![light.clone()], MarkovChain::sticky(1, 1.0).unwrap()).unwrap();
-    let mut tracker = JumpMarkovTracker::new(&bank, JumpMarkovParams::default()).unwrap();
+    let mut tracker = JumpMarkovLightingTracker::new(&bank, JumpMarkovFilterParams::default()).unwrap();
     let mut light = light;
-    LightTracker::predict(&mut light, 7.0).unwrap();
+    LightingTracker::predict(&mut light, 7.0).unwrap();
     tracker.predict(7.0).unwrap();
     for (ours, theirs) in light.colors().zip(tracker.colors().unwrap()) {
         assert!((ours.covariance - theirs.covariance).amax() < 1e-9);

@@ -8,13 +8,14 @@ mod harness;
 
 use harness::measure;
 use wayfix_condensation::{
-    DiffusionKernel, DiscreteFilter, Fft6, Grid, Hist6, MeanVar, Move, Picture, Slip, ViewFeature, ViewGrid,
+    DiffusionKernel, DiscreteFilter, Fft6Descriptor, GlobalDescriptor, GridMove, Hist6Descriptor,
+    MeanVarDescriptor, Picture, PositionGrid, SlipProbabilities, ViewGrid,
 };
 
 fn main() {
-    let grid = Grid::new(1000, 1000).expect("a valid size");
-    let move_on = Slip { stay_probability: 0.1, other_action_probability: 0.0 }
-        .transition(&grid, Move { dx: 1, dy: 1 })
+    let grid = PositionGrid::new(1000, 1000).expect("a valid size");
+    let move_on = SlipProbabilities { stay_probability: 0.1, other_action_probability: 0.0 }
+        .transition(&grid, GridMove { dx: 1, dy: 1 })
         .expect("probabilities");
     let kernel = DiffusionKernel::gaussian(&grid, &[1.0, 1.0]).expect("one sigma an axis");
     let log_likelihoods: Vec<f64> =
@@ -33,8 +34,8 @@ fn main() {
     let scene =
         Picture::from_rgb(width, height, (0..3 * width * height).map(pixel).collect()).expect("pixels");
     let views = ViewGrid::new((width, height), (256, 256), 16).expect("views that fit");
-    let features: [(&str, &dyn ViewFeature); 3] =
-        [("MeanVar", &MeanVar), ("FFT6", &Fft6), ("Hist6", &Hist6::default())];
+    let features: [(&str, &dyn GlobalDescriptor); 3] =
+        [("MeanVar", &MeanVarDescriptor), ("FFT6", &Fft6Descriptor), ("Hist6", &Hist6Descriptor::default())];
     for (name, feature) in features {
         measure(&format!("600 views learned {name}"), 10, || {
             feature.extract_all(&scene, &views).expect("the scene of the views")

@@ -5,19 +5,20 @@ use std::sync::Arc;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    Appearance, AppearanceParams, Arrival, FeatureTable, Grid, Light, Localizer, LocalizerParams, MeanVar,
-    Move, Navigator, NavigatorParams, Picture, SceneViews, StateSpace, ViewFeature, ViewGrid, World,
+    AppearanceLearningParams, AppearanceModel, DescriptorTable, GlobalDescriptor, GridMove, LightChange,
+    MeanVarDescriptor, NavigationEnvironment, NavigationOutcome, Navigator, NavigatorParams, Picture,
+    PositionGrid, SceneViews, StateSpace, ViewGrid, ViewLocalizer, ViewLocalizerParams,
 };
 
 /// The robot as it really is: at a place it does not know, before a scene darker than the one it learned.
 struct Robot {
-    grid: Grid,
-    views: FeatureTable,
+    grid: PositionGrid,
+    views: DescriptorTable,
     at: usize,
 }
 
-impl World<Move> for Robot {
-    fn act(&mut self, action: Move) {
+impl NavigationEnvironment<GridMove> for Robot {
+    fn act(&mut self, action: GridMove) {
         self.at = self.grid.step(self.at, action);
     }
 
@@ -30,26 +31,26 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Learning: 13 × 9 views of a painted scene, and how they answer to shifts and to light.
     let scene = painting(256, 192)?;
     let views = ViewGrid::new((256, 192), (64, 64), 16)?;
-    let params = AppearanceParams::online();
-    let appearance = Appearance::learn(&SceneViews::new(&scene, &views)?, &MeanVar, &params)?;
+    let params = AppearanceLearningParams::online();
+    let appearance = AppearanceModel::learn(&SceneViews::new(&scene, &views)?, &MeanVarDescriptor, &params)?;
 
     // The robot's world: less contrast, more offset, a bent tone curve, and all views a little beside the learned ones.
-    let real = Light { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&scene)?.shifted(4, 3);
+    let real = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&scene)?.shifted(4, 3);
     let grid = *views.grid();
     let start = grid.state(2, 6).ok_or("outside")?;
     let goal = grid.state(10, 1).ok_or("outside")?;
-    let mut robot = Robot { grid, views: MeanVar.extract_all(&real, &views)?, at: start };
+    let mut robot = Robot { grid, views: MeanVarDescriptor.extract_all(&real, &views)?, at: start };
 
     let navigator = Navigator::new(grid, NavigatorParams::default())?;
-    let mut localizer = Localizer::new(Arc::new(appearance), LocalizerParams::default())?;
-    let mut show = |step: usize, localizer: &Localizer| {
+    let mut localizer = ViewLocalizer::new(Arc::new(appearance), ViewLocalizerParams::default())?;
+    let mut show = |step: usize, localizer: &ViewLocalizer| {
         let best = localizer.best();
         println!("{step:2}: place {:?} with confidence {:.4}", grid.place(best.state), best.confidence);
     };
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let report = navigator.run(goal, &mut localizer, &mut robot, &mut show, &mut rng)?;
     println!("{:?} after {} moves; {:?}", report.arrival, report.steps, localizer.disturbance().0);
-    assert_eq!((report.arrival, robot.at), (Arrival::Reached, goal));
+    assert_eq!((report.arrival, robot.at), (NavigationOutcome::Reached, goal));
     Ok(())
 }
 

@@ -5,14 +5,15 @@
 use std::sync::Arc;
 
 use wayfix_condensation::{
-    Appearance, AppearanceParams, Grid, JoinedFeature, Localizer, LocalizerParams, MeanVar, Move, Picture,
-    SceneViews, Slip, StateSpace, View, ViewFeature, ViewGrid,
+    AppearanceLearningParams, AppearanceModel, GlobalDescriptor, GridMove, JoinedDescriptor,
+    MeanVarDescriptor, Picture, PositionGrid, SceneViews, SlipProbabilities, StateSpace, View, ViewGrid,
+    ViewLocalizer, ViewLocalizerParams,
 };
 
 /// Mean absolute difference of grey values between neighbours, to the right and down.
 struct EdgeEnergy;
 
-impl ViewFeature for EdgeEnergy {
+impl GlobalDescriptor for EdgeEnergy {
     fn n_components(&self) -> usize {
         2
     }
@@ -31,16 +32,17 @@ impl ViewFeature for EdgeEnergy {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = bricks(256, 192)?;
     let views = ViewGrid::new((256, 192), (64, 64), 16)?;
-    let feature = JoinedFeature::new(vec![Box::new(MeanVar), Box::new(EdgeEnergy)]);
+    let feature = JoinedDescriptor::new(vec![Box::new(MeanVarDescriptor), Box::new(EdgeEnergy)]);
     let source = SceneViews::new(&scene, &views)?;
-    let appearance = Arc::new(Appearance::learn(&source, &feature, &AppearanceParams::normalized())?);
+    let appearance =
+        Arc::new(AppearanceModel::learn(&source, &feature, &AppearanceLearningParams::normalized())?);
 
     // Straight to the right along the middle row, telling the place on the way.
     let seen = feature.extract_all(&scene.shifted(3, 3), &views)?;
-    let grid: Grid = *views.grid();
-    let right = Move { dx: 1, dy: 0 };
-    let transition = Slip::default().transition(&grid, right)?;
-    let mut localizer = Localizer::new(appearance, LocalizerParams::default())?;
+    let grid: PositionGrid = *views.grid();
+    let right = GridMove { dx: 1, dy: 0 };
+    let transition = SlipProbabilities::default().transition(&grid, right)?;
+    let mut localizer = ViewLocalizer::new(appearance, ViewLocalizerParams::default())?;
     let mut at = grid.state(1, 4).ok_or("outside")?;
     for _ in 0..8 {
         let outcome = localizer.update(seen.get(at).ok_or("outside")?)?;

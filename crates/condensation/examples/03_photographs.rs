@@ -10,22 +10,23 @@ use std::sync::Arc;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    ActionChoice, Appearance, AppearanceParams, Arrival, FeatureTable, Fft6, Grid, Hist6, Light, Localizer,
-    LocalizerParams, MeanVar, Move, Navigator, NavigatorParams, Picture, SceneViews, StateSpace, ViewFeature,
-    ViewGrid, World, light_match,
+    ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, Fft6Descriptor,
+    GlobalDescriptor, GridMove, Hist6Descriptor, LightChange, MeanVarDescriptor, NavigationEnvironment,
+    NavigationOutcome, Navigator, NavigatorParams, Picture, PositionGrid, SceneViews, StateSpace, ViewGrid,
+    ViewLocalizer, ViewLocalizerParams, light_match,
 };
 
 const RUNS: u64 = 100;
 
 /// A robot that really is somewhere, and sees the real scene there.
 struct Drive<'a> {
-    grid: Grid,
-    seen: &'a FeatureTable,
+    grid: PositionGrid,
+    seen: &'a DescriptorTable,
     at: usize,
 }
 
-impl World<Move> for Drive<'_> {
-    fn act(&mut self, action: Move) {
+impl NavigationEnvironment<GridMove> for Drive<'_> {
+    fn act(&mut self, action: GridMove) {
         self.at = self.grid.step(self.at, action);
     }
 
@@ -44,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("successes (unsure) mean steps, mean steps to certainty");
     for name in ["china.jpg", "coffee.png", "building.jpg"] {
         let learned = load(&folder.join(name))?;
-        let real = Light { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?.shifted(dx, dy);
+        let real = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?.shifted(dx, dy);
         compare(name, &learned, &real, seed)?;
     }
     let (left, right) =
@@ -58,16 +59,20 @@ fn compare(name: &str, learned: &Picture, real: &Picture, seed: i32) -> Result<(
     for (view, step) in [(128, 32), (256, 16)] {
         let views = ViewGrid::new((learned.width(), learned.height()), (view, view), step)?;
         let modes = [
-            ("whole scene", &matched, AppearanceParams::normalized()),
-            ("online", real, AppearanceParams::online()),
+            ("whole scene", &matched, AppearanceLearningParams::normalized()),
+            ("online", real, AppearanceLearningParams::online()),
         ];
         for (mode, scene, params) in modes {
-            let features: [(&str, &dyn ViewFeature); 3] =
-                [("MeanVar", &MeanVar), ("FFT6", &Fft6), ("Hist6", &Hist6::default())];
+            let features: [(&str, &dyn GlobalDescriptor); 3] = [
+                ("MeanVar", &MeanVarDescriptor),
+                ("FFT6", &Fft6Descriptor),
+                ("Hist6", &Hist6Descriptor::default()),
+            ];
             for (feature_name, feature) in features {
-                let appearance = Appearance::learn(&SceneViews::new(learned, &views)?, feature, &params)?;
+                let appearance =
+                    AppearanceModel::learn(&SceneViews::new(learned, &views)?, feature, &params)?;
                 let seen = feature.extract_all(scene, &views)?;
-                for choice in [ActionChoice::Greedy, ActionChoice::Informed { hypotheses: 12 }] {
+                for choice in [ActionSelection::Greedy, ActionSelection::Informed { hypotheses: 12 }] {
                     let figures = runs(&Arc::new(appearance.clone()), &seen, *views.grid(), choice, seed)?;
                     println!("{name} {view}/{step} {mode} {feature_name} {choice:?}: {figures}");
                     if mode == "online" {
@@ -81,22 +86,23 @@ fn compare(name: &str, learned: &Picture, real: &Picture, seed: i32) -> Result<(
 }
 
 fn runs(
-    appearance: &Arc<Appearance>,
-    seen: &FeatureTable,
-    grid: Grid,
-    choice: ActionChoice,
+    appearance: &Arc<AppearanceModel>,
+    seen: &DescriptorTable,
+    grid: PositionGrid,
+    choice: ActionSelection,
     seed: i32,
 ) -> Result<String, Box<dyn Error>> {
-    let navigator = Navigator::new(grid, NavigatorParams { choice, ..NavigatorParams::default() })?;
+    let navigator =
+        Navigator::new(grid, NavigatorParams { action_selection: choice, ..NavigatorParams::default() })?;
     let (mut successes, mut unsure, mut steps, mut certain, mut kidnappings) = (0, 0, 0, 0, 0);
     for run in 0..RUNS {
         let mut rng = ChaCha8Rng::seed_from_u64(run + seed.unsigned_abs() as u64);
         let mut drive = Drive { grid, seen, at: rng.random_range(0..grid.n_states()) };
         let goal = rng.random_range(0..grid.n_states());
-        let mut localizer = Localizer::new(appearance.clone(), LocalizerParams::default())?;
+        let mut localizer = ViewLocalizer::new(appearance.clone(), ViewLocalizerParams::default())?;
         let report = navigator.run(goal, &mut localizer, &mut drive, &mut |_, _| {}, &mut rng)?;
-        successes += u32::from(report.arrival == Arrival::Reached && drive.at == goal);
-        unsure += u32::from(report.arrival != Arrival::Reached);
+        successes += u32::from(report.arrival == NavigationOutcome::Reached && drive.at == goal);
+        unsure += u32::from(report.arrival != NavigationOutcome::Reached);
         steps += report.steps;
         certain += report.steps_to_certainty.unwrap_or(report.steps);
         kidnappings += report.kidnappings;

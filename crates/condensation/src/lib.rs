@@ -2,11 +2,11 @@
 //!
 //! | part | what is in it |
 //! | --- | --- |
-//! | discrete filter | [`DiscreteFilter`] over any [`StateSpace`]: [`Grid`], [`HeadingGrid`], [`Graph`]; [`Transition`]s, [`DiffusionKernel`] |
-//! | features | [`ViewFeature`]: [`MeanVar`], [`Fft6`], [`Hist6`], [`JoinedFeature`], your own; all views of a scene at once |
-//! | learning | [`Appearance`]: features of every state and how they answer to shift and light; [`Traverse`]; [`MoveLog`]; p-values |
-//! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceParams::online`] |
-//! | navigation | [`Localizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
+//! | discrete filter | [`DiscreteFilter`] over any [`StateSpace`]: [`PositionGrid`], [`HeadingGrid`], [`PlaceGraph`]; [`TransitionModel`]s, [`DiffusionKernel`] |
+//! | features | [`GlobalDescriptor`]: [`MeanVarDescriptor`], [`Fft6Descriptor`], [`Hist6Descriptor`], [`JoinedDescriptor`], your own; all views of a scene at once |
+//! | learning | [`AppearanceModel`]: features of every state and how they answer to shift and light; [`RouteTraverse`]; [`MoveCounts`]; p-values |
+//! | normalization | from the whole scene: [`affine_match`], [`histogram_match`], [`light_match`]; online: [`AppearanceLearningParams::online`] |
+//! | navigation | [`ViewLocalizer`] (place and light together), [`Navigator`] (to a goal, with a stop rule) |
 //!
 //! Kasprzak & Szynkiewicz, *A method for discrete self-localization using image analysis*. The crate opens no files: pictures are
 //! buffers of red, green and blue.
@@ -19,18 +19,22 @@ mod navigation;
 mod normalization;
 
 pub use discrete::{
-    Axis, BestState, DenseTransition, DiffusionKernel, DiscreteFilter, Graph, GraphAction, Grid, HeadingGrid,
-    Lattice, Maneuver, MeasurementEvidence, Move, Outcome, Slip, SparseTransition, StateSpace, Transition,
+    BestState, DenseTransition, DiffusionKernel, DiscreteFilter, GridMove, HeadingGrid, LatticeAxis,
+    Maneuver, MeasurementEvidence, MeasurementOutcome, PlaceGraph, PlaceGraphMove, PositionGrid,
+    SlipProbabilities, SparseTransition, StateLattice, StateSpace, TransitionModel,
 };
 pub use error::CondensationError;
 pub use features::{
-    Dominance, FeatureTable, Fft6, Hist6, JoinedFeature, MeanVar, Picture, View, ViewFeature, ViewGrid,
+    DescriptorTable, DominantGrayCriterion, Fft6Descriptor, GlobalDescriptor, Hist6Descriptor,
+    JoinedDescriptor, MeanVarDescriptor, Picture, View, ViewGrid,
 };
 pub use learning::{
-    Appearance, AppearanceParams, Disturbance, MoveLog, N_DISTURBANCES, NoiseParams, PValues, PictureViews,
-    SceneViews, Tail, Traverse, TraverseParams, ViewSource,
+    AppearanceLearningParams, AppearanceModel, LikelihoodTail, MoveCounts, N_DISTURBANCES,
+    NoiseCovarianceParams, PValueStatistics, PictureViews, RouteTraverse, RouteTraverseParams, SceneViews,
+    ViewDisturbance, ViewSource,
 };
 pub use navigation::{
-    ActionChoice, Arrival, Localizer, LocalizerParams, Navigator, NavigatorParams, Routes, RunReport, World,
+    ActionSelection, NavigationEnvironment, NavigationOutcome, NavigationReport, Navigator, NavigatorParams,
+    ShortestPathLengths, ViewLocalizer, ViewLocalizerParams,
 };
-pub use normalization::{Light, affine_match, histogram_match, light_match};
+pub use normalization::{LightChange, affine_match, histogram_match, light_match};

@@ -4,12 +4,13 @@
 
 use proptest::prelude::*;
 use wayfix_condensation::{
-    CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, Graph, Grid, HeadingGrid, Lattice,
-    Move, Outcome, Slip, StateSpace, Transition,
+    CondensationError, DenseTransition, DiffusionKernel, DiscreteFilter, GridMove, HeadingGrid,
+    MeasurementOutcome, PlaceGraph, PositionGrid, SlipProbabilities, StateLattice, StateSpace,
+    TransitionModel,
 };
-use wayfix_integrity::Cusum;
+use wayfix_integrity::CusumTest;
 
-fn predicted(transition: &dyn Transition, belief: &[f64]) -> Vec<f64> {
+fn predicted(transition: &dyn TransitionModel, belief: &[f64]) -> Vec<f64> {
     let mut to = vec![f64::NAN; belief.len()];
     transition.predict(belief, &mut to);
     to
@@ -22,7 +23,7 @@ fn assert_close(got: &[f64], expected: &[f64]) {
 }
 
 /// Eq. 5 with every pair of states written out, and each row divided by its sum.
-fn plain_diffusion(space: &impl Lattice, sigmas: &[f64]) -> DenseTransition {
+fn plain_diffusion(space: &impl StateLattice, sigmas: &[f64]) -> DenseTransition {
     let coordinates = |state: usize| {
         let mut rest = state;
         let mut places: Vec<usize> =
@@ -67,7 +68,7 @@ fn belief(n: usize) -> impl Strategy<Value = Vec<f64>> {
 proptest! {
     #[test]
     fn diffusion_is_the_plain_sum(weights in belief(35), x in 0.0..2.5, y in 0.0..2.5) {
-        let grid = Grid::new(7, 5).unwrap();
+        let grid = PositionGrid::new(7, 5).unwrap();
         let kernel = DiffusionKernel::gaussian(&grid, &[y, x]).unwrap();
         assert_close(&predicted(&kernel, &weights), &predicted(&plain_diffusion(&grid, &[y, x]), &weights));
     }
@@ -82,14 +83,14 @@ proptest! {
 
     #[test]
     fn sparse_is_dense(weights in belief(12), stay_probability in 0.0..0.5, other_action_probability in 0.0..0.5, action in 0_usize..9) {
-        let grid = Grid::new(4, 3).unwrap();
-        let slip = Slip { stay_probability, other_action_probability };
-        let action = Move::ALL[action];
+        let grid = PositionGrid::new(4, 3).unwrap();
+        let slip = SlipProbabilities { stay_probability, other_action_probability };
+        let action = GridMove::ALL[action];
         let mut rows = vec![vec![0.0; 12]; 12];
         for (from, row) in rows.iter_mut().enumerate() {
             row[grid.step(from, action)] += 1.0 - stay_probability - other_action_probability;
             row[from] += stay_probability;
-            Move::ALL.iter().for_each(|&other| row[grid.step(from, other)] += other_action_probability / 9.0);
+            GridMove::ALL.iter().for_each(|&other| row[grid.step(from, other)] += other_action_probability / 9.0);
         }
         let dense = DenseTransition::from_rows(&rows).unwrap();
         assert_close(&predicted(&slip.transition(&grid, action).unwrap(), &weights), &predicted(&dense, &weights));
@@ -107,7 +108,7 @@ proptest! {
         let before = filter.clone();
         let outcome = filter.update(&log_likelihoods).unwrap();
         if best == f64::NEG_INFINITY {
-            prop_assert_eq!(outcome, Outcome::Impossible);
+            prop_assert_eq!(outcome, MeasurementOutcome::Impossible);
             prop_assert_eq!(filter.belief(), before.belief());
         } else {
             let sum: f64 = logs.iter().map(|l| (l - best).exp()).sum();
@@ -121,11 +122,11 @@ proptest! {
 
 #[test]
 fn belief_over_many_chunks_stays_a_distribution() {
-    let grid = Grid::new(300, 200).unwrap(); // several chunks, and none that divides a row
+    let grid = PositionGrid::new(300, 200).unwrap(); // several chunks, and none that divides a row
     let kernel = DiffusionKernel::gaussian(&grid, &[1.3, 0.8]).unwrap();
     let mut filter = DiscreteFilter::uniform(60_000).unwrap();
-    let go = Slip { stay_probability: 0.1, other_action_probability: 0.1 }
-        .transition(&grid, Move { dx: 1, dy: 0 })
+    let go = SlipProbabilities { stay_probability: 0.1, other_action_probability: 0.1 }
+        .transition(&grid, GridMove { dx: 1, dy: 0 })
         .unwrap();
     let truth = 60_000 - 7;
     for _ in 0..5 {
@@ -140,7 +141,7 @@ fn belief_over_many_chunks_stays_a_distribution() {
 
 #[test]
 fn a_graph_diffuses_along_its_edges() {
-    let graph = Graph::new(3, &[(0, 1), (0, 2), (1, 0)]).unwrap();
+    let graph = PlaceGraph::new(3, &[(0, 1), (0, 2), (1, 0)]).unwrap();
     assert_eq!(predicted(&graph.diffusion(0.5).unwrap(), &[1.0, 0.0, 0.0]), [0.5, 0.25, 0.25]);
     assert_eq!(predicted(&graph.diffusion(0.5).unwrap(), &[0.0, 0.0, 1.0]), [0.0, 0.0, 1.0]);
 }
@@ -153,12 +154,12 @@ fn bad_input_is_refused_and_changes_nothing() {
     );
     assert_eq!(DiscreteFilter::from_prior(vec![0.0; 3]), Err(CondensationError::ZeroBelief));
     assert!(matches!(DiscreteFilter::uniform(0), Err(CondensationError::Extent { .. })));
-    assert!(matches!(Graph::new(2, &[(0, 2)]), Err(CondensationError::State { state: 2, n_states: 2 })));
-    assert!(matches!(Grid::new(usize::MAX, 3), Err(CondensationError::Extent { .. })));
-    assert!(DiffusionKernel::gaussian(&Grid::new(3, 3).unwrap(), &[f64::NAN, 1.0]).is_err());
+    assert!(matches!(PlaceGraph::new(2, &[(0, 2)]), Err(CondensationError::State { state: 2, n_states: 2 })));
+    assert!(matches!(PositionGrid::new(usize::MAX, 3), Err(CondensationError::Extent { .. })));
+    assert!(DiffusionKernel::gaussian(&PositionGrid::new(3, 3).unwrap(), &[f64::NAN, 1.0]).is_err());
     assert!(
-        Slip { stay_probability: 0.7, other_action_probability: 0.7 }
-            .transition(&Grid::new(3, 3).unwrap(), Move::STAY)
+        SlipProbabilities { stay_probability: 0.7, other_action_probability: 0.7 }
+            .transition(&PositionGrid::new(3, 3).unwrap(), GridMove::STAY)
             .is_err()
     );
 
@@ -172,16 +173,16 @@ fn bad_input_is_refused_and_changes_nothing() {
         filter.update(&[0.0; 2]),
         Err(CondensationError::Dimension { expected: 3, got: 2, .. })
     ));
-    assert_eq!(filter.update(&[f64::NEG_INFINITY; 3]), Ok(Outcome::Impossible));
+    assert_eq!(filter.update(&[f64::NEG_INFINITY; 3]), Ok(MeasurementOutcome::Impossible));
     assert_eq!(filter.belief(), before.belief());
 }
 
 #[test]
 fn kidnapped_robot_raises_one_alarm_and_is_found() {
-    let grid = Grid::new(20, 1).unwrap();
-    let stand = Slip::default().transition(&grid, Move::STAY).unwrap();
+    let grid = PositionGrid::new(20, 1).unwrap();
+    let stand = SlipProbabilities::default().transition(&grid, GridMove::STAY).unwrap();
     let mut filter = DiscreteFilter::uniform(20).unwrap();
-    let mut monitor = Cusum::from_false_alarm_rate(1e-4).unwrap();
+    let mut monitor = CusumTest::from_false_alarm_rate(1e-4).unwrap();
     let mut alarms = Vec::new();
     for step in 0..20 {
         let place = if step < 10 { 3 } else { 15 };

@@ -4,14 +4,14 @@
 
 use proptest::prelude::*;
 use wayfix_condensation::{
-    CondensationError, Dominance, FeatureTable, Fft6, Hist6, JoinedFeature, MeanVar, Picture, StateSpace,
-    View, ViewFeature, ViewGrid,
+    CondensationError, DescriptorTable, DominantGrayCriterion, Fft6Descriptor, GlobalDescriptor,
+    Hist6Descriptor, JoinedDescriptor, MeanVarDescriptor, Picture, StateSpace, View, ViewGrid,
 };
 
 /// A feature without what it knows of neighbouring views.
-struct Plain<'a>(&'a dyn ViewFeature);
+struct Plain<'a>(&'a dyn GlobalDescriptor);
 
-impl ViewFeature for Plain<'_> {
+impl GlobalDescriptor for Plain<'_> {
     fn n_components(&self) -> usize {
         self.0.n_components()
     }
@@ -21,18 +21,18 @@ impl ViewFeature for Plain<'_> {
     }
 }
 
-fn all_features() -> Vec<Box<dyn ViewFeature + Send>> {
+fn all_features() -> Vec<Box<dyn GlobalDescriptor + Send>> {
     vec![
-        Box::new(MeanVar),
-        Box::new(Fft6),
-        Box::new(Hist6 { dominance: Dominance::Counts }),
-        Box::new(Hist6 { dominance: Dominance::Peaks { sigma: 4.0 } }),
-        Box::new(Hist6 { dominance: Dominance::Classes }),
-        Box::new(Hist6::default()),
+        Box::new(MeanVarDescriptor),
+        Box::new(Fft6Descriptor),
+        Box::new(Hist6Descriptor { dominance: DominantGrayCriterion::Counts }),
+        Box::new(Hist6Descriptor { dominance: DominantGrayCriterion::Peaks { sigma: 4.0 } }),
+        Box::new(Hist6Descriptor { dominance: DominantGrayCriterion::Classes }),
+        Box::new(Hist6Descriptor::default()),
     ]
 }
 
-fn assert_equal(got: &FeatureTable, expected: &FeatureTable) {
+fn assert_equal(got: &DescriptorTable, expected: &DescriptorTable) {
     assert_eq!(got.n_states(), expected.n_states());
     for (state, (a, b)) in got.rows().zip(expected.rows()).enumerate() {
         for (x, y) in a.iter().zip(b) {
@@ -59,7 +59,7 @@ proptest! {
             let plain = Plain(feature.as_ref()).extract_all(&scene, &views).unwrap();
             assert_equal(&feature.extract_all(&scene, &views).unwrap(), &plain);
         }
-        let joined = JoinedFeature::new(all_features());
+        let joined = JoinedDescriptor::new(all_features());
         assert_equal(&joined.extract_all(&scene, &views).unwrap(), &Plain(&joined).extract_all(&scene, &views).unwrap());
     }
 
@@ -67,7 +67,7 @@ proptest! {
     fn features_are_what_they_are_defined_to_be(scene in picture()) {
         let n = scene.pixels().len() as f64;
         let mut mean_var = [0.0; 6];
-        MeanVar.extract(&scene.whole(), &mut mean_var);
+        MeanVarDescriptor.extract(&scene.whole(), &mut mean_var);
         for c in 0..3 {
             let values = || scene.pixels().iter().map(|pixel| f64::from(pixel[c]));
             let mean = values().sum::<f64>() / n;
@@ -75,7 +75,7 @@ proptest! {
             prop_assert!((mean_var[c] - mean).abs() < 1e-9 && (mean_var[c + 3] - sigma).abs() < 1e-9);
         }
         let mut moduli = [0.0; 6];
-        Fft6.extract(&scene.whole(), &mut moduli);
+        Fft6Descriptor.extract(&scene.whole(), &mut moduli);
         for (l, modulus) in moduli.iter().enumerate() {
             let (mut real, mut imaginary) = (0.0, 0.0); // Eq. 7, pixel by pixel
             for (i, &grey) in scene.grey().iter().enumerate() {
@@ -96,8 +96,10 @@ fn classes_follow_gain_and_offset() {
     let values = [10, 14, 20, 70, 72, 90, 140, 150];
     let brighter: Vec<u8> = values.iter().map(|v| v / 2 + 60).collect();
     let (mut before, mut after) = ([0.0; 6], [0.0; 6]);
-    Hist6 { dominance: Dominance::Classes }.extract(&grey(&values).whole(), &mut before);
-    Hist6 { dominance: Dominance::Classes }.extract(&grey(&brighter).whole(), &mut after);
+    Hist6Descriptor { dominance: DominantGrayCriterion::Classes }
+        .extract(&grey(&values).whole(), &mut before);
+    Hist6Descriptor { dominance: DominantGrayCriterion::Classes }
+        .extract(&grey(&brighter).whole(), &mut after);
     for k in 0..3 {
         assert!((after[k] - (0.5 * before[k] + 60.0)).abs() < 1e-9 && after[k + 3] == before[k + 3]);
     }
@@ -122,6 +124,9 @@ fn sizes_that_do_not_fit_are_refused() {
     assert!(matches!(Picture::from_rgb(0, 5, vec![]), Err(CondensationError::Extent { .. })));
     let views = ViewGrid::new((10, 8), (4, 4), 2).unwrap();
     let other = Picture::from_rgb(9, 8, vec![0; 3 * 72]).unwrap();
-    assert!(matches!(MeanVar.extract_all(&other, &views), Err(CondensationError::Dimension { .. })));
+    assert!(matches!(
+        MeanVarDescriptor.extract_all(&other, &views),
+        Err(CondensationError::Dimension { .. })
+    ));
     assert!(other.view((6, 0), (4, 4)).is_err() && views.corner(views.grid().n_states()).is_err());
 }

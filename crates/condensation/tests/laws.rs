@@ -2,14 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use wayfix_condensation::{DiscreteFilter, Grid, Move, Slip};
+use wayfix_condensation::{DiscreteFilter, GridMove, PositionGrid, SlipProbabilities};
 use wayfix_estimation_traits::laws;
 
 #[test]
 fn discrete_filter_obeys_the_laws_of_filters() {
-    let grid = Grid::new(5, 4).unwrap();
-    let stay = Slip::default().transition(&grid, Move::STAY).unwrap();
-    let other_grid = Slip::default().transition(&Grid::new(3, 2).unwrap(), Move::STAY).unwrap();
+    let grid = PositionGrid::new(5, 4).unwrap();
+    let stay = SlipProbabilities::default().transition(&grid, GridMove::STAY).unwrap();
+    let other_grid =
+        SlipProbabilities::default().transition(&PositionGrid::new(3, 2).unwrap(), GridMove::STAY).unwrap();
     let state_13 = |likelihood: f64, n: usize| -> Vec<f64> {
         (0..n).map(|state| if state == 13 { likelihood } else { -5.0 }).collect()
     };
@@ -18,7 +19,7 @@ fn discrete_filter_obeys_the_laws_of_filters() {
     };
     let (good, drives) =
         (sees(state_13(0.0, 20)), |filter: &mut DiscreteFilter| filter.predict(&stay).is_ok());
-    let trial = laws::FilterTrial {
+    let trial = laws::FilterLawTrial {
         estimate: &DiscreteFilter::clone,
         error: &|filter: &DiscreteFilter| 1.0 - filter.confidence(13).unwrap(),
         bound: 1e-4,
@@ -37,9 +38,9 @@ fn discrete_filter_obeys_the_laws_of_filters() {
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     use wayfix_condensation::{DiffusionKernel, StateSpace};
-    let grid = Grid::new(401, 307).unwrap();
-    let go = Slip { stay_probability: 0.1, other_action_probability: 0.2 }
-        .transition(&grid, Move { dx: 1, dy: -1 })
+    let grid = PositionGrid::new(401, 307).unwrap();
+    let go = SlipProbabilities { stay_probability: 0.1, other_action_probability: 0.2 }
+        .transition(&grid, GridMove { dx: 1, dy: -1 })
         .unwrap();
     let kernel = DiffusionKernel::gaussian(&grid, &[1.0, 0.7]).unwrap();
     let looks: Vec<f64> = (0..grid.n_states()).map(|s| -((s % 977) as f64).sqrt()).collect();

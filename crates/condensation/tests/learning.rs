@@ -6,16 +6,17 @@ mod common;
 
 use common::scene;
 use wayfix_condensation::{
-    Appearance, AppearanceParams, CondensationError, Disturbance, FeatureTable, Grid, Light, MeanVar, Move,
-    MoveLog, Picture, PictureViews, SceneViews, StateSpace, Tail, Transition, ViewFeature, ViewGrid,
+    AppearanceLearningParams, AppearanceModel, CondensationError, DescriptorTable, GlobalDescriptor,
+    GridMove, LightChange, LikelihoodTail, MeanVarDescriptor, MoveCounts, Picture, PictureViews,
+    PositionGrid, SceneViews, StateSpace, TransitionModel, ViewDisturbance, ViewGrid,
 };
 
 /// SciPy: `chi2.sf(4, 2)`; each component is one sigma of noise times sqrt(2) away.
 #[test]
 fn p_value_is_the_chi_squared_tail() {
     // Spread of each component over the states: 1, of which noise has all.
-    let table = FeatureTable::from_rows(&[vec![-1.0, -1.0], vec![1.0, 1.0]]).unwrap();
-    let appearance = Appearance::from_spread(table, 1.0).unwrap();
+    let table = DescriptorTable::from_rows(&[vec![-1.0, -1.0], vec![1.0, 1.0]]).unwrap();
+    let appearance = AppearanceModel::from_spread(table, 1.0).unwrap();
     let off = 2.0_f64.sqrt();
     assert!((appearance.p_value(1, &[1.0 + off, 1.0 - off]).unwrap() - 0.1353352832366127).abs() < 1e-12);
     let between = appearance.p_values_between_states().unwrap();
@@ -29,8 +30,9 @@ fn the_same_place_is_told_from_others() {
     let learned = scene(240, 176, 5);
     let views = ViewGrid::new((240, 176), (64, 64), 16).unwrap();
     let source = SceneViews::new(&learned, &views).unwrap();
-    let appearance = Appearance::learn(&source, &MeanVar, &AppearanceParams::normalized()).unwrap();
-    let seen = MeanVar.extract_all(&learned.shifted(2, -2), &views).unwrap();
+    let appearance =
+        AppearanceModel::learn(&source, &MeanVarDescriptor, &AppearanceLearningParams::normalized()).unwrap();
+    let seen = MeanVarDescriptor.extract_all(&learned.shifted(2, -2), &views).unwrap();
     let same = appearance.p_values_of(&seen).unwrap();
     let others = appearance.p_values_between_states().unwrap();
     assert!(same.mean > 0.9 && others.mean < 0.1, "{same:?} {others:?}");
@@ -40,9 +42,10 @@ fn the_same_place_is_told_from_others() {
 fn pictures_of_single_places_can_be_learned() {
     let pictures: Vec<Picture> = (0..4).map(|seed| scene(48, 32, seed)).collect();
     let source = PictureViews::new(&pictures).unwrap();
-    let appearance = Appearance::learn(&source, &MeanVar, &AppearanceParams::normalized()).unwrap();
+    let appearance =
+        AppearanceModel::learn(&source, &MeanVarDescriptor, &AppearanceLearningParams::normalized()).unwrap();
     let mut features = [0.0; 6];
-    MeanVar.extract(&pictures[2].whole(), &mut features);
+    MeanVarDescriptor.extract(&pictures[2].whole(), &mut features);
     assert_eq!(appearance.features(0).unwrap().get(2).unwrap(), features);
     assert!((appearance.p_value(2, &features).unwrap() - 1.0).abs() < 1e-12);
     assert!(PictureViews::new(&[]).is_err());
@@ -50,9 +53,9 @@ fn pictures_of_single_places_can_be_learned() {
 
 #[test]
 fn moves_are_learned_from_a_log() {
-    let grid = Grid::new(4, 1).unwrap();
-    let right = Move { dx: 1, dy: 0 };
-    let mut log = MoveLog::new(&grid);
+    let grid = PositionGrid::new(4, 1).unwrap();
+    let right = GridMove { dx: 1, dy: 0 };
+    let mut log = MoveCounts::new(&grid);
     for to in [1, 1, 1, 0] {
         log.record(0, right, to).unwrap();
     }
@@ -61,7 +64,7 @@ fn moves_are_learned_from_a_log() {
     // (3 + 1) / 5 of the first, and what was never tried goes where it should
     assert!((predicted[0] - 0.1).abs() < 1e-15 && (predicted[1] - 0.4).abs() < 1e-15 && predicted[3] == 0.5);
     assert!(log.record(0, right, 4).is_err() && log.transition(right, 0.0).is_err());
-    assert!(log.record(0, Move { dx: 5, dy: 0 }, 1).is_err());
+    assert!(log.record(0, GridMove { dx: 5, dy: 0 }, 1).is_err());
     assert_eq!(grid.n_states(), 4);
 }
 
@@ -70,15 +73,25 @@ fn parameters_out_of_range_are_refused() {
     let learned = scene(48, 32, 1);
     let views = ViewGrid::new((48, 32), (16, 16), 8).unwrap();
     let source = SceneViews::new(&learned, &views).unwrap();
-    let learn = |params: AppearanceParams| Appearance::learn(&source, &MeanVar, &params).map(|_| ());
-    let normalized = AppearanceParams::normalized;
+    let learn = |params: AppearanceLearningParams| {
+        AppearanceModel::learn(&source, &MeanVarDescriptor, &params).map(|_| ())
+    };
+    let normalized = AppearanceLearningParams::normalized;
     assert!(learn(normalized()).is_ok());
-    let disturbance = Disturbance { dx: f64::NAN, ..normalized().disturbance };
-    assert!(learn(AppearanceParams { disturbance, ..normalized() }).is_err());
-    assert!(learn(AppearanceParams { tail: Tail::StudentT { dof: 0.0 }, ..normalized() }).is_err());
-    let none = AppearanceParams { lights: vec![], ..normalized() };
+    let disturbance = ViewDisturbance { dx: f64::NAN, ..normalized().disturbance_sigmas };
+    assert!(learn(AppearanceLearningParams { disturbance_sigmas: disturbance, ..normalized() }).is_err());
+    assert!(
+        learn(AppearanceLearningParams {
+            likelihood_tail: LikelihoodTail::StudentT { dof: 0.0 },
+            ..normalized()
+        })
+        .is_err()
+    );
+    let none = AppearanceLearningParams { light_changes: vec![], ..normalized() };
     assert_eq!(learn(none), Err(CondensationError::Empty { what: "conditions" }));
-    let dark = Light { gain: -1.0, ..Light::SAME };
-    assert!(learn(AppearanceParams { lights: vec![dark], ..normalized() }).is_err());
-    assert!(Appearance::from_spread(FeatureTable::from_rows(&[vec![1.0]]).unwrap(), f64::NAN).is_err());
+    let dark = LightChange { gain: -1.0, ..LightChange::SAME };
+    assert!(learn(AppearanceLearningParams { light_changes: vec![dark], ..normalized() }).is_err());
+    assert!(
+        AppearanceModel::from_spread(DescriptorTable::from_rows(&[vec![1.0]]).unwrap(), f64::NAN).is_err()
+    );
 }

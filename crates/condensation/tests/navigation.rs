@@ -10,35 +10,43 @@ use common::{Drive, scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_condensation::{
-    ActionChoice, Appearance, AppearanceParams, Arrival, FeatureTable, Fft6, Graph, GraphAction, Hist6,
-    Light, Localizer, LocalizerParams, MeanVar, Navigator, NavigatorParams, Picture, RunReport, SceneViews,
-    StateSpace, ViewFeature, ViewGrid, World, histogram_match,
+    ActionSelection, AppearanceLearningParams, AppearanceModel, DescriptorTable, Fft6Descriptor,
+    GlobalDescriptor, Hist6Descriptor, LightChange, MeanVarDescriptor, NavigationEnvironment,
+    NavigationOutcome, NavigationReport, Navigator, NavigatorParams, Picture, PlaceGraph, PlaceGraphMove,
+    SceneViews, StateSpace, ViewGrid, ViewLocalizer, ViewLocalizerParams, histogram_match,
 };
 
 struct Trial {
     views: ViewGrid,
-    appearance: Arc<Appearance>,
-    seen: FeatureTable,
+    appearance: Arc<AppearanceModel>,
+    seen: DescriptorTable,
 }
 
 impl Trial {
-    fn new(feature: &dyn ViewFeature, learned: &Picture, real: &Picture, params: &AppearanceParams) -> Self {
+    fn new(
+        feature: &dyn GlobalDescriptor,
+        learned: &Picture,
+        real: &Picture,
+        params: &AppearanceLearningParams,
+    ) -> Self {
         let views = ViewGrid::new((learned.width(), learned.height()), (64, 64), 16).unwrap();
         let source = SceneViews::new(learned, &views).unwrap();
-        let appearance = Arc::new(Appearance::learn(&source, feature, params).unwrap());
+        let appearance = Arc::new(AppearanceModel::learn(&source, feature, params).unwrap());
         Self { seen: feature.extract_all(real, &views).unwrap(), appearance, views }
     }
 
     fn run(
         &self,
         seed: u64,
-        choice: ActionChoice,
+        choice: ActionSelection,
         kidnapped: Option<(usize, usize)>,
-    ) -> (RunReport, usize, Localizer) {
+    ) -> (NavigationReport, usize, ViewLocalizer) {
         let grid = *self.views.grid();
         let navigator =
-            Navigator::new(grid, NavigatorParams { choice, ..NavigatorParams::default() }).unwrap();
-        let mut localizer = Localizer::new(self.appearance.clone(), LocalizerParams::default()).unwrap();
+            Navigator::new(grid, NavigatorParams { action_selection: choice, ..NavigatorParams::default() })
+                .unwrap();
+        let mut localizer =
+            ViewLocalizer::new(self.appearance.clone(), ViewLocalizerParams::default()).unwrap();
         let start = (seed as usize * 37) % grid.n_states();
         let goal = (seed as usize * 53 + 11) % grid.n_states();
         let mut drive = Drive { grid, seen: self.seen.clone(), at: start, kidnapped, looks: 0 };
@@ -48,7 +56,7 @@ impl Trial {
     }
 }
 
-const OTHER_LIGHT: Light = Light { gain: 0.7, offset: 20.0, gamma: 1.3 };
+const OTHER_LIGHT: LightChange = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 };
 
 /// The goal, 100 of 100, on 20 runs a feature and mode: each of them must end at the true goal by the robot's own decision.
 #[test]
@@ -56,16 +64,18 @@ fn every_feature_reaches_every_goal_in_another_light() {
     let learned = scene(240, 176, 3);
     let real = OTHER_LIGHT.apply(&learned).unwrap().shifted(4, 3);
     let matched = real.mapped(&histogram_match(&real, &learned));
-    let features: [&dyn ViewFeature; 3] = [&MeanVar, &Fft6, &Hist6::default()];
+    let features: [&dyn GlobalDescriptor; 3] =
+        [&MeanVarDescriptor, &Fft6Descriptor, &Hist6Descriptor::default()];
     for (number, feature) in features.into_iter().enumerate() {
-        let modes = [(&matched, AppearanceParams::normalized()), (&real, AppearanceParams::online())];
+        let modes =
+            [(&matched, AppearanceLearningParams::normalized()), (&real, AppearanceLearningParams::online())];
         for (scene, params) in modes {
             let trial = Trial::new(feature, &learned, scene, &params);
             for seed in 0..20 {
-                let (report, off, _) = trial.run(seed, ActionChoice::Greedy, None);
+                let (report, off, _) = trial.run(seed, ActionSelection::Greedy, None);
                 assert_eq!(
                     (report.arrival, off),
-                    (Arrival::Reached, 0),
+                    (NavigationOutcome::Reached, 0),
                     "feature {number}, run {seed}: {report:?}"
                 );
             }
@@ -78,10 +88,14 @@ fn every_feature_reaches_every_goal_in_another_light() {
 #[test]
 fn light_is_found_together_with_the_place() {
     let learned = scene(240, 176, 3);
-    let trial =
-        Trial::new(&MeanVar, &learned, &OTHER_LIGHT.apply(&learned).unwrap(), &AppearanceParams::online());
+    let trial = Trial::new(
+        &MeanVarDescriptor,
+        &learned,
+        &OTHER_LIGHT.apply(&learned).unwrap(),
+        &AppearanceLearningParams::online(),
+    );
     for seed in 0..5 {
-        let (light, _) = trial.run(seed, ActionChoice::Greedy, None).2.disturbance();
+        let (light, _) = trial.run(seed, ActionSelection::Greedy, None).2.disturbance();
         assert!(
             (light.gain / 0.7 - 1.0).abs() < 0.08 && (light.offset - 20.0).abs() < 8.0,
             "run {seed}: {light:?}"
@@ -92,23 +106,28 @@ fn light_is_found_together_with_the_place() {
 #[test]
 fn informed_choice_arrives_too() {
     let learned = scene(240, 176, 3);
-    let trial = Trial::new(&Fft6, &learned, &learned.shifted(-3, 4), &AppearanceParams::normalized());
+    let trial = Trial::new(
+        &Fft6Descriptor,
+        &learned,
+        &learned.shifted(-3, 4),
+        &AppearanceLearningParams::normalized(),
+    );
     for seed in 0..10 {
-        let (report, off, _) = trial.run(seed, ActionChoice::Informed { hypotheses: 8 }, None);
-        assert_eq!((report.arrival, off), (Arrival::Reached, 0), "run {seed}");
+        let (report, off, _) = trial.run(seed, ActionSelection::Informed { hypotheses: 8 }, None);
+        assert_eq!((report.arrival, off), (NavigationOutcome::Reached, 0), "run {seed}");
     }
 }
 
 #[test]
 fn a_kidnapped_robot_notices_and_still_arrives() {
     let learned = scene(240, 176, 3);
-    let trial = Trial::new(&MeanVar, &learned, &learned, &AppearanceParams::normalized());
+    let trial = Trial::new(&MeanVarDescriptor, &learned, &learned, &AppearanceLearningParams::normalized());
     let n = trial.views.grid().n_states();
     for seed in [1, 4, 7] {
         // Put far away at the third look, when it has long been sure.
         let away = ((seed as usize * 37) % n + n / 2) % n;
-        let (report, off, _) = trial.run(seed, ActionChoice::Greedy, Some((3, away)));
-        assert_eq!((report.arrival, off), (Arrival::Reached, 0), "run {seed}: {report:?}");
+        let (report, off, _) = trial.run(seed, ActionSelection::Greedy, Some((3, away)));
+        assert_eq!((report.arrival, off), (NavigationOutcome::Reached, 0), "run {seed}: {report:?}");
     }
 }
 
@@ -116,20 +135,23 @@ fn a_kidnapped_robot_notices_and_still_arrives() {
 #[test]
 fn a_constant_scene_ends_unsure() {
     let grey = Picture::from_rgb(240, 176, vec![90; 3 * 240 * 176]).unwrap();
-    let trial = Trial::new(&MeanVar, &grey, &grey, &AppearanceParams::normalized());
-    let (report, _, localizer) = trial.run(2, ActionChoice::Greedy, None);
-    assert_eq!((report.arrival, report.steps), (Arrival::Unsure, NavigatorParams::default().max_steps));
+    let trial = Trial::new(&MeanVarDescriptor, &grey, &grey, &AppearanceLearningParams::normalized());
+    let (report, _, localizer) = trial.run(2, ActionSelection::Greedy, None);
+    assert_eq!(
+        (report.arrival, report.steps),
+        (NavigationOutcome::Unsure, NavigatorParams::default().max_steps)
+    );
     assert!(localizer.belief().iter().all(|p| p.is_finite()));
     assert!((localizer.belief().iter().sum::<f64>() - 1.0).abs() < 1e-9);
 }
 
 struct Walk {
-    graph: Graph,
+    graph: PlaceGraph,
     at: usize,
 }
 
-impl World<GraphAction> for Walk {
-    fn act(&mut self, action: GraphAction) {
+impl NavigationEnvironment<PlaceGraphMove> for Walk {
+    fn act(&mut self, action: PlaceGraphMove) {
         self.at = self.graph.step(self.at, action);
     }
 
@@ -140,15 +162,15 @@ impl World<GraphAction> for Walk {
 
 #[test]
 fn a_goal_without_a_way_is_unreachable() {
-    let graph = Graph::new(4, &[(0, 1), (1, 0), (2, 3), (3, 2)]).unwrap();
+    let graph = PlaceGraph::new(4, &[(0, 1), (1, 0), (2, 3), (3, 2)]).unwrap();
     let places: Vec<Vec<f64>> = (0..4).map(|state| vec![10.0 * f64::from(state)]).collect();
     let appearance =
-        Arc::new(Appearance::from_spread(FeatureTable::from_rows(&places).unwrap(), 0.1).unwrap());
+        Arc::new(AppearanceModel::from_spread(DescriptorTable::from_rows(&places).unwrap(), 0.1).unwrap());
     let navigator = Navigator::new(graph.clone(), NavigatorParams::default()).unwrap();
-    let mut localizer = Localizer::new(appearance, LocalizerParams::default()).unwrap();
+    let mut localizer = ViewLocalizer::new(appearance, ViewLocalizerParams::default()).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut walk = Walk { graph, at: 0 };
     let report = navigator.run(3, &mut localizer, &mut walk, &mut |_, _| {}, &mut rng).unwrap();
-    assert_eq!(report.arrival, Arrival::Unreachable);
+    assert_eq!(report.arrival, NavigationOutcome::Unreachable);
     assert!(navigator.run(9, &mut localizer, &mut walk, &mut |_, _| {}, &mut rng).is_err());
 }

@@ -64,7 +64,7 @@ impl MotionModel for Turn {
     }
 }
 
-fn main() -> Result<(), laws::Violation> {
+fn main() -> Result<(), laws::LawViolation> {
     let wrist = |x, y, z, opening| Wrist { direction: Unit::new_normalize(Vector3::new(x, y, z)), opening };
 
     // 4. The laws, at the pole, elsewhere, and near the pole where the frame turns over.

@@ -251,8 +251,8 @@ impl Scalar {
 #[test]
 fn law_suite_catches_a_frozen_filter_and_a_dirty_refusal() {
     let honest = Scalar { mean: 0.0, variance: 1.0, applies_gain: true, checks_first: true };
-    let good: laws::FilterCall<'_, Scalar> = &|filter| filter.update(5.0);
-    let trial = laws::FilterTrial {
+    let good: laws::FilterLawCall<'_, Scalar> = &|filter| filter.update(5.0);
+    let trial = laws::FilterLawTrial {
         estimate: &|filter: &Scalar| (filter.mean, filter.variance),
         error: &|estimate: &(f64, f64)| (estimate.0 - 5.0).abs(),
         bound: 0.1,

@@ -8,20 +8,20 @@ use std::path::PathBuf;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_evaluation::plot::{
-    ConsistencyPlot, ErrorPlot, ErrorSample, EstimatedLandmark, LinesPlot, MapPlot, PlotError, Scale, Series,
-    TimesPlot,
+    AxisScale, ConsistencyPlot, ErrorPlot, ErrorSample, EstimatedLandmark, LinesPlot, MapPlot, PlotError,
+    PlotSeries, TimesPlot,
 };
-use wayfix_evaluation::report::{Machine, Metric, Report, Run, Suite, table};
+use wayfix_evaluation::report::{MachineInfo, Metric, Report, ReportRun, ReportSuite, table};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "target/report-page".to_owned()));
     let mut suites = Vec::new();
     for (k, name) in ["slam", "consistency"].into_iter().enumerate() {
         let runs = (0..4).map(|n| invented_run(n, 10 * k as u64 + n)).collect::<Result<_, _>>()?;
-        suites.push(Suite { name: name.to_owned(), runs });
+        suites.push(ReportSuite { name: name.to_owned(), runs });
     }
     let commit = wayfix_evaluation::report::commit(&std::env::current_dir()?);
-    let report = Report { suites, seed: 1, commit, machine: Machine::detect() };
+    let report = Report { suites, seed: 1, commit, machine: MachineInfo::detect() };
     report.write(&folder)?;
     print!("{}", table::report(&report, table::TableStyle::of_stdout()));
     println!("{}", folder.join("index.html").display());
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 const N_STEPS: usize = 6000;
 
 /// A lap around a hall of 12 m by 8 m with errors that a filter might have.
-fn invented_run(n: u64, seed: u64) -> Result<Run, PlotError> {
+fn invented_run(n: u64, seed: u64) -> Result<ReportRun, PlotError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     // Four uniform numbers give a bell that is good enough for a picture.
     let mut bell = move || (0..4).map(|_| rng.random_range(-0.87..0.87)).sum::<f64>();
@@ -84,19 +84,19 @@ fn invented_run(n: u64, seed: u64) -> Result<Run, PlotError> {
         expected: 3.0,
         band: (0.2158, 9.3484),
         window: 100,
-        scale: if n.is_multiple_of(2) { Scale::Linear } else { Scale::Log10 },
+        scale: if n.is_multiple_of(2) { AxisScale::Linear } else { AxisScale::Log10 },
     };
     let lines = LinesPlot {
         title: "Cost of an update".to_owned(),
         x_label: "landmarks".to_owned(),
         y_label: "multiplications".to_owned(),
         series: vec![
-            Series::new("dense", growth(3)),
-            Series::new("sparse", growth(2)),
-            Series::new("one landmark", growth(1)),
+            PlotSeries::new("dense", growth(3)),
+            PlotSeries::new("sparse", growth(2)),
+            PlotSeries::new("one landmark", growth(1)),
         ],
-        x_scale: Scale::Log10,
-        y_scale: Scale::Log10,
+        x_scale: AxisScale::Log10,
+        y_scale: AxisScale::Log10,
         band: None,
     };
     let mut figures = vec![
@@ -109,7 +109,7 @@ fn invented_run(n: u64, seed: u64) -> Result<Run, PlotError> {
         figures
             .extend([lines.draw()?, LinesPlot { title: "Empty".to_owned(), ..LinesPlot::default() }.draw()?]);
     }
-    Ok(Run {
+    Ok(ReportRun {
         name: format!("invented-hall-{}", n + 1),
         metrics: vec![
             Metric::new("ate_aligned_rmse_m", 0.11 + 0.02 * n as f64, "m")

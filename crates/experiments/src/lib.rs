@@ -15,4 +15,4 @@ pub mod regress;
 pub mod venues;
 mod views_paper;
 
-pub use views_paper::PaperScene;
+pub use views_paper::PaperSceneRows;

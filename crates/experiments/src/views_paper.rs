@@ -1,24 +1,24 @@
 use wayfix_evaluation::report::Metric;
-use wayfix_systems::views::FeatureKind;
+use wayfix_systems::views::DescriptorKind;
 
-/// A scene's rows in Tables 1 to 3; features in the order of [`FeatureKind::OF_THE_PAPER`]. [Kasprzak & Szynkiewicz]
+/// A scene's rows in Tables 1 to 3; features in the order of [`DescriptorKind::OF_THE_PAPER`]. [Kasprzak & Szynkiewicz]
 ///
 /// ```
-/// use wayfix_experiments::PaperScene;
-/// use wayfix_systems::views::FeatureKind;
-/// let lift = PaperScene::named("lift").expect("one of the four");
-/// assert_eq!(lift.figure(FeatureKind::Hist6, "successes"), Some(54.0));
-/// assert_eq!(lift.figure(FeatureKind::Joined, "successes"), None); // not in the paper
+/// use wayfix_experiments::PaperSceneRows;
+/// use wayfix_systems::views::DescriptorKind;
+/// let lift = PaperSceneRows::named("lift").expect("one of the four");
+/// assert_eq!(lift.figure(DescriptorKind::Hist6, "successes"), Some(54.0));
+/// assert_eq!(lift.figure(DescriptorKind::Joined, "successes"), None); // not in the paper
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PaperScene {
+pub struct PaperSceneRows {
     name: &'static str,
     between: [f64; 3],
     same: [[f64; 3]; 3],
     successes: [f64; 3],
 }
 
-impl PaperScene {
+impl PaperSceneRows {
     const ALL: [Self; 4] = [
         Self {
             name: "lift",
@@ -52,7 +52,7 @@ impl PaperScene {
     }
 
     /// The paper's value of a figure: `p_between_mean` (Table 1), `p_same_min`, `p_same_max`, `p_same_mean` (Table 2), `successes` (Table 3).
-    pub fn figure(&self, feature: FeatureKind, figure: &str) -> Option<f64> {
+    pub fn figure(&self, feature: DescriptorKind, figure: &str) -> Option<f64> {
         let row = match figure {
             "p_between_mean" => &self.between,
             "p_same_min" => &self.same[0],
@@ -61,12 +61,12 @@ impl PaperScene {
             "successes" => &self.successes,
             _ => return None,
         };
-        let column = FeatureKind::OF_THE_PAPER.iter().position(|known| *known == feature)?;
+        let column = DescriptorKind::OF_THE_PAPER.iter().position(|known| *known == feature)?;
         Some(row[column])
     }
 
     /// A figure of ours with the paper's beside it, if it has one.
-    pub fn beside(&self, feature: FeatureKind, metric: Metric) -> Metric {
+    pub fn beside(&self, feature: DescriptorKind, metric: Metric) -> Metric {
         Metric { paper: self.figure(feature, &metric.name).or(metric.paper), ..metric }
     }
 }

@@ -7,9 +7,9 @@ use std::fs;
 
 use common::experiments;
 use wayfix_condensation::{Picture, StateSpace, ViewGrid};
-use wayfix_evaluation::report::{Metric, Report, Run};
+use wayfix_evaluation::report::{Metric, Report, ReportRun};
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
-use wayfix_systems::views::{self, FeatureKind, Normalization, Setup, ViewsParams, ViewsRun};
+use wayfix_systems::views::{self, DescriptorKind, LightNormalization, ViewSetup, ViewsParams, ViewsRun};
 
 fn figure(metrics: &[Metric], name: &str) -> f64 {
     metrics.iter().find(|metric| metric.name == name).expect(name).value
@@ -23,8 +23,12 @@ fn unchanged() -> ViewsRun {
             .map(|phase| (60.0 * phase.sin() + 120.0) as u8)
     };
     let picture = Picture::from_rgb(160, 120, (0..160 * 120).flat_map(wave).collect()).unwrap();
-    let setup =
-        Setup { view: 64, step: 16, feature: FeatureKind::MeanVar, normalization: Normalization::None };
+    let setup = ViewSetup {
+        view: 64,
+        step: 16,
+        feature: DescriptorKind::MeanVar,
+        normalization: LightNormalization::None,
+    };
     views::run(&picture, &picture, &setup, &ViewsParams::default(), 10, 1, &|| ()).unwrap()
 }
 
@@ -41,7 +45,11 @@ fn views_of_the_composed_scenes_are_as_many_as_in_the_paper() {
 fn a_visit_that_is_no_camera_is_refused() {
     let lab = Scenery::named("lab").unwrap();
     assert!(
-        views::composed(&lab, &ImagingConditions { gamma: f64::NAN, ..ImagingConditions::dimmed() }).is_err()
+        views::composed_scene_pair(
+            &lab,
+            &ImagingConditions { gamma: f64::NAN, ..ImagingConditions::dimmed() }
+        )
+        .is_err()
     );
 }
 
@@ -88,7 +96,7 @@ scene = "attic"
 "#;
 
 /// What `wayfix-experiments regress views` reports of a plan that needs no file.
-fn regress() -> Vec<Run> {
+fn regress() -> Vec<ReportRun> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("views.toml"), PLAN).unwrap();
     let out = folder.path().join("report");

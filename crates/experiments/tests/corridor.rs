@@ -3,7 +3,7 @@
 
 use std::{fs, path::Path};
 
-use wayfix_evaluation::report::Run;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_experiments::corridor;
 use wayfix_sensor_log::EncodedImage;
 
@@ -26,7 +26,7 @@ fn paint(traverse: &Path, n_frames: usize, light: f64) {
     }
 }
 
-fn metric(run: &Run, name: &str) -> f64 {
+fn metric(run: &ReportRun, name: &str) -> f64 {
     run.metrics.iter().find(|metric| metric.name == name).expect(name).value
 }
 

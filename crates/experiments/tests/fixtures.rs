@@ -3,15 +3,17 @@
 use std::fs;
 use std::path::Path;
 
-use wayfix_experiments::fixtures::{Difference, FixtureError, Stored, build, check};
+use wayfix_experiments::fixtures::{
+    StoredFixture, StoredFixtureDifference, StoredFixtureError, build, check,
+};
 use wayfix_scene_sim::Scenario;
 use wayfix_sensor_log::{OpenOptions, open};
 
 const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 
-fn differences(folder: &Path) -> Vec<Difference> {
+fn differences(folder: &Path) -> Vec<StoredFixtureDifference> {
     match check(folder) {
-        Err(FixtureError::Differ(differences)) => differences,
+        Err(StoredFixtureError::Differ(differences)) => differences,
         other => unreachable!("expected differences, got {other:?}"),
     }
 }
@@ -21,8 +23,8 @@ fn the_stored_logs_are_what_their_seeds_give_and_light() {
     let stored = check(STORED).unwrap_or_else(|error| panic!("{error}"));
     let n_bytes: usize = stored.iter().map(|log| log.n_bytes).sum();
     // Logs without a camera or a laser stay below 1 MB, that with a laser below 3 MB, those with a camera below 15 MB together.
-    let with_camera = |log: &&Stored| log.name.starts_with("color_") || log.name.starts_with("store_");
-    let most = |log: &Stored| if log.name == "office_laser" { 3_000_000 } else { 1_000_000 };
+    let with_camera = |log: &&StoredFixture| log.name.starts_with("color_") || log.name.starts_with("store_");
+    let most = |log: &StoredFixture| if log.name == "office_laser" { 3_000_000 } else { 1_000_000 };
     let n_camera_bytes: usize = stored.iter().filter(with_camera).map(|log| log.n_bytes).sum();
     assert!(stored.iter().all(|log| with_camera(&log) || log.n_bytes < most(log)), "{stored:?}");
     assert!(n_camera_bytes < 15_000_000 && n_bytes - n_camera_bytes < 6_000_000, "{stored:?}");
@@ -57,19 +59,23 @@ fn what_differs_is_named() {
 
     let found = differences(folder.path());
     assert_eq!(found.len(), 4, "{found:?}");
-    assert!(matches!(found[0], Difference::Content { first_byte: 100, .. }), "{}", found[0]);
-    assert!(matches!(found[1], Difference::Content { first_byte: 50, stored_bytes: 50, .. }), "{}", found[1]);
-    assert_eq!(found[2], Difference::Missing { path: stored[2].path.clone() });
-    assert_eq!(found[3], Difference::Stray { path: folder.path().join("retired.mcap") });
+    assert!(matches!(found[0], StoredFixtureDifference::Content { first_byte: 100, .. }), "{}", found[0]);
+    assert!(
+        matches!(found[1], StoredFixtureDifference::Content { first_byte: 50, stored_bytes: 50, .. }),
+        "{}",
+        found[1]
+    );
+    assert_eq!(found[2], StoredFixtureDifference::Missing { path: stored[2].path.clone() });
+    assert_eq!(found[3], StoredFixtureDifference::Stray { path: folder.path().join("retired.mcap") });
 }
 
 #[test]
 fn a_missing_folder_is_made_by_building_and_named_by_checking() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let nowhere = folder.path().join("not").join("yet");
-    assert!(differences(&nowhere).iter().all(|d| matches!(d, Difference::Missing { .. })));
+    assert!(differences(&nowhere).iter().all(|d| matches!(d, StoredFixtureDifference::Missing { .. })));
     assert_eq!(build(&nowhere).expect("built").len(), check(STORED).expect("the same").len());
     let a_file = folder.path().join("file");
     fs::write(&a_file, b"").expect("writable");
-    assert!(matches!(build(&a_file), Err(FixtureError::Io { .. })));
+    assert!(matches!(build(&a_file), Err(StoredFixtureError::Io { .. })));
 }

@@ -4,19 +4,19 @@
 
 use wayfix_evaluation::report::Metric;
 use wayfix_experiments::films::{FilmScore, table};
-use wayfix_scene_sim::film::{Film, Frame, Incident};
-use wayfix_systems::track::{Method, TrackParams};
-use wayfix_visual_tracking::{BoundingBox, Target, TrackStatus};
+use wayfix_scene_sim::film::{FilmFrame, OcclusionEvent, SyntheticFilm};
+use wayfix_systems::track::{TrackParams, TrackingMethod};
+use wayfix_visual_tracking::{BoundingBox, TargetEstimate, TrackStatus};
 
-fn film(n_frames: usize) -> Film {
-    Film { n_frames, ..Film::named("snail").unwrap() }
+fn film(n_frames: usize) -> SyntheticFilm {
+    SyntheticFilm { n_frames, ..SyntheticFilm::named("snail").unwrap() }
 }
 
 /// What a tracker says that sees the true box of a frame and nothing more.
-fn true_box(frame: &Frame, status: TrackStatus) -> Target {
+fn true_box(frame: &FilmFrame, status: TrackStatus) -> TargetEstimate {
     let [x, y, width, height] = frame.target.bounding_box().unwrap();
     let bounding_box = BoundingBox::from_corner(x, y, width, height).unwrap();
-    Target { bounding_box, outline: Vec::new(), status, quality: 1.0 }
+    TargetEstimate { bounding_box, outline: Vec::new(), status, quality: 1.0 }
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn a_box_is_judged_by_its_box_and_an_outline_by_its_pixels() {
     let [x, y] = boxed.bounding_box.corner();
     let (right, bottom) = (x + boxed.bounding_box.width(), y + boxed.bounding_box.height());
     let outlined =
-        Target { outline: vec![[x, y], [right, y], [right, bottom], [x, bottom]], ..boxed.clone() };
+        TargetEstimate { outline: vec![[x, y], [right, y], [right, bottom], [x, bottom]], ..boxed.clone() };
     let mut score = FilmScore::default();
     score.add(&boxed, &frame).unwrap();
     score.add(&outlined, &frame).unwrap();
@@ -39,7 +39,7 @@ fn a_box_is_judged_by_its_box_and_an_outline_by_its_pixels() {
 
 #[test]
 fn lost_target_has_zero_overlap_and_a_hidden_one_no_score() {
-    let hidden = Film { incident: Incident::Hidden, ..film(60) };
+    let hidden = SyntheticFilm { occlusion: OcclusionEvent::Hidden, ..film(60) };
     let mut score = FilmScore::default();
     let (mut n_visible, mut n_hidden) = (0, 0);
     for frame in hidden.frames().unwrap() {
@@ -53,7 +53,7 @@ fn lost_target_has_zero_overlap_and_a_hidden_one_no_score() {
 
 #[test]
 fn film_table_has_all_methods_for_any_thread_count() {
-    let methods = [Method::Contour, Method::ContourFixedColors, Method::Box];
+    let methods = [TrackingMethod::Contour, TrackingMethod::ContourFixedColors, TrackingMethod::Box];
     let figures = |n_threads: usize| -> Vec<Metric> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
         pool.install(|| table(&film(8), 3..6, &methods, &TrackParams::default())).unwrap().metrics

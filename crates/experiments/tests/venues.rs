@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_evaluation::report::Run;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_experiments::venues;
 use wayfix_sensor_log::EncodedImage;
 
@@ -45,7 +45,7 @@ fn paint_venues(folder: &Path, n: u64) {
     }
 }
 
-fn metric(run: &Run, name: &str) -> f64 {
+fn metric(run: &ReportRun, name: &str) -> f64 {
     run.metrics.iter().find(|metric| metric.name == name).expect(name).value
 }
 

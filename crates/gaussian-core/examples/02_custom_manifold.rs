@@ -4,7 +4,7 @@
 
 use nalgebra::{Const, Vector2};
 use wayfix_estimation_traits::{Manifold, laws, wrap_angle};
-use wayfix_gaussian_core::{Gaussian, Mixture, moment_matched};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture, moment_matched};
 
 /// 1. The state: where the wind comes from, rad, and how high the vane is, m.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!((both.mean().from.to_degrees() - 179.5).abs() < 0.01);
 
     // 5. Everything else works too: a mixture, and the one Gaussian that is most like it.
-    let mixture = Mixture::from_weights(vec![(0.7, one), (0.3, two)])?;
+    let mixture = GaussianMixture::from_weights(vec![(0.7, one), (0.3, two)])?;
     let summary = moment_matched(&mixture.weights(), mixture.components())?;
     println!("in one: from {:.1}°", summary.mean().from.to_degrees());
     assert!((summary.mean().from.to_degrees() - 178.9).abs() < 0.01); // 178° + 0.3 · 3°

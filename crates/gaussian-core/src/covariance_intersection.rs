@@ -17,7 +17,7 @@ pub enum IntersectionCriterion {
 
 /// A fused estimate that is never overconfident, for any correlation of the estimates.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Intersection<X: Manifold>
+pub struct CovarianceIntersection<X: Manifold>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -59,7 +59,7 @@ const GAP: f64 = 1e-7;
 pub fn covariance_intersection<X: Manifold>(
     estimates: &[Gaussian<X>],
     criterion: IntersectionCriterion,
-) -> Result<Intersection<X>, IterationError<X>>
+) -> Result<CovarianceIntersection<X>, IterationError<X>>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -78,7 +78,7 @@ where
         symmetrize(&mut covariance);
         Ok((factor.solve(&vector), covariance))
     })?;
-    Ok(Intersection { gaussian, weights, optimality_gap: gap })
+    Ok(CovarianceIntersection { gaussian, weights, optimality_gap: gap })
 }
 
 /// The information matrix of each estimate in the chart at `at`.

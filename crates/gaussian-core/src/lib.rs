@@ -9,11 +9,11 @@
 //! | transform one by a function | [`Gaussian::affine`], [`Gaussian::linearized`], [`UnscentedTransform`] |
 //! | compare | [`Gaussian::mahalanobis_squared`], [`Gaussian::kl_divergence`], [`Gaussian::bhattacharyya_distance`] |
 //! | take parts | [`Gaussian::marginal`], [`Gaussian::conditional`] |
-//! | keep several hypotheses | [`Mixture`], [`moment_matched`] |
+//! | keep several hypotheses | [`GaussianMixture`], [`moment_matched`] |
 //! | learn one from groups, each seen in part | [`fit_hierarchical`] |
 //! | decide | [`ChiSquaredGate`], [`ChiSquaredBand`] |
 //! | draw random points or an ellipse | [`Gaussian::sampler`], [`CovarianceEllipse`] |
-//! | turn models for Kalman filters into models for particles | [`GaussianMotion`], [`GaussianLikelihood`] |
+//! | turn models for Kalman filters into models for particles | [`GaussianMotionSampler`], [`GaussianLikelihood`] |
 //!
 //! Covariances are checked where they come in ([`Gaussian::new`]) and solved by Cholesky factors.
 
@@ -40,18 +40,18 @@ mod sigma;
 pub use chi_squared::{ChiSquaredBand, ChiSquaredGate};
 pub use circular::CircularMoments;
 pub use covariance::{check_covariance, cholesky, symmetrize};
-pub use covariance_intersection::{Intersection, IntersectionCriterion, covariance_intersection};
+pub use covariance_intersection::{CovarianceIntersection, IntersectionCriterion, covariance_intersection};
 pub use ellipse::CovarianceEllipse;
 pub use error::{GaussianError, IterationError};
 pub use gaussian::Gaussian;
 pub use hierarchical::{
-    GroupEvidence, HierarchicalFit, HierarchicalParams, InverseWishart, MeanPrior, fit_hierarchical,
+    GroupStatistics, HierarchicalFit, HierarchicalParams, InverseWishart, MeanPrior, fit_hierarchical,
 };
 pub use likelihood::GaussianLikelihood;
 pub use merge::moment_matched;
-pub use mixture::{Mixture, log_sum_exp};
+pub use mixture::{GaussianMixture, log_sum_exp};
 #[cfg(feature = "sampling")]
-pub use sampling::{GaussianMotion, Sampler};
+pub use sampling::{GaussianMotionSampler, GaussianSampler};
 pub use sigma::sigma_points::{SigmaPoints, UnscentedParams};
 pub use sigma::unscented::{UnscentedTransform, weighted_moments};
 pub use sigma::weighted_mean::weighted_mean;

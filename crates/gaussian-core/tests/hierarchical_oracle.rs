@@ -3,13 +3,15 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use nalgebra::{DMatrix, dvector};
-use wayfix_gaussian_core::{GroupEvidence, HierarchicalParams, InverseWishart, MeanPrior, fit_hierarchical};
+use wayfix_gaussian_core::{
+    GroupStatistics, HierarchicalParams, InverseWishart, MeanPrior, fit_hierarchical,
+};
 
 /// Seven groups of one to three observations of three coordinates, a quarter of them missing: the script's formula.
-fn groups() -> Vec<GroupEvidence> {
+fn groups() -> Vec<GroupStatistics> {
     (0..7_usize)
         .map(|j| {
-            let mut group = GroupEvidence::new(3);
+            let mut group = GroupStatistics::new(3);
             for i in 0..1 + j % 3 {
                 let (t, i_real) = (j as f64, i as f64);
                 let s = 0.7 * t + 1.3 * i_real;

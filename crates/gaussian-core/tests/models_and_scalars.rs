@@ -7,8 +7,8 @@ use rand::{SeedableRng, distr::Distribution};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel, Pose2, SensorModel, laws};
 use wayfix_gaussian_core::{
-    Gaussian, GaussianLikelihood, GaussianMotion, IntersectionCriterion, UnscentedParams, UnscentedTransform,
-    covariance_intersection, moment_matched,
+    Gaussian, GaussianLikelihood, GaussianMotionSampler, IntersectionCriterion, UnscentedParams,
+    UnscentedTransform, covariance_intersection, moment_matched,
 };
 
 const SEED: u64 = 20_261_121;
@@ -46,7 +46,7 @@ fn samples_of_a_singular_motion_have_its_moments() {
     let starts = [(Pose2::new(0.0, 0.0, 0.0), &1.0), (Pose2::new(3.0, 1.0, 3.1), &-0.5)];
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     laws::motion(&Drive, &starts).unwrap();
-    laws::sample_motion(&GaussianMotion(Drive), &Drive, &starts, 10_000, &mut rng).unwrap();
+    laws::sample_motion(&GaussianMotionSampler(Drive), &Drive, &starts, 10_000, &mut rng).unwrap();
 }
 
 #[test]

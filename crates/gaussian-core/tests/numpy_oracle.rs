@@ -6,7 +6,7 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::Angle;
 use wayfix_gaussian_core::{
-    CircularMoments, Gaussian, IntersectionCriterion, Mixture, covariance_intersection,
+    CircularMoments, Gaussian, GaussianMixture, IntersectionCriterion, covariance_intersection,
 };
 
 type Gaussian3 = Gaussian<Vector3<f64>>;
@@ -30,7 +30,7 @@ fn densities_and_divergences() {
     assert!((p.log_density(&point).unwrap() + 4.995422361612508).abs() < ROUNDING);
     assert!((p.kl_divergence(&q).unwrap() - 6.360795142075197).abs() < 10.0 * ROUNDING);
     assert!((p.bhattacharyya_distance(&q).unwrap() - 0.9653961369890981).abs() < ROUNDING);
-    let mixture = Mixture::from_weights(vec![(0.3, p), (0.7, q)]).unwrap();
+    let mixture = GaussianMixture::from_weights(vec![(0.3, p), (0.7, q)]).unwrap();
     assert!((mixture.log_density(&point).unwrap() + 5.392743716770693).abs() < ROUNDING);
 }
 
@@ -40,7 +40,7 @@ fn products_and_moments() {
     let product = p.product(&q).unwrap();
     let mean = Vector3::new(0.7501610166342568, 0.20366746349257467, 0.017265937550317592);
     assert!((product.mean() - mean).norm() < ROUNDING);
-    let moments = Mixture::from_weights(vec![(0.3, p), (0.7, q)]).unwrap().moments().unwrap();
+    let moments = GaussianMixture::from_weights(vec![(0.3, p), (0.7, q)]).unwrap().moments().unwrap();
     let covariance = Matrix3::new(2.81, -0.54, 0.535, -0.54, 3.49, -0.605, 0.535, -0.605, 4.5725);
     assert!((moments.mean() - Vector3::new(0.3, 0.1, -0.55)).norm() < ROUNDING);
     assert!((moments.covariance() - covariance).norm() < ROUNDING);

@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, Vector3, dvector};
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::{
-    Gaussian, IntersectionCriterion, Mixture, UnscentedParams, UnscentedTransform, covariance_intersection,
+    Gaussian, GaussianMixture, IntersectionCriterion, UnscentedParams, UnscentedTransform,
+    covariance_intersection,
 };
 
 /// $`A A^T + I/10`$ with entries of $`A`$ in ±2: condition number at most 10 · (36 + 0.1), so rounding stays below 1e-12.
@@ -53,7 +54,7 @@ proptest! {
     fn runnalls_and_west_keep_the_first_two_moments(
         parts in proptest::collection::vec((0.1..1.0_f64, gaussian()), 3..7), west in any::<bool>(),
     ) {
-        let mixture = Mixture::from_weights(parts).unwrap();
+        let mixture = GaussianMixture::from_weights(parts).unwrap();
         let before = mixture.moments().unwrap();
         let reduced = if west { mixture.reduce_west(2) } else { mixture.reduce_runnalls(2) }.unwrap();
         let after = reduced.moments().unwrap();
@@ -117,11 +118,11 @@ proptest! {
 #[test]
 fn dead_mixtures_say_so() {
     let standard = Gaussian::from_sigmas(Vector3::zeros(), &Vector3::new(1.0, 1.0, 1.0)).unwrap();
-    let dead = Mixture::from_log_weights(vec![(f64::NEG_INFINITY, standard.clone()); 3]);
+    let dead = GaussianMixture::from_log_weights(vec![(f64::NEG_INFINITY, standard.clone()); 3]);
     assert_eq!(dead, Err(wayfix_gaussian_core::GaussianError::NoWeight { count: 3 }));
-    assert!(Mixture::from_weights(vec![(f64::NAN, standard.clone())]).is_err());
-    assert!(Mixture::from_weights(vec![(1.0, standard.clone()), (-0.5, standard)]).is_err());
-    assert!(Mixture::<Vector3<f64>>::from_weights(vec![]).is_err());
+    assert!(GaussianMixture::from_weights(vec![(f64::NAN, standard.clone())]).is_err());
+    assert!(GaussianMixture::from_weights(vec![(1.0, standard.clone()), (-0.5, standard)]).is_err());
+    assert!(GaussianMixture::<Vector3<f64>>::from_weights(vec![]).is_err());
 }
 
 #[test]

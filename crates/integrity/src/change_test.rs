@@ -14,8 +14,8 @@ use crate::{
 /// With a prior $`p`$ of being moved per m, the posterior odds of a change are $`p R`$ for small $`p`$. [Shiryaev 1963]
 ///
 /// ```
-/// use wayfix_integrity::{ChangeTest, RelocalizationParams};
-/// let mut test = ChangeTest::new(RelocalizationParams::default())?;
+/// use wayfix_integrity::{ShiryaevRobertsTest, RelocalizationParams};
+/// let mut test = ShiryaevRobertsTest::new(RelocalizationParams::default())?;
 /// for _ in 0..100 {
 ///     test.observe(0.1, -1.0)?; // the present hypothesis explains the measurements better
 /// }
@@ -27,12 +27,12 @@ use crate::{
 /// # Ok::<(), wayfix_integrity::IntegrityError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChangeTest {
+pub struct ShiryaevRobertsTest {
     params: RelocalizationParams,
     statistic: f64,
 }
 
-impl ChangeTest {
+impl ShiryaevRobertsTest {
     /// A test at the statistic 0.
     ///
     /// # Errors

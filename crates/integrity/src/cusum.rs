@@ -9,19 +9,19 @@ use crate::error::{IntegrityError, check, check_ratio};
 /// The mean number of measurements to a false alarm is at least $`e^h`$. [Lorden 1971, Theorem 2]
 ///
 /// ```
-/// use wayfix_integrity::Cusum;
-/// let mut sum = Cusum::from_false_alarm_rate(1e-3)?; // at most one false alarm in 1000 measurements
+/// use wayfix_integrity::CusumTest;
+/// let mut sum = CusumTest::from_false_alarm_rate(1e-3)?; // at most one false alarm in 1000 measurements
 /// assert!(!sum.observe(-3.0)? && !sum.observe(5.0)?);
 /// assert!(sum.observe(5.0)?); // 10 nats exceed ln 1000
 /// # Ok::<(), wayfix_integrity::IntegrityError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cusum {
+pub struct CusumTest {
     threshold: f64,
     sum: f64,
 }
 
-impl Cusum {
+impl CusumTest {
     /// A sum with the threshold $`h = -\ln`$ `rate`, where `rate` is the largest mean number of false alarms per measurement.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 //!
 //! | question | type |
 //! | --- | --- |
-//! | Have the measurements changed? | [`Cusum`]: Page's cumulative sum |
-//! | Has somebody moved the robot? | [`ChangeTest`]: Shiryaev–Roberts over distance |
-//! | Where is it then? | [`Relocalization`]: the present hypothesis against the alternatives of a search |
+//! | Have the measurements changed? | [`CusumTest`]: Page's cumulative sum |
+//! | Has somebody moved the robot? | [`ShiryaevRobertsTest`]: Shiryaev–Roberts over distance |
+//! | Where is it then? | [`RelocalizationTest`]: the present hypothesis against the alternatives of a search |
 //!
 //! The crate knows no sensor. A localizer gives log-likelihoods and the distance that it drives.
 
@@ -14,8 +14,8 @@ mod error;
 mod params;
 mod relocalization;
 
-pub use change_test::ChangeTest;
-pub use cusum::Cusum;
+pub use change_test::ShiryaevRobertsTest;
+pub use cusum::CusumTest;
 pub use error::IntegrityError;
 pub use params::RelocalizationParams;
-pub use relocalization::{Alternative, Proposal, Relocalization};
+pub use relocalization::{AlternativeHypothesis, RelocalizationCandidate, RelocalizationTest};

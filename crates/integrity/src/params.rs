@@ -1,6 +1,6 @@
 use crate::error::{IntegrityError, check};
 
-/// Parameters of [`ChangeTest`](crate::ChangeTest) and [`Relocalization`](crate::Relocalization).
+/// Parameters of [`ShiryaevRobertsTest`](crate::ShiryaevRobertsTest) and [`RelocalizationTest`](crate::RelocalizationTest).
 ///
 /// ```
 /// use wayfix_integrity::RelocalizationParams;
@@ -19,14 +19,14 @@ pub struct RelocalizationParams {
     /// Largest mean number of false alarms per km of driving. Default 0.01: a robot that drives 10 km a day has one in ten days.
     pub false_alarms_per_km: f64,
     /// Prior mean number of times that somebody moves the robot, per km of driving; above `false_alarms_per_km`. Default 1.
-    pub moved_per_km: f64,
+    pub kidnappings_per_km: f64,
     /// Distance for which a replaced hypothesis remains an alternative, m. Default 20.
-    pub kept_distance: f64,
+    pub alternative_kept_distance: f64,
 }
 
 impl Default for RelocalizationParams {
     fn default() -> Self {
-        Self { false_alarms_per_km: 0.01, moved_per_km: 1.0, kept_distance: 20.0 }
+        Self { false_alarms_per_km: 0.01, kidnappings_per_km: 1.0, alternative_kept_distance: 20.0 }
     }
 }
 
@@ -38,7 +38,11 @@ impl RelocalizationParams {
     /// # Errors
     /// Returns an error that names the first number outside its range.
     pub fn validate(&self) -> Result<(), IntegrityError> {
-        let Self { false_alarms_per_km, moved_per_km, kept_distance } = *self;
+        let Self {
+            false_alarms_per_km,
+            kidnappings_per_km: moved_per_km,
+            alternative_kept_distance: kept_distance,
+        } = *self;
         let positive = |value: f64| value > 0.0 && value.is_finite();
         check(
             "false_alarms_per_km",
@@ -64,6 +68,6 @@ impl RelocalizationParams {
 
     /// Prior probability of being moved, per m.
     pub(crate) fn prior(&self) -> f64 {
-        self.moved_per_km / METERS_PER_KM
+        self.kidnappings_per_km / METERS_PER_KM
     }
 }

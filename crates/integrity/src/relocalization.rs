@@ -6,7 +6,7 @@ use crate::{
 
 /// A place that a global search proposes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Proposal<H> {
+pub struct RelocalizationCandidate<H> {
     /// The hypothesis: a pose, a mixture component, a particle set.
     pub hypothesis: H,
     /// Prior probability that a moved robot is there, above 0: one over the number of distinguishable places.
@@ -17,7 +17,7 @@ pub struct Proposal<H> {
 
 /// An alternative to the present hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Alternative<H> {
+pub struct AlternativeHypothesis<H> {
     /// The hypothesis.
     pub hypothesis: H,
     /// Its Shiryaev–Roberts statistic, m.
@@ -43,10 +43,10 @@ enum Kind {
 /// An alternative whose statistic is less than what a new search would give it, $`π_j d`$, is removed.
 ///
 /// ```
-/// use wayfix_integrity::{Proposal, Relocalization, RelocalizationParams};
+/// use wayfix_integrity::{RelocalizationCandidate, RelocalizationTest, RelocalizationParams};
 /// let mut present = 0.0; // m along a corridor of 100 m
-/// let mut relocalization = Relocalization::new(RelocalizationParams::default())?;
-/// relocalization.propose([Proposal { hypothesis: 40.0, prior: 0.01, log_likelihood_ratio: 3.0 }])?;
+/// let mut relocalization = RelocalizationTest::new(RelocalizationParams::default())?;
+/// relocalization.propose([RelocalizationCandidate { hypothesis: 40.0, prior: 0.01, log_likelihood_ratio: 3.0 }])?;
 /// for (measured, is_decided) in [(40.1, false), (39.8, false), (40.3, true)] {
 ///     let log_likelihood = |x: &f64| -0.5 * f64::min((measured - x).powi(2), 10.0);
 ///     relocalization.observe(log_likelihood(&present), |x| log_likelihood(x))?;
@@ -57,9 +57,9 @@ enum Kind {
 /// # Ok::<(), wayfix_integrity::IntegrityError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Relocalization<H> {
+pub struct RelocalizationTest<H> {
     params: RelocalizationParams,
-    alternatives: Vec<Alternative<H>>,
+    alternatives: Vec<AlternativeHypothesis<H>>,
     /// Distance since the last search, m.
     distance: f64,
 }
@@ -67,7 +67,7 @@ pub struct Relocalization<H> {
 /// A search counts as at least this distance, m: a standing robot can be moved too.
 const MIN_DISTANCE: f64 = 1.0;
 
-impl<H> Relocalization<H> {
+impl<H> RelocalizationTest<H> {
     /// No alternatives.
     ///
     /// # Errors
@@ -78,16 +78,16 @@ impl<H> Relocalization<H> {
     }
 
     /// The alternatives, in the order of their arrival.
-    pub fn alternatives(&self) -> &[Alternative<H>] {
+    pub fn alternatives(&self) -> &[AlternativeHypothesis<H>] {
         &self.alternatives
     }
     /// The same, to move their hypotheses with the robot.
-    pub fn alternatives_mut(&mut self) -> &mut [Alternative<H>] {
+    pub fn alternatives_mut(&mut self) -> &mut [AlternativeHypothesis<H>] {
         &mut self.alternatives
     }
     /// Posterior probability that the robot is at one of the alternatives.
     pub fn probability(&self) -> f64 {
-        self.params.probability(self.alternatives.iter().map(Alternative::statistic).sum())
+        self.params.probability(self.alternatives.iter().map(AlternativeHypothesis::statistic).sum())
     }
     /// Removes all alternatives.
     pub fn clear(&mut self) {
@@ -101,7 +101,7 @@ impl<H> Relocalization<H> {
     pub fn drive(&mut self, distance: f64) -> Result<(), IntegrityError> {
         check_distance(distance)?;
         self.distance += distance;
-        let kept_distance = self.params.kept_distance;
+        let kept_distance = self.params.alternative_kept_distance;
         self.alternatives.retain_mut(|alternative| match &mut alternative.kind {
             Kind::Previous { distance: since } => {
                 *since += distance;
@@ -118,14 +118,14 @@ impl<H> Relocalization<H> {
     /// Returns an error if a prior is not in (0, 1], or a ratio is NaN; no proposal is added then.
     pub fn propose(
         &mut self,
-        proposals: impl IntoIterator<Item = Proposal<H>>,
+        proposals: impl IntoIterator<Item = RelocalizationCandidate<H>>,
     ) -> Result<(), IntegrityError> {
         let distance = self.search_distance();
-        let start = |Proposal { hypothesis, prior, log_likelihood_ratio }| {
+        let start = |RelocalizationCandidate { hypothesis, prior, log_likelihood_ratio }| {
             check("prior", prior, prior > 0.0 && prior <= 1.0, "above 0, at most 1")?;
             check_ratio(log_likelihood_ratio)?;
             let statistic = times(prior * distance, log_likelihood_ratio);
-            Ok(Alternative { hypothesis, statistic, kind: Kind::Proposed { prior } })
+            Ok(AlternativeHypothesis { hypothesis, statistic, kind: Kind::Proposed { prior } })
         };
         let started = proposals.into_iter().map(start).collect::<Result<Vec<_>, IntegrityError>>()?;
         self.alternatives.extend(started);
@@ -155,7 +155,8 @@ impl<H> Relocalization<H> {
 
     /// Replaces `present` by the best alternative if its statistic reaches the threshold. Returns whether it did.
     pub fn decide(&mut self, present: &mut H) -> bool {
-        let by_statistic = |a: &(usize, &Alternative<H>), b: &(usize, &Alternative<H>)| {
+        let by_statistic = |a: &(usize, &AlternativeHypothesis<H>),
+                            b: &(usize, &AlternativeHypothesis<H>)| {
             a.1.statistic.total_cmp(&b.1.statistic)
         };
         let best = self.alternatives.iter().enumerate().max_by(by_statistic);
@@ -168,7 +169,7 @@ impl<H> Relocalization<H> {
         for rival in &mut self.alternatives {
             rival.statistic /= prior * best.statistic;
         }
-        let previous = Alternative {
+        let previous = AlternativeHypothesis {
             hypothesis: std::mem::replace(present, best.hypothesis),
             statistic: 1.0 / (prior * prior * best.statistic),
             kind: Kind::Previous { distance: 0.0 },
@@ -190,7 +191,7 @@ impl<H> Relocalization<H> {
     }
 }
 
-impl<H> Alternative<H> {
+impl<H> AlternativeHypothesis<H> {
     /// The Shiryaev–Roberts statistic, m.
     pub fn statistic(&self) -> f64 {
         self.statistic

@@ -4,7 +4,7 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use wayfix_integrity::{ChangeTest, Cusum, RelocalizationParams};
+use wayfix_integrity::{CusumTest, RelocalizationParams, ShiryaevRobertsTest};
 
 const SEED: u64 = 41;
 const N_RUNS: usize = 1000;
@@ -27,7 +27,7 @@ fn mean_run_length(mean: f64, mut alarm: impl FnMut(usize, f64) -> bool) -> (f64
 }
 
 fn cusum(mean: f64, threshold: f64) -> (f64, f64) {
-    let fresh = Cusum::from_false_alarm_rate((-threshold).exp()).unwrap();
+    let fresh = CusumTest::from_false_alarm_rate((-threshold).exp()).unwrap();
     let (mut sum, mut current) = (fresh, 0);
     mean_run_length(mean, |run, ratio| {
         if run != current {
@@ -38,8 +38,8 @@ fn cusum(mean: f64, threshold: f64) -> (f64, f64) {
 }
 
 fn shiryaev_roberts(mean: f64, distance: f64, false_alarms_per_km: f64) -> (f64, f64) {
-    let params = RelocalizationParams { false_alarms_per_km, moved_per_km: 1e3, ..Default::default() };
-    let fresh = ChangeTest::new(params).unwrap();
+    let params = RelocalizationParams { false_alarms_per_km, kidnappings_per_km: 1e3, ..Default::default() };
+    let fresh = ShiryaevRobertsTest::new(params).unwrap();
     let (mut test, mut current) = (fresh, 0);
     mean_run_length(mean, |run, ratio| {
         if run != current {

@@ -4,7 +4,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
-use wayfix_integrity::{IntegrityError, Proposal, Relocalization, RelocalizationParams};
+use wayfix_integrity::{IntegrityError, RelocalizationCandidate, RelocalizationParams, RelocalizationTest};
 
 const SEED: u64 = 43;
 const N_CELLS: usize = 20;
@@ -23,7 +23,7 @@ fn drive(
     rng: &mut ChaCha8Rng,
 ) -> (Vec<usize>, usize) {
     let normal = Normal::new(0.0, 1.0).unwrap();
-    let mut relocalization = Relocalization::new(params).unwrap();
+    let mut relocalization = RelocalizationTest::new(params).unwrap();
     let (mut present, mut replaced) = (truth(0), Vec::new());
     for step in 0..n_steps {
         let measured = map[truth(step)] + normal.sample(rng);
@@ -31,7 +31,7 @@ fn drive(
         relocalization.drive(1.0).unwrap();
         let at_present = log_likelihood(present);
         relocalization.observe(at_present, |cell| log_likelihood(*cell)).unwrap();
-        let proposal = |cell: usize| Proposal {
+        let proposal = |cell: usize| RelocalizationCandidate {
             hypothesis: cell,
             prior: 1.0 / N_CELLS as f64,
             log_likelihood_ratio: log_likelihood(cell) - at_present,
@@ -54,7 +54,8 @@ fn false_alarms_are_as_rare_as_asked() {
     // of an alarm within d is at most d / A.
     const N_RUNS: usize = 500;
     const N_METERS: usize = 200;
-    let params = RelocalizationParams { false_alarms_per_km: 1.0, moved_per_km: 10.0, ..Default::default() };
+    let params =
+        RelocalizationParams { false_alarms_per_km: 1.0, kidnappings_per_km: 10.0, ..Default::default() };
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let n_runs_with_alarm = (0..N_RUNS)
         .filter(|_| {
@@ -85,12 +86,16 @@ fn moved_robot_is_found() {
 
 #[test]
 fn previous_hypothesis_returns_within_its_distance() {
-    let params = RelocalizationParams { kept_distance: 20.0, ..Default::default() };
+    let params = RelocalizationParams { alternative_kept_distance: 20.0, ..Default::default() };
     for (distance, is_kept) in [(19.0, true), (21.0, false)] {
         let mut present = "here";
-        let mut relocalization = Relocalization::new(params).unwrap();
+        let mut relocalization = RelocalizationTest::new(params).unwrap();
         relocalization
-            .propose([Proposal { hypothesis: "there", prior: 0.5, log_likelihood_ratio: 20.0 }])
+            .propose([RelocalizationCandidate {
+                hypothesis: "there",
+                prior: 0.5,
+                log_likelihood_ratio: 20.0,
+            }])
             .unwrap();
         assert!(relocalization.decide(&mut present));
         assert!(relocalization.alternatives()[0].is_previous());
@@ -104,8 +109,10 @@ fn previous_hypothesis_returns_within_its_distance() {
 #[test]
 fn odds_are_inverted_when_hypotheses_change_places() {
     let mut present = 0;
-    let mut relocalization = Relocalization::new(RelocalizationParams::default()).unwrap();
-    relocalization.propose([Proposal { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 15.0 }]).unwrap();
+    let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
+    relocalization
+        .propose([RelocalizationCandidate { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 15.0 }])
+        .unwrap();
     let moved = relocalization.probability();
     assert!(relocalization.decide(&mut present));
     assert!((relocalization.probability() - (1.0 - moved)).abs() < 1e-12);
@@ -114,8 +121,9 @@ fn odds_are_inverted_when_hypotheses_change_places() {
 #[test]
 fn equal_alternatives_do_not_take_turns() {
     let mut present = 0;
-    let mut relocalization = Relocalization::new(RelocalizationParams::default()).unwrap();
-    let proposal = |hypothesis| Proposal { hypothesis, prior: 0.5, log_likelihood_ratio: 20.0 };
+    let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
+    let proposal =
+        |hypothesis| RelocalizationCandidate { hypothesis, prior: 0.5, log_likelihood_ratio: 20.0 };
     relocalization.propose([proposal(1), proposal(2)]).unwrap();
     assert!(relocalization.decide(&mut present));
     assert!(!relocalization.decide(&mut present));
@@ -124,8 +132,10 @@ fn equal_alternatives_do_not_take_turns() {
 
 #[test]
 fn invalid_numbers_change_nothing() {
-    let mut relocalization = Relocalization::new(RelocalizationParams::default()).unwrap();
-    relocalization.propose([Proposal { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 2.0 }]).unwrap();
+    let mut relocalization = RelocalizationTest::new(RelocalizationParams::default()).unwrap();
+    relocalization
+        .propose([RelocalizationCandidate { hypothesis: 1, prior: 0.5, log_likelihood_ratio: 2.0 }])
+        .unwrap();
     let before = relocalization.clone();
     assert!(matches!(relocalization.drive(-1.0), Err(IntegrityError::OutOfRange { .. })));
     assert!(relocalization.drive(f64::NAN).is_err());
@@ -133,10 +143,12 @@ fn invalid_numbers_change_nothing() {
     assert!(relocalization.observe(f64::NEG_INFINITY, |_| f64::NEG_INFINITY).is_err());
     for prior in [0.0, -1.0, 1.5, f64::NAN] {
         assert!(
-            relocalization.propose([Proposal { hypothesis: 2, prior, log_likelihood_ratio: 2.0 }]).is_err()
+            relocalization
+                .propose([RelocalizationCandidate { hypothesis: 2, prior, log_likelihood_ratio: 2.0 }])
+                .is_err()
         );
     }
     assert_eq!(relocalization, before);
-    let params = RelocalizationParams { moved_per_km: 0.001, ..Default::default() };
-    assert!(Relocalization::<u8>::new(params).is_err(), "alarms would be wrong more often than right");
+    let params = RelocalizationParams { kidnappings_per_km: 0.001, ..Default::default() };
+    assert!(RelocalizationTest::<u8>::new(params).is_err(), "alarms would be wrong more often than right");
 }

@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
-use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor, Update};
+use wayfix_kalman::{GatedUpdate, KalmanFilter, LinearMotion, LinearSensor};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 1. How the ball moves: position and velocity in metres and m/s, a frame every 0.1 s, some friction nobody models.
@@ -31,11 +31,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for frame in 0..40 {
         filter.predict(None)?;
         match filter.update_gated(&camera, sighting(frame).as_ref(), &gate)? {
-            Update::Accepted { .. } => {}
-            Update::Rejected { innovation, threshold } => {
+            GatedUpdate::Accepted { .. } => {}
+            GatedUpdate::Rejected { innovation, threshold } => {
                 println!("frame {frame}: not the ball (NIS {:.0} above {threshold:.1})", innovation.nis());
             }
-            Update::Missing => println!("frame {frame}: nothing seen"),
+            GatedUpdate::Missing => println!("frame {frame}: nothing seen"),
         }
     }
 

@@ -23,8 +23,8 @@ where
 /// The band holds for **independent** values: NIS over time of one run, or NEES of one instant over many runs.
 ///
 /// ```
-/// use wayfix_kalman::Consistency;
-/// let mut nis = Consistency::new(2);
+/// use wayfix_kalman::ConsistencyStatistics;
+/// let mut nis = ConsistencyStatistics::new(2);
 /// for value in [1.2, 3.0, 0.4, 2.6, 1.8] {
 ///     nis.push(value);
 /// }
@@ -33,13 +33,13 @@ where
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Consistency {
+pub struct ConsistencyStatistics {
     dof: usize,
     sum: f64,
     count: usize,
 }
 
-impl Consistency {
+impl ConsistencyStatistics {
     /// For values of `dof` degrees of freedom each.
     pub fn new(dof: usize) -> Self {
         Self { dof, sum: 0.0, count: 0 }

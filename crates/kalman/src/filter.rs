@@ -2,9 +2,9 @@ use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
 use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
-use crate::{Extended, Form, Innovation, KalmanError, Update};
+use crate::{ExtendedForm, FilterForm, GatedUpdate, Innovation, KalmanError};
 
-/// A Gaussian filter: a motion model, a [`Form`] and the present belief.
+/// A Gaussian filter: a motion model, a [`FilterForm`] and the present belief.
 ///
 /// The sensor is passed with each measurement, so one filter supports several sensors.
 ///
@@ -47,7 +47,7 @@ use crate::{Extended, Form, Innovation, KalmanError, Update};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct GaussianFilter<M: MotionModel, F: Form<M::State>>
+pub struct GaussianFilter<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -56,10 +56,10 @@ where
     belief: F::Belief,
 }
 
-/// [`GaussianFilter`] in [`Extended`] form.
-pub type ExtendedKalmanFilter<M> = GaussianFilter<M, Extended>;
+/// [`GaussianFilter`] in [`ExtendedForm`] form.
+pub type ExtendedKalmanFilter<M> = GaussianFilter<M, ExtendedForm>;
 
-impl<M: MotionModel, F: Form<M::State>> GaussianFilter<M, F>
+impl<M: MotionModel, F: FilterForm<M::State>> GaussianFilter<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -123,18 +123,18 @@ where
         sensor: &S,
         measurement: Option<&S::Measurement>,
         gate: &ChiSquaredGate,
-    ) -> Result<Update<M::State, S::Measurement>, KalmanError>
+    ) -> Result<GatedUpdate<M::State, S::Measurement>, KalmanError>
     where
         S: SensorModel<State = M::State>,
         DefaultAllocator: UpdateAlloc<<M::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
     {
-        let Some(measurement) = measurement else { return Ok(Update::Missing) };
+        let Some(measurement) = measurement else { return Ok(GatedUpdate::Missing) };
         let admits = |innovation: &Innovation<M::State, S::Measurement>| gate.accepts(innovation.nis());
         let (innovation, posterior) = self.form.update(&self.belief, sensor, measurement, admits)?;
         let Some(posterior) = posterior else {
-            return Ok(Update::Rejected { innovation, threshold: gate.threshold() });
+            return Ok(GatedUpdate::Rejected { innovation, threshold: gate.threshold() });
         };
         self.belief = posterior;
-        Ok(Update::Accepted { innovation })
+        Ok(GatedUpdate::Accepted { innovation })
     }
 }

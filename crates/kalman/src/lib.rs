@@ -3,16 +3,16 @@
 //! | You have | Take |
 //! | --- | --- |
 //! | matrices | [`KalmanFilter`] with [`LinearMotion`] and [`LinearSensor`] |
-//! | models of your own, on vectors, poses or angles | [`GaussianFilter`] with a [`Form`]: [`Extended`], [`IteratedExtended`], [`Unscented`] |
-//! | sharp sensors, vague priors or single precision | the form [`SquareRoot`] |
-//! | large measurements with little state, or small with much | the forms [`Information`], [`Sequential`] |
+//! | models of your own, on vectors, poses or angles | [`GaussianFilter`] with a [`FilterForm`]: [`ExtendedForm`], [`IteratedExtendedForm`], [`UnscentedForm`] |
+//! | sharp sensors, vague priors or single precision | the form [`SquareRootForm`] |
+//! | large measurements with little state, or small with much | the forms [`InformationForm`], [`SequentialForm`] |
 //! | several measurements at once | [`StackedSensor`] sensors: the batch update |
 //! | a whole recording | [`RtsSmoother`] |
-//! | a target with several motion models | [`Imm`], [`Gpb2`] |
-//! | conditions that switch, each with its own filter | [`ModelBank`], [`JumpMarkov`] |
-//! | noise parameters to validate | [`Innovation::nis`], [`nees`], [`Consistency`] |
+//! | a target with several motion models | [`ImmFilter`], [`Gpb2Filter`] |
+//! | conditions that switch, each with its own filter | [`ModelBank`], [`JumpMarkovFilter`] |
+//! | noise parameters to validate | [`Innovation::nis`], [`nees`], [`ConsistencyStatistics`] |
 //!
-//! Every update returns its [`Innovation`]; gated ones an [`Update`] with the outcome of the measurement. After an error the filter is
+//! Every update returns its [`Innovation`]; gated ones an [`GatedUpdate`] with the outcome of the measurement. After an error the filter is
 //! unchanged.
 //!
 //! ```
@@ -46,20 +46,22 @@ mod stacked;
 mod switching;
 mod update;
 
-pub use consistency::{Consistency, nees};
+pub use consistency::{ConsistencyStatistics, nees};
 pub use error::KalmanError;
 pub use filter::{ExtendedKalmanFilter, GaussianFilter};
-pub use form::Form;
+pub use form::FilterForm;
 pub use forms::{
-    Extended, FactoredGaussian, Information, InformationBelief, IteratedExtended, Sequential, SquareRoot,
-    Unscented,
+    ExtendedForm, FactoredGaussian, InformationBelief, InformationForm, IteratedExtendedForm, SequentialForm,
+    SquareRootForm, UnscentedForm,
 };
 pub use innovation::Innovation;
 pub use linear::{KalmanFilter, LinearInnovation, LinearMotion, LinearSensor, LinearUpdate};
 pub use smoother::RtsSmoother;
 pub use stacked::{StackedMeasurement, StackedSensor};
-pub use switching::{Candidate, Gpb2, Imm, JumpMarkov, JumpMarkovParams, MarkovChain, ModelBank};
-pub use update::Update;
+pub use switching::{
+    Gpb2Filter, ImmFilter, JumpMarkovFilter, JumpMarkovFilterParams, MarkovChain, ModelBank, ModelUpdate,
+};
+pub use update::GatedUpdate;
 
 /// The matrix library of every public signature, re-exported because its versions do not mix.
 pub use nalgebra;

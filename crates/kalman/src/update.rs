@@ -8,21 +8,21 @@ use crate::Innovation;
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
-/// use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor, Update};
+/// use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor, GatedUpdate};
 /// let prior = Gaussian::new(Vector1::new(0.0), Matrix1::new(1.0))?;
 /// let mut filter = KalmanFilter::new(LinearMotion::stationary(Matrix1::new(0.0))?, prior)?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(1.0))?;
 /// let gate = ChiSquaredGate::from_probability(1, 0.99)?;
 /// let outcome = filter.update_gated(&sensor, Some(&Vector1::new(50.0)), &gate)?;
 /// match outcome {
-///     Update::Rejected { innovation, threshold } => assert!(innovation.nis() > threshold),
+///     GatedUpdate::Rejected { innovation, threshold } => assert!(innovation.nis() > threshold),
 ///     _ => unreachable!("35 sigma"),
 /// }
 /// assert_eq!(filter.estimate().mean()[0], 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub enum Update<X: Manifold, Z: Manifold<Scalar = X::Scalar>>
+pub enum GatedUpdate<X: Manifold, Z: Manifold<Scalar = X::Scalar>>
 where
     DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
 {
@@ -42,7 +42,7 @@ where
     Missing,
 }
 
-impl<X: Manifold, Z: Manifold<Scalar = X::Scalar>> Update<X, Z>
+impl<X: Manifold, Z: Manifold<Scalar = X::Scalar>> GatedUpdate<X, Z>
 where
     DefaultAllocator: UpdateAlloc<X::Dim, Z::Dim>,
 {

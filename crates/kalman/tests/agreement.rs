@@ -8,8 +8,8 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x4, Vector2, Vector4};
 use wayfix_estimation_traits::Manifold;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    Extended, Form, GaussianFilter, Information, IteratedExtended, KalmanFilter, LinearMotion, LinearSensor,
-    Sequential, SquareRoot, Unscented,
+    ExtendedForm, FilterForm, GaussianFilter, InformationForm, IteratedExtendedForm, KalmanFilter,
+    LinearMotion, LinearSensor, SequentialForm, SquareRootForm, UnscentedForm,
 };
 
 const STEPS: usize = 200;
@@ -43,7 +43,7 @@ fn reference() -> (Vec<Gaussian<Vector4<f64>>>, Vec<f64>) {
 /// largest intermediate.
 const ROUNDING: f64 = 1e-12;
 
-fn agrees<F: Form<Vector4<f64>>>(form: F) {
+fn agrees<F: FilterForm<Vector4<f64>>>(form: F) {
     let (expected, likelihoods) = reference();
     let mut likelihoods = likelihoods.into_iter();
     let mut filter = GaussianFilter::new(constant_velocity(0.5), form, track_prior(10.0)).unwrap();
@@ -72,29 +72,29 @@ fn agrees<F: Form<Vector4<f64>>>(form: F) {
 
 #[test]
 fn the_extended_form_is_the_kalman_filter() {
-    agrees(Extended);
+    agrees(ExtendedForm);
 }
 #[test]
 fn the_plain_form_is_the_kalman_filter() {}
 #[test]
 fn the_iterated_form_is_the_kalman_filter() {
-    agrees(IteratedExtended::default());
+    agrees(IteratedExtendedForm::default());
 }
 #[test]
 fn the_sequential_form_is_the_kalman_filter() {
-    agrees(Sequential);
+    agrees(SequentialForm);
 }
 #[test]
 fn the_square_root_form_is_the_kalman_filter() {
-    agrees(SquareRoot);
+    agrees(SquareRootForm);
 }
 #[test]
 fn the_information_form_is_the_kalman_filter() {
-    agrees(Information);
+    agrees(InformationForm);
 }
 #[test]
 fn the_unscented_form_is_the_kalman_filter() {
-    agrees(Unscented::default());
+    agrees(UnscentedForm::default());
 }
 
 #[test]

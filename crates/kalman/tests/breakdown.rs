@@ -9,8 +9,8 @@ mod common;
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, RealField, Vector2, Vector4};
 use wayfix_gaussian_core::{Gaussian, GaussianError};
 use wayfix_kalman::{
-    Extended, Form, GaussianFilter, Information, IteratedExtended, KalmanError, KalmanFilter, LinearMotion,
-    LinearSensor, Sequential, SquareRoot, Unscented,
+    ExtendedForm, FilterForm, GaussianFilter, InformationForm, IteratedExtendedForm, KalmanError,
+    KalmanFilter, LinearMotion, LinearSensor, SequentialForm, SquareRootForm, UnscentedForm,
 };
 
 const STEPS: usize = 2000;
@@ -43,7 +43,7 @@ impl Tally {
     }
 }
 
-fn run<T: RealField + Copy, F: Form<Vector4<T>>>(form: F) -> Tally {
+fn run<T: RealField + Copy, F: FilterForm<Vector4<T>>>(form: F) -> Tally {
     let (motion, sensor, prior) = problem::<T>();
     let mut filter = GaussianFilter::new(motion, form, prior).unwrap();
     let mut tally = Tally::default();
@@ -66,7 +66,7 @@ fn run<T: RealField + Copy, F: Form<Vector4<T>>>(form: F) -> Tally {
     tally
 }
 
-fn both_precisions<F: Form<Vector4<f64>> + Form<Vector4<f32>> + Copy>(form: F) -> [Tally; 2] {
+fn both_precisions<F: FilterForm<Vector4<f64>> + FilterForm<Vector4<f32>> + Copy>(form: F) -> [Tally; 2] {
     let tallies = [run::<f64, F>(form), run::<f32, F>(form)];
     for tally in &tallies {
         assert_eq!(tally.passed + tally.refused, 2 * STEPS);
@@ -75,7 +75,7 @@ fn both_precisions<F: Form<Vector4<f64>> + Form<Vector4<f32>> + Copy>(form: F) -
 }
 
 /// Sensors keep correcting: all 2000 updates pass, whatever becomes of predictions that are singular to rounding.
-fn keeps_updating<F: Form<Vector4<f64>> + Form<Vector4<f32>> + Copy>(form: F) {
+fn keeps_updating<F: FilterForm<Vector4<f64>> + FilterForm<Vector4<f32>> + Copy>(form: F) {
     for tally in both_precisions(form) {
         assert!(tally.passed > STEPS, "{tally:?}");
     }
@@ -84,15 +84,15 @@ fn keeps_updating<F: Form<Vector4<f64>> + Form<Vector4<f32>> + Copy>(form: F) {
 #[test]
 fn the_square_root_form_never_refuses() {
     let all = Tally { passed: 2 * STEPS, refused: 0 };
-    assert_eq!(run::<f64, _>(SquareRoot), all);
-    assert_eq!(run::<f32, _>(SquareRoot), all);
+    assert_eq!(run::<f64, _>(SquareRootForm), all);
+    assert_eq!(run::<f32, _>(SquareRootForm), all);
 }
 
 /// Position and velocity from k+1 exact-noise positions: regression gives Var(v) = R / (dt² Σ (i - mean)²), less what the prior adds.
 #[test]
 fn the_square_root_form_is_not_only_positive_but_right() {
     let (motion, sensor, prior) = problem::<f32>();
-    let mut filter = GaussianFilter::new(motion, SquareRoot, prior).unwrap();
+    let mut filter = GaussianFilter::new(motion, SquareRootForm, prior).unwrap();
     for _ in 0..STEPS {
         filter.predict(&None).unwrap();
         filter.update(&sensor, &Vector2::zeros()).unwrap();
@@ -106,11 +106,11 @@ fn the_square_root_form_is_not_only_positive_but_right() {
 
 #[test]
 fn the_other_forms_refuse_or_stay_positive() {
-    keeps_updating(Extended);
-    keeps_updating(IteratedExtended::default());
-    keeps_updating(Sequential);
-    keeps_updating(Information);
-    keeps_updating(Unscented::default());
+    keeps_updating(ExtendedForm);
+    keeps_updating(IteratedExtendedForm::default());
+    keeps_updating(SequentialForm);
+    keeps_updating(InformationForm);
+    keeps_updating(UnscentedForm::default());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use nalgebra::{Vector2, Vector4};
 use rand::{SeedableRng, distr::Distribution};
 use rand_chacha::ChaCha8Rng;
 use wayfix_gaussian_core::Gaussian;
-use wayfix_kalman::{Consistency, KalmanFilter, nees};
+use wayfix_kalman::{ConsistencyStatistics, KalmanFilter, nees};
 
 /// Seeds 1..=200: 200 runs of 50 steps.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=200;
@@ -17,8 +17,8 @@ const Q: f64 = 0.5;
 const R: f64 = 0.25;
 
 /// NEES of the last step over runs, which are independent; NIS over all steps, which are white.
-fn simulate(assumed_q: f64, assumed_r: f64) -> (Consistency, Consistency) {
-    let (mut errors, mut innovations) = (Consistency::new(4), Consistency::new(2));
+fn simulate(assumed_q: f64, assumed_r: f64) -> (ConsistencyStatistics, ConsistencyStatistics) {
+    let (mut errors, mut innovations) = (ConsistencyStatistics::new(4), ConsistencyStatistics::new(2));
     let truth_motion = constant_velocity(Q);
     let motion_noise = Gaussian::from_parts_unchecked(Vector4::zeros(), *truth_motion.noise()).sampler();
     let sensor_noise = Gaussian::from_sigmas(Vector2::zeros(), &Vector2::repeat(R.sqrt())).unwrap().sampler();

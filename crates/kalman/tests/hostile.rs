@@ -10,8 +10,8 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{MotionModel, SensorModel};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    Extended, FactoredGaussian, Form, GaussianFilter, Information, IteratedExtended, KalmanFilter,
-    LinearMotion, LinearSensor, Sequential, SquareRoot, Unscented,
+    ExtendedForm, FactoredGaussian, FilterForm, GaussianFilter, InformationForm, IteratedExtendedForm,
+    KalmanFilter, LinearMotion, LinearSensor, SequentialForm, SquareRootForm, UnscentedForm,
 };
 
 /// Eight filters take turns: a million steps together.
@@ -111,7 +111,7 @@ fn is_a_factor(belief: &FactoredGaussian<Vector4<f64>>, covariance: &Matrix4<f64
 }
 
 /// Ill-treats a filter; returns how many calls it refused.
-fn ill_treat<F: Form<Vector4<f64>> + Copy>(
+fn ill_treat<F: FilterForm<Vector4<f64>> + Copy>(
     form: F,
     seed: u64,
     is_positive_definite: impl Fn(&F::Belief, &Matrix4<f64>) -> bool,
@@ -148,12 +148,12 @@ fn ill_treat<F: Form<Vector4<f64>> + Copy>(
 #[test]
 fn ill_treated_filters_stay_positive_definite() {
     let refused = [
-        ill_treat(Extended, 1, is_factorable),
-        ill_treat(IteratedExtended::default(), 3, is_factorable),
-        ill_treat(Sequential, 4, is_factorable),
-        ill_treat(SquareRoot, 5, is_a_factor),
-        ill_treat(Information, 6, is_factorable),
-        ill_treat(Unscented::default(), 7, is_factorable),
+        ill_treat(ExtendedForm, 1, is_factorable),
+        ill_treat(IteratedExtendedForm::default(), 3, is_factorable),
+        ill_treat(SequentialForm, 4, is_factorable),
+        ill_treat(SquareRootForm, 5, is_a_factor),
+        ill_treat(InformationForm, 6, is_factorable),
+        ill_treat(UnscentedForm::default(), 7, is_factorable),
     ];
     // Covariances are bad in at least 5 draws of 20 (cases 0, 1, 2, 4 half the time, 5), and most calls must get through.
     for refused in refused {
@@ -202,7 +202,7 @@ fn dynamic_linear_filter_stays_positive_definite() {
 
 #[test]
 fn wrong_sizes_are_refused_by_every_form() {
-    fn refuses<F: Form<DVector<f64>>>(form: F) {
+    fn refuses<F: FilterForm<DVector<f64>>>(form: F) {
         let motion = LinearMotion::new(DMatrix::identity(3, 3), DMatrix::identity(3, 3)).unwrap();
         let prior = Gaussian::new(DVector::zeros(3), DMatrix::identity(3, 3)).unwrap();
         let mut filter = GaussianFilter::new(motion, form, prior).unwrap();
@@ -216,10 +216,10 @@ fn wrong_sizes_are_refused_by_every_form() {
         assert_eq!(filter.estimate(), before);
         assert!(filter.update(&sensor, &DVector::zeros(2)).is_ok());
     }
-    refuses(Extended);
-    refuses(IteratedExtended::default());
-    refuses(Sequential);
-    refuses(SquareRoot);
-    refuses(Information);
-    refuses(Unscented::default());
+    refuses(ExtendedForm);
+    refuses(IteratedExtendedForm::default());
+    refuses(SequentialForm);
+    refuses(SquareRootForm);
+    refuses(InformationForm);
+    refuses(UnscentedForm::default());
 }

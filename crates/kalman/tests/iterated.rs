@@ -5,7 +5,8 @@ use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel, Pose2, SensorModel};
 use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 use wayfix_kalman::{
-    Extended, Form, GaussianFilter, IteratedExtended, KalmanError, SquareRoot, Unscented, Update,
+    ExtendedForm, FilterForm, GatedUpdate, GaussianFilter, IteratedExtendedForm, KalmanError, SquareRootForm,
+    UnscentedForm,
 };
 
 struct Still;
@@ -49,7 +50,7 @@ fn cost(pose: &Pose2<f64>, sensor: &Bearing, z: &Angle<f64>) -> f64 {
 fn the_result_is_a_minimum_of_the_cost() {
     let sensor = Bearing(Vector2::new(-1.5, 0.8));
     let z = Angle::new(0.4);
-    let mut filter = GaussianFilter::new(Still, IteratedExtended::default(), prior()).unwrap();
+    let mut filter = GaussianFilter::new(Still, IteratedExtendedForm::default(), prior()).unwrap();
     filter.update(&sensor, &z).unwrap();
     let best = *filter.estimate().mean();
     let lowest = cost(&best, &sensor, &z);
@@ -61,7 +62,7 @@ fn the_result_is_a_minimum_of_the_cost() {
             assert!(cost(&best.retract(&step), &sensor, &z) > lowest, "downhill along axis {axis}");
         }
     }
-    let mut once = GaussianFilter::new(Still, Extended, prior()).unwrap();
+    let mut once = GaussianFilter::new(Still, ExtendedForm, prior()).unwrap();
     once.update(&sensor, &z).unwrap();
     assert!(cost(once.estimate().mean(), &sensor, &z) > lowest);
 }
@@ -86,7 +87,7 @@ impl SensorModel for ArcTangent {
 fn no_convergence_returns_last_estimate_and_keeps_the_filter() {
     let motion = wayfix_kalman::LinearMotion::stationary(Matrix1::new(0.0)).unwrap();
     let prior = Gaussian::new(Vector1::new(2.0), Matrix1::new(100.0)).unwrap();
-    let hasty = IteratedExtended { max_iterations: 2, ..Default::default() };
+    let hasty = IteratedExtendedForm { max_iterations: 2, ..Default::default() };
     let mut filter = GaussianFilter::new(motion, hasty, prior.clone()).unwrap();
     match filter.update(&ArcTangent, &Vector1::new(0.0)) {
         Err(KalmanError::NotConverged { iterations, last_step, last_offset }) => {
@@ -103,28 +104,28 @@ fn no_convergence_returns_last_estimate_and_keeps_the_filter() {
 
 #[test]
 fn a_gate_rejects_visibly_in_every_form() {
-    fn rejects<F: Form<Pose2<f64>>>(form: F) {
+    fn rejects<F: FilterForm<Pose2<f64>>>(form: F) {
         let gate = ChiSquaredGate::from_probability(1, 0.99).unwrap();
         let sensor = Bearing(Vector2::new(-9.5, 0.8));
         let mut filter = GaussianFilter::new(Still, form, prior()).unwrap();
         let before = filter.estimate();
         match filter.update_gated(&sensor, Some(&Angle::new(2.5)), &gate).unwrap() {
-            Update::Rejected { innovation, threshold } => {
+            GatedUpdate::Rejected { innovation, threshold } => {
                 assert!(innovation.nis() > threshold);
                 assert_eq!(threshold, gate.threshold());
             }
             other => panic!("2.5 rad of 0.3 expected, yet {other:?}"),
         }
         assert_eq!(filter.estimate(), before);
-        assert!(matches!(filter.update_gated(&sensor, None, &gate).unwrap(), Update::Missing));
+        assert!(matches!(filter.update_gated(&sensor, None, &gate).unwrap(), GatedUpdate::Missing));
         assert!(
             filter.update_gated(&sensor, Some(&sensor.expected(before.mean())), &gate).unwrap().is_accepted()
         );
     }
-    rejects(Extended);
-    rejects(IteratedExtended::default());
-    rejects(Unscented::default());
-    rejects(SquareRoot);
+    rejects(ExtendedForm);
+    rejects(IteratedExtendedForm::default());
+    rejects(UnscentedForm::default());
+    rejects(SquareRootForm);
 }
 
 /// Turning the body frame turns the covariance with it: seen from the world, a heading correction must not move position uncertainty.
@@ -145,7 +146,7 @@ fn a_corrected_heading_carries_the_covariance_along() {
         let turn = gaussian.mean().rotation_matrix();
         turn * gaussian.covariance().fixed_view::<2, 2>(0, 0) * turn.transpose()
     }
-    fn keeps<F: Form<Pose2<f64>>>(form: F) {
+    fn keeps<F: FilterForm<Pose2<f64>>>(form: F) {
         let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.0), &Vector3::new(1.0, 0.1, 0.5)).unwrap();
         let before = world(&prior);
         let mut filter = GaussianFilter::new(Still, form, prior).unwrap();
@@ -153,10 +154,10 @@ fn a_corrected_heading_carries_the_covariance_along() {
         // Position and heading are independent here, so the world sees no change but rounding and numerical differencing (1e-9).
         assert!((world(&filter.estimate()) - before).norm() < 1e-8, "{}", world(&filter.estimate()));
     }
-    keeps(Extended);
-    keeps(IteratedExtended::default());
-    keeps(SquareRoot);
-    keeps(Unscented::default());
-    keeps(wayfix_kalman::Information);
-    keeps(wayfix_kalman::Sequential);
+    keeps(ExtendedForm);
+    keeps(IteratedExtendedForm::default());
+    keeps(SquareRootForm);
+    keeps(UnscentedForm::default());
+    keeps(wayfix_kalman::InformationForm);
+    keeps(wayfix_kalman::SequentialForm);
 }

@@ -5,8 +5,8 @@ use nalgebra::{Matrix1, Matrix3, Vector2, Vector3};
 use wayfix_estimation_traits::{Angle, Manifold, MotionModel, Pose2, SensorModel, laws, numerical_jacobian};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    Extended, Form, GaussianFilter, Information, IteratedExtended, Sequential, SquareRoot,
-    StackedMeasurement, StackedSensor, Unscented,
+    ExtendedForm, FilterForm, GaussianFilter, InformationForm, IteratedExtendedForm, SequentialForm,
+    SquareRootForm, StackedMeasurement, StackedSensor, UnscentedForm,
 };
 
 /// Body-frame increments.
@@ -66,7 +66,7 @@ fn prior() -> Gaussian<Pose2<f64>> {
     Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 2.9), &Vector3::new(0.3, 0.3, 0.2)).unwrap()
 }
 
-fn moves<F: Form<Pose2<f64>>>(form: F) {
+fn moves<F: FilterForm<Pose2<f64>>>(form: F) {
     let mut truth = Pose2::new(0.3, -0.2, 3.1);
     let before = prior().mean().local(&truth).norm();
     let mut filter = GaussianFilter::new(Odometry, form, prior()).unwrap();
@@ -85,24 +85,24 @@ fn moves<F: Form<Pose2<f64>>>(form: F) {
 
 #[test]
 fn every_form_moves_to_the_truth() {
-    moves(Extended);
-    moves(IteratedExtended::default());
-    moves(Sequential);
-    moves(SquareRoot);
-    moves(Information);
-    moves(Unscented::default());
+    moves(ExtendedForm);
+    moves(IteratedExtendedForm::default());
+    moves(SequentialForm);
+    moves(SquareRootForm);
+    moves(InformationForm);
+    moves(UnscentedForm::default());
 }
 
 /// The law suite: the bearings of one pose twenty times, and calls that a filter refuses.
-fn obeys<F: Form<Pose2<f64>> + Clone>(form: F) {
+fn obeys<F: FilterForm<Pose2<f64>> + Clone>(form: F) {
     type Filter<F> = GaussianFilter<Odometry, F>;
     let truth = Pose2::new(0.3, -0.2, 3.1);
     let sees = |angles: Vec<Angle<f64>>| {
         move |filter: &mut Filter<F>| filter.update(&landmarks(), &StackedMeasurement(angles.clone())).is_ok()
     };
     let drives = |step: Vector3<f64>| move |filter: &mut Filter<F>| filter.predict(&step).is_ok();
-    let good: laws::FilterCall<'_, Filter<F>> = &sees(landmarks().expected(&truth).0);
-    let trial = laws::FilterTrial {
+    let good: laws::FilterLawCall<'_, Filter<F>> = &sees(landmarks().expected(&truth).0);
+    let trial = laws::FilterLawTrial {
         estimate: &Filter::<F>::estimate,
         error: &|estimate: &Gaussian<Pose2<f64>>| estimate.mean().local(&truth).norm(),
         bound: 0.01,
@@ -119,12 +119,12 @@ fn obeys<F: Form<Pose2<f64>> + Clone>(form: F) {
 
 #[test]
 fn every_form_obeys_the_laws_of_filters() {
-    obeys(Extended);
-    obeys(IteratedExtended::default());
-    obeys(Sequential);
-    obeys(SquareRoot);
-    obeys(Information);
-    obeys(Unscented::default());
+    obeys(ExtendedForm);
+    obeys(IteratedExtendedForm::default());
+    obeys(SequentialForm);
+    obeys(SquareRootForm);
+    obeys(InformationForm);
+    obeys(UnscentedForm::default());
 }
 
 #[test]

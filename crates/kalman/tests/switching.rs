@@ -11,8 +11,9 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, SensorModel, StateAlloc};
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::{
-    Extended, Form, Gpb2, Imm, Information, IteratedExtended, JumpMarkov, JumpMarkovParams, KalmanFilter,
-    LinearMotion, LinearSensor, MarkovChain, ModelBank, SquareRoot, Unscented,
+    ExtendedForm, FilterForm, Gpb2Filter, ImmFilter, InformationForm, IteratedExtendedForm, JumpMarkovFilter,
+    JumpMarkovFilterParams, KalmanFilter, LinearMotion, LinearSensor, MarkovChain, ModelBank, SquareRootForm,
+    UnscentedForm,
 };
 
 const SEEDS: std::ops::Range<u64> = 700..740;
@@ -89,8 +90,8 @@ fn single(scene: &Scene, q: f64) -> f64 {
     outcome.squared_error
 }
 
-fn imm<F: Form<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
-    let mut filter = Imm::new(models(), chain(), form, &track_prior(4.0)).unwrap();
+fn imm<F: FilterForm<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
+    let mut filter = ImmFilter::new(models(), chain(), form, &track_prior(4.0)).unwrap();
     judge(scene, |z| {
         filter.predict(&None).unwrap();
         filter.update(&sensor(), z).unwrap();
@@ -98,8 +99,8 @@ fn imm<F: Form<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
     })
 }
 
-fn gpb2<F: Form<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
-    let mut filter = Gpb2::new(models(), chain(), form, &track_prior(4.0)).unwrap();
+fn gpb2<F: FilterForm<Vector4<f64>>>(scene: &Scene, form: F) -> Outcome {
+    let mut filter = Gpb2Filter::new(models(), chain(), form, &track_prior(4.0)).unwrap();
     judge(scene, |z| {
         filter.predict(&None).unwrap();
         filter.update(&sensor(), z).unwrap();
@@ -136,17 +137,17 @@ fn beats_either_alone(name: &str, switching: impl Fn(&Scene) -> Outcome) {
 
 #[test]
 fn the_imm_follows_the_switches_in_every_form() {
-    beats_either_alone("IMM extended", |scene| imm(scene, Extended));
-    beats_either_alone("IMM unscented", |scene| imm(scene, Unscented::default()));
-    beats_either_alone("IMM square root", |scene| imm(scene, SquareRoot));
-    beats_either_alone("IMM information", |scene| imm(scene, Information));
+    beats_either_alone("IMM extended", |scene| imm(scene, ExtendedForm));
+    beats_either_alone("IMM unscented", |scene| imm(scene, UnscentedForm::default()));
+    beats_either_alone("IMM square root", |scene| imm(scene, SquareRootForm));
+    beats_either_alone("IMM information", |scene| imm(scene, InformationForm));
 }
 
 #[test]
 fn gpb2_follows_the_switches_in_every_form() {
-    beats_either_alone("GPB2 extended", |scene| gpb2(scene, Extended));
-    beats_either_alone("GPB2 iterated", |scene| gpb2(scene, IteratedExtended::default()));
-    beats_either_alone("GPB2 square root", |scene| gpb2(scene, SquareRoot));
+    beats_either_alone("GPB2 extended", |scene| gpb2(scene, ExtendedForm));
+    beats_either_alone("GPB2 iterated", |scene| gpb2(scene, IteratedExtendedForm::default()));
+    beats_either_alone("GPB2 square root", |scene| gpb2(scene, SquareRootForm));
 }
 
 #[test]
@@ -154,8 +155,10 @@ fn with_one_model_both_are_the_kalman_filter() {
     let scene = scene(SEEDS.start);
     let one = || MarkovChain::sticky(1, 1.0).unwrap();
     let mut plain = KalmanFilter::new(constant_velocity(1.0), track_prior(4.0)).unwrap();
-    let mut imm = Imm::new(vec![constant_velocity(1.0)], one(), Extended, &track_prior(4.0)).unwrap();
-    let mut gpb2 = Gpb2::new(vec![constant_velocity(1.0)], one(), Extended, &track_prior(4.0)).unwrap();
+    let mut imm =
+        ImmFilter::new(vec![constant_velocity(1.0)], one(), ExtendedForm, &track_prior(4.0)).unwrap();
+    let mut gpb2 =
+        Gpb2Filter::new(vec![constant_velocity(1.0)], one(), ExtendedForm, &track_prior(4.0)).unwrap();
     for z in &scene.measurements {
         plain.predict(None).unwrap();
         imm.predict(&None).unwrap();
@@ -176,7 +179,7 @@ fn with_one_model_both_are_the_kalman_filter() {
 fn gpb2_is_exact_over_two_steps() {
     let (chain, measurements) =
         (MarkovChain::sticky(2, 0.9).unwrap(), [Vector2::new(0.4, -0.1), Vector2::new(1.5, 0.8)]);
-    let mut filter = Gpb2::new(models(), chain.clone(), Extended, &track_prior(4.0)).unwrap();
+    let mut filter = Gpb2Filter::new(models(), chain.clone(), ExtendedForm, &track_prior(4.0)).unwrap();
     for z in &measurements {
         filter.predict(&None).unwrap();
         filter.update(&sensor(), z).unwrap();
@@ -238,14 +241,18 @@ impl SensorModel for Fix {
 
 #[test]
 fn poses_switch_too_and_their_headings_wrap() {
-    fn run<F: Form<Pose2<f64>>>(form: F) -> (Gaussian<Pose2<f64>>, Vec<f64>, Pose2<f64>)
+    fn run<F: FilterForm<Pose2<f64>>>(form: F) -> (Gaussian<Pose2<f64>>, Vec<f64>, Pose2<f64>)
     where
         DefaultAllocator: StateAlloc<nalgebra::U3>,
     {
         let prior = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 3.0), &Vector3::new(0.1, 0.1, 0.1)).unwrap();
-        let mut filter =
-            Imm::new(vec![Turning(0.0), Turning(0.1)], MarkovChain::sticky(2, 0.9).unwrap(), form, &prior)
-                .unwrap();
+        let mut filter = ImmFilter::new(
+            vec![Turning(0.0), Turning(0.1)],
+            MarkovChain::sticky(2, 0.9).unwrap(),
+            form,
+            &prior,
+        )
+        .unwrap();
         let mut truth = Pose2::new(0.05, -0.05, 3.05);
         for k in 0..60 {
             truth = Turning(if k < 30 { 0.0 } else { 0.1 }).propagate(&truth, &0.5);
@@ -254,7 +261,9 @@ fn poses_switch_too_and_their_headings_wrap() {
         }
         (filter.estimate().unwrap(), filter.model_probabilities(), truth)
     }
-    for (estimate, probabilities, truth) in [run(Extended), run(Unscented::default()), run(SquareRoot)] {
+    for (estimate, probabilities, truth) in
+        [run(ExtendedForm), run(UnscentedForm::default()), run(SquareRootForm)]
+    {
         // Both models were equally probable at the start; 30 steps of turning must have told them apart.
         assert!(probabilities[1] > 0.5, "turning for 30 steps: {probabilities:?}");
         let error = estimate.mean().local(&truth);
@@ -265,12 +274,13 @@ fn poses_switch_too_and_their_headings_wrap() {
 }
 
 /// Two lights, 160 and 40; each filter drifts slowly.
-fn lights(n_histories: usize) -> JumpMarkov<LinearMotion<f64, nalgebra::U1>, Extended> {
+fn lights(n_histories: usize) -> JumpMarkovFilter<LinearMotion<f64, nalgebra::U1>, ExtendedForm> {
     let drift = LinearMotion::stationary(Matrix1::new(0.5)).unwrap();
     let prior = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(400.0)).unwrap();
-    let bank = ModelBank::new(vec![drift.clone(), drift], Extended, &[prior(160.0), prior(40.0)]).unwrap();
-    let params = JumpMarkovParams { n_histories, history_length: 40 };
-    JumpMarkov::new(bank, MarkovChain::sticky(2, 0.95).unwrap(), params).unwrap()
+    let bank =
+        ModelBank::new(vec![drift.clone(), drift], ExtendedForm, &[prior(160.0), prior(40.0)]).unwrap();
+    let params = JumpMarkovFilterParams { n_histories, history_length: 40 };
+    JumpMarkovFilter::new(bank, MarkovChain::sticky(2, 0.95).unwrap(), params).unwrap()
 }
 
 fn light_sensor() -> LinearSensor<Vector1<f64>, Vector1<f64>> {
@@ -352,8 +362,8 @@ fn all_histories_kept_are_the_exact_posterior() {
 #[test]
 fn refused_calls_leave_switching_filters_as_they_were() {
     let bad = Vector2::new(f64::NAN, 0.0);
-    let mut imm = Imm::new(models(), chain(), Extended, &track_prior(4.0)).unwrap();
-    let mut gpb2 = Gpb2::new(models(), chain(), Extended, &track_prior(4.0)).unwrap();
+    let mut imm = ImmFilter::new(models(), chain(), ExtendedForm, &track_prior(4.0)).unwrap();
+    let mut gpb2 = Gpb2Filter::new(models(), chain(), ExtendedForm, &track_prior(4.0)).unwrap();
     imm.predict(&None).unwrap();
     gpb2.predict(&None).unwrap();
     let (before_imm, before_gpb2) = (imm.estimate().unwrap(), gpb2.estimate().unwrap());

@@ -1,8 +1,8 @@
 //! Three walls of a room from one synthetic scan: `cargo run -p wayfix-line-extract --example 01_walls_of_a_scan`
 
-use wayfix_line_extract::{LineError, Params, Scan, extract};
+use wayfix_line_extract::{LineExtractionError, LineExtractionParams, Scan, extract};
 
-fn main() -> Result<(), LineError> {
+fn main() -> Result<(), LineExtractionError> {
     // A laser of 181 beams at the origin, walls ahead (x = 4), to the left (y = 2) and to the right (y = -1.5).
     let increment = 1_f64.to_radians();
     let bearing = |beam: usize| (beam as f64 - 90.0) * increment;
@@ -17,7 +17,7 @@ fn main() -> Result<(), LineError> {
     ranges[100..105].fill(f64::INFINITY); // a window
 
     let scan = Scan { angle_min: bearing(0), angle_increment: increment, ranges: &ranges, max_range: 30.0 };
-    let seen = extract(&scan, &Params::default())?;
+    let seen = extract(&scan, &LineExtractionParams::default())?;
     println!("{} of {} beams came back; walls:", seen.counts.valid, ranges.len());
     for wall in &seen.segments {
         let (line, p) = (&wall.estimate.line, &wall.estimate.covariance);

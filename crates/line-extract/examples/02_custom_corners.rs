@@ -3,7 +3,7 @@
 //! `cargo run -p wayfix-line-extract --example 02_custom_corners`
 
 use nalgebra::{Matrix2, Vector2};
-use wayfix_line_extract::{LineError, Params, Scan, Segment, extract};
+use wayfix_line_extract::{LineExtractionError, LineExtractionParams, Scan, WallSegment, extract};
 
 /// Where two walls meet, in the sensor's frame, m and m².
 struct Corner {
@@ -13,7 +13,7 @@ struct Corner {
 
 impl Corner {
     /// Of two neighbours, unless they are parallel to within 20° or end farther than `reach` from where they would meet.
-    fn between(first: &Segment, second: &Segment, reach: f64) -> Option<Self> {
+    fn between(first: &WallSegment, second: &WallSegment, reach: f64) -> Option<Self> {
         // x cos α + y sin α = ρ for both walls.
         let lines = [first.estimate, second.estimate];
         let normals = Matrix2::from_rows(&lines.map(|wall| wall.line.normal().transpose()));
@@ -33,7 +33,7 @@ impl Corner {
     }
 }
 
-fn main() -> Result<(), LineError> {
+fn main() -> Result<(), LineExtractionError> {
     // A room of 6 m by 4 m, the scanner in the middle, one beam a degree; a ripple of half a centimetre stands for noise.
     let ranges: Vec<f64> = (0..360)
         .map(|beam| {
@@ -42,7 +42,7 @@ fn main() -> Result<(), LineError> {
         })
         .collect();
     let scan = Scan { angle_min: 0.0, angle_increment: 1_f64.to_radians(), ranges: &ranges, max_range: 30.0 };
-    let walls = extract(&scan, &Params::default())?.segments;
+    let walls = extract(&scan, &LineExtractionParams::default())?.segments;
 
     // Once round: the last wall is the neighbour of the first.
     let neighbours = walls.iter().zip(walls.iter().cycle().skip(1));

@@ -1,7 +1,7 @@
 /// Errors of simplification, fitting and extraction.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum LineError {
+pub enum LineExtractionError {
     /// A tolerance is negative or not finite.
     #[error("the tolerance is {value:?}, must be finite and not negative")]
     Epsilon {

@@ -4,14 +4,14 @@
 //! | --- | --- | --- |
 //! | a chain of points | the indices of those that matter | [`simplify()`], [`douglas_peucker`] |
 //! | points with covariances | a line with its covariance | [`fit_line`] |
-//! | a range scan | walls with covariances and ends | [`extract`], [`Extractor`] |
+//! | a range scan | walls with covariances and ends | [`extract`], [`LineExtractor`] |
 //! | a predicted wall | its search band and its segment | [`WallHypothesis`] |
 //!
 //! Metres and radians, x forward, y left. Scans, segments and hypotheses are in the sensor's frame; the crate has no filters and no poses. The methods, their
 //! parameters and measured figures are in `docs/lines.md`.
 //!
 //! ```
-//! use wayfix_line_extract::{Params, Scan, extract};
+//! use wayfix_line_extract::{LineExtractionParams, Scan, extract};
 //!
 //! // A wall at y = 1 m, seen by 61 beams, two of which came back with nothing.
 //! let bearing = |i: usize| 60_f64.to_radians() + i as f64 * 1_f64.to_radians();
@@ -20,13 +20,13 @@
 //! ranges[40] = f64::INFINITY;
 //! let scan =
 //!     Scan { angle_min: bearing(0), angle_increment: 1_f64.to_radians(), ranges: &ranges, max_range: 8.0 };
-//! let seen = extract(&scan, &Params::default())?;
+//! let seen = extract(&scan, &LineExtractionParams::default())?;
 //! assert_eq!((seen.segments.len(), seen.counts.skipped()), (1, 2));
 //! let wall = &seen.segments[0];
 //! assert!((wall.estimate.line.rho() - 1.0).abs() < 1e-6);
 //! assert!((wall.estimate.line.alpha() - 90_f64.to_radians()).abs() < 1e-6);
 //! assert!(wall.estimate.covariance[(0, 0)].sqrt() < 0.01 / 7.0); // 59 echoes of 1 cm
-//! # Ok::<(), wayfix_line_extract::LineError>(())
+//! # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 //! ```
 
 mod check;
@@ -35,12 +35,12 @@ mod laser;
 mod line;
 mod simplify;
 
-pub use error::LineError;
+pub use error::LineExtractionError;
 pub use laser::{
-    Counts, Extraction, Extractor, Params, RangeBearingNoise, Scan, Segment, SplitMethod, WallHypothesis,
-    extract,
+    BeamCounts, LineExtraction, LineExtractionParams, LineExtractor, RangeBearingNoise, Scan, SplitMethod,
+    WallHypothesis, WallSegment, extract,
 };
 pub use line::{HessianLine, LineEstimate, LineFit, fit_line};
-pub use simplify::{Distance, Simplifier, douglas_peucker, simplify};
+pub use simplify::{ChainSimplifier, PointDistance, douglas_peucker, simplify};
 
 pub use nalgebra;

@@ -1,7 +1,7 @@
 //! Fits of points that are hardly a line, or none.
 
 use wayfix_line_extract::nalgebra::{Matrix2, Vector2};
-use wayfix_line_extract::{HessianLine, LineError, LineEstimate, fit_line};
+use wayfix_line_extract::{HessianLine, LineEstimate, LineExtractionError, fit_line};
 
 fn unit(n: usize) -> Vec<Matrix2<f64>> {
     vec![Matrix2::identity(); n]
@@ -10,19 +10,25 @@ fn unit(n: usize) -> Vec<Matrix2<f64>> {
 #[test]
 fn what_is_no_line_is_refused() {
     let point = Vector2::new(1.0, 2.0);
-    assert_eq!(fit_line(&[], &[]), Err(LineError::TooFewPoints { got: 0, needed: 2 }));
-    assert_eq!(fit_line(&[point], &unit(1)), Err(LineError::TooFewPoints { got: 1, needed: 2 }));
-    assert_eq!(fit_line(&[point; 3], &unit(2)), Err(LineError::Sizes { points: 3, covariances: 2 }));
-    assert!(matches!(fit_line(&[point; 5], &unit(5)), Err(LineError::NoDirection { n_points: 5, .. })));
+    assert_eq!(fit_line(&[], &[]), Err(LineExtractionError::TooFewPoints { got: 0, needed: 2 }));
+    assert_eq!(fit_line(&[point], &unit(1)), Err(LineExtractionError::TooFewPoints { got: 1, needed: 2 }));
+    assert_eq!(
+        fit_line(&[point; 3], &unit(2)),
+        Err(LineExtractionError::Sizes { points: 3, covariances: 2 })
+    );
+    assert!(matches!(
+        fit_line(&[point; 5], &unit(5)),
+        Err(LineExtractionError::NoDirection { n_points: 5, .. })
+    ));
     for bad in [f64::NAN, f64::INFINITY, -1e300] {
         let points = [point, Vector2::new(3.0, bad), Vector2::new(5.0, 5.0)];
-        assert!(matches!(fit_line(&points, &unit(3)), Err(LineError::Point { index: 1, .. })));
+        assert!(matches!(fit_line(&points, &unit(3)), Err(LineExtractionError::Point { index: 1, .. })));
     }
     for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
         let points = [point, Vector2::new(3.0, 3.0), Vector2::new(5.0, 5.0)];
         let mut covariances = unit(3);
         covariances[2] *= bad;
-        assert!(matches!(fit_line(&points, &covariances), Err(LineError::Param { .. })), "{bad}");
+        assert!(matches!(fit_line(&points, &covariances), Err(LineExtractionError::Param { .. })), "{bad}");
     }
 }
 
@@ -64,7 +70,7 @@ fn covariances_that_are_none_are_refused() {
         let estimate = LineEstimate { line, covariance: bad };
         assert!(matches!(
             estimate.mahalanobis_squared(&estimate),
-            Err(LineError::NotPositiveDefinite { .. })
+            Err(LineExtractionError::NotPositiveDefinite { .. })
         ));
     }
 }

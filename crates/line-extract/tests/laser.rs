@@ -9,7 +9,8 @@ use rand_distr::{Distribution, StandardNormal};
 use support::{Laser, Wall, room, wall};
 use wayfix_line_extract::nalgebra::{Isometry2, Point2, Vector2};
 use wayfix_line_extract::{
-    Extraction, Extractor, LineError, Params, RangeBearingNoise, Scan, Segment, SplitMethod, extract,
+    LineExtraction, LineExtractionError, LineExtractionParams, LineExtractor, RangeBearingNoise, Scan,
+    SplitMethod, WallSegment, extract,
 };
 
 const SEED_ROOM: u64 = 41;
@@ -23,12 +24,12 @@ fn scan_of(laser: Laser, ranges: &[f64]) -> Scan<'_> {
     Scan { angle_min, angle_increment, ranges, max_range: 20.0 }
 }
 
-fn see(laser: Laser, walls: &[Wall], params: &Params) -> Extraction {
+fn see(laser: Laser, walls: &[Wall], params: &LineExtractionParams) -> LineExtraction {
     extract(&scan_of(laser, &laser.ranges(walls)), params).expect("a valid scan")
 }
 
 /// Whether a segment lies on a wall: both its ends within `limit` of the wall's line.
-fn lies_on(segment: &Segment, wall: &Wall, limit: f64) -> bool {
+fn lies_on(segment: &WallSegment, wall: &Wall, limit: f64) -> bool {
     let along = (wall.1 - wall.0).normalize();
     [segment.start, segment.end].iter().all(|end| along.perp(&(end - wall.0)).abs() < limit)
 }
@@ -38,16 +39,16 @@ fn the_four_walls_of_a_room() {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED_ROOM);
     let laser = Laser::over(359.0, 360);
     for split in BOTH {
-        let params = Params { split, ..Params::default() };
+        let params = LineExtractionParams { split_method: split, ..LineExtractionParams::default() };
         let (mut whole, mut complete) = (0, 0);
         for _ in 0..100 {
-            let ranges = laser.noisy_ranges(&room(), &params.noise, &mut rng);
+            let ranges = laser.noisy_ranges(&room(), &params.beam_noise, &mut rng);
             let seen = extract(&scan_of(laser, &ranges), &params).expect("a valid scan");
             whole += usize::from(seen.segments.len() == 4);
             let is_complete = |wall: &Wall| {
                 // 5 cm, what a piece is split at, is the most that a point may be off.
                 let on = seen.segments.iter().filter(|segment| lies_on(segment, wall, 0.05));
-                let length: f64 = on.map(Segment::length).sum();
+                let length: f64 = on.map(WallSegment::length).sum();
                 // Two beams at the widest spacing on these walls, 4.5 m · 1° / cos² 63°, on each end.
                 (length - (wall.1 - wall.0).norm()).abs() < 4.0 * 0.38
             };
@@ -78,10 +79,10 @@ fn round_room(laser: Laser, radius: f64, at: Vector2<f64>, noise: &RangeBearingN
 fn a_round_room_has_no_walls() {
     let laser = Laser::over(359.0, 360);
     for split in BOTH {
-        let params = Params { split, ..Params::default() };
+        let params = LineExtractionParams { split_method: split, ..LineExtractionParams::default() };
         for radius in [2.0, 3.0, 5.0] {
             for at in [Vector2::zeros(), Vector2::new(0.3 * radius, -0.2 * radius)] {
-                let ranges = round_room(laser, radius, at, &params.noise);
+                let ranges = round_room(laser, radius, at, &params.beam_noise);
                 let seen = extract(&scan_of(laser, &ranges), &params).expect("a valid scan");
                 assert_eq!(seen.segments.len(), 0, "{split:?}, radius {radius} m, seen from {at:?}");
             }
@@ -93,10 +94,10 @@ fn a_round_room_has_no_walls() {
 fn beams_that_turn_clockwise_see_the_same() {
     let laser = Laser::over(180.0, 361);
     let ranges = laser.ranges(&room());
-    let there = extract(&scan_of(laser, &ranges), &Params::default()).expect("a valid scan");
+    let there = extract(&scan_of(laser, &ranges), &LineExtractionParams::default()).expect("a valid scan");
     let backwards: Vec<_> = ranges.iter().rev().copied().collect();
     let turned = Laser { angle_min: -laser.angle_min, angle_increment: -laser.angle_increment, ..laser };
-    let back = extract(&scan_of(turned, &backwards), &Params::default()).expect("a valid scan");
+    let back = extract(&scan_of(turned, &backwards), &LineExtractionParams::default()).expect("a valid scan");
     assert_eq!(there.segments.len(), 3);
     for (a, b) in there.segments.iter().zip(back.segments.iter().rev()) {
         // A corner's point goes to the wall after it, which is the other one here; it is within the gate of 3 σ.
@@ -118,8 +119,8 @@ fn moving_sensor_sees_the_walls_from_the_first_beam() {
         ranges.push(laser.ranges(&walls)[beam]);
         sensor *= step;
     }
-    let at_rest = see(laser, &room(), &Params::default());
-    let mut extractor = Extractor::new(Params::default()).expect("the defaults are valid");
+    let at_rest = see(laser, &room(), &LineExtractionParams::default());
+    let mut extractor = LineExtractor::new(LineExtractionParams::default()).expect("the defaults are valid");
     let moving = extractor.extract_deskewed(&scan_of(laser, &ranges), Some(&step)).expect("a valid scan");
     assert_eq!(moving.segments.len(), at_rest.segments.len());
     for (a, b) in moving.segments.iter().zip(&at_rest.segments) {
@@ -129,7 +130,7 @@ fn moving_sensor_sees_the_walls_from_the_first_beam() {
     }
     let nan = Isometry2::new(Vector2::new(f64::NAN, 0.0), 0.0);
     let error = extractor.extract_deskewed(&scan_of(laser, &ranges), Some(&nan)).expect_err("no motion");
-    assert!(matches!(error, LineError::Scan { .. }), "{error}");
+    assert!(matches!(error, LineExtractionError::Scan { .. }), "{error}");
 }
 
 #[test]
@@ -137,12 +138,13 @@ fn a_wall_behind_a_post_is_one_and_across_a_door_two() {
     let laser = Laser::over(120.0, 241);
     let behind_a_post = [wall(4.0, -3.0, 4.0, 3.0), wall(2.0, -0.05, 2.0, 0.05)];
     let door = [wall(4.0, -3.0, 4.0, -0.5), wall(4.0, 0.5, 4.0, 3.0)];
-    let seen = see(laser, &behind_a_post, &Params::default());
+    let seen = see(laser, &behind_a_post, &LineExtractionParams::default());
     assert_eq!(seen.segments.len(), 1, "{seen:#?}"); // the post itself is shorter than a wall
     assert!((seen.segments[0].length() - 6.0).abs() < 0.2);
-    let seen = see(laser, &door, &Params::default());
+    let seen = see(laser, &door, &LineExtractionParams::default());
     assert_eq!(seen.segments.len(), 2, "{seen:#?}");
-    let seen = see(laser, &door, &Params { merge_gap_m: 1.2, ..Params::default() });
+    let seen =
+        see(laser, &door, &LineExtractionParams { merge_gap_m: 1.2, ..LineExtractionParams::default() });
     assert_eq!(seen.segments.len(), 1, "{seen:#?}");
 }
 
@@ -150,9 +152,10 @@ fn a_wall_behind_a_post_is_one_and_across_a_door_two() {
 fn a_step_in_range_is_a_step_and_a_flat_view_is_not() {
     // A wall seen at 30° or more is one surface; two walls 1 m behind one another are two.
     let laser = Laser::over(100.0, 201);
-    let slanted = see(laser, &[wall(1.0, -1.0, 4.0, 3.0)], &Params::default());
+    let slanted = see(laser, &[wall(1.0, -1.0, 4.0, 3.0)], &LineExtractionParams::default());
     assert_eq!((slanted.counts.surfaces, slanted.segments.len()), (1, 1), "{slanted:#?}");
-    let stepped = see(laser, &[wall(3.0, -3.0, 3.0, 0.0), wall(4.0, 0.0, 4.0, 4.0)], &Params::default());
+    let stepped =
+        see(laser, &[wall(3.0, -3.0, 3.0, 0.0), wall(4.0, 0.0, 4.0, 4.0)], &LineExtractionParams::default());
     assert_eq!((stepped.counts.surfaces, stepped.segments.len()), (2, 2), "{stepped:#?}");
 }
 
@@ -166,7 +169,7 @@ fn every_invalid_range_is_counted_once_and_moves_nothing() {
     {
         ranges[20 + 15 * k] = *bad;
     }
-    let seen = extract(&scan_of(laser, &ranges), &Params::default()).expect("a valid geometry");
+    let seen = extract(&scan_of(laser, &ranges), &LineExtractionParams::default()).expect("a valid geometry");
     let counts = seen.counts;
     assert_eq!(
         (counts.valid, counts.nan, counts.infinite, counts.not_positive, counts.beyond_max),
@@ -181,11 +184,13 @@ fn every_invalid_range_is_counted_once_and_moves_nothing() {
 fn scans_with_nothing_in_them() {
     let laser = Laser::over(180.0, 181);
     for value in [f64::NAN, f64::INFINITY, 0.0, -3.0, 1e9] {
-        let seen = extract(&scan_of(laser, &[value; 181]), &Params::default()).expect("a valid geometry");
+        let seen = extract(&scan_of(laser, &[value; 181]), &LineExtractionParams::default())
+            .expect("a valid geometry");
         assert_eq!((seen.segments.len(), seen.counts.valid, seen.counts.skipped()), (0, 0, 181));
     }
     for n in 0..5 {
-        let seen = extract(&scan_of(laser, &vec![1.0; n]), &Params::default()).expect("a valid geometry");
+        let seen = extract(&scan_of(laser, &vec![1.0; n]), &LineExtractionParams::default())
+            .expect("a valid geometry");
         assert_eq!((seen.segments.len(), seen.counts.valid), (0, n));
     }
 }
@@ -194,42 +199,54 @@ fn scans_with_nothing_in_them() {
 fn geometry_and_parameters_without_meaning_are_refused() {
     let ranges = [1.0; 10];
     let good = Scan { angle_min: 0.0, angle_increment: 0.01, ranges: &ranges, max_range: 8.0 };
-    let mut extractor = Extractor::new(Params::default()).expect("the defaults are valid");
+    let mut extractor = LineExtractor::new(LineExtractionParams::default()).expect("the defaults are valid");
     let before = extractor.extract(&good);
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert!(matches!(extractor.extract(&Scan { angle_min: bad, ..good }), Err(LineError::Scan { .. })));
+        assert!(matches!(
+            extractor.extract(&Scan { angle_min: bad, ..good }),
+            Err(LineExtractionError::Scan { .. })
+        ));
         assert!(matches!(
             extractor.extract(&Scan { angle_increment: bad, ..good }),
-            Err(LineError::Scan { .. })
+            Err(LineExtractionError::Scan { .. })
         ));
-        assert!(matches!(extractor.extract(&Scan { max_range: bad, ..good }), Err(LineError::Scan { .. })));
+        assert!(matches!(
+            extractor.extract(&Scan { max_range: bad, ..good }),
+            Err(LineExtractionError::Scan { .. })
+        ));
     }
     for bad in [0.0, -1.0, 1e7] {
-        assert!(matches!(extractor.extract(&Scan { max_range: bad, ..good }), Err(LineError::Scan { .. })));
+        assert!(matches!(
+            extractor.extract(&Scan { max_range: bad, ..good }),
+            Err(LineExtractionError::Scan { .. })
+        ));
     }
-    assert!(matches!(extractor.extract(&Scan { angle_increment: 0.0, ..good }), Err(LineError::Scan { .. })));
+    assert!(matches!(
+        extractor.extract(&Scan { angle_increment: 0.0, ..good }),
+        Err(LineExtractionError::Scan { .. })
+    ));
     for bad in [0.8, -0.8, 1e300] {
         let refused = extractor.extract(&Scan { angle_increment: bad, ..good });
-        assert_eq!(refused, Err(LineError::MoreThanATurn { n_beams: 10, increment_rad: bad }));
+        assert_eq!(refused, Err(LineExtractionError::MoreThanATurn { n_beams: 10, increment_rad: bad }));
     }
     assert_eq!(extractor.extract(&good), before, "what was refused left no trace");
 
-    let default = Params::default();
+    let default = LineExtractionParams::default();
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         let noise = |sigma_range_m, sigma_bearing_rad| RangeBearingNoise { sigma_range_m, sigma_bearing_rad };
         let wrong = [
-            Params { noise: noise(bad, 0.0), ..default },
-            Params { noise: noise(0.01, bad), ..default },
-            Params { breakpoint_angle_rad: bad, ..default },
-            Params { split_distance_m: bad, ..default },
-            Params { end_gate_sigma: bad, ..default },
-            Params { merge_gate: bad, ..default },
-            Params { merge_gap_m: bad, ..default },
-            Params { min_length_m: bad, ..default },
-            Params { min_points: 2, ..default },
+            LineExtractionParams { beam_noise: noise(bad, 0.0), ..default },
+            LineExtractionParams { beam_noise: noise(0.01, bad), ..default },
+            LineExtractionParams { breakpoint_angle_rad: bad, ..default },
+            LineExtractionParams { split_distance_m: bad, ..default },
+            LineExtractionParams { end_gate_sigma: bad, ..default },
+            LineExtractionParams { merge_gate: bad, ..default },
+            LineExtractionParams { merge_gap_m: bad, ..default },
+            LineExtractionParams { min_length_m: bad, ..default },
+            LineExtractionParams { min_points: 2, ..default },
         ];
         for params in wrong {
-            assert!(matches!(extract(&good, &params), Err(LineError::Param { .. })), "{params:?}");
+            assert!(matches!(extract(&good, &params), Err(LineExtractionError::Param { .. })), "{params:?}");
         }
     }
 }
@@ -238,16 +255,16 @@ fn geometry_and_parameters_without_meaning_are_refused() {
 fn whatever_the_ranges_results_are_sound() {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED_JUNK);
     for case in 0..3000 {
-        let params = Params {
-            split: BOTH[case % 2],
-            noise: RangeBearingNoise {
+        let params = LineExtractionParams {
+            split_method: BOTH[case % 2],
+            beam_noise: RangeBearingNoise {
                 sigma_range_m: 10f64.powf(rng.random_range(-6.0..1.0)),
                 sigma_bearing_rad: 0.0,
             },
             split_distance_m: 10f64.powf(rng.random_range(-6.0..2.0)),
             max_missing_beams: rng.random_range(0..5),
             min_length_m: 0.0,
-            ..Params::default()
+            ..LineExtractionParams::default()
         };
         let n = rng.random_range(0..200);
         let ranges: Vec<f64> = (0..n).map(|_| junk(&mut rng)).collect();

@@ -10,8 +10,8 @@ use rand_distr::{Distribution, StandardNormal};
 use support::{Laser, room, wall};
 use wayfix_line_extract::nalgebra::{Matrix2, Vector2};
 use wayfix_line_extract::{
-    Extractor, HessianLine, LineEstimate, LineFit, Params, RangeBearingNoise, Scan, Segment, WallHypothesis,
-    fit_line,
+    HessianLine, LineEstimate, LineExtractionParams, LineExtractor, LineFit, RangeBearingNoise, Scan,
+    WallHypothesis, WallSegment, fit_line,
 };
 
 const SEED_FIT: u64 = 51;
@@ -91,7 +91,9 @@ fn walls_of_a_room_are_within_their_two_sigma_ellipse() {
     const RUNS: usize = 500;
     let mut rng = ChaCha8Rng::seed_from_u64(SEED_ROOM);
     let laser = Laser::over(359.0, 360);
-    let mut extractor = Extractor::new(Params { noise: NOISE, ..Params::default() }).expect("valid");
+    let mut extractor =
+        LineExtractor::new(LineExtractionParams { beam_noise: NOISE, ..LineExtractionParams::default() })
+            .expect("valid");
     let (mut inside, mut n) = (0, 0);
     for _ in 0..RUNS {
         let ranges = laser.noisy_ranges(&room(), &NOISE, &mut rng);
@@ -115,7 +117,9 @@ fn two_scans_of_a_wall_are_compatible_at_the_two_sigma_rate() {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED_WALL);
     let laser = Laser::over(60.0, 121);
     let ahead = [wall(3.0, -4.0, 3.0, 4.0)];
-    let mut extractor = Extractor::new(Params { noise: NOISE, ..Params::default() }).expect("valid");
+    let mut extractor =
+        LineExtractor::new(LineExtractionParams { beam_noise: NOISE, ..LineExtractionParams::default() })
+            .expect("valid");
     let mut in_pieces = 0;
     let mut look = || {
         loop {
@@ -132,10 +136,10 @@ fn two_scans_of_a_wall_are_compatible_at_the_two_sigma_rate() {
         let (first, second) = (look(), look());
         let (start, end) = (first.start, first.end);
         let hypothesis = WallHypothesis { estimate: first.estimate, start, end, n_sigma: 2.0, margin_m: 0.2 };
-        let other = Segment { start, end, estimate: exactly(3.2, 0.0), ..second };
+        let other = WallSegment { start, end, estimate: exactly(3.2, 0.0), ..second };
         assert_eq!(hypothesis.is_compatible(&other), Ok(false), "20 cm are some fifty deviations");
         let aside = Vector2::new(0.0, first.length() + 0.5);
-        let elsewhere = Segment { start: start + aside, end: end + aside, ..second };
+        let elsewhere = WallSegment { start: start + aside, end: end + aside, ..second };
         assert_eq!(hypothesis.find(&[elsewhere]), Ok(None), "30 cm beyond the end of the band");
         let compatible = hypothesis.is_compatible(&second).expect("valid");
         assert_eq!(hypothesis.find(&[other, second]), Ok(compatible.then_some(1)));
@@ -150,13 +154,13 @@ fn two_scans_of_a_wall_are_compatible_at_the_two_sigma_rate() {
     assert!((rate - expected).abs() < bound, "{rate}, expected {expected} ± {bound}");
 }
 
-fn walls(extractor: &mut Extractor, laser: Laser, ranges: &[f64]) -> Vec<Segment> {
+fn walls(extractor: &mut LineExtractor, laser: Laser, ranges: &[f64]) -> Vec<WallSegment> {
     let Laser { angle_min, angle_increment, .. } = laser;
     let scan = Scan { angle_min, angle_increment, ranges, max_range: 20.0 };
     extractor.extract(&scan).expect("a valid scan").segments
 }
 
-fn nees(segment: &Segment, wall: &support::Wall) -> f64 {
+fn nees(segment: &WallSegment, wall: &support::Wall) -> f64 {
     let along = (wall.1 - wall.0).normalize();
     let normal = Vector2::new(along.y, -along.x);
     let truth = exactly(normal.dot(&wall.0), normal.y.atan2(normal.x));

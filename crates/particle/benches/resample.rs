@@ -8,7 +8,10 @@ use std::hint::black_box;
 use rand::{RngExt as _, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
-use wayfix_particle::{Multinomial, ParticleSet, Resampler, Residual, Stratified, Systematic, Weights};
+use wayfix_particle::{
+    MultinomialResampler, NormalizedWeights, ParticleSet, Resampler, ResidualResampler, StratifiedResampler,
+    SystematicResampler,
+};
 
 const N: usize = 100_000;
 
@@ -16,15 +19,15 @@ fn main() {
     let mut rng = ChaCha8Rng::seed_from_u64(20_261_121);
     // Spread evenly over ± 3 sigma of the likelihood, so that about six in ten particles have children.
     let log_weights: Vec<f64> = (0..N).map(|_| -0.5 * rng.random_range(-3.0_f64..3.0).powi(2)).collect();
-    let weights = Weights::from_log(&log_weights).expect("finite log weights");
+    let weights = NormalizedWeights::from_log(&log_weights).expect("finite log weights");
 
     let mut copied = vec![0.0; N];
     let copy = per_particle(|| black_box(&mut copied).copy_from_slice(black_box(weights.as_slice())));
     eprintln!("copying weights to ancestors: {copy:.2} ns a particle");
-    time("resample systematic 1e5", &Systematic, &weights, copy);
-    time("resample stratified 1e5", &Stratified, &weights, copy);
-    time("resample residual 1e5", &Residual, &weights, copy);
-    time("resample multinomial 1e5", &Multinomial, &weights, copy);
+    time("resample systematic 1e5", &SystematicResampler, &weights, copy);
+    time("resample stratified 1e5", &StratifiedResampler, &weights, copy);
+    time("resample residual 1e5", &ResidualResampler, &weights, copy);
+    time("resample multinomial 1e5", &MultinomialResampler, &weights, copy);
 
     time_a_step(&mut rng);
 }
@@ -39,14 +42,14 @@ fn time_a_step(rng: &mut ChaCha8Rng) {
         let took = seconds(|| {
             particles.reweigh(|x| -0.5 * x.x().powi(2)).expect("finite log-likelihoods");
             particles.normalize().expect("some weight");
-            particles.resample(&Systematic, N, rng).expect("some weight").len()
+            particles.resample(&SystematicResampler, N, rng).expect("some weight").len()
         });
         best = best.min(took);
     }
     println!("bench\treweigh, normalize, resample poses 1e5\twayfix\t{:.2}", best * 1e9 / N as f64);
 }
 
-fn time(job: &str, resampler: &impl Resampler, weights: &Weights, copy: f64) {
+fn time(job: &str, resampler: &impl Resampler, weights: &NormalizedWeights, copy: f64) {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut ancestors = vec![0; N];
     let took = per_particle(|| resampler.fill(weights, black_box(&mut ancestors), &mut rng));

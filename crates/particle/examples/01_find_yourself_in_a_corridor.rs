@@ -4,7 +4,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_particle::{KldParams, KldSampling, ParticleSet, Systematic, grid_cell};
+use wayfix_particle::{KldParams, KldSampling, ParticleSet, SystematicResampler, grid_cell};
 
 /// Metres along the corridor. No two gaps are alike, or the robot could not tell where it is.
 const DOORS: [f64; 4] = [3.0, 8.0, 10.0, 17.0];
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // One particle in a hundred starts anew anywhere: the robot may have been carried off.
         if evidence.effective_share() < 0.5 {
             let n = particles.kld_size(&kld, |x| grid_cell([*x], [0.2]), &mut rng)?;
-            particles.resample(&Systematic, n, &mut rng)?;
+            particles.resample(&SystematicResampler, n, &mut rng)?;
             particles.states_mut().iter_mut().step_by(100).for_each(|x| *x = rng.random_range(0.0..LENGTH));
         }
 

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LikelihoodModel, Manifold, Pose2, SampleMotion};
-use wayfix_particle::{BootstrapFilter, ParticleSet, Stratified};
+use wayfix_particle::{BootstrapFilter, ParticleSet, StratifiedResampler};
 
 /// Speed through the water and rudder are known; gusts turn the boat now and then.
 struct Boat;
@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         filter.predict(&(3.0, 0.01), &mut rng)?;
         let evidence = filter.update(measurement)?;
         if step % 2 == 1 && evidence.effective_share() < 0.5 {
-            filter.particles_mut().resample(&Stratified, 2000, &mut rng)?;
+            filter.particles_mut().resample(&StratifiedResampler, 2000, &mut rng)?;
         }
     }
 

@@ -4,7 +4,7 @@ use std::hash::{BuildHasherDefault, DefaultHasher, Hash};
 use rand::{Rng, RngExt as _};
 use statrs::distribution::{ContinuousCDF as _, Normal};
 
-use crate::{ParticleError, ParticleSet, Weights};
+use crate::{NormalizedWeights, ParticleError, ParticleSet};
 
 /// How well the particles must stand for the posterior.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,14 +14,14 @@ pub struct KldParams {
     /// Probability that the divergence stays below, in [0.5, 1). Default 0.99.
     pub confidence: f64,
     /// Fewest particles. Default 100.
-    pub min: usize,
+    pub min_particles: usize,
     /// Most particles. Default 5000.
-    pub max: usize,
+    pub max_particles: usize,
 }
 
 impl Default for KldParams {
     fn default() -> Self {
-        Self { epsilon: 0.05, confidence: 0.99, min: 100, max: 5000 }
+        Self { epsilon: 0.05, confidence: 0.99, min_particles: 100, max_particles: 5000 }
     }
 }
 
@@ -47,7 +47,7 @@ impl KldSampling {
     /// # Errors
     /// [`ParticleError::Parameter`] naming the one that is outside its range.
     pub fn new(params: KldParams) -> Result<Self, ParticleError> {
-        let KldParams { epsilon, confidence, min, max } = params;
+        let KldParams { epsilon, confidence, min_particles: min, max_particles: max } = params;
         let parameter = |what, value, range| Err(ParticleError::Parameter { what, value, range });
         if !(epsilon > 0.0 && epsilon.is_finite()) {
             return parameter("epsilon", epsilon, "positive");
@@ -67,7 +67,7 @@ impl KldSampling {
     /// How many particles `n_bins` occupied bins ask for, within the bounds:
     /// $`n = \frac{k-1}{2ε} \Big(1 - \frac{2}{9(k-1)} + \sqrt{\frac{2}{9(k-1)}} \, z_{1-δ}\Big)^3`$. [Fox 2003]
     pub fn required(&self, n_bins: usize) -> usize {
-        let KldParams { epsilon, min, max, .. } = self.params;
+        let KldParams { epsilon, min_particles: min, max_particles: max, .. } = self.params;
         if n_bins < 2 {
             return min;
         }
@@ -80,7 +80,7 @@ impl KldSampling {
     /// Draws indices by weight and counts their bins until the number drawn is enough for the bins seen; that number. [Fox 2003]
     pub fn sample_size<K: Hash + Eq, R: Rng + ?Sized>(
         &self,
-        weights: &Weights,
+        weights: &NormalizedWeights,
         bin: impl Fn(usize) -> K,
         rng: &mut R,
     ) -> usize {
@@ -96,7 +96,7 @@ impl KldSampling {
             .collect();
         // The standard hasher with its fixed key: no crate creates randomness, not even that of hash tables.
         let mut occupied = HashSet::<K, BuildHasherDefault<DefaultHasher>>::default();
-        let (mut drawn, mut required) = (0, self.params.min);
+        let (mut drawn, mut required) = (0, self.params.min_particles);
         while drawn < required {
             let point: f64 = rng.random();
             let ancestor = cumulative.partition_point(|sum| *sum <= point).min(last);
@@ -117,12 +117,12 @@ impl<X> ParticleSet<X> {
     ///
     /// ```
     /// use rand::SeedableRng;
-    /// use wayfix_particle::{KldParams, KldSampling, ParticleSet, Systematic, grid_cell};
+    /// use wayfix_particle::{KldParams, KldSampling, ParticleSet, SystematicResampler, grid_cell};
     /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
     /// let kld = KldSampling::new(KldParams::default())?;
     /// let mut particles = ParticleSet::new((0..5000).map(|i| f64::from(i) * 1e-4).collect())?;
     /// let n = particles.kld_size(&kld, |x| grid_cell([*x], [0.25]), &mut rng)?;
-    /// particles.resample(&Systematic, n, &mut rng)?;
+    /// particles.resample(&SystematicResampler, n, &mut rng)?;
     /// assert_eq!(n, 100); // two bins: 67 would do, the fewest are 100
     /// # Ok::<(), wayfix_particle::ParticleError>(())
     /// ```

@@ -2,9 +2,9 @@
 
 use rand::Rng;
 
-pub use wayfix_estimation_traits::laws::Violation;
+pub use wayfix_estimation_traits::laws::LawViolation;
 
-use crate::{Resampler, Weights};
+use crate::{NormalizedWeights, Resampler};
 
 /// Standard errors that an average may be off: one in 1.7 million honest averages is further out.
 const STANDARD_ERRORS: f64 = 5.0;
@@ -16,10 +16,10 @@ const STANDARD_ERRORS: f64 = 5.0;
 ///
 /// ```
 /// use rand::SeedableRng;
-/// use wayfix_particle::{Stratified, Weights, laws};
-/// let weights = Weights::from_linear(vec![0.1, 0.0, 2.0, 0.7])?;
+/// use wayfix_particle::{StratifiedResampler, NormalizedWeights, laws};
+/// let weights = NormalizedWeights::from_linear(vec![0.1, 0.0, 2.0, 0.7])?;
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
-/// laws::resampler(&Stratified, &weights, 5, 10_000, &mut rng)?;
+/// laws::resampler(&StratifiedResampler, &weights, 5, 10_000, &mut rng)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -27,11 +27,11 @@ const STANDARD_ERRORS: f64 = 5.0;
 /// The first law that does not hold.
 pub fn resampler<S: Resampler, R: Rng + Clone>(
     resampler: &S,
-    weights: &Weights,
+    weights: &NormalizedWeights,
     n: usize,
     repeats: usize,
     rng: &mut R,
-) -> Result<(), Violation> {
+) -> Result<(), LawViolation> {
     let shares = weights.as_slice();
     let (mut sums, mut squares) = (vec![0.0; shares.len()], vec![0.0; shares.len()]);
     let (mut ancestors, mut again) = (vec![0; n], vec![0; n]);
@@ -60,7 +60,7 @@ pub fn resampler<S: Resampler, R: Rng + Clone>(
     Ok(())
 }
 
-fn holds(law: &'static str, condition: bool, case: impl FnOnce() -> String) -> Result<(), Violation> {
+fn holds(law: &'static str, condition: bool, case: impl FnOnce() -> String) -> Result<(), LawViolation> {
     within(law, if condition { 0.0 } else { 1.0 }, 0.0, case)
 }
 
@@ -69,6 +69,6 @@ fn within(
     error: f64,
     tolerance: f64,
     case: impl FnOnce() -> String,
-) -> Result<(), Violation> {
-    if error <= tolerance { Ok(()) } else { Err(Violation { law, case: case(), error, tolerance }) }
+) -> Result<(), LawViolation> {
+    if error <= tolerance { Ok(()) } else { Err(LawViolation { law, case: case(), error, tolerance }) }
 }

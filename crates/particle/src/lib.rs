@@ -10,13 +10,13 @@
 //! | normalize; how well was the measurement explained? | [`ParticleSet::normalize`], [`NormalizationReport`] |
 //! | is it time to resample? | [`NormalizationReport::effective_share`] |
 //! | to how many particles? | [`ParticleSet::kld_size`] with [`KldSampling`] |
-//! | resample | [`ParticleSet::resample`] by [`Systematic`], [`Stratified`], [`Residual`], [`Multinomial`] or your own [`Resampler`] |
+//! | resample | [`ParticleSet::resample`] by [`SystematicResampler`], [`StratifiedResampler`], [`ResidualResampler`], [`MultinomialResampler`] or your own [`Resampler`] |
 //! | where is it? | [`ParticleSet::moments`], [`ParticleSet::expectation`], [`ParticleSet::heaviest`] |
 //!
 //! [`BootstrapFilter`] puts the steps together for models that implement [`SampleMotion`](wayfix_estimation_traits::SampleMotion) and
 //! [`LikelihoodModel`](wayfix_estimation_traits::LikelihoodModel); [`AuxiliaryFilter`] takes a
 //! [`MotionModel`](wayfix_estimation_traits::MotionModel) with Gaussian noise.
-//! [`RaoBlackwell`] particles carry a part of the state in closed form and share it until it changes;
+//! [`RaoBlackwellParticle`] particles carry a part of the state in closed form and share it until it changes;
 //! [`ParticleSet::sample_and_condition`] moves and weighs them, [`map_conditionals`] changes what they share.
 //!
 //! * Weights are logarithms in nats. $`-∞`$ is an impossible particle; NaN and positive infinity are refused with the index of the particle.
@@ -28,7 +28,7 @@
 //!
 //! ```
 //! use rand::{RngExt, SeedableRng};
-//! use wayfix_particle::{ParticleSet, Systematic};
+//! use wayfix_particle::{ParticleSet, SystematicResampler};
 //!
 //! let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
 //! let mut particles = ParticleSet::from_fn(1000, |rng| rng.random_range(0.0..20.0), &mut rng)?; // metres along a corridor
@@ -36,7 +36,7 @@
 //!     particles.propagate(|x, rng| *x += 1.0 + rng.random_range(-0.2..0.2), &mut rng);
 //!     particles.reweigh(|x| -0.5 * ((x - truth) / 0.3_f64).powi(2))?;
 //!     if particles.normalize()?.effective_share() < 0.5 {
-//!         particles.resample(&Systematic, 1000, &mut rng)?;
+//!         particles.resample(&SystematicResampler, 1000, &mut rng)?;
 //!     }
 //! }
 //! let moments = particles.moments(|x| nalgebra::Vector1::new(*x))?;
@@ -56,15 +56,17 @@ mod resampling;
 mod set;
 mod weights;
 
-pub use chunks::ChunkRng;
+pub use chunks::ParticleChunkRng;
 pub use error::ParticleError;
 pub use evidence::NormalizationReport;
 pub use filters::{AuxiliaryFilter, BootstrapFilter};
 pub use kld::{KldParams, KldSampling, grid_cell};
-pub use rao_blackwell::{RaoBlackwell, map_conditionals};
-pub use resampling::{Multinomial, Resampler, Residual, Stratified, Systematic};
-pub use set::{Moments, ParticleSet};
-pub use weights::Weights;
+pub use rao_blackwell::{RaoBlackwellParticle, map_conditionals};
+pub use resampling::{
+    MultinomialResampler, Resampler, ResidualResampler, StratifiedResampler, SystematicResampler,
+};
+pub use set::{ParticleMoments, ParticleSet};
+pub use weights::NormalizedWeights;
 
 /// The matrix library of every public signature, re-exported because its versions do not mix.
 pub use nalgebra;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use rand::Rng;
 use wayfix_estimation_traits::LogWeight;
 
-use crate::{ChunkRng, ParticleError, ParticleSet};
+use crate::{ParticleChunkRng, ParticleError, ParticleSet};
 
 /// A particle whose state is sampled in part, $`x`$, and carried in closed form for the rest, $`p(c | x, z)`$. [Doucet et al. 2000]
 ///
@@ -12,11 +12,11 @@ use crate::{ChunkRng, ParticleError, ParticleSet};
 /// of them changes it, so resampling copies no filter.
 ///
 /// ```
-/// use wayfix_particle::{ParticleSet, RaoBlackwell, Systematic};
+/// use wayfix_particle::{ParticleSet, RaoBlackwellParticle, SystematicResampler};
 /// use rand::SeedableRng;
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
-/// let mut particles = ParticleSet::new(vec![RaoBlackwell::new(0_u8, vec![0.0; 1000])])?;
-/// particles.resample(&Systematic, 100, &mut rng)?; // one vector, a hundred owners
+/// let mut particles = ParticleSet::new(vec![RaoBlackwellParticle::new(0_u8, vec![0.0; 1000])])?;
+/// particles.resample(&SystematicResampler, 100, &mut rng)?; // one vector, a hundred owners
 /// let [first, second] = &particles.states()[..2] else { unreachable!() };
 /// assert!(first.shares_conditional_with(second));
 ///
@@ -26,20 +26,20 @@ use crate::{ChunkRng, ParticleError, ParticleSet};
 /// # Ok::<(), wayfix_particle::ParticleError>(())
 /// ```
 #[derive(Debug, PartialEq)]
-pub struct RaoBlackwell<X, C> {
+pub struct RaoBlackwellParticle<X, C> {
     /// The sampled part.
     pub sampled: X,
     conditional: Arc<C>,
 }
 
 /// Clones the sampled part; the conditional one is shared.
-impl<X: Clone, C> Clone for RaoBlackwell<X, C> {
+impl<X: Clone, C> Clone for RaoBlackwellParticle<X, C> {
     fn clone(&self) -> Self {
         Self { sampled: self.sampled.clone(), conditional: Arc::clone(&self.conditional) }
     }
 }
 
-impl<X, C> RaoBlackwell<X, C> {
+impl<X, C> RaoBlackwellParticle<X, C> {
     /// A particle with a conditional part of its own.
     pub fn new(sampled: X, conditional: C) -> Self {
         Self::from_shared(sampled, Arc::new(conditional))
@@ -77,8 +77,8 @@ impl<X, C> RaoBlackwell<X, C> {
 /// sharing it.
 ///
 /// ```
-/// use wayfix_particle::{ParticleSet, RaoBlackwell, map_conditionals};
-/// let mut particles = ParticleSet::new(vec![RaoBlackwell::new((), 1.0); 50])?;
+/// use wayfix_particle::{ParticleSet, RaoBlackwellParticle, map_conditionals};
+/// let mut particles = ParticleSet::new(vec![RaoBlackwellParticle::new((), 1.0); 50])?;
 /// map_conditionals(particles.states_mut(), |variance| Ok::<_, std::convert::Infallible>(variance + 0.5)).unwrap();
 /// assert_eq!((particles.n_conditionals(), *particles.states()[49].conditional()), (1, 1.5));
 /// # Ok::<(), wayfix_particle::ParticleError>(())
@@ -87,7 +87,7 @@ impl<X, C> RaoBlackwell<X, C> {
 /// # Errors
 /// The first of `step`; all particles are as they were.
 pub fn map_conditionals<X, C, E>(
-    particles: &mut [RaoBlackwell<X, C>],
+    particles: &mut [RaoBlackwellParticle<X, C>],
     mut step: impl FnMut(&C) -> Result<C, E>,
 ) -> Result<(), E> {
     let mut changed = BTreeMap::new();
@@ -105,7 +105,7 @@ pub fn map_conditionals<X, C, E>(
     Ok(())
 }
 
-impl<X: Clone + Send, C: Clone + Send + Sync> ParticleSet<RaoBlackwell<X, C>> {
+impl<X: Clone + Send, C: Clone + Send + Sync> ParticleSet<RaoBlackwellParticle<X, C>> {
     /// One Rao-Blackwellised step: `sample` moves the sampled part, `condition` predicts and corrects the conditional part given it, and
     /// returns how likely the measurement was, $`\log p(z_k | x_{1:k}, z_{1:k-1})`$: the particle's weight.
     ///
@@ -118,7 +118,7 @@ impl<X: Clone + Send, C: Clone + Send + Sync> ParticleSet<RaoBlackwell<X, C>> {
     /// As [`advance_with`](ParticleSet::advance_with); all particles are as they were.
     pub fn sample_and_condition<E, R>(
         &mut self,
-        sample: impl Fn(&X, &mut ChunkRng) -> X + Sync,
+        sample: impl Fn(&X, &mut ParticleChunkRng) -> X + Sync,
         condition: impl Fn(&X, &mut C) -> Result<LogWeight, E> + Sync,
         rng: &mut R,
     ) -> Result<(), E>
@@ -126,7 +126,7 @@ impl<X: Clone + Send, C: Clone + Send + Sync> ParticleSet<RaoBlackwell<X, C>> {
         E: From<ParticleError> + Send,
         R: Rng + ?Sized,
     {
-        let step = |(): &mut (), particle: &mut RaoBlackwell<X, C>, rng: &mut ChunkRng| {
+        let step = |(): &mut (), particle: &mut RaoBlackwellParticle<X, C>, rng: &mut ParticleChunkRng| {
             particle.sampled = sample(&particle.sampled, rng);
             condition(&particle.sampled, Arc::make_mut(&mut particle.conditional))
         };

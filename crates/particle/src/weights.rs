@@ -5,16 +5,16 @@ use crate::ParticleError;
 /// Weights that are not negative, finite, and add up to one: what a [`Resampler`](crate::Resampler) draws by.
 ///
 /// ```
-/// use wayfix_particle::Weights;
-/// let weights = Weights::from_log(&[-1000.0, -1000.0, f64::NEG_INFINITY])?; // far below the smallest f64, still half and half
+/// use wayfix_particle::NormalizedWeights;
+/// let weights = NormalizedWeights::from_log(&[-1000.0, -1000.0, f64::NEG_INFINITY])?; // far below the smallest f64, still half and half
 /// assert_eq!(weights.as_slice(), [0.5, 0.5, 0.0]);
 /// assert_eq!(weights.effective_sample_size(), 2.0);
 /// # Ok::<(), wayfix_particle::ParticleError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Weights(Vec<f64>);
+pub struct NormalizedWeights(Vec<f64>);
 
-impl Weights {
+impl NormalizedWeights {
     /// $`w_i ∝ e^{l_i}`$ from log weights in nats.
     ///
     /// # Errors
@@ -105,18 +105,18 @@ mod tests {
     #[test]
     fn bad_weights_are_refused_with_their_index() {
         let no_weight = ParticleError::NoWeight { count: 2 };
-        assert_eq!(Weights::from_linear(vec![]), Err(ParticleError::NoParticles));
-        assert_eq!(Weights::from_log(&[]), Err(ParticleError::NoParticles));
-        assert_eq!(Weights::from_linear(vec![0.0, 0.0]), Err(no_weight.clone()));
-        assert_eq!(Weights::from_log(&[f64::NEG_INFINITY; 2]), Err(no_weight));
+        assert_eq!(NormalizedWeights::from_linear(vec![]), Err(ParticleError::NoParticles));
+        assert_eq!(NormalizedWeights::from_log(&[]), Err(ParticleError::NoParticles));
+        assert_eq!(NormalizedWeights::from_linear(vec![0.0, 0.0]), Err(no_weight.clone()));
+        assert_eq!(NormalizedWeights::from_log(&[f64::NEG_INFINITY; 2]), Err(no_weight));
         for bad in [-1.0, f64::INFINITY] {
-            let refused = Weights::from_linear(vec![1.0, bad]);
+            let refused = NormalizedWeights::from_linear(vec![1.0, bad]);
             assert_eq!(refused, Err(ParticleError::Weight { index: 1, value: bad }));
         }
-        assert!(Weights::from_linear(vec![1.0, f64::NAN]).is_err());
-        assert!(Weights::from_log(&[0.0, f64::NAN]).is_err());
+        assert!(NormalizedWeights::from_linear(vec![1.0, f64::NAN]).is_err());
+        assert!(NormalizedWeights::from_log(&[0.0, f64::NAN]).is_err());
         assert_eq!(
-            Weights::from_log(&[0.0, f64::INFINITY]),
+            NormalizedWeights::from_log(&[0.0, f64::INFINITY]),
             Err(ParticleError::LogWeight { index: 1, value: f64::INFINITY })
         );
     }
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn weights_of_any_size_add_up_to_one() {
         for scale in [1e-320, 1e-300, 1.0, 1e300, f64::MAX / 4.0] {
-            let weights = Weights::from_linear(vec![scale, 2.0 * scale, scale]).unwrap();
+            let weights = NormalizedWeights::from_linear(vec![scale, 2.0 * scale, scale]).unwrap();
             // A subnormal scale has few bits of its own: 1e-320 is good to 2e-4 only; but doubling is exact.
             assert_eq!(weights.as_slice(), [0.25, 0.5, 0.25]);
         }

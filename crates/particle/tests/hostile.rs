@@ -5,7 +5,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Angle;
 use wayfix_particle::{
-    ChunkRng, Multinomial, ParticleError, ParticleSet, Resampler, Residual, Stratified, Systematic, Weights,
+    MultinomialResampler, NormalizedWeights, ParticleChunkRng, ParticleError, ParticleSet, Resampler,
+    ResidualResampler, StratifiedResampler, SystematicResampler,
 };
 
 const BAD: [f64; 2] = [f64::NAN, f64::INFINITY];
@@ -43,18 +44,18 @@ fn more_particles_than_memory_are_refused() {
     let too_many = ParticleError::TooMany { requested };
     assert_eq!(ParticleSet::from_fn(requested, |_| 0.0, &mut rng()), Err(too_many.clone()));
     let mut set = particles();
-    assert_eq!(set.resample(&Systematic, requested, &mut rng()), Err(too_many.clone()));
-    assert_eq!(set.resample(&Systematic, 0, &mut rng()), Err(ParticleError::NoParticles));
+    assert_eq!(set.resample(&SystematicResampler, requested, &mut rng()), Err(too_many.clone()));
+    assert_eq!(set.resample(&SystematicResampler, 0, &mut rng()), Err(ParticleError::NoParticles));
     assert_eq!(set, particles());
-    let weights = Weights::from_linear(vec![1.0]).unwrap();
-    assert_eq!(Stratified.ancestors(&weights, requested, &mut rng()), Err(too_many));
+    let weights = NormalizedWeights::from_linear(vec![1.0]).unwrap();
+    assert_eq!(StratifiedResampler.ancestors(&weights, requested, &mut rng()), Err(too_many));
 }
 
 #[test]
 fn a_resampler_that_invents_ancestors_is_refused() {
     struct OffByOne;
     impl Resampler for OffByOne {
-        fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], _: &mut R) {
+        fn fill<R: Rng + ?Sized>(&self, weights: &NormalizedWeights, ancestors: &mut [usize], _: &mut R) {
             ancestors.fill(weights.as_slice().len());
         }
     }
@@ -73,7 +74,7 @@ fn a_bad_likelihood_is_refused_with_its_particle() {
         for error in refused.map(Result::unwrap_err) {
             assert!(matches!(error, ParticleError::LogWeight { index: 150, .. }), "{error}");
         }
-        let step = |(): &mut (), x: &mut f64, _: &mut ChunkRng| {
+        let step = |(): &mut (), x: &mut f64, _: &mut ParticleChunkRng| {
             *x += 1.0;
             Ok(likelihood(x))
         };
@@ -106,7 +107,7 @@ fn impossible_particles_are_legal_until_all_are() {
     set.reweigh(|_| NONE).unwrap();
     let dead = set.clone();
     assert_eq!(set.normalize(), Err(none_left.clone()));
-    assert_eq!(set.resample(&Systematic, 10, &mut rng()), Err(none_left.clone()));
+    assert_eq!(set.resample(&SystematicResampler, 10, &mut rng()), Err(none_left.clone()));
     assert_eq!(set.moments(|x| Angle::new(*x)), Err(none_left));
     assert_eq!(set.effective_sample_size(), 0.0);
     assert_eq!(set, dead, "nothing resets the weights on its own");
@@ -116,13 +117,13 @@ fn impossible_particles_are_legal_until_all_are() {
 
 #[test]
 fn one_particle_takes_all_in_every_scheme() {
-    let weights = Weights::from_log(&[NONE, -1e308, NONE]).unwrap();
-    assert_eq!(Systematic.ancestors(&weights, 5, &mut rng()).unwrap(), [1; 5]);
-    assert_eq!(Stratified.ancestors(&weights, 5, &mut rng()).unwrap(), [1; 5]);
-    assert_eq!(Residual.ancestors(&weights, 5, &mut rng()).unwrap(), [1; 5]);
-    assert_eq!(Multinomial.ancestors(&weights, 5, &mut rng()).unwrap(), [1; 5]);
-    assert!(Multinomial.ancestors(&weights, 0, &mut rng()).unwrap().is_empty());
-    assert!(Residual.ancestors(&weights, 0, &mut rng()).unwrap().is_empty());
+    let weights = NormalizedWeights::from_log(&[NONE, -1e308, NONE]).unwrap();
+    assert_eq!(SystematicResampler.ancestors(&weights, 5, &mut rng()).unwrap(), [1; 5]);
+    assert_eq!(StratifiedResampler.ancestors(&weights, 5, &mut rng()).unwrap(), [1; 5]);
+    assert_eq!(ResidualResampler.ancestors(&weights, 5, &mut rng()).unwrap(), [1; 5]);
+    assert_eq!(MultinomialResampler.ancestors(&weights, 5, &mut rng()).unwrap(), [1; 5]);
+    assert!(MultinomialResampler.ancestors(&weights, 0, &mut rng()).unwrap().is_empty());
+    assert!(ResidualResampler.ancestors(&weights, 0, &mut rng()).unwrap().is_empty());
 }
 
 #[test]

@@ -14,7 +14,13 @@ const SEED: u64 = 20_261_121;
 fn kld_particle_counts_match_chi_squared_quantiles() {
     for confidence in [0.9, 0.95, 0.99] {
         for epsilon in [0.01, 0.05, 0.2] {
-            let kld = KldSampling::new(KldParams { epsilon, confidence, min: 1, max: usize::MAX }).unwrap();
+            let kld = KldSampling::new(KldParams {
+                epsilon,
+                confidence,
+                min_particles: 1,
+                max_particles: usize::MAX,
+            })
+            .unwrap();
             for n_bins in [2, 3, 10, 100, 1000, 100_000] {
                 let quantile = ChiSquared::new(n_bins as f64 - 1.0).unwrap().inverse_cdf(confidence);
                 let (exact, got) = (quantile / (2.0 * epsilon), kld.required(n_bins) as f64);
@@ -30,7 +36,9 @@ fn kld_particle_counts_match_chi_squared_quantiles() {
 #[test]
 fn the_promise_about_the_divergence_is_kept() {
     let (epsilon, confidence, n_bins, trials) = (0.01, 0.95, 20, 2000);
-    let kld = KldSampling::new(KldParams { epsilon, confidence, min: 1, max: usize::MAX }).unwrap();
+    let kld =
+        KldSampling::new(KldParams { epsilon, confidence, min_particles: 1, max_particles: usize::MAX })
+            .unwrap();
     let n = kld.required(n_bins);
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let mut kept = 0;
@@ -52,7 +60,8 @@ fn the_promise_about_the_divergence_is_kept() {
 
 #[test]
 fn the_number_follows_the_spread_within_its_bounds() {
-    let kld = KldSampling::new(KldParams { min: 50, max: 3000, ..KldParams::default() }).unwrap();
+    let kld = KldSampling::new(KldParams { min_particles: 50, max_particles: 3000, ..KldParams::default() })
+        .unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let mut size = |width: f64| {
         let particles = ParticleSet::from_fn(5000, |rng| rng.random_range(0.0..width), &mut rng).unwrap();
@@ -66,7 +75,7 @@ fn the_number_follows_the_spread_within_its_bounds() {
 
 #[test]
 fn particles_without_weight_occupy_no_bin() {
-    let kld = KldSampling::new(KldParams { min: 10, ..KldParams::default() }).unwrap();
+    let kld = KldSampling::new(KldParams { min_particles: 10, ..KldParams::default() }).unwrap();
     let states: Vec<f64> = (0..1000).map(f64::from).collect();
     let log_weights = states.iter().map(|x| if *x == 500.0 { -700.0 } else { f64::NEG_INFINITY }).collect();
     let particles = ParticleSet::from_log_weights(states, log_weights).unwrap();
@@ -82,8 +91,8 @@ fn parameters_out_of_range_are_named() {
         (KldParams { epsilon: f64::NAN, ..good }, "epsilon"),
         (KldParams { confidence: 1.0, ..good }, "confidence"),
         (KldParams { confidence: 0.1, ..good }, "confidence"),
-        (KldParams { min: 0, ..good }, "min"),
-        (KldParams { max: 99, ..good }, "max"),
+        (KldParams { min_particles: 0, ..good }, "min"),
+        (KldParams { max_particles: 99, ..good }, "max"),
     ] {
         let refused = KldSampling::new(params);
         assert!(matches!(refused, Err(ParticleError::Parameter { what: named, .. }) if named == what));

@@ -9,15 +9,15 @@ use rand::SeedableRng;
 use rand::distr::Distribution as _;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::laws;
-use wayfix_gaussian_core::{Gaussian, GaussianLikelihood, GaussianMotion};
+use wayfix_gaussian_core::{Gaussian, GaussianLikelihood, GaussianMotionSampler};
 use wayfix_kalman::{KalmanFilter, LinearMotion, LinearSensor};
 use wayfix_particle::{
-    AuxiliaryFilter, BootstrapFilter, NormalizationReport, ParticleError, ParticleSet, Systematic,
+    AuxiliaryFilter, BootstrapFilter, NormalizationReport, ParticleError, ParticleSet, SystematicResampler,
 };
 
 type State = Vector2<f64>;
 type Sensor = GaussianLikelihood<LinearSensor<State, Vector1<f64>>>;
-type Bootstrap = BootstrapFilter<GaussianMotion<LinearMotion<f64, U2>>, Sensor>;
+type Bootstrap = BootstrapFilter<GaussianMotionSampler<LinearMotion<f64, U2>>, Sensor>;
 type Auxiliary = AuxiliaryFilter<LinearMotion<f64, U2>, Sensor>;
 
 const RUNS: u64 = 200;
@@ -62,7 +62,8 @@ impl Problem {
     }
 
     fn bootstrap_filter(&self, n: usize, rng: &mut ChaCha8Rng) -> Bootstrap {
-        let (motion, sensor) = (GaussianMotion(self.motion.clone()), GaussianLikelihood(self.sensor.clone()));
+        let (motion, sensor) =
+            (GaussianMotionSampler(self.motion.clone()), GaussianLikelihood(self.sensor.clone()));
         BootstrapFilter::new(self.particles(n, rng), motion, sensor)
     }
 
@@ -81,7 +82,7 @@ impl Problem {
             let evidence = filter.update(z).unwrap();
             log_evidence += evidence.log_likelihood;
             if evidence.effective_share() < 0.5 {
-                filter.particles_mut().resample(&Systematic, n, &mut rng).unwrap();
+                filter.particles_mut().resample(&SystematicResampler, n, &mut rng).unwrap();
             }
         }
         (filter.particles().moments(|x| *x).unwrap().mean[0], log_evidence)
@@ -148,14 +149,14 @@ fn bootstrap_filter_obeys_the_laws_of_filters() {
         move |(filter, rng): &mut Seeded| {
             let Ok(report) = filter.update(&Vector1::new(z)) else { return false };
             let resample = report.effective_share() < 0.5;
-            !resample || filter.particles_mut().resample(&Systematic, 1000, rng).is_ok()
+            !resample || filter.particles_mut().resample(&SystematicResampler, 1000, rng).is_ok()
         }
     };
     let drives = |x: f64, v: f64| {
         move |(filter, rng): &mut Seeded| filter.predict(&Some(Vector2::new(x, v)), rng).is_ok()
     };
-    let good: laws::FilterCall<'_, Seeded> = &sees(0.8);
-    let trial = laws::FilterTrial {
+    let good: laws::FilterLawCall<'_, Seeded> = &sees(0.8);
+    let trial = laws::FilterLawTrial {
         estimate: &|filter: &Seeded| filter.0.particles().clone(),
         error: &error,
         bound: BOUND,
@@ -171,8 +172,8 @@ fn bootstrap_filter_obeys_the_laws_of_filters() {
 fn auxiliary_filter_obeys_the_laws_of_filters() {
     type Seeded = (Auxiliary, ChaCha8Rng);
     let steps = |z: f64| move |(filter, rng): &mut Seeded| filter.step(&None, &Vector1::new(z), rng).is_ok();
-    let good: laws::FilterCall<'_, Seeded> = &steps(0.8);
-    let trial = laws::FilterTrial {
+    let good: laws::FilterLawCall<'_, Seeded> = &steps(0.8);
+    let trial = laws::FilterLawTrial {
         estimate: &|filter: &Seeded| filter.0.particles().clone(),
         error: &error,
         bound: BOUND,

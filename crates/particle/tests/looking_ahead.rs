@@ -8,7 +8,7 @@ use nalgebra::{Matrix1, U1, Vector1};
 use rand::SeedableRng;
 use rand::distr::Distribution as _;
 use rand_chacha::ChaCha8Rng;
-use wayfix_gaussian_core::{Gaussian, GaussianLikelihood, GaussianMotion};
+use wayfix_gaussian_core::{Gaussian, GaussianLikelihood, GaussianMotionSampler};
 use wayfix_kalman::{LinearMotion, LinearSensor};
 use wayfix_particle::{AuxiliaryFilter, BootstrapFilter, ParticleSet};
 
@@ -51,7 +51,7 @@ fn effective_share_after_sharp_measurement_matches_integral() {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let particles = ParticleSet::from_fn(N, |rng| prior.sample(rng), &mut rng).unwrap();
         let mut filter =
-            BootstrapFilter::new(particles.clone(), GaussianMotion(motion.clone()), sensor.clone());
+            BootstrapFilter::new(particles.clone(), GaussianMotionSampler(motion.clone()), sensor.clone());
         filter.predict(&None, &mut rng).unwrap();
         bootstrap.push(filter.update(&measured).unwrap().effective_share());
         let mut filter = AuxiliaryFilter::new(particles, motion.clone(), sensor.clone());

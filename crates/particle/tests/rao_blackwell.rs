@@ -13,11 +13,13 @@ use rand::{RngExt as _, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_gaussian_core::{Gaussian, log_sum_exp};
 use wayfix_kalman::{KalmanError, KalmanFilter, LinearMotion, LinearSensor};
-use wayfix_particle::{ChunkRng, ParticleError, ParticleSet, RaoBlackwell, Systematic, map_conditionals};
+use wayfix_particle::{
+    ParticleChunkRng, ParticleError, ParticleSet, RaoBlackwellParticle, SystematicResampler, map_conditionals,
+};
 
 type Conditional = KalmanFilter<f64, U1>;
 type Sensor = LinearSensor<Vector1<f64>, Vector1<f64>>;
-type Particles = ParticleSet<RaoBlackwell<usize, Conditional>>;
+type Particles = ParticleSet<RaoBlackwellParticle<usize, Conditional>>;
 
 /// A sensor that is now sharp, now blurred; the regime changes with probability 0.2 a step.
 const SIGMAS: [f64; 2] = [0.1, 2.0];
@@ -91,7 +93,7 @@ fn exact() -> Answer {
     Answer { log_evidence, blurred: expected(&|regime, _| regime as f64), mean: expected(&|_, mean| mean) }
 }
 
-fn next_regime(k: usize, regime: usize, rng: &mut ChunkRng) -> usize {
+fn next_regime(k: usize, regime: usize, rng: &mut ParticleChunkRng) -> usize {
     let change = rng.random_bool(if k == 0 { 0.5 } else { CHANGE });
     if change { 1 - regime } else { regime }
 }
@@ -100,7 +102,7 @@ fn next_regime(k: usize, regime: usize, rng: &mut ChunkRng) -> usize {
 fn rao_blackwellised(seed: u64) -> Answer {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let shared = Arc::new(conditional());
-    let start = (0..N).map(|_| RaoBlackwell::from_shared(0, Arc::clone(&shared))).collect();
+    let start = (0..N).map(|_| RaoBlackwellParticle::from_shared(0, Arc::clone(&shared))).collect();
     let mut particles: Particles = ParticleSet::new(start).unwrap();
     let sensors = [sensor(0), sensor(1)];
     let mut log_evidence = 0.0;
@@ -114,10 +116,10 @@ fn rao_blackwellised(seed: u64) -> Answer {
             .unwrap();
         log_evidence += particles.normalize().unwrap().log_likelihood;
         if k + 1 < MEASUREMENTS.len() {
-            particles.resample(&Systematic, N, &mut rng).unwrap();
+            particles.resample(&SystematicResampler, N, &mut rng).unwrap();
         }
     }
-    let mean = |value: &dyn Fn(&RaoBlackwell<usize, Conditional>) -> f64| {
+    let mean = |value: &dyn Fn(&RaoBlackwellParticle<usize, Conditional>) -> f64| {
         particles.moments(|particle| Vector1::new(value(particle))).unwrap().mean[0]
     };
     Answer {
@@ -135,7 +137,7 @@ fn plain(seed: u64) -> Answer {
     let noise = Gaussian::from_sigmas(Vector1::new(0.0), &Vector1::new(0.2)).unwrap().sampler();
     let mut log_evidence = 0.0;
     for (k, z) in MEASUREMENTS.iter().enumerate() {
-        let motion = |(regime, x): &mut (usize, f64), rng: &mut ChunkRng| {
+        let motion = |(regime, x): &mut (usize, f64), rng: &mut ParticleChunkRng| {
             *regime = next_regime(k, *regime, rng);
             *x += noise.sample(rng)[0];
         };
@@ -148,7 +150,7 @@ fn plain(seed: u64) -> Answer {
             .unwrap();
         log_evidence += particles.normalize().unwrap().log_likelihood;
         if k + 1 < MEASUREMENTS.len() {
-            particles.resample(&Systematic, N, &mut rng).unwrap();
+            particles.resample(&SystematicResampler, N, &mut rng).unwrap();
         }
     }
     let moments = particles.moments(|(regime, x)| nalgebra::Vector2::new(*regime as f64, *x)).unwrap();
@@ -177,7 +179,7 @@ fn rao_blackwellised_particles_match_the_enumeration() {
 #[test]
 fn a_failing_conditional_leaves_all_particles_alone() {
     let mut rng = ChaCha8Rng::seed_from_u64(20_261_121);
-    let start = (0..100).map(|i| RaoBlackwell::new(i, vec![0.0])).collect();
+    let start = (0..100).map(|i| RaoBlackwellParticle::new(i, vec![0.0])).collect();
     let mut particles = ParticleSet::new(start).unwrap();
     let before = particles.clone();
     let condition = |i: &i32, c: &mut Vec<f64>| {
@@ -220,10 +222,10 @@ fn resampling_shares_ancestors_and_only_a_change_copies() {
     let (copies, alive) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let read = |counter: &AtomicUsize| counter.load(Ordering::Relaxed);
     let mut rng = ChaCha8Rng::seed_from_u64(20_261_121);
-    let start = (0..1000).map(|i| RaoBlackwell::new(i, Counted::new(&copies, &alive))).collect();
+    let start = (0..1000).map(|i| RaoBlackwellParticle::new(i, Counted::new(&copies, &alive))).collect();
     let mut particles = ParticleSet::new(start).unwrap();
     particles.reweigh(|particle| -0.1 * f64::from(particle.sampled)).unwrap();
-    let mut ancestors = particles.resample(&Systematic, 1000, &mut rng).unwrap().to_vec();
+    let mut ancestors = particles.resample(&SystematicResampler, 1000, &mut rng).unwrap().to_vec();
     ancestors.dedup();
 
     assert_eq!(read(&copies), 0, "resampling copies no conditional");

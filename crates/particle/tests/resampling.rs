@@ -4,17 +4,20 @@
 use rand::{Rng, RngExt as _, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_gaussian_core::ChiSquaredBand;
-use wayfix_particle::{Multinomial, Resampler, Residual, Stratified, Systematic, Weights, laws};
+use wayfix_particle::{
+    MultinomialResampler, NormalizedWeights, Resampler, ResidualResampler, StratifiedResampler,
+    SystematicResampler, laws,
+};
 
 const SEED: u64 = 20_261_121;
 const REPEATS: usize = 20_000;
 
-fn weights(raw: &[f64]) -> Weights {
-    Weights::from_linear(raw.to_vec()).unwrap()
+fn weights(raw: &[f64]) -> NormalizedWeights {
+    NormalizedWeights::from_linear(raw.to_vec()).unwrap()
 }
 
 /// Skewed, with gaps at both ends, and equal ones whose products with `n` round to either side of a whole number.
-fn cases() -> Vec<(Weights, usize)> {
+fn cases() -> Vec<(NormalizedWeights, usize)> {
     vec![
         (weights(&[0.0, 5.0, 0.1, 0.0, 1.0, 1e-6, 3.0, 0.0]), 13),
         (weights(&[0.3, 0.7]), 1),
@@ -24,7 +27,7 @@ fn cases() -> Vec<(Weights, usize)> {
     ]
 }
 
-fn counts<S: Resampler>(scheme: &S, weights: &Weights, n: usize, rng: &mut impl Rng) -> Vec<f64> {
+fn counts<S: Resampler>(scheme: &S, weights: &NormalizedWeights, n: usize, rng: &mut impl Rng) -> Vec<f64> {
     let mut counts = vec![0.0; weights.as_slice().len()];
     scheme.ancestors(weights, n, rng).unwrap().into_iter().for_each(|i| counts[i] += 1.0);
     counts
@@ -38,10 +41,10 @@ fn every_scheme_keeps_the_laws() {
             laws::resampler(scheme, &weights, n, REPEATS, &mut rng).unwrap();
         }
     }
-    check(&Systematic);
-    check(&Stratified);
-    check(&Residual);
-    check(&Multinomial);
+    check(&SystematicResampler);
+    check(&StratifiedResampler);
+    check(&ResidualResampler);
+    check(&MultinomialResampler);
 }
 
 #[test]
@@ -49,7 +52,7 @@ fn the_laws_catch_schemes_that_break_them() {
     /// Children in proportion to their number, not their weight.
     struct Uniform;
     impl Resampler for Uniform {
-        fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], rng: &mut R) {
+        fn fill<R: Rng + ?Sized>(&self, weights: &NormalizedWeights, ancestors: &mut [usize], rng: &mut R) {
             let n = weights.as_slice().len();
             ancestors.fill_with(|| rng.random_range(0..n));
             ancestors.sort_unstable();
@@ -58,21 +61,21 @@ fn the_laws_catch_schemes_that_break_them() {
     /// A comb that always starts at the same place.
     struct Stuck;
     impl Resampler for Stuck {
-        fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], _: &mut R) {
-            Systematic.fill(weights, ancestors, &mut ChaCha8Rng::seed_from_u64(SEED));
+        fn fill<R: Rng + ?Sized>(&self, weights: &NormalizedWeights, ancestors: &mut [usize], _: &mut R) {
+            SystematicResampler.fill(weights, ancestors, &mut ChaCha8Rng::seed_from_u64(SEED));
         }
     }
     /// Rightly drawn, but out of order.
     struct Shuffled;
     impl Resampler for Shuffled {
-        fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], rng: &mut R) {
-            Systematic.fill(weights, ancestors, rng);
+        fn fill<R: Rng + ?Sized>(&self, weights: &NormalizedWeights, ancestors: &mut [usize], rng: &mut R) {
+            SystematicResampler.fill(weights, ancestors, rng);
             ancestors.reverse();
         }
     }
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let skewed = weights(&[1.0, 2.0, 4.0]);
-    let law = |violation: Result<(), laws::Violation>| violation.unwrap_err().law;
+    let law = |violation: Result<(), laws::LawViolation>| violation.unwrap_err().law;
     assert!(law(laws::resampler(&Uniform, &skewed, 5, REPEATS, &mut rng)).starts_with("unbiased"));
     assert!(law(laws::resampler(&Stuck, &skewed, 5, REPEATS, &mut rng)).starts_with("unbiased"));
     assert!(law(laws::resampler(&Shuffled, &skewed, 5, REPEATS, &mut rng)).starts_with("ancestors ascend"));
@@ -86,7 +89,7 @@ fn multinomial_counts_pass_pearsons_test() {
     let weights = weights(&[0.5, 2.0, 1.0, 0.25, 3.0, 0.1]);
     let band = ChiSquaredBand::for_average(weights.as_slice().len() - 1, 1, 0.9999).unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
-    let counts = counts(&Multinomial, &weights, 200_000, &mut rng);
+    let counts = counts(&MultinomialResampler, &weights, 200_000, &mut rng);
     let pearson: f64 = counts
         .iter()
         .zip(weights.as_slice())
@@ -102,9 +105,9 @@ fn counts_stay_as_close_to_expectation_as_each_scheme_promises() {
     for _ in 0..500 {
         let raw: Vec<f64> = (0..20).map(|_| rng.random::<f64>().powi(4)).collect();
         let (weights, n) = (weights(&raw), rng.random_range(1..60));
-        let systematic = counts(&Systematic, &weights, n, &mut rng);
-        let stratified = counts(&Stratified, &weights, n, &mut rng);
-        let residual = counts(&Residual, &weights, n, &mut rng);
+        let systematic = counts(&SystematicResampler, &weights, n, &mut rng);
+        let stratified = counts(&StratifiedResampler, &weights, n, &mut rng);
+        let residual = counts(&ResidualResampler, &weights, n, &mut rng);
         for (i, share) in weights.as_slice().iter().enumerate() {
             let expected = share * n as f64;
             assert!((systematic[i] - expected).abs() < 1.0, "systematic: {} for {expected}", systematic[i]);
@@ -129,7 +132,7 @@ fn variances_come_in_the_order_of_the_theorems() {
 
     fn mean_square_error<S: Resampler>(
         scheme: &S,
-        weights: &Weights,
+        weights: &NormalizedWeights,
         n: usize,
         deviation: impl Fn(&[usize]) -> f64,
         rng: &mut ChaCha8Rng,
@@ -141,11 +144,11 @@ fn variances_come_in_the_order_of_the_theorems() {
     let deviation = |ancestors: &[usize]| ancestors.iter().map(|i| value(*i)).sum::<f64>() / n as f64 - mean;
     // A variance estimated from m nearly normal values has the relative standard error sqrt(2/m); five of them.
     let slack = 1.0 + 5.0 * (2.0 / REPEATS as f64).sqrt();
-    let multinomial = mean_square_error(&Multinomial, &weights, n, deviation, &mut rng);
+    let multinomial = mean_square_error(&MultinomialResampler, &weights, n, deviation, &mut rng);
     assert!(multinomial < exact * slack && multinomial > exact / slack, "{multinomial} against {exact}");
     for (scheme, variance) in [
-        ("stratified", mean_square_error(&Stratified, &weights, n, deviation, &mut rng)),
-        ("residual", mean_square_error(&Residual, &weights, n, deviation, &mut rng)),
+        ("stratified", mean_square_error(&StratifiedResampler, &weights, n, deviation, &mut rng)),
+        ("residual", mean_square_error(&ResidualResampler, &weights, n, deviation, &mut rng)),
     ] {
         assert!(variance < exact * slack, "{scheme}: {variance} against {exact}");
     }

@@ -3,12 +3,12 @@
 
 use rand::{Rng, RngExt as _, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_particle::{ChunkRng, ParticleError, ParticleSet};
+use wayfix_particle::{ParticleChunkRng, ParticleError, ParticleSet};
 
 const SEED: u64 = 20_261_121;
 
 /// Draws a varying number of random numbers a particle, so that streams that run into each other show.
-fn wander(x: &mut f64, rng: &mut ChunkRng) {
+fn wander(x: &mut f64, rng: &mut ParticleChunkRng) {
     for _ in 0..rng.random_range(1..5) {
         *x += rng.random::<f64>();
     }
@@ -56,7 +56,7 @@ fn the_first_failure_is_reported() {
     let states: Vec<f64> = (0..1000).map(f64::from).collect();
     let before = ParticleSet::new(states).unwrap();
     let mut particles = before.clone();
-    let step = |(): &mut (), x: &mut f64, _: &mut ChunkRng| {
+    let step = |(): &mut (), x: &mut f64, _: &mut ParticleChunkRng| {
         *x += 0.25;
         if *x > 300.0 { Err(StepError::At(*x)) } else { Ok(0.0) }
     };
@@ -68,7 +68,7 @@ fn the_first_failure_is_reported() {
 #[cfg(feature = "parallel")]
 mod pools {
     use super::*;
-    use wayfix_particle::Systematic;
+    use wayfix_particle::SystematicResampler;
 
     /// A filter's whole day: prior, motion, likelihood, proposal, resampling to other numbers.
     fn run() -> (Vec<u64>, Vec<u64>) {
@@ -77,13 +77,13 @@ mod pools {
         for step in 0..10 {
             particles.propagate(wander, &mut rng);
             particles.reweigh(|x| -0.5 * (x - f64::from(step)).powi(2)).unwrap();
-            let proposal = |(): &mut (), x: &mut f64, rng: &mut ChunkRng| {
+            let proposal = |(): &mut (), x: &mut f64, rng: &mut ParticleChunkRng| {
                 wander(x, rng);
                 Ok::<_, ParticleError>(-x.abs())
             };
             particles.advance_with(|| (), proposal, &mut rng).unwrap();
             particles.normalize().unwrap();
-            particles.resample(&Systematic, 500 + 100 * step as usize, &mut rng).unwrap();
+            particles.resample(&SystematicResampler, 500 + 100 * step as usize, &mut rng).unwrap();
             particles.reweigh(|x| x.sin()).unwrap();
         }
         let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect();

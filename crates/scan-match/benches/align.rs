@@ -4,12 +4,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::Pose2;
-use wayfix_scan_match::{Cloud, Guess, Matcher, Params};
+use wayfix_scan_match::{InitialGuess, ScanMatchParams, ScanMatcher, ScanPointCloud};
 
 const N_RUNS: usize = 200;
 
 /// A room of 8 m by 6 m whose walls have niches, seen from `x` on its long axis and turned by `heading`.
-fn scan(x: f64, heading: f64, n_beams: usize, increment: f64) -> Cloud {
+fn scan(x: f64, heading: f64, n_beams: usize, increment: f64) -> ScanPointCloud {
     let range = |beam: usize| {
         let (sin, cos) = (heading - 3.13 + beam as f64 * increment).sin_cos();
         let to_wall = ((4.0 * cos.signum() - x) / cos).min(3.0 / sin.abs());
@@ -17,17 +17,18 @@ fn scan(x: f64, heading: f64, n_beams: usize, increment: f64) -> Cloud {
         to_wall + niche / sin.abs().max(cos.abs())
     };
     let ranges: Vec<f64> = (0..n_beams).map(range).collect();
-    Cloud::from_ranges(-3.13, increment, &ranges, 20.0).expect("a sound scan")
+    ScanPointCloud::from_ranges(-3.13, increment, &ranges, 20.0).expect("a sound scan")
 }
 
 fn main() {
-    let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
+    let matcher = ScanMatcher::new(ScanMatchParams::default()).expect("the defaults are sound");
     for (n_beams, increment) in [(360, 0.0174), (1081, 0.0058)] {
         let (reference, cloud) = (scan(0.0, 0.0, n_beams, increment), scan(0.3, 0.1, n_beams, increment));
         for (heading_sigma, doubt) in [(0.02, "1 start"), (0.2, "7 starts")] {
             let sigmas = Vector3::new(0.05, 0.05, heading_sigma);
             let covariance = Matrix3::from_diagonal(&sigmas.component_mul(&sigmas));
-            let guess = Guess { pose: Pose2::new(0.27, 0.02, 0.12), covariance, alternative_poses: &[] };
+            let guess =
+                InitialGuess { pose: Pose2::new(0.27, 0.02, 0.12), covariance, alternative_poses: &[] };
             let align = || {
                 #[allow(clippy::disallowed_methods, reason = "a benchmark measures time")]
                 let start = std::time::Instant::now();

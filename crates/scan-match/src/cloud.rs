@@ -11,7 +11,7 @@ use crate::{
 
 /// A scan prepared for matching: its points and their surface normals.
 #[derive(Clone, Debug, Default)]
-pub struct Cloud {
+pub struct ScanPointCloud {
     /// Subsampled points, at most one per degree: enough for matching.
     pub(crate) points: Vec<Vector2<f64>>,
     /// Radians from one of the points to the next.
@@ -24,7 +24,7 @@ const SPACING: f64 = 0.0174;
 /// More beams than any laser has; a longer list is not a scan.
 const MOST_BEAMS: usize = 1 << 20;
 
-impl Cloud {
+impl ScanPointCloud {
     /// The cloud of a scan: beam $`i`$ points along `angle_min` $`+ i\,`$`angle_increment`, rad; `ranges` in m. Values outside
     /// (0, `max_range`] are no echoes.
     /// # Errors

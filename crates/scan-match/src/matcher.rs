@@ -1,17 +1,17 @@
 use nalgebra::{Matrix3, Vector3, linalg::Cholesky};
 use wayfix_estimation_traits::{Manifold, Pose2};
 
-use crate::{Cloud, Params, ScanMatchError, misfit::Misfit};
+use crate::{ScanMatchError, ScanMatchParams, ScanPointCloud, misfit::Misfit};
 
 /// Matches one scan to another.
 #[derive(Clone, Copy, Debug)]
-pub struct Matcher {
-    params: Params,
+pub struct ScanMatcher {
+    params: ScanMatchParams,
 }
 
 /// The prior of the pose of the second scan.
 #[derive(Clone, Copy, Debug)]
-pub struct Guess<'a> {
+pub struct InitialGuess<'a> {
     /// The most likely pose in the frame of the first scan.
     pub pose: Pose2<f64>,
     /// Its covariance in its own frame: m and rad.
@@ -23,7 +23,7 @@ pub struct Guess<'a> {
 
 /// The pose of a scan in the frame of another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Alignment {
+pub struct ScanAlignment {
     /// The pose that fits guess and points best: `guess` ⊞ `correction`.
     pub pose: Pose2<f64>,
     /// The correction of the guess, in its frame: m, m, rad.
@@ -52,12 +52,12 @@ const SHORT: f64 = 1e-5;
 /// Maximum number of start headings; a full turn at the default spacing needs fewer.
 const MOST_STARTS: usize = 16;
 
-impl Matcher {
+impl ScanMatcher {
     /// A matcher.
     ///
     /// # Errors
     /// Returns [`ScanMatchError::Value`] if a parameter is out of range.
-    pub fn new(params: Params) -> Result<Self, ScanMatchError> {
+    pub fn new(params: ScanMatchParams) -> Result<Self, ScanMatchError> {
         params.check()?;
         Ok(Self { params })
     }
@@ -71,10 +71,10 @@ impl Matcher {
     /// Returns an error if either scan has fewer than ten points, or the guess is not a finite pose with a positive definite covariance.
     pub fn align(
         &self,
-        reference: &Cloud,
-        cloud: &Cloud,
-        guess: &Guess,
-    ) -> Result<Alignment, ScanMatchError> {
+        reference: &ScanPointCloud,
+        cloud: &ScanPointCloud,
+        guess: &InitialGuess,
+    ) -> Result<ScanAlignment, ScanMatchError> {
         let got = reference.n_surface_points().min(cloud.points.len());
         if got < FEWEST_POINTS {
             return Err(ScanMatchError::TooFewPoints { got, needed: FEWEST_POINTS });
@@ -97,7 +97,7 @@ impl Matcher {
         let best = found.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).ok_or(ScanMatchError::Guess)?;
         let Found { correction, misfit, .. } = best;
         let guess_scale = guess_scale(&prior, &correction);
-        Ok(Alignment {
+        Ok(ScanAlignment {
             pose: guess.pose.retract(&correction),
             correction,
             information: misfit.information,
@@ -109,7 +109,7 @@ impl Matcher {
 
     /// Start headings: the guess, and more on both sides up to three deviations.
     fn starts(&self, sigma: f64) -> impl Iterator<Item = Vector3<f64>> {
-        let spacing = self.params.start_spacing_rad;
+        let spacing = self.params.initial_heading_spacing_rad;
         let n = ((3.0 * sigma / spacing).round() as usize).min(MOST_STARTS) as i32;
         (-n..=n).map(move |i| Vector3::new(0.0, 0.0, f64::from(i) * spacing))
     }
@@ -117,14 +117,14 @@ impl Matcher {
     /// Descends from one start; `None` on numerical failure.
     fn search(
         &self,
-        reference: &Cloud,
-        cloud: &Cloud,
+        reference: &ScanPointCloud,
+        cloud: &ScanPointCloud,
         guess: &Pose2<f64>,
         prior: &Matrix3<f64>,
         start: Vector3<f64>,
         first_kernel: f64,
     ) -> Option<Found> {
-        let Params { kernel_m, max_steps, .. } = self.params;
+        let ScanMatchParams { kernel_m, max_iterations: max_steps, .. } = self.params;
         let mut correction = start;
         let mut kernel = first_kernel.max(kernel_m);
         for _ in 0..max_steps {

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, SymmetricEigen, Vector2, Vector3, linalg::Cholesky};
 use wayfix_estimation_traits::{Manifold, Pose2};
 
-use crate::{Cloud, Params};
+use crate::{ScanMatchParams, ScanPointCloud};
 
 /// The misfit of a cloud to another one at a pose, with its first and second derivatives by the pose.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,16 +22,16 @@ impl Misfit {
     ///
     /// Gradient and information exclude the spurious information of noisy normals: see [`without_noise_of_normals`](Self::without_noise_of_normals).
     pub(crate) fn of(
-        reference: &Cloud,
-        cloud: &Cloud,
+        reference: &ScanPointCloud,
+        cloud: &ScanPointCloud,
         guess: &Pose2<f64>,
         correction: &Vector3<f64>,
         kernel: f64,
-        params: &Params,
+        params: &ScanMatchParams,
     ) -> Self {
         let pose = guess.retract(correction);
         let by_guess = guess.rotation_matrix();
-        let share = (cloud.spacing / params.correlation_angle_rad).min(1.0) / params.sigma_m.powi(2);
+        let share = (cloud.spacing / params.correlation_angle_rad).min(1.0) / params.point_sigma_m.powi(2);
         let mut misfit = Self::default();
         let mut noise_of_normals = Matrix3::zeros();
         for point in &cloud.points {

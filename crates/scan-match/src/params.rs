@@ -3,9 +3,9 @@ use crate::ScanMatchError;
 /// Parameters of the matching; the defaults suit indoor lasers from 1 cm and beams 0.25° to 1° apart.
 ///
 /// ```
-/// use wayfix_scan_match::{Matcher, Params};
-/// assert!(Matcher::new(Params::default()).is_ok());
-/// assert!(Matcher::new(Params { sigma_m: 0.0, ..Params::default() }).is_err());
+/// use wayfix_scan_match::{ScanMatcher, ScanMatchParams};
+/// assert!(ScanMatcher::new(ScanMatchParams::default()).is_ok());
+/// assert!(ScanMatcher::new(ScanMatchParams { sigma_m: 0.0, ..ScanMatchParams::default() }).is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -14,9 +14,9 @@ use crate::ScanMatchError;
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct Params {
+pub struct ScanMatchParams {
     /// Standard deviation of a point from its surface, m: the laser noise, and the error of straight lines between neighbours. Default: 0.03.
-    pub sigma_m: f64,
+    pub point_sigma_m: f64,
     /// Angle over which the errors of neighbouring points are fully correlated, rad, as on a bulging wall, a coat or an edge. A denser scan then
     /// adds no information. Default: 0.4.
     pub correlation_angle_rad: f64,
@@ -25,42 +25,42 @@ pub struct Params {
     /// The initial kernel width, m: the expected error of the guess. Default: 0.5.
     pub initial_kernel_m: f64,
     /// Headings from which the search starts are this far apart, rad, over three deviations of the guess to either side. Default: 0.2.
-    pub start_spacing_rad: f64,
+    pub initial_heading_spacing_rad: f64,
     /// Steps of one search at most. Default: 30.
-    pub max_steps: usize,
+    pub max_iterations: usize,
 }
 
-impl Default for Params {
+impl Default for ScanMatchParams {
     fn default() -> Self {
         Self {
-            sigma_m: 0.03,
+            point_sigma_m: 0.03,
             correlation_angle_rad: 0.4,
             kernel_m: 0.1,
             initial_kernel_m: 0.5,
-            start_spacing_rad: 0.2,
-            max_steps: 30,
+            initial_heading_spacing_rad: 0.2,
+            max_iterations: 30,
         }
     }
 }
 
-impl Params {
+impl ScanMatchParams {
     /// Whether every number has a meaning.
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
     pub fn check(&self) -> Result<(), ScanMatchError> {
         for (what, value) in [
-            ("sigma_m", self.sigma_m),
+            ("sigma_m", self.point_sigma_m),
             ("correlation_angle_rad", self.correlation_angle_rad),
             ("kernel_m", self.kernel_m),
             ("initial_kernel_m", self.initial_kernel_m),
-            ("start_spacing_rad", self.start_spacing_rad),
+            ("start_spacing_rad", self.initial_heading_spacing_rad),
         ] {
             if !(1e-6..=1e3).contains(&value) {
                 return Err(ScanMatchError::Value { what, value, must: "from 1e-6 to 1e3" });
             }
         }
-        if self.max_steps == 0 {
+        if self.max_iterations == 0 {
             return Err(ScanMatchError::Value { what: "max_steps", value: 0.0, must: "at least 1" });
         }
         Ok(())

@@ -5,7 +5,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_scan_match::{Alignment, Cloud, Guess, Matcher, Params, ScanMatchError};
+use wayfix_scan_match::{
+    InitialGuess, ScanAlignment, ScanMatchError, ScanMatchParams, ScanMatcher, ScanPointCloud,
+};
 
 const N_BEAMS: usize = 360;
 const INCREMENT: f64 = 0.0174;
@@ -26,7 +28,7 @@ fn corridor() -> Walls {
     vec![([-100.0, -1.0], [100.0, -1.0]), ([-100.0, 1.0], [100.0, 1.0])]
 }
 
-fn scan(walls: &Walls, pose: &Pose2<f64>, rng: &mut ChaCha8Rng) -> Cloud {
+fn scan(walls: &Walls, pose: &Pose2<f64>, rng: &mut ChaCha8Rng) -> ScanPointCloud {
     let noise = Normal::new(0.0, RANGE_SIGMA).expect("a positive deviation");
     let ranges: Vec<f64> = (0..N_BEAMS)
         .map(|beam| {
@@ -36,7 +38,7 @@ fn scan(walls: &Walls, pose: &Pose2<f64>, rng: &mut ChaCha8Rng) -> Cloud {
             range + noise.sample(rng)
         })
         .collect();
-    Cloud::from_ranges(-3.13, INCREMENT, &ranges, 30.0).expect("a sound scan")
+    ScanPointCloud::from_ranges(-3.13, INCREMENT, &ranges, 30.0).expect("a sound scan")
 }
 
 /// How far along the ray the wall is.
@@ -58,15 +60,15 @@ fn align(
     guess: &Pose2<f64>,
     covariance: &Matrix3<f64>,
     seed: u64,
-) -> Alignment {
+) -> ScanAlignment {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let clouds = [Pose2::new(0.0, 0.0, 0.0), *truth].map(|pose| scan(walls, &pose, &mut rng));
-    let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
+    let matcher = ScanMatcher::new(ScanMatchParams::default()).expect("the defaults are sound");
     matcher
         .align(
             &clouds[0],
             &clouds[1],
-            &Guess { pose: *guess, covariance: *covariance, alternative_poses: &[] },
+            &InitialGuess { pose: *guess, covariance: *covariance, alternative_poses: &[] },
         )
         .expect("enough points")
 }
@@ -117,9 +119,9 @@ fn constant_motion_is_matched_despite_wrong_odometry() {
     let (truth, guess) = (Pose2::new(-0.8, 0.0, 0.0), Pose2::new(0.8, 0.0, 0.0));
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     let clouds = [Pose2::new(0.0, 0.0, 0.0), truth].map(|pose| scan(&hall, &pose, &mut rng));
-    let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
+    let matcher = ScanMatcher::new(ScanMatchParams::default()).expect("the defaults are sound");
     let error = |others: &[Pose2<f64>]| {
-        let guess = Guess { pose: guess, covariance: sigmas(0.1, 0.02), alternative_poses: others };
+        let guess = InitialGuess { pose: guess, covariance: sigmas(0.1, 0.02), alternative_poses: others };
         matcher.align(&clouds[0], &clouds[1], &guess).expect("enough points").pose.local(&truth).norm()
     };
     assert!(error(&[]) > 0.5, "{}", error(&[]));
@@ -166,9 +168,12 @@ fn a_laser_may_sit_anywhere_on_the_robot() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
     let mut cloud = |pose: &Pose2<f64>| scan(&room(), &pose.compose(&mount), &mut rng).transformed(&mount);
     let (first, second) = (cloud(&start), cloud(&end));
-    let guess =
-        Guess { pose: Pose2::new(0.05, 0.05, 0.3), covariance: sigmas(0.1, 0.1), alternative_poses: &[] };
-    let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
+    let guess = InitialGuess {
+        pose: Pose2::new(0.05, 0.05, 0.3),
+        covariance: sigmas(0.1, 0.1),
+        alternative_poses: &[],
+    };
+    let matcher = ScanMatcher::new(ScanMatchParams::default()).expect("the defaults are sound");
     let error = matcher.align(&first, &second, &guess).expect("enough points").pose.local(&end);
     assert!(error.xy().norm() < 0.03 && error.z.abs() < 0.01, "{error}");
 }
@@ -189,8 +194,9 @@ fn points_and_guess_add_up() {
 
 #[test]
 fn what_is_no_scan_is_refused() {
-    let cloud = |min, increment, ranges: &[f64], max| Cloud::from_ranges(min, increment, ranges, max);
-    let is_refused = |result: Result<Cloud, _>| matches!(result, Err(ScanMatchError::Value { .. }));
+    let cloud =
+        |min, increment, ranges: &[f64], max| ScanPointCloud::from_ranges(min, increment, ranges, max);
+    let is_refused = |result: Result<ScanPointCloud, _>| matches!(result, Err(ScanMatchError::Value { .. }));
     let some = [1.0; 5];
     assert!(is_refused(cloud(f64::NAN, 0.01, &some, 10.0)));
     for increment in [f64::NAN, 0.0, f64::INFINITY, 10.0] {
@@ -199,7 +205,7 @@ fn what_is_no_scan_is_refused() {
     for max_range in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
         assert!(is_refused(cloud(0.0, 0.01, &some, max_range)), "{max_range}");
     }
-    let matcher = Matcher::new(Params::default()).expect("the defaults are sound");
+    let matcher = ScanMatcher::new(ScanMatchParams::default()).expect("the defaults are sound");
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let sound = scan(&room(), &Pose2::new(0.0, 0.0, 0.0), &mut rng);
     let guess = Pose2::new(0.0, 0.0, 0.0);
@@ -210,7 +216,7 @@ fn what_is_no_scan_is_refused() {
                 .align(
                     pair.0,
                     pair.1,
-                    &Guess { pose: guess, covariance: sigmas(0.1, 0.1), alternative_poses: &[] },
+                    &InitialGuess { pose: guess, covariance: sigmas(0.1, 0.1), alternative_poses: &[] },
                 )
                 .expect_err("nothing to match");
             assert!(matches!(error, ScanMatchError::TooFewPoints { needed: 10, .. }), "{error}");
@@ -222,7 +228,7 @@ fn what_is_no_scan_is_refused() {
         (guess, Matrix3::from_element(f64::NAN)),
         (guess, -Matrix3::identity()),
     ] {
-        let guess = Guess { pose: guess, covariance, alternative_poses: &[guess] };
+        let guess = InitialGuess { pose: guess, covariance, alternative_poses: &[guess] };
         assert_eq!(matcher.align(&sound, &sound, &guess), Err(ScanMatchError::Guess));
     }
 }

@@ -5,23 +5,23 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::nalgebra::Vector2;
-use wayfix_scene_sim::random::{Source, Streams, deviate};
-use wayfix_scene_sim::route::Circle;
-use wayfix_scene_sim::sensor::{Reading, Sensor, TrueState};
-use wayfix_scene_sim::world::World;
-use wayfix_scene_sim::{SimError, Simulation, plane};
-use wayfix_sensor_log::{Data, Detection, Target, TrueLandmark};
+use wayfix_scene_sim::random::{RandomStreamPurpose, RandomStreams, deviate};
+use wayfix_scene_sim::route::CircleRoute;
+use wayfix_scene_sim::sensor::{Sensor, SensorReading, TrueState};
+use wayfix_scene_sim::world::SensorWorld;
+use wayfix_scene_sim::{Simulation, SimulationError, plane};
+use wayfix_sensor_log::{Detection, DetectionTarget, RecordData, TrueLandmark};
 
 /// A beacon that circles the origin once a minute.
 struct WalkingBeacon;
 
-impl World for WalkingBeacon {
+impl SensorWorld for WalkingBeacon {
     fn landmarks(&self) -> Vec<TrueLandmark> {
         Vec::new()
     }
 
-    fn targets(&self, seconds: f64) -> Vec<(Target, Vector2<f64>)> {
-        vec![(Target::UnknownCode(1), plane::direction(PI * seconds / 30.0) * 8.0)]
+    fn targets(&self, seconds: f64) -> Vec<(DetectionTarget, Vector2<f64>)> {
+        vec![(DetectionTarget::UnknownCode(1), plane::direction(PI * seconds / 30.0) * 8.0)]
     }
 }
 
@@ -33,25 +33,25 @@ impl Sensor for Receiver {
         1000
     }
 
-    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
-        let hear = |(target, point): (Target, Vector2<f64>)| {
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut RandomStreams) -> Option<SensorReading> {
+        let hear = |(target, point): (DetectionTarget, Vector2<f64>)| {
             let (range, bearing) = plane::range_and_bearing(&moment.pose, &point);
-            let noise = 0.5 * deviate::normal(streams.of(Source::Other(0)));
+            let noise = 0.5 * deviate::normal(streams.of(RandomStreamPurpose::Other(0)));
             Detection { target, range: range + noise, bearing: FRAC_PI_2.copysign(bearing) }
         };
         let heard = moment.world.targets(moment.seconds()).into_iter().map(hear).collect();
-        Some(Reading { data: Data::Detections(heard), stamp_offset_ms: 0 })
+        Some(SensorReading { data: RecordData::Detections(heard), stamp_offset_ms: 0 })
     }
 }
 
-fn main() -> Result<(), SimError> {
-    let simulation = Simulation::new(&WalkingBeacon, Circle { radius_m: 3.0 }.route()?);
-    let mut streams = Streams::new(ChaCha8Rng::seed_from_u64(1));
+fn main() -> Result<(), SimulationError> {
+    let simulation = Simulation::new(&WalkingBeacon, CircleRoute { radius_m: 3.0 }.route()?);
+    let mut streams = RandomStreams::new(ChaCha8Rng::seed_from_u64(1));
     let records = simulation.run(&mut [Box::new(Receiver)], &mut streams)?;
     let heard: Vec<&Detection> = records
         .iter()
         .filter_map(|record| match &record.data {
-            Data::Detections(detections) => detections.first(),
+            RecordData::Detections(detections) => detections.first(),
             _ => None,
         })
         .collect();

@@ -6,12 +6,12 @@ use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
 
-use wayfix_scene_sim::film::Film;
+use wayfix_scene_sim::film::SyntheticFilm;
 use wayfix_sensor_log::EncodedImage;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
-    let mut film = Film::named(&arguments.next().ok_or("which film?")?)?;
+    let mut film = SyntheticFilm::named(&arguments.next().ok_or("which film?")?)?;
     let folder = PathBuf::from(arguments.next().ok_or("into which folder?")?);
     if let Some(seed) = arguments.next() {
         film.seed = seed.parse()?;

@@ -1,11 +1,11 @@
 //! The few conditions that parameters have to meet.
 
-use crate::SimError;
+use crate::SimulationError;
 
-type Checked = Result<(), SimError>;
+type Checked = Result<(), SimulationError>;
 
 fn ensure(holds: bool, what: &'static str, value: f64, must: &'static str) -> Checked {
-    if holds { Ok(()) } else { Err(SimError::Parameter { what, value, must }) }
+    if holds { Ok(()) } else { Err(SimulationError::Parameter { what, value, must }) }
 }
 
 pub(crate) fn finite(what: &'static str, value: f64) -> Checked {
@@ -42,5 +42,9 @@ pub(crate) fn period(what: &'static str, milliseconds: u32) -> Checked {
 }
 
 pub(crate) fn count(what: &'static str, got: usize, limit: usize) -> Checked {
-    if got <= limit { Ok(()) } else { Err(SimError::TooMany { what, limit: limit as u64, got: got as u64 }) }
+    if got <= limit {
+        Ok(())
+    } else {
+        Err(SimulationError::TooMany { what, limit: limit as u64, got: got as u64 })
+    }
 }

@@ -1,7 +1,7 @@
 /// Errors of setting up a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum SimError {
+pub enum SimulationError {
     /// A parameter is out of range.
     #[error("{what} is {value}, must be {must}")]
     Parameter {
@@ -41,11 +41,11 @@ pub enum SimError {
     /// The shapes do not make a map.
     #[cfg(feature = "league")]
     #[error(transparent)]
-    Map(#[from] wayfix_color_map::MapError),
+    Map(#[from] wayfix_color_map::ColorMapError),
     /// The numbers do not make a camera.
     #[cfg(feature = "league")]
     #[error(transparent)]
-    View(#[from] wayfix_color_map::ViewError),
+    View(#[from] wayfix_color_map::RenderError),
     /// A picture cannot be encoded.
     #[error("a picture cannot be encoded: {reason}")]
     Picture {
@@ -54,7 +54,7 @@ pub enum SimError {
     },
 }
 
-impl From<wayfix_sensor_log::ImageError> for SimError {
+impl From<wayfix_sensor_log::ImageError> for SimulationError {
     fn from(error: wayfix_sensor_log::ImageError) -> Self {
         Self::Picture { reason: error.to_string() }
     }

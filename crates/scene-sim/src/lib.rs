@@ -17,19 +17,19 @@
 //!   of an extended Kalman filter, for tests of its consistency.
 //! * **A laser** ([`sensor::Laser`]) casts its beams against the walls of a plan, such as [`world::OfficeFloor`]. It mixes ranges at edges, loses
 //!   and invents echoes, hits people, and rounds.
-//! * **One random stream per error source** ([`random::Streams`]): enabling one does not affect the draws of the others.
+//! * **One random stream per error source** ([`random::RandomStreams`]): enabling one does not affect the draws of the others.
 //! * **Equal bits on every machine**: transcendental functions come from `libm` ([`plane`], [`space`], [`random`]).
-//! * **Extensible**: implement [`world::World`] or [`sensor::Sensor`] (`examples/02_custom_sensor.rs`).
+//! * **Extensible**: implement [`world::SensorWorld`] or [`sensor::Sensor`] (`examples/02_custom_sensor.rs`).
 //!
 //! ```
 //! use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 //! use wayfix_scene_sim::Scenario;
-//! use wayfix_sensor_log::Data;
+//! use wayfix_sensor_log::RecordData;
 //!
 //! let scenario = Scenario::named("office_velocity")?;
 //! let records = scenario.simulate(ChaCha8Rng::seed_from_u64(scenario.seed))?;
-//! assert!(records.iter().any(|record| matches!(record.data, Data::Velocity(_))));
-//! # Ok::<(), wayfix_scene_sim::SimError>(())
+//! assert!(records.iter().any(|record| matches!(record.data, RecordData::Velocity(_))));
+//! # Ok::<(), wayfix_scene_sim::SimulationError>(())
 //! ```
 
 mod check;
@@ -53,9 +53,9 @@ mod simulation;
 pub mod space;
 pub mod world;
 
-pub use error::SimError;
+pub use error::SimulationError;
 #[cfg(feature = "indoors")]
-pub use scenario::StoreLapsParams;
+pub use scenario::RetailStoreLapsParams;
 pub use scenario::{
     LaserDriveParams, OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams,
 };

@@ -1,11 +1,11 @@
-use wayfix_sensor_log::{Data, Record, Stamp, TrueWall};
+use wayfix_sensor_log::{Record, RecordData, Stamp, TrueWall};
 
-use crate::drive::{DifferentialDrive, DriveParams, Pursuit};
-use crate::random::Streams;
+use crate::drive::{DifferentialDrive, PurePursuit, WheeledRobotParams};
+use crate::random::RandomStreams;
 use crate::route::Route;
 use crate::sensor::{Sensor, TrueState};
-use crate::world::World;
-use crate::{SimError, check};
+use crate::world::SensorWorld;
+use crate::{SimulationError, check};
 
 /// The truth is integrated at 1 kHz: two orders finer than any log.
 const STEP_S: f64 = 1e-3;
@@ -16,24 +16,24 @@ const LONGEST_MS: u64 = 86_400_000;
 ///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::{Simulation, random::Streams, route::Circle, world::{Plan, PlanarWorld}};
-/// use wayfix_sensor_log::Data;
+/// use wayfix_scene_sim::{Simulation, random::RandomStreams, route::CircleRoute, world::{FloorPlan, PlanarWorld}};
+/// use wayfix_sensor_log::RecordData;
 ///
-/// let world = PlanarWorld::new(Plan::default());
-/// let simulation = Simulation::new(&world, Circle { radius_m: 2.0 }.route()?);
-/// let records = simulation.run(&mut [], &mut Streams::new(ChaCha8Rng::seed_from_u64(1)))?;
-/// let Some(Data::TruePose(end)) = records.last().map(|r| &r.data) else { panic!("no truth") };
+/// let world = PlanarWorld::new(FloorPlan::default());
+/// let simulation = Simulation::new(&world, CircleRoute { radius_m: 2.0 }.route()?);
+/// let records = simulation.run(&mut [], &mut RandomStreams::new(ChaCha8Rng::seed_from_u64(1)))?;
+/// let Some(RecordData::TruePose(end)) = records.last().map(|r| &r.data) else { panic!("no truth") };
 /// assert!((end.translation.norm() - 2.0).abs() < 0.05); // pursuit cuts corners by about lookahead²/(8·radius)
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone)]
 pub struct Simulation<'a> {
     /// The world.
-    pub world: &'a dyn World,
+    pub world: &'a dyn SensorWorld,
     /// Route of the robot; it starts at rest at the beginning.
     pub route: Route,
-    /// The robot. Default as [`DriveParams`].
-    pub drive: DriveParams,
+    /// The robot. Default as [`WheeledRobotParams`].
+    pub drive: WheeledRobotParams,
     /// Duration, milliseconds, at most a day. Default 60 000.
     pub duration_ms: u64,
     /// Time from one true pose in the log to the next, milliseconds. Default 100.
@@ -46,11 +46,11 @@ pub struct Simulation<'a> {
 
 impl<'a> Simulation<'a> {
     /// The defaults, for a world and a route.
-    pub fn new(world: &'a dyn World, route: Route) -> Self {
+    pub fn new(world: &'a dyn SensorWorld, route: Route) -> Self {
         Self {
             world,
             route,
-            drive: DriveParams::default(),
+            drive: WheeledRobotParams::default(),
             duration_ms: 60_000,
             truth_period_ms: 100,
             true_walls: false,
@@ -60,15 +60,15 @@ impl<'a> Simulation<'a> {
 
     /// Runs the simulation and returns the log in time order; at equal stamps truth comes first, then `sensors` in their order.
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range; `streams` is then unchanged.
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range; `streams` is then unchanged.
     pub fn run(
         &self,
         sensors: &mut [Box<dyn Sensor>],
-        streams: &mut Streams,
-    ) -> Result<Vec<Record>, SimError> {
+        streams: &mut RandomStreams,
+    ) -> Result<Vec<Record>, SimulationError> {
         self.validate(sensors)?;
         let mut robot = DifferentialDrive::new(self.drive, self.route.at(0.0))?;
-        let mut driver = Pursuit::default();
+        let mut driver = PurePursuit::default();
         let mut records = self.surveyed();
         for milliseconds in 0..=self.duration_ms {
             let moment = TrueState {
@@ -85,10 +85,10 @@ impl<'a> Simulation<'a> {
         Ok(records)
     }
 
-    fn validate(&self, sensors: &[Box<dyn Sensor>]) -> Result<(), SimError> {
+    fn validate(&self, sensors: &[Box<dyn Sensor>]) -> Result<(), SimulationError> {
         if self.duration_ms > LONGEST_MS {
             let what = "milliseconds of driving";
-            return Err(SimError::TooMany { what, limit: LONGEST_MS, got: self.duration_ms });
+            return Err(SimulationError::TooMany { what, limit: LONGEST_MS, got: self.duration_ms });
         }
         check::period("period of the true poses (ms)", self.truth_period_ms)?;
         sensors.iter().try_for_each(|sensor| check::period("period of a sensor (ms)", sensor.period_ms()))
@@ -98,8 +98,11 @@ impl<'a> Simulation<'a> {
     fn surveyed(&self) -> Vec<Record> {
         let walls = if self.true_walls { self.world.walls() } else { Vec::new() };
         let walls = walls.iter().zip(0..).map(|(wall, id)| TrueWall { id, start: wall.from, end: wall.to });
-        let landmarks = self.world.landmarks().into_iter().map(Data::TrueLandmark);
-        landmarks.chain(walls.map(Data::TrueWall)).map(|data| Record { stamp: self.start, data }).collect()
+        let landmarks = self.world.landmarks().into_iter().map(RecordData::TrueLandmark);
+        landmarks
+            .chain(walls.map(RecordData::TrueWall))
+            .map(|data| Record { stamp: self.start, data })
+            .collect()
     }
 
     /// Whatever is due at this moment.
@@ -107,12 +110,12 @@ impl<'a> Simulation<'a> {
         &self,
         moment: &TrueState<'_>,
         sensors: &mut [Box<dyn Sensor>],
-        streams: &mut Streams,
+        streams: &mut RandomStreams,
         records: &mut Vec<Record>,
     ) {
         let is_due = |period_ms: u32| moment.milliseconds.is_multiple_of(u64::from(period_ms));
         if is_due(self.truth_period_ms) {
-            records.push(Record { stamp: self.stamp(moment, 0), data: Data::TruePose(moment.pose) });
+            records.push(Record { stamp: self.stamp(moment, 0), data: RecordData::TruePose(moment.pose) });
         }
         for sensor in sensors.iter_mut().filter(|sensor| is_due(sensor.period_ms())) {
             if let Some(reading) = sensor.sense(moment, streams) {

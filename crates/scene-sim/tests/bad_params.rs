@@ -4,25 +4,27 @@ mod support;
 
 use support::{streams, world};
 use wayfix_estimation_traits::Pose2;
-use wayfix_scene_sim::drive::{DriveParams, SlipParams};
+use wayfix_scene_sim::drive::{SlipParams, WheeledRobotParams};
 use wayfix_scene_sim::monobot::MonobotParams;
-use wayfix_scene_sim::random::{NoiseShape, Source};
-use wayfix_scene_sim::route::{Circle, LawnMower, Piece, RoundedRectangle, Route, Waypoints};
+use wayfix_scene_sim::random::{NoiseShape, RandomStreamPurpose};
+use wayfix_scene_sim::route::{
+    CircleRoute, LawnMowerRoute, RoundedRectangleRoute, Route, RoutePiece, WaypointRoute,
+};
 use wayfix_scene_sim::sensor::laser::People;
-use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
+use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeSigma};
 use wayfix_scene_sim::sensor::{
     GaussianOdometryParams, LaserParams, RangeBearingParams, Sensor, WheelOdometryParams,
 };
-use wayfix_scene_sim::sensor::{Reading, TrueState};
+use wayfix_scene_sim::sensor::{SensorReading, TrueState};
 use wayfix_scene_sim::world::{CorridorLoop, Office, OfficeFloor, Roadside, UniformField};
-use wayfix_scene_sim::{Scenario, ScenarioParams, SimError, Simulation};
+use wayfix_scene_sim::{Scenario, ScenarioParams, Simulation, SimulationError};
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, -1.0];
 
 #[track_caller]
-fn assert_refused(result: Result<(), SimError>, value: f64) {
+fn assert_refused(result: Result<(), SimulationError>, value: f64) {
     let named = match &result {
-        Err(SimError::Parameter { value, .. }) => Some(value.to_bits()),
+        Err(SimulationError::Parameter { value, .. }) => Some(value.to_bits()),
         _ => None,
     };
     assert_eq!(named, Some(value.to_bits()), "{value} gave {result:?}");
@@ -34,10 +36,10 @@ fn sensor_parameters() {
     for bad in BAD {
         let sigma = RangeSigma { constant_m: bad, per_meter: 0.0 };
         let growth = RangeSigma { constant_m: 0.1, per_meter: bad };
-        let drift = |correlation_time_s, bearing_sigma_rad| DriftParams {
+        let drift = |correlation_time_s, bearing_sigma_rad| CorrelatedErrorParams {
             correlation_time_s,
             bearing_sigma_rad,
-            ..DriftParams::default()
+            ..CorrelatedErrorParams::default()
         };
         for params in [
             RangeBearingParams { min_range_m: bad, ..honest },
@@ -75,13 +77,13 @@ fn laser_parameters() {
     for bad in BAD {
         for params in [
             LaserParams { max_range_m: bad, ..honest },
-            LaserParams { no_echo_m: bad, ..honest },
+            LaserParams { no_echo_range_m: bad, ..honest },
             LaserParams { range_noise: RangeSigma { constant_m: bad, per_meter: 0.0 }, ..honest },
             LaserParams { noise_shape: NoiseShape::StudentT { degrees_of_freedom: bad }, ..honest },
             LaserParams { bearing_sigma_rad: bad, ..honest },
-            LaserParams { quantum_m: bad, ..honest },
+            LaserParams { range_resolution_m: bad, ..honest },
             LaserParams { beam_width_rad: bad, ..honest },
-            LaserParams { mixed_share: bad, ..honest },
+            LaserParams { mixed_pixel_share: bad, ..honest },
             LaserParams { dropout_share: bad, ..honest },
             LaserParams { spurious_share: bad, ..honest },
             people(People { mean: bad, ..nobody }),
@@ -101,32 +103,32 @@ fn laser_parameters() {
     assert_refused(LaserParams { beam_step_rad: 0.05, ..honest }.validate(), 180.0 * 0.05);
     assert_refused(people(People { mean: 101.0, ..nobody }).validate(), 101.0);
     let endless = LaserParams { n_beams: usize::MAX, ..honest };
-    assert!(matches!(endless.validate(), Err(SimError::TooMany { .. })));
+    assert!(matches!(endless.validate(), Err(SimulationError::TooMany { .. })));
 }
 
 #[test]
 fn drive_and_odometry_parameters() {
-    let good = DriveParams::default();
+    let good = WheeledRobotParams::default();
     for bad in BAD {
         for params in [
-            DriveParams { speed_mps: bad, ..good },
-            DriveParams { acceleration_mps2: bad, ..good },
-            DriveParams { wheel_radius_m: bad, ..good },
-            DriveParams { track_m: bad, ..good },
-            DriveParams { left_radius_error: bad, ..good },
-            DriveParams { right_radius_error: bad, ..good },
-            DriveParams { track_error: bad, ..good },
-            DriveParams { motor_lag_s: bad, ..good },
-            DriveParams { lookahead_m: bad, ..good },
-            DriveParams { slip: SlipParams { sigma: bad, ..good.slip }, ..good },
-            DriveParams { slip: SlipParams { correlation_time_s: bad, ..good.slip }, ..good },
-            DriveParams { slip: SlipParams { shared: bad, ..good.slip }, ..good },
+            WheeledRobotParams { speed_mps: bad, ..good },
+            WheeledRobotParams { acceleration_mps2: bad, ..good },
+            WheeledRobotParams { wheel_radius_m: bad, ..good },
+            WheeledRobotParams { wheel_separation_m: bad, ..good },
+            WheeledRobotParams { left_radius_error: bad, ..good },
+            WheeledRobotParams { right_radius_error: bad, ..good },
+            WheeledRobotParams { wheel_separation_error: bad, ..good },
+            WheeledRobotParams { motor_lag_s: bad, ..good },
+            WheeledRobotParams { lookahead_m: bad, ..good },
+            WheeledRobotParams { slip: SlipParams { slip_sigma: bad, ..good.slip }, ..good },
+            WheeledRobotParams { slip: SlipParams { correlation_time_s: bad, ..good.slip }, ..good },
+            WheeledRobotParams { slip: SlipParams { wheel_correlation: bad, ..good.slip }, ..good },
         ] {
             assert_refused(params.validate(), bad);
         }
         let wheels = WheelOdometryParams::default();
         assert_refused(WheelOdometryParams { wheel_radius_m: bad, ..wheels }.validate(), bad);
-        assert_refused(WheelOdometryParams { track_m: bad, ..wheels }.validate(), bad);
+        assert_refused(WheelOdometryParams { wheel_separation_m: bad, ..wheels }.validate(), bad);
         assert_refused(WheelOdometryParams { travel_noise: bad, ..wheels }.validate(), bad);
         let gaussian = GaussianOdometryParams::default();
         assert_refused(GaussianOdometryParams { sigma_m: bad, ..gaussian }.validate(), bad);
@@ -144,43 +146,43 @@ fn drive_and_odometry_parameters() {
 #[test]
 fn routes() {
     let mut streams = streams(1);
-    let rng = streams.of(Source::Route);
+    let rng = streams.of(RandomStreamPurpose::Route);
     for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
-        let rectangle = RoundedRectangle { length_m: 9.0, width_m: 9.0, corner_radius_m: 1.0 };
-        let rows = LawnMower { n_rows: 2, row_length_m: 1.0, spacing_m: 1.0 };
-        let points = Waypoints { n_waypoints: 2, half_width_m: 5.0, turn_radius_m: 1.0 };
+        let rectangle = RoundedRectangleRoute { length_m: 9.0, width_m: 9.0, corner_radius_m: 1.0 };
+        let rows = LawnMowerRoute { n_rows: 2, row_length_m: 1.0, spacing_m: 1.0 };
+        let points = WaypointRoute { n_waypoints: 2, half_width_m: 5.0, turn_radius_m: 1.0 };
         for route in [
-            Circle { radius_m: bad }.route(),
-            RoundedRectangle { length_m: bad, ..rectangle }.route(),
-            RoundedRectangle { width_m: bad, ..rectangle }.route(),
-            RoundedRectangle { corner_radius_m: bad, ..rectangle }.route(),
-            LawnMower { row_length_m: bad, ..rows }.route(),
-            LawnMower { spacing_m: bad, ..rows }.route(),
-            Waypoints { half_width_m: bad, ..points }.route(rng),
-            Waypoints { turn_radius_m: bad, ..points }.route(rng),
+            CircleRoute { radius_m: bad }.route(),
+            RoundedRectangleRoute { length_m: bad, ..rectangle }.route(),
+            RoundedRectangleRoute { width_m: bad, ..rectangle }.route(),
+            RoundedRectangleRoute { corner_radius_m: bad, ..rectangle }.route(),
+            LawnMowerRoute { row_length_m: bad, ..rows }.route(),
+            LawnMowerRoute { spacing_m: bad, ..rows }.route(),
+            WaypointRoute { half_width_m: bad, ..points }.route(rng),
+            WaypointRoute { turn_radius_m: bad, ..points }.route(rng),
         ] {
             assert_refused(route.map(drop), bad);
         }
     }
     let start = Pose2::new(0.0, 0.0, 0.0);
     assert!(Route::open(start, vec![]).is_err());
-    let straight = Piece { length_m: 1.0, curvature_per_m: 0.0 };
+    let straight = RoutePiece { length_m: 1.0, curvature_per_m: 0.0 };
     assert_refused(Route::closed(start, vec![straight]).map(drop), 1.0);
     assert!(Route::open(Pose2::new(f64::NAN, 0.0, 0.0), vec![straight]).is_err());
-    let cramped = Waypoints { n_waypoints: 2, half_width_m: 0.1, turn_radius_m: 1e3 };
-    let no_room = SimError::NoRoom { what: "waypoints", placed: 0, wanted: 2 };
+    let cramped = WaypointRoute { n_waypoints: 2, half_width_m: 0.1, turn_radius_m: 1e3 };
+    let no_room = SimulationError::NoRoom { what: "waypoints", placed: 0, wanted: 2 };
     assert_eq!(cramped.route(rng), Err(no_room));
     assert!(matches!(
-        LawnMower { n_rows: usize::MAX, row_length_m: 1.0, spacing_m: 1.0 }.route(),
-        Err(SimError::TooMany { .. })
+        LawnMowerRoute { n_rows: usize::MAX, row_length_m: 1.0, spacing_m: 1.0 }.route(),
+        Err(SimulationError::TooMany { .. })
     ));
 }
 
 #[test]
 fn worlds() {
     let mut streams = streams(1);
-    let rng = streams.of(Source::Landmarks);
-    let route = Circle { radius_m: 2.0 }.route().expect("valid");
+    let rng = streams.of(RandomStreamPurpose::Landmarks);
+    let route = CircleRoute { radius_m: 2.0 }.route().expect("valid");
     for bad in BAD {
         let field = UniformField { n_landmarks: 2, half_width_m: 5.0, separation_m: 0.0 };
         assert_refused(UniformField { half_width_m: bad, ..field }.plan(rng).map(drop), bad);
@@ -216,30 +218,30 @@ fn worlds() {
         }
         assert_refused(OfficeFloor { n_rooms: 8, ..floor }.plan(rng).map(drop), 32.0);
         let crowded = OfficeFloor { spacing_m: 1e-300, ..floor };
-        assert!(matches!(crowded.plan(rng), Err(SimError::TooMany { .. })));
+        assert!(matches!(crowded.plan(rng), Err(SimulationError::TooMany { .. })));
         let rocks = Roadside { n_landmarks: 2, clear_m: 1.0, verge_m: 1.0 };
         assert_refused(Roadside { clear_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
         assert_refused(Roadside { verge_m: bad, ..rocks }.plan(&route, rng).map(drop), bad);
     }
     let crowded = UniformField { n_landmarks: 100, half_width_m: 1.0, separation_m: 1.0 };
-    assert!(matches!(crowded.plan(rng), Err(SimError::NoRoom { wanted: 100, .. })));
+    assert!(matches!(crowded.plan(rng), Err(SimulationError::NoRoom { wanted: 100, .. })));
     let endless = Office { n_columns: usize::MAX, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.0 };
-    assert!(matches!(endless.plan(rng), Err(SimError::TooMany { .. })));
+    assert!(matches!(endless.plan(rng), Err(SimulationError::TooMany { .. })));
     let tight = CorridorLoop { length_m: 20.0, width_m: 10.0, corridor_m: 2.0, spacing_m: 1e-300 };
-    assert!(matches!(tight.plan(rng), Err(SimError::TooMany { .. })));
+    assert!(matches!(tight.plan(rng), Err(SimulationError::TooMany { .. })));
 }
 
 #[test]
 fn simulations_scenarios_and_the_monobot() {
     let nothing = world(&[]);
-    let simulation = Simulation::new(&nothing, Circle { radius_m: 2.0 }.route().expect("valid"));
+    let simulation = Simulation::new(&nothing, CircleRoute { radius_m: 2.0 }.route().expect("valid"));
     let run = |simulation: Simulation<'_>| simulation.run(&mut [], &mut streams(1)).map(drop);
     assert_refused(run(Simulation { truth_period_ms: 0, ..simulation.clone() }), 0.0);
     let forever = run(Simulation { duration_ms: u64::MAX, ..simulation.clone() });
-    assert!(matches!(forever, Err(SimError::TooMany { got: u64::MAX, .. })));
+    assert!(matches!(forever, Err(SimulationError::TooMany { got: u64::MAX, .. })));
     assert_refused(simulation.run(&mut [Box::new(Stopped)], &mut streams(1)).map(drop), 0.0);
 
-    assert!(matches!(Scenario::named("nowhere"), Err(SimError::UnknownScenario { .. })));
+    assert!(matches!(Scenario::named("nowhere"), Err(SimulationError::UnknownScenario { .. })));
     for bad in BAD {
         let motion = MonobotParams { motion_noise: bad, ..MonobotParams::default() };
         assert_refused(motion.simulate(&mut streams(1)).map(drop), bad);
@@ -249,7 +251,7 @@ fn simulations_scenarios_and_the_monobot() {
         assert_refused(external.simulate(&mut streams(1)).map(drop), bad);
     }
     let endless = MonobotParams { n_steps: usize::MAX, ..MonobotParams::default() };
-    assert!(matches!(endless.simulate(&mut streams(1)), Err(SimError::TooMany { .. })));
+    assert!(matches!(endless.simulate(&mut streams(1)), Err(SimulationError::TooMany { .. })));
 
     let mut scenario = Scenario::named("rough_known").expect("a known name");
     let ScenarioParams::Planar(params) = &mut scenario.params else { panic!("planar") };
@@ -264,7 +266,11 @@ impl Sensor for Stopped {
     fn period_ms(&self) -> u32 {
         0
     }
-    fn sense(&mut self, _: &TrueState<'_>, _: &mut wayfix_scene_sim::random::Streams) -> Option<Reading> {
+    fn sense(
+        &mut self,
+        _: &TrueState<'_>,
+        _: &mut wayfix_scene_sim::random::RandomStreams,
+    ) -> Option<SensorReading> {
         None
     }
 }

@@ -2,15 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use wayfix_scene_sim::SimError;
-use wayfix_scene_sim::film::{Film, Frame, Incident, Silhouette};
+use wayfix_scene_sim::SimulationError;
+use wayfix_scene_sim::film::{FilmFrame, OcclusionEvent, Silhouette, SyntheticFilm};
 
-fn shown(name: &str, incident: Incident) -> impl Iterator<Item = Frame> {
-    Film { incident, ..Film::named(name).unwrap() }.frames().unwrap()
+fn shown(name: &str, incident: OcclusionEvent) -> impl Iterator<Item = FilmFrame> {
+    SyntheticFilm { occlusion: incident, ..SyntheticFilm::named(name).unwrap() }.frames().unwrap()
 }
 
 /// Mean red, green and blue where a silhouette is.
-fn mean_color(frame: &Frame, part: &Silhouette) -> [f64; 3] {
+fn mean_color(frame: &FilmFrame, part: &Silhouette) -> [f64; 3] {
     let pixels = frame.picture.rgb.chunks_exact(3).zip(part.pixels()).filter(|(_, inside)| **inside);
     let sum = pixels.fold([0.0; 3], |sum, (rgb, _)| [0, 1, 2].map(|c| sum[c] + f64::from(rgb[c])));
     sum.map(|value| value / part.area() as f64)
@@ -28,7 +28,7 @@ fn touches_the_edge(part: &Silhouette) -> bool {
 
 fn is_in_sight_all_the_time(name: &str) {
     let mut n_frames = 0;
-    for frame in shown(name, Incident::None) {
+    for frame in shown(name, OcclusionEvent::None) {
         n_frames += 1;
         assert_eq!(frame.picture.rgb.len(), 3 * 320 * 240);
         assert!((1000..12_000).contains(&frame.target.area()), "{} pixels", frame.target.area());
@@ -65,10 +65,11 @@ fn head_is_in_sight() {
 
 #[test]
 fn films_are_the_same_every_time_and_differ_by_their_seed() {
-    for film in Film::ALL {
-        let first = |film: Film| Film { n_frames: 2, ..film }.frames().unwrap().collect::<Vec<_>>();
+    for film in SyntheticFilm::ALL {
+        let first =
+            |film: SyntheticFilm| SyntheticFilm { n_frames: 2, ..film }.frames().unwrap().collect::<Vec<_>>();
         assert_eq!(first(film), first(film));
-        let other = first(Film { seed: film.seed + 1, ..film });
+        let other = first(SyntheticFilm { seed: film.seed + 1, ..film });
         assert_ne!(first(film)[1].picture, other[1].picture);
         assert_ne!(first(film)[1].target, other[1].target);
     }
@@ -78,7 +79,7 @@ fn films_are_the_same_every_time_and_differ_by_their_seed() {
 /// some 3 grey levels a channel; 30 levels over three channels are more than 5σ. Three pixels off the edge the lens blurs nothing.
 #[test]
 fn the_silhouette_is_where_the_circle_is() {
-    for frame in shown("circles", Incident::None).step_by(25) {
+    for frame in shown("circles", OcclusionEvent::None).step_by(25) {
         let [x, y, width, height] = frame.target.bounding_box().unwrap();
         let (u, v, radius) = (x + width / 2.0, y + height / 2.0, width / 2.0);
         let inner = mean_color(&frame, &frame.target);
@@ -97,8 +98,8 @@ fn the_silhouette_is_where_the_circle_is() {
 
 #[test]
 fn rectangle_is_brighter_beyond_the_lamp() {
-    let brightness = |frame: Frame| mean_color(&frame, &frame.target)[0];
-    let levels: Vec<f64> = shown("rectangle", Incident::None).map(brightness).collect();
+    let brightness = |frame: FilmFrame| mean_color(&frame, &frame.target)[0];
+    let levels: Vec<f64> = shown("rectangle", OcclusionEvent::None).map(brightness).collect();
     let (low, high) =
         levels.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &v| (low.min(v), high.max(v)));
     assert!(high > 2.0 * low, "{low} to {high}");
@@ -108,7 +109,7 @@ fn rectangle_is_brighter_beyond_the_lamp() {
 #[test]
 fn the_neck_goes_in_and_out_and_looks_like_the_shell() {
     let (mut least, mut most) = (usize::MAX, 0);
-    for frame in shown("snail", Incident::None) {
+    for frame in shown("snail", OcclusionEvent::None) {
         let overlap = frame.target.pixels().iter().zip(frame.distractor.pixels()).filter(|(a, b)| **a && **b);
         assert_eq!(overlap.count(), 0);
         (least, most) = (least.min(frame.distractor.area()), most.max(frame.distractor.area()));
@@ -130,12 +131,12 @@ fn incidents_hide_the_target_or_take_it_away_and_end() {
             shown(name, incident).map(|frame| (frame.visible.area(), frame.target.area())).collect()
         };
         let share = |&(visible, target): &(usize, usize)| visible as f64 / target as f64;
-        let partly = seen(Incident::PartlyHidden);
+        let partly = seen(OcclusionEvent::PartlyHidden);
         let least = partly.iter().map(share).fold(1.0, f64::min);
         assert!((0.3..0.85).contains(&least), "{least}");
-        let hidden = seen(Incident::Hidden);
+        let hidden = seen(OcclusionEvent::Hidden);
         assert!(hidden.iter().filter(|(visible, _)| *visible == 0).count() >= 5);
-        let away = seen(Incident::Away);
+        let away = seen(OcclusionEvent::Away);
         assert!(away.iter().filter(|(_, target)| *target == 0).count() >= 13);
         for (visible, target) in [partly[174], hidden[174], away[174]] {
             assert!(visible == target && target > 1000, "it is back");
@@ -145,9 +146,12 @@ fn incidents_hide_the_target_or_take_it_away_and_end() {
 
 #[test]
 fn what_is_no_film_is_refused() {
-    assert!(matches!(Film::named("goldfish"), Err(SimError::UnknownScenario { .. })));
-    let film = Film::ALL[0];
-    assert!(Film { name: "goldfish", ..film }.frames().is_err());
-    assert!(matches!(Film { n_frames: usize::MAX, ..film }.frames(), Err(SimError::TooMany { .. })));
-    assert_eq!(Film { n_frames: 0, ..film }.frames().unwrap().count(), 0);
+    assert!(matches!(SyntheticFilm::named("goldfish"), Err(SimulationError::UnknownScenario { .. })));
+    let film = SyntheticFilm::ALL[0];
+    assert!(SyntheticFilm { name: "goldfish", ..film }.frames().is_err());
+    assert!(matches!(
+        SyntheticFilm { n_frames: usize::MAX, ..film }.frames(),
+        Err(SimulationError::TooMany { .. })
+    ));
+    assert_eq!(SyntheticFilm { n_frames: 0, ..film }.frames().unwrap().count(), 0);
 }

@@ -2,14 +2,14 @@
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::Pose2;
-use wayfix_scene_sim::drive::DriveParams;
+use wayfix_scene_sim::drive::WheeledRobotParams;
 use wayfix_scene_sim::indoors::{
-    AmbientLightParams, Building, IndoorDrive, IndoorParams, IndoorStep, Lab, Mirror, OmniCameraParams,
-    Store, StoreParams, calibrated_robot,
+    AmbientLightParams, Building, IndoorDrive, IndoorParams, IndoorStep, Laboratory, MirrorCamera,
+    OmniCameraParams, RetailStore, RetailStoreParams, calibrated_robot,
 };
-use wayfix_scene_sim::random::Streams;
+use wayfix_scene_sim::random::RandomStreams;
 use wayfix_scene_sim::scenery::RgbPicture;
-use wayfix_scene_sim::world::World;
+use wayfix_scene_sim::world::SensorWorld;
 
 const SEED: u64 = 41;
 
@@ -17,18 +17,20 @@ fn rng() -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(SEED)
 }
 
-fn area() -> Store {
-    Store::draw(StoreParams::area(), &mut rng()).expect("the area is a store")
+fn area() -> RetailStore {
+    RetailStore::draw(RetailStoreParams::area(), &mut rng()).expect("the area is a store")
 }
 
 fn tour(building: &Building, params: IndoorParams, length_m: f64, seed: u64) -> Vec<IndoorStep> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let route = building.aisles().tour(length_m, &mut rng).expect("there are aisles");
-    IndoorDrive::new(building, route, params, Streams::new(rng)).expect("the parameters are sound").collect()
+    IndoorDrive::new(building, route, params, RandomStreams::new(rng))
+        .expect("the parameters are sound")
+        .collect()
 }
 
 fn look(building: &Building, pose: Pose2<f64>) -> RgbPicture {
-    let camera = OmniCameraParams { noise: 0.0, ..OmniCameraParams::default() };
+    let camera = OmniCameraParams { pixel_noise_sigma: 0.0, ..OmniCameraParams::default() };
     building.render_view(&pose, camera, &mut rng()).expect("the camera is sound")
 }
 
@@ -58,7 +60,7 @@ fn who_turns_left_sees_the_same_farther_right() {
 
 #[test]
 fn the_front_is_in_the_middle_and_the_floor_below() {
-    let building = Lab::draw(&mut rng()).building();
+    let building = Laboratory::draw(&mut rng()).building();
     // Half a metre before the wall of low x: only half the picture shows things farther than a metre away, that to the front.
     let view = look(&building, Pose2::new(-7.0, 0.0, 0.0));
     let variation = |columns: std::ops::Range<usize>| {
@@ -108,11 +110,16 @@ fn people_and_the_light_do_not_disturb_where_the_robot_drives() {
 
 #[test]
 fn tours_keep_clear_of_the_shelves_and_see_every_aisle() {
-    let store = Store::draw(StoreParams::home_store(), &mut rng()).unwrap().building();
+    let store = RetailStore::draw(RetailStoreParams::home_store(), &mut rng()).unwrap().building();
     for (building, aisles_m) in
-        [(store, 1200.0), (area().building(), 150.0), (Lab::draw(&mut rng()).building(), 150.0)]
+        [(store, 1200.0), (area().building(), 150.0), (Laboratory::draw(&mut rng()).building(), 150.0)]
     {
-        let camera = OmniCameraParams { columns: 4, rings: 1, rays: [1, 1], ..OmniCameraParams::default() };
+        let camera = OmniCameraParams {
+            n_columns: 4,
+            n_rings: 1,
+            rays_per_pixel: [1, 1],
+            ..OmniCameraParams::default()
+        };
         let params = IndoorParams { camera, ..IndoorParams::default() };
         let steps = tour(&building, params, 2.0 * aisles_m, 3);
         let walls = building.walls();
@@ -137,10 +144,11 @@ fn distance(wall: &wayfix_scene_sim::world::Wall, pose: &Pose2<f64>) -> f64 {
 fn calibrated_wheels_drift_by_what_is_said_of_them() {
     const N: u64 = 40;
     let building = area().building();
-    let camera = OmniCameraParams { columns: 4, rings: 1, rays: [1, 1], ..OmniCameraParams::default() };
+    let camera =
+        OmniCameraParams { n_columns: 4, n_rings: 1, rays_per_pixel: [1, 1], ..OmniCameraParams::default() };
     let (mut squares, mut expected) = (0.0, 0.0);
     for seed in 0..N {
-        let drive: DriveParams = calibrated_robot(&mut ChaCha8Rng::seed_from_u64(100 + seed));
+        let drive: WheeledRobotParams = calibrated_robot(&mut ChaCha8Rng::seed_from_u64(100 + seed));
         let steps = tour(&building, IndoorParams { drive, camera, ..IndoorParams::default() }, 100.0, seed);
         let headings = [0, steps.len() - 1].map(|k| steps[k].pose.heading());
         let turned: f64 = steps.iter().filter_map(|step| step.odometry).map(|moved| moved.heading()).sum();
@@ -159,20 +167,20 @@ fn rearranging_nothing_changes_nothing() {
     let (some, all) =
         (store.rearranged(0.2, &mut rng()).unwrap(), store.rearranged(1.0, &mut rng()).unwrap());
     let at = store.building().aisles().station();
-    let view = |store: &Store| look(&store.building(), at);
+    let view = |store: &RetailStore| look(&store.building(), at);
     assert!(difference(&view(&store), &view(&some)) < difference(&view(&store), &view(&all)));
 }
 
 #[test]
 fn switching_changes_the_lab_and_leaves_the_default_alone() {
-    let building = Lab::draw(&mut rng()).building();
-    let creeping = DriveParams { speed_mps: 1e-4, ..IndoorParams::default().drive };
+    let building = Laboratory::draw(&mut rng()).building();
+    let creeping = WheeledRobotParams { speed_mps: 1e-4, ..IndoorParams::default().drive };
     let change = |switching_s| {
         let ambient_light =
             AmbientLightParams { switching_s, daylight_sigma: 0.0, ..AmbientLightParams::default() };
         let params = IndoorParams { drive: creeping, ambient_light, ..IndoorParams::default() };
         let route = building.aisles().tour(1.0, &mut rng()).expect("there are aisles");
-        let drive = IndoorDrive::new(&building, route, params, Streams::new(rng())).expect("sound");
+        let drive = IndoorDrive::new(&building, route, params, RandomStreams::new(rng())).expect("sound");
         let views: Vec<RgbPicture> = drive.take(120).map(|step| step.view).collect();
         difference(&views[0], &views[views.len() - 1])
     };
@@ -181,9 +189,9 @@ fn switching_changes_the_lab_and_leaves_the_default_alone() {
 
 #[test]
 fn a_mirror_shows_the_view_around_its_centre() {
-    let building = Lab::draw(&mut rng()).building();
+    let building = Laboratory::draw(&mut rng()).building();
     let view = look(&building, Pose2::new(0.0, -3.7, 0.0));
-    let image = Mirror { side_px: 401, inner_px: 60.0, outer_px: 200.0 }.image(&view).unwrap();
+    let image = MirrorCamera { side_px: 401, inner_px: 60.0, outer_px: 200.0 }.image(&view).unwrap();
     for (row, column) in [(0, 0), (10, 30), (19, 77)] {
         let (sin, cos) = (std::f64::consts::TAU * (column as f64 + 0.5) / 120.0).sin_cos();
         let radius = 200.0 - 140.0 * (row as f64 + 0.5) / 20.0;
@@ -207,37 +215,37 @@ fn numbers_without_a_meaning_are_refused() {
     for share in [-0.1, 1.1, f64::NAN] {
         assert!(
             area().rearranged(share, &mut rng()).is_err()
-                && Lab::draw(&mut rng()).rearranged(share, &mut rng()).is_err()
+                && Laboratory::draw(&mut rng()).rearranged(share, &mut rng()).is_err()
         );
     }
-    let good = StoreParams::area();
+    let good = RetailStoreParams::area();
     for bad in [
-        StoreParams { length_m: 5.0, ..good },
-        StoreParams { width_m: f64::NAN, ..good },
-        StoreParams { width_m: 3.0, ..good },
-        StoreParams { length_m: 1e6, ..good },
-        StoreParams { n_blocks: 0, ..good },
-        StoreParams { n_departments: 0, ..good },
-        StoreParams { shelf_m: -1.0, ..good },
-        StoreParams { stand_share: 2.0, ..good },
+        RetailStoreParams { length_m: 5.0, ..good },
+        RetailStoreParams { width_m: f64::NAN, ..good },
+        RetailStoreParams { width_m: 3.0, ..good },
+        RetailStoreParams { length_m: 1e6, ..good },
+        RetailStoreParams { n_blocks: 0, ..good },
+        RetailStoreParams { n_departments: 0, ..good },
+        RetailStoreParams { shelf_height_m: -1.0, ..good },
+        RetailStoreParams { end_display_share: 2.0, ..good },
     ] {
-        assert!(Store::draw(bad, &mut rng()).is_err(), "{bad:?}");
+        assert!(RetailStore::draw(bad, &mut rng()).is_err(), "{bad:?}");
     }
     let camera = OmniCameraParams::default();
     for bad in [
-        OmniCameraParams { columns: 0, ..camera },
-        OmniCameraParams { columns: 121, ..camera },
-        OmniCameraParams { rings: 0, ..camera },
-        OmniCameraParams { rays: [0, 1], ..camera },
-        OmniCameraParams { highest_rad: 1.6, ..camera },
-        OmniCameraParams { lowest_rad: f64::NAN, ..camera },
+        OmniCameraParams { n_columns: 0, ..camera },
+        OmniCameraParams { n_columns: 121, ..camera },
+        OmniCameraParams { n_rings: 0, ..camera },
+        OmniCameraParams { rays_per_pixel: [0, 1], ..camera },
+        OmniCameraParams { max_elevation_rad: 1.6, ..camera },
+        OmniCameraParams { min_elevation_rad: f64::NAN, ..camera },
         OmniCameraParams { height_m: 9.0, ..camera },
-        OmniCameraParams { noise: -1.0, ..camera },
+        OmniCameraParams { pixel_noise_sigma: -1.0, ..camera },
     ] {
         assert!(building.render_view(&aisles.station(), bad, &mut rng()).is_err(), "{bad:?}");
     }
     assert!(building.render_view(&Pose2::new(f64::NAN, 0.0, 0.0), camera, &mut rng()).is_err());
-    let standing = DriveParams { speed_mps: 0.0, ..DriveParams::default() };
+    let standing = WheeledRobotParams { speed_mps: 0.0, ..WheeledRobotParams::default() };
     let params = IndoorParams::default();
     for bad in [
         IndoorParams { drive: standing, ..params },
@@ -250,6 +258,6 @@ fn numbers_without_a_meaning_are_refused() {
         },
     ] {
         let route = aisles.tour(10.0, &mut rng()).unwrap();
-        assert!(IndoorDrive::new(&building, route, bad, Streams::new(rng())).is_err(), "{bad:?}");
+        assert!(IndoorDrive::new(&building, route, bad, RandomStreams::new(rng())).is_err(), "{bad:?}");
     }
 }

@@ -9,16 +9,16 @@ use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_scene_sim::sensor::laser::People;
 use wayfix_scene_sim::sensor::range_bearing::RangeSigma;
 use wayfix_scene_sim::sensor::{Laser, LaserParams, Sensor, TrueState};
-use wayfix_scene_sim::world::{Plan, PlanarWorld, Wall};
-use wayfix_sensor_log::{Data, LaserScan};
+use wayfix_scene_sim::world::{FloorPlan, PlanarWorld, Wall};
+use wayfix_sensor_log::{LaserScan, RecordData};
 
 /// No error at all.
 fn exact() -> LaserParams {
     LaserParams {
         range_noise: RangeSigma::default(),
         bearing_sigma_rad: 0.0,
-        quantum_m: 0.0,
-        mixed_share: 0.0,
+        range_resolution_m: 0.0,
+        mixed_pixel_share: 0.0,
         ..LaserParams::default()
     }
 }
@@ -33,7 +33,7 @@ fn step() -> Vec<Wall> {
 }
 
 fn scans(params: LaserParams, walls: Vec<Wall>, n: u64, seed: u64) -> Vec<LaserScan> {
-    let world = PlanarWorld::new(Plan { landmarks: vec![], walls });
+    let world = PlanarWorld::new(FloorPlan { landmarks: vec![], walls });
     let mut laser = Laser::new(params).expect("valid parameters");
     let mut streams = streams(seed);
     (0..n)
@@ -41,7 +41,7 @@ fn scans(params: LaserParams, walls: Vec<Wall>, n: u64, seed: u64) -> Vec<LaserS
             let pose = Pose2::new(0.0, 0.0, 0.0);
             let moment = TrueState { milliseconds: k * 200, pose, wheel_angles: [0.0; 2], world: &world };
             match laser.sense(&moment, &mut streams).map(|reading| reading.data) {
-                Some(Data::Scan(scan)) => scan,
+                Some(RecordData::Scan(scan)) => scan,
                 other => unreachable!("a laser only makes scans, not {other:?}"),
             }
         })
@@ -64,11 +64,12 @@ fn without_errors_a_beam_ends_on_the_nearest_wall() {
 
 #[test]
 fn a_turned_and_moved_robot_sees_the_same_wall_from_there() {
-    let world = PlanarWorld::new(Plan { landmarks: vec![], walls: vec![wall((-50.0, 3.0), (50.0, 3.0))] });
+    let world =
+        PlanarWorld::new(FloorPlan { landmarks: vec![], walls: vec![wall((-50.0, 3.0), (50.0, 3.0))] });
     let pose = Pose2::new(7.0, 1.0, FRAC_PI_2);
     let moment = TrueState { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
     let reading = Laser::new(exact()).expect("valid").sense(&moment, &mut streams(1));
-    let Some(Data::Scan(scan)) = reading.map(|reading| reading.data) else { panic!("no scan") };
+    let Some(RecordData::Scan(scan)) = reading.map(|reading| reading.data) else { panic!("no scan") };
     assert!((scan.ranges[90] - 2.0).abs() < 1e-9 && (scan.ranges[30] - 4.0).abs() < 1e-9);
 }
 
@@ -88,7 +89,7 @@ fn ranges_err_as_stated_and_are_whole_centimetres() {
     let errors = ahead(noisy);
     assert_near("bias", mean(&errors), 0.02, 0.03 / 4000_f64.sqrt());
     assert_near("deviation", deviation(&errors), 0.03, 0.03 / 8000_f64.sqrt());
-    for scan in scans(LaserParams { quantum_m: 0.01, ..noisy }, step(), 20, 2) {
+    for scan in scans(LaserParams { range_resolution_m: 0.01, ..noisy }, step(), 20, 2) {
         assert!(scan.echoes().all(|(_, range)| (range * 100.0 - (range * 100.0).round()).abs() < 1e-6));
     }
     let turned = ahead(LaserParams { bearing_sigma_rad: 0.002, ..exact() });
@@ -99,7 +100,7 @@ fn ranges_err_as_stated_and_are_whole_centimetres() {
 
 #[test]
 fn only_beams_on_an_edge_mix_two_surfaces() {
-    let mixing = LaserParams { mixed_share: 0.4, ..exact() };
+    let mixing = LaserParams { mixed_pixel_share: 0.4, ..exact() };
     // The nearer wall begins 5 mrad to the left of straight ahead: beam 90 is cut by it when the beam is 12 mrad wide.
     let wide = LaserParams { beam_width_rad: 0.012, ..mixing };
     // Short walls: on one seen at a very flat angle so wide a beam finds an edge where there is none.

@@ -4,7 +4,7 @@ mod support;
 
 use support::{assert_near, deviation, mean, streams};
 use wayfix_scene_sim::monobot::{MonobotParams, MonobotRun};
-use wayfix_sensor_log::{Data, Stamp};
+use wayfix_sensor_log::{RecordData, Stamp};
 
 fn runs(params: MonobotParams, n: u64) -> Vec<MonobotRun> {
     (0..n).map(|seed| params.simulate(&mut streams(seed)).expect("valid parameters")).collect()
@@ -59,7 +59,7 @@ fn as_a_log_it_says_the_same() {
     let run = &runs(params, 1)[0];
     let records = run.records(Stamp::from_nanoseconds(0), 100);
     let mut looks = records.iter().filter_map(|r| match &r.data {
-        Data::Detections(detections) => Some(detections),
+        RecordData::Detections(detections) => Some(detections),
         _ => None,
     });
     for ranges in &run.ranges {
@@ -70,7 +70,7 @@ fn as_a_log_it_says_the_same() {
     let travelled: f64 = records
         .iter()
         .filter_map(|r| match r.data {
-            Data::OdometryIncrement(step) => Some(step.x()),
+            RecordData::OdometryIncrement(step) => Some(step.x()),
             _ => None,
         })
         .sum();

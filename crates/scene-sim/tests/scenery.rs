@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use wayfix_scene_sim::SimError;
+use wayfix_scene_sim::SimulationError;
 use wayfix_scene_sim::scenery::{ImagingConditions, RgbPicture, Scenery};
 
 fn lab() -> (Scenery, RgbPicture) {
@@ -37,7 +37,7 @@ fn scenes_have_room_for_the_states_of_the_paper() {
         assert_eq!((width - Scenery::VIEW_PX) / scenery.step_px + 1, scenery.columns);
         assert_eq!((height - Scenery::VIEW_PX) / scenery.step_px + 1, scenery.rows);
     }
-    assert!(matches!(Scenery::named("attic"), Err(SimError::UnknownScenario { .. })));
+    assert!(matches!(Scenery::named("attic"), Err(SimulationError::UnknownScenario { .. })));
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn meaningless_visits_are_refused() {
         ImagingConditions { noise: f64::INFINITY, ..ImagingConditions::default() },
     ];
     for visit in bad {
-        assert!(matches!(visit.picture_of(&learned, 1), Err(SimError::Parameter { .. })), "{visit:?}");
+        assert!(matches!(visit.picture_of(&learned, 1), Err(SimulationError::Parameter { .. })), "{visit:?}");
     }
     let torn = RgbPicture { rgb: vec![0; 5], ..learned };
     assert!(ImagingConditions::default().picture_of(&torn, 1).is_err());

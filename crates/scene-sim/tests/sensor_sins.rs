@@ -7,9 +7,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use support::{assert_near, assert_share, detections, deviation, looks, mean, streams, world};
 use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
-use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
+use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeSigma};
 use wayfix_scene_sim::world::{PlanarWorld, Wall};
-use wayfix_sensor_log::{Detection, Target};
+use wayfix_sensor_log::{Detection, DetectionTarget};
 
 const N: u64 = 40_000;
 const SEED: u64 = 20_05;
@@ -90,7 +90,7 @@ fn bearings_stay_wrapped() {
 
 #[test]
 fn drift_has_stated_size_and_correlation_time_per_target() {
-    let drift = DriftParams {
+    let drift = CorrelatedErrorParams {
         range: RangeSigma { constant_m: 0.1, per_meter: 0.0 },
         bearing_sigma_rad: 0.02,
         correlation_time_s: 2.0,
@@ -101,7 +101,8 @@ fn drift_has_stated_size_and_correlation_time_per_target() {
         looks(params, &two, N, &mut streams(SEED)).into_iter().flatten().collect();
     let errors = |id: u32| -> Vec<f64> {
         let range = 26.0_f64.sqrt();
-        let of_id = |look: &Vec<Detection>| look.iter().find(|s| s.target == Target::Landmark(id)).copied();
+        let of_id =
+            |look: &Vec<Detection>| look.iter().find(|s| s.target == DetectionTarget::Landmark(id)).copied();
         looks.iter().filter_map(of_id).map(|s| s.range - range).collect()
     };
     let (first, second) = (errors(0), errors(1));
@@ -149,9 +150,9 @@ fn outliers_are_anywhere_in_view() {
 #[test]
 fn clutter_is_poisson_and_passes_for_what_was_asked() {
     for (label, passes) in [
-        (ClutterLabel::Unlabelled, (|t| t == Target::Unlabelled) as fn(Target) -> bool),
-        (ClutterLabel::AnyLandmark, |t| matches!(t, Target::Landmark(0 | 1))),
-        (ClutterLabel::UnknownCode(77), |t| t == Target::UnknownCode(77)),
+        (ClutterLabel::Unlabelled, (|t| t == DetectionTarget::Unlabelled) as fn(DetectionTarget) -> bool),
+        (ClutterLabel::AnyLandmark, |t| matches!(t, DetectionTarget::Landmark(0 | 1))),
+        (ClutterLabel::UnknownCode(77), |t| t == DetectionTarget::UnknownCode(77)),
     ] {
         let clutter = Clutter { mean: 0.7, label };
         // Landmarks out of reach: whatever is reported is clutter.
@@ -171,13 +172,18 @@ fn mislabelled_sightings_bear_another_landmarks_identity() {
     let three = world(&[(5.0, 0.0), (0.0, 5.0), (0.0, -5.0)]);
     let params = RangeBearingParams { mislabelled_share: 0.1, ..silent() };
     let seen = detections(params, &three, N, SEED);
-    let first: Vec<Target> = seen.iter().filter(|s| s.bearing.abs() < 0.1).map(|s| s.target).collect();
-    let count = |id| first.iter().filter(|t| **t == Target::Landmark(id)).count();
+    let first: Vec<DetectionTarget> =
+        seen.iter().filter(|s| s.bearing.abs() < 0.1).map(|s| s.target).collect();
+    let count = |id| first.iter().filter(|t| **t == DetectionTarget::Landmark(id)).count();
     assert_share("right", count(0), first.len(), 0.9);
     assert_share("as the second", count(1), first.len(), 0.05);
     assert_share("as the third", count(2), first.len(), 0.05);
     let alone = RangeBearingParams { mislabelled_share: 1.0, ..silent() };
-    assert_eq!(detections(alone, &ahead(), 1, SEED)[0].target, Target::Landmark(0), "nobody else to be");
+    assert_eq!(
+        detections(alone, &ahead(), 1, SEED)[0].target,
+        DetectionTarget::Landmark(0),
+        "nobody else to be"
+    );
 }
 
 #[test]
@@ -185,7 +191,7 @@ fn an_unlabelled_sensor_tells_nothing_apart() {
     let params = RangeBearingParams { labelled: false, mislabelled_share: 0.5, ..honest() };
     let seen = detections(params, &world(&[(5.0, 0.0), (0.0, 5.0)]), 100, SEED);
     assert_eq!(seen.len(), 200);
-    assert!(seen.iter().all(|s| s.target == Target::Unlabelled));
+    assert!(seen.iter().all(|s| s.target == DetectionTarget::Unlabelled));
 }
 
 #[test]
@@ -193,13 +199,16 @@ fn range_view_and_walls_limit_what_is_seen() {
     let params =
         RangeBearingParams { min_range_m: 1.0, max_range_m: 6.0, field_of_view_rad: FRAC_PI_2, ..silent() };
     let mut scene = world(&[(0.9, 0.0), (5.9, 0.0), (6.1, 0.0), (3.0, 2.9), (3.0, 3.1), (3.0, -1.0)]);
-    let ids = |scene: &PlanarWorld| -> Vec<Target> {
+    let ids = |scene: &PlanarWorld| -> Vec<DetectionTarget> {
         detections(params, scene, 1, SEED).iter().map(|s| s.target).collect()
     };
-    assert_eq!(ids(&scene), [Target::Landmark(5), Target::Landmark(1), Target::Landmark(3)]);
+    assert_eq!(
+        ids(&scene),
+        [DetectionTarget::Landmark(5), DetectionTarget::Landmark(1), DetectionTarget::Landmark(3)]
+    );
     let point = wayfix_estimation_traits::nalgebra::Vector2::new;
     scene.plan.walls.push(Wall { from: point(4.0, -1.0), to: point(4.0, 1.0) });
-    assert_eq!(ids(&scene), [Target::Landmark(5), Target::Landmark(3)]);
+    assert_eq!(ids(&scene), [DetectionTarget::Landmark(5), DetectionTarget::Landmark(3)]);
 }
 
 #[test]

@@ -5,9 +5,9 @@ mod support;
 use support::{looks, run, streams, world};
 use wayfix_scene_sim::random::NoiseShape;
 use wayfix_scene_sim::sensor::RangeBearingParams;
-use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
+use wayfix_scene_sim::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeSigma};
 use wayfix_scene_sim::{Scenario, ScenarioParams};
-use wayfix_sensor_log::{Data, Detection, Record, Target};
+use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData};
 
 #[test]
 fn the_same_seed_gives_the_same_bits_and_another_seed_does_not() {
@@ -22,7 +22,7 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_does_not() {
 /// Detections of the one landmark, look by look, with whatever sins.
 fn of_the_landmark(params: RangeBearingParams) -> Vec<Option<Detection>> {
     let two = world(&[(5.0, 0.0), (0.0, 5.0)]);
-    let of_it = |look: Vec<Detection>| look.into_iter().find(|s| s.target == Target::Landmark(0));
+    let of_it = |look: Vec<Detection>| look.into_iter().find(|s| s.target == DetectionTarget::Landmark(0));
     looks(params, &two, 500, &mut streams(3)).into_iter().map(|look| look.and_then(of_it)).collect()
 }
 
@@ -54,7 +54,7 @@ fn drift_and_tails_leave_the_other_draws_too() {
     let bearings =
         |params| -> Vec<f64> { of_the_landmark(params).iter().flatten().map(|s| s.bearing).collect() };
     let range = RangeSigma { constant_m: 0.3, per_meter: 0.0 };
-    let drift = DriftParams { range, ..DriftParams::default() };
+    let drift = CorrelatedErrorParams { range, ..CorrelatedErrorParams::default() };
     assert_eq!(bearings(honest), bearings(RangeBearingParams { drift, ..honest }));
     let missed = |params| -> Vec<bool> { of_the_landmark(params).iter().map(Option::is_none).collect() };
     let missing = RangeBearingParams { missed_share: 0.3, ..honest };
@@ -69,7 +69,7 @@ fn sensor_sins_leave_the_drive_as_it_was() {
         scenario.simulate(ChaCha8Rng::seed_from_u64(4)).expect("valid parameters")
     };
     let but_sightings = |records: Vec<Record>| -> Vec<Record> {
-        records.into_iter().filter(|r| !matches!(r.data, Data::Detections(_))).collect()
+        records.into_iter().filter(|r| !matches!(r.data, RecordData::Detections(_))).collect()
     };
     let sinful = simulate(&scenario);
     let ScenarioParams::Planar(params) = &mut scenario.params else { panic!("planar") };

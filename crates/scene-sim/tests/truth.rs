@@ -4,20 +4,20 @@ mod support;
 
 use support::{assert_near, deviation, mean, run, streams, world};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2, nalgebra::Vector3};
-use wayfix_scene_sim::drive::{DriveParams, SlipParams};
-use wayfix_scene_sim::route::{Circle, LawnMower, RoundedRectangle, Route, Waypoints};
+use wayfix_scene_sim::drive::{SlipParams, WheeledRobotParams};
+use wayfix_scene_sim::route::{CircleRoute, LawnMowerRoute, RoundedRectangleRoute, Route, WaypointRoute};
 use wayfix_scene_sim::sensor::{
     GaussianOdometry, GaussianOdometryParams, OdometryKind, RangeBearingDetector, RangeBearingParams, Sensor,
     WheelOdometry, WheelOdometryParams,
 };
 use wayfix_scene_sim::{Scenario, Simulation};
-use wayfix_sensor_log::{Data, Record};
+use wayfix_sensor_log::{Record, RecordData};
 
 fn true_poses(records: &[Record]) -> Vec<Pose2<f64>> {
     records
         .iter()
         .filter_map(|record| match record.data {
-            Data::TruePose(pose) => Some(pose),
+            RecordData::TruePose(pose) => Some(pose),
             _ => None,
         })
         .collect()
@@ -27,13 +27,18 @@ fn increments(records: &[Record]) -> Vec<Pose2<f64>> {
     records
         .iter()
         .filter_map(|record| match record.data {
-            Data::OdometryIncrement(increment) => Some(increment),
+            RecordData::OdometryIncrement(increment) => Some(increment),
             _ => None,
         })
         .collect()
 }
 
-fn drive(route: Route, drive: DriveParams, sensor: Option<Box<dyn Sensor>>, duration_ms: u64) -> Vec<Record> {
+fn drive(
+    route: Route,
+    drive: WheeledRobotParams,
+    sensor: Option<Box<dyn Sensor>>,
+    duration_ms: u64,
+) -> Vec<Record> {
     let nothing = world(&[]);
     let simulation = Simulation { drive, duration_ms, ..Simulation::new(&nothing, route) };
     let mut sensors: Vec<Box<dyn Sensor>> = sensor.into_iter().collect();
@@ -64,22 +69,31 @@ fn the_truth_is_smooth() {
 }
 
 fn truth_period_ms(records: &[Record]) -> f64 {
-    let stamps: Vec<_> =
-        records.iter().filter(|r| matches!(r.data, Data::TruePose(_))).map(|r| r.stamp).take(2).collect();
+    let stamps: Vec<_> = records
+        .iter()
+        .filter(|r| matches!(r.data, RecordData::TruePose(_)))
+        .map(|r| r.stamp)
+        .take(2)
+        .collect();
     stamps[1].seconds_since(stamps[0]) * 1e3
 }
 
 #[test]
 fn the_robot_keeps_to_its_route() {
     let mut rng = streams(9);
-    let rng = rng.of(wayfix_scene_sim::random::Source::Route);
-    let slip = SlipParams { sigma: 0.05, correlation_time_s: 1.0, shared: 0.5 };
-    let sinful = DriveParams { slip, left_radius_error: 0.02, track_error: 0.05, ..DriveParams::default() };
+    let rng = rng.of(wayfix_scene_sim::random::RandomStreamPurpose::Route);
+    let slip = SlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 0.5 };
+    let sinful = WheeledRobotParams {
+        slip,
+        left_radius_error: 0.02,
+        wheel_separation_error: 0.05,
+        ..WheeledRobotParams::default()
+    };
     for route in [
-        Circle { radius_m: 4.0 }.route(),
-        RoundedRectangle { length_m: 10.0, width_m: 6.0, corner_radius_m: 1.0 }.route(),
-        LawnMower { n_rows: 4, row_length_m: 6.0, spacing_m: 2.0 }.route(),
-        Waypoints { n_waypoints: 15, half_width_m: 5.0, turn_radius_m: 1.0 }.route(rng),
+        CircleRoute { radius_m: 4.0 }.route(),
+        RoundedRectangleRoute { length_m: 10.0, width_m: 6.0, corner_radius_m: 1.0 }.route(),
+        LawnMowerRoute { n_rows: 4, row_length_m: 6.0, spacing_m: 2.0 }.route(),
+        WaypointRoute { n_waypoints: 15, half_width_m: 5.0, turn_radius_m: 1.0 }.route(rng),
     ] {
         let route = route.expect("valid parameters");
         let fine: Vec<Pose2<f64>> =
@@ -94,19 +108,20 @@ fn the_robot_keeps_to_its_route() {
 
 #[test]
 fn an_open_route_ends_at_rest_at_its_end() {
-    let route = LawnMower { n_rows: 1, row_length_m: 5.0, spacing_m: 1.0 }.route().expect("valid parameters");
-    let poses = true_poses(&drive(route, DriveParams::default(), None, 30_000));
+    let route =
+        LawnMowerRoute { n_rows: 1, row_length_m: 5.0, spacing_m: 1.0 }.route().expect("valid parameters");
+    let poses = true_poses(&drive(route, WheeledRobotParams::default(), None, 30_000));
     let end = poses[poses.len() - 1];
     assert!((end.x() - 2.5).abs() < 0.1 && end == poses[poses.len() - 2], "ended at {end:?}");
 }
 
 #[test]
 fn odometry_of_an_honest_robot_retraces_its_way() {
-    let circle = || Circle { radius_m: 2.0 }.route().expect("valid parameters");
+    let circle = || CircleRoute { radius_m: 2.0 }.route().expect("valid parameters");
     let exact = WheelOdometryParams { ticks_per_turn: None, ..WheelOdometryParams::default() };
     let records = drive(
         circle(),
-        DriveParams::default(),
+        WheeledRobotParams::default(),
         Some(Box::new(WheelOdometry::new(exact).expect("valid"))),
         30_000,
     );
@@ -118,14 +133,14 @@ fn odometry_of_an_honest_robot_retraces_its_way() {
     let held = WheelOdometryParams { kind: OdometryKind::Velocity, ..exact };
     let records = drive(
         circle(),
-        DriveParams::default(),
+        WheeledRobotParams::default(),
         Some(Box::new(WheelOdometry::new(held).expect("valid"))),
         30_000,
     );
     let velocities: Vec<_> = records
         .iter()
         .filter_map(|r| match r.data {
-            Data::Velocity(v) => Some((r.stamp, v)),
+            RecordData::Velocity(v) => Some((r.stamp, v)),
             _ => None,
         })
         .collect();
@@ -139,8 +154,12 @@ fn odometry_of_an_honest_robot_retraces_its_way() {
 #[test]
 fn wheels_that_are_not_as_built_bend_the_way() {
     // Radii differ by ±1 %: per metre driven the believed turn is off by 0.02/track = 0.0667 rad.
-    let sinful = DriveParams { left_radius_error: 0.01, right_radius_error: -0.01, ..DriveParams::default() };
-    let route = LawnMower { n_rows: 1, row_length_m: 100.0, spacing_m: 1.0 }.route().expect("valid");
+    let sinful = WheeledRobotParams {
+        left_radius_error: 0.01,
+        right_radius_error: -0.01,
+        ..WheeledRobotParams::default()
+    };
+    let route = LawnMowerRoute { n_rows: 1, row_length_m: 100.0, spacing_m: 1.0 }.route().expect("valid");
     let exact = WheelOdometryParams { ticks_per_turn: None, ..WheelOdometryParams::default() };
     let records = drive(route, sinful, Some(Box::new(WheelOdometry::new(exact).expect("valid"))), 20_000);
     let poses = true_poses(&records);
@@ -152,12 +171,12 @@ fn wheels_that_are_not_as_built_bend_the_way() {
 #[test]
 fn slip_has_the_size_asked_for() {
     // Straight drive, both wheels slipping as one: true travel falls short of the encoders' by the mean slip over a period.
-    let slip = SlipParams { sigma: 0.05, correlation_time_s: 1.0, shared: 1.0 };
-    let straight = LawnMower { n_rows: 1, row_length_m: 3000.0, spacing_m: 1.0 }.route().expect("valid");
+    let slip = SlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 1.0 };
+    let straight = LawnMowerRoute { n_rows: 1, row_length_m: 3000.0, spacing_m: 1.0 }.route().expect("valid");
     let exact = WheelOdometryParams { ticks_per_turn: None, ..WheelOdometryParams::default() };
     let records = drive(
         straight,
-        DriveParams { slip, ..DriveParams::default() },
+        WheeledRobotParams { slip, ..WheeledRobotParams::default() },
         Some(Box::new(WheelOdometry::new(exact).expect("valid"))),
         2_000_000,
     );
@@ -177,10 +196,10 @@ fn slip_has_the_size_asked_for() {
 
 #[test]
 fn encoders_count_whole_ticks_and_lose_none() {
-    let straight = LawnMower { n_rows: 1, row_length_m: 300.0, spacing_m: 1.0 }.route().expect("valid");
+    let straight = LawnMowerRoute { n_rows: 1, row_length_m: 300.0, spacing_m: 1.0 }.route().expect("valid");
     let coarse = WheelOdometryParams { ticks_per_turn: Some(100), ..WheelOdometryParams::default() };
     let sensor = Box::new(WheelOdometry::new(coarse).expect("valid"));
-    let records = drive(straight, DriveParams::default(), Some(sensor), 60_000);
+    let records = drive(straight, WheeledRobotParams::default(), Some(sensor), 60_000);
     let tick_m = std::f64::consts::TAU * 0.05 / 100.0;
     let steps: Vec<f64> = increments(&records).iter().map(Pose2::x).collect();
     assert!(steps.iter().all(|x| ((x / tick_m) - (x / tick_m).round()).abs() < 1e-6));
@@ -193,8 +212,8 @@ fn encoders_count_whole_ticks_and_lose_none() {
 fn gaussian_odometry_has_the_noise_of_the_shared_logs() {
     // Standing still, increments are noise alone.
     let params = GaussianOdometryParams { period_ms: 1, ..GaussianOdometryParams::default() };
-    let standing = DriveParams { speed_mps: 0.0, ..DriveParams::default() };
-    let route = Circle { radius_m: 2.0 }.route().expect("valid");
+    let standing = WheeledRobotParams { speed_mps: 0.0, ..WheeledRobotParams::default() };
+    let route = CircleRoute { radius_m: 2.0 }.route().expect("valid");
     let sensor = Box::new(GaussianOdometry::new(params).expect("valid"));
     let steps = increments(&drive(route, standing, Some(sensor), 40_000));
     assert_eq!(steps.len(), 40_000);
@@ -214,9 +233,9 @@ fn latency_shows_in_the_stamps_alone() {
     let looks = |latency_ms| -> Vec<Record> {
         let params = RangeBearingParams { latency_ms, ..RangeBearingParams::default() };
         let sensor = Box::new(RangeBearingDetector::new(params).expect("valid"));
-        let route = Circle { radius_m: 2.0 }.route().expect("valid");
+        let route = CircleRoute { radius_m: 2.0 }.route().expect("valid");
         let records = Simulation::new(&scene, route).run(&mut [sensor], &mut streams(5)).expect("valid");
-        records.into_iter().filter(|r| matches!(r.data, Data::Detections(_))).collect()
+        records.into_iter().filter(|r| matches!(r.data, RecordData::Detections(_))).collect()
     };
     for (prompt, late) in looks(0).iter().zip(looks(70)) {
         assert_eq!(prompt.data, late.data);

@@ -4,23 +4,24 @@ mod support;
 
 use support::streams;
 use wayfix_estimation_traits::nalgebra::Vector2;
-use wayfix_scene_sim::random::Source;
-use wayfix_scene_sim::route::{Circle, Piece, Route};
+use wayfix_scene_sim::random::RandomStreamPurpose;
+use wayfix_scene_sim::route::{CircleRoute, Route, RoutePiece};
 use wayfix_scene_sim::world::{
-    CorridorLoop, Office, OfficeFloor, OtherRobot, Plan, PlanarWorld, Roadside, UniformField, World,
+    CorridorLoop, FloorPlan, Office, OfficeFloor, OtherRobot, PlanarWorld, Roadside, SensorWorld,
+    UniformField,
 };
-use wayfix_sensor_log::{Target, TrueLandmark};
+use wayfix_sensor_log::{DetectionTarget, TrueLandmark};
 
 const SEED: u64 = 11;
 
-fn points(plan: &Plan) -> Vec<Vector2<f64>> {
+fn points(plan: &FloorPlan) -> Vec<Vector2<f64>> {
     plan.landmarks.iter().map(|l| Vector2::new(l.x, l.y)).collect()
 }
 
 #[test]
 fn a_field_fills_its_square_and_keeps_landmarks_apart() {
     let field = UniformField { n_landmarks: 100, half_width_m: 10.0, separation_m: 1.0 };
-    let plan = field.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
+    let plan = field.plan(streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
     let points = points(&plan);
     for (k, p) in points.iter().enumerate() {
         assert!(p.amax() <= 10.0 && points[..k].iter().all(|q| (p - q).norm() >= 1.0), "{p:?}");
@@ -37,7 +38,7 @@ fn a_field_fills_its_square_and_keeps_landmarks_apart() {
 #[test]
 fn corridor_landmarks_are_on_walls_and_hidden_behind_corners() {
     let corridor = CorridorLoop { length_m: 20.0, width_m: 10.0, corridor_m: 2.0, spacing_m: 2.0 };
-    let plan = corridor.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
+    let plan = corridor.plan(streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
     for p in points(&plan) {
         let outer = (p.x.abs() - 11.0).max(p.y.abs() - 6.0);
         let inner = (p.x.abs() - 9.0).max(p.y.abs() - 4.0);
@@ -59,7 +60,7 @@ fn corridor_landmarks_are_on_walls_and_hidden_behind_corners() {
 #[test]
 fn offices_have_corner_posts_and_doors() {
     let office = Office { n_columns: 3, n_rows: 2, room_m: 4.0, door_m: 1.0, jitter_m: 0.2 };
-    let plan = office.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
+    let plan = office.plan(streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
     assert_eq!(plan.landmarks.len(), 4 * 3);
     assert!(points(&plan).iter().all(|p| {
         let from_corner = |offset: f64| (offset - (offset / 4.0).round() * 4.0).abs();
@@ -85,7 +86,7 @@ fn an_office_floor_is_closed_but_for_its_doors() {
         door_m: 0.9,
         spacing_m: 5.0,
     };
-    let plan = floor.plan(streams(SEED).of(Source::Landmarks)).expect("valid");
+    let plan = floor.plan(streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
     // From the corridor into all directions: no sight leads out of the building, which ends 1 m (short sides, and the niches' depth) or 4 m
     // (long sides) beyond the centre line, and none into the block.
     for (eye, into_block) in [((0.0, -8.7), 1.0), ((0.0, 8.7), -1.0), ((14.2, 0.0), 0.0), ((-14.2, 0.0), 0.0)]
@@ -118,9 +119,9 @@ fn an_office_floor_is_closed_but_for_its_doors() {
 
 #[test]
 fn rocks_lie_on_both_verges_of_the_road() {
-    let road = Circle { radius_m: 20.0 }.route().expect("valid");
+    let road = CircleRoute { radius_m: 20.0 }.route().expect("valid");
     let rocks = Roadside { n_landmarks: 100, clear_m: 1.5, verge_m: 3.0 };
-    let plan = rocks.plan(&road, streams(SEED).of(Source::Landmarks)).expect("valid");
+    let plan = rocks.plan(&road, streams(SEED).of(RandomStreamPurpose::Landmarks)).expect("valid");
     let offsets: Vec<f64> = points(&plan).iter().map(|p| p.norm() - 20.0).collect();
     assert!(offsets.iter().all(|o| (1.5 - 1e-9..=4.5 + 1e-9).contains(&o.abs())));
     // Binomial: 50 ± 5 on each side.
@@ -130,18 +131,21 @@ fn rocks_lie_on_both_verges_of_the_road() {
 
 #[test]
 fn other_robots_follow_routes_and_targets_keep_order() {
-    let straight = Piece { length_m: 10.0, curvature_per_m: 0.0 };
+    let straight = RoutePiece { length_m: 10.0, curvature_per_m: 0.0 };
     let start = wayfix_estimation_traits::Pose2::new(1.0, 0.0, 0.0);
     let route = Route::open(start, vec![straight]).expect("valid");
     let landmark = TrueLandmark { id: 4, x: 0.0, y: 3.0 };
     let world = PlanarWorld {
         unknown_codes: vec![(99, Vector2::new(5.0, 5.0))],
         other_robots: vec![OtherRobot { id: 2, route, speed_mps: 0.5 }],
-        ..PlanarWorld::new(Plan { landmarks: vec![landmark], walls: vec![] })
+        ..PlanarWorld::new(FloorPlan { landmarks: vec![landmark], walls: vec![] })
     };
     for seconds in [0.0, 6.0, 60.0] {
-        let kinds: Vec<Target> = world.targets(seconds).iter().map(|(target, _)| *target).collect();
-        assert_eq!(kinds, [Target::Landmark(4), Target::UnknownCode(99), Target::Robot(2)]);
+        let kinds: Vec<DetectionTarget> = world.targets(seconds).iter().map(|(target, _)| *target).collect();
+        assert_eq!(
+            kinds,
+            [DetectionTarget::Landmark(4), DetectionTarget::UnknownCode(99), DetectionTarget::Robot(2)]
+        );
         assert!((world.targets(seconds)[2].1 - Vector2::new(1.0 + 0.5 * seconds, 0.0)).norm() < 1e-12);
     }
 }

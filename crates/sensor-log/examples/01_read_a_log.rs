@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use wayfix_sensor_log::{Data, LogSummary, OpenOptions, open};
+use wayfix_sensor_log::{LogSummary, OpenOptions, RecordData, open};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut length = 0.0;
     let mut previous = None;
     for record in open(&path, &options)? {
-        if let Data::TruePose(pose) = record.data {
+        if let RecordData::TruePose(pose) = record.data {
             let (x, y) = previous.unwrap_or((pose.x(), pose.y()));
             length += f64::hypot(pose.x() - x, pose.y() - y);
             previous = Some((pose.x(), pose.y()));

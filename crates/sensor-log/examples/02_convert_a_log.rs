@@ -4,14 +4,14 @@
 
 use std::error::Error;
 
-use wayfix_sensor_log::{Format, OpenOptions, convert, open};
+use wayfix_sensor_log::{LogFormat, OpenOptions, convert, open};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [input, output, format, robot @ ..] = arguments.as_slice() else {
         return Err("give IN, OUT, FORMAT and perhaps ROBOT".into());
     };
-    let format: Format = format.parse()?;
+    let format: LogFormat = format.parse()?;
     let robot = robot.first().map(|robot| robot.parse()).transpose()?;
     let log = open(input, &OpenOptions { robot, ..Default::default() })?;
     let (read, written) = convert(log, output, format)?;

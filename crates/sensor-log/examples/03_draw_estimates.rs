@@ -6,7 +6,8 @@ use std::error::Error;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Data, Detection, Drawing, McapWriter, Record, Shape, Stamp, Target, TrueLandmark, Velocity, topics,
+    Detection, DetectionTarget, DrawingShape, McapWriter, Record, RecordData, Stamp, TrueLandmark, Velocity,
+    ViewerDrawing, topics,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -21,12 +22,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let seen = pose.inverse_transform(&[landmark.x, landmark.y].into());
         let (range, bearing) = (seen.norm(), seen.y.atan2(seen.x));
         let records = [
-            Data::TrueLandmark(landmark),
-            Data::TruePose(pose),
-            Data::Velocity(Velocity { linear: 1.0, angular: 0.2 }),
-            Data::OdometryIncrement(Pose2::new(0.1, 0.0, 0.02)),
-            Data::Detections(vec![Detection { target: Target::Landmark(7), range, bearing }]),
-            Data::EstimatedPose(pose),
+            RecordData::TrueLandmark(landmark),
+            RecordData::TruePose(pose),
+            RecordData::Velocity(Velocity { linear: 1.0, angular: 0.2 }),
+            RecordData::OdometryIncrement(Pose2::new(0.1, 0.0, 0.02)),
+            RecordData::Detections(vec![Detection { target: DetectionTarget::Landmark(7), range, bearing }]),
+            RecordData::EstimatedPose(pose),
         ];
         for data in records {
             writer.record(&Record { stamp, data })?;
@@ -35,19 +36,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         writer.poses_in_frame("/estimate/path", stamp, topics::WORLD_FRAME, &poses)?;
         writer.point_cloud("/estimate/landmarks", stamp, topics::WORLD_FRAME, &[[landmark.x, landmark.y]])?;
         let drawings = [
-            Drawing {
+            ViewerDrawing {
                 id: "covariance".to_owned(),
                 color: [0.2, 0.4, 1.0, 1.0],
-                shape: Shape::Ellipse {
+                shape: DrawingShape::Ellipse {
                     center: [pose.x(), pose.y()],
                     semi_axes: [0.3, 0.1],
                     angle: pose.heading(),
                 },
             },
-            Drawing {
+            ViewerDrawing {
                 id: "landmark 7".to_owned(),
                 color: [1.0, 0.6, 0.0, 1.0],
-                shape: Shape::Marker {
+                shape: DrawingShape::Marker {
                     position: [landmark.x, landmark.y],
                     radius: 0.1,
                     text: "7".to_owned(),

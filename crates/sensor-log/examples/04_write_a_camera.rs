@@ -4,13 +4,13 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use wayfix_estimation_traits::Pose3;
-use wayfix_sensor_log::{CameraInfo, Data, EncodedImage, Format, Record, Stamp, write};
+use wayfix_sensor_log::{CameraInfo, EncodedImage, LogFormat, Record, RecordData, Stamp, write};
 
 const CAMERA: CameraInfo = CameraInfo { width: 208, height: 160, fx: 197.5, fy: 197.5, cx: 104.0, cy: 80.0 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).ok_or("usage: write_a_camera OUT.mcap")?;
-    let mut records = vec![Record { stamp: Stamp::default(), data: Data::CameraInfo(CAMERA) }];
+    let mut records = vec![Record { stamp: Stamp::default(), data: RecordData::CameraInfo(CAMERA) }];
     for frame in 0..24_u32 {
         let stamp = Stamp::from_nanoseconds(u64::from(frame) * 83_333_333);
         let pan = 0.05 * f64::from(frame);
@@ -21,12 +21,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             labels.iter().flat_map(|&k| [[20, 120, 30], [230, 230, 230]][usize::from(k) - 1]).collect();
         let (width, height) = (CAMERA.width, CAMERA.height);
         records.extend([
-            Record { stamp, data: Data::CameraMount(mount) },
-            Record { stamp, data: Data::TrueLabels(EncodedImage::png_gray(width, height, &labels)?) },
-            Record { stamp, data: Data::Image(EncodedImage::jpeg(width, height, &rgb, 85)?) },
+            Record { stamp, data: RecordData::CameraMount(mount) },
+            Record { stamp, data: RecordData::TrueLabels(EncodedImage::png_gray(width, height, &labels)?) },
+            Record { stamp, data: RecordData::Image(EncodedImage::jpeg(width, height, &rgb, 85)?) },
         ]);
     }
-    print!("{}", write(path, Format::Mcap, records)?);
+    print!("{}", write(path, LogFormat::Mcap, records)?);
     Ok(())
 }
 

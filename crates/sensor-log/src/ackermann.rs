@@ -4,9 +4,9 @@
 /// half a track width $`H`$ off the middle, and the wheelbase $`L`$, the middle of the rear axle moves with
 /// $`v = v_{wheel} / (1 - \tan(\alpha) H / L)`$ [Guivant & Nebot 2001].
 /// ```
-/// use wayfix_sensor_log::{AckermannDrive, Data};
+/// use wayfix_sensor_log::{AckermannDrive, RecordData};
 /// let drive = AckermannDrive { wheel_speed: 2.0, steering: 0.1 };
-/// assert_eq!(Data::Ackermann(drive).kind(), "ackermann drive");
+/// assert_eq!(RecordData::Ackermann(drive).kind(), "ackermann drive");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AckermannDrive {

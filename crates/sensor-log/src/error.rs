@@ -1,7 +1,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::{Format, ImageFormat, LogEnd, Stamp};
+use crate::{ImageFormat, LogEnd, LogFormat, Stamp};
 
 /// Errors of opening and writing logs, with remedies.
 #[derive(Debug, thiserror::Error)]
@@ -55,7 +55,7 @@ pub enum LogError {
         /// The file or folder.
         path: PathBuf,
         /// Its format.
-        format: Format,
+        format: LogFormat,
     },
     /// No path was given.
     #[error("no log was given")]
@@ -67,7 +67,7 @@ pub enum LogError {
         path: PathBuf,
     },
     /// The content has no known format.
-    #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), Format::NAMES)]
+    #[error("{}: looks like no known log format ({reason}); name the format: {}", path.display(), LogFormat::NAMES)]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -80,7 +80,7 @@ pub enum LogError {
         /// The file or folder.
         path: PathBuf,
         /// The format it should have.
-        format: Format,
+        format: LogFormat,
         /// The reason.
         reason: String,
     },
@@ -154,7 +154,7 @@ pub enum LogError {
         /// The file or folder.
         path: PathBuf,
         /// Its format.
-        format: Format,
+        format: LogFormat,
     },
     /// The file is damaged or truncated before the first record.
     #[error("{}: {end} before the first record", path.display())]
@@ -168,7 +168,7 @@ pub enum LogError {
     #[error("{format} logs are read, not written; write one of range-bearing, tum, mcap")]
     NotWritable {
         /// The format.
-        format: Format,
+        format: LogFormat,
     },
     /// A number that no log should hold.
     #[error("{what} at {stamp} is not finite")]
@@ -223,7 +223,7 @@ pub enum LogError {
     #[error("messages cannot be passed on: {0}")]
     Sink(Box<dyn std::error::Error + Send + Sync>),
     /// A name that is no format.
-    #[error("{name:?} is no log format; the formats are {}", Format::NAMES)]
+    #[error("{name:?} is no log format; the formats are {}", LogFormat::NAMES)]
     NoSuchFormat {
         /// The name.
         name: String,

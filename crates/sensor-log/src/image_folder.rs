@@ -6,7 +6,9 @@ use std::iter::Enumerate;
 use std::path::{Path, PathBuf};
 use std::vec;
 
-use crate::{Data, EncodedImage, ImageFormat, LogError, Problem, ProblemKind, ReadReport, Record, Stamp};
+use crate::{
+    EncodedImage, ImageFormat, LogError, ProblemKind, ReadReport, Record, RecordData, RowProblem, Stamp,
+};
 
 /// No frame is larger; a file that is something else must not fill the memory.
 const MAX_FILE_BYTES: u64 = 128 << 20;
@@ -48,10 +50,10 @@ impl ImageFolder {
                     let nanoseconds = (index as f64 * 1e9 / self.rate_hz).round() as u64;
                     return Some(Record {
                         stamp: Stamp::from_nanoseconds(nanoseconds),
-                        data: Data::Image(image),
+                        data: RecordData::Image(image),
                     });
                 }
-                Err(reason) => report.add(Problem {
+                Err(reason) => report.add(RowProblem {
                     file: file_name(&path),
                     row: index as u64 + 1,
                     kind: ProblemKind::UnreadableImage,

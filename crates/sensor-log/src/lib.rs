@@ -4,27 +4,27 @@
 //! not be read:
 //! | format | is | holds |
 //! | --- | --- | --- |
-//! | [`Format::Utias`] | a folder of the UTIAS multi-robot set | velocity, detections, truth |
-//! | [`Format::VictoriaPark`] | a folder of the Victoria Park set as CSV | car odometry, trees, GPS |
-//! | [`Format::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, detections, truth |
-//! | [`Format::Tum`] | `t x y z qx qy qz qw` lines | poses |
-//! | [`Format::Carmen`] | messages of the Carnegie Mellon toolkit, one a line | scans, increments, the laser's mount, poses that are not the odometry |
-//! | [`Format::ScanJson`] | scans with their poses as a JSON object | scans, increments, poses |
-//! | [`Format::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
+//! | [`LogFormat::Utias`] | a folder of the UTIAS multi-robot set | velocity, detections, truth |
+//! | [`LogFormat::VictoriaPark`] | a folder of the Victoria Park set as CSV | car odometry, trees, GPS |
+//! | [`LogFormat::RangeBearing`] | `L`, `P`, `O`, `Z` lines | increments, detections, truth |
+//! | [`LogFormat::Tum`] | `t x y z qx qy qz qw` lines | poses |
+//! | [`LogFormat::Carmen`] | messages of the Carnegie Mellon toolkit, one a line | scans, increments, the laser's mount, poses that are not the odometry |
+//! | [`LogFormat::ScanJson`] | scans with their poses as a JSON object | scans, increments, poses |
+//! | [`LogFormat::Mcap`] | MCAP with Foxglove protobuf messages on the [`topics`] | everything |
 //! | | MCAP with ROS 2 messages ([`ros`]), as `ros2 bag` writes it | scans, odometry, images, cameras, poses |
-//! | [`Format::Images`] | a folder of PNG and JPEG files | images |
+//! | [`LogFormat::Images`] | a folder of PNG and JPEG files | images |
 //!
 //! [`write()`] writes records as text or MCAP, and [`convert()`] a whole log. [`McapWriter`] also writes drawings for viewers ([`MessageWriter`]
 //! also to live viewers). [`LogSummary`] summarizes the content of a log.
 //!
 //! An unusable row never stops the reading: it is skipped and counted by kind, and the first few are reported with file and line.
 //! ```
-//! use wayfix_sensor_log::{Data, OpenOptions, open};
+//! use wayfix_sensor_log::{RecordData, OpenOptions, open};
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("walk.txt");
 //! std::fs::write(&path, "L 7 2.0 0.0\nO 0.5 0.0 0.0\nZ 7 1.5 0.0\nZ 7 far 0.0\n")?;
 //! let mut log = open(&path, &OpenOptions::default())?;
-//! let detections = log.by_ref().filter(|record| matches!(record.data, Data::Detections(_))).count();
+//! let detections = log.by_ref().filter(|record| matches!(record.data, RecordData::Detections(_))).count();
 //! assert_eq!(detections, 1);
 //! assert_eq!(log.report().n_problems(), 1); // line 4: "far" is not a number
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -57,21 +57,22 @@ pub use bag::{Topic, TopicUse};
 pub use convert::convert;
 pub use error::LogError;
 pub use formats::compressed::read_text;
-pub use formats::format::Format;
+pub use formats::format::LogFormat;
 pub use image::{DecodedImage, EncodedImage, ImageError, ImageFormat, ImageSummary, PixelLayout};
 pub use image_folder::{image_files, is_hidden};
 pub use log::{Log, LogMeta};
 pub use mcap_log::{
-    ChannelKey, Drawing, ImageOutline, McapFile, McapWriter, Message, MessageSink, MessageWriter, Shape,
-    Sinks, topics,
+    ChannelKey, DrawingShape, ImageOutline, McapFile, McapWriter, Message, MessageSink, MessageSinks,
+    MessageWriter, ViewerDrawing, topics,
 };
 pub use open::{OpenOptions, PoseKind, open, open_all};
 pub use record::{
-    CameraInfo, Data, Detection, Record, Target, TrueLandmark, TruePosition, TrueWall, Velocity,
+    CameraInfo, Detection, DetectionTarget, Record, RecordData, TrueLandmark, TruePosition, TrueWall,
+    Velocity,
 };
-pub use report::{LogEnd, Problem, ProblemKind, ReadReport, Warning};
+pub use report::{LogEnd, LogWarning, ProblemKind, ReadReport, RowProblem};
 pub use scan::{LaserScan, ScanSummary};
 pub use stamp::Stamp;
-pub use summary::{KindSummary, LogSummary};
-pub use text::{Relation, read_relations};
+pub use summary::{LogSummary, RecordKindSummary};
+pub use text::{PoseRelation, read_relations};
 pub use write::{WriteReport, write};

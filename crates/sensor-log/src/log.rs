@@ -5,7 +5,7 @@ use std::vec;
 use crate::image_folder::ImageFolder;
 use crate::mcap_log::McapRecords;
 use crate::text::carmen::CarmenLog;
-use crate::{Format, ReadReport, Record, Topic};
+use crate::{LogFormat, ReadReport, Record, Topic};
 
 /// An open log: an iterator over its records in time order, with metadata.
 ///
@@ -23,9 +23,9 @@ pub struct Log {
 #[non_exhaustive]
 pub struct LogMeta {
     /// The storage format.
-    pub format: Format,
+    pub format: LogFormat,
     /// The original format of a [converted](crate::convert) log, if stored in it.
-    pub origin: Option<Format>,
+    pub origin: Option<LogFormat>,
     /// The file or folder; the first one of several named files.
     pub source: PathBuf,
     /// The files of an MCAP log; several if it was split.
@@ -38,7 +38,7 @@ pub struct LogMeta {
 
 impl LogMeta {
     /// The original format of the records if known, else MCAP.
-    pub fn first_format(&self) -> Format {
+    pub fn first_format(&self) -> LogFormat {
         self.origin.unwrap_or(self.format)
     }
 }

@@ -6,13 +6,13 @@ use crate::image_folder::ImageFolder;
 use crate::log::Records;
 use crate::mcap_log::{McapRecords, files_of};
 use crate::text::{carmen, range_bearing, scan_json, tum, utias, victoria_park};
-use crate::{Data, Format, Log, LogEnd, LogError, LogMeta, ReadReport, Record, Warning};
+use crate::{Log, LogEnd, LogError, LogFormat, LogMeta, LogWarning, ReadReport, Record, RecordData};
 
 /// Options for opening a log. The default detects all of them.
 #[derive(Clone, Debug)]
 pub struct OpenOptions {
     /// The format; `None` detects it.
-    pub format: Option<Format>,
+    pub format: Option<LogFormat>,
     /// Which robot, in sets of several.
     pub robot: Option<u32>,
     /// Meaning of the poses in a format that does not define it (TUM, CARMEN, JSON).
@@ -38,18 +38,18 @@ impl Default for OpenOptions {
 /// Meaning of bare poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum PoseKind {
-    /// Some program's estimate: [`Data::EstimatedPose`](crate::Data::EstimatedPose).
+    /// Some program's estimate: [`RecordData::EstimatedPose`](crate::RecordData::EstimatedPose).
     #[default]
     Estimated,
-    /// The truth: [`Data::TruePose`](crate::Data::TruePose).
+    /// The truth: [`RecordData::TruePose`](crate::RecordData::TruePose).
     True,
 }
 
 impl PoseKind {
-    pub(crate) fn data(self, pose: Pose2<f64>) -> Data {
+    pub(crate) fn data(self, pose: Pose2<f64>) -> RecordData {
         match self {
-            Self::Estimated => Data::EstimatedPose(pose),
-            Self::True => Data::TruePose(pose),
+            Self::Estimated => RecordData::EstimatedPose(pose),
+            Self::True => RecordData::TruePose(pose),
         }
     }
 }
@@ -75,21 +75,21 @@ pub fn open(path: impl AsRef<Path>, options: &OpenOptions) -> Result<Log, LogErr
     let path = path.as_ref();
     let format = match options.format {
         Some(format) => format,
-        None => Format::detect(path)?,
+        None => LogFormat::detect(path)?,
     };
-    let (files, warnings) = if format == Format::Mcap { files_of(path)? } else { Default::default() };
+    let (files, warnings) = if format == LogFormat::Mcap { files_of(path)? } else { Default::default() };
     open_files(path, format, files, warnings, options)
 }
 
 /// Opens a log recorded in several MCAP files, given in any order; all messages come in time order.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_sensor_log::{Data, Format, OpenOptions, Record, Stamp, open_all, write};
+/// use wayfix_sensor_log::{RecordData, LogFormat, OpenOptions, Record, Stamp, open_all, write};
 /// # let folder = tempfile::tempdir()?;
 /// # let (first, second) = (folder.path().join("drive_0.mcap"), folder.path().join("drive_1.mcap"));
-/// let at = |second: u64| Record { stamp: Stamp::from_nanoseconds(second), data: Data::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
-/// write(&first, Format::Mcap, [at(1), at(2)])?;
-/// write(&second, Format::Mcap, [at(3)])?;
+/// let at = |second: u64| Record { stamp: Stamp::from_nanoseconds(second), data: RecordData::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
+/// write(&first, LogFormat::Mcap, [at(1), at(2)])?;
+/// write(&second, LogFormat::Mcap, [at(3)])?;
 /// let (records, _) = open_all(&[second, first], &OpenOptions::default())?.read_all();
 /// assert_eq!(records, [at(1), at(2), at(3)]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -104,28 +104,28 @@ pub fn open_all(paths: &[impl AsRef<Path>], options: &OpenOptions) -> Result<Log
     let first = paths.first().ok_or(LogError::NoPath)?.as_ref();
     let (mut files, mut warnings) = (Vec::new(), Vec::new());
     for path in paths.iter().map(AsRef::as_ref) {
-        let format = options.format.map_or_else(|| Format::detect(path), Ok)?;
-        if format != Format::Mcap {
+        let format = options.format.map_or_else(|| LogFormat::detect(path), Ok)?;
+        if format != LogFormat::Mcap {
             return Err(LogError::NotAPart { path: path.into(), format });
         }
         let (found, doubts) = files_of(path)?;
         files.extend(found);
         warnings.extend(doubts);
     }
-    open_files(first, Format::Mcap, files, warnings, options)
+    open_files(first, LogFormat::Mcap, files, warnings, options)
 }
 
 fn open_files(
     source: &Path,
-    format: Format,
+    format: LogFormat,
     files: Vec<PathBuf>,
-    warnings: Vec<Warning>,
+    warnings: Vec<LogWarning>,
     options: &OpenOptions,
 ) -> Result<Log, LogError> {
     // A folder with one file is that file.
     let path = if let [file] = files.as_slice() { file.clone() } else { source.into() };
     let path = path.as_path();
-    if format != Format::Mcap && !options.topics.is_empty() {
+    if format != LogFormat::Mcap && !options.topics.is_empty() {
         return Err(LogError::NoTopics { path: path.into(), format });
     }
     let mut meta =
@@ -133,22 +133,22 @@ fn open_files(
     let mut report = ReadReport { warnings, ..ReadReport::default() };
     let in_memory = |records: Vec<Record>| Records::Memory(records.into_iter());
     let mut records = match format {
-        Format::Utias => {
+        LogFormat::Utias => {
             let robot = utias::choose_robot(path, options.robot)?;
             meta.robot = Some(robot);
             in_memory(utias::read(path, robot, &mut report)?)
         }
-        Format::VictoriaPark => in_memory(victoria_park::read(path, &mut report)?),
-        Format::RangeBearing => in_memory(range_bearing::read(path, &mut report)?),
-        Format::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
-        Format::Carmen => {
+        LogFormat::VictoriaPark => in_memory(victoria_park::read(path, &mut report)?),
+        LogFormat::RangeBearing => in_memory(range_bearing::read(path, &mut report)?),
+        LogFormat::Tum => in_memory(tum::read(path, options.poses, &mut report)?),
+        LogFormat::Carmen => {
             Records::Carmen(Box::new(carmen::CarmenLog::open(path, options.poses, &mut report)?))
         }
-        Format::ScanJson => in_memory(scan_json::read(path, options.poses, &mut report)?),
-        Format::Mcap => {
+        LogFormat::ScanJson => in_memory(scan_json::read(path, options.poses, &mut report)?),
+        LogFormat::Mcap => {
             Records::Mcap(Box::new(McapRecords::open(path, &meta.files, &options.topics, &mut report)?))
         }
-        Format::Images => Records::Images(ImageFolder::open(path, options.frame_rate_hz)?),
+        LogFormat::Images => Records::Images(ImageFolder::open(path, options.frame_rate_hz)?),
     };
     let first = records.next(&mut report).ok_or_else(|| nothing_in(path, format, &report))?;
     if let Records::Mcap(records) = &records {
@@ -159,7 +159,7 @@ fn open_files(
 }
 
 /// Reason for the absence of records: damage, wrong content, or an empty log.
-fn nothing_in(path: &Path, format: Format, report: &ReadReport) -> LogError {
+fn nothing_in(path: &Path, format: LogFormat, report: &ReadReport) -> LogError {
     let path = path.to_path_buf();
     if report.end != LogEnd::Complete {
         LogError::Damaged { path, end: report.end.clone() }

@@ -9,7 +9,7 @@ pub struct Record {
     /// Time of the event, on the clock of the log.
     pub stamp: Stamp,
     /// The datum.
-    pub data: Data,
+    pub data: RecordData,
 }
 
 /// Content of a record. SI units and radians, REP 103 axes.
@@ -17,7 +17,7 @@ pub struct Record {
 /// New sensors will add kinds; match with a wildcard arm.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Data {
+pub enum RecordData {
     /// Body velocity; it holds until the next one.
     Velocity(Velocity),
     /// Motion since the previous increment, in the robot frame before the motion.
@@ -52,7 +52,7 @@ pub enum Data {
     TrueLabels(EncodedImage),
 }
 
-impl Data {
+impl RecordData {
     /// The kind of record, in words.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -140,7 +140,7 @@ impl CameraInfo {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detection {
     /// Identity reported by the sensor.
-    pub target: Target,
+    pub target: DetectionTarget,
     /// Distance, metres.
     pub range: f64,
     /// Direction from the sensor, radians, 0 ahead (along the robot's x axis), counter-clockwise.
@@ -149,7 +149,7 @@ pub struct Detection {
 
 /// Target of a detection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Target {
+pub enum DetectionTarget {
     /// A landmark with an identity read by the sensor.
     Landmark(u32),
     /// Another robot.

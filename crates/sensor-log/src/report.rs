@@ -16,18 +16,18 @@ pub struct ReadReport {
     /// Count of each kind of problem.
     pub problems: BTreeMap<ProblemKind, u64>,
     /// The first problems, in the order of the log.
-    pub examples: Vec<Problem>,
+    pub examples: Vec<RowProblem>,
     /// Messages that this crate does not read: `topic (schema)`, or the first word of a CARMEN line, with their number.
     pub ignored: BTreeMap<String, u64>,
     /// Whether the log ends as it should.
     pub end: LogEnd,
     /// Assumptions and other warnings for the user, without repetitions.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<LogWarning>,
 }
 
 /// A warning for the user: an assumption, or a doubt about the data.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Warning {
+pub struct LogWarning {
     /// Its kind, as it is counted among the events: `laser_mount_unknown`.
     pub name: &'static str,
     /// Description with numbers, and the option that changes an assumption.
@@ -59,7 +59,7 @@ pub enum LogEnd {
 
 /// A row or message with a problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub struct RowProblem {
     /// The file's name, without its folder.
     pub file: String,
     /// Line of a text file, index of a scan in a JSON file, of a message in an MCAP file or of an image in its folder; all count from 1.
@@ -120,7 +120,7 @@ impl ReadReport {
     }
     /// Adds a warning, unless the same one is there.
     pub fn warn(&mut self, name: &'static str, text: impl Into<String>) {
-        let warning = Warning { name, text: text.into() };
+        let warning = LogWarning { name, text: text.into() };
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
         }
@@ -135,14 +135,14 @@ impl ReadReport {
         }
     }
     /// Counts a problem, and lists it if it is among the first.
-    pub fn add(&mut self, problem: Problem) {
+    pub fn add(&mut self, problem: RowProblem) {
         *self.problems.entry(problem.kind).or_default() += 1;
         if self.examples.len() < MAX_EXAMPLES {
             self.examples.push(problem);
         }
     }
     /// Counts `n_rows` already read rows as skipped, with the problem of the first.
-    pub(crate) fn leave_out(&mut self, first: Problem, n_rows: u64) {
+    pub(crate) fn leave_out(&mut self, first: RowProblem, n_rows: u64) {
         self.rows_read -= n_rows.min(self.rows_read);
         *self.problems.entry(first.kind).or_default() += n_rows.saturating_sub(1);
         self.add(first);
@@ -188,13 +188,13 @@ impl fmt::Display for ReadReport {
     }
 }
 
-impl fmt::Display for Warning {
+impl fmt::Display for LogWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "warning: {}", self.text)
     }
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for RowProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}: {}", self.file, self.row, self.reason)
     }

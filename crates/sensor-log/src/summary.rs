@@ -1,7 +1,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use crate::{Data, ImageSummary, Log, LogMeta, ReadReport, ScanSummary, Stamp, Target};
+use crate::{DetectionTarget, ImageSummary, Log, LogMeta, ReadReport, RecordData, ScanSummary, Stamp};
 
 /// Content of a log; `Display` prints it for people.
 /// ```
@@ -23,7 +23,7 @@ pub struct LogSummary {
     /// Stamps of the first and the last record.
     pub span: Option<(Stamp, Stamp)>,
     /// Number of records of each kind.
-    pub kinds: BTreeMap<&'static str, KindSummary>,
+    pub kinds: BTreeMap<&'static str, RecordKindSummary>,
     /// Single detections, of anything.
     pub n_detections: u64,
     /// Landmarks with a known true position.
@@ -46,7 +46,7 @@ pub struct LogSummary {
 
 /// Records of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KindSummary {
+pub struct RecordKindSummary {
     /// Number of records.
     pub count: u64,
     /// Stamp of the first.
@@ -55,7 +55,7 @@ pub struct KindSummary {
     pub last: Stamp,
 }
 
-impl KindSummary {
+impl RecordKindSummary {
     /// Mean rate; `None` for records that all have the same stamp.
     pub fn rate_hz(&self) -> Option<f64> {
         let seconds = self.last.seconds_since(self.first);
@@ -92,32 +92,35 @@ impl LogSummary {
         self.span.map_or(0.0, |(first, last)| last.seconds_since(first))
     }
 
-    fn add(&mut self, stamp: Stamp, data: &Data) {
+    fn add(&mut self, stamp: Stamp, data: &RecordData) {
         self.span = Some((self.span.map_or(stamp, |(first, _)| first), stamp));
-        let kind =
-            self.kinds.entry(data.kind()).or_insert(KindSummary { count: 0, first: stamp, last: stamp });
+        let kind = self.kinds.entry(data.kind()).or_insert(RecordKindSummary {
+            count: 0,
+            first: stamp,
+            last: stamp,
+        });
         kind.count += 1;
         kind.last = stamp;
         match data {
-            Data::TrueLandmark(landmark) => drop(self.landmarks_surveyed.insert(landmark.id)),
-            Data::Detections(detections) => {
+            RecordData::TrueLandmark(landmark) => drop(self.landmarks_surveyed.insert(landmark.id)),
+            RecordData::Detections(detections) => {
                 detections.iter().for_each(|detection| self.add_detection(detection.target));
             }
-            Data::Scan(scan) => self.scans.add(scan),
-            Data::Image(image) | Data::TrueLabels(image) => {
+            RecordData::Scan(scan) => self.scans.add(scan),
+            RecordData::Image(image) | RecordData::TrueLabels(image) => {
                 self.images.entry(data.kind()).or_default().add(image);
             }
             _ => {}
         }
     }
 
-    fn add_detection(&mut self, target: Target) {
+    fn add_detection(&mut self, target: DetectionTarget) {
         self.n_detections += 1;
         match target {
-            Target::Landmark(id) => drop(self.landmarks_seen.insert(id)),
-            Target::Robot(id) => drop(self.robots_seen.insert(id)),
-            Target::UnknownCode(code) => *self.unknown_codes.entry(code).or_default() += 1,
-            Target::Unlabelled => self.n_unlabelled += 1,
+            DetectionTarget::Landmark(id) => drop(self.landmarks_seen.insert(id)),
+            DetectionTarget::Robot(id) => drop(self.robots_seen.insert(id)),
+            DetectionTarget::UnknownCode(code) => *self.unknown_codes.entry(code).or_default() += 1,
+            DetectionTarget::Unlabelled => self.n_unlabelled += 1,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::text::{range_bearing_writer, tum};
-use crate::{Format, LogError, McapWriter, Record};
+use crate::{LogError, LogFormat, McapWriter, Record};
 
 /// Report of writing a log.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
@@ -28,11 +28,11 @@ impl WriteReport {
 /// robots and unknown codes. TUM stores only poses. The report counts the skipped records.
 /// ```
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_sensor_log::{Data, Format, OpenOptions, Record, Stamp, open, write};
+/// use wayfix_sensor_log::{RecordData, LogFormat, OpenOptions, Record, Stamp, open, write};
 /// # let folder = tempfile::tempdir()?;
 /// # let path = folder.path().join("log.mcap");
-/// let record = Record { stamp: Stamp::from_nanoseconds(7), data: Data::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
-/// write(&path, Format::Mcap, [record.clone()])?;
+/// let record = Record { stamp: Stamp::from_nanoseconds(7), data: RecordData::TruePose(Pose2::new(1.0, 2.0, 0.3)) };
+/// write(&path, LogFormat::Mcap, [record.clone()])?;
 /// assert_eq!(open(&path, &OpenOptions::default())?.read_all().0, [record]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -41,7 +41,7 @@ impl WriteReport {
 /// Returns an error if the format is read only (UTIAS, Victoria Park, CARMEN, JSON, images), a number is not finite, or the file cannot be written.
 pub fn write(
     path: impl AsRef<Path>,
-    format: Format,
+    format: LogFormat,
     records: impl IntoIterator<Item = Record>,
 ) -> Result<WriteReport, LogError> {
     write_from(path.as_ref(), format, format, records)
@@ -50,16 +50,20 @@ pub fn write(
 /// Writes records whose original format is `origin`.
 pub(crate) fn write_from(
     path: &Path,
-    format: Format,
-    origin: Format,
+    format: LogFormat,
+    origin: LogFormat,
     records: impl IntoIterator<Item = Record>,
 ) -> Result<WriteReport, LogError> {
     let mut report = WriteReport::default();
     match format {
-        Format::Utias | Format::VictoriaPark | Format::Carmen | Format::ScanJson | Format::Images => {
+        LogFormat::Utias
+        | LogFormat::VictoriaPark
+        | LogFormat::Carmen
+        | LogFormat::ScanJson
+        | LogFormat::Images => {
             return Err(LogError::NotWritable { format });
         }
-        Format::Mcap => {
+        LogFormat::Mcap => {
             let mut writer = McapWriter::create(path)?;
             writer.origin(origin)?;
             for record in records {
@@ -68,7 +72,7 @@ pub(crate) fn write_from(
             }
             writer.finish()?;
         }
-        Format::RangeBearing | Format::Tum => {
+        LogFormat::RangeBearing | LogFormat::Tum => {
             let io = |source| LogError::io(path, source);
             let file = File::create(path);
             let file = file.map_err(|source| LogError::NotCreated { path: path.into(), source })?;
@@ -82,7 +86,7 @@ pub(crate) fn write_from(
                 }
             });
             match format {
-                Format::Tum => tum::write(&mut out, finite, &mut report),
+                LogFormat::Tum => tum::write(&mut out, finite, &mut report),
                 _ => range_bearing_writer::write(&mut out, finite, &mut report),
             }
             .and_then(|()| out.flush())

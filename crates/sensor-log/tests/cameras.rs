@@ -16,8 +16,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Pose2, Pose3};
 use wayfix_sensor_log::{
-    CameraInfo, Data, EncodedImage, Format, ImageFormat, LogError, LogSummary, McapWriter, OpenOptions,
-    ProblemKind, ReadReport, Record, Stamp, convert, open, topics, write,
+    CameraInfo, EncodedImage, ImageFormat, LogError, LogFormat, LogSummary, McapWriter, OpenOptions,
+    ProblemKind, ReadReport, Record, RecordData, Stamp, convert, open, topics, write,
 };
 
 const INFO: CameraInfo = CameraInfo { width: 16, height: 12, fx: 14.25, fy: 14.5, cx: 8.0, cy: 6.125 };
@@ -37,14 +37,14 @@ fn league_drive(n_frames: u8) -> Vec<Record> {
         stamp: Stamp::from_nanoseconds(1_000_000_000 + 83_333_333 * u64::from(frame)),
         data,
     };
-    let mut records = vec![at(0, Data::CameraInfo(INFO))];
+    let mut records = vec![at(0, RecordData::CameraInfo(INFO))];
     for frame in 0..n_frames {
         let labels: Vec<u8> = (0..16 * 12).map(|k| (k as u8 / 3 + frame) % 6).collect();
-        records.push(at(frame, Data::OdometryIncrement(Pose2::new(0.01, 0.0, 0.02))));
-        records.push(at(frame, Data::TruePose(Pose2::new(f64::from(frame), 0.5, 0.1))));
-        records.push(at(frame, Data::CameraMount(mount(0.1 * f64::from(frame)))));
-        records.push(at(frame, Data::TrueLabels(EncodedImage::png_gray(16, 12, &labels).unwrap())));
-        records.push(at(frame, Data::Image(EncodedImage::jpeg(16, 12, &rgb(frame), 90).unwrap())));
+        records.push(at(frame, RecordData::OdometryIncrement(Pose2::new(0.01, 0.0, 0.02))));
+        records.push(at(frame, RecordData::TruePose(Pose2::new(f64::from(frame), 0.5, 0.1))));
+        records.push(at(frame, RecordData::CameraMount(mount(0.1 * f64::from(frame)))));
+        records.push(at(frame, RecordData::TrueLabels(EncodedImage::png_gray(16, 12, &labels).unwrap())));
+        records.push(at(frame, RecordData::Image(EncodedImage::jpeg(16, 12, &rgb(frame), 90).unwrap())));
     }
     records
 }
@@ -60,7 +60,7 @@ fn cameras_round_trip_in_order_with_the_same_bytes() {
     // More than the reader holds back, so that the order is not merely that of one look.
     let records = league_drive(100);
     for name in ["a.mcap", "b.mcap"] {
-        write(at(name), Format::Mcap, records.clone()).unwrap();
+        write(at(name), LogFormat::Mcap, records.clone()).unwrap();
     }
     assert_eq!(fs::read(at("a.mcap")).unwrap(), fs::read(at("b.mcap")).unwrap());
     let (back, report) = read(&at("a.mcap"));
@@ -68,10 +68,10 @@ fn cameras_round_trip_in_order_with_the_same_bytes() {
     assert_eq!(report.n_problems(), 0, "{report}");
     assert_eq!(report.ignored.into_iter().collect::<Vec<_>>(), []);
 
-    convert(open(at("a.mcap"), &OpenOptions::default()).unwrap(), at("copy.mcap"), Format::Mcap).unwrap();
+    convert(open(at("a.mcap"), &OpenOptions::default()).unwrap(), at("copy.mcap"), LogFormat::Mcap).unwrap();
     assert_eq!(fs::read(at("copy.mcap")).unwrap(), fs::read(at("a.mcap")).unwrap());
 
-    let left_out = write(at("poses.tum"), Format::Tum, records).unwrap().left_out;
+    let left_out = write(at("poses.tum"), LogFormat::Tum, records).unwrap().left_out;
     assert_eq!(left_out["image"], 100);
     assert_eq!(left_out["camera info"], 1);
 }
@@ -81,12 +81,12 @@ fn a_summary_counts_images_by_format_and_size() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.mcap");
     let mut records = league_drive(3);
-    let Some(Record { stamp, data: Data::Image(last) }) = records.last().cloned() else {
+    let Some(Record { stamp, data: RecordData::Image(last) }) = records.last().cloned() else {
         panic!("an image is last")
     };
     let cut = EncodedImage::new(ImageFormat::Jpeg, &last.bytes[..last.bytes.len() / 2]);
-    records.push(Record { stamp, data: Data::Image(cut) });
-    write(&path, Format::Mcap, records).unwrap();
+    records.push(Record { stamp, data: RecordData::Image(cut) });
+    write(&path, LogFormat::Mcap, records).unwrap();
     let summary = LogSummary::of(open(&path, &OpenOptions::default()).unwrap());
     assert_eq!(summary.kinds["image"].count, 4);
     let text = summary.to_string();
@@ -139,10 +139,10 @@ proptest! {
         (x, y, z) in (-1e3..1e3_f64, -1.0..1.0_f64, 1e-9..2.0_f64),
     ) {
         let pose = Pose3 { translation: Vector3::new(x, y, z), rotation: UnitQuaternion::from_euler_angles(roll, pitch, yaw) };
-        let record = Record { stamp: Stamp::from_nanoseconds(7), data: Data::CameraMount(pose) };
+        let record = Record { stamp: Stamp::from_nanoseconds(7), data: RecordData::CameraMount(pose) };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.mcap");
-        write(&path, Format::Mcap, [record.clone()]).unwrap();
+        write(&path, LogFormat::Mcap, [record.clone()]).unwrap();
         prop_assert_eq!(read(&path).0, [record]);
     }
 }
@@ -154,19 +154,22 @@ fn a_camera_or_image_that_would_not_come_back_is_not_written() {
         let mut writer = McapWriter::new(Cursor::new(Vec::new())).unwrap();
         writer.record(&Record { stamp, data }).unwrap_err()
     };
-    let error = refused(Data::CameraInfo(CameraInfo { cx: f64::NAN, ..INFO }));
+    let error = refused(RecordData::CameraInfo(CameraInfo { cx: f64::NAN, ..INFO }));
     assert!(matches!(error, LogError::NotFinite { what: "camera info", .. }), "{error}");
     let mut pose = mount(0.0);
     pose.translation.z = f64::INFINITY;
-    assert!(matches!(refused(Data::CameraMount(pose)), LogError::NotFinite { what: "camera mount", .. }));
-    let error = refused(Data::CameraInfo(CameraInfo { width: 0, ..INFO }));
+    assert!(matches!(
+        refused(RecordData::CameraMount(pose)),
+        LogError::NotFinite { what: "camera mount", .. }
+    ));
+    let error = refused(RecordData::CameraInfo(CameraInfo { width: 0, ..INFO }));
     assert!(matches!(error, LogError::BadCamera { width: 0, height: 12, .. }), "{error}");
-    let error = refused(Data::CameraInfo(CameraInfo { fy: -1.0, ..INFO }));
+    let error = refused(RecordData::CameraInfo(CameraInfo { fy: -1.0, ..INFO }));
     assert_eq!(
         error.to_string(),
         "camera at 0.000000005 s: 16 x 12 pixels with focal lengths 14.25 and -1 see nothing"
     );
-    let error = refused(Data::Image(EncodedImage::new(ImageFormat::Png, &[0xFF, 0xD8, 0xFF][..])));
+    let error = refused(RecordData::Image(EncodedImage::new(ImageFormat::Png, &[0xFF, 0xD8, 0xFF][..])));
     assert!(
         matches!(error, LogError::NotAnImage { what: "image", format: ImageFormat::Png, n_bytes: 3, .. }),
         "{error}"
@@ -265,5 +268,5 @@ fn the_content_of_an_image_counts_and_not_what_it_is_called() {
     let header = mcap::records::MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
     writer.write_to_known_channel(&header, &prost::Message::encode_to_vec(&message)).unwrap();
     writer.finish().unwrap();
-    assert_eq!(read(&path).0[0].data, Data::Image(png));
+    assert_eq!(read(&path).0[0].data, RecordData::Image(png));
 }

@@ -8,7 +8,9 @@ use std::path::Path;
 
 use flate2::{Compression, write::GzEncoder};
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Format, LogEnd, OpenOptions, PoseKind, ProblemKind, ReadReport, Record, open};
+use wayfix_sensor_log::{
+    LogEnd, LogFormat, OpenOptions, PoseKind, ProblemKind, ReadReport, Record, RecordData, open,
+};
 
 fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f64) -> String {
     let ranges = format!("{range} ").repeat(n_beams);
@@ -28,7 +30,7 @@ fn gzip(text: &str) -> Vec<u8> {
 fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, ReadReport) {
     fs::write(path, bytes).unwrap();
     let log = open(path, &OpenOptions::default()).unwrap();
-    assert_eq!(log.meta().format, Format::Carmen);
+    assert_eq!(log.meta().format, LogFormat::Carmen);
     log.read_all()
 }
 
@@ -45,7 +47,7 @@ fn walk(n_scans: usize) -> String {
 }
 
 fn n_scans(records: &[Record]) -> usize {
-    records.iter().filter(|record| matches!(record.data, Data::Scan(_))).count()
+    records.iter().filter(|record| matches!(record.data, RecordData::Scan(_))).count()
 }
 
 #[test]
@@ -74,9 +76,9 @@ fn a_scan_gives_its_pose_the_motion_and_the_ranges_as_they_came() {
         (4.0, "laser scan"),
     ];
     assert_eq!(kinds, expected);
-    assert_eq!(records[2].data, Data::EstimatedPose(Pose2::new(2.0, 0.0, 0.5)));
-    assert_eq!(records[3].data, Data::OdometryIncrement(Pose2::new(0.5, 0.0, 0.0)));
-    let (Data::Scan(first), Data::Scan(second)) = (&records[1].data, &records[4].data) else {
+    assert_eq!(records[2].data, RecordData::EstimatedPose(Pose2::new(2.0, 0.0, 0.5)));
+    assert_eq!(records[3].data, RecordData::OdometryIncrement(Pose2::new(0.5, 0.0, 0.0)));
+    let (RecordData::Scan(first), RecordData::Scan(second)) = (&records[1].data, &records[4].data) else {
         panic!("{records:?}");
     };
     assert!(first.ranges.len() == 361 && first.ranges.iter().all(|range| range.is_nan()));
@@ -87,7 +89,7 @@ fn a_scan_gives_its_pose_the_motion_and_the_ranges_as_they_came() {
 
     let options = OpenOptions { poses: PoseKind::True, ..Default::default() };
     let log = open(folder.path().join("walk.log"), &options).unwrap();
-    assert_eq!(log.filter(|record| matches!(record.data, Data::TruePose(_))).count(), 3);
+    assert_eq!(log.filter(|record| matches!(record.data, RecordData::TruePose(_))).count(), 3);
 }
 
 #[test]
@@ -125,7 +127,7 @@ fn line_order_decides_where_time_does_not_advance() {
     let times = [5.0, 5.0, 4.0, 9.0];
     let text: String = times.iter().map(|t| scan_line(180, "1", "0 0 0", "0 0 0", *t)).collect();
     let (records, report) = read(&folder.path().join("clock.log"), text.as_bytes());
-    let scans = records.iter().filter(|record| matches!(record.data, Data::Scan(_)));
+    let scans = records.iter().filter(|record| matches!(record.data, RecordData::Scan(_)));
     let milliseconds: Vec<u64> = scans.map(|record| record.stamp.nanoseconds() / 1_000_000).collect();
     assert_eq!(milliseconds, [5000, 5100, 5200, 9000]);
     assert_eq!((report.rows_read, report.n_problems()), (4, 2));
@@ -138,12 +140,13 @@ fn raw_scans_alone_move_with_the_odometry_lines() {
     let scan = |t: f64| format!("RAWLASER1 0 -1 2 1 8 0.01 0 3 1 1 1 0 {t} h {t}\n");
     let text = [odom_line("0 0 0", 1.0), scan(1.0), scan(1.5), odom_line("1 0 0", 2.0), scan(2.0)].concat();
     let (records, report) = read(&folder.path().join("raw.log"), text.as_bytes());
-    let steps: Vec<f64> = records
-        .iter()
-        .filter_map(
-            |record| if let Data::OdometryIncrement(step) = record.data { Some(step.x()) } else { None },
-        )
-        .collect();
+    let steps: Vec<f64> =
+        records
+            .iter()
+            .filter_map(|record| {
+                if let RecordData::OdometryIncrement(step) = record.data { Some(step.x()) } else { None }
+            })
+            .collect();
     assert_eq!((n_scans(&records), steps, report.n_problems()), (3, vec![0.5, 0.5], 0));
 }
 
@@ -169,7 +172,7 @@ fn time_goes_on_where_the_clock_is_set_back() {
     };
     let text: String = (0..60).map(line).collect();
     let (records, report) = read(&folder.path().join("clock.log"), text.as_bytes());
-    let scans = records.iter().filter(|record| matches!(record.data, Data::Scan(_)));
+    let scans = records.iter().filter(|record| matches!(record.data, RecordData::Scan(_)));
     let stamps: Vec<f64> = scans.map(|record| record.stamp.seconds()).collect();
     assert_eq!((stamps.len(), report.n_problems()), (60, 0));
     assert!(stamps.windows(2).all(|pair| pair[1] > pair[0]));
@@ -207,6 +210,6 @@ fn other_text_logs_may_be_compressed_too() {
     let path = folder.path().join("walk.txt.gz");
     fs::write(&path, gzip("O 1 0 0\nZ 7 1 0\n")).unwrap();
     let log = open(&path, &OpenOptions::default()).unwrap();
-    assert_eq!(log.meta().format, Format::RangeBearing);
+    assert_eq!(log.meta().format, LogFormat::RangeBearing);
     assert_eq!(log.count(), 2);
 }

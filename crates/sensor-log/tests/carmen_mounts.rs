@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_sensor_log::{Data, OpenOptions, ReadReport, Record, open};
+use wayfix_sensor_log::{OpenOptions, ReadReport, Record, RecordData, open};
 
 fn scan_line(n_beams: usize, range: &str, pose: &str, odometry: &str, seconds: f64) -> String {
     let ranges = format!("{range} ").repeat(n_beams);
@@ -19,7 +19,7 @@ fn read(path: &Path, bytes: &[u8]) -> (Vec<Record>, ReadReport) {
 }
 
 fn n_scans(records: &[Record]) -> usize {
-    records.iter().filter(|record| matches!(record.data, Data::Scan(_))).count()
+    records.iter().filter(|record| matches!(record.data, RecordData::Scan(_))).count()
 }
 
 /// The warnings of a log, by name.
@@ -50,9 +50,9 @@ fn mounts_and_poses(records: &[Record]) -> (Vec<Pose2<f64>>, Vec<Pose2<f64>>) {
     let (mut mounts, mut poses) = (Vec::new(), Vec::new());
     for record in records {
         match &record.data {
-            Data::LaserMount(mount) => mounts.push(*mount),
-            Data::EstimatedPose(pose) => poses.push(*pose),
-            Data::OdometryIncrement(step) => {
+            RecordData::LaserMount(mount) => mounts.push(*mount),
+            RecordData::EstimatedPose(pose) => poses.push(*pose),
+            RecordData::OdometryIncrement(step) => {
                 assert!((step.heading() - 0.2).abs() < 1e-5, "{step:?}");
                 assert!((step.x().hypot(step.y()) - 4.0 * 0.1_f64.sin()).abs() < 1e-5, "{step:?}");
             }
@@ -74,7 +74,7 @@ fn the_difference_of_both_poses_is_the_lasers_mount() {
         let (records, report) = read(&folder.path().join("ahead.log"), text.as_bytes());
         let (mounts, poses) = mounts_and_poses(&records);
         assert!(mounts.len() == 1 && near(&mounts[0], &mount), "{mounts:?}");
-        assert!(matches!(records[0].data, Data::LaserMount(_)));
+        assert!(matches!(records[0].data, RecordData::LaserMount(_)));
         assert!(poses.is_empty(), "they are the odometry");
         assert_eq!(warned(&report), ["laser_mount_from_poses", "poses_are_odometry"]);
         assert_eq!((n_scans(&records), report.n_problems()), (10, 0));
@@ -152,7 +152,7 @@ fn scans_of_either_message_are_read_and_none_twice() {
     for (name, text, n_again) in [("mixed", mixed, 0), ("both", both, 10)] {
         let (records, report) = read(&folder.path().join(name), (second.clone() + &text).as_bytes());
         let bare = |records: &[Record]| {
-            let is_scan = |record: &&Record| matches!(record.data, Data::Scan(_));
+            let is_scan = |record: &&Record| matches!(record.data, RecordData::Scan(_));
             let (scans, others): (Vec<_>, Vec<_>) = records.iter().partition(is_scan);
             (
                 scans.iter().map(|record| record.stamp).collect::<Vec<_>>(),
@@ -179,14 +179,14 @@ fn robotlaser_alone_has_the_field_of_view_that_it_states() {
     };
     let (records, report) = read(&folder.path().join("robot.log"), (line(0.0) + &line(0.1)).as_bytes());
     assert_eq!(mounts_of(&records), [Pose2::new(0.145, 0.0, 0.0)]);
-    let Data::Scan(scan) = &records[1].data else { panic!("{records:?}") };
+    let RecordData::Scan(scan) = &records[1].data else { panic!("{records:?}") };
     assert!((scan.bearing(681) - 2.094395).abs() < 1e-4);
     assert_eq!((scan.range_max, scan.echoes().count(), report.n_problems()), (4.0, 0, 0));
 }
 
 fn mounts_of(records: &[Record]) -> Vec<Pose2<f64>> {
     let mount = |record: &Record| match record.data {
-        Data::LaserMount(mount) => Some(mount),
+        RecordData::LaserMount(mount) => Some(mount),
         _ => None,
     };
     records.iter().filter_map(mount).collect()

@@ -10,7 +10,8 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_sensor_log::{
-    Data, EncodedImage, Format, LogError, OpenOptions, ProblemKind, Record, Stamp, convert, open, write,
+    EncodedImage, LogError, LogFormat, OpenOptions, ProblemKind, Record, RecordData, Stamp, convert, open,
+    write,
 };
 
 /// A picture whose width tells which one it is.
@@ -24,7 +25,7 @@ fn put(folder: &Path, name: &str, image: &EncodedImage) {
 
 fn widths(records: &[Record]) -> Vec<u32> {
     let image = |record: &Record| match &record.data {
-        Data::Image(image) => image.size().unwrap().0,
+        RecordData::Image(image) => image.size().unwrap().0,
         other => panic!("{other:?}"),
     };
     records.iter().map(image).collect()
@@ -38,7 +39,7 @@ fn frames_come_in_the_order_of_their_names_at_the_stated_rate() {
     }
     fs::write(folder.path().join("boxes.txt"), "1,2,3,4").unwrap();
     let log = open(folder.path(), &OpenOptions::default()).unwrap();
-    assert_eq!(log.meta().format, Format::Images);
+    assert_eq!(log.meta().format, LogFormat::Images);
     let (records, report) = log.read_all();
     assert_eq!(widths(&records), [1, 2, 9, 10]);
     assert!(report.is_clean() && report.rows_read == 4, "{report}");
@@ -74,17 +75,17 @@ fn frames_that_cannot_be_read_are_counted_and_leave_their_gap() {
 fn a_folder_without_a_frame_is_an_error_that_says_why() {
     let folder = tempfile::tempdir().unwrap();
     let at = |options: &OpenOptions| open(folder.path(), options).unwrap_err();
-    let images = OpenOptions { format: Some(Format::Images), ..Default::default() };
+    let images = OpenOptions { format: Some(LogFormat::Images), ..Default::default() };
     assert!(matches!(at(&OpenOptions::default()), LogError::IsADirectory { .. }));
     assert!(matches!(at(&images), LogError::Empty { .. }));
     fs::write(folder.path().join("a.png"), "?").unwrap();
-    assert!(matches!(at(&images), LogError::NotThisFormat { format: Format::Images, .. }));
+    assert!(matches!(at(&images), LogError::NotThisFormat { format: LogFormat::Images, .. }));
     for rate in [0.0, -30.0, f64::NAN, f64::INFINITY, 1e-9] {
         let error = at(&OpenOptions { frame_rate_hz: rate, ..Default::default() });
         assert!(matches!(error, LogError::BadFrameRate { .. }), "{error}");
     }
     assert!(open(folder.path().join("a.png"), &images).is_err(), "a file is no folder");
-    assert!(matches!(write("nowhere", Format::Images, []), Err(LogError::NotWritable { .. })));
+    assert!(matches!(write("nowhere", LogFormat::Images, []), Err(LogError::NotWritable { .. })));
 }
 
 #[test]
@@ -92,9 +93,9 @@ fn a_folder_becomes_an_mcap_file_and_keeps_where_it_comes_from() {
     let folder = tempfile::tempdir().unwrap();
     (1..40).for_each(|width| put(folder.path(), &format!("{width:04}.png"), &picture(width)));
     let path = folder.path().join("frames.mcap");
-    convert(open(folder.path(), &OpenOptions::default()).unwrap(), &path, Format::Mcap).unwrap();
+    convert(open(folder.path(), &OpenOptions::default()).unwrap(), &path, LogFormat::Mcap).unwrap();
     let from_mcap = open(&path, &OpenOptions::default()).unwrap();
-    assert_eq!(from_mcap.meta().origin, Some(Format::Images));
+    assert_eq!(from_mcap.meta().origin, Some(LogFormat::Images));
     let from_folder = open(folder.path(), &OpenOptions::default()).unwrap();
     assert_eq!(from_mcap.read_all().0, from_folder.read_all().0);
 }

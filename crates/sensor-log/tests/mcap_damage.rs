@@ -14,7 +14,8 @@ use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
 use proptest::prelude::*;
 use wayfix_sensor_log::{
-    Data, Format, LogEnd, LogError, McapWriter, OpenOptions, ProblemKind, ReadReport, Record, open, write,
+    LogEnd, LogError, LogFormat, McapWriter, OpenOptions, ProblemKind, ReadReport, Record, RecordData, open,
+    write,
 };
 
 struct Scratch {
@@ -36,7 +37,7 @@ impl Scratch {
 
 fn whole_file(records: &[Record]) -> Vec<u8> {
     let scratch = Scratch::new();
-    write(&scratch.path, Format::Mcap, records.to_vec()).unwrap();
+    write(&scratch.path, LogFormat::Mcap, records.to_vec()).unwrap();
     fs::read(&scratch.path).unwrap()
 }
 
@@ -196,7 +197,7 @@ fn garbage_with_an_mcap_name_is_refused_by_its_first_bytes() {
     let file = fs::File::create(&scratch.path).unwrap();
     file.set_len(1 << 30).unwrap();
     let error = open(&scratch.path, &OpenOptions::default()).unwrap_err();
-    assert!(matches!(error, LogError::NotThisFormat { format: Format::Mcap, .. }));
+    assert!(matches!(error, LogError::NotThisFormat { format: LogFormat::Mcap, .. }));
     let error = open(scratch.path.with_extension("absent.mcap"), &OpenOptions::default()).unwrap_err();
     assert!(matches!(error, LogError::NotFound { .. }));
 }
@@ -244,7 +245,7 @@ fn messages_with_numbers_that_are_none_are_counted() {
     let stamp = wayfix_sensor_log::Stamp::from_nanoseconds(9);
     let pose = wayfix_estimation_traits::Pose2::new(f64::NAN, 0.0, 0.0);
     writer.pose_in_frame("/truth/pose", stamp, "world", &pose).unwrap();
-    writer.record(&Record { stamp, data: Data::Detections(Vec::new()) }).unwrap();
+    writer.record(&Record { stamp, data: RecordData::Detections(Vec::new()) }).unwrap();
     writer.finish().unwrap();
     let (back, report) = Scratch::new().read(&out.into_inner()).unwrap();
     assert_eq!(back.len(), 1);
@@ -276,7 +277,7 @@ proptest! {
         with_magic.extend(&bytes);
         let _ = scratch.read(&with_magic);
         let _ = scratch.read(&bytes);
-        let format = Some([Format::Tum, Format::RangeBearing, Format::Utias][name]);
+        let format = Some([LogFormat::Tum, LogFormat::RangeBearing, LogFormat::Utias][name]);
         let _ = open(&scratch.path, &OpenOptions { format, ..Default::default() }).map(|log| log.read_all());
     }
 }

@@ -13,9 +13,9 @@ use std::io::Cursor;
 use proptest::prelude::*;
 use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
 use wayfix_sensor_log::{
-    AckermannDrive, Data, Detection, Format, LaserScan, LogEnd, LogError, McapWriter, OpenOptions, PoseKind,
-    ProblemKind, Record, Stamp, Target, TrueLandmark, TruePosition, TrueWall, Velocity, convert, open,
-    topics, write,
+    AckermannDrive, Detection, DetectionTarget, LaserScan, LogEnd, LogError, LogFormat, McapWriter,
+    OpenOptions, PoseKind, ProblemKind, Record, RecordData, Stamp, TrueLandmark, TruePosition, TrueWall,
+    Velocity, convert, open, topics, write,
 };
 
 /// Finite numbers of any size; zero only with its plus sign, since protobuf does not store the other.
@@ -35,12 +35,12 @@ fn pose() -> impl Strategy<Value = Pose2<f64>> {
     (number(), number(), heading).prop_map(|(x, y, heading)| Pose2::new(x, y, heading))
 }
 
-fn target() -> impl Strategy<Value = Target> {
+fn target() -> impl Strategy<Value = DetectionTarget> {
     prop_oneof![
-        any::<u32>().prop_map(Target::Landmark),
-        any::<u32>().prop_map(Target::Robot),
-        any::<u32>().prop_map(Target::UnknownCode),
-        Just(Target::Unlabelled),
+        any::<u32>().prop_map(DetectionTarget::Landmark),
+        any::<u32>().prop_map(DetectionTarget::Robot),
+        any::<u32>().prop_map(DetectionTarget::UnknownCode),
+        Just(DetectionTarget::Unlabelled),
     ]
 }
 
@@ -60,31 +60,33 @@ fn scan() -> impl Strategy<Value = LaserScan> {
     )
 }
 
-fn data() -> impl Strategy<Value = Data> {
+fn data() -> impl Strategy<Value = RecordData> {
     let detection = (target(), number(), number()).prop_map(|(target, range, bearing)| Detection {
         target,
         range,
         bearing,
     });
     prop_oneof![
-        (number(), number()).prop_map(|(linear, angular)| Data::Velocity(Velocity { linear, angular })),
-        pose().prop_map(Data::OdometryIncrement),
-        prop::collection::vec(detection, 0..8).prop_map(Data::Detections),
-        (number(), number())
-            .prop_map(|(wheel_speed, steering)| Data::Ackermann(AckermannDrive { wheel_speed, steering })),
-        scan().prop_map(Data::Scan),
-        prop::collection::vec(number(), 0..8).prop_map(Data::DetectionWidths),
-        (number(), number()).prop_map(|(x, y)| Data::TruePosition(TruePosition { x, y })),
-        pose().prop_map(Data::TruePose),
-        (any::<u32>(), number(), number()).prop_map(|(id, x, y)| Data::TrueLandmark(TrueLandmark {
+        (number(), number()).prop_map(|(linear, angular)| RecordData::Velocity(Velocity { linear, angular })),
+        pose().prop_map(RecordData::OdometryIncrement),
+        prop::collection::vec(detection, 0..8).prop_map(RecordData::Detections),
+        (number(), number()).prop_map(|(wheel_speed, steering)| RecordData::Ackermann(AckermannDrive {
+            wheel_speed,
+            steering
+        })),
+        scan().prop_map(RecordData::Scan),
+        prop::collection::vec(number(), 0..8).prop_map(RecordData::DetectionWidths),
+        (number(), number()).prop_map(|(x, y)| RecordData::TruePosition(TruePosition { x, y })),
+        pose().prop_map(RecordData::TruePose),
+        (any::<u32>(), number(), number()).prop_map(|(id, x, y)| RecordData::TrueLandmark(TrueLandmark {
             id,
             x,
             y
         })),
         (any::<u32>(), [number(), number(), number(), number()]).prop_map(|(id, [a, b, c, d])| {
-            Data::TrueWall(TrueWall { id, start: Vector2::new(a, b), end: Vector2::new(c, d) })
+            RecordData::TrueWall(TrueWall { id, start: Vector2::new(a, b), end: Vector2::new(c, d) })
         }),
-        pose().prop_map(Data::EstimatedPose),
+        pose().prop_map(RecordData::EstimatedPose),
     ]
 }
 
@@ -115,22 +117,24 @@ fn to_bytes(records: &[Record]) -> Vec<u8> {
 /// Every bit of every number, which `==` does not compare for zeros.
 fn bits(record: &Record) -> (u64, String, Vec<u64>) {
     let numbers = match &record.data {
-        Data::Velocity(velocity) => vec![velocity.linear, velocity.angular],
-        Data::OdometryIncrement(pose) | Data::TruePose(pose) | Data::EstimatedPose(pose) => {
+        RecordData::Velocity(velocity) => vec![velocity.linear, velocity.angular],
+        RecordData::OdometryIncrement(pose)
+        | RecordData::TruePose(pose)
+        | RecordData::EstimatedPose(pose) => {
             vec![pose.x(), pose.y(), pose.heading()]
         }
-        Data::Detections(look) => {
+        RecordData::Detections(look) => {
             look.iter().flat_map(|detection| [detection.range, detection.bearing]).collect()
         }
-        Data::TrueLandmark(landmark) => vec![landmark.x, landmark.y],
-        Data::TrueWall(wall) => vec![wall.start.x, wall.start.y, wall.end.x, wall.end.y],
-        Data::Scan(scan) => {
+        RecordData::TrueLandmark(landmark) => vec![landmark.x, landmark.y],
+        RecordData::TrueWall(wall) => vec![wall.start.x, wall.start.y, wall.end.x, wall.end.y],
+        RecordData::Scan(scan) => {
             let LaserScan { angle_min, angle_increment, range_max, beam_period, ranges } = scan;
             [&[*angle_min, *angle_increment, *range_max, *beam_period], ranges.as_slice()].concat()
         }
-        Data::Ackermann(drive) => vec![drive.wheel_speed, drive.steering],
-        Data::DetectionWidths(widths) => widths.clone(),
-        Data::TruePosition(position) => vec![position.x, position.y],
+        RecordData::Ackermann(drive) => vec![drive.wheel_speed, drive.steering],
+        RecordData::DetectionWidths(widths) => widths.clone(),
+        RecordData::TruePosition(position) => vec![position.x, position.y],
         other => panic!("{other:?}"),
     };
     (
@@ -146,7 +150,7 @@ proptest! {
     fn mcap_keeps_every_record_to_the_bit(records in records(40)) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.mcap");
-        write(&path, Format::Mcap, records.clone()).unwrap();
+        write(&path, LogFormat::Mcap, records.clone()).unwrap();
         let (back, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
         prop_assert_eq!(&report.end, &LogEnd::Complete);
         prop_assert_eq!(report.n_problems(), 0);
@@ -164,11 +168,11 @@ proptest! {
         let path = folder.path().join("poses.txt");
         let poses: Vec<Record> = records
             .into_iter()
-            .filter(|record| matches!(record.data, Data::TruePose(_)))
+            .filter(|record| matches!(record.data, RecordData::TruePose(_)))
             .map(|record| Record { stamp: Stamp::from_nanoseconds(record.stamp.nanoseconds() % (1 << 60)), ..record })
             .collect();
         prop_assume!(!poses.is_empty());
-        write(&path, Format::Tum, poses.clone()).unwrap();
+        write(&path, LogFormat::Tum, poses.clone()).unwrap();
         let options = OpenOptions { poses: PoseKind::True, ..Default::default() };
         let (back, _) = open(&path, &options).unwrap().read_all();
         prop_assert_eq!(back.len(), poses.len());
@@ -184,7 +188,7 @@ fn a_log_larger_than_a_chunk_comes_back_whole() {
     let records = common::drive(3000);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.mcap");
-    write(&path, Format::Mcap, records.clone()).unwrap();
+    write(&path, LogFormat::Mcap, records.clone()).unwrap();
     assert!(std::fs::metadata(&path).unwrap().len() > 1 << 20, "several chunks of 256 KiB");
     let log = open(&path, &OpenOptions::default()).unwrap();
     assert_eq!(log.read_all().0, records);
@@ -195,13 +199,14 @@ fn range_bearing_writes_its_kinds_and_names_the_rest() {
     let records = common::drive(20);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.txt");
-    let report = write(&path, Format::RangeBearing, records.clone()).unwrap();
+    let report = write(&path, LogFormat::RangeBearing, records.clone()).unwrap();
     assert_eq!(report.left_out.into_iter().collect::<Vec<_>>(), [("estimated pose", 20), ("velocity", 20)]);
-    let back: Vec<Data> = open(&path, &OpenOptions::default()).unwrap().map(|record| record.data).collect();
-    let kept: Vec<Data> = records
+    let back: Vec<RecordData> =
+        open(&path, &OpenOptions::default()).unwrap().map(|record| record.data).collect();
+    let kept: Vec<RecordData> = records
         .into_iter()
         .map(|record| record.data)
-        .filter(|data| !matches!(data, Data::EstimatedPose(_) | Data::Velocity(_)))
+        .filter(|data| !matches!(data, RecordData::EstimatedPose(_) | RecordData::Velocity(_)))
         .collect();
     assert_eq!(back, kept);
 }
@@ -209,8 +214,8 @@ fn range_bearing_writes_its_kinds_and_names_the_rest() {
 #[test]
 fn consecutive_landmarks_share_a_message_in_order() {
     let at = |id: u32| Vector2::new(f64::from(id), 1.0);
-    let landmark = |id| Data::TrueLandmark(TrueLandmark { id, x: at(id).x, y: at(id).y });
-    let wall = |id| Data::TrueWall(TrueWall { id, start: at(id), end: at(id + 1) });
+    let landmark = |id| RecordData::TrueLandmark(TrueLandmark { id, x: at(id).x, y: at(id).y });
+    let wall = |id| RecordData::TrueWall(TrueWall { id, start: at(id), end: at(id + 1) });
     let data = (0..5).map(landmark).chain((0..7).map(wall)).chain([landmark(9)]);
     let records: Vec<Record> = data.map(|data| Record { stamp: Stamp::default(), data }).collect();
     let bytes = to_bytes(&records);
@@ -227,7 +232,7 @@ fn a_cloud_without_the_ends_is_no_cloud_of_walls() {
     let path = folder.path().join("log.mcap");
     let mut writer = McapWriter::create(&path).unwrap();
     writer
-        .record(&Record { stamp: Stamp::default(), data: Data::TruePose(Pose2::new(0.0, 0.0, 0.0)) })
+        .record(&Record { stamp: Stamp::default(), data: RecordData::TruePose(Pose2::new(0.0, 0.0, 0.0)) })
         .unwrap();
     writer.point_cloud(topics::TRUE_WALLS, Stamp::default(), topics::WORLD_FRAME, &[[1.0, 2.0]]).unwrap();
     writer.finish().unwrap();
@@ -239,7 +244,7 @@ fn a_cloud_without_the_ends_is_no_cloud_of_walls() {
 fn what_cannot_be_stored_is_refused() {
     let record = |nanoseconds, linear| Record {
         stamp: Stamp::from_nanoseconds(nanoseconds),
-        data: Data::Velocity(Velocity { linear, angular: 0.0 }),
+        data: RecordData::Velocity(Velocity { linear, angular: 0.0 }),
     };
     let mut writer = McapWriter::new(Cursor::new(Vec::new())).unwrap();
     assert!(matches!(
@@ -248,13 +253,14 @@ fn what_cannot_be_stored_is_refused() {
     ));
     assert!(matches!(writer.record(&record(u64::MAX, 1.0)), Err(LogError::StampTooLate { .. })));
     let endless = TrueWall { id: 1, start: Vector2::zeros(), end: Vector2::new(0.0, f64::INFINITY) };
-    let endless = Record { stamp: Stamp::default(), data: Data::TrueWall(endless) };
+    let endless = Record { stamp: Stamp::default(), data: RecordData::TrueWall(endless) };
     assert!(matches!(writer.record(&endless), Err(LogError::NotFinite { what: "true wall", .. })));
-    assert!(matches!(write("nowhere", Format::Utias, []), Err(LogError::NotWritable { .. })));
+    assert!(matches!(write("nowhere", LogFormat::Utias, []), Err(LogError::NotWritable { .. })));
     let folder = tempfile::tempdir().unwrap();
-    let bad = Record { stamp: Stamp::default(), data: Data::TruePose(Pose2::new(f64::INFINITY, 0.0, 0.0)) };
+    let bad =
+        Record { stamp: Stamp::default(), data: RecordData::TruePose(Pose2::new(f64::INFINITY, 0.0, 0.0)) };
     let path = folder.path().join("poses.txt");
-    assert!(matches!(write(path, Format::Tum, [bad]), Err(LogError::NotFinite { .. })));
+    assert!(matches!(write(path, LogFormat::Tum, [bad]), Err(LogError::NotFinite { .. })));
 }
 
 #[test]
@@ -262,20 +268,20 @@ fn conversion_keeps_the_origin_in_a_truncated_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let open_at = |name| open(at(name), &OpenOptions::default()).unwrap();
-    write(at("walk.txt"), Format::RangeBearing, common::drive(20)).unwrap();
-    convert(open_at("walk.txt"), at("first.mcap"), Format::Mcap).unwrap();
-    convert(open_at("first.mcap"), at("second.mcap"), Format::Mcap).unwrap();
+    write(at("walk.txt"), LogFormat::RangeBearing, common::drive(20)).unwrap();
+    convert(open_at("walk.txt"), at("first.mcap"), LogFormat::Mcap).unwrap();
+    convert(open_at("first.mcap"), at("second.mcap"), LogFormat::Mcap).unwrap();
     let bytes = std::fs::read(at("first.mcap")).unwrap();
     assert_eq!(std::fs::read(at("second.mcap")).unwrap(), bytes);
     std::fs::write(at("cut.mcap"), &bytes[..bytes.len() / 2]).unwrap();
     for name in ["first.mcap", "cut.mcap"] {
         let meta = open_at(name).meta().clone();
-        assert_eq!((meta.format, meta.origin), (Format::Mcap, Some(Format::RangeBearing)));
-        assert_eq!(meta.first_format(), Format::RangeBearing);
+        assert_eq!((meta.format, meta.origin), (LogFormat::Mcap, Some(LogFormat::RangeBearing)));
+        assert_eq!(meta.first_format(), LogFormat::RangeBearing);
     }
 
-    write(at("plain.mcap"), Format::Mcap, common::drive(20)).unwrap();
-    convert(open_at("plain.mcap"), at("copy.mcap"), Format::Mcap).unwrap();
+    write(at("plain.mcap"), LogFormat::Mcap, common::drive(20)).unwrap();
+    convert(open_at("plain.mcap"), at("copy.mcap"), LogFormat::Mcap).unwrap();
     assert_eq!(std::fs::read(at("copy.mcap")).unwrap(), std::fs::read(at("plain.mcap")).unwrap());
     assert_eq!(open_at("copy.mcap").meta().origin, None);
 }
@@ -284,13 +290,13 @@ fn conversion_keeps_the_origin_in_a_truncated_file() {
 fn a_log_is_not_replaced_while_it_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.mcap");
-    write(&path, Format::Mcap, common::drive(20)).unwrap();
+    write(&path, LogFormat::Mcap, common::drive(20)).unwrap();
     let before = std::fs::read(&path).unwrap();
     let again = folder.path().join(".").join("log.mcap");
-    let error = convert(open(&path, &OpenOptions::default()).unwrap(), again, Format::Mcap).unwrap_err();
+    let error = convert(open(&path, &OpenOptions::default()).unwrap(), again, LogFormat::Mcap).unwrap_err();
     assert!(matches!(error, LogError::SameFile { .. }));
     assert_eq!(std::fs::read(&path).unwrap(), before);
     let error =
-        convert(open(&path, &OpenOptions::default()).unwrap(), folder.path(), Format::Tum).unwrap_err();
+        convert(open(&path, &OpenOptions::default()).unwrap(), folder.path(), LogFormat::Tum).unwrap_err();
     assert!(matches!(error, LogError::NotCreated { .. }), "{error}");
 }

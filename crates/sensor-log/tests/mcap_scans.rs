@@ -11,8 +11,8 @@ use foxglove::messages::{JointState, JointStates, LaserScan as ScanMessage, Pose
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use wayfix_sensor_log::{
-    AckermannDrive, Data, LaserScan, McapWriter, OpenOptions, ProblemKind, ReadReport, Record, Stamp, open,
-    topics,
+    AckermannDrive, LaserScan, McapWriter, OpenOptions, ProblemKind, ReadReport, Record, RecordData, Stamp,
+    open, topics,
 };
 
 type File = Writer<Cursor<Vec<u8>>>;
@@ -27,7 +27,7 @@ fn add<M: Encode + prost::Message>(file: &mut File, topic: &str, metadata: &[(&s
     file.write_to_known_channel(&header, &message.encode_to_vec()).unwrap();
 }
 
-fn read(fill: impl FnOnce(&mut File)) -> (Vec<Data>, ReadReport) {
+fn read(fill: impl FnOnce(&mut File)) -> (Vec<RecordData>, ReadReport) {
     let mut file = WriteOptions::new().create(Cursor::new(Vec::new())).unwrap();
     fill(&mut file);
     file.finish().unwrap();
@@ -54,7 +54,7 @@ fn scan_without_metadata_takes_its_step_from_the_angles() {
     let scans: Vec<&LaserScan> = data
         .iter()
         .map(|data| match data {
-            Data::Scan(scan) => scan,
+            RecordData::Scan(scan) => scan,
             other => panic!("{other:?}"),
         })
         .collect();
@@ -77,7 +77,7 @@ fn metadata_that_are_no_numbers_are_as_good_as_none() {
             beam_period: 0.0,
             ranges: vec![1.0, 1.0],
         };
-        assert_eq!(data, [Data::Scan(expected)], "{bad:?}");
+        assert_eq!(data, [RecordData::Scan(expected)], "{bad:?}");
     }
 }
 
@@ -96,7 +96,7 @@ fn what_cannot_be_placed_or_is_no_number_is_counted() {
         let joints = vec![JointState { position: Some(-0.5), ..steering }, wheel];
         add(file, topics::ACKERMANN, &[], &JointStates { joints, timestamp: None });
     });
-    assert_eq!(data, [Data::Ackermann(AckermannDrive { wheel_speed: 1.0, steering: -0.5 })]);
+    assert_eq!(data, [RecordData::Ackermann(AckermannDrive { wheel_speed: 1.0, steering: -0.5 })]);
     assert_eq!(report.problems[&ProblemKind::Inconsistent], 2);
     assert_eq!(report.problems[&ProblemKind::NotFinite], 2);
 }
@@ -104,7 +104,7 @@ fn what_cannot_be_placed_or_is_no_number_is_counted() {
 #[test]
 fn scans_of_two_devices_keep_their_own_angles() {
     let scan = |angle_increment, range_max| {
-        Data::Scan(LaserScan {
+        RecordData::Scan(LaserScan {
             angle_min: 0.1,
             angle_increment,
             range_max,
@@ -123,6 +123,7 @@ fn scans_of_two_devices_keep_their_own_angles() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log.mcap");
     fs::write(&path, bytes.into_inner()).unwrap();
-    let back: Vec<Data> = open(&path, &OpenOptions::default()).unwrap().map(|record| record.data).collect();
+    let back: Vec<RecordData> =
+        open(&path, &OpenOptions::default()).unwrap().map(|record| record.data).collect();
     assert_eq!(back, scans);
 }

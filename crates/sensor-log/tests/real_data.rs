@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{
-    Data, OpenOptions, ProblemKind, Record, Relation, Stamp, Target, open, read_relations,
+    DetectionTarget, OpenOptions, PoseRelation, ProblemKind, Record, RecordData, Stamp, open, read_relations,
 };
 
 fn data_folder() -> Option<PathBuf> {
@@ -18,7 +18,7 @@ fn data_folder() -> Option<PathBuf> {
     folder
 }
 
-fn count(records: &[Record], is_counted: impl Fn(&Data) -> bool) -> usize {
+fn count(records: &[Record], is_counted: impl Fn(&RecordData) -> bool) -> usize {
     records.iter().filter(|record| is_counted(&record.data)).count()
 }
 
@@ -36,20 +36,20 @@ fn utias_set_7() {
             open(folder.join("utias_mrclam/MRCLAM_Dataset7"), &options).unwrap().read_all();
         assert_eq!(report.n_problems(), 0, "{report}");
         assert!(in_time_order(&records));
-        assert_eq!(count(&records, |data| matches!(data, Data::TruePose(_))), n_true);
-        assert_eq!(count(&records, |data| matches!(data, Data::Velocity(_))), n_odometry);
-        assert_eq!(count(&records, |data| matches!(data, Data::TrueLandmark(_))), 15);
+        assert_eq!(count(&records, |data| matches!(data, RecordData::TruePose(_))), n_true);
+        assert_eq!(count(&records, |data| matches!(data, RecordData::Velocity(_))), n_odometry);
+        assert_eq!(count(&records, |data| matches!(data, RecordData::TrueLandmark(_))), 15);
         let looks: Vec<_> = records
             .iter()
             .filter_map(|record| match &record.data {
-                Data::Detections(look) => Some(look),
+                RecordData::Detections(look) => Some(look),
                 _ => None,
             })
             .collect();
         assert_eq!(looks.len(), n_looks);
         assert_eq!(looks.iter().map(|look| look.len()).sum::<usize>(), n_detections);
         let landmark_ids = looks.iter().flat_map(|look| look.iter()).filter_map(|s| match s.target {
-            Target::Landmark(id) => Some(id),
+            DetectionTarget::Landmark(id) => Some(id),
             _ => None,
         });
         assert!(
@@ -65,12 +65,12 @@ fn victoria_park() {
     // One fix is more than 30 m from both its neighbours, by a separate program.
     assert_eq!((report.rows_read, report.n_problems()), (61945 + 52974 + 4465, 1), "{report}");
     assert!(in_time_order(&records));
-    assert_eq!(count(&records, |data| matches!(data, Data::Ackermann(_))), 61945);
-    assert_eq!(count(&records, |data| matches!(data, Data::TruePosition(_))), 4465);
+    assert_eq!(count(&records, |data| matches!(data, RecordData::Ackermann(_))), 61945);
+    assert_eq!(count(&records, |data| matches!(data, RecordData::TruePosition(_))), 4465);
     let looks: Vec<_> = records
         .windows(2)
         .filter_map(|pair| match (&pair[0].data, &pair[1].data) {
-            (Data::DetectionWidths(widths), Data::Detections(look)) => Some((widths, look)),
+            (RecordData::DetectionWidths(widths), RecordData::Detections(look)) => Some((widths, look)),
             _ => None,
         })
         .collect();
@@ -92,11 +92,11 @@ fn carmen_logs() {
         let (records, report) = open(path, &OpenOptions::default()).unwrap().read_all();
         assert!(in_time_order(&records));
         assert_eq!(
-            count(&records, |data| matches!(data, Data::Scan(s) if s.ranges.len() == n_beams)),
+            count(&records, |data| matches!(data, RecordData::Scan(s) if s.ranges.len() == n_beams)),
             n_scans
         );
-        assert_eq!(count(&records, |data| matches!(data, Data::EstimatedPose(_))), n_scans);
-        assert_eq!(count(&records, |data| matches!(data, Data::OdometryIncrement(_))), n_scans - 1);
+        assert_eq!(count(&records, |data| matches!(data, RecordData::EstimatedPose(_))), n_scans);
+        assert_eq!(count(&records, |data| matches!(data, RecordData::OdometryIncrement(_))), n_scans - 1);
         assert_eq!(report.problems.get(&ProblemKind::NotLater).copied().unwrap_or(0), n_not_later, "{name}");
         assert_eq!(report.n_problems(), n_not_later, "{name}: {report}");
         assert_eq!(report.ignored["NEFF"], n_scans as u64);
@@ -113,7 +113,7 @@ fn distances(a: &[Pose2<f64>], b: &[Pose2<f64>]) -> (f64, f64) {
 
 fn increments(records: &[Record]) -> Vec<Pose2<f64>> {
     let increment = |record: &Record| match record.data {
-        Data::OdometryIncrement(step) => Some(step),
+        RecordData::OdometryIncrement(step) => Some(step),
         _ => None,
     };
     records.iter().filter_map(increment).collect()
@@ -143,7 +143,7 @@ fn intel_relations_fit_the_corrected_poses() {
         let log = open(folder.join("intel_raw").join(name), &OpenOptions::default()).unwrap();
         let poses: BTreeMap<Stamp, Pose2<f64>> = log
             .filter_map(|record| match record.data {
-                Data::EstimatedPose(pose) => Some((record.stamp, pose)),
+                RecordData::EstimatedPose(pose) => Some((record.stamp, pose)),
                 _ => None,
             })
             .collect();
@@ -154,7 +154,7 @@ fn intel_relations_fit_the_corrected_poses() {
             let nearest = near.into_iter().flatten().min_by(|a, b| away(a.0).total_cmp(&away(b.0)));
             nearest.filter(|(at, _)| away(at) <= 0.01).map(|(_, pose)| *pose)
         };
-        let error = |relation: &Relation| {
+        let error = |relation: &PoseRelation| {
             let moved = pose_at(relation.from)?.inverse().compose(&pose_at(relation.to)?);
             let error = relation.pose.inverse().compose(&moved);
             Some(error.x().hypot(error.y()))
@@ -177,9 +177,9 @@ fn simulated_range_bearing_logs() {
         let (records, report) = open(path, &OpenOptions::default()).unwrap().read_all();
         assert_eq!(report.n_problems(), 0, "{report}");
         assert!(in_time_order(&records));
-        assert_eq!(count(&records, |data| matches!(data, Data::TrueLandmark(_))), n_landmarks);
-        assert_eq!(count(&records, |data| matches!(data, Data::OdometryIncrement(_))), 500);
-        assert_eq!(count(&records, |data| matches!(data, Data::TruePose(_))), 500);
+        assert_eq!(count(&records, |data| matches!(data, RecordData::TrueLandmark(_))), n_landmarks);
+        assert_eq!(count(&records, |data| matches!(data, RecordData::OdometryIncrement(_))), 500);
+        assert_eq!(count(&records, |data| matches!(data, RecordData::TruePose(_))), 500);
         assert!((records.last().unwrap().stamp.seconds() - 49.9).abs() < 1e-9, "500 steps of 0.1 s");
     }
 }

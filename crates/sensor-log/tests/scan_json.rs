@@ -5,7 +5,9 @@
 use std::fs;
 
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Format, LogEnd, LogError, OpenOptions, ProblemKind, ReadReport, Record, open};
+use wayfix_sensor_log::{
+    LogEnd, LogError, LogFormat, OpenOptions, ProblemKind, ReadReport, Record, RecordData, open,
+};
 
 fn entry(seconds: &str, n_beams: usize, x: &str) -> String {
     let ranges = vec!["1.5"; n_beams].join(", ");
@@ -21,7 +23,7 @@ fn read(text: &str) -> Result<(Vec<Record>, ReadReport), LogError> {
     let path = folder.path().join("scans.json");
     fs::write(&path, text).unwrap();
     let log = open(&path, &OpenOptions::default())?;
-    assert_eq!(log.meta().format, Format::ScanJson);
+    assert_eq!(log.meta().format, LogFormat::ScanJson);
     Ok(log.read_all())
 }
 
@@ -32,8 +34,8 @@ fn keys_are_sorted_as_numbers_and_poses_give_the_motion() {
     assert!(report.is_clean());
     let stamps: Vec<f64> = records.iter().map(|record| record.stamp.seconds()).collect();
     assert_eq!(stamps, [9.75, 9.75, 10.5, 10.5, 10.5]);
-    assert_eq!(records[3].data, Data::OdometryIncrement(Pose2::new(0.25, 0.0, 0.0)));
-    assert!(matches!(&records[4].data, Data::Scan(scan) if scan.ranges == [1.5; 180]));
+    assert_eq!(records[3].data, RecordData::OdometryIncrement(Pose2::new(0.25, 0.0, 0.0)));
+    assert!(matches!(&records[4].data, RecordData::Scan(scan) if scan.ranges == [1.5; 180]));
 }
 
 #[test]
@@ -58,7 +60,7 @@ fn a_bad_scan_is_counted_and_the_others_are_read() {
 fn what_comes_before_a_damage_is_read() {
     let entries: Vec<String> = (1..=4).map(|k| entry(&k.to_string(), 180, "0")).collect();
     let text = document(&entries);
-    let scans = |records: &[Record]| records.iter().filter(|r| matches!(r.data, Data::Scan(_))).count();
+    let scans = |records: &[Record]| records.iter().filter(|r| matches!(r.data, RecordData::Scan(_))).count();
     let cut = &text[..text.len() - 100];
     let (records, report) = read(cut).unwrap();
     assert_eq!(scans(&records), 3);
@@ -85,7 +87,7 @@ fn nan_and_infinity_in_json_are_missing_beams() {
     let (records, report) = read(&text.replacen("comment", "NaN \\\" NaN", 1)).unwrap();
     let scans: Vec<_> = records
         .iter()
-        .filter_map(|record| if let Data::Scan(scan) = &record.data { Some(scan) } else { None })
+        .filter_map(|record| if let RecordData::Scan(scan) = &record.data { Some(scan) } else { None })
         .collect();
     assert_eq!(scans.len(), 3);
     assert_eq!(scans.iter().map(|scan| scan.echoes().count()).collect::<Vec<_>>(), [176, 180, 180]);
@@ -105,7 +107,7 @@ fn a_scan_years_off_is_left_out_and_counted() {
 #[test]
 fn another_number_of_beams_spans_the_half_circle_and_is_said() {
     let (records, report) = read(&document(&[entry("1", 541, "0"), entry("2", 541, "0")])).unwrap();
-    let Data::Scan(scan) = &records[1].data else { panic!("{records:?}") };
+    let RecordData::Scan(scan) = &records[1].data else { panic!("{records:?}") };
     assert!((scan.bearing(540) - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
     let names: Vec<_> = report.warnings.iter().map(|warning| warning.name).collect();
     assert_eq!(names, ["laser_field_of_view_assumed"]);

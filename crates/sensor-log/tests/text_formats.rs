@@ -5,8 +5,8 @@ use std::path::Path;
 
 use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{
-    Data, Detection, Format, LogError, OpenOptions, PoseKind, ProblemKind, ReadReport, Record, Stamp, Target,
-    TrueLandmark, Velocity, open,
+    Detection, DetectionTarget, LogError, LogFormat, OpenOptions, PoseKind, ProblemKind, ReadReport, Record,
+    RecordData, Stamp, TrueLandmark, Velocity, open,
 };
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -24,11 +24,11 @@ fn utias_set(folder: &Path, robots: &[u32]) {
     }
 }
 
-fn at(seconds: f64, data: Data) -> Record {
+fn at(seconds: f64, data: RecordData) -> Record {
     Record { stamp: Stamp::from_seconds(seconds).expect("a time of this century"), data }
 }
 
-fn detection(target: Target, range: f64, bearing: f64) -> Detection {
+fn detection(target: DetectionTarget, range: f64, bearing: f64) -> Detection {
     Detection { target, range, bearing }
 }
 
@@ -37,21 +37,21 @@ fn utias_files_are_merged_by_time_and_codes_become_subjects() {
     let folder = tempfile::tempdir().unwrap();
     utias_set(folder.path(), &[2]);
     let log = open(folder.path(), &OpenOptions::default()).unwrap();
-    assert_eq!((log.meta().format, log.meta().robot), (Format::Utias, Some(2)));
+    assert_eq!((log.meta().format, log.meta().robot), (LogFormat::Utias, Some(2)));
     let (records, report) = log.read_all();
     let look = vec![
-        detection(Target::Landmark(6), 1.0, 0.5),
-        detection(Target::Robot(2), 2.0, -0.5),
-        detection(Target::UnknownCode(99), 3.0, 0.0),
+        detection(DetectionTarget::Landmark(6), 1.0, 0.5),
+        detection(DetectionTarget::Robot(2), 2.0, -0.5),
+        detection(DetectionTarget::UnknownCode(99), 3.0, 0.0),
     ];
     let expected = [
-        at(100.0, Data::TrueLandmark(TrueLandmark { id: 6, x: 1.5, y: -2.0 })),
-        at(100.0, Data::TrueLandmark(TrueLandmark { id: 7, x: 0.0, y: 3.0 })),
-        at(100.0, Data::TruePose(Pose2::new(0.0, 0.0, 0.0))),
-        at(100.0, Data::Velocity(Velocity { linear: 0.1, angular: -0.2 })),
-        at(100.5, Data::TruePose(Pose2::new(1.0, 2.0, 3.0))),
-        at(100.5, Data::Detections(look)),
-        at(100.75, Data::Detections(vec![detection(Target::Landmark(7), 4.0, 1.0)])),
+        at(100.0, RecordData::TrueLandmark(TrueLandmark { id: 6, x: 1.5, y: -2.0 })),
+        at(100.0, RecordData::TrueLandmark(TrueLandmark { id: 7, x: 0.0, y: 3.0 })),
+        at(100.0, RecordData::TruePose(Pose2::new(0.0, 0.0, 0.0))),
+        at(100.0, RecordData::Velocity(Velocity { linear: 0.1, angular: -0.2 })),
+        at(100.5, RecordData::TruePose(Pose2::new(1.0, 2.0, 3.0))),
+        at(100.5, RecordData::Detections(look)),
+        at(100.75, RecordData::Detections(vec![detection(DetectionTarget::Landmark(7), 4.0, 1.0)])),
     ];
     assert_eq!(records, expected);
     let problems: Vec<String> = report.examples.iter().map(ToString::to_string).collect();
@@ -79,17 +79,20 @@ fn range_bearing_lines_make_steps_of_a_tenth_of_a_second() {
         "# two steps\nL 4 1 2\nP 0 0 0\nO 0 0 0\nZ 4 2 0.5\nZ -1 3 1\nP 1 0 0\nO 1 0 0\nO 1 0 0\nZ ? 1 1\n";
     write(folder.path(), "walk.log", lines);
     let (records, report) = open(folder.path().join("walk.log"), &OpenOptions::default()).unwrap().read_all();
-    let step = |x| Data::OdometryIncrement(Pose2::new(x, 0.0, 0.0));
-    let look = vec![detection(Target::Landmark(4), 2.0, 0.5), detection(Target::Unlabelled, 3.0, 1.0)];
+    let step = |x| RecordData::OdometryIncrement(Pose2::new(x, 0.0, 0.0));
+    let look = vec![
+        detection(DetectionTarget::Landmark(4), 2.0, 0.5),
+        detection(DetectionTarget::Unlabelled, 3.0, 1.0),
+    ];
     let expected = [
-        at(0.0, Data::TrueLandmark(TrueLandmark { id: 4, x: 1.0, y: 2.0 })),
-        at(0.0, Data::TruePose(Pose2::new(0.0, 0.0, 0.0))),
+        at(0.0, RecordData::TrueLandmark(TrueLandmark { id: 4, x: 1.0, y: 2.0 })),
+        at(0.0, RecordData::TruePose(Pose2::new(0.0, 0.0, 0.0))),
         at(0.0, step(0.0)),
-        at(0.0, Data::Detections(look)),
-        at(0.1, Data::TruePose(Pose2::new(1.0, 0.0, 0.0))),
+        at(0.0, RecordData::Detections(look)),
+        at(0.1, RecordData::TruePose(Pose2::new(1.0, 0.0, 0.0))),
         at(0.1, step(1.0)),
         at(0.2, step(1.0)),
-        at(0.2, Data::Detections(vec![detection(Target::Unlabelled, 1.0, 1.0)])),
+        at(0.2, RecordData::Detections(vec![detection(DetectionTarget::Unlabelled, 1.0, 1.0)])),
     ];
     assert_eq!(records, expected);
     assert_eq!((report.rows_read, report.n_problems()), (9, 0));
@@ -110,7 +113,7 @@ fn tum_headings_come_from_the_quaternion_for_both_signs() {
     let headings: Vec<f64> = records
         .iter()
         .map(|record| match &record.data {
-            Data::TruePose(pose) => pose.heading(),
+            RecordData::TruePose(pose) => pose.heading(),
             other => panic!("{other:?}"),
         })
         .collect();
@@ -159,20 +162,20 @@ fn what_cannot_be_opened_says_why() {
     write(folder.path(), "walk.txt", "O 1 0 0\n");
     assert!(matches!(fails("absent", None), LogError::NotFound { .. }));
     assert!(matches!(fails("", None), LogError::IsADirectory { .. }));
-    assert!(matches!(fails("", Some(Format::Utias)), LogError::IsADirectory { .. }));
-    assert!(matches!(fails("", Some(Format::Tum)), LogError::IsADirectory { .. }));
+    assert!(matches!(fails("", Some(LogFormat::Utias)), LogError::IsADirectory { .. }));
+    assert!(matches!(fails("", Some(LogFormat::Tum)), LogError::IsADirectory { .. }));
     assert!(matches!(fails("empty.txt", None), LogError::Empty { .. }));
-    assert!(matches!(fails("empty.txt", Some(Format::Tum)), LogError::Empty { .. }));
+    assert!(matches!(fails("empty.txt", Some(LogFormat::Tum)), LogError::Empty { .. }));
     assert!(matches!(fails("letter.txt", None), LogError::UnknownFormat { .. }));
     assert!(matches!(
-        fails("walk.txt", Some(Format::Tum)),
-        LogError::NotThisFormat { format: Format::Tum, .. }
+        fails("walk.txt", Some(LogFormat::Tum)),
+        LogError::NotThisFormat { format: LogFormat::Tum, .. }
     ));
-    assert!(matches!(fails("walk.txt", Some(Format::Utias)), LogError::NotThisFormat { .. }));
+    assert!(matches!(fails("walk.txt", Some(LogFormat::Utias)), LogError::NotThisFormat { .. }));
 }
 
 /// Opens a text that is written as `name`.
-fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (Format, Vec<Record>, ReadReport) {
+fn read_text(folder: &Path, name: &str, bytes: &[u8]) -> (LogFormat, Vec<Record>, ReadReport) {
     fs::write(folder.join(name), bytes).expect("the scratch folder is writable");
     let log = open(folder.join(name), &OpenOptions::default()).expect("a log of a known format");
     let format = log.meta().format;
@@ -211,7 +214,7 @@ fn poses_after_a_clock_set_back_are_not_sorted_in() {
     let text: String = first.chain(second).collect();
     let (_, records, report) = read_text(folder.path(), "poses.tum", text.as_bytes());
     assert_eq!(records.len(), 30);
-    assert!(records.iter().all(|record| record.data == Data::EstimatedPose(Pose2::new(0.0, 0.0, 0.0))));
+    assert!(records.iter().all(|record| record.data == RecordData::EstimatedPose(Pose2::new(0.0, 0.0, 0.0))));
     assert_eq!((report.rows_read, report.problems[&ProblemKind::TooLate]), (30, 20));
     assert_eq!(report.warnings.iter().map(|warning| warning.name).collect::<Vec<_>>(), ["clock_set_back"]);
 }
@@ -228,8 +231,8 @@ fn tum_columns_are_read_by_their_names_and_with_commas() {
     ];
     for text in texts {
         let (format, records, _) = read_text(folder.path(), "poses.txt", text.as_bytes());
-        assert_eq!(format, Format::Tum);
-        let [Record { data: Data::EstimatedPose(pose), .. }] = records[..] else {
+        assert_eq!(format, LogFormat::Tum);
+        let [Record { data: RecordData::EstimatedPose(pose), .. }] = records[..] else {
             panic!("{text}: {records:?}")
         };
         assert!((pose.heading() - 1.3).abs() < 1e-15 && pose.x() == 2.0, "{text}: {pose:?}");

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use wayfix_sensor_log::{
-    AckermannDrive, Data, Detection, Format, LogError, OpenOptions, ProblemKind, Record, Stamp, Target,
-    TruePosition, open,
+    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, OpenOptions, ProblemKind, Record,
+    RecordData, Stamp, TruePosition, open,
 };
 
 fn write(folder: &Path, name: &str, text: &str) {
@@ -19,7 +19,7 @@ fn set(folder: &Path) {
     write(folder, "gps.csv", "t_s,x_m,y_m\n1.025,-67.5,-41.75\n");
 }
 
-fn at(milliseconds: u64, data: Data) -> Record {
+fn at(milliseconds: u64, data: RecordData) -> Record {
     Record { stamp: Stamp::from_nanoseconds(milliseconds * 1_000_000), data }
 }
 
@@ -28,16 +28,16 @@ fn the_three_files_are_merged_and_bearings_turned_ahead() {
     let folder = tempfile::tempdir().unwrap();
     set(folder.path());
     let log = open(folder.path(), &OpenOptions::default()).unwrap();
-    assert_eq!(log.meta().format, Format::VictoriaPark);
+    assert_eq!(log.meta().format, LogFormat::VictoriaPark);
     let (records, report) = log.read_all();
-    let tree = |range, bearing| Detection { target: Target::Unlabelled, range, bearing };
-    let drive = |wheel_speed, steering| Data::Ackermann(AckermannDrive { wheel_speed, steering });
+    let tree = |range, bearing| Detection { target: DetectionTarget::Unlabelled, range, bearing };
+    let drive = |wheel_speed, steering| RecordData::Ackermann(AckermannDrive { wheel_speed, steering });
     let expected = [
         at(1000, drive(0.5, -0.1)),
-        at(1025, Data::TruePosition(TruePosition { x: -67.5, y: -41.75 })),
+        at(1025, RecordData::TruePosition(TruePosition { x: -67.5, y: -41.75 })),
         at(1025, drive(0.75, 0.2)),
-        at(1025, Data::DetectionWidths(vec![0.3, 0.4])),
-        at(1025, Data::Detections(vec![tree(20.0, 1.0 - FRAC_PI_2), tree(10.0, 2.5 - FRAC_PI_2)])),
+        at(1025, RecordData::DetectionWidths(vec![0.3, 0.4])),
+        at(1025, RecordData::Detections(vec![tree(20.0, 1.0 - FRAC_PI_2), tree(10.0, 2.5 - FRAC_PI_2)])),
     ];
     assert_eq!(records, expected);
     assert_eq!((report.rows_read, report.n_problems()), (5, 0));
@@ -52,9 +52,9 @@ fn bad_rows_are_counted_and_the_rest_is_read() {
     let jump = "t_s,x_m,y_m\n1,0,0\n2,0,100\n3,1,0\n";
     write(folder.path(), "gps.csv", jump);
     let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
-    let count = |is: fn(&Data) -> bool| records.iter().filter(|record| is(&record.data)).count();
-    assert_eq!(count(|data| matches!(data, Data::Ackermann(_))), 3);
-    assert_eq!(count(|data| matches!(data, Data::TruePosition(_))), 2);
+    let count = |is: fn(&RecordData) -> bool| records.iter().filter(|record| is(&record.data)).count();
+    assert_eq!(count(|data| matches!(data, RecordData::Ackermann(_))), 3);
+    assert_eq!(count(|data| matches!(data, RecordData::TruePosition(_))), 2);
     assert!(records.is_sorted_by_key(|record| record.stamp));
     for kind in [
         ProblemKind::OutOfOrder,
@@ -75,10 +75,10 @@ fn gps_may_be_missing_the_other_files_not() {
     let folder = tempfile::tempdir().unwrap();
     set(folder.path());
     fs::remove_file(folder.path().join("gps.csv")).unwrap();
-    let options = OpenOptions { format: Some(Format::VictoriaPark), ..Default::default() };
+    let options = OpenOptions { format: Some(LogFormat::VictoriaPark), ..Default::default() };
     assert_eq!(open(folder.path(), &options).unwrap().count(), 4);
     let file = open(folder.path().join("trees.csv"), &options).unwrap_err();
-    assert!(matches!(file, LogError::NotThisFormat { format: Format::VictoriaPark, .. }));
+    assert!(matches!(file, LogError::NotThisFormat { format: LogFormat::VictoriaPark, .. }));
     write(folder.path(), "odometry.csv", "time,speed,steering\n1,1,0\n");
     let error = open(folder.path(), &options).unwrap_err().to_string();
     assert!(error.contains("\"time,speed,steering\" instead of \"t_s,speed_mps,steering_rad\""), "{error}");
@@ -94,9 +94,11 @@ fn a_fifth_column_says_which_tree_it_is_where_somebody_knows() {
     write(folder.path(), "trees.csv", labelled);
     let (records, report) = open(folder.path(), &OpenOptions::default()).unwrap().read_all();
     let look = records.iter().find_map(|record| match &record.data {
-        Data::Detections(look) => Some(look.iter().map(|detection| detection.target).collect::<Vec<_>>()),
+        RecordData::Detections(look) => {
+            Some(look.iter().map(|detection| detection.target).collect::<Vec<_>>())
+        }
         _ => None,
     });
-    assert_eq!(look.unwrap(), [Target::Landmark(7), Target::Unlabelled]);
+    assert_eq!(look.unwrap(), [DetectionTarget::Landmark(7), DetectionTarget::Unlabelled]);
     assert_eq!(report.problems.get(&ProblemKind::NotANumber), Some(&1));
 }

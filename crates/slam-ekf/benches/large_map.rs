@@ -9,8 +9,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel, MapForm, Observation, RangeBearing,
-    RangeBearingSensor, SlamParams,
+    CovarianceUpdate, EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel, Observation,
+    RangeBearing, RangeBearingSensor, SlamParams,
 };
 
 /// Landmarks evenly spread over a ring around a lap.
@@ -42,7 +42,7 @@ struct Step {
 fn main() {
     for world in &WORLDS {
         let steps = world.drive();
-        for (map, name) in [(MapForm::Full, "full"), (MapForm::Compressed, "compressed")] {
+        for (map, name) in [(CovarianceUpdate::Full, "full"), (CovarianceUpdate::Compressed, "compressed")] {
             let mut seconds = best_of_each(world, map, &steps);
             let mean = seconds.iter().sum::<f64>() / seconds.len() as f64;
             seconds.sort_by(f64::total_cmp);
@@ -55,7 +55,7 @@ fn main() {
 }
 
 /// Seconds of every step: the best of several laps, each of which does the same work, so that what interrupts the machine does not count.
-fn best_of_each(world: &World, map: MapForm, steps: &[Step]) -> Vec<f64> {
+fn best_of_each(world: &World, map: CovarianceUpdate, steps: &[Step]) -> Vec<f64> {
     let mut best = vec![f64::INFINITY; steps.len()];
     for _ in 0..N_RUNS {
         for (best, seconds) in best.iter_mut().zip(run(world, map, steps)) {
@@ -65,8 +65,8 @@ fn best_of_each(world: &World, map: MapForm, steps: &[Step]) -> Vec<f64> {
     best
 }
 
-fn run(world: &World, map: MapForm, steps: &[Step]) -> Vec<f64> {
-    let params = SlamParams { map, ..SlamParams::default() };
+fn run(world: &World, map: CovarianceUpdate, steps: &[Step]) -> Vec<f64> {
+    let params = SlamParams { covariance_update: map, ..SlamParams::default() };
     let mut slam =
         EkfSlam::new(RangeBearingSensor::default(), params, world.start()).expect("valid parameters");
     let motion = IncrementMotion::default();

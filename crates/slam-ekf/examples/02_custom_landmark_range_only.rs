@@ -8,8 +8,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel, NewLandmark, Observation, Outcome,
-    SlamError, SlamParams, laws,
+    EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel, NewLandmark, Observation,
+    ObservationOutcome, SlamError, SlamParams, laws,
 };
 
 /// Distances to beacons, with a standard deviation in metres. The Jacobians are left to the trait, which takes them numerically.
@@ -112,7 +112,7 @@ fn listen(
         beacons.iter().enumerate().map(|(i, beacon)| range(LandmarkId(i as u32), beacon)).collect();
     heard.push(range(UNPLANNED, &Vector2::new(0.0, 12.0)));
     let report = slam.update(&heard, &mut KnownIds)?;
-    assert_eq!(report.outcomes.last(), Some(&Outcome::Unusable));
+    assert_eq!(report.outcomes.last(), Some(&ObservationOutcome::Unusable));
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{DefaultAllocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, SensorModel, TangentMatrix, laws};
 
-pub use wayfix_estimation_traits::laws::Violation;
+pub use wayfix_estimation_traits::laws::LawViolation;
 
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
@@ -24,7 +24,7 @@ use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 /// use wayfix_slam_ekf::{RangeBearingSensor, laws};
 /// let robots = [Pose2::new(0.0, 0.0, 0.0), Pose2::new(1.0, -2.0, 3.1)];
 /// laws::landmark_model(&RangeBearingSensor::default(), &robots, &[Vector2::new(4.0, 1.0)])?;
-/// # Ok::<(), laws::Violation>(())
+/// # Ok::<(), laws::LawViolation>(())
 /// ```
 ///
 /// # Errors
@@ -33,7 +33,7 @@ pub fn landmark_model<M: LandmarkModel>(
     model: &M,
     robots: &[M::Robot],
     landmarks: &[M::Landmark],
-) -> Result<(), Violation>
+) -> Result<(), LawViolation>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
@@ -41,7 +41,7 @@ where
         for landmark in landmarks {
             let at = |law: &str| {
                 let place = format!("({law}, robot {robot:?}, landmark {landmark:?})");
-                move |violation: Violation| Violation { case: place, ..violation }
+                move |violation: LawViolation| LawViolation { case: place, ..violation }
             };
             let robot_sees = SeenByRobot { model, landmark };
             laws::sensor(&robot_sees, std::slice::from_ref(robot)).map_err(at("law 1, by the robot"))?;
@@ -55,7 +55,7 @@ where
     Ok(())
 }
 
-fn symmetry<M: LandmarkModel>(model: &M, robot: &M::Robot, landmark: &M::Landmark) -> Result<(), Violation>
+fn symmetry<M: LandmarkModel>(model: &M, robot: &M::Robot, landmark: &M::Landmark) -> Result<(), LawViolation>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
@@ -83,7 +83,7 @@ fn initialization<M: LandmarkModel>(
     model: &M,
     robot: &M::Robot,
     seen: &M::Measurement,
-) -> Result<(), Violation>
+) -> Result<(), LawViolation>
 where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
@@ -107,8 +107,8 @@ where
     )
 }
 
-fn within(law: &'static str, error: f64, tolerance: f64) -> Result<(), Violation> {
-    if error <= tolerance { Ok(()) } else { Err(Violation { law, case: String::new(), error, tolerance }) }
+fn within(law: &'static str, error: f64, tolerance: f64) -> Result<(), LawViolation> {
+    if error <= tolerance { Ok(()) } else { Err(LawViolation { law, case: String::new(), error, tolerance }) }
 }
 
 /// The model as a sensor of the robot, for one landmark.

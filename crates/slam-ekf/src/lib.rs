@@ -6,14 +6,14 @@
 //! ```text
 //! predict      x_r ← f(x_r, u)                      O(n)      [predict]
 //! associate    observations with landmarks          O(k n)    [DataAssociation]
-//! gate         chi-squared test of each innovation  O(k)      [Outcome::Rejected]
+//! gate         chi-squared test of each innovation  O(k)      [ObservationOutcome::Rejected]
 //! correct      all accepted observations jointly    O(k n²)   sparse H, lower triangle, never indefinite
 //! augment      certainly new landmarks              O(n)      tentative until confirmed
 //! merge        duplicates                           O(n²)     [MergingParams]
 //! remove       tentative ones not observed again    O(n²)     [ConfirmationParams]
 //! ```
 //!
-//! With [`MapForm::Compressed`] the `n` in predict and correct is the number of landmarks around the robot, with the same estimates.
+//! With [`CovarianceUpdate::Compressed`] the `n` in predict and correct is the number of landmarks around the robot, with the same estimates.
 //!
 //! A new kind of landmark implements [`LandmarkModel`]: expected measurement, noise, initialization. The rest is the same for
 //! points, walls or radio beacons (`examples/02_custom_landmark_range_only.rs`); [`laws`] checks a model of your own.
@@ -42,8 +42,8 @@ pub use association::{
 };
 pub use error::SlamError;
 pub use filter::{
-    ConfirmationParams, EkfSlam, LandmarkEstimate, Linearization, MapForm, MergingParams, OutlierRule,
-    PredictedMeasurement, SlamParams, UpdateOrder,
+    ConfirmationParams, CovarianceUpdate, EkfSlam, LandmarkEstimate, LinearizationPoint, MergingParams,
+    OutlierRule, PredictedMeasurement, SlamParams, UpdateOrder,
 };
 pub use landmark::{Innovation, LandmarkId, LandmarkModel, NewLandmark, Observation};
 pub use models::{
@@ -54,8 +54,8 @@ pub use models::{
 };
 #[cfg(feature = "lines")]
 pub use models::{Wall, WallLine, WallMeasurement, WallSensor};
-pub use outcome::{Merge, Outcome, StepReport};
-pub use snapshot::{SavedLandmark, SavedRetired, Snapshot};
+pub use outcome::{LandmarkMerge, ObservationOutcome, UpdateReport};
+pub use snapshot::{SavedLandmark, SavedRetiredLandmark, SlamSnapshot};
 
 /// The matrix library of every public signature.
 pub use wayfix_estimation_traits::nalgebra;

@@ -6,7 +6,7 @@ use crate::{Innovation, LandmarkId};
 /// The outcome of one observation.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Outcome<Z: Manifold<Scalar = f64>>
+pub enum ObservationOutcome<Z: Manifold<Scalar = f64>>
 where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
@@ -54,47 +54,52 @@ where
 
 /// The outcome of every observation of a step, in their order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StepReport<Z: Manifold<Scalar = f64>>
+pub struct UpdateReport<Z: Manifold<Scalar = f64>>
 where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
     /// One outcome per observation.
-    pub outcomes: Vec<Outcome<Z>>,
+    pub outcomes: Vec<ObservationOutcome<Z>>,
     /// Merged landmarks.
-    pub merges: Vec<Merge>,
+    pub merges: Vec<LandmarkMerge>,
 }
 
 /// Two landmarks of the map that were merged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Merge {
+pub struct LandmarkMerge {
     /// The one that remains.
     pub kept: LandmarkId,
     /// The one that was removed.
     pub removed: LandmarkId,
 }
 
-impl<Z: Manifold<Scalar = f64>> StepReport<Z>
+impl<Z: Manifold<Scalar = f64>> UpdateReport<Z>
 where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
     /// Number of observations that corrected the state.
     pub fn n_accepted(&self) -> usize {
-        self.count(|outcome| matches!(outcome, Outcome::Accepted { .. }))
+        self.count(|outcome| matches!(outcome, ObservationOutcome::Accepted { .. }))
     }
     /// Number of observations refused as outliers, duplicates or unusable.
     pub fn n_rejected(&self) -> usize {
         self.count(|outcome| {
-            matches!(outcome, Outcome::Rejected { .. } | Outcome::Duplicate { .. } | Outcome::Unusable)
+            matches!(
+                outcome,
+                ObservationOutcome::Rejected { .. }
+                    | ObservationOutcome::Duplicate { .. }
+                    | ObservationOutcome::Unusable
+            )
         })
     }
     /// Innovations of the observations that corrected the state.
     pub fn innovations(&self) -> impl Iterator<Item = &Innovation<Z>> {
         self.outcomes.iter().filter_map(|outcome| match outcome {
-            Outcome::Accepted { innovation, .. } => Some(innovation),
+            ObservationOutcome::Accepted { innovation, .. } => Some(innovation),
             _ => None,
         })
     }
-    fn count(&self, holds: impl Fn(&Outcome<Z>) -> bool) -> usize {
+    fn count(&self, holds: impl Fn(&ObservationOutcome<Z>) -> bool) -> usize {
         self.outcomes.iter().filter(|outcome| holds(outcome)).count()
     }
 }

@@ -6,7 +6,7 @@ use crate::LandmarkId;
 /// stored in any format that keeps the bits of an `f64`. It does not contain model and parameters.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Snapshot<R, L> {
+pub struct SlamSnapshot<R, L> {
     /// Number of updates.
     pub n_updates: usize,
     /// The robot's mean.
@@ -16,12 +16,12 @@ pub struct Snapshot<R, L> {
     /// Landmarks with an exactly known position.
     pub anchors: Vec<(LandmarkId, L)>,
     /// Landmarks that left the state and still correct it.
-    pub retired: Vec<SavedRetired<L>>,
+    pub retired: Vec<SavedRetiredLandmark<L>>,
     /// The joint covariance, robot first: its lower triangle, column by column, $`n (n + 1) / 2`$ numbers. Half a matrix cannot be asymmetric.
     pub covariance: Vec<f64>,
 }
 
-/// A landmark of a [`Snapshot`].
+/// A landmark of a [`SlamSnapshot`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct SavedLandmark<L> {
@@ -41,10 +41,10 @@ pub struct SavedLandmark<L> {
     pub last_seen: usize,
 }
 
-/// A landmark of a [`Snapshot`] that left the state.
+/// A landmark of a [`SlamSnapshot`] that left the state.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct SavedRetired<L> {
+pub struct SavedRetiredLandmark<L> {
     /// Its identity.
     pub id: LandmarkId,
     /// Its position.

@@ -7,8 +7,8 @@ use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_slam_ekf::{
-    ConfirmationParams, EkfSlam, IncrementMotion, KnownIds, LandmarkId, MapForm, Observation, Outcome,
-    OutlierRule, RangeBearing, RangeBearingSensor, SlamParams, UpdateOrder,
+    ConfirmationParams, CovarianceUpdate, EkfSlam, IncrementMotion, KnownIds, LandmarkId, Observation,
+    ObservationOutcome, OutlierRule, RangeBearing, RangeBearingSensor, SlamParams, UpdateOrder,
 };
 
 type Slam = EkfSlam<RangeBearingSensor>;
@@ -21,9 +21,9 @@ const N_LANDMARKS: usize = 120;
 const N_STEPS: usize = 450;
 
 fn twins(params: SlamParams) -> [Slam; 2] {
-    [MapForm::Full, MapForm::Compressed].map(|map| {
+    [CovarianceUpdate::Full, CovarianceUpdate::Compressed].map(|map| {
         let start = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(0.01, 0.01, 1e-4));
-        let params = SlamParams { map, ..params };
+        let params = SlamParams { covariance_update: map, ..params };
         EkfSlam::with_start_covariance(RangeBearingSensor::default(), params, common::start_at(RADIUS), start)
             .unwrap()
     })
@@ -53,10 +53,12 @@ fn compare([full, compressed]: &[Slam; 2], when: usize) {
 }
 
 /// The kind and the landmark of each outcome: what it says must be the same to the digits compared elsewhere.
-fn kinds(outcomes: &[Outcome<RangeBearing>]) -> Vec<String> {
-    let kind = |outcome: &Outcome<RangeBearing>| match outcome {
-        Outcome::Accepted { landmark, noise_scale, .. } => format!("accepted {landmark} {noise_scale:.6}"),
-        Outcome::Rejected { landmark, .. } => format!("gated {landmark}"),
+fn kinds(outcomes: &[ObservationOutcome<RangeBearing>]) -> Vec<String> {
+    let kind = |outcome: &ObservationOutcome<RangeBearing>| match outcome {
+        ObservationOutcome::Accepted { landmark, noise_scale, .. } => {
+            format!("accepted {landmark} {noise_scale:.6}")
+        }
+        ObservationOutcome::Rejected { landmark, .. } => format!("gated {landmark}"),
         other => format!("{other:?}"),
     };
     outcomes.iter().map(kind).collect()
@@ -127,7 +129,12 @@ fn nobody_can_tell_a_compressed_map_from_a_full_one() {
     let confirmation = ConfirmationParams { max_missed: Some(6), ..ConfirmationParams::default() };
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for outliers in [OutlierRule::Downweight, OutlierRule::Reject] {
-            let seen = lap(SlamParams { order, outliers, confirmation, ..SlamParams::default() });
+            let seen = lap(SlamParams {
+                update_order: order,
+                outlier_rule: outliers,
+                confirmation,
+                ..SlamParams::default()
+            });
             let expected =
                 if outliers == OutlierRule::Reject { "Restarted,gated" } else { "Restarted,accepted" };
             for kind in expected.split(',') {

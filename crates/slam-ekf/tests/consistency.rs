@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, KnownIds, LandmarkId, Linearization, RangeBearingSensor, SlamParams,
+    EkfSlam, IncrementMotion, KnownIds, LandmarkId, LinearizationPoint, RangeBearingSensor, SlamParams,
 };
 
 const N_RUNS: u64 = 60;
@@ -54,7 +54,7 @@ fn nees_is_in_its_band_and_above_for_understated_noise() {
 
 /// Share of the steps at which the NEES, averaged over the seeds 0..60, lies outside its pointwise 95 % band. Two laps of a circle of 30 m
 /// with odometry so rough that the heading is uncertain by 0.1 rad when the loop closes; `n_anchors` landmarks are known.
-fn share_outside_on_a_long_loop(linearization: Linearization, n_anchors: usize) -> f64 {
+fn share_outside_on_a_long_loop(linearization: LinearizationPoint, n_anchors: usize) -> f64 {
     const N_STEPS: usize = 400;
     let band = ChiSquaredBand::for_average(3, N_RUNS as usize, 0.95).unwrap();
     let mut nees = [0.0; N_STEPS];
@@ -77,7 +77,7 @@ fn share_outside_on_a_long_loop(linearization: Linearization, n_anchors: usize) 
         };
         let [range_sigma, bearing_sigma] = world.sighting;
         let sensor = RangeBearingSensor { range_sigma, bearing_sigma, ..RangeBearingSensor::default() };
-        let params = SlamParams { linearization, ..SlamParams::default() };
+        let params = SlamParams { linearization_point: linearization, ..SlamParams::default() };
         let mut slam = EkfSlam::new(sensor, params, world.start()).unwrap();
         for (id, landmark) in landmarks.iter().take(n_anchors).enumerate() {
             slam.add_anchor(LandmarkId(id as u32), (*landmark).into()).unwrap();
@@ -95,25 +95,25 @@ fn share_outside_on_a_long_loop(linearization: Linearization, n_anchors: usize) 
 
 /// The error in the coordinates in which the filter takes it for Gaussian: exponential ones, for the invariant filter.
 fn own_error(
-    linearization: Linearization,
+    linearization: LinearizationPoint,
     estimate: &Pose2<f64>,
     truth: &Pose2<f64>,
 ) -> nalgebra::Vector3<f64> {
     match linearization {
-        Linearization::Invariant => estimate.inverse().compose(truth).log(),
+        LinearizationPoint::Invariant => estimate.inverse().compose(truth).log(),
         _ => estimate.local(truth),
     }
 }
 
 #[test]
 fn long_loop_only_the_standard_filter_leaves_the_nees_band() {
-    let standard = share_outside_on_a_long_loop(Linearization::Newest, 0);
+    let standard = share_outside_on_a_long_loop(LinearizationPoint::Newest, 0);
     assert!(standard > 0.25, "{standard}"); // five times what the band allows
     // Pointwise bands leave one step in twenty outside by chance; neighbouring steps fall out together, so twice that.
     for (name, linearization, n_anchors) in [
-        ("invariant", Linearization::Invariant, 0),
-        ("first estimates", Linearization::FirstEstimates, 0),
-        ("anchored", Linearization::Newest, 6),
+        ("invariant", LinearizationPoint::Invariant, 0),
+        ("first estimates", LinearizationPoint::FirstEstimates, 0),
+        ("anchored", LinearizationPoint::Newest, 6),
     ] {
         let share = share_outside_on_a_long_loop(linearization, n_anchors);
         assert!(share < 0.1, "{name}: {share}");

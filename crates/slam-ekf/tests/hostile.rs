@@ -8,9 +8,9 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2};
 use wayfix_slam_ekf::{
-    ConfirmationParams, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId, LandmarkModel,
-    MapForm, NearestNeighbour, NearestNeighbourParams, NewLandmark, Observation, Outcome, OutlierRule,
-    RangeBearing, RangeBearingSensor, SlamError, SlamParams, UpdateOrder,
+    ConfirmationParams, CovarianceUpdate, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId,
+    LandmarkModel, NearestNeighbour, NearestNeighbourParams, NewLandmark, Observation, ObservationOutcome,
+    OutlierRule, RangeBearing, RangeBearingSensor, SlamError, SlamParams, UpdateOrder,
 };
 
 /// Eight filters take turns: a million steps together. Four more have a compressed map.
@@ -146,7 +146,7 @@ fn ill_treat<A: DataAssociation<Whimsical>>(
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let sensor_noise = Rc::new(Cell::new(Matrix2::identity()));
     let mut tally = Tally::default();
-    let n_ids = if params.map == MapForm::Full { N_IDS } else { N_IDS_COMPRESSED };
+    let n_ids = if params.covariance_update == CovarianceUpdate::Full { N_IDS } else { N_IDS_COMPRESSED };
     for life in 0..STEPS / LIFE {
         let sensor = Whimsical { noise: sensor_noise.clone(), is_careful: life % 4 < 2, n_ids };
         // Half of the starts are known exactly: the covariance is singular then.
@@ -221,23 +221,23 @@ fn update<A: DataAssociation<Whimsical>>(
     for (outcome, observation) in report.outcomes.iter().zip(&observations) {
         let RangeBearing { range, bearing } = observation.measurement;
         let taken = match outcome {
-            Outcome::Accepted { innovation, noise_scale, .. } => {
+            ObservationOutcome::Accepted { innovation, noise_scale, .. } => {
                 assert!(innovation.nis.is_finite() && *noise_scale >= 1.0, "{}: {outcome:?}", when());
                 tally.accepted += 1;
                 true
             }
-            Outcome::Initialized { .. } | Outcome::Restarted { .. } => {
+            ObservationOutcome::Initialized { .. } | ObservationOutcome::Restarted { .. } => {
                 tally.started += 1;
                 true
             }
-            Outcome::Unusable => {
+            ObservationOutcome::Unusable => {
                 tally.unusable += 1;
                 false
             }
             _ => false,
         };
         if !slam.model().is_usable(&observation.measurement) {
-            assert_eq!(*outcome, Outcome::Unusable, "{}: {observation:?}", when());
+            assert_eq!(*outcome, ObservationOutcome::Unusable, "{}: {observation:?}", when());
         }
         let is_finite = range.is_finite() && bearing.radians().is_finite();
         assert!(is_finite || !taken, "{}: {observation:?}: {outcome:?}", when());
@@ -258,12 +258,18 @@ fn observation(slam: &EkfSlam<Whimsical>, rng: &mut ChaCha8Rng) -> Observation<R
     Observation { label: rng.random_bool(0.95).then_some(id), measurement }
 }
 
-fn is_never_poisoned(map: MapForm, rules: &[OutlierRule], mut seed: u64) {
+fn is_never_poisoned(map: CovarianceUpdate, rules: &[OutlierRule], mut seed: u64) {
     let mut tallies = Vec::new();
     for order in [UpdateOrder::Joint, UpdateOrder::Sequential] {
         for &outliers in rules {
             let confirmation = ConfirmationParams { max_missed: Some(5), ..ConfirmationParams::default() };
-            let params = SlamParams { order, outliers, confirmation, map, ..SlamParams::default() };
+            let params = SlamParams {
+                update_order: order,
+                outlier_rule: outliers,
+                confirmation,
+                covariance_update: map,
+                ..SlamParams::default()
+            };
             tallies.push(ill_treat(params, || KnownIds, seed));
             let nearest = || NearestNeighbour::new(NearestNeighbourParams::default()).unwrap();
             tallies.push(ill_treat(params, nearest, seed + 1));
@@ -279,10 +285,10 @@ fn is_never_poisoned(map: MapForm, rules: &[OutlierRule], mut seed: u64) {
 
 #[test]
 fn an_ill_treated_filter_keeps_a_covariance() {
-    is_never_poisoned(MapForm::Full, &[OutlierRule::Downweight, OutlierRule::Reject], 0);
+    is_never_poisoned(CovarianceUpdate::Full, &[OutlierRule::Downweight, OutlierRule::Reject], 0);
 }
 
 #[test]
 fn hostile_steps_keep_the_compressed_covariance_valid() {
-    is_never_poisoned(MapForm::Compressed, &[OutlierRule::Downweight], 8);
+    is_never_poisoned(CovarianceUpdate::Compressed, &[OutlierRule::Downweight], 8);
 }

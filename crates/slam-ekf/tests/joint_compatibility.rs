@@ -10,8 +10,8 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredGate;
 use wayfix_slam_ekf::{
     Association, DataAssociation, EkfSlam, JointCompatibility, JointCompatibilityParams, KnownIds,
-    LandmarkId, LandmarkModel, NearestNeighbour, NearestNeighbourParams, Observation, Outcome, RangeBearing,
-    RangeBearingSensor, SlamError, SlamParams,
+    LandmarkId, LandmarkModel, NearestNeighbour, NearestNeighbourParams, Observation, ObservationOutcome,
+    RangeBearing, RangeBearingSensor, SlamError, SlamParams,
 };
 
 const N_LOOKS: u64 = 1500;
@@ -28,8 +28,8 @@ fn gate(n_pairs: usize) -> f64 {
 
 fn rule(n_trials: usize) -> JointCompatibility {
     let params = JointCompatibilityParams {
-        probability: PROBABILITY,
-        n_trials,
+        gate_probability: PROBABILITY,
+        max_pairings: n_trials,
         ..JointCompatibilityParams::default()
     };
     JointCompatibility::new(params).unwrap()
@@ -146,7 +146,7 @@ fn small_looks_are_paired_as_by_trying_everything() {
         assert_eq!(joint.n_cut_short(), 0);
 
         let mut nearest = NearestNeighbour::new(NearestNeighbourParams {
-            accept: gate(1),
+            gate_nis: gate(1),
             ..NearestNeighbourParams::default()
         })
         .unwrap();
@@ -209,12 +209,15 @@ fn looks_without_anything_usable_leave_the_map_as_it_is() {
     let nan = nan.map(|(range, bearing)| unlabelled(RangeBearing::new(range, bearing)));
     for looks in [&nan[..], &[]] {
         let report = slam.update(looks, &mut joint).unwrap();
-        assert_eq!(report.outcomes, vec![Outcome::Unusable; looks.len()]);
+        assert_eq!(report.outcomes, vec![ObservationOutcome::Unusable; looks.len()]);
         assert_eq!((*slam.robot(), slam.covariance().into_owned()), before);
     }
     let mixed = [nan[0], unlabelled(RangeBearing::new(3.0, 0.0))];
     let report = slam.update(&mixed, &mut joint).unwrap();
-    assert!(matches!(report.outcomes[..], [Outcome::Unusable, Outcome::Accepted { .. }]), "{report:?}");
+    assert!(
+        matches!(report.outcomes[..], [ObservationOutcome::Unusable, ObservationOutcome::Accepted { .. }]),
+        "{report:?}"
+    );
 }
 
 #[test]
@@ -226,8 +229,11 @@ fn thresholds_without_meaning_are_refused() {
         (0.99, 6.0, "certainly_new"), // below the 6.63 of one degree of freedom
         (0.99, f64::NAN, "certainly_new"),
     ] {
-        let params =
-            JointCompatibilityParams { probability, certainly_new, ..JointCompatibilityParams::default() };
+        let params = JointCompatibilityParams {
+            gate_probability: probability,
+            new_landmark_nis: certainly_new,
+            ..JointCompatibilityParams::default()
+        };
         let refused = JointCompatibility::new(params);
         assert!(
             matches!(&refused, Err(SlamError::Parameter { name: told, .. }) if *told == name),

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_slam_ekf::{
     Association, ConfirmationParams, DataAssociation, EkfSlam, IncrementMotion, KnownIds, LandmarkId,
-    NearestNeighbour, NearestNeighbourParams, Observation, Outcome, OutlierRule, RangeBearing,
+    NearestNeighbour, NearestNeighbourParams, Observation, ObservationOutcome, OutlierRule, RangeBearing,
     RangeBearingSensor, RelativePositionSensor, SlamError, SlamParams,
 };
 
@@ -115,10 +115,10 @@ fn false_first_detection_is_replaced_and_unseen_one_removed() {
     };
     assert_eq!(
         look(&[seen(1, 9.0, 1.0), seen(2, 3.0, 0.0)])[0],
-        Outcome::Initialized { landmark: LandmarkId(1) }
+        ObservationOutcome::Initialized { landmark: LandmarkId(1) }
     );
-    assert_eq!(look(&[seen(1, 2.0, 0.5)])[0], Outcome::Restarted { landmark: LandmarkId(1) });
-    assert!(matches!(look(&[seen(1, 2.0, 0.5)])[0], Outcome::Accepted { .. }));
+    assert_eq!(look(&[seen(1, 2.0, 0.5)])[0], ObservationOutcome::Restarted { landmark: LandmarkId(1) });
+    assert!(matches!(look(&[seen(1, 2.0, 0.5)])[0], ObservationOutcome::Accepted { .. }));
     look(&[]);
     assert_eq!(slam.n_tentative(), 1); // landmark 2, seen once, three looks ago
     slam.update(&[], &mut KnownIds).unwrap();
@@ -131,7 +131,7 @@ fn false_first_detection_is_replaced_and_unseen_one_removed() {
 fn an_identity_seen_twice_in_one_look_counts_once() {
     let mut slam = slam(SlamParams::default());
     let report = slam.update(&[seen(1, 2.0, 0.0), seen(1, 2.5, 0.1)], &mut KnownIds).unwrap();
-    assert_eq!(report.outcomes[1], Outcome::Duplicate { landmark: LandmarkId(1) });
+    assert_eq!(report.outcomes[1], ObservationOutcome::Duplicate { landmark: LandmarkId(1) });
     assert_eq!(report.n_rejected(), 1);
 }
 
@@ -139,7 +139,7 @@ fn an_identity_seen_twice_in_one_look_counts_once() {
 fn outliers_are_rejected_or_count_little_and_say_so() {
     let confirmation = ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() };
     for outliers in [OutlierRule::Reject, OutlierRule::Downweight] {
-        let mut slam = slam(SlamParams { outliers, confirmation, ..SlamParams::default() });
+        let mut slam = slam(SlamParams { outlier_rule: outliers, confirmation, ..SlamParams::default() });
         slam.update(&[seen(1, 2.0, 0.0)], &mut KnownIds).unwrap();
         let before = slam.clone();
         let report = slam.update(&[seen(1, 4.0, 0.0)], &mut KnownIds).unwrap();
@@ -147,10 +147,10 @@ fn outliers_are_rejected_or_count_little_and_say_so() {
             - before.landmark(LandmarkId(1)).unwrap().mean)
             .norm();
         match &report.outcomes[0] {
-            Outcome::Rejected { innovation, threshold, .. } => {
+            ObservationOutcome::Rejected { innovation, threshold, .. } => {
                 assert!(outliers == OutlierRule::Reject && innovation.nis > *threshold && moved == 0.0);
             }
-            Outcome::Accepted { noise_scale, .. } => {
+            ObservationOutcome::Accepted { noise_scale, .. } => {
                 assert!(outliers == OutlierRule::Downweight && *noise_scale > 10.0);
                 assert!(moved < 0.1, "2 m off moved it by {moved} m; unweighted it would be 1 m");
             }
@@ -173,7 +173,14 @@ fn nearest_neighbour_pairs_once_and_skips_ambiguous() {
         .unwrap()
         .outcomes;
     assert!(
-        matches!(outcomes[..], [Outcome::Ambiguous, Outcome::Accepted { .. }, Outcome::Ambiguous]),
+        matches!(
+            outcomes[..],
+            [
+                ObservationOutcome::Ambiguous,
+                ObservationOutcome::Accepted { .. },
+                ObservationOutcome::Ambiguous
+            ]
+        ),
         "{outcomes:?}"
     );
     assert_eq!(slam.n_landmarks(), 1);
@@ -198,8 +205,8 @@ fn bad_parameters_and_landmarks_are_typed_errors() {
     }
     assert!(
         NearestNeighbour::new(NearestNeighbourParams {
-            accept: 9.0,
-            certainly_new: 3.0,
+            gate_nis: 9.0,
+            new_landmark_nis: 3.0,
             ..NearestNeighbourParams::default()
         })
         .is_err()
@@ -244,6 +251,6 @@ fn an_association_that_breaks_its_law_harms_nothing() {
 
     let anchor_again = vec![Association::New(LandmarkId(7)), Association::Matched(LandmarkId(99))];
     let report = slam.update(&[seen(1, 2.0, 0.0), seen(1, 2.0, 0.0)], &mut Says(anchor_again)).unwrap();
-    assert_eq!(report.outcomes, [Outcome::Unusable, Outcome::Unusable]);
+    assert_eq!(report.outcomes, [ObservationOutcome::Unusable, ObservationOutcome::Unusable]);
     assert_eq!(slam.anchors().count(), 1);
 }

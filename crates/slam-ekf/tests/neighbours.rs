@@ -9,8 +9,9 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
     ConfirmationParams, CorrelatedNoise, EkfSlam, IncrementMotion, JointCompatibility,
-    JointCompatibilityParams, KnownIds, LandmarkId, Merge, MergingParams, NearestNeighbour,
-    NearestNeighbourParams, Observation, Outcome, RangeBearing, RangeBearingSensor, SlamError, SlamParams,
+    JointCompatibilityParams, KnownIds, LandmarkId, LandmarkMerge, MergingParams, NearestNeighbour,
+    NearestNeighbourParams, Observation, ObservationOutcome, RangeBearing, RangeBearingSensor, SlamError,
+    SlamParams,
 };
 
 const SEED: u64 = 11;
@@ -68,8 +69,8 @@ fn neighbours_are_told_apart_by_what_a_look_errs_in_common() {
         }
         let mut rule = JointCompatibility::new(JointCompatibilityParams::default()).unwrap();
         let report = slam.update(&look, &mut rule).unwrap();
-        let of = |outcome: &Outcome<RangeBearing>| match outcome {
-            Outcome::Accepted { landmark, .. } => Some(landmark.0),
+        let of = |outcome: &ObservationOutcome<RangeBearing>| match outcome {
+            ObservationOutcome::Accepted { landmark, .. } => Some(landmark.0),
             _ => None,
         };
         report.outcomes.iter().map(of).collect::<Vec<_>>()
@@ -99,14 +100,14 @@ fn second_detection_near_a_match_is_another_landmark() {
         report.unwrap().outcomes
     };
     for joint in [false, true] {
-        assert_eq!(outcomes(true, joint)[1], Outcome::Initialized { landmark: LandmarkId(0) });
-        assert_eq!(outcomes(false, joint)[1], Outcome::Ambiguous);
+        assert_eq!(outcomes(true, joint)[1], ObservationOutcome::Initialized { landmark: LandmarkId(0) });
+        assert_eq!(outcomes(false, joint)[1], ObservationOutcome::Ambiguous);
     }
 }
 
 #[test]
 fn landmarks_below_the_least_distance_are_merged() {
-    let merging = Some(MergingParams { separation: 0.2, n_sigmas: 2.0 });
+    let merging = Some(MergingParams { min_separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     for _ in 0..20 {
         slam.update(&[labelled(1, 2.0, 0.0)], &mut KnownIds).unwrap();
@@ -118,7 +119,7 @@ fn landmarks_below_the_least_distance_are_merged() {
             break;
         }
     }
-    assert_eq!(merges, [Merge { kept: LandmarkId(1), removed: LandmarkId(2) }]); // the one that was seen more often stays
+    assert_eq!(merges, [LandmarkMerge { kept: LandmarkId(1), removed: LandmarkId(2) }]); // the one that was seen more often stays
     assert_eq!((slam.n_landmarks(), slam.covariance().nrows()), (1, 5));
     let x = slam.landmark(LandmarkId(1)).unwrap().mean.x;
     assert!(x > 2.0 && x < 2.05, "{x}"); // between the two places it was taken for
@@ -126,7 +127,7 @@ fn landmarks_below_the_least_distance_are_merged() {
 
 #[test]
 fn two_that_may_stand_apart_stay_two() {
-    let merging = Some(MergingParams { separation: 0.2, n_sigmas: 2.0 });
+    let merging = Some(MergingParams { min_separation: 0.2, n_sigmas: 2.0 });
     let mut slam = slam(RangeBearingSensor::default(), merging);
     // 0.1 m apart, but seen once each: two standard deviations of their difference are 2 · √(2 · (0.05² + 0.02²)) = 0.15 m, and 0.1 m is left.
     let report = slam.update(&[labelled(1, 2.0, 0.0), labelled(2, 2.1, 0.0)], &mut KnownIds).unwrap();
@@ -169,8 +170,8 @@ fn impossible_merge_changes_nothing() {
     assert_eq!(format!("{slam:?}"), before);
     for bad in [f64::NAN, -1.0, f64::INFINITY] {
         for merging in [
-            MergingParams { separation: bad, n_sigmas: 2.0 },
-            MergingParams { separation: 0.1, n_sigmas: bad },
+            MergingParams { min_separation: bad, n_sigmas: 2.0 },
+            MergingParams { min_separation: 0.1, n_sigmas: bad },
         ] {
             let params = SlamParams { merging: Some(merging), ..SlamParams::default() };
             let refused = EkfSlam::new(RangeBearingSensor::default(), params, Pose2::new(0.0, 0.0, 0.0));

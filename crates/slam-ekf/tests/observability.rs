@@ -135,7 +135,7 @@ fn the_monobot_keeps_the_laws() {
 
 #[test]
 fn a_bad_measurement_of_the_robot_changes_nothing() {
-    let params = SlamParams { outliers: OutlierRule::Reject, ..SlamParams::default() };
+    let params = SlamParams { outlier_rule: OutlierRule::Reject, ..SlamParams::default() };
     let mut slam = EkfSlam::with_start_covariance(
         RangeBearingSensor::default(),
         params,

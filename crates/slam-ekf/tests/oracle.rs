@@ -114,9 +114,9 @@ fn filter(order: UpdateOrder) -> (EkfSlam<RangeBearingSensor>, IncrementMotion) 
         heading_variance_per_step: turn * turn,
     };
     let params = SlamParams {
-        outliers: OutlierRule::Reject,
+        outlier_rule: OutlierRule::Reject,
         gate_probability: 1.0 - 1e-15,
-        order,
+        update_order: order,
         confirmation: ConfirmationParams { n_detections: 1, ..ConfirmationParams::default() },
         ..SlamParams::default()
     };

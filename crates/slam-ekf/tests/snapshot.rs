@@ -8,19 +8,19 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_slam_ekf::{
-    ConfirmationParams, EkfSlam, IncrementMotion, LandmarkId, Linearization, NearestNeighbour,
-    NearestNeighbourParams, RangeBearingSensor, SlamError, SlamParams, Snapshot,
+    ConfirmationParams, EkfSlam, IncrementMotion, LandmarkId, LinearizationPoint, NearestNeighbour,
+    NearestNeighbourParams, RangeBearingSensor, SlamError, SlamParams, SlamSnapshot,
 };
 
 const SEED: u64 = 11;
 
-type Saved = Snapshot<Pose2<f64>, Vector2<f64>>;
+type Saved = SlamSnapshot<Pose2<f64>, Vector2<f64>>;
 
 /// Landmarks that nobody told apart, some of which are forgotten again: the filter's whole memory is at work.
-fn params(linearization: Linearization) -> SlamParams {
+fn params(linearization: LinearizationPoint) -> SlamParams {
     let confirmation =
         ConfirmationParams { n_detections: 4, max_missed: Some(2), ..ConfirmationParams::default() };
-    SlamParams { confirmation, linearization, ..SlamParams::default() }
+    SlamParams { confirmation, linearization_point: linearization, ..SlamParams::default() }
 }
 
 fn rule() -> NearestNeighbour {
@@ -28,11 +28,11 @@ fn rule() -> NearestNeighbour {
 }
 
 fn resume(snapshot: Saved) -> Result<EkfSlam<RangeBearingSensor>, SlamError> {
-    EkfSlam::resume(RangeBearingSensor::default(), params(Linearization::Newest), snapshot)
+    EkfSlam::resume(RangeBearingSensor::default(), params(LinearizationPoint::Newest), snapshot)
 }
 
 /// A drive among unlabelled points and one anchor, stopped and resumed before each step that `stops` names.
-fn drive(stops: &[usize], linearization: Linearization) -> (Saved, u32) {
+fn drive(stops: &[usize], linearization: LinearizationPoint) -> (Saved, u32) {
     let (sensor, params) = (RangeBearingSensor::default(), params(linearization));
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let landmarks = common::landmarks(30, &mut rng);
@@ -53,7 +53,9 @@ fn drive(stops: &[usize], linearization: Linearization) -> (Saved, u32) {
 
 #[test]
 fn a_filter_that_stopped_goes_on_bit_for_bit() {
-    for linearization in [Linearization::Newest, Linearization::FirstEstimates, Linearization::Invariant] {
+    for linearization in
+        [LinearizationPoint::Newest, LinearizationPoint::FirstEstimates, LinearizationPoint::Invariant]
+    {
         let (whole, next_id) = drive(&[], linearization);
         assert!(whole.landmarks.len() > 10, "a map");
         let n_numbered = next_id as usize;
@@ -67,7 +69,7 @@ fn a_filter_that_stopped_goes_on_bit_for_bit() {
 
 #[test]
 fn what_cannot_be_a_filter_is_refused() {
-    let (good, _) = drive(&[], Linearization::Newest);
+    let (good, _) = drive(&[], LinearizationPoint::Newest);
     let n = 3 + 2 * good.landmarks.len();
     assert!(resume(good.clone()).is_ok());
     let refused = |spoil: &dyn Fn(&mut Saved)| {

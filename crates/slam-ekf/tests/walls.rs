@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{
-    EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization, Observation,
+    EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, LinearizationPoint, Observation,
     SlamParams, Wall, WallLine, WallMeasurement, WallSensor,
 };
 
@@ -50,12 +50,16 @@ fn look(robot: &Pose2<f64>, ends: &[Vector2<f64>; 2], rng: &mut ChaCha8Rng) -> O
     Observation { label: None, measurement: WallMeasurement { line, covariance, ends: noisy } }
 }
 
-fn lap(seed: u64, linearization: Linearization) -> (EkfSlam<WallSensor>, Pose2<f64>) {
+fn lap(seed: u64, linearization: LinearizationPoint) -> (EkfSlam<WallSensor>, Pose2<f64>) {
     lap_at(&Pose2::new(0.0, 0.0, 0.0), seed, linearization)
 }
 
 /// The lap in a world that is moved by `place`.
-fn lap_at(place: &Pose2<f64>, seed: u64, linearization: Linearization) -> (EkfSlam<WallSensor>, Pose2<f64>) {
+fn lap_at(
+    place: &Pose2<f64>,
+    seed: u64,
+    linearization: LinearizationPoint,
+) -> (EkfSlam<WallSensor>, Pose2<f64>) {
     let walls = walls().into_iter().map(|ends| ends.map(|end| place.transform(&end)));
     let walls: Vec<[Vector2<f64>; 2]> = walls.collect();
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -69,8 +73,12 @@ fn lap_at(place: &Pose2<f64>, seed: u64, linearization: Linearization) -> (EkfSl
     let sensor = WallSensor { rho_sigma: 1e-6, alpha_sigma: 1e-6, ..WallSensor::default() };
     let mut rule = JointCompatibility::new(JointCompatibilityParams::default()).unwrap();
     let mut truth = place.compose(&Pose2::new(3.0, 0.5, std::f64::consts::FRAC_PI_2));
-    let mut slam =
-        EkfSlam::new(sensor, SlamParams { linearization, ..SlamParams::default() }, truth).unwrap();
+    let mut slam = EkfSlam::new(
+        sensor,
+        SlamParams { linearization_point: linearization, ..SlamParams::default() },
+        truth,
+    )
+    .unwrap();
     let turn = std::f64::consts::TAU / N_STEPS as f64;
     for _ in 0..N_STEPS {
         let step = Pose2::new(3.0 * turn, 0.0, turn);
@@ -86,7 +94,7 @@ fn lap_at(place: &Pose2<f64>, seed: u64, linearization: Linearization) -> (EkfSl
 
 #[test]
 fn every_wall_is_one_landmark_where_it_is_and_as_long_as_it_is() {
-    let (slam, truth) = lap(1, Linearization::Newest);
+    let (slam, truth) = lap(1, LinearizationPoint::Newest);
     assert_eq!(slam.n_landmarks(), walls().len()); // the free-standing one was seen from both sides
     let error = slam.robot().local(&truth);
     assert!(error.xy().norm() < 0.05 && error.z.abs() < 0.02, "{error}"); // five deviations of a look, odometry alone: 0.2 m
@@ -105,7 +113,9 @@ fn every_wall_is_one_landmark_where_it_is_and_as_long_as_it_is() {
 fn the_filters_are_as_sure_as_they_should_be() {
     const N_RUNS: u64 = 50;
     let band = ChiSquaredBand::for_average(3, N_RUNS as usize, 0.99).unwrap();
-    for linearization in [Linearization::Newest, Linearization::FirstEstimates, Linearization::Invariant] {
+    for linearization in
+        [LinearizationPoint::Newest, LinearizationPoint::FirstEstimates, LinearizationPoint::Invariant]
+    {
         let nees = |seed| {
             let (slam, truth) = lap(seed, linearization);
             let error = slam.robot().local(&truth);
@@ -118,7 +128,9 @@ fn the_filters_are_as_sure_as_they_should_be() {
 
 #[test]
 fn rigid_motion_of_the_world_changes_no_estimate() {
-    for linearization in [Linearization::Newest, Linearization::FirstEstimates, Linearization::Invariant] {
+    for linearization in
+        [LinearizationPoint::Newest, LinearizationPoint::FirstEstimates, LinearizationPoint::Invariant]
+    {
         let (here, truth) = lap(1, linearization);
         for place in [Pose2::new(300.0, -200.0, 0.4), Pose2::new(0.0, 1e4, 2.0)] {
             let (there, true_there) = lap_at(&place, 1, linearization);
@@ -134,7 +146,7 @@ fn rigid_motion_of_the_world_changes_no_estimate() {
 
 #[test]
 fn looks_that_are_no_walls_are_unusable_and_change_nothing() {
-    let (mut slam, truth) = lap(2, Linearization::Newest);
+    let (mut slam, truth) = lap(2, LinearizationPoint::Newest);
     let good = look(&truth, &walls()[0], &mut ChaCha8Rng::seed_from_u64(3)).measurement;
     let mut rule = JointCompatibility::new(JointCompatibilityParams::default()).unwrap();
     let before = slam.snapshot();
@@ -146,7 +158,7 @@ fn looks_that_are_no_walls_are_unusable_and_change_nothing() {
         WallMeasurement { ends: [Vector2::new(f64::NAN, 0.0), good.ends[1]], ..good },
     ] {
         let report = slam.update(&[Observation { label: None, measurement: bad }], &mut rule).unwrap();
-        assert!(matches!(report.outcomes[0], wayfix_slam_ekf::Outcome::Unusable), "{bad:?}");
+        assert!(matches!(report.outcomes[0], wayfix_slam_ekf::ObservationOutcome::Unusable), "{bad:?}");
         assert_eq!(slam.snapshot().covariance, before.covariance);
     }
 }

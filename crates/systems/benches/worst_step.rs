@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use wayfix_sensor_log::OpenOptions;
 use wayfix_systems::{
-    points::{self, PointSlamParams, Profile},
+    points::{self, PointSlamParams, RobotProfile},
     slam::AssociationRule,
 };
 
@@ -21,8 +21,10 @@ fn main() -> Result<()> {
     }
     let (records, _) = wayfix_sensor_log::open(&folder, &OpenOptions::default())?.read_all();
     for (association, name) in [(AssociationRule::Nn, "nn"), (AssociationRule::Jcbb, "jcbb")] {
-        let params =
-            PointSlamParams { association: Some(association), ..PointSlamParams::of(Profile::VictoriaPark) };
+        let params = PointSlamParams {
+            association: Some(association),
+            ..PointSlamParams::of(RobotProfile::VictoriaPark)
+        };
         let mut best: Vec<f64> = Vec::new();
         for _ in 0..N_RUNS {
             let run = points::run(&records, &params, |_| {})?;

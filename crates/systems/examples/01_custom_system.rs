@@ -3,9 +3,9 @@
 //! `cargo run -p wayfix --example 02_custom_system -- fixtures/loop_known.mcap`
 
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_evaluation::report::{Metric, Run, table};
-use wayfix_sensor_log::{Data, OpenOptions, Record};
-use wayfix_systems::system::{Events, System, drive};
+use wayfix_evaluation::report::{Metric, ReportRun, table};
+use wayfix_sensor_log::{OpenOptions, Record, RecordData};
+use wayfix_systems::system::{EventCounts, System, drive};
 
 /// Believes its odometry.
 #[derive(Default)]
@@ -13,21 +13,21 @@ struct DeadReckoning {
     pose: Option<Pose2<f64>>,
     last_truth: Option<Pose2<f64>>,
     travelled_m: f64,
-    events: Events,
+    events: EventCounts,
 }
 
 impl System for DeadReckoning {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
-            Data::OdometryIncrement(increment) if !increment.is_finite() => {
+            RecordData::OdometryIncrement(increment) if !increment.is_finite() => {
                 return Err("odometry that is not finite".to_owned()); // counted with its place in the log; nothing has changed
             }
-            Data::OdometryIncrement(increment) => {
+            RecordData::OdometryIncrement(increment) => {
                 self.travelled_m += increment.x().hypot(increment.y());
                 self.pose = self.pose.map(|pose| pose.compose(increment));
                 self.events.count("odometry");
             }
-            Data::TruePose(truth) => {
+            RecordData::TruePose(truth) => {
                 self.pose.get_or_insert(*truth);
                 self.last_truth = Some(*truth);
             }
@@ -36,7 +36,7 @@ impl System for DeadReckoning {
         Ok(())
     }
 
-    fn events(&mut self) -> &mut Events {
+    fn events(&mut self) -> &mut EventCounts {
         &mut self.events
     }
 }
@@ -48,14 +48,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     drive(&mut system, &records, |_| {});
 
     let (pose, truth) = system.pose.zip(system.last_truth).ok_or("no true pose in the log")?;
-    let run = Run {
+    let run = ReportRun {
         name: path,
         metrics: vec![
             Metric::new("travelled_m", system.travelled_m, "m"),
             Metric::new("error_at_end_m", truth.local(&pose).xy().norm(), "m"),
         ],
         events: system.events.counts(),
-        ..Run::default()
+        ..ReportRun::default()
     };
     print!("{}", table::run(&run, table::TableStyle::PLAIN));
     assert!(system.travelled_m > 0.0 && system.events.n_refusals() == 0);

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_sensor_log::{Data, Detection, LaserScan, Record, Stamp, Target, Velocity};
+use wayfix_sensor_log::{Detection, DetectionTarget, LaserScan, Record, RecordData, Stamp, Velocity};
 use wayfix_systems::{
-    points::{self, PointSlamParams, Profile},
+    points::{self, PointSlamParams, RobotProfile},
     walls::{self, WallRun, WallSlamParams},
 };
 
@@ -14,7 +14,7 @@ const CENTIMETRES: f64 = 0.05;
 /// 95 % of χ² with three degrees of freedom.
 const CONSISTENT: f64 = 7.81;
 
-fn at(seconds: f64, data: Data) -> Record {
+fn at(seconds: f64, data: RecordData) -> Record {
     Record { stamp: Stamp::from_seconds(seconds).expect("a time"), data }
 }
 
@@ -47,27 +47,27 @@ fn range(pose: &Pose2<f64>, bearing: f64) -> f64 {
     if enter <= leave && enter > 0.0 { room.min(enter) } else { room }
 }
 
-fn scan(pose: &Pose2<f64>) -> Data {
+fn scan(pose: &Pose2<f64>) -> RecordData {
     let (angle_min, angle_increment) = (-TAU / 2.0, TAU / 360.0);
     let ranges = (0..360).map(|beam| range(pose, angle_min + f64::from(beam) * angle_increment)).collect();
-    Data::Scan(LaserScan { angle_min, angle_increment, range_max: 30.0, beam_period: 0.0, ranges })
+    RecordData::Scan(LaserScan { angle_min, angle_increment, range_max: 30.0, beam_period: 0.0, ranges })
 }
 
 /// A scan whose beams follow one another over `share` of the time to the next, with a period that the log states.
-fn skewed_scan(step: usize, share: f64, beam_period: f64) -> Data {
+fn skewed_scan(step: usize, share: f64, beam_period: f64) -> RecordData {
     let (angle_min, angle_increment) = (-TAU / 2.0, TAU / 360.0);
     let beam_range = |beam: u32| {
         let pose = pose_after(step as f64 + share * f64::from(beam) / 360.0);
         range(&pose, angle_min + f64::from(beam) * angle_increment)
     };
     let ranges = (0..360).map(beam_range).collect();
-    Data::Scan(LaserScan { angle_min, angle_increment, range_max: 30.0, beam_period, ranges })
+    RecordData::Scan(LaserScan { angle_min, angle_increment, range_max: 30.0, beam_period, ranges })
 }
 
 /// The drive with scans that take `share` of a step, which the log states as `beam_period`; the odometry is right.
 fn skewed_drive(share: f64, beam_period: f64) -> Vec<Record> {
     let mut records = drive(&every_step(), 0.0);
-    let scans = records.iter_mut().filter(|record| matches!(record.data, Data::Scan(_)));
+    let scans = records.iter_mut().filter(|record| matches!(record.data, RecordData::Scan(_)));
     for (step, record) in scans.enumerate() {
         record.data = skewed_scan(step, share, beam_period);
     }
@@ -81,14 +81,14 @@ fn drive(increments: &[(usize, Pose2<f64>)], delay: f64) -> Vec<Record> {
     let mut records = Vec::new();
     for step in 0..N_STEPS {
         let seconds = 10.0 + step as f64 * 0.1;
-        records.push(at(seconds, Data::TruePose(pose(step))));
+        records.push(at(seconds, RecordData::TruePose(pose(step))));
         records.push(at(seconds, scan(&pose(step))));
     }
     for (step, increment) in increments {
-        records.push(at(10.0 + *step as f64 * 0.1 + delay, Data::OdometryIncrement(*increment)));
+        records.push(at(10.0 + *step as f64 * 0.1 + delay, RecordData::OdometryIncrement(*increment)));
     }
     // Odometry comes before the scan of its stamp.
-    records.sort_by_key(|record| (record.stamp, matches!(record.data, Data::Scan(_))));
+    records.sort_by_key(|record| (record.stamp, matches!(record.data, RecordData::Scan(_))));
     records
 }
 
@@ -183,11 +183,15 @@ fn late_odometry_is_said_and_its_delay_corrects_it() {
 
 #[test]
 fn velocity_holds_for_a_limited_time() {
-    let look = Data::Detections(vec![Detection { target: Target::Landmark(1), range: 2.0, bearing: 0.0 }]);
-    let velocity = |linear| Data::Velocity(Velocity { linear, angular: 0.0 });
+    let look = RecordData::Detections(vec![Detection {
+        target: DetectionTarget::Landmark(1),
+        range: 2.0,
+        bearing: 0.0,
+    }]);
+    let velocity = |linear| RecordData::Velocity(Velocity { linear, angular: 0.0 });
     let log =
         [at(0.0, velocity(1.0)), at(1e8, velocity(0.5)), at(1e8 + 0.5, look), at(1e8 + 0.6, velocity(0.5))];
-    let params = PointSlamParams::of(Profile::Generic);
+    let params = PointSlamParams::of(RobotProfile::Generic);
     let mut run = points::run(&log, &params, |_| {}).expect("a usable log");
     let x = run.system.filter().robot().pose.x();
     assert!((x - params.robot.velocity_hold - 0.3).abs() < 1e-9, "{x} m");

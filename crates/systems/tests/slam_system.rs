@@ -4,23 +4,26 @@ use std::f64::consts::FRAC_PI_3;
 
 use nalgebra::Vector2;
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_sensor_log::{Data, Detection, Record, Stamp, Target, TrueLandmark, Velocity};
-use wayfix_systems::points::{PointRun, PointSlamParams, Profile, RobotParams, run};
+use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData, Stamp, TrueLandmark, Velocity};
+use wayfix_systems::points::{PointRun, PointSlamParams, RobotParams, RobotProfile, run};
 
-fn at(seconds: f64, data: Data) -> Record {
+fn at(seconds: f64, data: RecordData) -> Record {
     Record { stamp: Stamp::from_seconds(seconds).expect("a time"), data }
 }
 
 fn velocity(seconds: f64, linear: f64, angular: f64) -> Record {
-    at(seconds, Data::Velocity(Velocity { linear, angular }))
+    at(seconds, RecordData::Velocity(Velocity { linear, angular }))
 }
 
 fn detection(seconds: f64, id: u32, range: f64, bearing: f64) -> Record {
-    at(seconds, Data::Detections(vec![Detection { target: Target::Landmark(id), range, bearing }]))
+    at(
+        seconds,
+        RecordData::Detections(vec![Detection { target: DetectionTarget::Landmark(id), range, bearing }]),
+    )
 }
 
 fn slam(records: &[Record], robot: RobotParams) -> PointRun {
-    let params = PointSlamParams { robot, ..PointSlamParams::of(Profile::Generic) };
+    let params = PointSlamParams { robot, ..PointSlamParams::of(RobotProfile::Generic) };
     run(records, &params, |_| {}).expect("a usable log")
 }
 
@@ -83,10 +86,10 @@ fn a_refused_record_leaves_no_trace() {
 #[test]
 fn non_finite_measurement_is_counted_and_changes_nothing() {
     let look = |more: &[Detection]| {
-        let first = Detection { target: Target::Landmark(7), range: 2.0, bearing: 0.3 };
-        at(0.5, Data::Detections([&[first], more].concat()))
+        let first = Detection { target: DetectionTarget::Landmark(7), range: 2.0, bearing: 0.3 };
+        at(0.5, RecordData::Detections([&[first], more].concat()))
     };
-    let detection = |id, range, bearing| Detection { target: Target::Landmark(id), range, bearing };
+    let detection = |id, range, bearing| Detection { target: DetectionTarget::Landmark(id), range, bearing };
     let bad = [
         detection(8, f64::NAN, 0.0),
         detection(8, 1.0, f64::NAN),
@@ -104,7 +107,7 @@ fn non_finite_measurement_is_counted_and_changes_nothing() {
 
 #[test]
 fn the_run_starts_at_the_truth_where_odometry_starts() {
-    let truth = |seconds: f64, x: f64| at(seconds, Data::TruePose(Pose2::new(x, 0.0, 0.0)));
+    let truth = |seconds: f64, x: f64| at(seconds, RecordData::TruePose(Pose2::new(x, 0.0, 0.0)));
     let records = [truth(0.0, 5.0), truth(0.2, 6.0), velocity(0.1, 0.0, 0.0), detection(0.2, 7, 1.0, 0.0)];
     let mut records = records.to_vec();
     records.sort_by_key(|record| record.stamp);
@@ -114,22 +117,26 @@ fn the_run_starts_at_the_truth_where_odometry_starts() {
 
 #[test]
 fn two_anchors_tie_the_map_to_the_world() {
-    let landmark = |id, x, y| at(0.0, Data::TrueLandmark(TrueLandmark { id, x, y }));
+    let landmark = |id, x, y| at(0.0, RecordData::TrueLandmark(TrueLandmark { id, x, y }));
     let mut records = vec![landmark(7, 2.0, 0.5), landmark(8, 1.5, -1.0), landmark(9, 9.0, 4.0)];
     records.push(velocity(0.0, 0.5, 0.1));
     for step in 1..10 {
         let pose = Pose2::new(0.05 * f64::from(step), 0.0, 0.01 * f64::from(step));
         let detections = [(7, 2.0, 0.5), (8, 1.5, -1.0), (9, 9.0, 4.0)].map(|(id, x, y)| {
             let seen = pose.inverse().transform(&Vector2::new(x, y));
-            Detection { target: Target::Landmark(id), range: seen.norm(), bearing: seen.y.atan2(seen.x) }
+            Detection {
+                target: DetectionTarget::Landmark(id),
+                range: seen.norm(),
+                bearing: seen.y.atan2(seen.x),
+            }
         });
-        records.push(at(0.1 * f64::from(step), Data::Detections(detections.to_vec())));
+        records.push(at(0.1 * f64::from(step), RecordData::Detections(detections.to_vec())));
     }
     for (n_anchors, n_free) in [(0, 3), (1, 1), (2, 0)] {
         let params = PointSlamParams {
             n_anchors,
             record_observability: true,
-            ..PointSlamParams::of(Profile::Generic)
+            ..PointSlamParams::of(RobotProfile::Generic)
         };
         let run = run(&records, &params, |_| {}).expect("a usable log");
         assert_eq!(run.system.filter().anchors().count(), n_anchors);

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use wayfix_sensor_log::{OpenOptions, Record};
 use wayfix_systems::{
-    points::SavedMap,
+    points::SavedPointMap,
     slam::{AssociationRule, SavedMapError},
-    walls::{SavedWalls, WallSlamParams, run, run_on},
+    walls::{SavedWallMap, WallSlamParams, run, run_on},
 };
 
 /// The office floor, up to a stamp that both halves of a run have in common.
@@ -30,7 +30,7 @@ fn a_resumed_run_goes_on_bit_for_bit() {
     let ends: Vec<usize> = (600..620).filter(|end| records[*end].stamp > records[end - 1].stamp).collect();
     assert!(ends.len() >= 4);
     for end in ends {
-        let half = SavedWalls::from_bytes(&saved(&records[..end])).unwrap();
+        let half = SavedWallMap::from_bytes(&saved(&records[..end])).unwrap();
         assert!(half.filter.landmarks.len() > 3 && half.front_end.last_keyframe.is_some());
         let resumed = run_on(half, &records, &params, None, |_| {}).unwrap();
         assert_eq!(resumed.system.save().to_bytes().unwrap(), saved(&records), "{end}");
@@ -41,9 +41,9 @@ fn a_resumed_run_goes_on_bit_for_bit() {
 fn maps_of_points_and_other_rules_are_refused() {
     let records = office(300);
     let bytes = saved(&records);
-    let error = SavedMap::from_bytes(&bytes).unwrap_err().to_string();
+    let error = SavedPointMap::from_bytes(&bytes).unwrap_err().to_string();
     assert!(error.contains("planar pose with heading drift"), "{error}");
-    let saved = SavedWalls::from_bytes(&bytes).unwrap();
+    let saved = SavedWallMap::from_bytes(&bytes).unwrap();
     let asked = Some(AssociationRule::Nn);
     let error = run_on(saved, &records, &WallSlamParams::default(), asked, |_| {}).err().unwrap();
     assert!(matches!(error.downcast_ref(), Some(SavedMapError::Kind { what: "association", .. })), "{error}");
@@ -59,7 +59,7 @@ fn a_forged_state_never_panics() {
         forged[place] ^= 0x80;
         let checksum = crc32fast::hash(&[&forged[8..20], &forged[24..]].concat());
         forged[20..24].copy_from_slice(&checksum.to_le_bytes());
-        let map = SavedWalls::from_bytes(&forged).map_err(anyhow::Error::from);
+        let map = SavedWallMap::from_bytes(&forged).map_err(anyhow::Error::from);
         let resumed = map.and_then(|map| run_on(map, &later, &WallSlamParams::default(), None, |_| {}));
         n_refused += usize::from(resumed.is_err());
     }

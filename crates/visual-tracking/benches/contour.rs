@@ -12,14 +12,14 @@ use films::{mask_of, picture_of};
 use harness::measure;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
-use wayfix_scene_sim::film::Film;
+use wayfix_scene_sim::film::SyntheticFilm;
 use wayfix_visual_tracking::{ContourTracker, ContourTrackerParams, Tracker as _};
 
 /// Pictures that are tracked before the one that is measured, so that colours and motion are known.
 const N_BEFORE: usize = 10;
 
 fn main() {
-    for film in Film::ALL.into_iter().filter(|film| film.name != "head") {
+    for film in SyntheticFilm::ALL.into_iter().filter(|film| film.name != "head") {
         let mut frames = film.frames().expect("a known film");
         let first = frames.next().expect("frames");
         let params = ContourTrackerParams::default();

@@ -11,9 +11,9 @@ use harness::measure;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use wayfix_visual_tracking::{
-    BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, Connectivity, CorrelationTracker,
-    CorrelationTrackerParams, Element, HeadTracker, HeadTrackerParams, PixelRect, RgbImage, RowSpans,
-    SlidingHistogram, Tracker,
+    ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, Connectivity, CorrelationTracker,
+    CorrelationTrackerParams, HeadTracker, HeadTrackerParams, PixelRect, RgbImage, RowSpans,
+    SlidingHistogram, StructuringElement, Tracker,
 };
 
 const SIZE: (usize, usize) = (320, 240);
@@ -25,20 +25,20 @@ fn main() {
     let quantizer = ColorQuantizer::new(ColorSpace::Opponent, [32, 32, 8]).expect("few bins");
     for space in ColorSpace::ALL {
         let quantizer = ColorQuantizer::new(space, [32, 32, 8]).expect("few bins");
-        measure(&format!("track bins {space:?}"), 100, || BinImage::new(&quantizer, &picture));
+        measure(&format!("track bins {space:?}"), 100, || ColorBinImage::new(&quantizer, &picture));
     }
-    let image = BinImage::new(&quantizer, &picture).expect("a small picture");
-    let target = BinImage::within(&quantizer, &picture, &TARGET).expect("inside");
-    let set = BinSet::of_image(&target);
+    let image = ColorBinImage::new(&quantizer, &picture).expect("a small picture");
+    let target = ColorBinImage::within(&quantizer, &picture, &TARGET).expect("inside");
+    let set = ColorBinSet::of_image(&target);
     measure("track segment, one set", 200, || image.segment(&set));
-    let sets: Vec<BinSet> = (0..N_HYPOTHESES as u16)
-        .map(|k| BinSet::from_fn(&quantizer, |bin| set.contains(bin.wrapping_add(k % 16))))
+    let sets: Vec<ColorBinSet> = (0..N_HYPOTHESES as u16)
+        .map(|k| ColorBinSet::from_fn(&quantizer, |bin| set.contains(bin.wrapping_add(k % 16))))
         .collect();
     measure("track segment, 300 sets", 50, || image.segment_all(&sets));
     let mask = image.segment(&set).expect("the same bins");
-    measure("track erode 3x3", 1000, || mask.eroded(Element::Square { radius: 1 }));
+    measure("track erode 3x3", 1000, || mask.eroded(StructuringElement::Square { radius: 1 }));
     measure("track Euler number", 1000, || black_box(&mask).euler_number(Connectivity::Eight));
-    let blob = mask.opened(Element::Square { radius: 1 });
+    let blob = mask.opened(StructuringElement::Square { radius: 1 });
     measure("track blobs", 500, || blob.blobs(Connectivity::Eight));
     measure("track contour", 500, || blob.outer_contour());
 
@@ -56,7 +56,7 @@ fn main() {
 
 /// Intersections of the histograms of windows of 60 × 60 with that of the target, 8 × 8 bins of hue and saturation; from the pixels on.
 fn hypotheses(picture: &RgbImage, quantizer: &ColorQuantizer) -> f64 {
-    let image = BinImage::new(quantizer, picture).expect("a small picture");
+    let image = ColorBinImage::new(quantizer, picture).expect("a small picture");
     let window = RowSpans::rectangle(TARGET.width, TARGET.height).expect("it has an extent");
     let histogram = |u, v| SlidingHistogram::new(&image, window.clone(), [u, v]).into_histogram();
     let model: ColorHistogram = histogram(160, 120);

@@ -13,7 +13,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
     BoundingBox, CorrelationTracker, CorrelationTrackerParams, HeadTracker, HeadTrackerParams, RgbImage,
-    Target, TrackStatus, Tracker, TrackingError,
+    TargetEstimate, TrackStatus, Tracker, TrackingError,
 };
 
 #[derive(Default)]
@@ -46,7 +46,7 @@ impl Any {
         })
     }
 
-    fn track(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError> {
+    fn track(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<TargetEstimate, TrackingError> {
         match self {
             Self::Correlation(tracker) => tracker.track(picture, rng),
             Self::Head(tracker) => tracker.track(picture, rng),
@@ -67,22 +67,22 @@ fn main() -> Result<(), Box<dyn Error>> {
         match name {
             "padding" => params.padding = number()?,
             "response_width" => params.response_width = number()?,
-            "inertia" => params.inertia = number()?,
-            "color_share" => params.color_share = number()?,
-            "color_weight" => params.color_weight = number()?,
-            "motion_width" => params.motion_width = number()?,
-            "n_scales" => params.n_scales = value.parse()?,
+            "inertia" => params.previous_filter_weight = number()?,
+            "color_share" => params.color_channel_share = number()?,
+            "color_weight" => params.color_histogram_weight = number()?,
+            "motion_width" => params.motion_sigma = number()?,
+            "n_scales" => params.n_scale_hypotheses = value.parse()?,
             "scale_step" => params.scale_step = number()?,
-            "recognize_share" => params.recognize_share = number()?,
-            "recognize_above" => params.recognize_above = number()?,
+            "recognize_share" => params.recognition_response_share = number()?,
+            "recognize_above" => params.recognize_above_psr = number()?,
             "forget_after" => params.forget_after = value.parse()?,
-            "learn_above" => params.learn_above = number()?,
+            "learn_above" => params.learn_above_psr = number()?,
             "lost_after" => params.lost_after = value.parse()?,
-            "bimodal" => head.bimodal = value.parse()?,
+            "bimodal" => head.bimodal_colors = value.parse()?,
             "search_radius" => head.search_radius = number()?,
             "head_scale_step" => head.scale_step = number()?,
             "gradient_weight" => head.gradient_weight = number()?,
-            "adaptation" => head.adaptation = number()?,
+            "adaptation" => head.color_adaptation_rate = number()?,
             "adapt_above" => head.adapt_above = number()?,
             "tracker" => value.clone_into(&mut name_of_tracker),
             "out" => out = Some(PathBuf::from(value)),

@@ -7,19 +7,19 @@
 mod films;
 
 use films::{Record, follow};
-use wayfix_scene_sim::film::Film;
+use wayfix_scene_sim::film::SyntheticFilm;
 use wayfix_visual_tracking::{ContourTrackerParams, TrackingCues};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "all".to_owned());
     let n_seeds = arguments.next().map_or(Ok(3), |n| n.parse())?;
-    let films = if name == "all" { Film::ALL.to_vec() } else { vec![Film::named(&name)?] };
+    let films = if name == "all" { SyntheticFilm::ALL.to_vec() } else { vec![SyntheticFilm::named(&name)?] };
 
     let full = ContourTrackerParams::default();
     let methods = [
         ("full method", full),
-        ("fixed colours", ContourTrackerParams { adapts: false, ..full }),
+        ("fixed colours", ContourTrackerParams { adapts_colors: false, ..full }),
         ("colour only", ContourTrackerParams { cues: TrackingCues::Color, ..full }),
         ("shape only", ContourTrackerParams { cues: TrackingCues::Shape, ..full }),
         ("as published", ContourTrackerParams::as_published()),
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for film in films {
         for (method, params) in methods {
             let records: Vec<Record> =
-                (1..=n_seeds).map(|seed| follow(&Film { seed, ..film }, params)).collect();
+                (1..=n_seeds).map(|seed| follow(&SyntheticFilm { seed, ..film }, params)).collect();
             let mean =
                 |value: fn(&Record) -> f64| records.iter().map(value).sum::<f64>() / records.len() as f64;
             let worst = records.iter().map(Record::mean_overlap).fold(1.0, f64::min);

@@ -7,20 +7,20 @@ use std::error::Error;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use wayfix_scene_sim::film::{Film, Frame};
+use wayfix_scene_sim::film::{FilmFrame, SyntheticFilm};
 use wayfix_visual_tracking::{
     BitMask, BoundingBox, ContourTracker, CorrelationTracker, RgbImage, TrackStatus, Tracker,
 };
 
 /// Every so many pixels are taken.
 const STRIDE: usize = 4;
-const SIZE: (usize, usize) = (Film::SIZE_PX.0 / STRIDE, Film::SIZE_PX.1 / STRIDE);
+const SIZE: (usize, usize) = (SyntheticFilm::SIZE_PX.0 / STRIDE, SyntheticFilm::SIZE_PX.1 / STRIDE);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let (method, n_frames) = (arguments.next(), arguments.next());
     let n_frames: usize = n_frames.ok_or("contour or box, and a number of frames")?.parse()?;
-    let frames: Vec<Frame> = Film::named("snail")?.frames()?.collect();
+    let frames: Vec<FilmFrame> = SyntheticFilm::named("snail")?.frames()?.collect();
     let pictures: Vec<RgbImage> = frames.iter().map(shrunk).collect::<Result<_, _>>()?;
     let target = &frames[0].target;
     let mask = BitMask::from_fn(SIZE.0, SIZE.1, |u, v| target.pixels()[STRIDE * (v * target.width() + u)])?;
@@ -53,7 +53,7 @@ fn watch(tracker: &mut impl Tracker, pictures: &[RgbImage], n_frames: usize) -> 
     Ok(())
 }
 
-fn shrunk(frame: &Frame) -> Result<RgbImage, Box<dyn Error>> {
+fn shrunk(frame: &FilmFrame) -> Result<RgbImage, Box<dyn Error>> {
     let (picture, n) = (&frame.picture, SIZE.0 * SIZE.1);
     let first = |i: usize| 3 * (i / SIZE.0 * STRIDE * picture.width + i % SIZE.0 * STRIDE);
     let bytes = (0..n).flat_map(|i| picture.rgb[first(i)..first(i) + 3].iter().copied()).collect();

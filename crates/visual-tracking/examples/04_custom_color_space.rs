@@ -7,7 +7,7 @@
 mod films;
 
 use films::follow;
-use wayfix_scene_sim::film::Film;
+use wayfix_scene_sim::film::SyntheticFilm;
 use wayfix_visual_tracking::{ColorSpace, ContourTrackerParams, CustomColorSpace};
 
 const YCGCO: CustomColorSpace = CustomColorSpace {
@@ -21,7 +21,7 @@ const YCGCO: CustomColorSpace = CustomColorSpace {
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let film = Film { seed: 1, ..Film::named("rectangle")? };
+    let film = SyntheticFilm { seed: 1, ..SyntheticFilm::named("rectangle")? };
     let params = ContourTrackerParams { color_space: ColorSpace::Custom(YCGCO), ..Default::default() };
     let record = follow(&film, params);
     println!("{}: mean overlap {:.3}, lost in {} frames", film.name, record.mean_overlap(), record.n_lost());

@@ -3,7 +3,7 @@
 //! | part | content |
 //! | --- | --- |
 //! | trackers | [`Tracker`]: [`CorrelationTracker`] (a box around anything), [`HeadTracker`] (an ellipse by colours and rim), [`ContourTracker`] (an outline) |
-//! | colours | bins of a [`ColorSpace`]: [`ColorQuantizer`], [`BinImage`], [`ColorHistogram`], [`SlidingHistogram`] |
+//! | colours | bins of a [`ColorSpace`]: [`ColorQuantizer`], [`ColorBinImage`], [`ColorHistogram`], [`SlidingHistogram`] |
 //! | masks | [`BitMask`] with 64 pixels a word: morphology, Euler number, [`Blobs`] |
 //! | contours | [`Outline`], [`AffineSnake`] on [`ColorEdges`] or [`MaskEdges`] |
 //! | colour distributions | [`ColorCloud`], [`PrincipalColors`], [`ColorDynamics`], learned by [`LearnedDynamics`] |
@@ -25,19 +25,19 @@ mod tracker;
 
 pub use bounding_box::BoundingBox;
 pub use color::{
-    BinImage, BinSet, ColorHistogram, ColorQuantizer, ColorSpace, CustomColorSpace, RowSpans,
+    ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, CustomColorSpace, RowSpans,
     SlidingHistogram,
 };
-pub use contour::{Agreement, ContourTracker, ContourTrackerParams, TrackingCues};
+pub use contour::{ContourTracker, ContourTrackerParams, SegmentationAgreement, TrackingCues};
 pub use correlation::{CorrelationTracker, CorrelationTrackerParams};
 pub use distribution::{
     COLOR_DIM, ColorCloud, ColorDynamics, ColorState, ColorVector, ColorWarp, LearnedDynamics,
     PrincipalColors,
 };
 pub use error::TrackingError;
-pub use head::{HeadTracker, HeadTrackerParams, LocalScale, ScaleSource};
+pub use head::{HeadTracker, HeadTrackerParams, ScaleSource, SearchedScale};
 pub use image::RgbImage;
-pub use mask::{BitMask, Blob, Blobs, Connectivity, Element};
+pub use mask::{BitMask, Blob, Blobs, Connectivity, StructuringElement};
 pub use pixel_rect::PixelRect;
 pub use snake::{AffineMap, AffineSnake, ColorEdges, EdgeSearch, MaskEdges, Outline, SnakeFit, SnakeParams};
-pub use tracker::{Target, TrackStatus, Tracker};
+pub use tracker::{TargetEstimate, TrackStatus, Tracker};

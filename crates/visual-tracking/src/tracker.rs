@@ -5,7 +5,7 @@ use crate::{RgbImage, TrackingError};
 
 /// Estimate of the target in one image.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Target {
+pub struct TargetEstimate {
     /// Around the target; while it is lost, where it was seen last.
     pub bounding_box: BoundingBox,
     /// The closed outline, points `[u, v]` in pixels in order around the target; empty if only a box is known.
@@ -33,5 +33,9 @@ pub trait Tracker {
     ///
     /// # Errors
     /// Returns an error if the image is unusable, for example if it differs from the first one in size.
-    fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, rng: &mut R) -> Result<Target, TrackingError>;
+    fn track<R: Rng + ?Sized>(
+        &mut self,
+        picture: &RgbImage,
+        rng: &mut R,
+    ) -> Result<TargetEstimate, TrackingError>;
 }

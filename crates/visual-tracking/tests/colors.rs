@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    BinImage, BinSet, BitMask, ColorHistogram, ColorQuantizer, ColorSpace, PixelRect, RgbImage, RowSpans,
-    SlidingHistogram, TrackingError,
+    BitMask, ColorBinImage, ColorBinSet, ColorHistogram, ColorQuantizer, ColorSpace, PixelRect, RgbImage,
+    RowSpans, SlidingHistogram, TrackingError,
 };
 
 fn noise(width: usize, height: usize, rng: &mut ChaCha8Rng) -> RgbImage {
@@ -27,7 +27,7 @@ fn shape() -> impl Strategy<Value = RowSpans> {
 }
 
 /// One pixel at a time.
-fn counted(image: &BinImage, shape: &RowSpans, [u, v]: [i64; 2]) -> Vec<f64> {
+fn counted(image: &ColorBinImage, shape: &RowSpans, [u, v]: [i64; 2]) -> Vec<f64> {
     let mut counts = vec![0.0; image.n_bins()];
     for (y, row) in image.rows().enumerate() {
         for (x, &bin) in row.iter().enumerate() {
@@ -49,11 +49,11 @@ proptest! {
     ) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let (quantizer, picture) = (quantizer(), noise(width, height, &mut rng));
-        let image = BinImage::new(&quantizer, &picture).unwrap();
-        let sets: Vec<BinSet> = (0..n_sets)
+        let image = ColorBinImage::new(&quantizer, &picture).unwrap();
+        let sets: Vec<ColorBinSet> = (0..n_sets)
             .map(|_| {
                 let share = rng.random::<f64>();
-                BinSet::from_fn(&quantizer, |_| rng.random::<f64>() < share)
+                ColorBinSet::from_fn(&quantizer, |_| rng.random::<f64>() < share)
             })
             .collect();
         let masks = image.segment_all(&sets).unwrap();
@@ -74,7 +74,7 @@ proptest! {
         steps in prop::collection::vec((any::<bool>(), -90_i64..90, -60_i64..60, prop::option::weighted(0.2, shape())), 1..25),
     ) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let image = BinImage::new(&quantizer(), &noise(width, height, &mut rng)).unwrap();
+        let image = ColorBinImage::new(&quantizer(), &noise(width, height, &mut rng)).unwrap();
         let mut sliding = SlidingHistogram::new(&image, first, [width as i64 / 2, height as i64 / 2]);
         for (jump, u, v, shape) in steps {
             let [x, y] = sliding.center();
@@ -90,7 +90,7 @@ proptest! {
     #[test]
     fn a_histogram_of_a_mask_counts_its_pixels(width in 1_usize..140, height in 1_usize..20, seed in any::<u64>()) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let image = BinImage::new(&quantizer(), &noise(width, height, &mut rng)).unwrap();
+        let image = ColorBinImage::new(&quantizer(), &noise(width, height, &mut rng)).unwrap();
         let mask = BitMask::from_fn(width, height, |_, _| rng.random()).unwrap();
         let histogram = ColorHistogram::of_mask(&image, &mask).unwrap();
         for (bin, &count) in histogram.counts().iter().enumerate() {
@@ -99,7 +99,7 @@ proptest! {
         }
         let rest = ColorHistogram::of_mask(&image, &mask.not()).unwrap();
         prop_assert_eq!(histogram.total() + rest.total(), (width * height) as f64);
-        prop_assert_eq!(ColorHistogram::of_image(&image).bins_above(0.0), BinSet::of_image(&image));
+        prop_assert_eq!(ColorHistogram::of_image(&image).bins_above(0.0), ColorBinSet::of_image(&image));
     }
 }
 
@@ -123,13 +123,13 @@ fn what_does_not_fit_is_refused_and_changes_nothing() {
     let (picture, few, more) =
         (noise(9, 8, &mut rng), quantizer(), ColorQuantizer::new(ColorSpace::Rgb, [4; 3]));
     let more = more.unwrap();
-    let image = BinImage::new(&few, &picture).unwrap();
-    assert!(matches!(image.segment(&BinSet::empty(&more)), Err(TrackingError::Dimension { .. })));
-    assert!(image.segment_all(&[BinSet::empty(&few), BinSet::empty(&more)]).is_err());
+    let image = ColorBinImage::new(&few, &picture).unwrap();
+    assert!(matches!(image.segment(&ColorBinSet::empty(&more)), Err(TrackingError::Dimension { .. })));
+    assert!(image.segment_all(&[ColorBinSet::empty(&few), ColorBinSet::empty(&more)]).is_err());
     assert!(ColorHistogram::of_mask(&image, &BitMask::full(8, 9).unwrap()).is_err());
     for (left, top, width, height) in [(5, 5, 5, 2), (0, 7, 2, 2), (usize::MAX, 0, 2, 2), (0, 0, 0, 2)] {
         let beyond = PixelRect { left, top, width, height };
-        assert!(BinImage::within(&few, &picture, &beyond).is_err(), "{beyond:?}");
+        assert!(ColorBinImage::within(&few, &picture, &beyond).is_err(), "{beyond:?}");
     }
 
     let mut model = ColorHistogram::of_image(&image);

@@ -8,7 +8,7 @@ mod films;
 use films::{contour_mask, follow};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
-use wayfix_scene_sim::film::{Film, Incident};
+use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
 use wayfix_visual_tracking::{
     BitMask, BoundingBox, ColorDynamics, ColorVector, ContourTracker, ContourTrackerParams, Outline,
     RgbImage, TrackStatus, Tracker as _, TrackingCues, TrackingError,
@@ -44,7 +44,7 @@ fn turning_blue(step: usize) -> RgbImage {
 fn colours_are_followed_and_without_adaptation_they_are_not() {
     let params = ContourTrackerParams { n_samples: 40, ..ContourTrackerParams::default() };
     let mut adaptive = on_disk(params);
-    let mut fixed = on_disk(ContourTrackerParams { adapts: false, ..params });
+    let mut fixed = on_disk(ContourTrackerParams { adapts_colors: false, ..params });
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     for step in 1..70 {
         let picture = turning_blue(step);
@@ -78,7 +78,7 @@ fn the_published_form_follows_what_changes_slowly() {
 #[test]
 fn simulated_targets_are_followed() {
     for (name, least) in [("circles", 0.8), ("rectangle", 0.8), ("beetle", 0.8), ("snail", 0.75)] {
-        let film = Film { seed: 3, n_frames: 50, ..Film::named(name).unwrap() };
+        let film = SyntheticFilm { seed: 3, n_frames: 50, ..SyntheticFilm::named(name).unwrap() };
         let record = follow(&film, ContourTrackerParams::default());
         assert_eq!(record.n_lost(), 0, "{name}");
         assert!(record.mean_overlap() >= least, "{name}: {}", record.mean_overlap());
@@ -87,7 +87,7 @@ fn simulated_targets_are_followed() {
 
 #[test]
 fn snail_neck_is_outside_the_contour_and_inside_the_blob() {
-    let film = Film { seed: 3, n_frames: 60, ..Film::named("snail").unwrap() };
+    let film = SyntheticFilm { seed: 3, n_frames: 60, ..SyntheticFilm::named("snail").unwrap() };
     let with_shape = follow(&film, ContourTrackerParams::default()).decoy_inside();
     let color = ContourTrackerParams { cues: TrackingCues::Color, ..ContourTrackerParams::default() };
     let color_only = follow(&film, color).decoy_inside();
@@ -97,7 +97,8 @@ fn snail_neck_is_outside_the_contour_and_inside_the_blob() {
 #[test]
 fn a_target_that_leaves_is_lost_and_found_again() {
     for (name, comes_back_alike) in [("snail", true), ("circles", false)] {
-        let film = Film { seed: 2, incident: Incident::Away, ..Film::named(name).unwrap() };
+        let film =
+            SyntheticFilm { seed: 2, occlusion: OcclusionEvent::Away, ..SyntheticFilm::named(name).unwrap() };
         let record = follow(&film, ContourTrackerParams::default());
         assert!(record.n_gone() >= 13, "the film is about a target that leaves");
         assert_eq!(record.n_confident_while_gone(), 0, "{name}");
@@ -147,10 +148,10 @@ fn what_cannot_be_used_is_refused_and_changes_nothing() {
     assert!(ContourTracker::from_mask(&picture, &BitMask::empty(SIZE.0, SIZE.1).unwrap(), params).is_err());
     for params in [
         ContourTrackerParams { n_samples: 0, ..params },
-        ContourTrackerParams { sigma: f64::NAN, ..params },
-        ContourTrackerParams { mu: [0.0; 3], ..params },
-        ContourTrackerParams { bins: [0; 3], ..params },
-        ContourTrackerParams { noise: [f64::INFINITY; 8], ..params },
+        ContourTrackerParams { quality_sigma: f64::NAN, ..params },
+        ContourTrackerParams { quality_weights: [0.0; 3], ..params },
+        ContourTrackerParams { color_bins: [0; 3], ..params },
+        ContourTrackerParams { color_state_noise: [f64::INFINITY; 8], ..params },
         ContourTrackerParams { lost_below: 1.5, ..params },
     ] {
         assert!(ContourTracker::from_box(&picture, &disk_box([40.0, 45.0]), params).is_err());
@@ -240,7 +241,7 @@ fn an_outline_of_the_users_is_the_contour() {
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     use films::{mask_of, picture_of};
-    let film = Film { seed: 4, n_frames: 12, ..Film::named("snail").unwrap() };
+    let film = SyntheticFilm { seed: 4, n_frames: 12, ..SyntheticFilm::named("snail").unwrap() };
     let run = |n_threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
         pool.install(|| {

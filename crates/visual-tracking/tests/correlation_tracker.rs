@@ -6,8 +6,8 @@ use common::scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    BoundingBox, CorrelationTracker, CorrelationTrackerParams, RgbImage, Target, TrackStatus, Tracker,
-    TrackingError,
+    BoundingBox, CorrelationTracker, CorrelationTrackerParams, RgbImage, TargetEstimate, TrackStatus,
+    Tracker, TrackingError,
 };
 
 const WIDTH: usize = 160;
@@ -64,7 +64,7 @@ fn tracker(painting: &Painting, center: [f64; 2], side: f64) -> CorrelationTrack
     CorrelationTracker::new(&painting.at(center, side), square(center, side), params).expect("a target")
 }
 
-fn next(tracker: &mut CorrelationTracker, picture: &RgbImage) -> Target {
+fn next(tracker: &mut CorrelationTracker, picture: &RgbImage) -> TargetEstimate {
     tracker.track(picture, &mut ChaCha8Rng::seed_from_u64(0)).expect("a picture of the same size")
 }
 
@@ -200,10 +200,10 @@ fn refuses_targets_that_cannot_be_followed() {
     assert!(matches!(featureless, Err(TrackingError::Empty { .. })));
     for params in [
         CorrelationTrackerParams { padding: f64::NAN, ..Default::default() },
-        CorrelationTrackerParams { color_weight: 1.5, ..Default::default() },
-        CorrelationTrackerParams { n_scales: 8, ..Default::default() },
+        CorrelationTrackerParams { color_histogram_weight: 1.5, ..Default::default() },
+        CorrelationTrackerParams { n_scale_hypotheses: 8, ..Default::default() },
         CorrelationTrackerParams { scale_step: 1.0, ..Default::default() },
-        CorrelationTrackerParams { inertia: -1.0, ..Default::default() },
+        CorrelationTrackerParams { previous_filter_weight: -1.0, ..Default::default() },
     ] {
         let refused = CorrelationTracker::new(&picture, target, params);
         assert!(matches!(refused, Err(TrackingError::Parameter { .. })));

@@ -62,7 +62,11 @@ fn follows_a_head_that_turns_away() {
 #[test]
 fn colours_that_adapt_follow_the_light() {
     let run = |adaptation: f64| {
-        let params = HeadTrackerParams { adaptation, gradient_weight: 0.0, ..Default::default() };
+        let params = HeadTrackerParams {
+            color_adaptation_rate: adaptation,
+            gradient_weight: 0.0,
+            ..Default::default()
+        };
         let mut tracker =
             HeadTracker::new(&picture([50.0, 60.0], 0.35, 1.0, 1.0), head([50.0, 60.0], 1.0), params)
                 .unwrap();
@@ -106,7 +110,7 @@ fn a_scale_that_is_no_number_is_refused_and_changes_nothing() {
     let shown = picture([53.0, 60.0], 0.35, 1.0, 1.0);
     let mut broken = started().with_scale_source(Broken);
     assert!(matches!(broken.track(&shown, &mut rng()), Err(TrackingError::Parameter { .. })));
-    let mut repaired = broken.with_scale_source(wayfix_visual_tracking::LocalScale);
+    let mut repaired = broken.with_scale_source(wayfix_visual_tracking::SearchedScale);
     assert_eq!(repaired.track(&shown, &mut rng()), started().track(&shown, &mut rng()));
 }
 

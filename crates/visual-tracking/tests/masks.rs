@@ -9,7 +9,7 @@ use plain_mask::Plain;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_visual_tracking::{BitMask, Connectivity, Element, TrackingError};
+use wayfix_visual_tracking::{BitMask, Connectivity, StructuringElement, TrackingError};
 
 const BOTH: [Connectivity; 2] = [Connectivity::Four, Connectivity::Eight];
 
@@ -21,17 +21,17 @@ fn mask() -> impl Strategy<Value = BitMask> {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let noise = |_, _| rng.random_range(0..8) < eighths;
             let noise = BitMask::from_fn(width, height, noise).expect("a valid size");
-            if closed { noise.closed(Element::Cross { radius: 1 }) } else { noise }
+            if closed { noise.closed(StructuringElement::Cross { radius: 1 }) } else { noise }
         },
     )
 }
 
 /// Squares are rows spread, then columns; far reach is tested with crosses, where a pixel has few others to look at.
-fn element() -> impl Strategy<Value = Element> {
+fn element() -> impl Strategy<Value = StructuringElement> {
     let cross = prop_oneof![0_usize..6, Just(40), Just(70), Just(200)];
     prop_oneof![
-        (0_usize..6).prop_map(|radius| Element::Square { radius }),
-        cross.prop_map(|radius| Element::Cross { radius }),
+        (0_usize..6).prop_map(|radius| StructuringElement::Square { radius }),
+        cross.prop_map(|radius| StructuringElement::Cross { radius }),
     ]
 }
 
@@ -161,7 +161,7 @@ fn blobs_are_chosen_by_size_distance_and_overlap() {
 fn an_element_larger_than_the_mask_fills_or_clears_it() {
     for (width, height) in [(1, 1), (1, 200), (200, 1), (129, 70)] {
         for radius in [200, usize::MAX] {
-            let square = Element::Square { radius };
+            let square = StructuringElement::Square { radius };
             let one = BitMask::from_fn(width, height, |u, v| u == width - 1 && v == height - 1).unwrap();
             assert_eq!(one.dilated(square), BitMask::full(width, height).unwrap());
             assert_eq!(one.not().eroded(square), BitMask::empty(width, height).unwrap());

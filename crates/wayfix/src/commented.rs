@@ -135,7 +135,7 @@ mod tests {
     use wayfix_systems::{
         cml::CmlParams,
         color::ColorSystemParams,
-        points::{PointSlamParams, Profile},
+        points::{PointSlamParams, RobotProfile},
         track::TrackParams,
         views::ViewsParams,
         walls::WallSlamParams,
@@ -161,18 +161,18 @@ mod tests {
 
     #[test]
     fn comments_change_nothing_and_every_key_has_one() {
-        same_with_comments(&PointSlamParams::of(Profile::Utias));
+        same_with_comments(&PointSlamParams::of(RobotProfile::Utias));
         same_with_comments(&WallSlamParams::default());
         same_with_comments(&ColorSystemParams::default());
         same_with_comments(&ViewsParams::default());
         same_with_comments(&TrackParams::default());
         same_with_comments(&CmlParams::default());
-        same_with_comments(&wayfix_line_extract::Params::default());
+        same_with_comments(&wayfix_line_extract::LineExtractionParams::default());
     }
 
     #[test]
     fn units_choices_and_what_is_not_set_are_told() {
-        let text = commented(&PointSlamParams::of(Profile::Generic)).unwrap();
+        let text = commented(&PointSlamParams::of(RobotProfile::Generic)).unwrap();
         for part in [
             "# Time from the exposure of the sensor to the stamp of what it saw, s.",
             "\"downweight\": Their weight decreases",

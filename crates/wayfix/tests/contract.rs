@@ -5,7 +5,7 @@ mod common;
 use std::{fs, path::Path};
 
 use common::{Scratch, run_slam, utias_walk, walk, walk_without_truth, wayfix};
-use wayfix_sensor_log::{Format, OpenOptions, Record, open, write};
+use wayfix_sensor_log::{LogFormat, OpenOptions, Record, open, write};
 
 const ALWAYS: [&str; 5] = ["n_landmarks", "n_rejected", "step_mean_us", "step_median_us", "step_max_us"];
 const WITH_TRUTH: [&str; 6] = [
@@ -57,7 +57,7 @@ fn a_log_in_several_files_gives_the_figures_of_the_whole() {
     let (first, second) = records.split_at(records.len() / 2);
     let part = |name: &str, records: &[Record]| {
         let path = scratch.path(name);
-        write(&path, Format::Mcap, records.to_vec()).expect("writes");
+        write(&path, LogFormat::Mcap, records.to_vec()).expect("writes");
         path
     };
     let [whole, first, second] = [("whole.mcap", &records[..]), ("a.mcap", first), ("b.mcap", second)]
@@ -122,8 +122,9 @@ fn a_log_that_tells_of_its_motion_twice_moves_once() {
     let (mut records, _) = wayfix_sensor_log::open(&folder, &wayfix_sensor_log::OpenOptions::default())
         .expect("a UTIAS set")
         .read_all();
-    let increment =
-        wayfix_sensor_log::Data::OdometryIncrement(wayfix_estimation_traits::Pose2::new(0.2, 0.01, 0.1));
+    let increment = wayfix_sensor_log::RecordData::OdometryIncrement(wayfix_estimation_traits::Pose2::new(
+        0.2, 0.01, 0.1,
+    ));
     let last = records.last().expect("records").stamp;
     let twice = (1..50).map(|k| wayfix_sensor_log::Record {
         stamp: wayfix_sensor_log::Stamp::from_nanoseconds(last.nanoseconds() - k * 100_000_000),
@@ -132,7 +133,7 @@ fn a_log_that_tells_of_its_motion_twice_moves_once() {
     records.extend(twice);
     records.sort_by_key(|record| record.stamp);
     let path = scratch.path("twice.mcap");
-    wayfix_sensor_log::write(&path, wayfix_sensor_log::Format::Mcap, records).expect("writable");
+    wayfix_sensor_log::write(&path, wayfix_sensor_log::LogFormat::Mcap, records).expect("writable");
     let outcome = run_slam(&path, &["--profile", "utias"]);
     assert_eq!(outcome.event("second_odometry"), 49);
     assert_eq!(outcome.metric("ate_rmse_m"), once.metric("ate_rmse_m"));

@@ -18,8 +18,8 @@ use common::{Scratch, wayfix};
 use mcap::MessageStream;
 use serde_json::Value;
 use wayfix_evaluation::report::foxglove_layout;
-use wayfix_scene_sim::film::Film;
-use wayfix_sensor_log::{EncodedImage, Format, OpenOptions, Record, open, write};
+use wayfix_scene_sim::film::SyntheticFilm;
+use wayfix_sensor_log::{EncodedImage, LogFormat, OpenOptions, Record, open, write};
 
 const LAYOUT: &str = "foxglove-layout.json";
 
@@ -32,7 +32,7 @@ fn beginning(scratch: &Scratch, name: &str, n_records: usize) -> PathBuf {
     let records: Vec<Record> =
         open(fixture(name), &OpenOptions::default()).unwrap().take(n_records).collect();
     let path = scratch.path(name);
-    write(&path, Format::Mcap, records).unwrap();
+    write(&path, LogFormat::Mcap, records).unwrap();
     path
 }
 
@@ -127,7 +127,7 @@ fn color_and_cml_show_what_they_write() {
 #[test]
 fn track_and_views_show_what_they_write() {
     let scratch = Scratch::new();
-    let film = Film { n_frames: 4, ..Film::named("head").unwrap() };
+    let film = SyntheticFilm { n_frames: 4, ..SyntheticFilm::named("head").unwrap() };
     let mut first = None;
     for (index, frame) in film.frames().unwrap().enumerate() {
         let png = EncodedImage::png_rgb(320, 240, &frame.picture.rgb).unwrap();

@@ -16,9 +16,9 @@ use common::{Outcome, Scratch, run_slam, utias_walk, walk};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use wayfix_sensor_log::{OpenOptions, Record};
-use wayfix_systems::points::{PointSlamParams, Profile, SavedMap, run, run_on};
+use wayfix_systems::points::{PointSlamParams, RobotProfile, SavedPointMap, run, run_on};
 use wayfix_systems::slam::{AssociationRule, SavedMapError};
-use wayfix_systems::system::DriveStep;
+use wayfix_systems::system::RunStep;
 
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures");
 const KILL_SEED: u64 = 9;
@@ -29,13 +29,13 @@ fn records(log: &Path) -> Vec<Record> {
 
 fn nearest_neighbour() -> PointSlamParams {
     let association = Some(AssociationRule::Nn);
-    PointSlamParams { association, ..PointSlamParams::of(Profile::RangeBearing) }
+    PointSlamParams { association, ..PointSlamParams::of(RobotProfile::RangeBearing) }
 }
 
 /// The bytes that a run without a break saves after each stamp of its log.
 fn saved_after_each_stamp(records: &[Record], params: &PointSlamParams) -> BTreeMap<u64, Vec<u8>> {
     let mut saved = BTreeMap::new();
-    run(records, params, |DriveStep { system, .. }| {
+    run(records, params, |RunStep { system, .. }| {
         let map = system.save();
         saved.insert(map.taken_until, map.to_bytes().unwrap());
     })
@@ -50,13 +50,13 @@ fn a_resumed_run_goes_on_bit_for_bit_through_a_file() {
     let stored = |name: &str| Path::new(FIXTURES).join(name);
     for (log, params) in [
         (stored("loop_unlabelled.mcap"), nearest_neighbour()),
-        (stored("loop_known.mcap"), PointSlamParams::of(Profile::RangeBearing)),
-        (utias, PointSlamParams::of(Profile::Utias)), // commands and looks that act late
+        (stored("loop_known.mcap"), PointSlamParams::of(RobotProfile::RangeBearing)),
+        (utias, PointSlamParams::of(RobotProfile::Utias)), // commands and looks that act late
     ] {
         let records = records(&log);
         let mut halves = Vec::new();
         let stop = records[records.len() / 2].stamp;
-        let whole = run(&records, &params, |DriveStep { system, .. }| {
+        let whole = run(&records, &params, |RunStep { system, .. }| {
             let map = system.save();
             if map.taken_until <= stop.nanoseconds() {
                 halves = vec![map];
@@ -64,7 +64,7 @@ fn a_resumed_run_goes_on_bit_for_bit_through_a_file() {
         })
         .unwrap();
         halves[0].write(&path).unwrap();
-        let resumed = run_on(SavedMap::read(&path).unwrap(), &records, &params, |_| {}).unwrap();
+        let resumed = run_on(SavedPointMap::read(&path).unwrap(), &records, &params, |_| {}).unwrap();
         assert!(halves[0].filter.n_updates > 10 && resumed.system.stamped_estimates().len() > 10, "{log:?}");
         let (whole, resumed) = (whole.system.save(), resumed.system.save());
         assert_eq!(resumed.to_bytes().unwrap(), whole.to_bytes().unwrap(), "{log:?}");
@@ -103,12 +103,12 @@ fn the_command_saves_and_goes_on() {
 #[test]
 fn a_damaged_file_is_refused_with_its_reason() {
     let scratch = Scratch::new();
-    let params = PointSlamParams::of(Profile::RangeBearing);
+    let params = PointSlamParams::of(RobotProfile::RangeBearing);
     let system = run(&records(&scratch.file("walk.txt", walk(12))), &params, |_| {}).unwrap().system;
     let bytes = system.save().to_bytes().unwrap();
-    assert_eq!(SavedMap::from_bytes(&bytes).unwrap(), system.save());
+    assert_eq!(SavedPointMap::from_bytes(&bytes).unwrap(), system.save());
     for length in 0..bytes.len() {
-        let error = SavedMap::from_bytes(&bytes[..length]).unwrap_err();
+        let error = SavedPointMap::from_bytes(&bytes[..length]).unwrap_err();
         assert!(
             matches!(error, SavedMapError::NotASavedMap | SavedMapError::Length { .. }),
             "{length}: {error}"
@@ -118,7 +118,7 @@ fn a_damaged_file_is_refused_with_its_reason() {
         for flip in [0x01, 0x80, 0xff] {
             let mut damaged = bytes.clone();
             damaged[place] ^= flip;
-            let error = SavedMap::from_bytes(&damaged).unwrap_err();
+            let error = SavedPointMap::from_bytes(&damaged).unwrap_err();
             let expected = match place {
                 0..8 => matches!(error, SavedMapError::NotASavedMap),
                 8..12 => matches!(error, SavedMapError::Version { known: 3, .. }),
@@ -134,7 +134,7 @@ fn a_damaged_file_is_refused_with_its_reason() {
 #[test]
 fn a_forged_state_never_panics() {
     let scratch = Scratch::new();
-    let params = PointSlamParams::of(Profile::RangeBearing);
+    let params = PointSlamParams::of(RobotProfile::RangeBearing);
     let log = records(&scratch.file("walk.txt", walk(12)));
     let bytes = run(&log, &params, |_| {}).unwrap().system.save().to_bytes().unwrap();
     let later = records(&scratch.file("later.txt", walk(20)));
@@ -144,7 +144,7 @@ fn a_forged_state_never_panics() {
         forged[place] ^= 0x80;
         let checksum = crc32fast::hash(&[&forged[8..20], &forged[24..]].concat());
         forged[20..24].copy_from_slice(&checksum.to_le_bytes());
-        let resumed = SavedMap::from_bytes(&forged)
+        let resumed = SavedPointMap::from_bytes(&forged)
             .map_err(anyhow::Error::from)
             .and_then(|map| run_on(map, &later, &params, |_| {}));
         n_refused += usize::from(resumed.is_err());
@@ -182,7 +182,7 @@ fn a_killed_process_leaves_the_old_or_the_new_file_whole() {
         n_killed += usize::from(child.wait().unwrap().code().is_none());
         n_cut += remove_unfinished(&map);
         let Ok(bytes) = fs::read(&map) else { continue }; // killed before the first save
-        let taken_until = SavedMap::from_bytes(&bytes).unwrap().taken_until;
+        let taken_until = SavedPointMap::from_bytes(&bytes).unwrap().taken_until;
         assert_eq!(bytes, expected[&taken_until], "as an undisturbed run saves it at {taken_until} ns");
     }
     assert!(n_killed >= 20 && map.exists(), "{n_killed} of 40 were killed while they ran");

@@ -7,7 +7,7 @@ mod common;
 use std::{fs, path::PathBuf};
 
 use common::{Outcome, wayfix};
-use wayfix_sensor_log::{Data, Format, OpenOptions, Record, Stamp, Velocity, open, write};
+use wayfix_sensor_log::{LogFormat, OpenOptions, Record, RecordData, Stamp, Velocity, open, write};
 
 /// A drive in a room of 8 m by 6 m, recorded with the Python package rosbags (xtask/clients/ros_bags.py): the laser hangs head down, turned
 /// by 0.5 rad, and odometry says 5 % too much.
@@ -58,18 +58,18 @@ fn bag_walls_correct_odometry_with_the_mount_of_its_transform() {
 #[test]
 fn a_robot_that_tells_its_velocity_only_maps_the_same_walls() {
     // What the bag says by increments, this log says by the velocity of the circle: 0.5 m/s, and 0.5 / 1.5 rad/s.
-    let velocity = Data::Velocity(Velocity { linear: 0.5, angular: 0.5 / 1.5 });
+    let velocity = RecordData::Velocity(Velocity { linear: 0.5, angular: 0.5 / 1.5 });
     let is_first = |stamp: &mut Option<Stamp>, now: Stamp| stamp.replace(now) != Some(now);
     let mut last = None;
     let records = open(bag(), &OpenOptions::default()).unwrap().flat_map(|record| {
         let told = Record { stamp: record.stamp, data: velocity.clone() };
         let told = is_first(&mut last, record.stamp).then_some(told);
-        let kept = (!matches!(record.data, Data::OdometryIncrement(_))).then_some(record);
+        let kept = (!matches!(record.data, RecordData::OdometryIncrement(_))).then_some(record);
         told.into_iter().chain(kept)
     });
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("velocities.mcap");
-    write(&path, Format::Mcap, records).unwrap();
+    write(&path, LogFormat::Mcap, records).unwrap();
     let outcome = wayfix(["run", "slam", "--json", "--log", path.to_str().unwrap()]);
     assert!(FOUR_WALLS.contains(&outcome.metric("n_landmarks")), "{}", outcome.stdout);
     let info = wayfix(["info", path.to_str().unwrap()]);

@@ -10,9 +10,9 @@ use std::error::Error;
 
 use cart::Cart;
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_line_extract::{Extractor, Params, Scan};
+use wayfix_line_extract::{LineExtractor, LineExtractionParams, Scan};
 use wayfix_slam_ekf::{
-    ConfirmationParams, EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
+    ConfirmationParams, EkfSlam, IncrementMotion, JointCompatibility, JointCompatibilityParams, LinearizationPoint,
     Observation, WallMeasurement, SlamParams, WallSensor,
 };
 
@@ -20,14 +20,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Pose2::new(2.0, 2.0, 0.0);
     let mut cart = Cart::new(start);
 
-    let mut extractor = Extractor::new(Params::default())?;
+    let mut extractor = LineExtractor::new(LineExtractionParams::default())?;
     let motion = IncrementMotion {
         translation_variance_per_meter: 1e-3,
         heading_variance_per_meter: 2e-3,
         ..IncrementMotion::default()
     };
     let filter = SlamParams {
-        linearization: Linearization::FirstEstimates, // laps: the standard form would grow too sure of its heading
+        linearization: LinearizationPoint::FirstEstimates, // laps: the standard form would grow too sure of its heading
         confirmation: ConfirmationParams { n_detections: 3, max_missed: Some(10), ..ConfirmationParams::default() },
         ..SlamParams::default()
     };

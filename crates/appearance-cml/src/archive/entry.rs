@@ -1,23 +1,25 @@
 use nalgebra::Matrix3;
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::bytes::{Reader, Writer};
-use crate::{LagSample, PanoramaDescriptor, PlaceComponent, Reference, ReferenceId, ViewScale};
+use crate::{
+    PanoramaDescriptor, PlaceComponent, ReferenceId, ReferenceView, ViewDifferenceSample, ViewDistanceScale,
+};
 
 /// Something that a map has, or that has become of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Entry {
     /// A reference, new or in the stead of one of that number.
-    Reference(ReferenceId, PanoramaDescriptor, Reference),
+    Reference(ReferenceId, PanoramaDescriptor, ReferenceView),
     /// New places of one that is there.
-    Places(ReferenceId, Reference),
+    Places(ReferenceId, ReferenceView),
     /// One is gone.
     Forgotten(ReferenceId),
     /// How views change with the lag, and the number of the next reference.
-    Scale(ViewScale, u32),
+    Scale(ViewDistanceScale, u32),
     /// Where the robot may be; `None` for anywhere.
-    State(Option<Mixture<Pose2<f64>>>),
+    State(Option<GaussianMixture<Pose2<f64>>>),
 }
 
 impl Entry {
@@ -94,7 +96,7 @@ fn read_view(reader: &mut Reader) -> Option<PanoramaDescriptor> {
     PanoramaDescriptor::from_parts(scale, n_rings, coefficients).ok()
 }
 
-fn write_places(reference: &Reference, writer: &mut Writer) {
+fn write_places(reference: &ReferenceView, writer: &mut Writer) {
     writer.u32(reference.places.len() as u32);
     for place in &reference.places {
         writer.f64s([place.weight, place.count]);
@@ -102,21 +104,21 @@ fn write_places(reference: &Reference, writer: &mut Writer) {
     }
 }
 
-fn read_places(reader: &mut Reader) -> Option<Reference> {
+fn read_places(reader: &mut Reader) -> Option<ReferenceView> {
     let n = reader.count(14 * 8)?;
     let place = |reader: &mut Reader| {
         let [weight, count] = reader.f64s()?;
         Some(PlaceComponent { weight, count, gaussian: read_gaussian(reader)? })
     };
     let places: Option<Vec<PlaceComponent>> = (0..n).map(|_| place(reader)).collect();
-    let reference = Reference { places: places? };
+    let reference = ReferenceView { places: places? };
     reference.validate().ok()?;
     Some(reference)
 }
 
-fn write_scale(scale: &ViewScale, writer: &mut Writer) {
-    let near: Vec<LagSample> = scale.near().collect();
-    let ahead: Vec<LagSample> = scale.ahead().collect();
+fn write_scale(scale: &ViewDistanceScale, writer: &mut Writer) {
+    let near: Vec<ViewDifferenceSample> = scale.near().collect();
+    let ahead: Vec<ViewDifferenceSample> = scale.ahead().collect();
     for samples in [&near, &ahead] {
         writer.u32(samples.len() as u32);
         samples.iter().for_each(|sample| writer.f64s([sample.lag, sample.distance]));
@@ -126,18 +128,18 @@ fn write_scale(scale: &ViewScale, writer: &mut Writer) {
     writer.f64s(far);
 }
 
-fn read_scale(reader: &mut Reader) -> Option<ViewScale> {
-    let samples = |reader: &mut Reader| -> Option<Vec<LagSample>> {
+fn read_scale(reader: &mut Reader) -> Option<ViewDistanceScale> {
+    let samples = |reader: &mut Reader| -> Option<Vec<ViewDifferenceSample>> {
         let n = reader.count(16)?;
-        (0..n).map(|_| reader.f64s().map(|[lag, distance]| LagSample { lag, distance })).collect()
+        (0..n).map(|_| reader.f64s().map(|[lag, distance]| ViewDifferenceSample { lag, distance })).collect()
     };
     let (near, ahead) = (samples(reader)?, samples(reader)?);
     let n = reader.count(8)?;
     let far: Option<Vec<f64>> = (0..n).map(|_| reader.f64()).collect();
-    ViewScale::from_parts(&near, &ahead, &far?).ok()
+    ViewDistanceScale::from_parts(&near, &ahead, &far?).ok()
 }
 
-fn write_state(state: Option<&Mixture<Pose2<f64>>>, writer: &mut Writer) {
+fn write_state(state: Option<&GaussianMixture<Pose2<f64>>>, writer: &mut Writer) {
     let Some(state) = state else { return writer.u32(0) };
     writer.u32(state.components().len() as u32);
     for (log_weight, component) in state.log_weights().iter().zip(state.components()) {
@@ -146,14 +148,14 @@ fn write_state(state: Option<&Mixture<Pose2<f64>>>, writer: &mut Writer) {
     }
 }
 
-fn read_state(reader: &mut Reader) -> Option<Option<Mixture<Pose2<f64>>>> {
+fn read_state(reader: &mut Reader) -> Option<Option<GaussianMixture<Pose2<f64>>>> {
     let n = reader.count(13 * 8)?;
     let component = |reader: &mut Reader| Some((reader.f64()?, read_gaussian(reader)?));
     let components: Option<Vec<(f64, Gaussian<Pose2<f64>>)>> = (0..n).map(|_| component(reader)).collect();
     if n == 0 {
         return Some(None);
     }
-    Mixture::from_log_weights(components?).ok().map(Some)
+    GaussianMixture::from_log_weights(components?).ok().map(Some)
 }
 
 fn write_gaussian(gaussian: &Gaussian<Pose2<f64>>, writer: &mut Writer) {

@@ -3,7 +3,7 @@ use crate::AppearanceError;
 /// Why bytes are not a map that can be used here.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum ArchiveError {
+pub enum MapArchiveError {
     /// They do not begin as a map does.
     #[error("not an appearance map: it does not begin with WAYFIXAM")]
     NotAMap,

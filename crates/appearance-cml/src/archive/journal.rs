@@ -1,22 +1,22 @@
 use std::collections::BTreeMap;
 
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::Mixture;
+use wayfix_gaussian_core::GaussianMixture;
 
 use super::{entry::Entry, map_archive::append};
-use crate::{AppearanceMap, PanoramaDescriptor, Reference, ReferenceId, ReferenceSearch};
+use crate::{AppearanceMap, PanoramaDescriptor, ReferenceId, ReferenceSearch, ReferenceView};
 
 /// What of a map is in the bytes already, so that only what has changed since is appended to them.
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{AppearanceMap, ArchiveParams, Journal, MapArchive, PanoramaDescriptor, PanoramaParams};
+/// use wayfix_appearance_cml::{AppearanceMap, MapArchiveParams, MapArchiveJournal, MapArchive, PanoramaDescriptor, PanoramaParams};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
-/// let params = ArchiveParams { views: PanoramaParams::default(), size: (120, 25) };
+/// let params = MapArchiveParams { views: PanoramaParams::default(), size: (120, 25) };
 /// let mut map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
 /// let mut bytes = MapArchive::to_bytes(&params, &map, None);
-/// let mut journal = Journal::after(&map);
+/// let mut journal = MapArchiveJournal::after(&map);
 /// let pose = Gaussian::from_sigmas(Pose2::new(1.0, 2.0, 0.0), &Vector3::new(0.1, 0.1, 0.1))?;
 /// map.teach(PanoramaDescriptor::from_parts(0.01, 1, vec![3, 20, -5])?, &pose)?;
 /// bytes.extend(journal.changes(&map, None));
@@ -24,11 +24,11 @@ use crate::{AppearanceMap, PanoramaDescriptor, Reference, ReferenceId, Reference
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Journal {
-    written: BTreeMap<ReferenceId, Reference>,
+pub struct MapArchiveJournal {
+    written: BTreeMap<ReferenceId, ReferenceView>,
 }
 
-impl Journal {
+impl MapArchiveJournal {
     /// A journal that goes on from the bytes of this map.
     pub fn after<S: ReferenceSearch<PanoramaDescriptor>>(map: &AppearanceMap<PanoramaDescriptor, S>) -> Self {
         Self { written: map.references().clone() }
@@ -38,7 +38,7 @@ impl Journal {
     pub fn changes<S: ReferenceSearch<PanoramaDescriptor>>(
         &mut self,
         map: &AppearanceMap<PanoramaDescriptor, S>,
-        state: Option<&Mixture<Pose2<f64>>>,
+        state: Option<&GaussianMixture<Pose2<f64>>>,
     ) -> Vec<u8> {
         let mut bytes = Vec::new();
         for id in self.written.keys().filter(|id| map.reference(**id).is_none()) {

@@ -1,14 +1,16 @@
 use std::collections::BTreeMap;
 
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::Mixture;
+use wayfix_gaussian_core::GaussianMixture;
 
 use super::{
-    ArchiveError, ArchiveParams,
+    MapArchiveError, MapArchiveParams,
     bytes::{Reader, Writer},
     entry::Entry,
 };
-use crate::{AppearanceMap, PanoramaDescriptor, Reference, ReferenceId, ReferenceSearch, ViewScale};
+use crate::{
+    AppearanceMap, PanoramaDescriptor, ReferenceId, ReferenceSearch, ReferenceView, ViewDistanceScale,
+};
 
 const MAGIC: [u8; 8] = *b"WAYFIXAM";
 /// Counts up with every change of what the bytes mean.
@@ -17,32 +19,32 @@ const VERSION: u32 = 3;
 /// A map of panoramas, where the robot is in it, and what views were described with.
 ///
 /// ```
-/// use wayfix_appearance_cml::{AppearanceMap, ArchiveEnd, ArchiveParams, LinearSearch, MapArchive, PanoramaDescriptor, PanoramaParams};
-/// let params = ArchiveParams { views: PanoramaParams::default(), size: (120, 25) };
+/// use wayfix_appearance_cml::{AppearanceMap, MapArchiveEnd, MapArchiveParams, LinearSearch, MapArchive, PanoramaDescriptor, PanoramaParams};
+/// let params = MapArchiveParams { views: PanoramaParams::default(), size: (120, 25) };
 /// let map: AppearanceMap<PanoramaDescriptor> = AppearanceMap::default();
 /// let bytes = MapArchive::to_bytes(&params, &map, None);
 /// let archive = MapArchive::from_bytes(&bytes)?;
-/// assert_eq!(archive.end(), ArchiveEnd::Whole);
+/// assert_eq!(archive.end(), MapArchiveEnd::Whole);
 /// let (map, state): (AppearanceMap<PanoramaDescriptor, LinearSearch<_>>, _) = archive.into_map(&params)?;
 /// assert!(map.is_empty() && state.is_none());
-/// # Ok::<(), wayfix_appearance_cml::ArchiveError>(())
+/// # Ok::<(), wayfix_appearance_cml::MapArchiveError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct MapArchive {
-    params: ArchiveParams,
-    references: BTreeMap<ReferenceId, (PanoramaDescriptor, Reference)>,
-    scale: ViewScale,
+    params: MapArchiveParams,
+    references: BTreeMap<ReferenceId, (PanoramaDescriptor, ReferenceView)>,
+    scale: ViewDistanceScale,
     next: u32,
-    state: Option<Mixture<Pose2<f64>>>,
-    end: ArchiveEnd,
+    state: Option<GaussianMixture<Pose2<f64>>>,
+    end: MapArchiveEnd,
 }
 
 /// A map, and where the robot may be in it; `None` for anywhere.
-pub type MapAndState<S> = (AppearanceMap<PanoramaDescriptor, S>, Option<Mixture<Pose2<f64>>>);
+pub type MapAndState<S> = (AppearanceMap<PanoramaDescriptor, S>, Option<GaussianMixture<Pose2<f64>>>);
 
 /// How the bytes of a map end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ArchiveEnd {
+pub enum MapArchiveEnd {
     /// After a whole entry.
     Whole,
     /// In the middle of one, which is left out: writing it was interrupted.
@@ -55,9 +57,9 @@ pub enum ArchiveEnd {
 impl MapArchive {
     /// The bytes of a map, and of where the robot may be.
     pub fn to_bytes<S: ReferenceSearch<PanoramaDescriptor>>(
-        params: &ArchiveParams,
+        params: &MapArchiveParams,
         map: &AppearanceMap<PanoramaDescriptor, S>,
-        state: Option<&Mixture<Pose2<f64>>>,
+        state: Option<&GaussianMixture<Pose2<f64>>>,
     ) -> Vec<u8> {
         let mut bytes = header(params);
         for (id, reference) in map.references() {
@@ -73,17 +75,17 @@ impl MapArchive {
     /// The map in bytes.
     ///
     /// # Errors
-    /// Returns an error if the bytes are not a map, of another version, damaged, or if an entry is invalid ([`ArchiveError::Content`]).
+    /// Returns an error if the bytes are not a map, of another version, damaged, or if an entry is invalid ([`MapArchiveError::Content`]).
     /// A last entry that is cut short is no error: [`end`](Self::end) reports it.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ArchiveError> {
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, MapArchiveError> {
         let (params, mut rest) = open(bytes)?;
         let mut archive = Self {
             params,
             references: BTreeMap::new(),
-            scale: ViewScale::default(),
+            scale: ViewDistanceScale::default(),
             next: 0,
             state: None,
-            end: ArchiveEnd::Whole,
+            end: MapArchiveEnd::Whole,
         };
         let mut index = 0;
         while !rest.is_empty() {
@@ -91,15 +93,15 @@ impl MapArchive {
             match next_entry(rest) {
                 Next::Entry(entry, after) => {
                     let entry =
-                        Entry::from_bytes(entry).map_err(|what| ArchiveError::Content { index, what })?;
-                    archive.take(entry).map_err(|what| ArchiveError::Content { index, what })?;
+                        Entry::from_bytes(entry).map_err(|what| MapArchiveError::Content { index, what })?;
+                    archive.take(entry).map_err(|what| MapArchiveError::Content { index, what })?;
                     rest = after;
                 }
                 Next::CutShort => {
-                    archive.end = ArchiveEnd::Interrupted { whole_bytes: offset };
+                    archive.end = MapArchiveEnd::Interrupted { whole_bytes: offset };
                     break;
                 }
-                Next::Damaged => return Err(ArchiveError::Entry { index, offset }),
+                Next::Damaged => return Err(MapArchiveError::Entry { index, offset }),
             }
             index += 1;
         }
@@ -107,12 +109,12 @@ impl MapArchive {
     }
 
     /// What its views were described with.
-    pub fn params(&self) -> &ArchiveParams {
+    pub fn params(&self) -> &MapArchiveParams {
         &self.params
     }
 
     /// How the bytes ended.
-    pub fn end(&self) -> ArchiveEnd {
+    pub fn end(&self) -> MapArchiveEnd {
         self.end
     }
 
@@ -132,8 +134,8 @@ impl MapArchive {
     /// When the map was learned with other parameters, or its parts make no map.
     pub fn into_map<S: ReferenceSearch<PanoramaDescriptor> + Default>(
         self,
-        params: &ArchiveParams,
-    ) -> Result<MapAndState<S>, ArchiveError> {
+        params: &MapArchiveParams,
+    ) -> Result<MapAndState<S>, MapArchiveError> {
         params.check(&self.params)?;
         let mut search = S::default();
         let mut references = BTreeMap::new();
@@ -175,7 +177,7 @@ pub(super) fn append(entry: &Entry, bytes: &mut Vec<u8>) {
     *bytes = writer.0;
 }
 
-fn header(params: &ArchiveParams) -> Vec<u8> {
+fn header(params: &MapArchiveParams) -> Vec<u8> {
     let mut content = Writer::default();
     params.write(&mut content);
     let mut writer = Writer(MAGIC.to_vec());
@@ -188,21 +190,21 @@ fn header(params: &ArchiveParams) -> Vec<u8> {
 }
 
 /// The parameters, and the bytes after the header.
-fn open(bytes: &[u8]) -> Result<(ArchiveParams, &[u8]), ArchiveError> {
-    let rest = bytes.strip_prefix(&MAGIC).ok_or(ArchiveError::NotAMap)?;
+fn open(bytes: &[u8]) -> Result<(MapArchiveParams, &[u8]), MapArchiveError> {
+    let rest = bytes.strip_prefix(&MAGIC).ok_or(MapArchiveError::NotAMap)?;
     let mut reader = Reader(rest);
-    let found = reader.u32().ok_or(ArchiveError::Header)?;
+    let found = reader.u32().ok_or(MapArchiveError::Header)?;
     if found != VERSION {
-        return Err(ArchiveError::Version { found, known: VERSION });
+        return Err(MapArchiveError::Version { found, known: VERSION });
     }
-    let n = reader.u32().ok_or(ArchiveError::Header)? as usize;
-    let content = reader.take(n).ok_or(ArchiveError::Header)?;
+    let n = reader.u32().ok_or(MapArchiveError::Header)? as usize;
+    let content = reader.take(n).ok_or(MapArchiveError::Header)?;
     let summed = bytes.len() - reader.0.len();
-    let sum = reader.u32().ok_or(ArchiveError::Header)?;
+    let sum = reader.u32().ok_or(MapArchiveError::Header)?;
     if sum != checksum(&bytes[..summed]) {
-        return Err(ArchiveError::Header);
+        return Err(MapArchiveError::Header);
     }
-    let params = ArchiveParams::read(content).ok_or(ArchiveError::Header)?;
+    let params = MapArchiveParams::read(content).ok_or(MapArchiveError::Header)?;
     Ok((params, reader.0))
 }
 

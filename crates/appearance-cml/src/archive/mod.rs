@@ -15,7 +15,7 @@ mod journal;
 mod map_archive;
 mod params;
 
-pub use error::ArchiveError;
-pub use journal::Journal;
-pub use map_archive::{ArchiveEnd, MapAndState, MapArchive};
-pub use params::ArchiveParams;
+pub use error::MapArchiveError;
+pub use journal::MapArchiveJournal;
+pub use map_archive::{MapAndState, MapArchive, MapArchiveEnd};
+pub use params::MapArchiveParams;

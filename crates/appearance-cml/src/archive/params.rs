@@ -1,28 +1,28 @@
 use super::{
-    ArchiveError,
+    MapArchiveError,
     bytes::{Reader, Writer},
 };
-use crate::{Normalization, PanoramaParams, Tone, TurnSense};
+use crate::{AzimuthDirection, BrightnessNormalization, IntensityScale, PanoramaParams};
 
 /// What views must have in common to be compared: how they are described, and the size of the pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ArchiveParams {
+pub struct MapArchiveParams {
     /// How panoramas are described.
     pub views: PanoramaParams,
     /// Columns and rows of a panorama.
     pub size: (usize, usize),
 }
 
-impl ArchiveParams {
+impl MapArchiveParams {
     pub(super) fn write(&self, writer: &mut Writer) {
         let views = &self.views;
         for whole in [views.n_rings, views.n_sectors, views.n_harmonics, self.size.0, self.size.1] {
             writer.u32(u32::try_from(whole).unwrap_or(u32::MAX));
         }
-        writer.u8(views.tone as u8);
-        writer.u8(views.normalization as u8);
-        writer.u8(views.sense as u8);
-        writer.f64s([views.min_contrast, views.max_saturated, views.smoothing]);
+        writer.u8(views.intensity_scale as u8);
+        writer.u8(views.brightness_normalization as u8);
+        writer.u8(views.azimuth_direction as u8);
+        writer.f64s([views.min_contrast, views.max_saturated, views.smoothing_sigma]);
     }
 
     pub(super) fn read(bytes: &[u8]) -> Option<Self> {
@@ -33,19 +33,19 @@ impl ArchiveParams {
         }
         let [n_rings, n_sectors, n_harmonics, columns, rows] = whole;
         let tone = match reader.u8()? {
-            0 => Tone::Linear,
-            1 => Tone::Logarithmic,
+            0 => IntensityScale::Linear,
+            1 => IntensityScale::Logarithmic,
             _ => return None,
         };
         let normalization = match reader.u8()? {
-            0 => Normalization::None,
-            1 => Normalization::Mean,
-            2 => Normalization::MeanVariance,
+            0 => BrightnessNormalization::None,
+            1 => BrightnessNormalization::Mean,
+            2 => BrightnessNormalization::MeanVariance,
             _ => return None,
         };
         let sense = match reader.u8()? {
-            0 => TurnSense::Clockwise,
-            1 => TurnSense::Counterclockwise,
+            0 => AzimuthDirection::Clockwise,
+            1 => AzimuthDirection::Counterclockwise,
             _ => return None,
         };
         let [min_contrast, max_saturated, smoothing] = reader.f64s()?;
@@ -53,35 +53,35 @@ impl ArchiveParams {
             n_rings,
             n_sectors,
             n_harmonics,
-            smoothing,
-            tone,
-            normalization,
+            smoothing_sigma: smoothing,
+            intensity_scale: tone,
+            brightness_normalization: normalization,
             min_contrast,
             max_saturated,
-            sense,
+            azimuth_direction: sense,
         };
         reader.0.is_empty().then_some(Self { views, size: (columns, rows) })
     }
 
     /// What is refused of a view may differ; what becomes of one must not.
-    pub(super) fn check(&self, found: &Self) -> Result<(), ArchiveError> {
+    pub(super) fn check(&self, found: &Self) -> Result<(), MapArchiveError> {
         let properties = |params: &Self| {
             let views = &params.views;
             [
                 ("n_rings", views.n_rings.to_string()),
                 ("n_sectors", views.n_sectors.to_string()),
                 ("n_harmonics", views.n_harmonics.to_string()),
-                ("smoothing", views.smoothing.to_string()),
-                ("tone", format!("{:?}", views.tone)),
-                ("normalization", format!("{:?}", views.normalization)),
-                ("sense", format!("{:?}", views.sense)),
+                ("smoothing", views.smoothing_sigma.to_string()),
+                ("tone", format!("{:?}", views.intensity_scale)),
+                ("normalization", format!("{:?}", views.brightness_normalization)),
+                ("sense", format!("{:?}", views.azimuth_direction)),
                 ("size of the panorama", format!("{} × {}", params.size.0, params.size.1)),
             ]
         };
         let mut pairs = properties(self).into_iter().zip(properties(found));
         let differs = pairs.find(|((_, expected), (_, found))| expected != found);
         differs.map_or(Ok(()), |((what, expected), (_, found))| {
-            Err(ArchiveError::Parameters { what, expected, found })
+            Err(MapArchiveError::Parameters { what, expected, found })
         })
     }
 }

@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::{Gaussian, check_covariance, cholesky, symmetrize};
 
-use super::Combination;
+use super::GaussianFusionRule;
 use super::split::{Split, intersect};
 use crate::{AppearanceError, PoseHypothesis};
 
@@ -10,17 +10,17 @@ use crate::{AppearanceError, PoseHypothesis};
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{Combination, PoseHypothesis, combine};
+/// use wayfix_appearance_cml::{GaussianFusionRule, PoseHypothesis, combine};
 /// use wayfix_estimation_traits::Pose2;
 /// use wayfix_gaussian_core::Gaussian;
 /// let belief = Gaussian::from_sigmas(Pose2::new(0.0, 0.0, 0.0), &Vector3::new(0.2, 0.2, 0.1))?;
 /// let a = PoseHypothesis::new(0.5, belief.clone());
 /// // The same news twice is no news ...
-/// let twice = combine(&a, &a, Combination::WeightedIntersection)?;
+/// let twice = combine(&a, &a, GaussianFusionRule::WeightedIntersection)?;
 /// assert!((twice.covariance() - belief.covariance()).norm() < 1e-12);
 /// // ... unless it is known to be independent.
 /// let fresh = PoseHypothesis { independent: 1.0, ..a.clone() };
-/// let fused = combine(&fresh, &fresh, Combination::SplitIntersection)?;
+/// let fused = combine(&fresh, &fresh, GaussianFusionRule::SplitIntersection)?;
 /// assert!((fused.covariance() * 2.0 - belief.covariance()).norm() < 1e-12);
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
@@ -30,18 +30,18 @@ use crate::{AppearanceError, PoseHypothesis};
 pub fn combine(
     a: &PoseHypothesis,
     b: &PoseHypothesis,
-    combination: Combination,
+    combination: GaussianFusionRule,
 ) -> Result<Gaussian<Pose2<f64>>, AppearanceError> {
     let at = a.gaussian.mean();
     let seen = b.gaussian.in_chart_at(at)?;
     check_covariance("first", a.gaussian.covariance())?;
     check_covariance("second", seen.covariance())?;
     let (step, covariance) = match combination {
-        Combination::WeightedIntersection => {
+        GaussianFusionRule::WeightedIntersection => {
             let share = share(a, b);
             weighted_intersection(a.gaussian.covariance(), (seen.mean(), seen.covariance()), share)?
         }
-        Combination::SplitIntersection => intersect(
+        GaussianFusionRule::SplitIntersection => intersect(
             &Split::new(Vector3::zeros(), a.gaussian.covariance(), a.independent),
             &Split::new(*seen.mean(), seen.covariance(), b.independent),
         )?,
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn the_heavier_and_the_narrower_draw_the_result() {
         let near = |a: &PoseHypothesis, b: &PoseHypothesis| {
-            combine(a, b, Combination::WeightedIntersection).unwrap().mean().x()
+            combine(a, b, GaussianFusionRule::WeightedIntersection).unwrap().mean().x()
         };
         let (left, right) = (hypothesis(1.0, [0.0; 3], [0.2; 3]), hypothesis(1.0, [0.1, 0.0, 0.0], [0.2; 3]));
         assert!((near(&left, &right) - 0.05).abs() < 1e-12, "equals meet half way");
@@ -112,7 +112,7 @@ mod tests {
         // A belief narrow ahead that faces left is narrow across the way of one that faces ahead.
         let ahead = hypothesis(1.0, [0.0, 0.0, 0.0], [1.0, 1.0, 0.5]);
         let left = hypothesis(1.0, [0.0, 0.0, std::f64::consts::FRAC_PI_2], [0.1, 1.0, 2.0]);
-        for combination in [Combination::WeightedIntersection, Combination::SplitIntersection] {
+        for combination in [GaussianFusionRule::WeightedIntersection, GaussianFusionRule::SplitIntersection] {
             let fused = combine(&ahead, &left, combination).unwrap();
             let world = fused.mean().rotation_matrix()
                 * fused.covariance().fixed_view::<2, 2>(0, 0)
@@ -127,7 +127,7 @@ mod tests {
             hypothesis(0.3, [1.0, 2.0, 3.0], [0.2, 0.1, 0.1]),
             hypothesis(0.6, [1.1, 2.1, -3.1], [0.1, 0.3, 0.2]),
         );
-        for combination in [Combination::WeightedIntersection, Combination::SplitIntersection] {
+        for combination in [GaussianFusionRule::WeightedIntersection, GaussianFusionRule::SplitIntersection] {
             let (one, other) = (combine(&a, &b, combination).unwrap(), combine(&b, &a, combination).unwrap());
             // The charts differ by a turn of 0.18 rad, which the retraction bends to second order.
             assert!(one.mean().local(other.mean()).norm() < 0.02, "{combination:?}");
@@ -140,7 +140,9 @@ mod tests {
         for bad in [Matrix3::zeros(), Matrix3::from_element(f64::NAN), -Matrix3::identity()] {
             let flat =
                 PoseHypothesis::new(1.0, Gaussian::from_parts_unchecked(Pose2::new(0.0, 0.0, 0.0), bad));
-            for combination in [Combination::WeightedIntersection, Combination::SplitIntersection] {
+            for combination in
+                [GaussianFusionRule::WeightedIntersection, GaussianFusionRule::SplitIntersection]
+            {
                 assert!(combine(&good, &flat, combination).is_err());
                 assert!(combine(&flat, &good, combination).is_err());
             }

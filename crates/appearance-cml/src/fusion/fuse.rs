@@ -1,11 +1,11 @@
 use wayfix_gaussian_core::Gaussian;
 
-use super::{FusionParams, Weighting, combine};
+use super::{FusionParams, MixtureWeighting, combine};
 use crate::{AppearanceError, PoseHypothesis, separation_squared};
 
 /// Fuses two mixtures over poses; weights stay as they come out, for the next source to be fused.
 ///
-/// Components nearer than the gate are combined in pairs; those without a counterpart are copied. With [`Weighting::Evidence`] a predicted component is
+/// Components nearer than the gate are combined in pairs; those without a counterpart are copied. With [`MixtureWeighting::Evidence`] a predicted component is
 /// copied beside its pairs too, with the chance that none of its counterparts is where the view is from: what merely looks alike within the gate of a robot that knows
 /// its place to some metres must not take it there alone. Normalize after the last source
 /// ([`PoseHypothesis::into_mixture`]): that is what makes unsupported components fade. [Gross et al. 2005, Eqs. 2-8]
@@ -41,15 +41,15 @@ pub fn fuse(
     let mut fused = Vec::with_capacity(predicted.len() + observed.len());
     for pair in &agreeing {
         let (a, b) = (&predicted[pair.predicted], &observed[pair.observed]);
-        let weight = match params.weighting {
-            Weighting::Support => support(pair, predicted, observed, &agreeing),
-            Weighting::Evidence { .. } => a.weight * b.weight * (-0.5 * pair.squared).exp(),
+        let weight = match params.mixture_weighting {
+            MixtureWeighting::Support => support(pair, predicted, observed, &agreeing),
+            MixtureWeighting::Evidence { .. } => a.weight * b.weight * (-0.5 * pair.squared).exp(),
         };
-        fused.push(PoseHypothesis::new(weight, combine(a, b, params.combination)?));
+        fused.push(PoseHypothesis::new(weight, combine(a, b, params.fusion_rule)?));
     }
-    let (missed, appeared, all_stay) = match params.weighting {
-        Weighting::Support => (1.0, 1.0, false),
-        Weighting::Evidence { missed, appeared } => (missed, appeared, true),
+    let (missed, appeared, all_stay) = match params.mixture_weighting {
+        MixtureWeighting::Support => (1.0, 1.0, false),
+        MixtureWeighting::Evidence { missed, appeared } => (missed, appeared, true),
     };
     let is_alone =
         |index: usize, index_of: fn(&Pair) -> usize| !agreeing.iter().any(|p| index_of(p) == index);

@@ -10,5 +10,5 @@ mod split;
 pub use combine::combine;
 pub use fuse::fuse;
 pub(crate) use heading::update_heading;
-pub use params::{Combination, FusionParams, Weighting};
+pub use params::{FusionParams, GaussianFusionRule, MixtureWeighting};
 pub use source::{PoseSource, PositionFix};

@@ -4,7 +4,7 @@ use crate::{AppearanceError, check};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Combination {
+pub enum GaussianFusionRule {
     /// Covariance intersection with the share of Eq. 5 from weights and determinants. [Gross et al. 2005, Eqs. 3-5]
     WeightedIntersection,
     /// Split covariance intersection: what is independent in a covariance is fused as such, the rest is intersected, with the
@@ -17,7 +17,7 @@ pub enum Combination {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Weighting {
+pub enum MixtureWeighting {
     /// Weights of what agrees add up; what is alone keeps its weight and loses it by the normalization. [Gross et al. 2005, Eqs. 6-8]
     Support,
     /// Weights are probabilities: with each counterpart a component has the weight $`w_a w_b e^{-d^2/2}`$, and it remains as it is, with the chance
@@ -30,7 +30,7 @@ pub enum Weighting {
     },
 }
 
-impl Default for Weighting {
+impl Default for MixtureWeighting {
     fn default() -> Self {
         Self::Evidence { missed: 0.2, appeared: 1e-5 }
     }
@@ -48,22 +48,30 @@ pub struct FusionParams {
     /// Squared Mahalanobis distance $`γ`$ below which two components mean one place.
     /// Default 16.3: 99.9 % of a chi-squared of three degrees of freedom.
     pub gate: f64,
-    /// Default [`Combination::SplitIntersection`].
-    pub combination: Combination,
-    /// Default [`Weighting::Evidence`].
-    pub weighting: Weighting,
+    /// Default [`GaussianFusionRule::SplitIntersection`].
+    pub fusion_rule: GaussianFusionRule,
+    /// Default [`MixtureWeighting::Evidence`].
+    pub mixture_weighting: MixtureWeighting,
 }
 
 impl Default for FusionParams {
     fn default() -> Self {
-        Self { gate: 16.3, combination: Combination::default(), weighting: Weighting::default() }
+        Self {
+            gate: 16.3,
+            fusion_rule: GaussianFusionRule::default(),
+            mixture_weighting: MixtureWeighting::default(),
+        }
     }
 }
 
 impl FusionParams {
     /// As printed: Eqs. 2-8 with the gate at 95 %.
     pub fn as_published() -> Self {
-        Self { gate: 7.8, combination: Combination::WeightedIntersection, weighting: Weighting::Support }
+        Self {
+            gate: 7.8,
+            fusion_rule: GaussianFusionRule::WeightedIntersection,
+            mixture_weighting: MixtureWeighting::Support,
+        }
     }
 
     /// Whether the numbers have a meaning.
@@ -72,7 +80,7 @@ impl FusionParams {
     /// Names the first that has none.
     pub fn validate(&self) -> Result<(), AppearanceError> {
         check::positive("gate of the fusion", self.gate)?;
-        if let Weighting::Evidence { missed, appeared } = self.weighting {
+        if let MixtureWeighting::Evidence { missed, appeared } = self.mixture_weighting {
             check::share("weight of a hypothesis that is missed", missed)?;
             check::share("weight of a hypothesis that appears", appeared)?;
         }

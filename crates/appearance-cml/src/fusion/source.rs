@@ -1,6 +1,6 @@
 use nalgebra::{Matrix2, Vector2};
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture, check_covariance};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture, check_covariance};
 
 use crate::{AppearanceError, PoseHypothesis};
 
@@ -17,7 +17,7 @@ pub trait PoseSource {
     /// Returns an [`AppearanceError`] if the measurement is invalid; the localizer then keeps its state.
     fn hypotheses(
         &self,
-        predicted: Option<&Mixture<Pose2<f64>>>,
+        predicted: Option<&GaussianMixture<Pose2<f64>>>,
     ) -> Result<Vec<PoseHypothesis>, AppearanceError>;
 }
 
@@ -48,7 +48,7 @@ impl PoseSource for PositionFix {
     /// One hypothesis for each predicted heading, so that a turn of the body frame does not mix up the axes; one facing east without any.
     fn hypotheses(
         &self,
-        predicted: Option<&Mixture<Pose2<f64>>>,
+        predicted: Option<&GaussianMixture<Pose2<f64>>>,
     ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
         check_covariance("position fix's", &self.covariance)?;
         crate::check::share("weight of a position fix", self.weight)?;

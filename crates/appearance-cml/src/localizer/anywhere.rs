@@ -1,4 +1,4 @@
-use crate::{PoseHypothesis, Weighting};
+use crate::{MixtureWeighting, PoseHypothesis};
 
 /// The weight of all poses that no hypothesis stands for: the robot may be anywhere.
 ///
@@ -24,23 +24,23 @@ impl Anywhere {
     }
 
     /// Hypotheses appear with this weight, or with the least that is always left.
-    pub(super) fn weighting(self, weighting: Weighting) -> Weighting {
+    pub(super) fn weighting(self, weighting: MixtureWeighting) -> MixtureWeighting {
         match weighting {
-            Weighting::Support => Weighting::Support,
-            Weighting::Evidence { missed, appeared } => {
-                Weighting::Evidence { missed, appeared: appeared.max(self.0) }
+            MixtureWeighting::Support => MixtureWeighting::Support,
+            MixtureWeighting::Evidence { missed, appeared } => {
+                MixtureWeighting::Evidence { missed, appeared: appeared.max(self.0) }
             }
         }
     }
 
     /// What is left when these hypotheses, not yet normalized, have taken their part of the weight.
-    pub(super) fn after(self, weighting: Weighting, hypotheses: &[PoseHypothesis]) -> Self {
+    pub(super) fn after(self, weighting: MixtureWeighting, hypotheses: &[PoseHypothesis]) -> Self {
         let taken: f64 = hypotheses.iter().map(|hypothesis| hypothesis.weight).sum();
         match weighting {
             // As printed nothing is kept for what is not hypothesized.
-            Weighting::Support if hypotheses.is_empty() => self,
-            Weighting::Support => Self::nothing(),
-            Weighting::Evidence { missed, .. } => {
+            MixtureWeighting::Support if hypotheses.is_empty() => self,
+            MixtureWeighting::Support => Self::nothing(),
+            MixtureWeighting::Evidence { missed, .. } => {
                 let left = self.0 * missed;
                 if left > 0.0 { Self(left / (left + taken)) } else { Self::nothing() }
             }

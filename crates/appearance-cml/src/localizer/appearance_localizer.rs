@@ -1,5 +1,5 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::belief::Belief;
 use super::contest::Contest;
@@ -126,7 +126,7 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         self.map
     }
     /// Where the robot may be; `None` when it may be anywhere.
-    pub fn state(&self) -> Option<&Mixture<Pose2<f64>>> {
+    pub fn state(&self) -> Option<&GaussianMixture<Pose2<f64>>> {
         self.belief.state.as_ref()
     }
     /// The heaviest hypothesis.

@@ -1,5 +1,5 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use super::Start;
 use super::anywhere::Anywhere;
@@ -20,7 +20,7 @@ pub(super) enum Outlook {
 #[derive(Clone, Debug)]
 pub(super) struct Belief {
     /// The heaviest component first; `None` when the robot may be anywhere.
-    pub(super) state: Option<Mixture<Pose2<f64>>>,
+    pub(super) state: Option<GaussianMixture<Pose2<f64>>>,
     pub(super) anywhere: Anywhere,
     pub(super) outlook: Outlook,
 }
@@ -41,13 +41,14 @@ impl Belief {
 
     /// The heaviest hypothesis alone, looked for where it is.
     pub(super) fn heaviest_alone(&self) -> Self {
-        let alone = |heaviest: &Gaussian<_>| Mixture::from_log_weights(vec![(0.0, heaviest.clone())]).ok();
+        let alone =
+            |heaviest: &Gaussian<_>| GaussianMixture::from_log_weights(vec![(0.0, heaviest.clone())]).ok();
         let state = self.heaviest().and_then(alone);
         Self { state, anywhere: Anywhere::nothing(), outlook: Outlook::Nearby }
     }
 
     pub(super) fn components(&self) -> &[Gaussian<Pose2<f64>>] {
-        self.state.as_ref().map_or(&[], Mixture::components)
+        self.state.as_ref().map_or(&[], GaussianMixture::components)
     }
 
     pub(super) fn heaviest(&self) -> Option<&Gaussian<Pose2<f64>>> {
@@ -72,6 +73,6 @@ impl Belief {
             propagate(component, increment, noise).map(|moved| (*log_weight, moved))
         });
         let moved: Result<Vec<_>, AppearanceError> = moved.collect();
-        Ok(Self { state: Some(Mixture::from_log_weights(moved?)?), ..*self })
+        Ok(Self { state: Some(GaussianMixture::from_log_weights(moved?)?), ..*self })
     }
 }

@@ -147,7 +147,7 @@ fn is_same_place(one: &Belief, other: &Belief, gate: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use wayfix_gaussian_core::{Gaussian, Mixture};
+    use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
     use super::*;
     use crate::Start;
@@ -249,7 +249,7 @@ mod tests {
             Pose2::new(0.0, 0.0, 0.0),
             nalgebra::Matrix3::from_element(f64::NAN),
         );
-        let state = Mixture::from_log_weights(vec![(0.0, broken)]).unwrap();
+        let state = GaussianMixture::from_log_weights(vec![(0.0, broken)]).unwrap();
         let belief = Belief { state: Some(state), ..at(0.0) };
         let rival = Rival::nowhere(Outlook::Map).with(belief);
         let contest = Contest { rival: Some(rival.clone()), ousted: Some(rival), ..Contest::default() };

@@ -4,7 +4,7 @@ use wayfix_gaussian_core::Gaussian;
 use super::belief::{Belief, Outlook};
 use super::{AppearanceLocalizer, LocalizerParams, Observation};
 use crate::{
-    AppearanceError, Descriptor, FusionParams, MapParams, PlaceMatch, PoseHypothesis, PoseSource,
+    AppearanceError, AppearanceMapParams, Descriptor, FusionParams, PlaceMatch, PoseHypothesis, PoseSource,
     ReferenceSearch, fuse, interpolate, separation_squared, simplify, superpose,
 };
 
@@ -33,8 +33,8 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
             Some(view) => self.observe(belief, view)?,
             None => (Vec::new(), 0),
         };
-        let weighting = belief.anywhere.weighting(self.params.fusion.weighting);
-        let fusion = FusionParams { weighting, ..self.params.fusion };
+        let weighting = belief.anywhere.weighting(self.params.fusion.mixture_weighting);
+        let fusion = FusionParams { mixture_weighting: weighting, ..self.params.fusion };
         let mut predicted = belief.state.as_ref().map(PoseHypothesis::of_mixture).unwrap_or_default();
         if belief.outlook == Outlook::Nearby {
             observed = self.expected(observed, &predicted)?;
@@ -46,8 +46,11 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
         for source in sources {
             fused = fuse(&fused, &source.hypotheses(belief.state.as_ref())?, &fusion)?;
         }
-        let anywhere =
-            if view.is_some() { belief.anywhere.after(fusion.weighting, &fused) } else { belief.anywhere };
+        let anywhere = if view.is_some() {
+            belief.anywhere.after(fusion.mixture_weighting, &fused)
+        } else {
+            belief.anywhere
+        };
         let state = if fused.is_empty() {
             None
         } else {
@@ -107,8 +110,12 @@ impl<D: Descriptor + Clone, S: ReferenceSearch<D>> AppearanceLocalizer<D, S> {
     fn match_limit(&self, belief: &Belief) -> f64 {
         let LocalizerParams { map, relocation, .. } = self.params;
         let is_lost = belief.outlook == Outlook::Lost && !belief.anywhere.is_little();
-        let share = if is_lost { map.match_share.max(relocation.match_share) } else { map.match_share };
-        self.map.match_limit(&MapParams { match_share: share, ..map })
+        let share = if is_lost {
+            map.match_limit_fraction.max(relocation.match_share)
+        } else {
+            map.match_limit_fraction
+        };
+        self.map.match_limit(&AppearanceMapParams { match_limit_fraction: share, ..map })
     }
 
     pub(super) fn apart_from_trail(&self, mut sightings: Vec<PlaceMatch>) -> Vec<PlaceMatch> {

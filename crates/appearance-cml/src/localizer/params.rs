@@ -1,6 +1,7 @@
 use super::RelocationParams;
 use crate::{
-    AppearanceError, FusionParams, MapParams, MixtureReductionParams, OdometryNoise, UnimodalParams, check,
+    AppearanceError, AppearanceMapParams, FusionParams, MixtureReductionParams, OdometryNoise,
+    UnimodalParams, check,
 };
 
 /// What happens to the map while the robot drives.
@@ -10,7 +11,7 @@ use crate::{
 pub enum Learning {
     /// Nothing: the map stays as it is.
     Static,
-    /// It is learned and forgotten; [`Forgetting`](crate::Forgetting) says how.
+    /// It is learned and forgotten; [`ForgettingMode`](crate::ForgettingMode) says how.
     #[default]
     Adapting,
 }
@@ -53,7 +54,7 @@ pub struct LocalizerParams {
     /// Default [`Learning::Adapting`].
     pub learning: Learning,
     /// How the map learns.
-    pub map: MapParams,
+    pub map: AppearanceMapParams,
     /// Views by which learning lags behind, so that a pose is not confirmed by what it has just taught. Default 10.
     pub delay: usize,
     /// Views by which learning lags behind at most where the robot, in a part of the map that was surveyed, has become less sure of where it is: the next place
@@ -81,7 +82,7 @@ impl Default for LocalizerParams {
             relocation: RelocationParams::default(),
             unimodal: UnimodalParams::default(),
             learning: Learning::default(),
-            map: MapParams::default(),
+            map: AppearanceMapParams::default(),
             delay: 10,
             patience: 60,
             longest_wait: 400,
@@ -98,7 +99,7 @@ impl LocalizerParams {
             observation: Observation::Superposition,
             fusion: FusionParams::as_published(),
             simplify: MixtureReductionParams { min_weight: 0.005, ..MixtureReductionParams::default() },
-            map: MapParams::as_published(),
+            map: AppearanceMapParams::as_published(),
             relocation: RelocationParams { doubt: 1.0, ..RelocationParams::default() },
             corroboration: None,
             patience: 0,

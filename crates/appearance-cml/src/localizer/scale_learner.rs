@@ -1,6 +1,6 @@
 use std::collections::VecDeque;
 
-use crate::{Descriptor, LagSample, ViewScale};
+use crate::{Descriptor, ViewDifferenceSample, ViewDistanceScale};
 
 /// The last few views along the way, between which the scale of distances is measured.
 #[derive(Clone, Debug)]
@@ -22,12 +22,12 @@ const LEAST_WAY: f64 = 0.005;
 
 impl<D: Descriptor + Clone> ScaleLearner<D> {
     /// Measures a view that was taken `way` metres after the last one.
-    pub(super) fn observe(&mut self, way: f64, view: &D, scale: &mut ViewScale) {
+    pub(super) fn observe(&mut self, way: f64, view: &D, scale: &mut ViewDistanceScale) {
         if way < LEAST_WAY && !self.recent.is_empty() {
             return;
         }
         self.odometer += way;
-        let lag = |&(odometer, ref earlier): &(f64, D)| LagSample {
+        let lag = |&(odometer, ref earlier): &(f64, D)| ViewDifferenceSample {
             lag: self.odometer - odometer,
             distance: view.compare(earlier).distance,
         };

@@ -1,5 +1,5 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use crate::AppearanceError;
 
@@ -9,13 +9,13 @@ pub enum Start {
     /// There, in the frame of the map.
     Known(Gaussian<Pose2<f64>>),
     /// In one of several places, as a state that was saved says.
-    Among(Mixture<Pose2<f64>>),
+    Among(GaussianMixture<Pose2<f64>>),
     /// Anywhere in the map.
     Anywhere,
 }
 
 impl Start {
-    pub(super) fn into_state(self) -> Result<Option<Mixture<Pose2<f64>>>, AppearanceError> {
+    pub(super) fn into_state(self) -> Result<Option<GaussianMixture<Pose2<f64>>>, AppearanceError> {
         match self {
             Self::Anywhere => Ok(None),
             Self::Among(places) => {
@@ -25,12 +25,12 @@ impl Start {
                 });
                 let mut checked = checked.collect::<Result<Vec<_>, _>>()?;
                 checked.sort_by(|a, b| b.0.total_cmp(&a.0));
-                Ok(Some(Mixture::from_log_weights(checked)?))
+                Ok(Some(GaussianMixture::from_log_weights(checked)?))
             }
             Self::Known(pose) => {
                 let (mean, covariance) = pose.into_parts();
                 let checked = Gaussian::new(mean, covariance)?;
-                Ok(Some(Mixture::from_weights(vec![(1.0, checked)])?))
+                Ok(Some(GaussianMixture::from_weights(vec![(1.0, checked)])?))
             }
         }
     }

@@ -5,8 +5,8 @@ use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
 use super::grid::Grid;
-use super::{MapParams, PlaceComponent, PlaceMatch, Reference, ViewScale, similarity};
-use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, ReferenceSearch};
+use super::{AppearanceMapParams, PlaceComponent, PlaceMatch, ReferenceView, ViewDistanceScale, similarity};
+use crate::{AppearanceError, Descriptor, LinearSearch, ReferenceId, ReferenceMatch, ReferenceSearch};
 
 /// What places look like: reference views and where each was seen. [Gross et al. 2005, Eqs. 9-10]
 ///
@@ -23,7 +23,7 @@ use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, Refer
 /// #     }
 /// # }
 /// use nalgebra::Vector3;
-/// use wayfix_appearance_cml::{AppearanceMap, MapParams};
+/// use wayfix_appearance_cml::{AppearanceMap, AppearanceMapParams};
 /// use wayfix_estimation_traits::{LieGroup, Pose2};
 /// use wayfix_gaussian_core::Gaussian;
 /// let mut map: AppearanceMap<Brightness> = AppearanceMap::default();
@@ -35,9 +35,9 @@ use crate::{AppearanceError, Descriptor, LinearSearch, Match, ReferenceId, Refer
 #[derive(Clone, Debug)]
 pub struct AppearanceMap<D, S = LinearSearch<D>> {
     pub(super) search: S,
-    references: BTreeMap<ReferenceId, Reference>,
+    references: BTreeMap<ReferenceId, ReferenceView>,
     pub(super) grid: Grid,
-    pub(super) scale: ViewScale,
+    pub(super) scale: ViewDistanceScale,
     next: u32,
     descriptor: PhantomData<fn() -> D>,
 }
@@ -48,7 +48,7 @@ impl<D: Descriptor, S: ReferenceSearch<D> + Default> Default for AppearanceMap<D
             search: S::default(),
             references: BTreeMap::new(),
             grid: Grid::default(),
-            scale: ViewScale::default(),
+            scale: ViewDistanceScale::default(),
             next: 0,
             descriptor: PhantomData,
         }
@@ -59,12 +59,12 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// A map from its parts; `next` is the number of the next reference.
     ///
     /// # Errors
-    /// Returns an error if a place is invalid ([`Reference::validate`]), and [`AppearanceError::NoSuchReference`] if a reference has no view,
+    /// Returns an error if a place is invalid ([`ReferenceView::validate`]), and [`AppearanceError::NoSuchReference`] if a reference has no view,
     /// no place, or a number that is not below `next`; [`AppearanceError::Parameter`] if there are more views than references.
     pub fn from_parts(
         search: S,
-        references: BTreeMap<ReferenceId, Reference>,
-        scale: ViewScale,
+        references: BTreeMap<ReferenceId, ReferenceView>,
+        scale: ViewDistanceScale,
         next: u32,
     ) -> Result<Self, AppearanceError> {
         let mut grid = Grid::default();
@@ -90,19 +90,19 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         &self.search
     }
     /// Where each was seen.
-    pub fn references(&self) -> &BTreeMap<ReferenceId, Reference> {
+    pub fn references(&self) -> &BTreeMap<ReferenceId, ReferenceView> {
         &self.references
     }
     /// Where one was seen.
-    pub fn reference(&self, id: ReferenceId) -> Option<&Reference> {
+    pub fn reference(&self, id: ReferenceId) -> Option<&ReferenceView> {
         self.references.get(&id)
     }
     /// How views change with the way.
-    pub fn scale(&self) -> &ViewScale {
+    pub fn scale(&self) -> &ViewDistanceScale {
         &self.scale
     }
     /// The same, to add samples to.
-    pub fn scale_mut(&mut self) -> &mut ViewScale {
+    pub fn scale_mut(&mut self) -> &mut ViewDistanceScale {
         &mut self.scale
     }
     /// The number of the next reference.
@@ -119,12 +119,12 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// $`E^{max}`$: given, or found from the data.
-    pub fn match_limit(&self, params: &MapParams) -> f64 {
-        params.match_limit.unwrap_or_else(|| self.scale.match_limit(params.match_share))
+    pub fn match_limit(&self, params: &AppearanceMapParams) -> f64 {
+        params.match_limit.unwrap_or_else(|| self.scale.match_limit(params.match_limit_fraction))
     }
 
     /// How far apart two views may be taken and still match, m.
-    pub fn match_radius(&self, params: &MapParams) -> f64 {
+    pub fn match_radius(&self, params: &AppearanceMapParams) -> f64 {
         self.scale.to_meters(self.match_limit(params))
     }
 
@@ -134,7 +134,10 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Returns [`AppearanceError::Gaussian`] if the pose is invalid, and [`AppearanceError::ReferenceIdsExhausted`] if no number is left.
     pub fn teach(&mut self, view: D, pose: &Gaussian<Pose2<f64>>) -> Result<ReferenceId, AppearanceError> {
         let gaussian = Gaussian::new(*pose.mean(), *pose.covariance())?;
-        self.insert(view, Reference { places: vec![PlaceComponent { weight: 1.0, count: 1.0, gaussian }] })
+        self.insert(
+            view,
+            ReferenceView { places: vec![PlaceComponent { weight: 1.0, count: 1.0, gaussian }] },
+        )
     }
 
     /// Places near the components of `belief` whose references are nearer to the view than `limit`.
@@ -162,13 +165,13 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// All places of all references that look like the view, as printed.
-    pub fn all_place_matches(&self, view: &D, params: &MapParams) -> Vec<PlaceMatch> {
+    pub fn all_place_matches(&self, view: &D, params: &AppearanceMapParams) -> Vec<PlaceMatch> {
         let limit = self.match_limit(params);
         self.places_of(self.search.within(view, limit), limit)
     }
 
-    fn places_of(&self, matches: Vec<Match>, limit: f64) -> Vec<PlaceMatch> {
-        let places = |m: &Match| {
+    fn places_of(&self, matches: Vec<ReferenceMatch>, limit: f64) -> Vec<PlaceMatch> {
+        let places = |m: &ReferenceMatch| {
             let places = self.references.get(&m.id).map_or(&[][..], |reference| &reference.places);
             let similarity = similarity(m.comparison.distance, limit);
             places.iter().enumerate().map(|place| PlaceMatch::new(*m, place, similarity)).collect::<Vec<_>>()
@@ -177,16 +180,21 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// How the view compares with the references near a belief, those below the limit.
-    fn compare_near(&self, view: &D, near: &Gaussian<Pose2<f64>>, limit: f64) -> Vec<Match> {
+    fn compare_near(&self, view: &D, near: &Gaussian<Pose2<f64>>, limit: f64) -> Vec<ReferenceMatch> {
         let mut matches = self.compare_within(view, near, self.search_radius(near, limit));
         matches.retain(|m| m.comparison.distance < limit);
         matches
     }
 
     /// How the view compares with all references within `radius` of a belief.
-    pub(super) fn compare_within(&self, view: &D, near: &Gaussian<Pose2<f64>>, radius: f64) -> Vec<Match> {
+    pub(super) fn compare_within(
+        &self,
+        view: &D,
+        near: &Gaussian<Pose2<f64>>,
+        radius: f64,
+    ) -> Vec<ReferenceMatch> {
         let compare = |id: ReferenceId| {
-            self.search.get(id).map(|reference| Match { id, comparison: view.compare(reference) })
+            self.search.get(id).map(|reference| ReferenceMatch { id, comparison: view.compare(reference) })
         };
         self.grid.near(&near.mean().translation, radius).into_iter().filter_map(compare).collect()
     }
@@ -197,7 +205,11 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         self.scale.to_meters(limit) + GATE_SIGMAS * sigmas.x.max(sigmas.y).min(MOST_SIGMA)
     }
 
-    pub(super) fn insert(&mut self, view: D, reference: Reference) -> Result<ReferenceId, AppearanceError> {
+    pub(super) fn insert(
+        &mut self,
+        view: D,
+        reference: ReferenceView,
+    ) -> Result<ReferenceId, AppearanceError> {
         let id = ReferenceId(self.next);
         let next = self.next.checked_add(1).ok_or(AppearanceError::ReferenceIdsExhausted)?;
         self.search.insert(id, view)?;
@@ -208,7 +220,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// Puts new places in the stead of old ones.
-    pub(super) fn replace(&mut self, id: ReferenceId, reference: Reference) {
+    pub(super) fn replace(&mut self, id: ReferenceId, reference: ReferenceView) {
         if let Some(old) = self.references.get_mut(&id) {
             for place in &old.places {
                 self.grid.remove(id, &place.gaussian.mean().translation);
@@ -234,13 +246,13 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     pub(super) fn remove(&mut self, id: ReferenceId) {
-        self.replace(id, Reference::default());
+        self.replace(id, ReferenceView::default());
         self.references.remove(&id);
         self.search.remove(id);
     }
 }
 
-fn once_each(mut matches: Vec<Match>) -> Vec<Match> {
+fn once_each(mut matches: Vec<ReferenceMatch>) -> Vec<ReferenceMatch> {
     matches.sort_by_key(|m| m.id);
     matches.dedup_by_key(|m| m.id);
     matches
@@ -251,7 +263,7 @@ const GATE_SIGMAS: f64 = 3.0;
 /// σ beyond which a belief says nothing that the search of the whole map does not say better, m.
 const MOST_SIGMA: f64 = 1.0;
 
-fn enter(grid: &mut Grid, id: ReferenceId, reference: &Reference) {
+fn enter(grid: &mut Grid, id: ReferenceId, reference: &ReferenceView) {
     for place in &reference.places {
         grid.insert(id, &place.gaussian.mean().translation);
     }

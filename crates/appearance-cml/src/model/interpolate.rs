@@ -2,7 +2,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2};
 use wayfix_estimation_traits::{Angle, Pose2, wrap_angle};
 use wayfix_gaussian_core::{CircularMoments, Gaussian, symmetrize};
 
-use super::{PlaceMatch, ViewScale};
+use super::{PlaceMatch, ViewDistanceScale};
 use crate::{AppearanceError, PoseHypothesis};
 
 /// The observation as one hypothesis for each group of neighbouring places, between which the pose is interpolated.
@@ -13,7 +13,7 @@ use crate::{AppearanceError, PoseHypothesis};
 /// independent of all beliefs ([`PoseHypothesis::independent`]).
 ///
 /// At the border of what is known places lie on one side only, and any mean of them drags the robot back. There the leader merely says that the
-/// robot is as far from it as the views differ ([`ViewScale::to_meters`]): a component of `belief` that is beyond it, and not further than that, is
+/// robot is as far from it as the views differ ([`ViewDistanceScale::to_meters`]): a component of `belief` that is beyond it, and not further than that, is
 /// left in peace.
 ///
 /// # Errors
@@ -21,7 +21,7 @@ use crate::{AppearanceError, PoseHypothesis};
 pub fn interpolate(
     place_matches: &[PlaceMatch],
     belief: &[Gaussian<Pose2<f64>>],
-    scale: &ViewScale,
+    scale: &ViewDistanceScale,
 ) -> Result<Vec<PoseHypothesis>, AppearanceError> {
     groups(place_matches, scale).iter().map(|group| pose_of(group, belief, scale)).collect()
 }
@@ -43,7 +43,7 @@ const PARALLAX_SIGMA: f64 = 0.25;
 type Group<'a> = Vec<&'a PlaceMatch>;
 
 /// Greedy: the most similar place that is left leads a group and takes its neighbours.
-pub(super) fn groups<'a>(place_matches: &'a [PlaceMatch], scale: &ViewScale) -> Vec<Group<'a>> {
+pub(super) fn groups<'a>(place_matches: &'a [PlaceMatch], scale: &ViewDistanceScale) -> Vec<Group<'a>> {
     let radius = GROUP_STEPS * scale.step();
     let mut left: Vec<&PlaceMatch> = place_matches.iter().collect();
     left.sort_by(|a, b| a.matched.comparison.distance.total_cmp(&b.matched.comparison.distance));
@@ -72,7 +72,7 @@ pub(super) fn nearest_of<'a, 'b>(whole: &'b Group<'a>) -> &'b [&'a PlaceMatch] {
 fn pose_of(
     whole: &Group<'_>,
     belief: &[Gaussian<Pose2<f64>>],
-    scale: &ViewScale,
+    scale: &ViewDistanceScale,
 ) -> Result<PoseHypothesis, AppearanceError> {
     let group = nearest_of(whole);
     let nearest = group[0].matched.comparison.distance;
@@ -113,7 +113,7 @@ fn pose_of(
 pub(super) fn turn_of(
     group: &[&PlaceMatch],
     shares: &[f64],
-    scale: &ViewScale,
+    scale: &ViewDistanceScale,
 ) -> Result<(f64, f64), AppearanceError> {
     let headings: Vec<Angle<f64>> = group.iter().map(|s| s.gaussian.mean().rotation).collect();
     let moments = CircularMoments::from_weighted(&headings, shares)?;
@@ -129,7 +129,7 @@ fn beyond_border(
     whole: &Group<'_>,
     interpolated: &Vector2<f64>,
     belief: &[Gaussian<Pose2<f64>>],
-    scale: &ViewScale,
+    scale: &ViewDistanceScale,
 ) -> Option<Vector2<f64>> {
     let leader = whole[0].gaussian.mean().translation;
     let offset = |component: &Gaussian<Pose2<f64>>| component.mean().translation - leader;

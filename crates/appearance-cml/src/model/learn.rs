@@ -8,10 +8,11 @@ use super::merge::merge_places;
 use super::residual::Residual;
 use super::weigh::{weight_when_missed, weight_when_seen};
 use super::{
-    AppearanceMap, Forgetting, MapParams, PlaceComponent, PlaceMatch, PlaceUpdate, Reference, interpolate,
+    AppearanceMap, AppearanceMapParams, ForgettingMode, PlaceComponent, PlaceMatch, PlaceUpdateRule,
+    ReferenceView, interpolate,
 };
 use crate::{
-    AppearanceError, Descriptor, Match, ReferenceId, ReferenceSearch, separation_squared, similarity,
+    AppearanceError, Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, separation_squared, similarity,
 };
 
 /// How far around the robot references are forgotten that it does not see, in parts of the distance at which views still match.
@@ -41,22 +42,22 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
         &mut self,
         view: D,
         pose: &Gaussian<Pose2<f64>>,
-        params: &MapParams,
+        params: &AppearanceMapParams,
     ) -> Result<MapUpdate, AppearanceError> {
         let pose = &Gaussian::new(*pose.mean(), *pose.covariance())?;
         let limit = self.match_limit(params);
         let radius = self.search_radius(pose, limit).max(params.active_forgetting.radius.unwrap_or(0.0));
         let compared = self.compare_within(&view, pose, radius);
-        let (here, missed): (Vec<Match>, Vec<Match>) =
+        let (here, missed): (Vec<ReferenceMatch>, Vec<ReferenceMatch>) =
             compared.into_iter().partition(|m| m.comparison.distance < limit);
         let seen = match params.place_update {
-            PlaceUpdate::Pose => self.search().within(&view, limit),
-            PlaceUpdate::Residual => here,
+            PlaceUpdateRule::Pose => self.search().within(&view, limit),
+            PlaceUpdateRule::Residual => here,
         };
         let novel = self.is_novel(&seen, limit, params);
         let mut changed = self.with_places_updated(&seen, pose, novel, (limit, params))?;
         self.weigh_seen(&mut changed, &seen, pose, (limit, params))?;
-        if params.forgetting == Forgetting::Active {
+        if params.forgetting_mode == ForgettingMode::Active {
             let elsewhere = missed.iter().filter(|m| !changed.contains_key(&m.id)).map(|m| m.id).collect();
             self.weigh_missed(&mut changed, elsewhere, pose, (limit, params));
         }
@@ -68,10 +69,12 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// Step 1: nothing that is known looks like the view.
-    fn is_novel(&self, seen: &[Match], limit: f64, params: &MapParams) -> bool {
+    fn is_novel(&self, seen: &[ReferenceMatch], limit: f64, params: &AppearanceMapParams) -> bool {
         let insertion = match params.place_update {
-            PlaceUpdate::Pose => limit,
-            PlaceUpdate::Residual => limit.min(params.insertion * self.scale().step_distance()),
+            PlaceUpdateRule::Pose => limit,
+            PlaceUpdateRule::Residual => {
+                limit.min(params.insertion_distance_factor * self.scale().step_distance())
+            }
         };
         !seen.iter().any(|m| m.comparison.distance < insertion)
     }
@@ -79,17 +82,17 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Step 2: a Gaussian is added to each reference that looks like the view. [Gross et al. 2005, Eqs. 11-14]
     fn with_places_updated(
         &self,
-        seen: &[Match],
+        seen: &[ReferenceMatch],
         pose: &Gaussian<Pose2<f64>>,
         novel: bool,
-        (limit, params): (f64, &MapParams),
-    ) -> Result<BTreeMap<ReferenceId, Reference>, AppearanceError> {
+        (limit, params): (f64, &AppearanceMapParams),
+    ) -> Result<BTreeMap<ReferenceId, ReferenceView>, AppearanceError> {
         // A new reference is as similar to its view as can be, and takes its share of the counts.
         let own = if novel { 1.0 } else { 0.0 };
         let total: f64 = own + seen.iter().map(|m| similarity(m.comparison.distance, limit)).sum::<f64>();
         let residual = match params.place_update {
-            PlaceUpdate::Pose => None,
-            PlaceUpdate::Residual => self.residual(seen, pose, (limit, params))?,
+            PlaceUpdateRule::Pose => None,
+            PlaceUpdateRule::Residual => self.residual(seen, pose, (limit, params))?,
         };
         let mut changed = BTreeMap::new();
         for matched in seen {
@@ -97,17 +100,17 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
             let mut reference = reference.clone();
             let count = similarity(matched.comparison.distance, limit) / total;
             match (params.place_update, &residual) {
-                (PlaceUpdate::Pose, _) => {
+                (PlaceUpdateRule::Pose, _) => {
                     let seen_from = turned(pose, -matched.comparison.rotation);
                     reference.places.push(PlaceComponent { weight: 0.0, count, gaussian: seen_from });
                     merge_places(&mut reference.places, params)?;
                 }
-                (PlaceUpdate::Residual, Some(residual)) => {
+                (PlaceUpdateRule::Residual, Some(residual)) => {
                     for place in &mut reference.places {
                         residual.correct(place, matched, count, (pose, params))?;
                     }
                 }
-                (PlaceUpdate::Residual, None) => {}
+                (PlaceUpdateRule::Residual, None) => {}
             }
             changed.insert(matched.id, reference);
         }
@@ -117,9 +120,9 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// By how much the places seen put the robot elsewhere than it is; nothing when they mean another place.
     fn residual(
         &self,
-        seen: &[Match],
+        seen: &[ReferenceMatch],
         pose: &Gaussian<Pose2<f64>>,
-        (limit, params): (f64, &MapParams),
+        (limit, params): (f64, &AppearanceMapParams),
     ) -> Result<Option<Residual>, AppearanceError> {
         let place_matches: Vec<PlaceMatch> = seen
             .iter()
@@ -152,10 +155,10 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Step 3, references that look like the view.
     fn weigh_seen(
         &self,
-        changed: &mut BTreeMap<ReferenceId, Reference>,
-        seen: &[Match],
+        changed: &mut BTreeMap<ReferenceId, ReferenceView>,
+        seen: &[ReferenceMatch],
         pose: &Gaussian<Pose2<f64>>,
-        (limit, params): (f64, &MapParams),
+        (limit, params): (f64, &AppearanceMapParams),
     ) -> Result<(), AppearanceError> {
         for matched in seen {
             let Some(reference) = changed.get_mut(&matched.id) else { continue };
@@ -169,10 +172,10 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     /// Step 3, references of this place that do not.
     fn weigh_missed(
         &self,
-        changed: &mut BTreeMap<ReferenceId, Reference>,
+        changed: &mut BTreeMap<ReferenceId, ReferenceView>,
         missed: Vec<ReferenceId>,
         pose: &Gaussian<Pose2<f64>>,
-        (limit, params): (f64, &MapParams),
+        (limit, params): (f64, &AppearanceMapParams),
     ) {
         let radius = params
             .active_forgetting
@@ -190,7 +193,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
     }
 
     /// Writes what has changed; places that have become too light go, and references without a place.
-    fn commit(&mut self, changed: BTreeMap<ReferenceId, Reference>, least: f64) -> Vec<ReferenceId> {
+    fn commit(&mut self, changed: BTreeMap<ReferenceId, ReferenceView>, least: f64) -> Vec<ReferenceId> {
         let mut forgotten = Vec::new();
         for (id, mut reference) in changed {
             reference.places.retain(|place| place.weight >= least);
@@ -219,7 +222,7 @@ impl<D: Descriptor, S: ReferenceSearch<D>> AppearanceMap<D, S> {
 }
 
 /// A new place has weight 0 and is then seen at distance 0: Eq. 16 leaves the learning rate.
-fn first_seen(pose: &Gaussian<Pose2<f64>>, params: &MapParams) -> Reference {
+fn first_seen(pose: &Gaussian<Pose2<f64>>, params: &AppearanceMapParams) -> ReferenceView {
     let weight = params.learning_rate.max(params.min_weight);
-    Reference { places: vec![PlaceComponent { weight, count: 1.0, gaussian: pose.clone() }] }
+    ReferenceView { places: vec![PlaceComponent { weight, count: 1.0, gaussian: pose.clone() }] }
 }

@@ -1,12 +1,12 @@
 use wayfix_gaussian_core::{GaussianError, moment_matched};
 
-use super::{MapParams, PlaceComponent};
+use super::{AppearanceMapParams, PlaceComponent};
 use crate::{AppearanceError, separation_squared};
 
 /// Merges the newest place into the nearest other within the merge distance. [Gross et al. 2005, Eq. 12]
 pub(super) fn merge_places(
     places: &mut Vec<PlaceComponent>,
-    params: &MapParams,
+    params: &AppearanceMapParams,
 ) -> Result<(), AppearanceError> {
     let Some(newest) = places.pop() else { return Ok(()) };
     let mut nearest = None;
@@ -28,13 +28,13 @@ pub(super) fn merge_places(
 pub(super) fn merged(
     a: &PlaceComponent,
     b: &PlaceComponent,
-    params: &MapParams,
+    params: &AppearanceMapParams,
 ) -> Result<PlaceComponent, AppearanceError> {
     let gaussian = moment_matched(&[a.count, b.count], &[a.gaussian.clone(), b.gaussian.clone()])
         .map_err(GaussianError::from)?;
     Ok(PlaceComponent {
         weight: (a.weight + b.weight).min(1.0),
-        count: (a.count + b.count).min(params.max_count),
+        count: (a.count + b.count).min(params.max_observation_count),
         gaussian,
     })
 }

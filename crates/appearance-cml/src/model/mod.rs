@@ -18,9 +18,11 @@ pub use appearance_map::AppearanceMap;
 pub(crate) use comparing::heading_measurement::HeadingMeasurement;
 pub use comparing::place_match::PlaceMatch;
 pub use comparing::similarity::similarity;
-pub use comparing::view_scale::{LagSample, ViewScale};
+pub use comparing::view_scale::{ViewDifferenceSample, ViewDistanceScale};
 pub use interpolate::interpolate;
 pub use learn::MapUpdate;
-pub use params::{Forgetting, ForgettingParams, ForgettingUncertainty, MapParams, PlaceUpdate};
-pub use reference::{PlaceComponent, Reference};
+pub use params::{
+    AppearanceMapParams, ForgettingMode, ForgettingParams, ForgettingUncertainty, PlaceUpdateRule,
+};
+pub use reference::{PlaceComponent, ReferenceView};
 pub use superpose::superpose;

@@ -16,12 +16,12 @@ pub struct PlaceComponent {
 
 /// Where one reference view was seen.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct Reference {
+pub struct ReferenceView {
     /// The places; a reference without any is removed.
     pub places: Vec<PlaceComponent>,
 }
 
-impl Reference {
+impl ReferenceView {
     /// $`\sum_j w_{ij}`$: how much the reference matters.
     pub fn importance(&self) -> f64 {
         self.places.iter().map(|place| place.weight).sum()

@@ -4,8 +4,8 @@ use wayfix_gaussian_core::Gaussian;
 
 use super::comparing::place_match::turned;
 use super::merge::merged;
-use super::{MapParams, PlaceComponent};
-use crate::{AppearanceError, Match};
+use super::{AppearanceMapParams, PlaceComponent};
+use crate::{AppearanceError, ReferenceMatch};
 
 /// Where the robot is less where the references put it, in the frame of the map.
 pub(super) struct Residual {
@@ -18,9 +18,9 @@ impl Residual {
     pub(super) fn correct(
         &self,
         place: &mut PlaceComponent,
-        matched: &Match,
+        matched: &ReferenceMatch,
         count: f64,
-        (pose, params): (&Gaussian<Pose2<f64>>, &MapParams),
+        (pose, params): (&Gaussian<Pose2<f64>>, &AppearanceMapParams),
     ) -> Result<(), AppearanceError> {
         let old = place.gaussian.mean();
         let seen_from = turned(pose, -matched.comparison.rotation);

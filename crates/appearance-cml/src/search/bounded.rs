@@ -7,7 +7,7 @@ use super::{BoundTable, Descriptor, ViewDifference};
 /// `r.compare_with(&v.probe())` is `v.compare(&r)` to the bit; descriptors that are not comparable have infinite distance.
 ///
 /// ```
-/// use wayfix_appearance_cml::{Bounded, ViewDifference, Descriptor, NoTable};
+/// use wayfix_appearance_cml::{LowerBoundedDistance, ViewDifference, Descriptor, NoBoundTable};
 /// /// A colour that looks the same from everywhere.
 /// #[derive(Clone)]
 /// struct Grey(f64);
@@ -16,9 +16,9 @@ use super::{BoundTable, Descriptor, ViewDifference};
 ///         ViewDifference { distance: (self.0 - reference.0).abs(), rotation: 0.0 }
 ///     }
 /// }
-/// impl Bounded for Grey {
+/// impl LowerBoundedDistance for Grey {
 ///     type Probe = Grey;
-///     type Table = NoTable;
+///     type Table = NoBoundTable;
 ///     fn invariants(&self) -> Vec<f64> {
 ///         vec![self.0]
 ///     }
@@ -37,7 +37,7 @@ use super::{BoundTable, Descriptor, ViewDifference};
 /// }
 /// assert_eq!(Grey(3.0).bound(&Grey(5.0), 1.0), 2.0);
 /// ```
-pub trait Bounded: Descriptor + Sized {
+pub trait LowerBoundedDistance: Descriptor + Sized {
     /// A view made ready to be compared with many references.
     type Probe;
     /// The first numbers of many references, side by side.

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use super::{
-    BoundTable, Bounded, Match, ReferenceId, ReferenceSearch,
+    BoundTable, LowerBoundedDistance, ReferenceId, ReferenceMatch, ReferenceSearch,
     box_tree::BoxTree,
     nearest::{Candidate, Nearest, by_distance},
     projection::{Projection, Sketch},
@@ -14,7 +14,7 @@ use crate::AppearanceError;
 /// Four stages, each a lower bound of the distance that is sharper and dearer than the one before:
 /// 1. sixteen numbers a view, the directions in which the invariants of the map spread most, in a tree of boxes: whole branches are passed over;
 /// 2. the first numbers of each, side by side in memory ([`BoundTable`](super::BoundTable));
-/// 3. the descriptors' own [`bound`](Bounded::bound), as sharp as need be;
+/// 3. the descriptors' own [`bound`](LowerBoundedDistance::bound), as sharp as need be;
 /// 4. the distance itself, with its rotation.
 ///
 /// The directions are learned anew when the map has grown eightfold, up to 16 384 references; in between, insertion and removal cost
@@ -31,7 +31,7 @@ use crate::AppearanceError;
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct AppearanceIndex<D: Bounded> {
+pub struct AppearanceIndex<D: LowerBoundedDistance> {
     slots: Vec<Option<(ReferenceId, D)>>,
     free: Vec<u32>,
     slot_of: BTreeMap<ReferenceId, u32>,
@@ -43,7 +43,7 @@ pub struct AppearanceIndex<D: Bounded> {
 
 /// How many references each stage of a search looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SearchCost {
+pub struct SearchStatistics {
     /// Bounded by their descriptors: what the tree of sketches let through.
     pub bounded: usize,
     /// Compared: what the bound let through.
@@ -63,7 +63,7 @@ const SKETCH_SLACK: f64 = 1e-5;
 /// More than the rounding of distances of double precision: near 0 the root of a difference of two sums makes 1e-8 of 1e-16.
 const BOUND_SLACK: f64 = 1e-7;
 
-impl<D: Bounded> Default for AppearanceIndex<D> {
+impl<D: LowerBoundedDistance> Default for AppearanceIndex<D> {
     fn default() -> Self {
         Self {
             slots: Vec::new(),
@@ -77,10 +77,10 @@ impl<D: Bounded> Default for AppearanceIndex<D> {
     }
 }
 
-impl<D: Bounded> AppearanceIndex<D> {
+impl<D: LowerBoundedDistance> AppearanceIndex<D> {
     /// As [`within`](ReferenceSearch::within), and what it took.
-    pub fn within_counted(&self, view: &D, max_distance: f64) -> (Vec<Match>, SearchCost) {
-        let mut cost = SearchCost::default();
+    pub fn within_counted(&self, view: &D, max_distance: f64) -> (Vec<ReferenceMatch>, SearchStatistics) {
+        let mut cost = SearchStatistics::default();
         let probe = view.probe();
         let radius = max_distance + BOUND_SLACK;
         let mut found = Vec::new();
@@ -92,7 +92,7 @@ impl<D: Bounded> AppearanceIndex<D> {
             let Some((id, reference)) = &self.slots[slot as usize] else { continue };
             if reference.bound(&probe, radius) <= radius {
                 cost.compared += 1;
-                found.push(Match { id: *id, comparison: reference.compare_with(&probe) });
+                found.push(ReferenceMatch { id: *id, comparison: reference.compare_with(&probe) });
             }
         }
         found.retain(|found| found.comparison.distance < max_distance);
@@ -104,8 +104,13 @@ impl<D: Bounded> AppearanceIndex<D> {
     /// As [`nearest_within`](ReferenceSearch::nearest_within), and what it took.
     ///
     /// Rough bounds of all come first; then those of the least, and then all whose bounds leave a chance, sharper bounds before distances.
-    pub fn nearest_counted(&self, view: &D, n: usize, max_distance: f64) -> (Vec<Match>, SearchCost) {
-        let mut cost = SearchCost::default();
+    pub fn nearest_counted(
+        &self,
+        view: &D,
+        n: usize,
+        max_distance: f64,
+    ) -> (Vec<ReferenceMatch>, SearchStatistics) {
+        let mut cost = SearchStatistics::default();
         if n == 0 {
             return (Vec::new(), cost);
         }
@@ -132,7 +137,7 @@ impl<D: Bounded> AppearanceIndex<D> {
             };
             if reference.bound(&probe, radius) <= radius {
                 cost.compared += 1;
-                nearest.extend([Match { id: *id, comparison: reference.compare_with(&probe) }]);
+                nearest.extend([ReferenceMatch { id: *id, comparison: reference.compare_with(&probe) }]);
             }
         }
         let found = nearest.into_sorted();
@@ -179,7 +184,7 @@ impl<D: Bounded> AppearanceIndex<D> {
     }
 }
 
-impl<D: Bounded> ReferenceSearch<D> for AppearanceIndex<D> {
+impl<D: LowerBoundedDistance> ReferenceSearch<D> for AppearanceIndex<D> {
     fn insert(&mut self, id: ReferenceId, descriptor: D) -> Result<(), AppearanceError> {
         if self.slot_of.contains_key(&id) {
             return Err(AppearanceError::DuplicateReference { id: id.0 });
@@ -219,15 +224,15 @@ impl<D: Bounded> ReferenceSearch<D> for AppearanceIndex<D> {
         self.slot_of.len()
     }
 
-    fn within(&self, view: &D, max_distance: f64) -> Vec<Match> {
+    fn within(&self, view: &D, max_distance: f64) -> Vec<ReferenceMatch> {
         self.within_counted(view, max_distance).0
     }
 
-    fn nearest(&self, view: &D, n: usize) -> Vec<Match> {
+    fn nearest(&self, view: &D, n: usize) -> Vec<ReferenceMatch> {
         self.nearest_counted(view, n, f64::INFINITY).0
     }
 
-    fn nearest_within(&self, view: &D, n: usize, max_distance: f64) -> Vec<Match> {
+    fn nearest_within(&self, view: &D, n: usize, max_distance: f64) -> Vec<ReferenceMatch> {
         self.nearest_counted(view, n, max_distance).0
     }
 }

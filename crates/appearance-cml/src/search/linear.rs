@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use super::{Descriptor, Match, ReferenceId, ReferenceSearch, nearest::by_distance};
+use super::{Descriptor, ReferenceId, ReferenceMatch, ReferenceSearch, nearest::by_distance};
 use crate::AppearanceError;
 
 /// Compares with every reference: the plain search that faster ones must agree with.
@@ -16,10 +16,12 @@ impl<D> Default for LinearSearch<D> {
 }
 
 impl<D: Descriptor> LinearSearch<D> {
-    fn sorted(&self, view: &D, max_distance: f64) -> Vec<Match> {
-        let compare =
-            |(id, reference): (&ReferenceId, &D)| Match { id: *id, comparison: view.compare(reference) };
-        let mut found: Vec<Match> = self.references.iter().map(compare).collect();
+    fn sorted(&self, view: &D, max_distance: f64) -> Vec<ReferenceMatch> {
+        let compare = |(id, reference): (&ReferenceId, &D)| ReferenceMatch {
+            id: *id,
+            comparison: view.compare(reference),
+        };
+        let mut found: Vec<ReferenceMatch> = self.references.iter().map(compare).collect();
         found.retain(|found| found.comparison.distance < max_distance);
         found.sort_by(by_distance);
         found
@@ -47,11 +49,11 @@ impl<D: Descriptor> ReferenceSearch<D> for LinearSearch<D> {
         self.references.len()
     }
 
-    fn within(&self, view: &D, max_distance: f64) -> Vec<Match> {
+    fn within(&self, view: &D, max_distance: f64) -> Vec<ReferenceMatch> {
         self.sorted(view, max_distance)
     }
 
-    fn nearest(&self, view: &D, n: usize) -> Vec<Match> {
+    fn nearest(&self, view: &D, n: usize) -> Vec<ReferenceMatch> {
         let mut found = self.sorted(view, f64::INFINITY);
         found.truncate(n);
         found

@@ -11,9 +11,9 @@ mod projection;
 mod reference_search;
 mod slot_set;
 
-pub use bound_table::{BoundTable, NoTable};
-pub use bounded::Bounded;
+pub use bound_table::{BoundTable, NoBoundTable};
+pub use bounded::LowerBoundedDistance;
 pub use descriptor::{Descriptor, ViewDifference};
-pub use index::{AppearanceIndex, SearchCost};
+pub use index::{AppearanceIndex, SearchStatistics};
 pub use linear::LinearSearch;
-pub use reference_search::{Match, ReferenceId, ReferenceSearch};
+pub use reference_search::{ReferenceId, ReferenceMatch, ReferenceSearch};

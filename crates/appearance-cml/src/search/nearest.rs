@@ -1,9 +1,9 @@
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-use super::Match;
+use super::ReferenceMatch;
 
 /// The order of all answers: the nearest first, by number where they are equally near.
-pub(super) fn by_distance(a: &Match, b: &Match) -> Ordering {
+pub(super) fn by_distance(a: &ReferenceMatch, b: &ReferenceMatch) -> Ordering {
     a.comparison.distance.total_cmp(&b.comparison.distance).then(a.id.cmp(&b.id))
 }
 
@@ -28,7 +28,7 @@ impl Nearest {
     }
 
     /// Takes those in that are near enough.
-    pub(super) fn extend(&mut self, matches: impl IntoIterator<Item = Match>) {
+    pub(super) fn extend(&mut self, matches: impl IntoIterator<Item = ReferenceMatch>) {
         for found in matches.into_iter().filter(|found| found.comparison.distance < self.max_distance) {
             self.found.push(Found(found));
             if self.found.len() > self.n {
@@ -37,13 +37,13 @@ impl Nearest {
         }
     }
 
-    pub(super) fn into_sorted(self) -> Vec<Match> {
+    pub(super) fn into_sorted(self) -> Vec<ReferenceMatch> {
         self.found.into_sorted_vec().into_iter().map(|found| found.0).collect()
     }
 }
 
 /// The farthest is the greatest.
-struct Found(Match);
+struct Found(ReferenceMatch);
 
 impl Ord for Found {
     fn cmp(&self, other: &Self) -> Ordering {

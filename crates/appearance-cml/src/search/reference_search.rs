@@ -7,7 +7,7 @@ pub struct ReferenceId(pub u32);
 
 /// A reference view that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Match {
+pub struct ReferenceMatch {
     /// Which one.
     pub id: ReferenceId,
     /// How it compares with the view that was asked for.
@@ -40,13 +40,13 @@ pub trait ReferenceSearch<D: Descriptor> {
     }
 
     /// All references nearer than `max_distance`, the nearest first, by number where they are equally near.
-    fn within(&self, view: &D, max_distance: f64) -> Vec<Match>;
+    fn within(&self, view: &D, max_distance: f64) -> Vec<ReferenceMatch>;
 
     /// The `n` nearest references (all of them where there are fewer), the nearest first, by number where they are equally near.
-    fn nearest(&self, view: &D, n: usize) -> Vec<Match>;
+    fn nearest(&self, view: &D, n: usize) -> Vec<ReferenceMatch>;
 
     /// The `n` nearest of the references nearer than `max_distance`: [`nearest`](Self::nearest), cut off.
-    fn nearest_within(&self, view: &D, n: usize, max_distance: f64) -> Vec<Match> {
+    fn nearest_within(&self, view: &D, n: usize, max_distance: f64) -> Vec<ReferenceMatch> {
         let mut found = self.nearest(view, n);
         found.retain(|found| found.comparison.distance < max_distance);
         found

@@ -1,5 +1,5 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use crate::AppearanceError;
 
@@ -25,7 +25,7 @@ impl PoseHypothesis {
     }
 
     /// The components of a normalized mixture.
-    pub fn of_mixture(mixture: &Mixture<Pose2<f64>>) -> Vec<Self> {
+    pub fn of_mixture(mixture: &GaussianMixture<Pose2<f64>>) -> Vec<Self> {
         let weighted = mixture.weights().into_iter().zip(mixture.components());
         weighted.map(|(weight, gaussian)| Self::new(weight, gaussian.clone())).collect()
     }
@@ -34,7 +34,7 @@ impl PoseHypothesis {
     ///
     /// # Errors
     /// When there are no hypotheses, a weight is negative or not finite, or all are zero.
-    pub fn into_mixture(hypotheses: Vec<Self>) -> Result<Mixture<Pose2<f64>>, AppearanceError> {
-        Ok(Mixture::from_weights(hypotheses.into_iter().map(|h| (h.weight, h.gaussian)).collect())?)
+    pub fn into_mixture(hypotheses: Vec<Self>) -> Result<GaussianMixture<Pose2<f64>>, AppearanceError> {
+        Ok(GaussianMixture::from_weights(hypotheses.into_iter().map(|h| (h.weight, h.gaussian)).collect())?)
     }
 }

@@ -22,18 +22,23 @@ use crate::{AppearanceError, check};
 )]
 pub struct OdometryNoise {
     /// σ along the way after one metre, m. Default 0.025.
-    pub forward: f64,
+    pub forward_sigma_per_meter: f64,
     /// σ across the way after one metre, m. Default 0.02.
-    pub sideways: f64,
+    pub sideways_sigma_per_meter: f64,
     /// σ of the heading after one metre, rad. Default 0.008.
-    pub heading_per_meter: f64,
+    pub heading_sigma_per_meter: f64,
     /// σ of the heading after turning by one radian, rad. Default 0.02.
-    pub heading_per_radian: f64,
+    pub heading_sigma_per_radian: f64,
 }
 
 impl Default for OdometryNoise {
     fn default() -> Self {
-        Self { forward: 0.025, sideways: 0.02, heading_per_meter: 0.008, heading_per_radian: 0.02 }
+        Self {
+            forward_sigma_per_meter: 0.025,
+            sideways_sigma_per_meter: 0.02,
+            heading_sigma_per_meter: 0.008,
+            heading_sigma_per_radian: 0.02,
+        }
     }
 }
 
@@ -46,21 +51,22 @@ impl OdometryNoise {
     /// # Errors
     /// Names the first that has none.
     pub fn validate(&self) -> Result<(), AppearanceError> {
-        check::not_negative("forward noise of the odometry (m)", self.forward)?;
-        check::not_negative("sideways noise of the odometry (m)", self.sideways)?;
-        check::not_negative("heading noise of the odometry a metre (rad)", self.heading_per_meter)?;
-        check::not_negative("heading noise of the odometry a radian (rad)", self.heading_per_radian)
+        check::not_negative("forward noise of the odometry (m)", self.forward_sigma_per_meter)?;
+        check::not_negative("sideways noise of the odometry (m)", self.sideways_sigma_per_meter)?;
+        check::not_negative("heading noise of the odometry a metre (rad)", self.heading_sigma_per_meter)?;
+        check::not_negative("heading noise of the odometry a radian (rad)", self.heading_sigma_per_radian)
     }
 
     /// Covariance of the error of one increment, in the body frame at its end.
     pub fn covariance(&self, increment: &Pose2<f64>) -> Matrix3<f64> {
         let distance = increment.translation.norm();
         let turn = increment.heading().abs();
-        let heading = self.heading_per_meter.powi(2) * distance + self.heading_per_radian.powi(2) * turn;
+        let heading =
+            self.heading_sigma_per_meter.powi(2) * distance + self.heading_sigma_per_radian.powi(2) * turn;
         let floor = FLOOR * FLOOR;
         Matrix3::from_diagonal(&Vector3::new(
-            self.forward.powi(2) * distance + floor,
-            self.sideways.powi(2) * distance + floor,
+            self.forward_sigma_per_meter.powi(2) * distance + floor,
+            self.sideways_sigma_per_meter.powi(2) * distance + floor,
             heading + floor,
         ))
     }

@@ -1,5 +1,5 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_gaussian_core::{Gaussian, Mixture};
+use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 
 use crate::{AppearanceError, check};
 
@@ -41,16 +41,16 @@ impl UnimodalParams {
 /// use nalgebra::Vector3;
 /// use wayfix_appearance_cml::{UnimodalParams, unimodal};
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_gaussian_core::{Gaussian, Mixture};
+/// use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 /// let at = |x: f64| Gaussian::from_sigmas(Pose2::new(x, 0.0, 0.0), &Vector3::new(0.1, 0.1, 0.1));
-/// let sure = Mixture::from_weights(vec![(0.1, at(0.0)?), (0.9, at(4.0)?)])?;
+/// let sure = GaussianMixture::from_weights(vec![(0.1, at(0.0)?), (0.9, at(4.0)?)])?;
 /// assert_eq!(unimodal(&sure, &UnimodalParams::default()).map(|g| g.mean().x()), Some(4.0));
-/// let torn = Mixture::from_weights(vec![(0.4, at(0.0)?), (0.6, at(4.0)?)])?;
+/// let torn = GaussianMixture::from_weights(vec![(0.4, at(0.0)?), (0.6, at(4.0)?)])?;
 /// assert!(unimodal(&torn, &UnimodalParams::default()).is_none());
 /// # Ok::<(), wayfix_appearance_cml::AppearanceError>(())
 /// ```
 pub fn unimodal<'a>(
-    mixture: &'a Mixture<Pose2<f64>>,
+    mixture: &'a GaussianMixture<Pose2<f64>>,
     params: &UnimodalParams,
 ) -> Option<&'a Gaussian<Pose2<f64>>> {
     let weights = mixture.weights();

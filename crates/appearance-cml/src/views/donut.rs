@@ -1,13 +1,13 @@
 use std::f64::consts::TAU;
 
-use super::{Panorama, TurnSense};
+use super::{AzimuthDirection, Panorama};
 use crate::AppearanceError;
 
 /// Which ring of a raw omnidirectional image shows what is highest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum RingOrder {
+pub enum RingOrientation {
     /// The outermost: a camera that looks up into a mirror.
     OutermostUp,
     /// The innermost: a camera, or a fisheye lens, that looks up.
@@ -20,8 +20,8 @@ pub enum RingOrder {
 /// they are seen in the image (a mirror may reverse that in the world).
 ///
 /// ```
-/// use wayfix_appearance_cml::{Donut, Panorama, RingOrder, TurnSense};
-/// let donut = Donut { center: [4.5, 4.5], radii: [1.0, 4.0], sense: TurnSense::Clockwise, up: RingOrder::OutermostUp };
+/// use wayfix_appearance_cml::{OmnidirectionalRing, Panorama, RingOrientation, AzimuthDirection};
+/// let donut = OmnidirectionalRing { center: [4.5, 4.5], radii: [1.0, 4.0], sense: AzimuthDirection::Clockwise, up: RingOrientation::OutermostUp };
 /// let image = Panorama::from_rgb(10, 10, vec![7; 300])?; // any picture: a buffer of pixels
 /// let panorama = donut.unwrap_image(10, 10, image.pixels(), 16, 3)?;
 /// assert_eq!((panorama.n_columns(), panorama.n_rows()), (16, 3));
@@ -31,18 +31,18 @@ pub enum RingOrder {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Donut {
+pub struct OmnidirectionalRing {
     /// Centre of the ring, pixels from the middle of the top left pixel, right and down.
     pub center: [f64; 2],
     /// Inner and outer radius, pixels.
     pub radii: [f64; 2],
     /// Which way the columns follow each other, as seen in the image.
-    pub sense: TurnSense,
+    pub azimuth_direction: AzimuthDirection,
     /// Which ring becomes the top row.
-    pub up: RingOrder,
+    pub ring_orientation: RingOrientation,
 }
 
-impl Donut {
+impl OmnidirectionalRing {
     /// The ring of an image (pixels row by row) as a panorama of `n_columns` × `n_rows`; each of its cells is the mean of the pixels
     /// whose middles lie in it, whatever its size. A cell without any, which is smaller than a pixel, is the pixel at its middle.
     ///
@@ -96,9 +96,9 @@ impl Donut {
         let [inner, outer] = self.radii;
         let [x, y] = [place[0] - self.center[0], place[1] - self.center[1]];
         let radius = x.hypot(y);
-        let above = match self.up {
-            RingOrder::OutermostUp => outer - radius,
-            RingOrder::InnermostUp => radius - inner,
+        let above = match self.ring_orientation {
+            RingOrientation::OutermostUp => outer - radius,
+            RingOrientation::InnermostUp => radius - inner,
         };
         let row = above / (outer - inner) * n_rows as f64;
         if !(0.0..n_rows as f64).contains(&row) {
@@ -114,9 +114,9 @@ impl Donut {
     fn middle(&self, cell: usize, n_columns: usize, n_rows: usize, [width, height]: [usize; 2]) -> usize {
         let [inner, outer] = self.radii;
         let depth = ((cell / n_columns) as f64 + 0.5) / n_rows as f64;
-        let radius = match self.up {
-            RingOrder::OutermostUp => outer + (inner - outer) * depth,
-            RingOrder::InnermostUp => inner + (outer - inner) * depth,
+        let radius = match self.ring_orientation {
+            RingOrientation::OutermostUp => outer + (inner - outer) * depth,
+            RingOrientation::InnermostUp => inner + (outer - inner) * depth,
         };
         let (sin, cos) = (self.sign() * (cell % n_columns) as f64 / n_columns as f64 * TAU).sin_cos();
         let pixel = |center: f64, offset: f64, extent: usize| {
@@ -127,7 +127,7 @@ impl Donut {
 
     /// Rows go down: what looks clockwise in the image is a growing angle there.
     fn sign(&self) -> f64 {
-        if self.sense == TurnSense::Clockwise { 1.0 } else { -1.0 }
+        if self.azimuth_direction == AzimuthDirection::Clockwise { 1.0 } else { -1.0 }
     }
 }
 
@@ -167,13 +167,18 @@ mod tests {
         (0..SIZE * SIZE).map(pixel).collect()
     }
 
-    fn donut(sense: TurnSense, up: RingOrder) -> Donut {
-        Donut { center: [50.0, 50.0], radii: [10.0, 50.0], sense, up }
+    fn donut(sense: AzimuthDirection, up: RingOrientation) -> OmnidirectionalRing {
+        OmnidirectionalRing {
+            center: [50.0, 50.0],
+            radii: [10.0, 50.0],
+            azimuth_direction: sense,
+            ring_orientation: up,
+        }
     }
 
     #[test]
     fn columns_follow_the_azimuth_and_rows_the_radius() {
-        let clockwise = donut(TurnSense::Clockwise, RingOrder::OutermostUp);
+        let clockwise = donut(AzimuthDirection::Clockwise, RingOrientation::OutermostUp);
         let panorama = clockwise.unwrap_image(SIZE, SIZE, &image(), 8, 2).unwrap();
         let row = |row| panorama.row(row).copied().collect::<Vec<_>>();
         for column in 1..8 {
@@ -182,7 +187,7 @@ mod tests {
         }
         assert!(row(0).iter().all(|pixel| pixel[0] > 250) && row(1).iter().all(|pixel| pixel[0] < 5));
 
-        let reversed = donut(TurnSense::Counterclockwise, RingOrder::InnermostUp);
+        let reversed = donut(AzimuthDirection::Counterclockwise, RingOrientation::InnermostUp);
         let reversed = reversed.unwrap_image(SIZE, SIZE, &image(), 8, 2).unwrap();
         assert!(reversed.row(0).all(|pixel| pixel[0] < 5));
         let (there, back) = (row(0)[2], reversed.row(1).nth(6).copied().unwrap());
@@ -195,10 +200,10 @@ mod tests {
         let size = 1001;
         let checkered: Vec<[u8; 3]> =
             (0..size * size).map(|i| [if i % 2 == 0 { 40 } else { 200 }; 3]).collect();
-        let donut = Donut {
+        let donut = OmnidirectionalRing {
             center: [500.0; 2],
             radii: [100.0, 490.0],
-            ..donut(TurnSense::Clockwise, RingOrder::OutermostUp)
+            ..donut(AzimuthDirection::Clockwise, RingOrientation::OutermostUp)
         };
         let panorama = donut.unwrap_image(size, size, &checkered, 36, 10).unwrap();
         // at least 700 pixels a cell; those of either colour differ by no more than lie at its border of some 120 pixels
@@ -227,7 +232,7 @@ mod tests {
 
     #[test]
     fn cells_smaller_than_a_pixel_show_the_pixel_there() {
-        let fine = donut(TurnSense::Clockwise, RingOrder::OutermostUp)
+        let fine = donut(AzimuthDirection::Clockwise, RingOrientation::OutermostUp)
             .unwrap_image(SIZE, SIZE, &image(), 720, 80)
             .unwrap();
         for column in [90, 180, 450] {
@@ -239,14 +244,14 @@ mod tests {
 
     #[test]
     fn rings_that_are_none_or_reach_beyond_the_image_are_refused() {
-        let good = donut(TurnSense::Clockwise, RingOrder::OutermostUp);
+        let good = donut(AzimuthDirection::Clockwise, RingOrientation::OutermostUp);
         for bad in [
-            Donut { radii: [10.0, 51.0], ..good },
-            Donut { radii: [10.0, 10.0], ..good },
-            Donut { radii: [-1.0, 10.0], ..good },
-            Donut { radii: [f64::NAN, 10.0], ..good },
-            Donut { radii: [1.0, f64::INFINITY], ..good },
-            Donut { center: [f64::NAN, 50.0], ..good },
+            OmnidirectionalRing { radii: [10.0, 51.0], ..good },
+            OmnidirectionalRing { radii: [10.0, 10.0], ..good },
+            OmnidirectionalRing { radii: [-1.0, 10.0], ..good },
+            OmnidirectionalRing { radii: [f64::NAN, 10.0], ..good },
+            OmnidirectionalRing { radii: [1.0, f64::INFINITY], ..good },
+            OmnidirectionalRing { center: [f64::NAN, 50.0], ..good },
         ] {
             let refused = bad.unwrap_image(SIZE, SIZE, &image(), 8, 2);
             assert!(matches!(refused, Err(AppearanceError::Donut { .. })), "{bad:?}");

@@ -1,4 +1,6 @@
-use super::{Panorama, PanoramaDescriptor, PanoramaParams, TurnSense, cosines::Cosines, sectors::cell_means};
+use super::{
+    AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaParams, cosines::Cosines, sectors::cell_means,
+};
 use crate::{AppearanceError, check};
 
 /// Turns the panoramas of one camera into descriptors.
@@ -44,7 +46,7 @@ impl PanoramaFeatures {
         let angle = |sector: usize| std::f64::consts::TAU * sector as f64 / n_sectors as f64;
         let circle = (0..n_sectors).map(|sector| (angle(sector).cos(), angle(sector).sin())).collect();
         let kept = |n: usize, step: f64| {
-            (0..n).map(|k| (-0.5 * (params.smoothing * step * k as f64).powi(2)).exp()).collect()
+            (0..n).map(|k| (-0.5 * (params.smoothing_sigma * step * k as f64).powi(2)).exp()).collect()
         };
         let kept = [
             kept(params.n_harmonics, std::f64::consts::TAU / n_sectors as f64),
@@ -74,8 +76,12 @@ impl PanoramaFeatures {
             return Err(AppearanceError::ViewSize { expected: self.size, got });
         }
         self.check_saturation(panorama)?;
-        let mut cells = cell_means(panorama, self.n_rings, self.n_sectors, self.params.tone);
-        self.params.normalization.apply(self.params.tone, self.params.min_contrast, &mut cells)?;
+        let mut cells = cell_means(panorama, self.n_rings, self.n_sectors, self.params.intensity_scale);
+        self.params.brightness_normalization.apply(
+            self.params.intensity_scale,
+            self.params.min_contrast,
+            &mut cells,
+        )?;
         let cosines = Cosines::over(self.n_rings as u8);
         let [of_harmonics, of_cosines] = &self.kept;
         let smoothed = |(part, values): (usize, &[f64])| {
@@ -107,7 +113,7 @@ impl PanoramaFeatures {
     fn spectrum(&self, cells: &[f64]) -> Vec<f64> {
         let (n, n_rings) = (self.n_sectors, self.n_rings);
         let mut spectrum = vec![0.0; n_rings * (2 * self.params.n_harmonics - 1)];
-        let sign = if self.params.sense == TurnSense::Clockwise { 1.0 } else { -1.0 };
+        let sign = if self.params.azimuth_direction == AzimuthDirection::Clockwise { 1.0 } else { -1.0 };
         let scale = (n_rings as f64).sqrt().recip() / n as f64;
         for (ring, cells) in cells.chunks_exact(n).enumerate() {
             for k in 0..self.params.n_harmonics {

@@ -1,5 +1,5 @@
-use super::{PanoramaDescriptor, PanoramaProbe, PanoramaTable};
-use crate::{Bounded, ViewDifference};
+use super::{PanoramaBoundTable, PanoramaDescriptor, PanoramaQuery};
+use crate::{LowerBoundedDistance, ViewDifference};
 
 /// Harmonics whose phases between rings count; of the others only how strong they are.
 const PHASED_HARMONICS: usize = 8;
@@ -16,9 +16,9 @@ const N_CONSTANT_COSINES: usize = 8;
 /// The first cosines part $`a`$ into $`a'`$ and a rest, $`d_k² ≥ d'^2 + (|a^⊥| - |b^⊥|)²`$. For $`a'`$,
 /// with $`c = |⟨a', b'⟩| / |a'||b'|`$, half the squared Frobenius distance of $`a'a'^*/|a'|`$ and $`b'b'^*/|b'|`$ and half of $`(|a'| - |b'|)²`$ sum to
 /// $`(|a'| - |b'|)² + |a'||b'|(1 - c²) ≤ (|a'| - |b'|)² + 2|a'||b'|(1 - c) = d'^2`$. All of these are coordinates of a Euclidean space.
-impl Bounded for PanoramaDescriptor {
-    type Probe = PanoramaProbe;
-    type Table = PanoramaTable;
+impl LowerBoundedDistance for PanoramaDescriptor {
+    type Probe = PanoramaQuery;
+    type Table = PanoramaBoundTable;
 
     fn invariants(&self) -> Vec<f64> {
         let scale = f64::from(self.scale());
@@ -35,15 +35,15 @@ impl Bounded for PanoramaDescriptor {
         invariants
     }
 
-    fn probe(&self) -> PanoramaProbe {
-        PanoramaProbe::new(self)
+    fn probe(&self) -> PanoramaQuery {
+        PanoramaQuery::new(self)
     }
 
-    fn bound(&self, probe: &PanoramaProbe, enough: f64) -> f64 {
+    fn bound(&self, probe: &PanoramaQuery, enough: f64) -> f64 {
         probe.bound(self, enough)
     }
 
-    fn compare_with(&self, probe: &PanoramaProbe) -> ViewDifference {
+    fn compare_with(&self, probe: &PanoramaQuery) -> ViewDifference {
         probe.compare(self)
     }
 

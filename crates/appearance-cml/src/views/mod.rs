@@ -20,10 +20,10 @@ mod sectors;
 mod table;
 
 pub use descriptor::PanoramaDescriptor;
-pub use donut::{Donut, RingOrder};
+pub use donut::{OmnidirectionalRing, RingOrientation};
 pub use features::PanoramaFeatures;
-pub use normalization::{Normalization, Tone};
-pub use panorama::{Panorama, TurnSense};
+pub use normalization::{BrightnessNormalization, IntensityScale};
+pub use panorama::{AzimuthDirection, Panorama};
 pub use params::PanoramaParams;
-pub use probe::PanoramaProbe;
-pub use table::PanoramaTable;
+pub use probe::PanoramaQuery;
+pub use table::PanoramaBoundTable;

@@ -4,7 +4,7 @@ use crate::AppearanceError;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Tone {
+pub enum IntensityScale {
     /// As they are.
     Linear,
     /// $`\ln(8 + \text{grey})`$: light multiplies what surfaces reflect, so its changes become an offset, which normalization takes away. The 8
@@ -16,7 +16,7 @@ pub enum Tone {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Normalization {
+pub enum BrightnessNormalization {
     /// Of nothing: values are divided by their full range only.
     None,
     /// Of the mean over the view.
@@ -25,7 +25,7 @@ pub enum Normalization {
     MeanVariance,
 }
 
-impl Tone {
+impl IntensityScale {
     pub(super) fn of(self, grey: f64) -> f64 {
         match self {
             Self::Linear => grey,
@@ -38,14 +38,14 @@ impl Tone {
     }
 }
 
-impl Normalization {
+impl BrightnessNormalization {
     /// Normalizes the cells of a view in place.
     ///
     /// # Errors
     /// [`AppearanceError::BlankView`] when their standard deviation is less than `min_contrast` of the range of the tone.
     pub(super) fn apply(
         self,
-        tone: Tone,
+        tone: IntensityScale,
         min_contrast: f64,
         cells: &mut [f64],
     ) -> Result<(), AppearanceError> {

@@ -4,7 +4,7 @@ use crate::AppearanceError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum TurnSense {
+pub enum AzimuthDirection {
     /// To the right, as a camera that pans or a person who looks round sees them.
     Clockwise,
     /// To the left, as angles are counted (REP 103).

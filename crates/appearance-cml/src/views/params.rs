@@ -1,4 +1,4 @@
-use super::{Normalization, Tone, TurnSense};
+use super::{AzimuthDirection, BrightnessNormalization, IntensityScale};
 use crate::{AppearanceError, check};
 
 /// How a panorama is described.
@@ -18,17 +18,17 @@ pub struct PanoramaParams {
     pub n_harmonics: usize,
     /// Standard deviation, in sectors and in rings, of the Gaussian that views are smoothed with; 0 leaves them as they are. What is finer says more of where
     /// exactly the robot is than of which place that is: a robot a third of a metre beside the taught lane sees it from too far another side. Default 1.
-    pub smoothing: f64,
+    pub smoothing_sigma: f64,
     /// How grey values are weighed. Default: logarithmic.
-    pub tone: Tone,
+    pub intensity_scale: IntensityScale,
     /// What brightness is made independent of. Default: mean and variance.
-    pub normalization: Normalization,
+    pub brightness_normalization: BrightnessNormalization,
     /// Least standard deviation of the cells of a view, as a share of the range of the tone. Default 0.01.
     pub min_contrast: f64,
     /// Largest share of pixels that are all black or all white. Default 0.8.
     pub max_saturated: f64,
     /// Which way the columns go round. Default: clockwise, left to right.
-    pub sense: TurnSense,
+    pub azimuth_direction: AzimuthDirection,
 }
 
 impl Default for PanoramaParams {
@@ -37,12 +37,12 @@ impl Default for PanoramaParams {
             n_rings: 25,
             n_sectors: 120,
             n_harmonics: 16,
-            smoothing: 1.0,
-            tone: Tone::Logarithmic,
-            normalization: Normalization::MeanVariance,
+            smoothing_sigma: 1.0,
+            intensity_scale: IntensityScale::Logarithmic,
+            brightness_normalization: BrightnessNormalization::MeanVariance,
             min_contrast: 0.01,
             max_saturated: 0.8,
-            sense: TurnSense::Clockwise,
+            azimuth_direction: AzimuthDirection::Clockwise,
         }
     }
 }
@@ -55,7 +55,7 @@ impl PanoramaParams {
         whole("n_rings", self.n_rings, (1..=64).contains(&self.n_rings), "from 1 to 64")?;
         whole("n_sectors", self.n_sectors, (4..=1024).contains(&self.n_sectors), "from 4 to 1024")?;
         self.check_harmonics(self.n_sectors)?;
-        check::not_negative("smoothing", self.smoothing)?;
+        check::not_negative("smoothing", self.smoothing_sigma)?;
         check::share("min_contrast", self.min_contrast)?;
         check::share("max_saturated", self.max_saturated)
     }

@@ -13,7 +13,7 @@ pub(super) const N_LOW_HARMONICS: usize = 8;
 ///
 /// Its products with a reference are exact.
 #[derive(Clone, Debug)]
-pub struct PanoramaProbe {
+pub struct PanoramaQuery {
     scale: f64,
     n_rings: u8,
     n_harmonics: usize,
@@ -26,7 +26,7 @@ pub struct PanoramaProbe {
     groups: Vec<Vec<Pairs>>,
 }
 
-impl PanoramaProbe {
+impl PanoramaQuery {
     pub(super) fn new(view: &PanoramaDescriptor) -> Self {
         let group = |lanes: &[i8]| lanes.chunks_exact(2 * HARMONICS).map(Pairs::new).collect();
         Self {

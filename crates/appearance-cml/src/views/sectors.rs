@@ -1,9 +1,14 @@
-use super::{Panorama, Tone};
+use super::{IntensityScale, Panorama};
 
 /// The mean grey value, weighed by a tone, of `n_rings` × `n_sectors` cells of a panorama, ring by ring from the top.
 ///
 /// Where rows or columns do not divide evenly, those on a border count in part to both sides.
-pub(super) fn cell_means(panorama: &Panorama, n_rings: usize, n_sectors: usize, tone: Tone) -> Vec<f64> {
+pub(super) fn cell_means(
+    panorama: &Panorama,
+    n_rings: usize,
+    n_sectors: usize,
+    tone: IntensityScale,
+) -> Vec<f64> {
     let weigh: Vec<f64> = (0..=255).map(|grey| tone.of(f64::from(grey))).collect();
     let sectors = Shares::new(panorama.n_columns(), n_sectors);
     let rings = Shares::new(panorama.n_rows(), n_rings);
@@ -63,16 +68,19 @@ mod tests {
     #[test]
     fn cells_are_means_of_what_they_cover() {
         let panorama = greys(&[10, 20, 30, 40, 50, 60, 70, 80], 4);
-        assert_eq!(cell_means(&panorama, 1, 2, Tone::Linear), [(10.0 + 20.0 + 50.0 + 60.0) / 4.0, 55.0]);
         assert_eq!(
-            cell_means(&panorama, 2, 4, Tone::Linear),
+            cell_means(&panorama, 1, 2, IntensityScale::Linear),
+            [(10.0 + 20.0 + 50.0 + 60.0) / 4.0, 55.0]
+        );
+        assert_eq!(
+            cell_means(&panorama, 2, 4, IntensityScale::Linear),
             [10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0]
         );
     }
 
     #[test]
     fn a_pixel_on_a_border_counts_on_both_sides() {
-        let cells = cell_means(&greys(&[30, 60, 90], 3), 1, 2, Tone::Linear);
+        let cells = cell_means(&greys(&[30, 60, 90], 3), 1, 2, IntensityScale::Linear);
         assert_eq!(cells, [(30.0 + 60.0 / 2.0) / 1.5, (60.0 / 2.0 + 90.0) / 1.5]);
     }
 }

@@ -1,14 +1,14 @@
 use super::low_harmonics::LowHarmonics;
-use super::{PanoramaDescriptor, PanoramaProbe};
+use super::{PanoramaDescriptor, PanoramaQuery};
 use crate::BoundTable;
 
 /// The slow changes of many panoramas from top to bottom, side by side: 156 bytes each.
 #[derive(Clone, Debug, Default)]
-pub struct PanoramaTable {
+pub struct PanoramaBoundTable {
     rows: Vec<LowHarmonics>,
 }
 
-impl BoundTable<PanoramaDescriptor> for PanoramaTable {
+impl BoundTable<PanoramaDescriptor> for PanoramaBoundTable {
     fn put(&mut self, slot: usize, reference: &PanoramaDescriptor) {
         let row = LowHarmonics::new(reference);
         match self.rows.get_mut(slot) {
@@ -18,7 +18,7 @@ impl BoundTable<PanoramaDescriptor> for PanoramaTable {
     }
 
     #[inline]
-    fn may_be_within(&self, slot: usize, view: &PanoramaProbe, enough: f64) -> Option<f64> {
+    fn may_be_within(&self, slot: usize, view: &PanoramaQuery, enough: f64) -> Option<f64> {
         let squared = f64::from(view.slow().squared_bound(&self.rows[slot]));
         // What is no number bounds nothing.
         if squared.is_nan() {

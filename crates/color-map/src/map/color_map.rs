@@ -1,5 +1,5 @@
-use super::{Decal, Extent, Layer, Prism, check};
-use crate::{ColorId, MapError, Shape, tree::Tree};
+use super::{Decal, Layer, MapExtent, Prism, check};
+use crate::{ColorId, ColorMapError, ColoredShape, tree::Tree};
 
 /// A validated map of coloured surfaces.
 ///
@@ -7,23 +7,23 @@ use crate::{ColorId, MapError, Shape, tree::Tree};
 /// other, seen from above.
 /// ```
 /// use nalgebra::Vector3;
-/// use wayfix_color_map::{ColorId, ColorMap, MapError, Shape};
+/// use wayfix_color_map::{ColorId, ColorMap, ColorMapError, ColoredShape};
 ///
 /// let corner = |x, y| Vector3::new(x, y, 0.0);
-/// let carpet = |color| Shape::Polygon { color, vertices: vec![corner(0.0, 0.0), corner(4.0, 0.0), corner(0.0, 3.0)] };
+/// let carpet = |color| ColoredShape::Polygon { color, vertices: vec![corner(0.0, 0.0), corner(4.0, 0.0), corner(0.0, 3.0)] };
 /// let map = ColorMap::new(vec!["green".into()], vec![carpet(ColorId(0))])?;
 /// assert_eq!(map.color_named("green"), Some(ColorId(0)));
 /// assert_eq!(map.extent().unwrap().max, Vector3::new(4.0, 3.0, 0.0));
 ///
 /// let unknown = ColorMap::new(vec!["green".into()], vec![carpet(ColorId(7))]);
-/// assert_eq!(unknown.unwrap_err(), MapError::UnknownColor { shape: 0, color: 7, n_colors: 1 });
-/// # Ok::<(), MapError>(())
+/// assert_eq!(unknown.unwrap_err(), ColorMapError::UnknownColor { shape: 0, color: 7, n_colors: 1 });
+/// # Ok::<(), ColorMapError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct ColorMap {
     colors: Vec<String>,
-    shapes: Vec<Shape>,
-    extent: Option<Extent>,
+    shapes: Vec<ColoredShape>,
+    extent: Option<MapExtent>,
     pub(crate) layers: Vec<Layer>,
     /// One a band.
     pub(crate) prisms: Vec<Prism>,
@@ -35,22 +35,22 @@ impl ColorMap {
     /// A map of these shapes; a shape's [`ColorId`] is a place in `colors`.
     ///
     /// # Errors
-    /// See [`MapError`]: unknown, too many or equally named colours; polygons with too few corners, without width, not flat or not
+    /// See [`ColorMapError`]: unknown, too many or equally named colours; polygons with too few corners, without width, not flat or not
     /// convex (1e-6 m are tolerated); posts without radius, with bands out of order, or standing in each other; numbers that are NaN or
     /// beyond 1e6 m; surfaces that pierce
     /// each other into more than 200 000 pieces.
-    pub fn new(colors: Vec<String>, shapes: Vec<Shape>) -> Result<Self, MapError> {
+    pub fn new(colors: Vec<String>, shapes: Vec<ColoredShape>) -> Result<Self, ColorMapError> {
         check::colors(&colors)?;
         let (mut layers, mut prisms) = (Vec::new(), Vec::new());
         for (i, shape) in shapes.iter().enumerate() {
             match shape {
-                Shape::Polygon { color, vertices } => {
+                ColoredShape::Polygon { color, vertices } => {
                     check::color(i, *color, colors.len())?;
                     let plane = check::polygon(i, vertices)?;
                     let decal = Decal { shape: i, color: *color, vertices: vertices.clone() };
                     Layer::sort_in(&mut layers, plane, decal);
                 }
-                Shape::Post { x, y, radius, bands } => {
+                ColoredShape::Post { x, y, radius, bands } => {
                     check::post(i, *x, *y, *radius, bands)?;
                     bands.iter().try_for_each(|band| check::color(i, band.color, colors.len()))?;
                     prisms.extend(bands.iter().map(|band| Prism::new(i, *x, *y, *radius, band)));
@@ -59,7 +59,7 @@ impl ColorMap {
         }
         check::posts_apart(&prisms)?;
         let tree = Tree::build(&layers, &prisms)?;
-        let extent = Extent::of(&shapes);
+        let extent = MapExtent::of(&shapes);
         Ok(Self { colors, shapes, extent, layers, prisms, tree })
     }
 
@@ -75,12 +75,12 @@ impl ColorMap {
     }
 
     /// The shapes, as given.
-    pub fn shapes(&self) -> &[Shape] {
+    pub fn shapes(&self) -> &[ColoredShape] {
         &self.shapes
     }
 
     /// The upright box that the map fills; none if it has no shape.
-    pub fn extent(&self) -> Option<Extent> {
+    pub fn extent(&self) -> Option<MapExtent> {
         self.extent
     }
 }

@@ -1,19 +1,19 @@
 use nalgebra::Vector3;
 
-use crate::Shape;
+use crate::ColoredShape;
 
 /// The upright box that a map fills, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub struct MapExtent {
     /// Smallest coordinates.
     pub min: Vector3<f64>,
     /// Largest coordinates.
     pub max: Vector3<f64>,
 }
 
-impl Extent {
+impl MapExtent {
     /// Of all shapes; none if there are none.
-    pub(crate) fn of(shapes: &[Shape]) -> Option<Self> {
+    pub(crate) fn of(shapes: &[ColoredShape]) -> Option<Self> {
         let mut extent: Option<Self> = None;
         let mut add = |point: Vector3<f64>| {
             let grown = extent.map_or(Self { min: point, max: point }, |e| Self {
@@ -24,8 +24,8 @@ impl Extent {
         };
         for shape in shapes {
             match shape {
-                Shape::Polygon { vertices, .. } => vertices.iter().copied().for_each(&mut add),
-                Shape::Post { x, y, radius, bands } => {
+                ColoredShape::Polygon { vertices, .. } => vertices.iter().copied().for_each(&mut add),
+                ColoredShape::Post { x, y, radius, bands } => {
                     for band in bands {
                         add(Vector3::new(x - radius, y - radius, band.from));
                         add(Vector3::new(x + radius, y + radius, band.to));

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::ColorMap;
-use crate::{Band, ColorId, MapError, Shape};
+use crate::{ColorId, ColorMapError, ColoredShape, PostBand};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -41,23 +41,23 @@ struct BandEntry {
 }
 
 impl TryFrom<MapFile> for ColorMap {
-    type Error = MapError;
+    type Error = ColorMapError;
 
-    fn try_from(file: MapFile) -> Result<Self, MapError> {
+    fn try_from(file: MapFile) -> Result<Self, ColorMapError> {
         let color = |name: String| match file.colors.iter().position(|color| *color == name) {
             // An index beyond a byte means too many colours, which `ColorMap::new` rejects.
             Some(index) => Ok(ColorId(u8::try_from(index).unwrap_or(u8::MAX))),
-            None => Err(MapError::UnknownColorName { name }),
+            None => Err(ColorMapError::UnknownColorName { name }),
         };
         let mut shapes = Vec::with_capacity(file.polygons.len() + file.posts.len());
         for PolygonEntry { color: name, vertices } in file.polygons {
             let vertices = vertices.into_iter().map(Vector3::from).collect();
-            shapes.push(Shape::Polygon { color: color(name)?, vertices });
+            shapes.push(ColoredShape::Polygon { color: color(name)?, vertices });
         }
         for PostEntry { x, y, radius, bands } in file.posts {
-            let band = |b: BandEntry| Ok(Band { color: color(b.color)?, from: b.from, to: b.to });
-            let bands = bands.into_iter().map(band).collect::<Result<_, MapError>>()?;
-            shapes.push(Shape::Post { x, y, radius, bands });
+            let band = |b: BandEntry| Ok(PostBand { color: color(b.color)?, from: b.from, to: b.to });
+            let bands = bands.into_iter().map(band).collect::<Result<_, ColorMapError>>()?;
+            shapes.push(ColoredShape::Post { x, y, radius, bands });
         }
         Self::new(file.colors, shapes)
     }
@@ -69,12 +69,12 @@ impl From<&ColorMap> for MapFile {
         let mut file = Self { colors: map.colors().to_vec(), polygons: Vec::new(), posts: Vec::new() };
         for shape in map.shapes() {
             match shape {
-                Shape::Polygon { color, vertices } => {
+                ColoredShape::Polygon { color, vertices } => {
                     let vertices = vertices.iter().map(|&v| v.into()).collect();
                     file.polygons.push(PolygonEntry { color: name(*color), vertices });
                 }
-                Shape::Post { x, y, radius, bands } => {
-                    let entry = |b: &Band| BandEntry { color: name(b.color), from: b.from, to: b.to };
+                ColoredShape::Post { x, y, radius, bands } => {
+                    let entry = |b: &PostBand| BandEntry { color: name(b.color), from: b.from, to: b.to };
                     let bands = bands.iter().map(entry).collect();
                     file.posts.push(PostEntry { x: *x, y: *y, radius: *radius, bands });
                 }

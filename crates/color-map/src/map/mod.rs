@@ -10,9 +10,9 @@ mod layer;
 mod plane;
 mod prism;
 
-pub use cast::Hit;
+pub use cast::RayHit;
 pub use color_map::ColorMap;
-pub use extent::Extent;
+pub use extent::MapExtent;
 pub(crate) use layer::{Decal, Layer};
 pub(crate) use plane::{PLANE_TOLERANCE_M, Plane};
 pub(crate) use prism::{Prism, SIDES};

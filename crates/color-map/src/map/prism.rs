@@ -1,7 +1,7 @@
 use nalgebra::Vector3;
 
 use super::Plane;
-use crate::{Band, ColorId};
+use crate::{ColorId, PostBand};
 
 /// Number of sides of the prism that approximates a post.
 pub(crate) const SIDES: usize = 16;
@@ -30,7 +30,7 @@ pub(crate) struct Prism {
 }
 
 impl Prism {
-    pub(crate) fn new(shape: usize, x: f64, y: f64, radius: f64, band: &Band) -> Self {
+    pub(crate) fn new(shape: usize, x: f64, y: f64, radius: f64, band: &PostBand) -> Self {
         let corner_radius = CORNER_RADIUS * radius;
         let corners = std::array::from_fn(|k| {
             let (cos, sin) = direction(k);
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn the_outline_is_as_long_as_the_circle() {
-        let prism = Prism::new(0, 1.0, -2.0, 0.05, &Band { color: ColorId(0), from: 0.0, to: 0.2 });
+        let prism = Prism::new(0, 1.0, -2.0, 0.05, &PostBand { color: ColorId(0), from: 0.0, to: 0.2 });
         let length: f64 = (0..SIDES).map(|k| (prism.corner(k + 1, 0.0) - prism.corner(k, 0.0)).norm()).sum();
         assert!((length / (std::f64::consts::TAU * 0.05) - 1.0).abs() < 1e-14);
     }

@@ -1,5 +1,5 @@
 use super::{coverage::Coverage, outline::Outline, silhouette, view::ImagePoint, view::View};
-use crate::{Camera, ColorId, Span, map::Prism, tree::Facet};
+use crate::{Camera, ColorId, PixelSpan, map::Prism, tree::Facet};
 
 /// Draws convex shapes from front to back; drawn pixels are not overwritten.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ impl Canvas {
         facet: &Facet,
         from_front: bool,
         view: &View,
-        emit: &mut impl FnMut(Span),
+        emit: &mut impl FnMut(PixelSpan),
     ) {
         if view.misses(&facet.center, facet.radius) {
             return;
@@ -50,16 +50,16 @@ impl Canvas {
     }
 
     /// Draws a whole prism.
-    pub(super) fn prism(&mut self, prism: &Prism, view: &View, emit: &mut impl FnMut(Span)) {
+    pub(super) fn prism(&mut self, prism: &Prism, view: &View, emit: &mut impl FnMut(PixelSpan)) {
         silhouette::trace(prism, view, &mut self.outline);
         self.fill(prism.color, emit);
     }
 
-    fn fill(&mut self, color: ColorId, emit: &mut impl FnMut(Span)) {
+    fn fill(&mut self, color: ColorId, emit: &mut impl FnMut(PixelSpan)) {
         self.outline.trace();
         for (row, start, end) in self.outline.rows() {
             self.coverage.claim(row, start, end, |start, end| {
-                emit(Span { row: row as u16, start: start as u16, end: end as u16, color });
+                emit(PixelSpan { row: row as u16, start: start as u16, end: end as u16, color });
             });
         }
     }

@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use super::bits::{self, BITS};
-use crate::{Camera, ColorId, Span};
+use crate::{Camera, ColorId, PixelSpan};
 
 /// One bit a pixel and colour, to take the pixels near an edge away.
 #[derive(Clone, Debug)]
@@ -37,7 +37,7 @@ impl Margin {
         }
     }
 
-    pub(super) fn add(&mut self, span: Span) {
+    pub(super) fn add(&mut self, span: PixelSpan) {
         let row = usize::from(span.row);
         let plane = &mut self.planes[span.color.index()];
         plane.rows = if plane.rows.is_empty() {
@@ -66,13 +66,13 @@ impl Margin {
     }
 
     /// The runs of pixels that are left, in the colours' order.
-    pub(super) fn spans(&self, emit: &mut impl FnMut(Span)) {
+    pub(super) fn spans(&self, emit: &mut impl FnMut(PixelSpan)) {
         for (color, Plane { words, rows }) in self.planes.iter().enumerate() {
             for row in rows.clone() {
                 let words = &words[row * self.words_per_row..(row + 1) * self.words_per_row];
                 bits::runs_of_ones(words, 0, self.n_columns, |start, end| {
                     let color = ColorId(color as u8);
-                    emit(Span { row: row as u16, start: start as u16, end: end as u16, color });
+                    emit(PixelSpan { row: row as u16, start: start as u16, end: end as u16, color });
                 });
             }
         }

@@ -10,4 +10,4 @@ mod projector;
 mod silhouette;
 mod view;
 
-pub use projector::Projector;
+pub use projector::MapRenderer;

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::Pose3;
 
 use super::{canvas::Canvas, margin::Margin, pose, view::View};
 use crate::{
-    Camera, ColorMap, LabelImage, Span, ViewError,
+    Camera, ColorMap, LabelImage, PixelSpan, RenderError,
     map::{PLANE_TOLERANCE_M, Prism},
     tree::{Face, Node, Solid},
 };
@@ -20,21 +20,21 @@ use crate::{
 /// ```
 /// use std::sync::Arc;
 /// use nalgebra::Vector3;
-/// use wayfix_color_map::{Camera, ColorId, ColorMap, Projector, Shape, Span};
+/// use wayfix_color_map::{Camera, ColorId, ColorMap, MapRenderer, ColoredShape, PixelSpan};
 /// use wayfix_estimation_traits::{LieGroup, Pose3};
 ///
 /// let vertices = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[y, z]| Vector3::new(2.0, y, z)).to_vec();
-/// let wall = Shape::Polygon { color: ColorId(0), vertices };
+/// let wall = ColoredShape::Polygon { color: ColorId(0), vertices };
 /// let map = Arc::new(ColorMap::new(vec!["white".into()], vec![wall])?);
-/// let mut projector = Projector::new(map, Camera::new(4, 2, 1.0, 1.0, 2.0, 1.0)?);
+/// let mut projector = MapRenderer::new(map, Camera::new(4, 2, 1.0, 1.0, 2.0, 1.0)?);
 /// let mut spans = Vec::new();
 /// projector.spans(&Pose3::identity(), &mut |span| spans.push(span))?;
 /// // Half a pixel to either side of the middle, and pixel centres at the very edge belong to what is right of it and below.
-/// assert_eq!(spans, [Span { row: 0, start: 1, end: 2, color: ColorId(0) }]);
+/// assert_eq!(spans, [PixelSpan { row: 0, start: 1, end: 2, color: ColorId(0) }]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Projector {
+pub struct MapRenderer {
     map: Arc<ColorMap>,
     camera: Camera,
     canvas: Canvas,
@@ -63,7 +63,7 @@ struct Standing {
     solid: usize,
 }
 
-impl Projector {
+impl MapRenderer {
     /// For one map and camera.
     pub fn new(map: Arc<ColorMap>, camera: Camera) -> Self {
         Self {
@@ -90,8 +90,12 @@ impl Projector {
     ///
     /// `camera_pose` is the camera's in the world: x forward, y left, z up.
     /// # Errors
-    /// Returns [`ViewError::Pose`] if the pose is not finite, farther than 1e6 m away, or its quaternion not of unit length. Nothing is emitted then.
-    pub fn spans(&mut self, camera_pose: &Pose3<f64>, emit: &mut impl FnMut(Span)) -> Result<(), ViewError> {
+    /// Returns [`RenderError::Pose`] if the pose is not finite, farther than 1e6 m away, or its quaternion not of unit length. Nothing is emitted then.
+    pub fn spans(
+        &mut self,
+        camera_pose: &Pose3<f64>,
+        emit: &mut impl FnMut(PixelSpan),
+    ) -> Result<(), RenderError> {
         pose::check(camera_pose)?;
         let Self { map, camera, canvas, todo, standing, .. } = self;
         let view = View::new(camera, camera_pose);
@@ -130,18 +134,18 @@ impl Projector {
         Ok(())
     }
 
-    /// [`Projector::spans`] without the pixels near an edge, whose label is sensitive to the pose.
+    /// [`MapRenderer::spans`] without the pixels near an edge, whose label is sensitive to the pose.
     ///
     /// Keeps pixels whose neighbours up to `margin` pixels away, also across corners, all show the same colour. The image's own border is no edge; a
     /// pixel without map colour is one.
     /// # Errors
-    /// Returns the errors of [`Projector::spans`].
+    /// Returns the errors of [`MapRenderer::spans`].
     pub fn inner_spans(
         &mut self,
         camera_pose: &Pose3<f64>,
         margin: u16,
-        emit: &mut impl FnMut(Span),
-    ) -> Result<(), ViewError> {
+        emit: &mut impl FnMut(PixelSpan),
+    ) -> Result<(), RenderError> {
         if margin == 0 {
             return self.spans(camera_pose, emit);
         }
@@ -161,8 +165,8 @@ impl Projector {
 
     /// Renders the view as an image.
     /// # Errors
-    /// Returns the errors of [`Projector::spans`].
-    pub fn labels(&mut self, camera_pose: &Pose3<f64>) -> Result<LabelImage, ViewError> {
+    /// Returns the errors of [`MapRenderer::spans`].
+    pub fn labels(&mut self, camera_pose: &Pose3<f64>) -> Result<LabelImage, RenderError> {
         let mut labels = LabelImage::empty(self.camera.width(), self.camera.height());
         self.spans(camera_pose, &mut |span| labels.paint(span))?;
         Ok(labels)
@@ -193,7 +197,7 @@ fn draw_solid(
     prisms: &[Prism],
     view: &View,
     canvas: &mut Canvas,
-    emit: &mut impl FnMut(Span),
+    emit: &mut impl FnMut(PixelSpan),
 ) {
     let Some(faces) = &solid.faces else {
         return canvas.prism(&prisms[solid.prism], view, emit);

@@ -5,7 +5,7 @@ use super::{
     facet::{Side, reach},
 };
 use crate::{
-    MapError,
+    ColorMapError,
     map::{Layer, Plane, Prism, SIDES},
 };
 
@@ -28,7 +28,7 @@ struct Heap {
 
 impl Tree {
     /// Sorts all surfaces of a map.
-    pub(crate) fn build(layers: &[Layer], prisms: &[Prism]) -> Result<Self, MapError> {
+    pub(crate) fn build(layers: &[Layer], prisms: &[Prism]) -> Result<Self, ColorMapError> {
         let mut tree = Self { nodes: Vec::new(), root: 0 };
         let mut all = Heap::default();
         for (i, layer) in layers.iter().enumerate() {
@@ -54,7 +54,7 @@ impl Tree {
             n_pieces +=
                 facets.len() + sides.iter().map(|s| s.facets.len() + s.solids.len()).sum::<usize>() - before;
             if n_pieces > MAX_PIECES {
-                return Err(MapError::TooManyPieces { limit: MAX_PIECES });
+                return Err(ColorMapError::TooManyPieces { limit: MAX_PIECES });
             }
             let children = sides.map(|side| {
                 tree.nodes.push(Node::Leaf { solids: Vec::new() });

@@ -1,11 +1,11 @@
-use wayfix_color_map::{ColorId, Span};
+use wayfix_color_map::{ColorId, PixelSpan};
 
 use super::NO_COLOR;
 use crate::ColorModelError;
 
 /// Pixels of one colour that hang together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Blob {
+pub struct ColorBlob {
     /// Their colour.
     pub color: ColorId,
     /// Number of pixels.
@@ -37,7 +37,7 @@ pub struct Blob {
 ///
 /// # Errors
 /// Returns an error if the labels do not fill rows of `width` pixels, or there are none.
-pub fn find_blobs(labels: &[u8], width: usize) -> Result<Vec<Blob>, ColorModelError> {
+pub fn find_blobs(labels: &[u8], width: usize) -> Result<Vec<ColorBlob>, ColorModelError> {
     if labels.is_empty() || width == 0 || !labels.len().is_multiple_of(width) {
         let height = labels.len().checked_div(width).unwrap_or(0);
         let (expected, got) = (width.saturating_mul(height.max(1)), labels.len());
@@ -58,7 +58,7 @@ pub fn find_blobs(labels: &[u8], width: usize) -> Result<Vec<Blob>, ColorModelEr
 }
 
 /// Finds the blobs of an image given as spans, in any order, that do not overlap.
-pub(crate) fn blobs_of_spans(spans: &mut [Span]) -> Vec<Blob> {
+pub(crate) fn blobs_of_spans(spans: &mut [PixelSpan]) -> Vec<ColorBlob> {
     spans.sort_unstable_by_key(|span| (span.row, span.start));
     let mut runs = Runs::default();
     for same in spans.chunk_by(|a, b| (a.row, a.end, a.color) == (b.row, b.start, b.color)) {
@@ -133,13 +133,13 @@ impl Runs {
         at
     }
 
-    fn blobs(mut self) -> Vec<Blob> {
-        let mut blobs: Vec<Blob> = Vec::new();
+    fn blobs(mut self) -> Vec<ColorBlob> {
+        let mut blobs: Vec<ColorBlob> = Vec::new();
         let mut blob_of = vec![0; self.runs.len()];
         for at in 0..self.runs.len() {
             let root = self.root(at);
             let run = &self.runs[at];
-            let blob = Blob {
+            let blob = ColorBlob {
                 color: ColorId(run.label),
                 n_pixels: run.end - run.start,
                 columns: (run.start, run.end - 1),
@@ -158,7 +158,7 @@ impl Runs {
     }
 }
 
-impl Blob {
+impl ColorBlob {
     fn absorb(&mut self, other: &Self) {
         let n_pixels = self.n_pixels + other.n_pixels;
         let share = other.n_pixels as f64 / n_pixels as f64;
@@ -206,12 +206,12 @@ mod tests {
     }
 
     /// One span a pixel, in no order.
-    fn shuffled_pixels(labels: &[u8], width: usize, rng: &mut ChaCha8Rng) -> Vec<Span> {
+    fn shuffled_pixels(labels: &[u8], width: usize, rng: &mut ChaCha8Rng) -> Vec<PixelSpan> {
         let span = |(at, label): (usize, &u8)| {
             let (row, start) = ((at / width) as u16, (at % width) as u16);
-            Span { row, start, end: start + 1, color: ColorId(*label) }
+            PixelSpan { row, start, end: start + 1, color: ColorId(*label) }
         };
-        let mut spans: Vec<Span> =
+        let mut spans: Vec<PixelSpan> =
             labels.iter().enumerate().filter(|(_, label)| **label != NO_COLOR).map(span).collect();
         spans.shuffle(rng);
         spans

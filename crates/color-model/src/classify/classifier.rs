@@ -2,37 +2,37 @@ use nalgebra::Vector3;
 use wayfix_color_map::ColorId;
 
 use super::NO_COLOR;
-use crate::{Background, ColorDensity, ColorModelError, SumDensity, YuvImage};
+use crate::{BackgroundColorModel, ColorDensity, ColorModelError, PixelSumDensity, YuvImage};
 
 /// The most probable map colour of a pixel, $`\arg\max_m p(c | m)`$ under Eq. 9 of [Schulz & Fox 2004], all colours being equally frequent.
 ///
 /// ```
 /// use nalgebra::{Matrix3, Vector3};
 /// use wayfix_color_map::ColorId;
-/// use wayfix_color_model::{Background, Classifier, ColorDensity};
+/// use wayfix_color_model::{BackgroundColorModel, PixelClassifier, ColorDensity};
 /// let density = |mean| ColorDensity { mean, covariance: Matrix3::identity() * 60.0 };
 /// let (green, pink) = (Vector3::new(80.0, 110.0, 100.0), Vector3::new(140.0, 125.0, 180.0));
-/// let classifier = Classifier::new([density(green), density(pink)])?.with_background(Background::Uniform);
+/// let classifier = PixelClassifier::new([density(green), density(pink)])?.with_background(BackgroundColorModel::Uniform);
 /// assert_eq!(classifier.classify([138, 126, 175]), Some(ColorId(1)));
 /// assert_eq!(classifier.classify([20, 200, 60]), None); // far from both: the uniform background explains it better
 /// # Ok::<(), wayfix_color_model::ColorModelError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Classifier {
-    densities: Vec<SumDensity>,
-    background: Option<Background>,
+pub struct PixelClassifier {
+    densities: Vec<PixelSumDensity>,
+    background: Option<BackgroundColorModel>,
     /// Log ratio of the background's frequency to that of any one colour, nats.
     background_odds: f64,
 }
 
-impl Classifier {
+impl PixelClassifier {
     /// Classifies pixels by these densities. The densities of a light are [`LightingFilter::colors`](crate::LightingFilter::colors);
-    /// those of uneven light on a field are [`PixelParams::shaded`](crate::PixelParams::shaded).
+    /// those of uneven light on a field are [`PixelLikelihoodParams::shaded`](crate::PixelLikelihoodParams::shaded).
     /// # Errors
     /// Returns an error if a density has no peak, or there are more than 255.
     pub fn new(densities: impl IntoIterator<Item = ColorDensity>) -> Result<Self, ColorModelError> {
-        let densities: Vec<SumDensity> =
-            densities.into_iter().map(|density| SumDensity::new(&density)).collect::<Result<_, _>>()?;
+        let densities: Vec<PixelSumDensity> =
+            densities.into_iter().map(|density| PixelSumDensity::new(&density)).collect::<Result<_, _>>()?;
         let (expected, got) = (usize::from(NO_COLOR), densities.len());
         if got > expected {
             return Err(ColorModelError::Dimension { what: "colours to tell apart", expected, got });
@@ -42,7 +42,7 @@ impl Classifier {
 
     /// The same, with a class for whatever the background explains better than any map colour. It is as frequent as each of the colours.
     #[must_use]
-    pub fn with_background(self, background: Background) -> Self {
+    pub fn with_background(self, background: BackgroundColorModel) -> Self {
         Self { background: Some(background), background_odds: 0.0, ..self }
     }
 
@@ -50,7 +50,11 @@ impl Classifier {
     ///
     /// # Errors
     /// Returns an error if the share is not between 0 and 1.
-    pub fn with_background_share(self, background: Background, share: f64) -> Result<Self, ColorModelError> {
+    pub fn with_background_share(
+        self,
+        background: BackgroundColorModel,
+        share: f64,
+    ) -> Result<Self, ColorModelError> {
         if !(share > 0.0 && share < 1.0) {
             return Err(ColorModelError::OutOfRange { what: "share of the background", value: share });
         }
@@ -100,8 +104,8 @@ impl Classifier {
 }
 
 /// The colour with the highest log-density for a pixel, the first of equal ones; `None` if none exceeds `floor`.
-pub(crate) fn most_probable(densities: &[SumDensity], pixel: [u8; 3], floor: f64) -> Option<ColorId> {
-    let better = |best: (Option<ColorId>, f64), (at, density): (u8, &SumDensity)| {
+pub(crate) fn most_probable(densities: &[PixelSumDensity], pixel: [u8; 3], floor: f64) -> Option<ColorId> {
+    let better = |best: (Option<ColorId>, f64), (at, density): (u8, &PixelSumDensity)| {
         let log = density.log(pixel);
         if log > best.1 { (Some(ColorId(at)), log) } else { best }
     };

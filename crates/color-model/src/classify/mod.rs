@@ -5,10 +5,10 @@ mod classifier;
 mod table;
 
 pub(crate) use blobs::blobs_of_spans;
-pub use blobs::{Blob, find_blobs};
-pub use classifier::Classifier;
+pub use blobs::{ColorBlob, find_blobs};
+pub use classifier::PixelClassifier;
 pub(crate) use classifier::most_probable;
-pub use table::LookUpTable;
+pub use table::ColorLookUpTable;
 
 /// Label of a pixel that shows no colour of the map.
 pub(crate) const NO_COLOR: u8 = u8::MAX;

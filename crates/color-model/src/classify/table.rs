@@ -1,27 +1,27 @@
-use super::{Classifier, NO_COLOR, classifier::Row};
-use crate::{Background, ColorDensity, ColorModelError, YuvImage};
+use super::{NO_COLOR, PixelClassifier, classifier::Row};
+use crate::{BackgroundColorModel, ColorDensity, ColorModelError, YuvImage};
 use wayfix_color_map::ColorId;
 
-/// A [`Classifier`] compiled into a table over YUV, rebuilt when the light changes: one look-up per pixel. [Schulz & Fox 2004, VI]
+/// A [`PixelClassifier`] compiled into a table over YUV, rebuilt when the light changes: one look-up per pixel. [Schulz & Fox 2004, VI]
 ///
 /// It uses six bits of Y and all of U and V: paints differ less in chroma than the light varies in brightness, so chroma needs the finer cells. The
 /// table has four megabytes; one image accesses a small part of it.
 /// ```
 /// use nalgebra::{Matrix3, Vector3};
 /// use wayfix_color_map::ColorId;
-/// use wayfix_color_model::{ColorDensity, LookUpTable};
+/// use wayfix_color_model::{ColorDensity, ColorLookUpTable};
 /// let density = |mean| ColorDensity { mean, covariance: Matrix3::identity() * 60.0 };
 /// let light = vec![density(Vector3::new(80.0, 110.0, 100.0)), density(Vector3::new(140.0, 125.0, 180.0))];
-/// let mut table = LookUpTable::new(light.clone(), None)?;
+/// let mut table = ColorLookUpTable::new(light.clone(), None)?;
 /// assert_eq!(table.classify([138, 126, 175]), Some(ColorId(1)));
 /// assert!(!table.rebuild_if_changed(light)?); // the light is the same: nothing to do
 /// # Ok::<(), wayfix_color_model::ColorModelError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct LookUpTable {
+pub struct ColorLookUpTable {
     cells: Vec<u8>,
     compiled_for: Vec<ColorDensity>,
-    background: Option<Background>,
+    background: Option<BackgroundColorModel>,
     /// The table is rebuilt when the symmetrized Kullback-Leibler divergence of any colour's density from the compiled one exceeds this,
     /// in nats. Default 0.05: a shift by about a quarter of a standard deviation.
     pub rebuild_above: f64,
@@ -30,12 +30,15 @@ pub struct LookUpTable {
 /// Number of bits used of Y, U, V.
 const BITS: [u32; 3] = [6, 8, 8];
 
-impl LookUpTable {
+impl ColorLookUpTable {
     /// A table for colours with these densities, with a class for the background if there is one.
     ///
     /// # Errors
     /// Returns an error if a colour's density has no peak, or there are more than 255 colours.
-    pub fn new(colors: Vec<ColorDensity>, background: Option<Background>) -> Result<Self, ColorModelError> {
+    pub fn new(
+        colors: Vec<ColorDensity>,
+        background: Option<BackgroundColorModel>,
+    ) -> Result<Self, ColorModelError> {
         let cells = vec![NO_COLOR; 1 << BITS.iter().sum::<u32>()];
         let mut table = Self { cells, compiled_for: Vec::new(), background, rebuild_above: 0.05 };
         table.compile(colors)?;
@@ -69,7 +72,7 @@ impl LookUpTable {
     }
 
     fn compile(&mut self, colors: Vec<ColorDensity>) -> Result<(), ColorModelError> {
-        let mut classifier = Classifier::new(colors.iter().copied())?;
+        let mut classifier = PixelClassifier::new(colors.iter().copied())?;
         if let Some(background) = &self.background {
             classifier = classifier.with_background(background.clone());
         }

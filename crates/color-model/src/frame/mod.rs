@@ -3,6 +3,6 @@
 mod prefix;
 mod sums;
 
-pub use prefix::Frame;
+pub use prefix::PrefixSumImage;
 pub use sums::PixelSums;
 pub(crate) use sums::rounded;

@@ -10,23 +10,23 @@ const MAX_WIDTH: usize = 3900;
 /// subtraction is three vector instructions.
 ///
 /// ```
-/// use wayfix_color_model::{Frame, PixelSums, YuvImage, YuvStandard};
+/// use wayfix_color_model::{PrefixSumImage, PixelSums, YuvImage, YuvStandard};
 /// let rgb = [255, 255, 255, 0, 0, 0, 255, 255, 255]; // white, black, white
 /// let image = YuvImage::from_rgb(3, 1, &rgb, YuvStandard::Bt601Full)?;
-/// let frame = Frame::new(&image)?;
+/// let frame = PrefixSumImage::new(&image)?;
 /// let mut sums = PixelSums::default();
 /// frame.add_run(0, 1, 3, &mut sums);
 /// assert_eq!((sums.count(), sums.sum().x), (2, 255.0));
 /// # Ok::<(), wayfix_color_model::ColorModelError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Frame {
+pub struct PrefixSumImage {
     width: usize,
     height: usize,
     prefix: Vec<[u32; LANES]>,
 }
 
-impl Frame {
+impl PrefixSumImage {
     /// The sums of all pixels.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use crate::ColorModelError;
 /// Lighting filters for different kinds of light (dark, bright), one active at a time; a Markov chain models the switches.
 ///
 /// Only the active filter learns; the others keep their state. [Schulz & Fox 2004, §III.A.3] A particle filter draws the active index for each
-/// particle ([`choose`](Self::choose)); with known poses [`JumpMarkovTracker`](super::JumpMarkovTracker) weighs the
+/// particle ([`choose`](Self::choose)); with known poses [`JumpMarkovLightingTracker`](super::JumpMarkovLightingTracker) weighs the
 /// histories. Clones share their filters until one of them learns.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
@@ -39,7 +39,7 @@ pub struct LightingBank {
 
 /// The filter of a bank that a particle has as active, and its likelihood of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice {
+pub struct SelectedLightingFilter {
     /// The member drawn.
     pub member: usize,
     /// $`\ln \sum_j π_{ij}\, p(z | j)`$, nats: the particle's weight, whichever member was drawn.
@@ -183,7 +183,7 @@ impl LightingBank {
         &self,
         log_likelihoods: &[f64],
         rng: &mut R,
-    ) -> Result<Choice, ColorModelError> {
+    ) -> Result<SelectedLightingFilter, ColorModelError> {
         let (expected, got) = (self.n_members(), log_likelihoods.len());
         if expected != got {
             return Err(ColorModelError::Dimension { what: "log-likelihoods of a bank", expected, got });
@@ -202,6 +202,6 @@ impl LightingBank {
         // Rounding may leave a little; and shares of an impossible frame are NaN, which is never below.
         let last_possible = || logs().rposition(|log| log > f64::NEG_INFINITY);
         let member = drawn.or_else(last_possible).unwrap_or(self.active());
-        Ok(Choice { member, log_likelihood })
+        Ok(SelectedLightingFilter { member, log_likelihood })
     }
 }

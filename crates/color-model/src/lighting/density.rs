@@ -32,12 +32,12 @@ impl ColorDensity {
     pub(super) fn all<'a>(
         mean: &'a DVector<f64>,
         covariance: &'a DMatrix<f64>,
-        pixel_noise: Vector3<f64>,
+        pixel_color_variance: Vector3<f64>,
     ) -> impl Iterator<Item = Self> + 'a {
         (0..mean.len() / 3).map(move |color| Self {
             mean: mean.fixed_rows::<3>(3 * color).into_owned(),
             covariance: covariance.fixed_view::<3, 3>(3 * color, 3 * color)
-                + Matrix3::from_diagonal(&pixel_noise),
+                + Matrix3::from_diagonal(&pixel_color_variance),
         })
     }
 

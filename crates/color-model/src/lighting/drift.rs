@@ -1,9 +1,9 @@
 use nalgebra::{DMatrix, DVector};
 use wayfix_gaussian_core::Gaussian;
 
-use super::Drift;
+use super::LightingDrift;
 
-impl Drift {
+impl LightingDrift {
     /// The mean after `seconds`.
     pub(super) fn move_mean(self, seconds: f64, prior: &Gaussian<DVector<f64>>, mean: &mut DVector<f64>) {
         if let Self::TowardsPrior(time_constant) = self {

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use wayfix_color_map::ColorId;
 use wayfix_gaussian_core::{Gaussian, check_covariance};
 
-use super::{ColorDensity, ColorMeans, LightingParams, Unseen, update::observe};
+use super::{ColorDensity, ColorMeans, LightingParams, UnseenColorRule, update::observe};
 use crate::ColorModelError;
 
 /// A Kalman filter over the means of all map colours, $`θ ∼ N(μ, Σ)`$ with $`θ = (θ[1], …, θ[M])`$ in YUV, for one kind of light.
@@ -118,7 +118,7 @@ impl LightingFilter {
 
     /// The densities of all colours, in the order of the map.
     pub fn colors(&self) -> impl Iterator<Item = ColorDensity> {
-        ColorDensity::all(&self.mean, &self.covariance, self.params.pixel_noise)
+        ColorDensity::all(&self.mean, &self.covariance, self.params.pixel_color_variance)
     }
 
     /// Lets the light drift for `seconds` (Eq. 6).
@@ -127,7 +127,7 @@ impl LightingFilter {
     /// Returns an error if the time is negative or not finite; the state is then unchanged.
     pub fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         check_seconds(seconds)?;
-        let LightingParams { drift, .. } = self.params;
+        let LightingParams { lighting_drift: drift, .. } = self.params;
         drift.move_mean(seconds, &self.prior, &mut self.mean);
         drift.widen(seconds, &self.prior, |i| self.params.max_variance(i), &mut self.covariance);
         Ok(())
@@ -139,14 +139,14 @@ impl LightingFilter {
     pub fn update(&mut self, means: &ColorMeans) -> Result<f64, ColorModelError> {
         means.check(self.n_colors())?;
         let log_evidence = means.seen().map(|(color, mean)| self.observe(color, &mean)).sum();
-        if self.params.unseen == Unseen::Regress {
+        if self.params.unseen_colors == UnseenColorRule::Regress {
             self.observe_regressed(means);
         }
         Ok(log_evidence)
     }
 
     fn observe(&mut self, color: ColorId, mean: &Vector3<f64>) -> f64 {
-        let (at, noise) = (3 * color.index(), self.params.mean_noise);
+        let (at, noise) = (3 * color.index(), self.params.mean_color_variance);
         (0..3).map(|i| observe(&mut self.mean, &mut self.covariance, at + i, mean[i], noise[i])).sum()
     }
 

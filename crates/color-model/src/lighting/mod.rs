@@ -9,9 +9,9 @@ mod params;
 mod tracker;
 mod update;
 
-pub use bank::{Choice, LightingBank};
+pub use bank::{LightingBank, SelectedLightingFilter};
 pub use density::ColorDensity;
 pub use filter::LightingFilter;
 pub use means::ColorMeans;
-pub use params::{Drift, LightingParams, Unseen};
-pub use tracker::{Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker};
+pub use params::{LightingDrift, LightingParams, UnseenColorRule};
+pub use tracker::{Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingTracker};

@@ -11,21 +11,21 @@ use crate::ColorModelError;
 )]
 pub struct LightingParams {
     /// Variance of a pixel about the mean of its colour, $`ν`$ (Y, U, V), the same for all colours: shade over the field, vignetting, noise.
-    pub pixel_noise: Vector3<f64>,
+    pub pixel_color_variance: Vector3<f64>,
     /// Variance of an image's mean of a colour about the light's, (Y, U, V). The paper uses $`ν`$: the part of a colour in one image has its own
     /// shade, which averaging over pixels does not remove.
-    pub mean_noise: Vector3<f64>,
+    pub mean_color_variance: Vector3<f64>,
     /// Process noise of the light.
-    pub drift: Drift,
+    pub lighting_drift: LightingDrift,
     /// Treatment of colours that an image does not show.
-    pub unseen: Unseen,
+    pub unseen_colors: UnseenColorRule,
 }
 
 /// Process model of the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Drift {
+pub enum LightingDrift {
     /// $`Σ ← Σ + R\,Δt`$ with a diagonal $`R`$ (Y, U, V), the same for all colours, per second. [Schulz & Fox 2004, Eq. 6] The variance of unseen
     /// colours grows without bound; correlations fade.
     RandomWalk(#[cfg_attr(feature = "schema", schemars(with = "[f64; 3]"))] Vector3<f64>),
@@ -39,7 +39,7 @@ pub enum Drift {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Unseen {
+pub enum UnseenColorRule {
     /// Observes only the seen rows, which is exact. Unseen colours change by their correlations.
     #[default]
     Marginalize,
@@ -52,10 +52,10 @@ impl Default for LightingParams {
     /// Standard deviations of 12, 6, 6 for pixels and 8, 4, 4 for means; return to the prior within minutes.
     fn default() -> Self {
         Self {
-            pixel_noise: Vector3::new(144.0, 36.0, 36.0),
-            mean_noise: Vector3::new(64.0, 16.0, 16.0),
-            drift: Drift::TowardsPrior(120.0),
-            unseen: Unseen::Marginalize,
+            pixel_color_variance: Vector3::new(144.0, 36.0, 36.0),
+            mean_color_variance: Vector3::new(64.0, 16.0, 16.0),
+            lighting_drift: LightingDrift::TowardsPrior(120.0),
+            unseen_colors: UnseenColorRule::Marginalize,
         }
     }
 }
@@ -64,7 +64,7 @@ impl LightingParams {
     /// Maximum variance of component `i` of the state: a billion times that of an image's mean. An update then leaves a billionth of the
     /// covariance, seven digits above rounding.
     pub(super) fn max_variance(&self, i: usize) -> f64 {
-        1e9 * self.mean_noise[i % 3]
+        1e9 * self.mean_color_variance[i % 3]
     }
 
     pub(super) fn check(&self) -> Result<(), ColorModelError> {
@@ -75,11 +75,11 @@ impl LightingParams {
                 Err(ColorModelError::OutOfRange { what, value })
             }
         };
-        self.pixel_noise.iter().try_for_each(|v| within("variance of a pixel", *v, 1e-12))?;
-        self.mean_noise.iter().try_for_each(|v| within("variance of an image's mean", *v, 1e-12))?;
-        match self.drift {
-            Drift::TowardsPrior(seconds) => within("time constant of the drift (s)", seconds, 1e-12),
-            Drift::RandomWalk(rate) => rate.iter().try_for_each(|v| within("drift rate", *v, 0.0)),
+        self.pixel_color_variance.iter().try_for_each(|v| within("variance of a pixel", *v, 1e-12))?;
+        self.mean_color_variance.iter().try_for_each(|v| within("variance of an image's mean", *v, 1e-12))?;
+        match self.lighting_drift {
+            LightingDrift::TowardsPrior(seconds) => within("time constant of the drift (s)", seconds, 1e-12),
+            LightingDrift::RandomWalk(rate) => rate.iter().try_for_each(|v| within("drift rate", *v, 0.0)),
         }
     }
 }

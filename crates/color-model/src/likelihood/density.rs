@@ -8,22 +8,22 @@ use crate::{ColorDensity, ColorModelError, PixelSums};
 /// log-likelihood needs only the [`PixelSums`] of its pixels.
 /// ```
 /// use nalgebra::{Matrix3, Vector3};
-/// use wayfix_color_model::{ColorDensity, PixelSums, SumDensity};
+/// use wayfix_color_model::{ColorDensity, PixelSums, PixelSumDensity};
 /// let green = ColorDensity { mean: Vector3::new(90.0, 110.0, 100.0), covariance: Matrix3::identity() * 25.0 };
-/// let density = SumDensity::new(&green)?;
+/// let density = PixelSumDensity::new(&green)?;
 /// let mut sums = PixelSums::default();
 /// sums.add_pixel([91, 112, 99]);
 /// assert!((density.sum_log(&sums) - density.log([91, 112, 99])).abs() < 1e-9);
 /// # Ok::<(), wayfix_color_model::ColorModelError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SumDensity {
+pub struct PixelSumDensity {
     mean: Vector3<f64>,
     information: Matrix3<f64>,
     log_peak: f64,
 }
 
-impl SumDensity {
+impl PixelSumDensity {
     /// Factors the covariance.
     ///
     /// # Errors

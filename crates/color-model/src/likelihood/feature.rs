@@ -1,12 +1,12 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Vector2, Vector3};
-use wayfix_color_map::{Camera, ColorId, ColorMap, Projector, Shape, Span};
+use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape, MapRenderer, PixelSpan};
 use wayfix_estimation_traits::{LogWeight, Pose3};
 
-use super::{FeatureParams, ViewLikelihood};
+use super::{CameraPoseLikelihood, FeatureLikelihoodParams};
 use crate::{
-    Blob, ColorDensity, ColorModelError,
+    ColorBlob, ColorDensity, ColorModelError,
     classify::{blobs_of_spans, find_blobs},
 };
 
@@ -27,43 +27,47 @@ use crate::{
 /// ```
 /// use std::sync::Arc;
 /// use nalgebra::Vector3;
-/// use wayfix_color_map::{Band, Camera, ColorId, ColorMap, Projector, Shape};
-/// use wayfix_color_model::{FeatureParams, FeatureLikelihood, ViewLikelihood};
+/// use wayfix_color_map::{PostBand, Camera, ColorId, ColorMap, MapRenderer, ColoredShape};
+/// use wayfix_color_model::{FeatureLikelihoodParams, FeatureLikelihood, CameraPoseLikelihood};
 /// use wayfix_estimation_traits::{LieGroup, Pose3};
 /// let beacon = |y, color| {
-///     Shape::Post { x: 2.0, y, radius: 0.1, bands: vec![Band { color: ColorId(color), from: 0.0, to: 0.4 }] }
+///     ColoredShape::Post { x: 2.0, y, radius: 0.1, bands: vec![PostBand { color: ColorId(color), from: 0.0, to: 0.4 }] }
 /// };
 /// let map = Arc::new(ColorMap::new(vec!["pink".into(), "cyan".into()], vec![beacon(0.4, 0), beacon(-0.4, 1)])?);
 /// let camera = Camera::from_field_of_view(104, 80, 1.0, 0.8)?;
 /// let looking = |y| Pose3 { translation: Vector3::new(0.0, y, 0.2), ..Pose3::identity() };
-/// let mut projector = Projector::new(map, camera);
+/// let mut projector = MapRenderer::new(map, camera);
 /// let labels: Vec<u8> = projector
 ///     .labels(&looking(0.0))?
 ///     .pixels()
 ///     .iter()
 ///     .map(|label| label.map_or(255, |color| color.0))
 ///     .collect();
-/// let mut view = FeatureLikelihood::new(&labels, projector, FeatureParams::default())?;
+/// let mut view = FeatureLikelihood::new(&labels, projector, FeatureLikelihoodParams::default())?;
 /// assert!(view.log_likelihood(&looking(0.0), &[]) > view.log_likelihood(&looking(0.3), &[]));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct FeatureLikelihood {
     seen: Vec<Feature>,
-    projector: Projector,
-    params: FeatureParams,
+    projector: MapRenderer,
+    params: FeatureLikelihoodParams,
     /// Whether a colour makes features.
     is_feature: Vec<bool>,
     /// Log density of clutter: blobs per square radian and per e-fold of the area.
     log_clutter: f64,
-    spans: Vec<Span>,
+    spans: Vec<PixelSpan>,
 }
 
 impl FeatureLikelihood {
-    /// The likelihood of a classified image, 255 being background, as [`Classifier`](crate::Classifier) and [`LookUpTable`](crate::LookUpTable) make it.
+    /// The likelihood of a classified image, 255 being background, as [`PixelClassifier`](crate::PixelClassifier) and [`ColorLookUpTable`](crate::ColorLookUpTable) make it.
     ///
     /// # Errors
     /// Returns an error if there are not as many labels as the camera has pixels, or a parameter is out of range.
-    pub fn new(labels: &[u8], projector: Projector, params: FeatureParams) -> Result<Self, ColorModelError> {
+    pub fn new(
+        labels: &[u8],
+        projector: MapRenderer,
+        params: FeatureLikelihoodParams,
+    ) -> Result<Self, ColorModelError> {
         params.check()?;
         let camera = *projector.camera();
         let (width, height) = (camera.width() as usize, camera.height() as usize);
@@ -81,7 +85,7 @@ impl FeatureLikelihood {
 
     /// Log gain of a pair over a missing blob and clutter, nats.
     fn gain(&self, seen: &Feature, expected: &Feature) -> f64 {
-        let FeatureParams {
+        let FeatureLikelihoodParams {
             detection_probability,
             bearing_sigma,
             bearing_sigma_per_extent,
@@ -98,11 +102,11 @@ impl FeatureLikelihood {
     }
 }
 
-impl ViewLikelihood for FeatureLikelihood {
+impl CameraPoseLikelihood for FeatureLikelihood {
     fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, _light: &[ColorDensity]) -> LogWeight {
         let Self { projector, spans, is_feature, params, .. } = self;
         spans.clear();
-        let mut add = |span: Span| {
+        let mut add = |span: PixelSpan| {
             if is_feature[span.color.index()] {
                 spans.push(span);
             }
@@ -146,11 +150,16 @@ struct Feature {
     extent: f64,
 }
 
-fn features(blobs: &[Blob], camera: &Camera, params: &FeatureParams, is_feature: &[bool]) -> Vec<Feature> {
-    let is_counted = |blob: &&Blob| {
+fn features(
+    blobs: &[ColorBlob],
+    camera: &Camera,
+    params: &FeatureLikelihoodParams,
+    is_feature: &[bool],
+) -> Vec<Feature> {
+    let is_counted = |blob: &&ColorBlob| {
         blob.n_pixels >= params.min_pixels && is_feature.get(blob.color.index()).is_some_and(|is| *is)
     };
-    let feature = |blob: &Blob| {
+    let feature = |blob: &ColorBlob| {
         let ray: Vector3<f64> = camera.ray(blob.centroid.0, blob.centroid.1);
         let n = blob.n_pixels as f64;
         Feature {
@@ -167,7 +176,7 @@ fn features(blobs: &[Blob], camera: &Camera, params: &FeatureParams, is_feature:
 pub(crate) fn feature_colors(map: &ColorMap) -> Vec<bool> {
     let mut is_feature = vec![true; map.colors().len()];
     for shape in map.shapes() {
-        if let Shape::Polygon { color, vertices } = shape
+        if let ColoredShape::Polygon { color, vertices } = shape
             && vertices.iter().all(|vertex| (vertex.z - vertices[0].z).abs() < 1e-9)
         {
             is_feature[color.index()] = false;

@@ -8,7 +8,7 @@ use crate::ColorModelError;
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct FeatureParams {
+pub struct FeatureLikelihoodParams {
     /// Smaller blobs are noise, in the image as in the map's view.
     pub min_pixels: usize,
     /// Probability that a blob which the map should show is there, in (0, 1): missing ones cost $`\ln(1 - p_D)`$ each, no more.
@@ -23,7 +23,7 @@ pub struct FeatureParams {
     pub log_area_sigma: f64,
 }
 
-impl Default for FeatureParams {
+impl Default for FeatureLikelihoodParams {
     fn default() -> Self {
         Self {
             min_pixels: 8,
@@ -36,7 +36,7 @@ impl Default for FeatureParams {
     }
 }
 
-impl FeatureParams {
+impl FeatureLikelihoodParams {
     pub(crate) fn check(&self) -> Result<(), ColorModelError> {
         let check = |what, value: f64, is_good: bool| {
             if is_good && value.is_finite() {

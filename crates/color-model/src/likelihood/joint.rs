@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::LogWeight;
 
-use super::{PixelParams, params::Region};
+use super::{PixelLikelihoodParams, params::Region};
 use crate::{LightingFilter, PixelSums};
 
 /// The likelihood of all pixels jointly, under one common light.
@@ -28,12 +28,12 @@ impl JointLikelihood {
         &mut self,
         sums: &[PixelSums],
         filter: &LightingFilter,
-        params: &PixelParams,
+        params: &PixelLikelihoodParams,
         pixel: &Vector3<f64>,
         n_pixels: usize,
     ) -> LogWeight {
         let tempering = params.independent_pixels / n_pixels.max(1) as f64;
-        let of_mean = filter.params().mean_noise;
+        let of_mean = filter.params().mean_color_variance;
         self.rows.clear();
         self.residuals.clear();
         self.noises.clear();
@@ -63,7 +63,7 @@ impl JointLikelihood {
 /// Log-likelihood of all pixels about their colour means, independent of the light.
 pub(crate) fn log_within(
     sums: &[PixelSums],
-    params: &PixelParams,
+    params: &PixelLikelihoodParams,
     noise: &Vector3<f64>,
     n_pixels: usize,
 ) -> LogWeight {

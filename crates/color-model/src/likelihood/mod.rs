@@ -9,13 +9,13 @@ mod pixel;
 mod span;
 mod view;
 
-pub use density::SumDensity;
+pub use density::PixelSumDensity;
 pub use feature::FeatureLikelihood;
 pub(crate) use feature::feature_colors;
-pub use feature_params::FeatureParams;
+pub use feature_params::FeatureLikelihoodParams;
 pub(crate) use joint::{JointLikelihood, log_within};
-pub use params::{PixelLight, PixelParams};
+pub use params::{LightErrorCorrelation, PixelLikelihoodParams};
 pub use pixel::PixelLikelihood;
 pub(crate) use span::log_likelihood;
-pub use span::{SpanLikelihood, gather};
-pub use view::ViewLikelihood;
+pub use span::{PixelSpanLikelihood, gather};
+pub use view::CameraPoseLikelihood;

@@ -6,7 +6,7 @@ use crate::{ColorDensity, ColorModelError, PixelSums};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum PixelLight {
+pub enum LightErrorCorrelation {
     /// All pixels of an image share one light: its uncertainty counts once.
     #[default]
     Common,
@@ -22,9 +22,9 @@ pub enum PixelLight {
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct PixelParams {
+pub struct PixelLikelihoodParams {
     /// Whether pixels share the light that is not known.
-    pub light: PixelLight,
+    pub light_error_correlation: LightErrorCorrelation,
     /// Number of independent observations that an image is worth: log-likelihoods are multiplied by this over the number of pixels. Neighbouring
     /// pixels share shade, blur and label errors, so their errors are correlated.
     pub independent_pixels: f64,
@@ -32,29 +32,29 @@ pub struct PixelParams {
     pub outlier_share: f64,
     /// The worst that the pixels of one colour can count on average, nats a pixel below the background: a hidden surface does not make a
     /// pose impossible. Infinite for the pixel product as it is in the paper.
-    pub floor: f64,
+    pub log_likelihood_floor: f64,
     /// Variation of a colour over an image and over the field, outside the lighting model: standard deviation of Y as a share of the light's mean
     /// Y, because shade and vignetting multiply the light. Added to the covariance of the lighting filter.
-    pub uneven_brightness: f64,
+    pub brightness_variation: f64,
     /// The same of U and of V, as a share of the light's mean Y.
-    pub uneven_chroma: f64,
+    pub chroma_variation: f64,
     /// Pixels left out at both ends of each span, where a small error of the pose changes the label.
-    pub edge_margin: u16,
+    pub edge_margin_pixels: u16,
     /// Share of a uniform background beside the colours that the frames show.
-    pub uniform_share: f64,
+    pub uniform_background_share: f64,
 }
 
-impl Default for PixelParams {
+impl Default for PixelLikelihoodParams {
     fn default() -> Self {
         Self {
-            light: PixelLight::Common,
+            light_error_correlation: LightErrorCorrelation::Common,
             independent_pixels: 60.0,
             outlier_share: 0.3,
-            floor: 3.0,
-            uneven_brightness: 0.12,
-            uneven_chroma: 0.03,
-            edge_margin: 1,
-            uniform_share: 0.02,
+            log_likelihood_floor: 3.0,
+            brightness_variation: 0.12,
+            chroma_variation: 0.03,
+            edge_margin_pixels: 1,
+            uniform_background_share: 0.02,
         }
     }
 }
@@ -82,22 +82,22 @@ impl Region {
     }
 }
 
-impl PixelParams {
+impl PixelLikelihoodParams {
     /// The densities of all colours under one light, each widened along the direction of shade, by $`σ^2 s_m s_m^\top`$ with
     /// $`s_m = (Y_m,\; U_m - 128,\; V_m - 128)`$ and $`σ`$ = `uneven_brightness`. These densities classify single pixels. Less light scales red,
     /// green and blue by one factor, also with gamma, which moves a colour towards black. Black is Y = 0, as in full-range YUV.
     /// ```
     /// use nalgebra::{Matrix3, Vector3};
-    /// use wayfix_color_model::{ColorDensity, PixelParams};
+    /// use wayfix_color_model::{ColorDensity, PixelLikelihoodParams};
     /// let yellow = ColorDensity { mean: Vector3::new(100.0, 78.0, 128.0), covariance: Matrix3::identity() * 25.0 };
-    /// let [shaded] = PixelParams::default().shaded([yellow])[..] else { panic!("as many as there were") };
+    /// let [shaded] = PixelLikelihoodParams::default().shaded([yellow])[..] else { panic!("as many as there were") };
     /// assert!((shaded.covariance[(0, 0)] - (25.0 + 12.0 * 12.0)).abs() < 1e-9); // 0.12 of a Y of 100
     /// assert!((shaded.covariance[(0, 1)] - 12.0 * -6.0).abs() < 1e-9); // darker is less yellow
     /// assert_eq!(shaded.covariance[(2, 2)], 25.0);
     /// ```
     pub fn shaded(&self, colors: impl IntoIterator<Item = ColorDensity>) -> Vec<ColorDensity> {
         let shaded = |mut color: ColorDensity| {
-            let from_black = (color.mean - Vector3::new(0.0, 128.0, 128.0)) * self.uneven_brightness;
+            let from_black = (color.mean - Vector3::new(0.0, 128.0, 128.0)) * self.brightness_variation;
             color.covariance += from_black * from_black.transpose();
             color
         };
@@ -115,7 +115,8 @@ impl PixelParams {
 
     /// The variances of `uneven_…` in a light of this mean Y.
     pub(crate) fn unevenness(&self, brightness: f64) -> Vector3<f64> {
-        let [y, uv] = [self.uneven_brightness, self.uneven_chroma].map(|share| (share * brightness).powi(2));
+        let [y, uv] =
+            [self.brightness_variation, self.chroma_variation].map(|share| (share * brightness).powi(2));
         Vector3::new(y, uv, uv)
     }
 
@@ -124,7 +125,13 @@ impl PixelParams {
             if is_sound { Ok(()) } else { Err(ColorModelError::OutOfRange { what, value }) }
         };
         let is_share = |value: f64| value > 0.0 && value <= 1.0;
-        let Self { independent_pixels, outlier_share, floor, uniform_share, .. } = *self;
+        let Self {
+            independent_pixels,
+            outlier_share,
+            log_likelihood_floor: floor,
+            uniform_background_share: uniform_share,
+            ..
+        } = *self;
         check(
             "independent pixels",
             independent_pixels,
@@ -133,7 +140,7 @@ impl PixelParams {
         check("share of outliers", outlier_share, is_share(outlier_share))?;
         check("floor of a colour", floor, floor > 0.0)?;
         check("uniform share of the background", uniform_share, is_share(uniform_share))?;
-        let Self { uneven_brightness, uneven_chroma, .. } = *self;
+        let Self { brightness_variation: uneven_brightness, chroma_variation: uneven_chroma, .. } = *self;
         for (what, value) in [("uneven brightness", uneven_brightness), ("uneven chroma", uneven_chroma)] {
             check(what, value, value >= 0.0 && value.is_finite())?;
         }
@@ -147,7 +154,7 @@ impl PixelParams {
             let n = region.count + region.n_outliers;
             let outliers = log_outlier * region.n_outliers;
             let log_ratio = region.log_density + region.background + outliers;
-            if n > 0.0 { log_ratio.max(-self.floor * n) } else { 0.0 }
+            if n > 0.0 { log_ratio.max(-self.log_likelihood_floor * n) } else { 0.0 }
         };
         regions.map(log_ratio).sum::<f64>() * self.independent_pixels / n_pixels.max(1) as f64
     }

@@ -1,7 +1,7 @@
-use wayfix_color_map::{LabelImage, Projector};
+use wayfix_color_map::{LabelImage, MapRenderer};
 use wayfix_estimation_traits::{LogWeight, Pose3};
 
-use super::{PixelParams, SumDensity, ViewLikelihood, params::Region};
+use super::{CameraPoseLikelihood, PixelLikelihoodParams, PixelSumDensity, params::Region};
 use crate::{ColorDensity, ColorModelError, YuvImage, frame};
 
 /// The pixel product [Schulz & Fox 2004, Eq. 16], computed pixel by pixel: the reference implementation.
@@ -11,21 +11,21 @@ use crate::{ColorDensity, ColorModelError, YuvImage, frame};
 pub struct PixelLikelihood<'a> {
     image: &'a YuvImage,
     background: Vec<Option<f64>>,
-    projector: Projector,
-    params: PixelParams,
+    projector: MapRenderer,
+    params: PixelLikelihoodParams,
 }
 
 impl<'a> PixelLikelihood<'a> {
     /// The likelihood of one image; `nats` gives a pixel's $`-\ln p_{bg}(c)`$, or `None` for an outlier, as for
-    /// [`Frame::with_background`](crate::Frame::with_background).
+    /// [`PrefixSumImage::with_background`](crate::PrefixSumImage::with_background).
     ///
     /// # Errors
     /// Returns an error if image and camera differ in size, or a parameter is out of range.
     pub fn new(
         image: &'a YuvImage,
         nats: impl FnMut([u8; 3]) -> Option<f64>,
-        projector: Projector,
-        params: PixelParams,
+        projector: MapRenderer,
+        params: PixelLikelihoodParams,
     ) -> Result<Self, ColorModelError> {
         params.check()?;
         check_size(&projector, image.width() as usize, image.height() as usize)?;
@@ -35,9 +35,9 @@ impl<'a> PixelLikelihood<'a> {
     }
 }
 
-impl ViewLikelihood for PixelLikelihood<'_> {
+impl CameraPoseLikelihood for PixelLikelihood<'_> {
     fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, light: &[ColorDensity]) -> LogWeight {
-        let Ok(light) = light.iter().map(SumDensity::new).collect::<Result<Vec<_>, _>>() else {
+        let Ok(light) = light.iter().map(PixelSumDensity::new).collect::<Result<Vec<_>, _>>() else {
             return f64::NEG_INFINITY;
         };
         let Ok(labels) = self.projector.labels(camera_pose) else {
@@ -51,7 +51,7 @@ impl ViewLikelihood for PixelLikelihood<'_> {
             else {
                 continue;
             };
-            if !is_inside(&labels, column, row, u32::from(self.params.edge_margin)) {
+            if !is_inside(&labels, column, row, u32::from(self.params.edge_margin_pixels)) {
                 continue;
             }
             match nats {
@@ -74,7 +74,11 @@ fn is_inside(labels: &LabelImage, column: u32, row: u32, margin: u32) -> bool {
     rows.all(|r| columns.clone().all(|c| labels.get(c, r) == labels.get(column, row)))
 }
 
-pub(crate) fn check_size(projector: &Projector, width: usize, height: usize) -> Result<(), ColorModelError> {
+pub(crate) fn check_size(
+    projector: &MapRenderer,
+    width: usize,
+    height: usize,
+) -> Result<(), ColorModelError> {
     let camera = projector.camera();
     let expected = (camera.width() as usize, camera.height() as usize);
     if expected == (width, height) {

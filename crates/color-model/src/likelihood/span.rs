@@ -1,8 +1,10 @@
-use wayfix_color_map::{ColorId, Projector, Span, ViewError};
+use wayfix_color_map::{ColorId, MapRenderer, PixelSpan, RenderError};
 use wayfix_estimation_traits::{LogWeight, Pose3};
 
-use super::{PixelParams, SumDensity, ViewLikelihood, params::Region, pixel::check_size};
-use crate::{ColorDensity, ColorModelError, Frame, PixelSums};
+use super::{
+    CameraPoseLikelihood, PixelLikelihoodParams, PixelSumDensity, params::Region, pixel::check_size,
+};
+use crate::{ColorDensity, ColorModelError, PixelSums, PrefixSumImage};
 
 /// Sums the pixels of each colour where the projected map at `camera_pose` shows it, without the pixels within `edge_margin` of an edge.
 ///
@@ -10,14 +12,14 @@ use crate::{ColorDensity, ColorModelError, Frame, PixelSums};
 /// # Errors
 /// Returns an error if the pose is not finite or its quaternion not of unit length.
 pub fn gather<'a>(
-    projector: &mut Projector,
-    frame_of: impl Fn(ColorId) -> Option<&'a Frame>,
+    projector: &mut MapRenderer,
+    frame_of: impl Fn(ColorId) -> Option<&'a PrefixSumImage>,
     camera_pose: &Pose3<f64>,
     edge_margin: u16,
     sums: &mut [PixelSums],
-) -> Result<(), ViewError> {
+) -> Result<(), RenderError> {
     sums.fill(PixelSums::default());
-    let mut add = |span: Span| {
+    let mut add = |span: PixelSpan| {
         if let (Some(sums), Some(frame)) = (sums.get_mut(span.color.index()), frame_of(span.color)) {
             frame.add_run(usize::from(span.row), usize::from(span.start), usize::from(span.end), sums);
         }
@@ -32,19 +34,23 @@ pub fn gather<'a>(
 ///
 /// $`\sum_m \sum_{c ∈ m} [\ln N(c; μ_m, Σ_{mm} + ν) - \ln p_{bg}(c)]`$ [Schulz & Fox 2004, Eqs. 9, 16] depends on a colour's pixels only through
 /// their number, $`\sum c`$ and $`\sum c c^T`$, and a subtraction gives these for a run of pixels in a row.
-pub struct SpanLikelihood<'a> {
-    frame: &'a Frame,
-    projector: Projector,
+pub struct PixelSpanLikelihood<'a> {
+    frame: &'a PrefixSumImage,
+    projector: MapRenderer,
     sums: Vec<PixelSums>,
-    params: PixelParams,
+    params: PixelLikelihoodParams,
 }
 
-impl<'a> SpanLikelihood<'a> {
-    /// The likelihood of one frame, made by [`Frame::with_background`], in the map of `projector`.
+impl<'a> PixelSpanLikelihood<'a> {
+    /// The likelihood of one frame, made by [`PrefixSumImage::with_background`], in the map of `projector`.
     ///
     /// # Errors
     /// Returns an error if frame and camera differ in size, or a parameter is out of range.
-    pub fn new(frame: &'a Frame, projector: Projector, params: PixelParams) -> Result<Self, ColorModelError> {
+    pub fn new(
+        frame: &'a PrefixSumImage,
+        projector: MapRenderer,
+        params: PixelLikelihoodParams,
+    ) -> Result<Self, ColorModelError> {
         params.check()?;
         check_size(&projector, frame.width(), frame.height())?;
         let sums = vec![PixelSums::default(); projector.map().colors().len()];
@@ -52,12 +58,12 @@ impl<'a> SpanLikelihood<'a> {
     }
 }
 
-impl ViewLikelihood for SpanLikelihood<'_> {
+impl CameraPoseLikelihood for PixelSpanLikelihood<'_> {
     fn log_likelihood(&mut self, camera_pose: &Pose3<f64>, light: &[ColorDensity]) -> LogWeight {
-        let Ok(light) = light.iter().map(SumDensity::new).collect::<Result<Vec<_>, _>>() else {
+        let Ok(light) = light.iter().map(PixelSumDensity::new).collect::<Result<Vec<_>, _>>() else {
             return f64::NEG_INFINITY;
         };
-        let margin = self.params.edge_margin;
+        let margin = self.params.edge_margin_pixels;
         match gather(&mut self.projector, |_| Some(self.frame), camera_pose, margin, &mut self.sums) {
             Ok(()) => log_likelihood(&self.sums, &light, &self.params, self.frame.n_pixels()),
             Err(_) => f64::NEG_INFINITY,
@@ -68,10 +74,10 @@ impl ViewLikelihood for SpanLikelihood<'_> {
 /// The likelihood from the sums of [`gather`].
 pub(crate) fn log_likelihood(
     sums: &[PixelSums],
-    light: &[SumDensity],
-    params: &PixelParams,
+    light: &[PixelSumDensity],
+    params: &PixelLikelihoodParams,
     n_pixels: usize,
 ) -> LogWeight {
-    let region = |(sums, density): (&PixelSums, &SumDensity)| Region::new(sums, density.sum_log(sums));
+    let region = |(sums, density): (&PixelSums, &PixelSumDensity)| Region::new(sums, density.sum_log(sums));
     params.log_likelihood(n_pixels, sums.iter().zip(light).map(region))
 }

@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 use rand::Rng;
-use wayfix_particle::{ChunkRng, ParticleSet};
+use wayfix_particle::{ParticleChunkRng, ParticleSet};
 
 use super::{
     acquisition::Effort,
@@ -10,7 +10,7 @@ use super::{
     search::{Search, stride},
     trajectory::Trajectory,
 };
-use crate::{ColorModelError, Frame, PixelSums, likelihood::gather};
+use crate::{ColorModelError, PixelSums, PrefixSumImage, likelihood::gather};
 
 /// What a step's length is multiplied by after a success, and after a failure: it stays the same when one in five succeeds [Rechenberg 1973].
 const LONGER: f64 = 1.5;
@@ -28,7 +28,7 @@ impl Search<'_> {
         &self,
         candidates: Vec<Candidate>,
         rng: &mut R,
-        job: impl Fn(&mut Scratch, &mut Candidate, &mut ChunkRng) + Sync,
+        job: impl Fn(&mut Scratch, &mut Candidate, &mut ParticleChunkRng) + Sync,
     ) -> Result<Vec<Candidate>, ColorModelError> {
         let mut set = ParticleSet::new(candidates)?;
         set.propagate_with(|| Scratch::new(self), job, rng);
@@ -135,7 +135,8 @@ impl Search<'_> {
         }
         self.score(scratch, candidate, effort);
         let n_seen = candidate.sums.iter().map(|sums| sums.count() + sums.n_outliers()).sum::<u64>() as f64;
-        let n_pixels = self.frames.first().map_or(0, Frame::n_pixels) * self.shots.len().div_ceil(stride);
+        let n_pixels =
+            self.frames.first().map_or(0, PrefixSumImage::n_pixels) * self.shots.len().div_ceil(stride);
         if effort == Effort::Coarse && candidate.known.is_none() && n_seen < LEAST_IN_VIEW * n_pixels as f64 {
             candidate.score -= BLIND;
         }

@@ -1,16 +1,16 @@
 use std::sync::Arc;
 
-use wayfix_color_map::Projector;
+use wayfix_color_map::MapRenderer;
 
 use super::{acquisition::Effort, candidate::Candidate, hidden::or_hidden, search::Search};
 use crate::{
-    Frame, PixelSums,
+    PixelSums, PrefixSumImage,
     likelihood::{JointLikelihood, log_within},
 };
 
 /// What one thread works with.
 pub(super) struct Scratch {
-    pub(super) projector: Projector,
+    pub(super) projector: MapRenderer,
     joint: JointLikelihood,
     totals: Vec<PixelSums>,
     is_hidden: Vec<bool>,
@@ -19,7 +19,7 @@ pub(super) struct Scratch {
 impl Scratch {
     pub(super) fn new(search: &Search) -> Self {
         Self {
-            projector: Projector::new(Arc::clone(search.map), search.camera),
+            projector: MapRenderer::new(Arc::clone(search.map), search.camera),
             joint: JointLikelihood::new(),
             totals: vec![PixelSums::default(); search.map.colors().len()],
             is_hidden: vec![false; search.shots.len()],
@@ -134,14 +134,14 @@ impl Search<'_> {
     }
 
     fn n_pixels(&self) -> usize {
-        self.frames.first().map_or(1, Frame::n_pixels)
+        self.frames.first().map_or(1, PrefixSumImage::n_pixels)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use nalgebra::{DMatrix, DVector, Vector3};
-    use wayfix_color_map::{Camera, ColorId, ColorMap, Shape};
+    use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape};
     use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
     use wayfix_gaussian_core::Gaussian;
     use wayfix_kalman::MarkovChain;
@@ -162,7 +162,7 @@ mod tests {
     fn hidden(frames: [[u8; 2]; 4]) -> Vec<bool> {
         let square = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)];
         let vertices = square.map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec();
-        let carpet = Shape::Polygon { color: ColorId(0), vertices };
+        let carpet = ColoredShape::Polygon { color: ColorId(0), vertices };
         let map = Arc::new(ColorMap::new(vec!["green".into()], vec![carpet]).unwrap());
         let prior = DVector::from_vec(vec![100.0, 128.0, 128.0]);
         let filter = LightingFilter::new(
@@ -187,7 +187,8 @@ mod tests {
             let pixels = (0..256).map(|at| [shades[at % 2], 128, 128]).collect();
             // The background says that a pixel may be one of e¹² colours.
             let frame =
-                Frame::with_background(&YuvImage::new(256, 1, pixels).unwrap(), |_| Some(12.0)).unwrap();
+                PrefixSumImage::with_background(&YuvImage::new(256, 1, pixels).unwrap(), |_| Some(12.0))
+                    .unwrap();
             frame.add_run(0, 0, 256, sums);
         }
         search.score(&mut Scratch::new(&search), &mut candidate, Effort::Full);

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use rand::Rng;
 use wayfix_color_map::{Camera, ColorMap};
 use wayfix_estimation_traits::{Pose2, Pose3, SampleMotion};
-use wayfix_particle::{RaoBlackwell, Weights};
+use wayfix_particle::{NormalizedWeights, RaoBlackwellParticle};
 
 use super::{
     Fix, FrameOutcome, LocalizerParams, OdometryStep, PoseEstimate, Start,
@@ -15,7 +15,7 @@ use super::{
     start::Area,
     vigilance::Vigilance,
 };
-use crate::{AcquisitionParams, Background, ColorModelError, LightingBank, YuvImage};
+use crate::{AcquisitionParams, BackgroundColorModel, ColorModelError, LightingBank, YuvImage};
 
 /// Probability of the best place from which on it is called tracked.
 const SURE: f64 = 0.95;
@@ -28,7 +28,7 @@ pub struct ColorLocalizer {
     pub(super) map: Arc<ColorMap>,
     pub(super) camera: Camera,
     pub(super) area: Area,
-    pub(super) background: Option<Background>,
+    pub(super) background: Option<BackgroundColorModel>,
     pub(super) params: LocalizerParams,
     /// Where the robot may be, the most probable first; never empty.
     pub(super) hypotheses: Vec<Hypothesis>,
@@ -70,7 +70,7 @@ impl ColorLocalizer {
             .map(|_| {
                 let location =
                     CameraLocation { body: start.draw(&area, rng), error: params.camera.sample(rng) };
-                RaoBlackwell::from_shared(location, Arc::clone(&prior))
+                RaoBlackwellParticle::from_shared(location, Arc::clone(&prior))
             })
             .collect();
         Ok(Self {
@@ -81,7 +81,7 @@ impl ColorLocalizer {
             params,
             hypotheses: vec![Hypothesis {
                 particles,
-                weights: Weights::from_linear(vec![1.0; params.max_particles])?,
+                weights: NormalizedWeights::from_linear(vec![1.0; params.max_particles])?,
                 log_evidence: 0.0,
                 hidden: 0.0,
             }],
@@ -97,7 +97,7 @@ impl ColorLocalizer {
     }
 
     /// The same with a background learned from images; without, it is made of a uniform one and of the colours of each frame.
-    pub fn with_background(self, background: Background) -> Self {
+    pub fn with_background(self, background: BackgroundColorModel) -> Self {
         Self { background: Some(background), ..self }
     }
 

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use rand::Rng;
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_particle::{RaoBlackwell, Resampler, Systematic, Weights};
+use wayfix_particle::{NormalizedWeights, RaoBlackwellParticle, Resampler, SystematicResampler};
 
 use super::{PoseEstimate, estimate::dominant_cluster, light::Light, particle::ColorParticle, seen::Seen};
 use crate::ColorModelError;
@@ -14,7 +14,7 @@ use crate::ColorModelError;
 #[derive(Clone)]
 pub(crate) struct Hypothesis {
     pub(crate) particles: Vec<ColorParticle>,
-    pub(crate) weights: Weights,
+    pub(crate) weights: NormalizedWeights,
     /// Log-likelihood of the frames since the robot was looked for, nats.
     pub(crate) log_evidence: f64,
     /// Probability that the last view was hidden, if the robot is here.
@@ -41,12 +41,13 @@ impl Hypothesis {
     ) -> Result<(), ColorModelError> {
         let Some(light) = self.light().map(Arc::clone) else { return Ok(()) };
         let n = self.particles.len();
-        let ancestors = Systematic.ancestors(&refined.weighed.weights, n, rng)?;
-        let newcomer =
-            |&at: &usize| RaoBlackwell::from_shared(refined.particles[at].sampled, Arc::clone(&light));
+        let ancestors = SystematicResampler.ancestors(&refined.weighed.weights, n, rng)?;
+        let newcomer = |&at: &usize| {
+            RaoBlackwellParticle::from_shared(refined.particles[at].sampled, Arc::clone(&light))
+        };
         self.particles.extend(ancestors.iter().map(newcomer));
         let weights = self.weights.as_slice().iter().copied().chain(std::iter::repeat_n(1.0 / n as f64, n));
-        self.weights = Weights::from_linear(weights.collect())?;
+        self.weights = NormalizedWeights::from_linear(weights.collect())?;
         Ok(())
     }
 
@@ -111,7 +112,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        LightingBank, LightingFilter, LightingParams, PixelParams,
+        LightingBank, LightingFilter, LightingParams, PixelLikelihoodParams,
         localizer::{CameraError, CameraLocation, views::Views, weighed::Weighed},
     };
 
@@ -120,12 +121,12 @@ mod tests {
             Gaussian::new(DVector::from_element(3, brightness), DMatrix::from_diagonal_element(3, 3, 100.0));
         let filter = LightingFilter::new(prior.unwrap(), LightingParams::default()).unwrap();
         let bank = LightingBank::new(vec![filter], MarkovChain::sticky(1, 0.9).unwrap()).unwrap();
-        Arc::new(Light::new(bank, &PixelParams::default()).unwrap())
+        Arc::new(Light::new(bank, &PixelLikelihoodParams::default()).unwrap())
     }
 
     fn particles(n: usize, x: f64, light: &Arc<Light>) -> Vec<ColorParticle> {
         let location = CameraLocation { body: Pose2::new(x, 0.0, 0.0), error: CameraError::default() };
-        (0..n).map(|_| RaoBlackwell::from_shared(location, Arc::clone(light))).collect()
+        (0..n).map(|_| RaoBlackwellParticle::from_shared(location, Arc::clone(light))).collect()
     }
 
     /// What a look at `particles` gives while nothing tells them apart.
@@ -136,8 +137,8 @@ mod tests {
         Seen { weighed, views, particles, fit: 0.3 }
     }
 
-    fn equal(n: usize) -> Weights {
-        Weights::from_linear(vec![1.0; n]).unwrap()
+    fn equal(n: usize) -> NormalizedWeights {
+        NormalizedWeights::from_linear(vec![1.0; n]).unwrap()
     }
 
     fn judged(x: f64, log_evidence: f64) -> Judged {

@@ -63,13 +63,14 @@ impl ColorLocalizer {
             predict_light(&mut hypothesis.particles, seconds, &self.params.pixels)?;
         }
         let pixels = &self.params.pixels;
-        let noise = self.prior.bank.member(0).params().pixel_noise + pixels.unevenness(image.brightness());
-        let surroundings = Surroundings::of(std::iter::once(image), &noise, pixels.uniform_share);
+        let noise =
+            self.prior.bank.member(0).params().pixel_color_variance + pixels.unevenness(image.brightness());
+        let surroundings = Surroundings::of(std::iter::once(image), &noise, pixels.uniform_background_share);
         let nats = |pixel| {
             let background = self.background.as_ref();
             background.map_or_else(|| surroundings.nats(pixel), |learned| -learned.log_density(pixel))
         };
-        let frames = &Palette::of(&hypotheses)?.look(image, nats, -pixels.floor)?;
+        let frames = &Palette::of(&hypotheses)?.look(image, nats, -pixels.log_likelihood_floor)?;
         let weighing = Weighing { map: &self.map, camera: self.camera, frames, mount, pixels, noise };
         let mut judged = Vec::new();
         for Hypothesis { mut particles, weights, log_evidence, hidden } in hypotheses {

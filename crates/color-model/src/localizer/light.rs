@@ -1,5 +1,5 @@
 use crate::{
-    ColorModelError, LightingBank, PixelParams, SumDensity,
+    ColorModelError, LightingBank, PixelLikelihoodParams, PixelSumDensity,
     classify::{NO_COLOR, most_probable},
 };
 
@@ -10,18 +10,18 @@ use crate::{
 pub(crate) struct Light {
     pub(crate) bank: LightingBank,
     /// Of every colour under every member, member by member.
-    densities: Vec<SumDensity>,
+    densities: Vec<PixelSumDensity>,
     n_colors: usize,
 }
 
 impl Light {
-    pub(crate) fn new(bank: LightingBank, pixels: &PixelParams) -> Result<Self, ColorModelError> {
+    pub(crate) fn new(bank: LightingBank, pixels: &PixelLikelihoodParams) -> Result<Self, ColorModelError> {
         let n_colors = bank.n_colors();
         let densities = bank
             .members()
             .iter()
             .flat_map(|filter| pixels.uneven(filter.colors()))
-            .map(|density| SumDensity::new(&density))
+            .map(|density| PixelSumDensity::new(&density))
             .collect::<Result<_, _>>()?;
         Ok(Self { bank, densities, n_colors })
     }
@@ -32,7 +32,7 @@ impl Light {
     }
 
     /// Densities of the colours under one member.
-    pub(crate) fn member(&self, member: usize) -> &[SumDensity] {
+    pub(crate) fn member(&self, member: usize) -> &[PixelSumDensity] {
         &self.densities[member * self.n_colors..][..self.n_colors]
     }
 }

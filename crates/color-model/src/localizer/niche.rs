@@ -1,5 +1,5 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_particle::{Resampler, Systematic, Weights};
+use wayfix_particle::{NormalizedWeights, Resampler, SystematicResampler};
 
 use super::{candidate::Candidate, hypothesis::is_same_place, weighed::softened};
 use crate::ColorModelError;
@@ -70,10 +70,10 @@ impl Niche {
         least_effective: f64,
         rng: &mut R,
     ) -> Result<Vec<Candidate>, ColorModelError> {
-        let equal = Weights::from_linear(vec![1.0; self.0.len()])?;
+        let equal = NormalizedWeights::from_linear(vec![1.0; self.0.len()])?;
         let scores: Vec<f64> = self.0.iter().map(|candidate| candidate.score).collect();
         let (weights, _) = softened(&scores, &equal, least_effective * scores.len() as f64)?;
-        let ancestors = Systematic.ancestors(&weights, n.max(1), rng)?;
+        let ancestors = SystematicResampler.ancestors(&weights, n.max(1), rng)?;
         Ok(ancestors.iter().map(|&at| self.0[at].clone()).collect())
     }
 }

@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Vector3};
 use wayfix_color_map::ColorId;
 
 use super::{hypothesis::Hypothesis, particle::ColorParticle};
-use crate::{ColorDensity, ColorModelError, Frame, SumDensity, YuvImage};
+use crate::{ColorDensity, ColorModelError, PixelSumDensity, PrefixSumImage, YuvImage};
 
 /// Every map colour under all lights that the particles think of: tells, for each colour, pixels that it may explain from outliers.
 ///
@@ -11,7 +11,7 @@ use crate::{ColorDensity, ColorModelError, Frame, SumDensity, YuvImage};
 /// count for themselves. That does not depend on where the robot is, so it is decided once a frame, and the sums stay exact.
 pub(crate) struct Palette {
     /// Of every colour.
-    densities: Vec<Vec<SumDensity>>,
+    densities: Vec<Vec<PixelSumDensity>>,
 }
 
 impl Palette {
@@ -27,7 +27,7 @@ impl Palette {
             let bank = &first.conditional().bank;
             for member in 0..bank.n_members() {
                 for color in (0..bank.n_colors()).map(|color| ColorId(color as u8)) {
-                    densities[color.index()].push(SumDensity::new(&mixed(
+                    densities[color.index()].push(PixelSumDensity::new(&mixed(
                         particles,
                         weights.as_slice(),
                         member,
@@ -45,10 +45,10 @@ impl Palette {
         image: &YuvImage,
         nats_of: impl Fn([u8; 3]) -> f64,
         outlier: f64,
-    ) -> Result<Vec<Frame>, ColorModelError> {
-        let look = |densities: &Vec<SumDensity>| {
+    ) -> Result<Vec<PrefixSumImage>, ColorModelError> {
+        let look = |densities: &Vec<PixelSumDensity>| {
             let mut memo = Memo::default();
-            Frame::with_background(image, |pixel| {
+            PrefixSumImage::with_background(image, |pixel| {
                 let best = memo.get(pixel, |pixel| best(densities, pixel));
                 let nats = nats_of(pixel);
                 (best + nats > outlier).then_some(nats)
@@ -58,7 +58,7 @@ impl Palette {
     }
 }
 
-fn best(densities: &[SumDensity], pixel: [u8; 3]) -> f64 {
+fn best(densities: &[PixelSumDensity], pixel: [u8; 3]) -> f64 {
     densities.iter().map(|density| density.log(pixel)).fold(f64::NEG_INFINITY, f64::max)
 }
 

@@ -1,5 +1,5 @@
 use super::{AcquisitionParams, CameraNoise, HiddenViews, OdometryNoise};
-use crate::{ColorModelError, PixelParams};
+use crate::{ColorModelError, PixelLikelihoodParams};
 
 /// What [`ColorLocalizer`](crate::ColorLocalizer) is tuned by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,7 +11,7 @@ use crate::{ColorModelError, PixelParams};
 )]
 pub struct LocalizerParams {
     /// How pixels are weighed.
-    pub pixels: PixelParams,
+    pub pixels: PixelLikelihoodParams,
     /// How far odometry is from the truth.
     pub odometry: OdometryNoise,
     /// How far the camera is from where the joints say.
@@ -47,7 +47,7 @@ pub struct LocalizerParams {
 impl Default for LocalizerParams {
     fn default() -> Self {
         Self {
-            pixels: PixelParams::default(),
+            pixels: PixelLikelihoodParams::default(),
             odometry: OdometryNoise::default(),
             camera: CameraNoise::default(),
             acquisition: AcquisitionParams::default(),

@@ -1,5 +1,5 @@
 use wayfix_estimation_traits::{Pose2, Pose3};
-use wayfix_particle::RaoBlackwell;
+use wayfix_particle::RaoBlackwellParticle;
 
 use super::{CameraError, light::Light};
 
@@ -20,4 +20,4 @@ impl CameraLocation {
 }
 
 /// One hypothesis: a camera location and, conditioned on it, what the colours look like. [Schulz & Fox 2004, Eq. 12]
-pub(crate) type ColorParticle = RaoBlackwell<CameraLocation, Light>;
+pub(crate) type ColorParticle = RaoBlackwellParticle<CameraLocation, Light>;

@@ -1,16 +1,16 @@
 use std::sync::Arc;
 
 use wayfix_color_map::ColorId;
-use wayfix_particle::RaoBlackwell;
+use wayfix_particle::RaoBlackwellParticle;
 
 use super::{light::Light, particle::ColorParticle, views::Views};
-use crate::{ColorMeans, ColorModelError, PixelParams, PixelSums};
+use crate::{ColorMeans, ColorModelError, PixelLikelihoodParams, PixelSums};
 
 /// Lets the light of every particle drift for `seconds`. Particles that share a light go on sharing it.
 pub(crate) fn predict_light(
     particles: &mut [ColorParticle],
     seconds: f64,
-    pixels: &PixelParams,
+    pixels: &PixelLikelihoodParams,
 ) -> Result<(), ColorModelError> {
     let mut last: Option<(Arc<Light>, Arc<Light>)> = None;
     for particle in particles {
@@ -40,7 +40,7 @@ pub(crate) struct Relight<'a> {
     /// The colour that nothing is learned of.
     pub(crate) withheld: Option<ColorId>,
     /// How pixels are weighed.
-    pub(crate) pixels: &'a PixelParams,
+    pub(crate) pixels: &'a PixelLikelihoodParams,
 }
 
 impl Relight<'_> {
@@ -53,7 +53,7 @@ impl Relight<'_> {
                 _ => self.seen(particles[ancestor].shared_conditional(), ancestor),
             };
             last = Some((ancestor, Arc::clone(&light)));
-            RaoBlackwell::from_shared(particles[ancestor].sampled, light)
+            RaoBlackwellParticle::from_shared(particles[ancestor].sampled, light)
         };
         ancestors.iter().map(child).collect()
     }

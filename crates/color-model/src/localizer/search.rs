@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use rand::Rng;
 use wayfix_color_map::{Camera, ColorMap};
 use wayfix_estimation_traits::Pose2;
-use wayfix_particle::{RaoBlackwell, Weights};
+use wayfix_particle::{NormalizedWeights, RaoBlackwellParticle};
 
 use super::{
     AcquisitionParams, LocalizerParams, Start,
@@ -24,7 +24,7 @@ use super::{
     views::Views,
     weighed::Weighed,
 };
-use crate::{Background, ColorModelError, Frame, PixelSums};
+use crate::{BackgroundColorModel, ColorModelError, PixelSums, PrefixSumImage};
 
 /// A place that explains the frames well, its log-evidence that of all frames.
 pub(crate) struct Found {
@@ -51,7 +51,7 @@ pub(crate) struct Search<'a> {
     pub(super) params: &'a LocalizerParams,
     pub(super) light: &'a Arc<Light>,
     pub(super) shots: Vec<Shot>,
-    pub(super) frames: Vec<Frame>,
+    pub(super) frames: Vec<PrefixSumImage>,
     /// Under a light that is not known, all frames are weighed at once.
     pub(super) is_light_known: bool,
     sightings: Sightings,
@@ -67,19 +67,19 @@ impl<'a> Search<'a> {
         params: &'a LocalizerParams,
         Premise { start, light, is_light_known }: Premise<'a>,
         shots: Vec<Shot>,
-        background: Option<&Background>,
+        background: Option<&BackgroundColorModel>,
     ) -> Result<Self, ColorModelError> {
         let brightness = shots.iter().map(|shot| shot.image.brightness()).sum::<f64>() / shots.len() as f64;
-        let noise = light.bank.member(0).params().pixel_noise + params.pixels.unevenness(brightness);
+        let noise = light.bank.member(0).params().pixel_color_variance + params.pixels.unevenness(brightness);
         let AcquisitionParams { shrink, .. } = params.acquisition;
         let images = shots.iter().map(|shot| shot.image.shrunk(shrink)).collect::<Result<Vec<_>, _>>()?;
-        let surroundings = Surroundings::of(images.iter(), &noise, params.pixels.uniform_share);
+        let surroundings = Surroundings::of(images.iter(), &noise, params.pixels.uniform_background_share);
         let nats = |pixel| {
             background.map_or_else(|| surroundings.nats(pixel), |learned| -learned.log_density(pixel))
         };
         let frames = images
             .iter()
-            .map(|image| Frame::with_background(image, |pixel| Some(nats(pixel))))
+            .map(|image| PrefixSumImage::with_background(image, |pixel| Some(nats(pixel))))
             .collect::<Result<_, _>>()?;
         let camera = params.acquisition.camera(&camera)?;
         let stride = stride(shots.len(), params.acquisition.n_coarse);
@@ -171,11 +171,11 @@ impl<'a> Search<'a> {
             view.log_likelihoods.copy_from_slice(&candidate.log_likelihoods);
         }
         let banks = candidates.iter().map(|_| &self.light.bank);
-        let equal = Weights::from_linear(vec![1.0; candidates.len()])?;
+        let equal = NormalizedWeights::from_linear(vec![1.0; candidates.len()])?;
         let weighed = Weighed::new(banks, &equal, &views, 0.0, self.params.acquisition.least_effective, rng)?;
         let particle = |candidate: &Candidate| -> Option<ColorParticle> {
             let newest = candidate.trajectory.locations(&self.shots, &self.params.camera).pop()?;
-            Some(RaoBlackwell::from_shared(newest, Arc::clone(self.light)))
+            Some(RaoBlackwellParticle::from_shared(newest, Arc::clone(self.light)))
         };
         let particles = candidates.iter().filter_map(particle).collect();
         let fit =

@@ -3,11 +3,11 @@ use std::f64::consts::TAU;
 use nalgebra::{Vector2, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
-use wayfix_color_map::{Camera, ColorId, ColorMap, Shape};
+use wayfix_color_map::{Camera, ColorId, ColorMap, ColoredShape};
 use wayfix_estimation_traits::Pose2;
 
 use super::{light::Light, shots::Shot, start::Area};
-use crate::{Blob, ColorModelError, YuvImage, find_blobs, likelihood::feature_colors};
+use crate::{ColorBlob, ColorModelError, YuvImage, find_blobs, likelihood::feature_colors};
 
 /// What frames show of things that stand on the field, and from where those could be seen like that: poses that are worth a look, "sensor
 /// resetting" [Lenser & Veloso 2000].
@@ -96,7 +96,7 @@ impl Sightings {
     }
 }
 
-fn sighting(blob: &Blob, at: usize, shot: &Shot, camera: &Camera) -> Sighting {
+fn sighting(blob: &ColorBlob, at: usize, shot: &Shot, camera: &Camera) -> Sighting {
     let ray: Vector3<f64> = shot.mount.rotation * camera.ray(blob.centroid.0, blob.centroid.1);
     Sighting {
         shot: at,
@@ -112,18 +112,18 @@ fn marks(map: &ColorMap) -> Vec<Mark> {
     let mut marks = Vec::new();
     for shape in map.shapes() {
         match shape {
-            Shape::Post { x, y, radius, bands } => {
+            ColoredShape::Post { x, y, radius, bands } => {
                 marks.extend(bands.iter().filter(|band| standing[band.color.index()]).map(|band| Mark {
                     color: band.color,
                     place: Vector2::new(*x, *y),
                     area: Some(2.0 * radius * (band.to - band.from)),
                 }));
             }
-            Shape::Polygon { color, vertices } if standing[color.index()] => {
+            ColoredShape::Polygon { color, vertices } if standing[color.index()] => {
                 let middle = vertices.iter().sum::<Vector3<f64>>() / vertices.len() as f64;
                 marks.push(Mark { color: *color, place: middle.xy(), area: None });
             }
-            Shape::Polygon { .. } => {}
+            ColoredShape::Polygon { .. } => {}
         }
     }
     marks
@@ -135,17 +135,17 @@ mod tests {
 
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
-    use wayfix_color_map::Band;
+    use wayfix_color_map::PostBand;
 
     use super::*;
 
     #[test]
     fn from_every_drawn_pose_the_post_is_where_the_blob_was_and_about_as_large() {
-        let bands = vec![Band { color: ColorId(1), from: 0.2, to: 0.4 }];
-        let post = Shape::Post { x: 1.0, y: 0.5, radius: 0.05, bands };
+        let bands = vec![PostBand { color: ColorId(1), from: 0.2, to: 0.4 }];
+        let post = ColoredShape::Post { x: 1.0, y: 0.5, radius: 0.05, bands };
         let carpet = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)];
         let vertices = carpet.map(|(x, y)| Vector3::new(x, y, 0.0)).to_vec();
-        let carpet = Shape::Polygon { color: ColorId(0), vertices };
+        let carpet = ColoredShape::Polygon { color: ColorId(0), vertices };
         let map = ColorMap::new(vec!["green".into(), "pink".into()], vec![carpet, post]).unwrap();
         let area = Area::of(&map).unwrap();
         // A square metre at a distance of one is a steradian: the band of 0.02 m² is seen from 1 m.

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use wayfix_color_map::{Camera, ColorMap, Projector};
+use wayfix_color_map::{Camera, ColorMap, MapRenderer};
 use wayfix_estimation_traits::Pose3;
 
 use super::{
@@ -10,7 +10,7 @@ use super::{
     views::{ViewMut, Views},
 };
 use crate::{
-    Frame, PixelLight, PixelParams,
+    LightErrorCorrelation, PixelLikelihoodParams, PrefixSumImage,
     likelihood::{JointLikelihood, gather, log_likelihood, log_within},
 };
 
@@ -19,7 +19,7 @@ const CHUNK: usize = 32;
 
 /// What one thread works with.
 struct Scratch {
-    projector: Projector,
+    projector: MapRenderer,
     joint: JointLikelihood,
 }
 
@@ -28,9 +28,9 @@ pub(crate) struct Weighing<'a> {
     pub(crate) map: &'a Arc<ColorMap>,
     pub(crate) camera: Camera,
     /// For each colour.
-    pub(crate) frames: &'a [Frame],
+    pub(crate) frames: &'a [PrefixSumImage],
     pub(crate) mount: &'a Pose3<f64>,
-    pub(crate) pixels: &'a PixelParams,
+    pub(crate) pixels: &'a PixelLikelihoodParams,
     /// Variance of a map colour's pixels in this frame.
     pub(crate) noise: Vector3<f64>,
 }
@@ -41,7 +41,7 @@ impl Weighing<'_> {
     pub(crate) fn views(&self, particles: &[ColorParticle]) -> Option<Views> {
         let mut views = Views::new(particles.len(), &particles.first()?.conditional().bank);
         let scratch = || Scratch {
-            projector: Projector::new(Arc::clone(self.map), self.camera),
+            projector: MapRenderer::new(Arc::clone(self.map), self.camera),
             joint: JointLikelihood::new(),
         };
         let jobs = particles.chunks(CHUNK).zip(views.chunks_mut(CHUNK));
@@ -58,16 +58,16 @@ impl Weighing<'_> {
             projector,
             |color| self.frames.get(color.index()),
             &camera_pose,
-            self.pixels.edge_margin,
+            self.pixels.edge_margin_pixels,
             sums,
         )
         .is_ok();
         let light = particle.conditional();
-        let n_pixels = self.frames.first().map_or(1, Frame::n_pixels);
+        let n_pixels = self.frames.first().map_or(1, PrefixSumImage::n_pixels);
         let possible = |value: f64| if seen && !value.is_nan() { value } else { f64::NEG_INFINITY };
         let members = log_likelihoods.iter_mut().enumerate();
-        match self.pixels.light {
-            PixelLight::Common => {
+        match self.pixels.light_error_correlation {
+            LightErrorCorrelation::Common => {
                 let within = log_within(sums, self.pixels, &self.noise, n_pixels);
                 for (at, log_likelihood) in members {
                     let filter = light.bank.member(at);
@@ -76,7 +76,7 @@ impl Weighing<'_> {
                     );
                 }
             }
-            PixelLight::Each => {
+            LightErrorCorrelation::Each => {
                 for (at, value) in members {
                     *value = possible(log_likelihood(sums, light.member(at), self.pixels, n_pixels));
                 }

@@ -1,6 +1,6 @@
 use rand::{Rng, RngExt};
 use wayfix_estimation_traits::Pose2;
-use wayfix_particle::Weights;
+use wayfix_particle::NormalizedWeights;
 
 use super::{
     hidden::{or_hidden, was_hidden},
@@ -14,7 +14,7 @@ const IMPOSSIBLE: f64 = -1e6;
 
 /// Importance weights, and the lighting filter that each particle chose.
 pub(crate) struct Weighed {
-    pub(crate) weights: Weights,
+    pub(crate) weights: NormalizedWeights,
     /// The active member of each particle's bank.
     pub(crate) members: Vec<usize>,
     /// Log of the mean likelihood over the particles, nats.
@@ -38,7 +38,7 @@ impl Weighed {
     /// When the frame is impossible from every particle.
     pub(crate) fn new<'a, R: Rng + ?Sized>(
         banks: impl Iterator<Item = &'a LightingBank>,
-        prior: &Weights,
+        prior: &NormalizedWeights,
         views: &Views,
         hidden: f64,
         least_effective: f64,
@@ -90,12 +90,14 @@ impl Weighed {
 /// or not. Softened, they move together over some frames; once they are as close as the likelihood is wide, the power is 1.
 pub(crate) fn softened(
     log_likelihoods: &[f64],
-    prior: &Weights,
+    prior: &NormalizedWeights,
     least: f64,
-) -> Result<(Weights, f64), ColorModelError> {
+) -> Result<(NormalizedWeights, f64), ColorModelError> {
     let weights = |power: f64| {
         let log_weight = |(l, w): (&f64, &f64)| if *l == f64::NEG_INFINITY { *l } else { power * l + w.ln() };
-        Weights::from_log(&log_likelihoods.iter().zip(prior.as_slice()).map(log_weight).collect::<Vec<_>>())
+        NormalizedWeights::from_log(
+            &log_likelihoods.iter().zip(prior.as_slice()).map(log_weight).collect::<Vec<_>>(),
+        )
     };
     let full = weights(1.0)?;
     if full.effective_sample_size() >= least {

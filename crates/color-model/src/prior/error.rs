@@ -3,7 +3,7 @@ use wayfix_gaussian_core::{GaussianError, HierarchicalFit, IterationError};
 /// Errors of learning or reading a prior.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum PriorError {
+pub enum LightingPriorError {
     /// Fewer venues, or venues that differ, than groups to split them into.
     #[error("{got} different {what} do not make {needed} groups")]
     TooFew {
@@ -58,11 +58,15 @@ pub enum PriorError {
 }
 
 /// A number that must be positive and finite.
-pub(super) fn check_positive(what: &'static str, value: f64) -> Result<(), PriorError> {
-    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PriorError::OutOfRange { what, value }) }
+pub(super) fn check_positive(what: &'static str, value: f64) -> Result<(), LightingPriorError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(LightingPriorError::OutOfRange { what, value })
+    }
 }
 
 /// A correlation that leaves any number of coordinates a covariance: not negative, and below one.
-pub(super) fn check_correlation(what: &'static str, value: f64) -> Result<(), PriorError> {
-    if (0.0..1.0).contains(&value) { Ok(()) } else { Err(PriorError::OutOfRange { what, value }) }
+pub(super) fn check_correlation(what: &'static str, value: f64) -> Result<(), LightingPriorError> {
+    if (0.0..1.0).contains(&value) { Ok(()) } else { Err(LightingPriorError::OutOfRange { what, value }) }
 }

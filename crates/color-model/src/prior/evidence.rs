@@ -1,28 +1,28 @@
 use nalgebra::Vector3;
-use wayfix_gaussian_core::GroupEvidence;
+use wayfix_gaussian_core::GroupStatistics;
 
-use super::{PixelSpread, PriorError, TrainingVenue};
+use super::{LightingPriorError, PooledPixelVariance, TrainingVenue};
 use crate::ColorMeans;
 
 /// A venue as a group of observations of its colours; colours not in an image are missing.
 pub(super) fn evidence(
     venue: &TrainingVenue,
     n_colors: usize,
-    mean_noise: &Vector3<f64>,
-) -> Result<GroupEvidence, PriorError> {
-    let mut group = GroupEvidence::new(3 * n_colors);
+    mean_color_variance: &Vector3<f64>,
+) -> Result<GroupStatistics, LightingPriorError> {
+    let mut group = GroupStatistics::new(3 * n_colors);
     for (color, mean) in venue.images.iter().flat_map(ColorMeans::seen) {
         let first = 3 * usize::from(color.0);
-        group.observe(&[first, first + 1, first + 2], mean.as_slice(), mean_noise.as_slice())?;
+        group.observe(&[first, first + 1, first + 2], mean.as_slice(), mean_color_variance.as_slice())?;
     }
     Ok(group)
 }
 
 /// Variance of an image's mean of a colour about its venue's mean of it, pooled over colours and venues, (Y, U, V).
-pub(super) fn pooled_mean_noise(
+pub(super) fn pooled_mean_color_variance(
     venues: &[TrainingVenue],
     n_colors: usize,
-) -> Result<Vector3<f64>, PriorError> {
+) -> Result<Vector3<f64>, LightingPriorError> {
     let mut scatter = Vector3::zeros();
     let mut degrees_of_freedom = 0.0;
     for venue in venues {
@@ -44,15 +44,20 @@ pub(super) fn pooled_mean_noise(
     if variance.iter().all(|v| *v > 0.0 && v.is_finite()) {
         Ok(variance)
     } else {
-        Err(PriorError::UnknownScatter)
+        Err(LightingPriorError::UnknownScatter)
     }
 }
 
 /// Variance of pixels, pooled over the venues that recorded it; `otherwise` if none did.
-pub(super) fn pooled_pixel_noise(venues: &[TrainingVenue], otherwise: &Vector3<f64>) -> Vector3<f64> {
+pub(super) fn pooled_pixel_color_variance(
+    venues: &[TrainingVenue],
+    otherwise: &Vector3<f64>,
+) -> Vector3<f64> {
     let mut scatter = Vector3::zeros();
     let mut pooled = 0.0;
-    for PixelSpread { variances, degrees_of_freedom } in venues.iter().filter_map(|venue| venue.pixels) {
+    for PooledPixelVariance { variances, degrees_of_freedom } in
+        venues.iter().filter_map(|venue| venue.pixels)
+    {
         scatter += variances * degrees_of_freedom;
         pooled += degrees_of_freedom;
     }

@@ -1,6 +1,6 @@
 use rand::{Rng, RngExt};
 
-use super::PriorError;
+use super::LightingPriorError;
 
 /// Points split into groups around centres.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ type Point = Vec<Option<f64>>;
 /// assert!(split.assignment[0] == split.assignment[1] && split.assignment[0] != split.assignment[2]);
 /// // The second point counts twice: centre 5/3, distortion (2/3)² + 2 (1/3)².
 /// assert!((split.distortion - 2.0 / 3.0).abs() < 1e-15);
-/// # Ok::<(), wayfix_color_model::PriorError>(())
+/// # Ok::<(), wayfix_color_model::LightingPriorError>(())
 /// ```
 ///
 /// # Errors
@@ -38,7 +38,7 @@ pub fn k_means<R: Rng + ?Sized>(
     k: usize,
     restarts: usize,
     rng: &mut R,
-) -> Result<KMeans, PriorError> {
+) -> Result<KMeans, LightingPriorError> {
     check(points, k)?;
     (0..restarts)
         .filter_map(|_| {
@@ -46,23 +46,27 @@ pub fn k_means<R: Rng + ?Sized>(
             lloyd(points, centers)
         })
         .min_by(|a, b| a.distortion.total_cmp(&b.distortion))
-        .ok_or(PriorError::TooFew { what: "points", needed: k, got: k.saturating_sub(1) })
+        .ok_or(LightingPriorError::TooFew { what: "points", needed: k, got: k.saturating_sub(1) })
 }
 
-fn check(points: &[Point], k: usize) -> Result<(), PriorError> {
+fn check(points: &[Point], k: usize) -> Result<(), LightingPriorError> {
     if k == 0 || points.len() < k {
-        return Err(PriorError::TooFew { what: "points", needed: k.max(1), got: points.len() });
+        return Err(LightingPriorError::TooFew { what: "points", needed: k.max(1), got: points.len() });
     }
     for point in points {
         if point.len() != points[0].len() {
             let what = "coordinates of a point";
-            return Err(PriorError::Dimension { what, expected: points[0].len(), got: point.len() });
+            return Err(LightingPriorError::Dimension { what, expected: points[0].len(), got: point.len() });
         }
         if let Some(value) = point.iter().flatten().find(|value| !value.is_finite()) {
-            return Err(PriorError::OutOfRange { what: "coordinate of a point", value: *value });
+            return Err(LightingPriorError::OutOfRange { what: "coordinate of a point", value: *value });
         }
         if point.iter().flatten().next().is_none() {
-            return Err(PriorError::Dimension { what: "known coordinates of a point", expected: 1, got: 0 });
+            return Err(LightingPriorError::Dimension {
+                what: "known coordinates of a point",
+                expected: 1,
+                got: 0,
+            });
         }
     }
     Ok(())
@@ -204,7 +208,7 @@ mod tests {
     fn points_that_make_no_groups_are_refused() {
         let rng = &mut ChaCha8Rng::seed_from_u64(0);
         let one = vec![Some(1.0)];
-        assert!(matches!(k_means(&vec![one.clone(); 5], 2, 10, rng), Err(PriorError::TooFew { .. })));
+        assert!(matches!(k_means(&vec![one.clone(); 5], 2, 10, rng), Err(LightingPriorError::TooFew { .. })));
         assert!(k_means(std::slice::from_ref(&one), 2, 10, rng).is_err());
         assert!(k_means(&[], 1, 10, rng).is_err());
         assert!(k_means(std::slice::from_ref(&one), 0, 10, rng).is_err());

@@ -1,8 +1,8 @@
 use rand::Rng;
 use wayfix_gaussian_core::{GaussianError, IterationError, fit_hierarchical};
 
-use super::evidence::{evidence, pooled_mean_noise, pooled_pixel_noise};
-use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
+use super::evidence::{evidence, pooled_mean_color_variance, pooled_pixel_color_variance};
+use super::{LightingPriorError, LightingPriors, PriorLearningParams, TrainingVenue, k_means};
 
 /// Learns a prior for each of `k` kinds of light from training venues. [Schulz & Fox 2004, III.B]
 ///
@@ -11,7 +11,7 @@ use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
 /// ```
 /// use nalgebra::Vector3;
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_color_model::{ColorMeans, PriorParams, TrainingVenue, learn_priors};
+/// use wayfix_color_model::{ColorMeans, PriorLearningParams, TrainingVenue, learn_priors};
 /// let image = |light: f64| ColorMeans::new([
 ///     (Some(Vector3::new(60.0 * light, 110.0, 100.0)), 500),
 ///     (Some(Vector3::new(120.0 * light, 128.0, 128.0)), 80),
@@ -21,12 +21,12 @@ use super::{LightingPriors, PriorError, PriorParams, TrainingVenue, k_means};
 ///     TrainingVenue { name: k.to_string(), images: vec![image(light), image(light + 0.01)], pixels: None }
 /// };
 /// let venues: Vec<TrainingVenue> = (0..12).map(venue).collect();
-/// let params = PriorParams { mean_noise: Some(Vector3::repeat(1.0)), ..PriorParams::default() };
+/// let params = PriorLearningParams { mean_color_variance: Some(Vector3::repeat(1.0)), ..PriorLearningParams::default() };
 /// let rng = &mut ChaCha8Rng::seed_from_u64(1);
 /// let priors = learn_priors(&["green".into(), "white".into()], &venues, 2, &params, rng)?;
 /// let [dark, bright] = priors.members() else { panic!("two kinds of light") };
 /// assert!((dark.mean()[0] - 37.8).abs() < 0.5 && (bright.mean()[0] - 97.8).abs() < 0.5); // 60 times the mean of the lights
-/// # Ok::<(), wayfix_color_model::PriorError>(())
+/// # Ok::<(), wayfix_color_model::LightingPriorError>(())
 /// ```
 ///
 /// # Errors
@@ -35,29 +35,31 @@ pub fn learn_priors<R: Rng + ?Sized>(
     colors: &[String],
     venues: &[TrainingVenue],
     k: usize,
-    params: &PriorParams,
+    params: &PriorLearningParams,
     rng: &mut R,
-) -> Result<LightingPriors, PriorError> {
+) -> Result<LightingPriors, LightingPriorError> {
     let n_colors = colors.len();
     params.check()?;
-    let split = split_by_brightness(venues, n_colors, k, params.restarts, rng)?;
-    let mean_noise = params.mean_noise.map_or_else(|| pooled_mean_noise(venues, n_colors), Ok)?;
-    let pixel_noise = pooled_pixel_noise(venues, &params.pixel_noise);
+    let split = split_by_brightness(venues, n_colors, k, params.n_restarts, rng)?;
+    let mean_color_variance =
+        params.mean_color_variance.map_or_else(|| pooled_mean_color_variance(venues, n_colors), Ok)?;
+    let pixel_color_variance = pooled_pixel_color_variance(venues, &params.pixel_color_variance);
     let hierarchical = params.hierarchical(n_colors)?;
     let mut members = Vec::with_capacity(k);
     for group in 0..k {
         let chosen = venues.iter().zip(&split).filter(|(_, g)| **g == group);
-        let groups =
-            chosen.map(|(venue, _)| evidence(venue, n_colors, &mean_noise)).collect::<Result<Vec<_>, _>>()?;
+        let groups = chosen
+            .map(|(venue, _)| evidence(venue, n_colors, &mean_color_variance))
+            .collect::<Result<Vec<_>, _>>()?;
         let fit = fit_hierarchical(&groups, &hierarchical).map_err(|error| match error {
             IterationError::Step(GaussianError::Unobserved { coordinate }) => {
-                PriorError::UnseenColor { group, color: colors[coordinate / 3].clone() }
+                LightingPriorError::UnseenColor { group, color: colors[coordinate / 3].clone() }
             }
             error => error.into(),
         })?;
         members.push(fit.gaussian);
     }
-    LightingPriors::new(colors.to_vec(), members, pixel_noise, mean_noise)
+    LightingPriors::new(colors.to_vec(), members, pixel_color_variance, mean_color_variance)
 }
 
 /// The group of each venue, from 0 for the darkest to `k - 1`: k-means on the mean Y of each colour. [Schulz & Fox 2004, V]
@@ -71,7 +73,7 @@ pub fn split_by_brightness<R: Rng + ?Sized>(
     k: usize,
     restarts: usize,
     rng: &mut R,
-) -> Result<Vec<usize>, PriorError> {
+) -> Result<Vec<usize>, LightingPriorError> {
     venues.iter().try_for_each(|venue| venue.check(n_colors))?;
     let brightness: Vec<_> = venues.iter().map(|venue| venue.brightness(n_colors)).collect();
     let split = k_means(&brightness, k, restarts, rng)?;

@@ -10,9 +10,9 @@ mod params;
 mod priors;
 mod venue;
 
-pub use error::PriorError;
+pub use error::LightingPriorError;
 pub use k_means::{KMeans, k_means};
 pub use learn::{learn_priors, split_by_brightness};
-pub use params::PriorParams;
+pub use params::PriorLearningParams;
 pub use priors::LightingPriors;
-pub use venue::{PixelSpread, TrainingVenue};
+pub use venue::{PooledPixelVariance, TrainingVenue};

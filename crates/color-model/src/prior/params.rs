@@ -2,58 +2,59 @@ use nalgebra::{DMatrix, Vector3};
 use wayfix_gaussian_core::{HierarchicalParams, InverseWishart};
 
 use super::{
-    PriorError,
+    LightingPriorError,
     error::{check_correlation, check_positive},
 };
 
 /// Parameters of learning priors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PriorParams {
+pub struct PriorLearningParams {
     /// Standard deviation of a colour between venues before any is seen, (Y, U, V): the mode of the hyperprior. Default 30, 10, 10.
     pub color_sigmas: Vector3<f64>,
     /// Correlation of two colours between venues before any is seen, in Y as in U and V: one light falls on all of them. Default 0.9.
     pub color_correlation: f64,
     /// Weight of the hyperprior, in venues. Default 3.
-    pub pseudo_venues: f64,
+    pub n_pseudo_venues: f64,
     /// Variance of an image's mean of a colour about its venue's, (Y, U, V). Default none: pooled over the training images.
-    pub mean_noise: Option<Vector3<f64>>,
+    pub mean_color_variance: Option<Vector3<f64>>,
     /// Variance of a pixel about the mean of its colour, if no venue recorded it. Default 144, 36, 36.
-    pub pixel_noise: Vector3<f64>,
+    pub pixel_color_variance: Vector3<f64>,
     /// Number of starts of k-means; the best result counts. Default 20.
-    pub restarts: usize,
+    pub n_restarts: usize,
     /// Tolerance of EM: see [`HierarchicalParams`]. Default 1e-6 nats, or 10 000 iterations.
     pub tolerance: f64,
     /// See `tolerance`.
     pub max_iterations: usize,
 }
 
-impl Default for PriorParams {
+impl Default for PriorLearningParams {
     fn default() -> Self {
         Self {
             color_sigmas: Vector3::new(30.0, 10.0, 10.0),
             color_correlation: 0.9,
-            pseudo_venues: 3.0,
-            mean_noise: None,
-            pixel_noise: Vector3::new(144.0, 36.0, 36.0),
-            restarts: 20,
+            n_pseudo_venues: 3.0,
+            mean_color_variance: None,
+            pixel_color_variance: Vector3::new(144.0, 36.0, 36.0),
+            n_restarts: 20,
             tolerance: 1e-6,
             max_iterations: 10_000,
         }
     }
 }
 
-impl PriorParams {
-    pub(super) fn check(&self) -> Result<(), PriorError> {
-        let noise = self.mean_noise.iter().flat_map(|noise| noise.iter()).chain(&self.pixel_noise);
+impl PriorLearningParams {
+    pub(super) fn check(&self) -> Result<(), LightingPriorError> {
+        let noise =
+            self.mean_color_variance.iter().flat_map(|noise| noise.iter()).chain(&self.pixel_color_variance);
         noise.into_iter().try_for_each(|variance| check_positive("variance of the noise", *variance))?;
         self.color_sigmas.iter().try_for_each(|sigma| check_positive("sigma of a colour", *sigma))?;
         check_correlation("correlation of colours", self.color_correlation)?;
-        check_positive("number of pseudo-venues", self.pseudo_venues)?;
-        check_positive("number of restarts", self.restarts as f64)
+        check_positive("number of pseudo-venues", self.n_pseudo_venues)?;
+        check_positive("number of restarts", self.n_restarts as f64)
     }
 
     /// The hyperprior for `n_colors` colours, and the stopping criterion.
-    pub(super) fn hierarchical(&self, n_colors: usize) -> Result<HierarchicalParams, PriorError> {
+    pub(super) fn hierarchical(&self, n_colors: usize) -> Result<HierarchicalParams, LightingPriorError> {
         let mode = DMatrix::from_fn(3 * n_colors, 3 * n_colors, |i, j| {
             let correlation = match (i == j, i % 3 == j % 3) {
                 (true, _) => 1.0,
@@ -63,7 +64,7 @@ impl PriorParams {
             correlation * self.color_sigmas[i % 3] * self.color_sigmas[j % 3]
         });
         Ok(HierarchicalParams {
-            covariance_prior: Some(InverseWishart::from_mode(&mode, self.pseudo_venues)?),
+            covariance_prior: Some(InverseWishart::from_mode(&mode, self.n_pseudo_venues)?),
             mean_prior: None,
             tolerance: self.tolerance,
             max_iterations: self.max_iterations,

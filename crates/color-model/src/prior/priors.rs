@@ -1,7 +1,7 @@
 use nalgebra::{DVector, Vector3};
 use wayfix_gaussian_core::Gaussian;
 
-use super::{PriorError, error::check_positive};
+use super::{LightingPriorError, error::check_positive};
 
 /// Priors of the light before the first image: a Gaussian over all colours for each kind of light, from dark to bright.
 ///
@@ -25,8 +25,8 @@ use super::{PriorError, error::check_positive};
 pub struct LightingPriors {
     colors: Vec<String>,
     members: Vec<Gaussian<DVector<f64>>>,
-    pixel_noise: Vector3<f64>,
-    mean_noise: Vector3<f64>,
+    pixel_color_variance: Vector3<f64>,
+    mean_color_variance: Vector3<f64>,
 }
 
 impl LightingPriors {
@@ -38,27 +38,31 @@ impl LightingPriors {
     pub fn new(
         colors: Vec<String>,
         members: Vec<Gaussian<DVector<f64>>>,
-        pixel_noise: Vector3<f64>,
-        mean_noise: Vector3<f64>,
-    ) -> Result<Self, PriorError> {
+        pixel_color_variance: Vector3<f64>,
+        mean_color_variance: Vector3<f64>,
+    ) -> Result<Self, LightingPriorError> {
         for (what, got) in [("colours of the priors", colors.len()), ("members of the priors", members.len())]
         {
             if got == 0 {
-                return Err(PriorError::Dimension { what, expected: 1, got });
+                return Err(LightingPriorError::Dimension { what, expected: 1, got });
             }
         }
         for member in &members {
             let (expected, got) = (3 * colors.len(), member.mean().len());
             if expected != got {
-                return Err(PriorError::Dimension { what: "numbers of a lighting prior", expected, got });
+                return Err(LightingPriorError::Dimension {
+                    what: "numbers of a lighting prior",
+                    expected,
+                    got,
+                });
             }
             Gaussian::new(member.mean().clone(), member.covariance().clone())?;
         }
-        pixel_noise
+        pixel_color_variance
             .iter()
-            .chain(&mean_noise)
+            .chain(&mean_color_variance)
             .try_for_each(|variance| check_positive("variance of the noise", *variance))?;
-        Ok(Self { colors, members, pixel_noise, mean_noise })
+        Ok(Self { colors, members, pixel_color_variance, mean_color_variance })
     }
 
     /// Names of the colours, in the order of the map.
@@ -72,13 +76,13 @@ impl LightingPriors {
     }
 
     /// Variance of a pixel about the mean of its colour, $`ν`$, (Y, U, V).
-    pub fn pixel_noise(&self) -> Vector3<f64> {
-        self.pixel_noise
+    pub fn pixel_color_variance(&self) -> Vector3<f64> {
+        self.pixel_color_variance
     }
 
     /// Variance of an image's mean of a colour about the light's, (Y, U, V).
-    pub fn mean_noise(&self) -> Vector3<f64> {
-        self.mean_noise
+    pub fn mean_color_variance(&self) -> Vector3<f64> {
+        self.mean_color_variance
     }
 
     /// The same without correlations between colours: no colour informs another. [Schulz & Fox 2004, V.A]

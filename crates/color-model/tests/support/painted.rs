@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use rand::Rng;
-use wayfix_color_map::{Camera, ColorId, ColorMap, Projector};
+use wayfix_color_map::{Camera, ColorId, ColorMap, MapRenderer};
 use wayfix_color_model::{LightingBank, LightingFilter, LightingParams, YuvImage};
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
@@ -27,7 +27,7 @@ const PIXEL_SIGMA: f64 = 4.0;
 pub(crate) struct Scene {
     pub(crate) map: Arc<ColorMap>,
     pub(crate) camera: Camera,
-    projector: Projector,
+    projector: MapRenderer,
 }
 
 impl Scene {
@@ -35,12 +35,12 @@ impl Scene {
     pub(crate) fn new() -> Self {
         let map = Arc::new(field_map().expect("a constant map"));
         let camera = Camera::from_field_of_view(104, 80, 0.993, 0.789).expect("an ERS-7");
-        let projector = Projector::new(Arc::clone(&map), camera);
+        let projector = MapRenderer::new(Arc::clone(&map), camera);
         Self { map, camera, projector }
     }
 
-    pub(crate) fn projector(&self) -> Projector {
-        Projector::new(Arc::clone(&self.map), self.camera)
+    pub(crate) fn projector(&self) -> MapRenderer {
+        MapRenderer::new(Arc::clone(&self.map), self.camera)
     }
 
     /// Labels from a camera pose, row by row; `None` beside the map.

@@ -1,5 +1,5 @@
 use crate::error::check_size;
-use crate::{CondensationError, Transition};
+use crate::{CondensationError, TransitionModel};
 
 /// How far from one the sum of a row may be: rounding of a few thousand terms stays far below.
 pub(crate) const ROW_TOLERANCE: f64 = 1e-9;
@@ -7,7 +7,7 @@ pub(crate) const ROW_TOLERANCE: f64 = 1e-9;
 /// Every probability written out, for small spaces and as the reference that the others are tested against.
 ///
 /// ```
-/// use wayfix_condensation::{DenseTransition, Transition};
+/// use wayfix_condensation::{DenseTransition, TransitionModel};
 /// let to_the_right = DenseTransition::from_rows(&[vec![0.1, 0.9], vec![0.0, 1.0]])?;
 /// let mut predicted = [0.0; 2];
 /// to_the_right.predict(&[1.0, 0.0], &mut predicted);
@@ -38,7 +38,7 @@ impl DenseTransition {
     }
 }
 
-impl Transition for DenseTransition {
+impl TransitionModel for DenseTransition {
     fn n_states(&self) -> usize {
         self.n_states
     }

@@ -1,6 +1,6 @@
 use crate::discrete::chunks::map_chunks;
 use crate::error::{check_size, checked};
-use crate::{Axis, CondensationError, Lattice, Transition};
+use crate::{CondensationError, LatticeAxis, StateLattice, TransitionModel};
 
 /// Disturbances that spread belief over the neighbours, as a separable Gaussian. [Kasprzak & Szynkiewicz, Eq. 5]
 ///
@@ -12,8 +12,8 @@ use crate::{Axis, CondensationError, Lattice, Transition};
 /// divided by what stays inside, so belief stays a distribution. Along a cyclic axis it wraps.
 ///
 /// ```
-/// use wayfix_condensation::{DiffusionKernel, Grid, Transition};
-/// let kernel = DiffusionKernel::gaussian(&Grid::new(3, 1)?, &[0.5, 0.5])?;
+/// use wayfix_condensation::{DiffusionKernel, PositionGrid, TransitionModel};
+/// let kernel = DiffusionKernel::gaussian(&PositionGrid::new(3, 1)?, &[0.5, 0.5])?;
 /// let mut spread = [0.0; 3];
 /// kernel.predict(&[1.0, 0.0, 0.0], &mut spread);
 /// assert!((spread.iter().sum::<f64>() - 1.0).abs() < 1e-15 && spread[0] > spread[1] && spread[1] > spread[2]);
@@ -28,7 +28,7 @@ pub struct DiffusionKernel {
 /// The kernel along one axis.
 #[derive(Clone, Debug, PartialEq)]
 struct Pass {
-    axis: Axis,
+    axis: LatticeAxis,
     stride: usize,          // between neighbours of this axis
     weights: Vec<f64>,      // of distances 0, 1, … up to the radius
     inverse_mass: Vec<f64>, // of what stays inside, by position
@@ -40,7 +40,7 @@ impl DiffusionKernel {
     /// # Errors
     /// [`CondensationError::Dimension`] when there is not one sigma an axis, [`CondensationError::Parameter`] when one is negative, NaN or
     /// infinite.
-    pub fn gaussian(space: &impl Lattice, sigmas: &[f64]) -> Result<Self, CondensationError> {
+    pub fn gaussian(space: &impl StateLattice, sigmas: &[f64]) -> Result<Self, CondensationError> {
         let axes = space.axes();
         check_size("list of sigmas", axes.len(), sigmas.len())?;
         let mut passes = Vec::new();
@@ -61,7 +61,7 @@ impl DiffusionKernel {
     }
 }
 
-impl Transition for DiffusionKernel {
+impl TransitionModel for DiffusionKernel {
     fn n_states(&self) -> usize {
         self.n_states
     }
@@ -80,7 +80,7 @@ impl Transition for DiffusionKernel {
 }
 
 impl Pass {
-    fn new(axis: Axis, stride: usize, sigma: f64) -> Self {
+    fn new(axis: LatticeAxis, stride: usize, sigma: f64) -> Self {
         // On a ring two ways lead to a state once the kernel is wider than half of it: then it is cut there.
         let reach = if axis.is_cyclic { (axis.len - 1) / 2 } else { axis.len - 1 };
         let radius = ((4.0 * sigma).ceil() as usize).min(reach);

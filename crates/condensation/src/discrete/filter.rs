@@ -3,7 +3,7 @@ use wayfix_estimation_traits::LogWeight;
 use crate::discrete::chunks::{CHUNK, fold_chunks, map_chunks};
 use crate::discrete::lattice::n_cells;
 use crate::error::{check_size, check_state, probability};
-use crate::{CondensationError, MeasurementEvidence, Outcome, Transition};
+use crate::{CondensationError, MeasurementEvidence, MeasurementOutcome, TransitionModel};
 
 /// Where a sum of weights is so small that terms may have been lost below the smallest double: then the sum is done again in logarithms.
 const UNDERFLOW: f64 = 1e-250;
@@ -24,13 +24,13 @@ pub struct BestState {
 /// throughout. So the speed is that of the linear form, and nothing representable is lost.
 ///
 /// ```
-/// use wayfix_condensation::{DiscreteFilter, Grid, Move, Outcome, Slip};
-/// let grid = Grid::new(3, 1)?;
-/// let right = Slip::default().transition(&grid, Move { dx: 1, dy: 0 })?;
+/// use wayfix_condensation::{DiscreteFilter, PositionGrid, GridMove, MeasurementOutcome, SlipProbabilities};
+/// let grid = PositionGrid::new(3, 1)?;
+/// let right = SlipProbabilities::default().transition(&grid, GridMove { dx: 1, dy: 0 })?;
 /// let mut filter = DiscreteFilter::uniform(3)?;
 /// filter.predict(&right)?;
 /// let outcome = filter.update(&[-3.0, 0.0, -3.0])?;
-/// assert!(matches!(outcome, Outcome::Updated(_)));
+/// assert!(matches!(outcome, MeasurementOutcome::Updated(_)));
 /// assert_eq!(filter.best().state, 1);
 /// assert!(filter.update(&[f64::NAN, 0.0, 0.0]).is_err());
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
@@ -78,7 +78,7 @@ impl DiscreteFilter {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the transition is of another space.
-    pub fn predict<T: Transition + ?Sized>(&mut self, transition: &T) -> Result<(), CondensationError> {
+    pub fn predict<T: TransitionModel + ?Sized>(&mut self, transition: &T) -> Result<(), CondensationError> {
         check_size("transition", self.belief.len(), transition.n_states())?;
         transition.predict(&self.belief, &mut self.next);
         std::mem::swap(&mut self.belief, &mut self.next);
@@ -102,25 +102,25 @@ impl DiscreteFilter {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`], or [`CondensationError::NotFinite`] for NaN and +∞ (−∞ means impossible); the belief is as it was.
-    pub fn update(&mut self, log_likelihoods: &[LogWeight]) -> Result<Outcome, CondensationError> {
+    pub fn update(&mut self, log_likelihoods: &[LogWeight]) -> Result<MeasurementOutcome, CondensationError> {
         check_size("list of log-likelihoods", self.belief.len(), log_likelihoods.len())?;
         let best = max_checked(log_likelihoods)?;
         if best == f64::NEG_INFINITY {
-            return Ok(Outcome::Impossible);
+            return Ok(MeasurementOutcome::Impossible);
         }
         let (expected, anywhere) = self.weigh(log_likelihoods, best);
         let log_uniform = best + (anywhere / self.belief.len() as f64).ln();
         if expected > UNDERFLOW {
             self.accept(1.0 / expected);
-            return Ok(Outcome::Updated(MeasurementEvidence {
+            return Ok(MeasurementOutcome::Updated(MeasurementEvidence {
                 log_predicted: best + expected.ln(),
                 log_uniform,
             }));
         }
         let Some(log_predicted) = self.weigh_in_logarithms(log_likelihoods) else {
-            return Ok(Outcome::Impossible);
+            return Ok(MeasurementOutcome::Impossible);
         };
-        Ok(Outcome::Updated(MeasurementEvidence { log_predicted, log_uniform }))
+        Ok(MeasurementOutcome::Updated(MeasurementEvidence { log_predicted, log_uniform }))
     }
 
     /// The belief, one probability a state.

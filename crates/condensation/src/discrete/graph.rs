@@ -4,7 +4,7 @@ use crate::{CondensationError, SparseTransition, StateSpace};
 
 /// An action in a graph: take the edge of that number out of the place, or stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum GraphAction {
+pub enum PlaceGraphMove {
     /// The k-th edge that leaves the place, counted in the order they were given; where there is none, the robot stays.
     Edge(usize),
     /// Nothing.
@@ -14,19 +14,19 @@ pub enum GraphAction {
 /// Places joined by directed edges.
 ///
 /// ```
-/// use wayfix_condensation::{GraphAction, Graph, StateSpace};
-/// let corridor = Graph::new(3, &[(0, 1), (1, 2), (1, 0)])?;
-/// assert_eq!(corridor.step(1, GraphAction::Edge(1)), 0);
-/// assert_eq!(corridor.step(2, GraphAction::Edge(0)), 2); // a dead end
+/// use wayfix_condensation::{PlaceGraphMove, PlaceGraph, StateSpace};
+/// let corridor = PlaceGraph::new(3, &[(0, 1), (1, 2), (1, 0)])?;
+/// assert_eq!(corridor.step(1, PlaceGraphMove::Edge(1)), 0);
+/// assert_eq!(corridor.step(2, PlaceGraphMove::Edge(0)), 2); // a dead end
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Graph {
+pub struct PlaceGraph {
     successors: Vec<Vec<usize>>,
-    actions: Vec<GraphAction>,
+    actions: Vec<PlaceGraphMove>,
 }
 
-impl Graph {
+impl PlaceGraph {
     /// `n_states` places and edges `(from, to)`.
     ///
     /// # Errors
@@ -40,7 +40,7 @@ impl Graph {
             successors[from].push(to);
         }
         let max_degree = successors.iter().map(Vec::len).max().unwrap_or(0);
-        let actions = (0..max_degree).map(GraphAction::Edge).chain([GraphAction::Stay]).collect();
+        let actions = (0..max_degree).map(PlaceGraphMove::Edge).chain([PlaceGraphMove::Stay]).collect();
         Ok(Self { successors, actions })
     }
 
@@ -68,21 +68,21 @@ impl Graph {
     }
 }
 
-impl StateSpace for Graph {
-    type Action = GraphAction;
+impl StateSpace for PlaceGraph {
+    type Action = PlaceGraphMove;
 
     fn n_states(&self) -> usize {
         self.successors.len()
     }
 
-    fn actions(&self) -> &[GraphAction] {
+    fn actions(&self) -> &[PlaceGraphMove] {
         &self.actions
     }
 
-    fn step(&self, state: usize, action: GraphAction) -> usize {
+    fn step(&self, state: usize, action: PlaceGraphMove) -> usize {
         match action {
-            GraphAction::Edge(edge) => self.successors[state].get(edge).copied().unwrap_or(state),
-            GraphAction::Stay => state,
+            PlaceGraphMove::Edge(edge) => self.successors[state].get(edge).copied().unwrap_or(state),
+            PlaceGraphMove::Stay => state,
         }
     }
 }

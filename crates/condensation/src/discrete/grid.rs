@@ -1,16 +1,16 @@
 use crate::discrete::lattice::n_cells;
-use crate::{Axis, CondensationError, Lattice, StateSpace};
+use crate::{CondensationError, LatticeAxis, StateLattice, StateSpace};
 
 /// A step to one of the eight neighbours, or none: $`(dx, dy) ∈ \{-1, 0, 1\}^2`$. [Kasprzak & Szynkiewicz, Sec. 2.3]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Move {
+pub struct GridMove {
     /// Columns to the right.
     pub dx: i8,
     /// Rows down.
     pub dy: i8,
 }
 
-impl Move {
+impl GridMove {
     /// No step.
     pub const STAY: Self = Self { dx: 0, dy: 0 };
 
@@ -28,28 +28,28 @@ impl Move {
     ];
 }
 
-/// Places in rows and columns, two degrees of freedom; the border stops a [`Move`].
+/// Places in rows and columns, two degrees of freedom; the border stops a [`GridMove`].
 ///
 /// ```
-/// use wayfix_condensation::{Grid, Move, StateSpace};
-/// let grid = Grid::new(4, 3)?;
+/// use wayfix_condensation::{PositionGrid, GridMove, StateSpace};
+/// let grid = PositionGrid::new(4, 3)?;
 /// let corner = grid.state(3, 2).expect("inside");
-/// assert_eq!(grid.step(corner, Move { dx: 1, dy: -1 }), grid.state(3, 1).expect("inside"));
+/// assert_eq!(grid.step(corner, GridMove { dx: 1, dy: -1 }), grid.state(3, 1).expect("inside"));
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Grid {
-    axes: [Axis; 2],
+pub struct PositionGrid {
+    axes: [LatticeAxis; 2],
 }
 
-impl Grid {
+impl PositionGrid {
     /// A grid of so many columns and rows.
     ///
     /// # Errors
     /// [`CondensationError::Extent`] when it has no state, or more than a `u32` counts.
     pub fn new(columns: usize, rows: usize) -> Result<Self, CondensationError> {
         n_cells("grid", &[rows, columns])?;
-        Ok(Self { axes: [rows, columns].map(|len| Axis { len, is_cyclic: false }) })
+        Ok(Self { axes: [rows, columns].map(|len| LatticeAxis { len, is_cyclic: false }) })
     }
 
     /// How many columns it has.
@@ -73,26 +73,26 @@ impl Grid {
     }
 }
 
-impl StateSpace for Grid {
-    type Action = Move;
+impl StateSpace for PositionGrid {
+    type Action = GridMove;
 
     fn n_states(&self) -> usize {
         self.columns() * self.rows()
     }
 
-    fn actions(&self) -> &[Move] {
-        &Move::ALL
+    fn actions(&self) -> &[GridMove] {
+        &GridMove::ALL
     }
 
-    fn step(&self, state: usize, action: Move) -> usize {
+    fn step(&self, state: usize, action: GridMove) -> usize {
         let (column, row) = self.place(state);
         let column = shifted(column, action.dx, self.columns());
         shifted(row, action.dy, self.rows()) * self.columns() + column
     }
 }
 
-impl Lattice for Grid {
-    fn axes(&self) -> &[Axis] {
+impl StateLattice for PositionGrid {
+    fn axes(&self) -> &[LatticeAxis] {
         &self.axes
     }
 }

@@ -1,6 +1,6 @@
 use crate::discrete::grid::shifted;
 use crate::discrete::lattice::n_cells;
-use crate::{Axis, CondensationError, Lattice, StateSpace};
+use crate::{CondensationError, LatticeAxis, StateLattice, StateSpace};
 
 /// What a robot with a heading may do in one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,7 +31,7 @@ pub enum Maneuver {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HeadingGrid {
-    axes: [Axis; 3],
+    axes: [LatticeAxis; 3],
 }
 
 /// Columns and rows that one step ahead moves, by heading.
@@ -47,8 +47,8 @@ impl HeadingGrid {
     /// [`CondensationError::Extent`] when it has no state, or more than a `u32` counts.
     pub fn new(columns: usize, rows: usize) -> Result<Self, CondensationError> {
         n_cells("grid with headings", &[Self::HEADINGS, rows, columns])?;
-        let open = |len| Axis { len, is_cyclic: false };
-        Ok(Self { axes: [Axis { len: Self::HEADINGS, is_cyclic: true }, open(rows), open(columns)] })
+        let open = |len| LatticeAxis { len, is_cyclic: false };
+        Ok(Self { axes: [LatticeAxis { len: Self::HEADINGS, is_cyclic: true }, open(rows), open(columns)] })
     }
 
     /// The state at a place with a heading, if there is one.
@@ -92,8 +92,8 @@ impl StateSpace for HeadingGrid {
     }
 }
 
-impl Lattice for HeadingGrid {
-    fn axes(&self) -> &[Axis] {
+impl StateLattice for HeadingGrid {
+    fn axes(&self) -> &[LatticeAxis] {
         &self.axes
     }
 }

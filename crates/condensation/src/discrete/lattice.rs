@@ -2,7 +2,7 @@ use crate::{CondensationError, StateSpace};
 
 /// One direction of a lattice of states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Axis {
+pub struct LatticeAxis {
     /// How many steps it has.
     pub len: usize,
     /// Whether the last step neighbours the first, as with headings.
@@ -12,9 +12,9 @@ pub struct Axis {
 /// A state space whose states form a box, numbered with the last axis fastest.
 ///
 /// **Law**: the product of the axes' lengths is the number of states.
-pub trait Lattice: StateSpace {
+pub trait StateLattice: StateSpace {
     /// The axes, slowest first.
-    fn axes(&self) -> &[Axis];
+    fn axes(&self) -> &[LatticeAxis];
 }
 
 /// How many cells a box has, if it has any and a `u32` counts them (transitions store states so).

@@ -5,20 +5,20 @@ use crate::{CondensationError, SparseTransition, StateSpace};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Slip {
+pub struct SlipProbabilities {
     /// That nothing happens.
     pub stay_probability: f64,
     /// That another action happens, each of them equally likely.
     pub other_action_probability: f64,
 }
 
-impl Slip {
+impl SlipProbabilities {
     /// $`p(s' \mid s, a)`$ of an action in a space. [Kasprzak & Szynkiewicz, Sec. 2.2]
     ///
     /// ```
-    /// use wayfix_condensation::{Grid, Move, Slip, Transition};
-    /// let grid = Grid::new(3, 1)?;
-    /// let right = Slip { stay_probability: 0.25, other_action_probability: 0.0 }.transition(&grid, Move { dx: 1, dy: 0 })?;
+    /// use wayfix_condensation::{PositionGrid, GridMove, SlipProbabilities, TransitionModel};
+    /// let grid = PositionGrid::new(3, 1)?;
+    /// let right = SlipProbabilities { stay_probability: 0.25, other_action_probability: 0.0 }.transition(&grid, GridMove { dx: 1, dy: 0 })?;
     /// let mut predicted = [0.0; 3];
     /// right.predict(&[1.0, 0.0, 0.0], &mut predicted);
     /// assert_eq!(predicted, [0.25, 0.75, 0.0]);

@@ -4,7 +4,7 @@
 /// space leads to where a wall would stop it.
 ///
 /// ```
-/// use wayfix_condensation::{StateSpace, Transition};
+/// use wayfix_condensation::{StateSpace, TransitionModel};
 /// struct Ring(usize);
 /// impl StateSpace for Ring {
 ///     type Action = bool;

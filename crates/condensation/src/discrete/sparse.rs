@@ -1,12 +1,12 @@
 use crate::discrete::chunks::{CHUNK, map_chunks};
 use crate::discrete::dense::check_row;
 use crate::error::check_state;
-use crate::{CondensationError, Transition};
+use crate::{CondensationError, TransitionModel};
 
 /// The probabilities that are not zero, stored by where they lead, so that every state gathers what reaches it.
 ///
 /// ```
-/// use wayfix_condensation::{SparseTransition, Transition};
+/// use wayfix_condensation::{SparseTransition, TransitionModel};
 /// let around = SparseTransition::from_rows([vec![(1, 1.0)], vec![(2, 1.0)], vec![(0, 0.5), (2, 0.5)]])?;
 /// let mut predicted = [0.0; 3];
 /// around.predict(&[0.0, 0.0, 1.0], &mut predicted);
@@ -64,7 +64,7 @@ impl SparseTransition {
     }
 }
 
-impl Transition for SparseTransition {
+impl TransitionModel for SparseTransition {
     fn n_states(&self) -> usize {
         self.starts.len() - 1
     }

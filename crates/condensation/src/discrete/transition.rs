@@ -2,7 +2,7 @@
 ///
 /// Linear, so it carries any quantity that goes with the state, not belief alone. **Laws**: what comes out has the sum of what
 /// went in; nonnegative stays nonnegative.
-pub trait Transition {
+pub trait TransitionModel {
     /// How many states it speaks of.
     fn n_states(&self) -> usize;
 
@@ -10,7 +10,7 @@ pub trait Transition {
     fn predict(&self, belief: &[f64], predicted: &mut [f64]);
 }
 
-impl<T: Transition + ?Sized> Transition for &T {
+impl<T: TransitionModel + ?Sized> TransitionModel for &T {
     fn n_states(&self) -> usize {
         (**self).n_states()
     }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Dominance {
+pub enum DominantGrayCriterion {
     /// The three most frequent values, most frequent first, with their shares of the pixels: the paper's. They are often neighbours, and
     /// change with a pixel.
     Counts,
@@ -24,7 +24,7 @@ pub enum Dominance {
     },
 }
 
-impl Default for Dominance {
+impl Default for DominantGrayCriterion {
     /// Soft classes, with divisions counted that are about three per cent of the variance worse than the best.
     fn default() -> Self {
         Self::SoftClasses { softness: 0.03 }
@@ -33,7 +33,7 @@ impl Default for Dominance {
 
 type Density = [f64; 256];
 
-impl Dominance {
+impl DominantGrayCriterion {
     /// At most three pairs of grey value and density.
     pub(super) fn of(self, density: &Density) -> Vec<(f64, f64)> {
         match self {

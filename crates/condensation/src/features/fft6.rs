@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use crate::features::columns::ColumnSums;
-use crate::{CondensationError, FeatureTable, Picture, View, ViewFeature, ViewGrid};
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, Picture, View, ViewGrid};
 
 /// The moduli of the first six Fourier components of the grey values, $`[|F_{0,0}|, …, |F_{0,5}|]`$. [Kasprzak & Szynkiewicz, Eq. 7]
 ///
@@ -12,19 +12,19 @@ use crate::{CondensationError, FeatureTable, Picture, View, ViewFeature, ViewGri
 /// The inner sums are those of the columns, which neighbouring views share.
 ///
 /// ```
-/// use wayfix_condensation::{Fft6, Picture, ViewFeature};
+/// use wayfix_condensation::{Fft6Descriptor, Picture, GlobalDescriptor};
 /// let stripes = Picture::from_rgb(2, 1, vec![90, 90, 90, 10, 10, 10])?;
 /// let mut features = [0.0; 6];
-/// Fft6.extract(&stripes.whole(), &mut features);
+/// Fft6Descriptor.extract(&stripes.whole(), &mut features);
 /// assert!((features[0] - 50.0).abs() < 1e-12 && (features[1] - 40.0).abs() < 1e-12);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Fft6;
+pub struct Fft6Descriptor;
 
 const N: usize = 6;
 
-impl ViewFeature for Fft6 {
+impl GlobalDescriptor for Fft6Descriptor {
     fn n_components(&self) -> usize {
         N
     }
@@ -39,9 +39,9 @@ impl ViewFeature for Fft6 {
         moduli(&columns, &waves(view.width()), view.n_pixels(), features);
     }
 
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
+    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
         views.check(scene)?;
-        let mut table = FeatureTable::zeros(views.grid(), N);
+        let mut table = DescriptorTable::zeros(views.grid(), N);
         let (view_width, view_height) = views.view_size();
         let waves = waves(view_width);
         let pixel = |x, y| [u64::from(scene.grey()[y * scene.width() + x])];

@@ -1,28 +1,28 @@
-use crate::features::dominance::Dominance;
+use crate::features::dominance::DominantGrayCriterion;
 use crate::features::histogram::{self, Histogram};
-use crate::{CondensationError, FeatureTable, Picture, View, ViewFeature, ViewGrid};
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, Picture, View, ViewGrid};
 
 /// Three dominating grey values and their densities: $`[I_1, I_2, I_3, ρ(I_1), ρ(I_2), ρ(I_3)]`$. [Kasprzak & Szynkiewicz, Sec. 3.3]
 ///
-/// What dominates is up to [`Dominance`]. Where there are fewer than three, the last repeats with density zero.
+/// What dominates is up to [`DominantGrayCriterion`]. Where there are fewer than three, the last repeats with density zero.
 ///
 /// ```
-/// use wayfix_condensation::{Dominance, Hist6, Picture, ViewFeature};
+/// use wayfix_condensation::{DominantGrayCriterion, Hist6Descriptor, Picture, GlobalDescriptor};
 /// let picture = Picture::from_rgb(4, 1, [10_u8, 10, 60, 200].iter().flat_map(|&grey| [grey; 3]).collect())?;
 /// let mut features = [0.0; 6];
-/// Hist6 { dominance: Dominance::Classes }.extract(&picture.whole(), &mut features);
+/// Hist6Descriptor { dominance: DominantGrayCriterion::Classes }.extract(&picture.whole(), &mut features);
 /// assert_eq!(features, [10.0, 60.0, 200.0, 0.5, 0.25, 0.25]);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Hist6 {
+pub struct Hist6Descriptor {
     /// What makes a grey value dominate.
-    pub dominance: Dominance,
+    pub dominance: DominantGrayCriterion,
 }
 
 const N: usize = 6;
 
-impl ViewFeature for Hist6 {
+impl GlobalDescriptor for Hist6Descriptor {
     fn n_components(&self) -> usize {
         N
     }
@@ -31,9 +31,9 @@ impl ViewFeature for Hist6 {
         self.describe(&histogram::of_view(view), features);
     }
 
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
+    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
         views.check(scene)?;
-        let mut table = FeatureTable::zeros(views.grid(), N);
+        let mut table = DescriptorTable::zeros(views.grid(), N);
         histogram::for_each_view(scene, views, |state, histogram| {
             self.describe(histogram, table.row_mut(state));
         });
@@ -41,7 +41,7 @@ impl ViewFeature for Hist6 {
     }
 }
 
-impl Hist6 {
+impl Hist6Descriptor {
     fn describe(&self, histogram: &Histogram, features: &mut [f64]) {
         let n_pixels = f64::from(histogram.iter().sum::<u32>());
         let density = histogram.map(|count| f64::from(count) / n_pixels);

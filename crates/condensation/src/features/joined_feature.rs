@@ -1,24 +1,24 @@
-use crate::{CondensationError, FeatureTable, Picture, View, ViewFeature, ViewGrid};
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, Picture, View, ViewGrid};
 
 /// Several features side by side as one.
 ///
 /// ```
-/// use wayfix_condensation::{Fft6, Hist6, JoinedFeature, MeanVar, ViewFeature};
-/// let all = JoinedFeature::new(vec![Box::new(MeanVar), Box::new(Fft6), Box::new(Hist6::default())]);
+/// use wayfix_condensation::{Fft6Descriptor, Hist6Descriptor, JoinedDescriptor, MeanVarDescriptor, GlobalDescriptor};
+/// let all = JoinedDescriptor::new(vec![Box::new(MeanVarDescriptor), Box::new(Fft6Descriptor), Box::new(Hist6Descriptor::default())]);
 /// assert_eq!(all.n_components(), 18);
 /// ```
-pub struct JoinedFeature {
-    parts: Vec<Box<dyn ViewFeature + Send>>,
+pub struct JoinedDescriptor {
+    parts: Vec<Box<dyn GlobalDescriptor + Send>>,
 }
 
-impl JoinedFeature {
+impl JoinedDescriptor {
     /// In that order.
-    pub fn new(parts: Vec<Box<dyn ViewFeature + Send>>) -> Self {
+    pub fn new(parts: Vec<Box<dyn GlobalDescriptor + Send>>) -> Self {
         Self { parts }
     }
 }
 
-impl ViewFeature for JoinedFeature {
+impl GlobalDescriptor for JoinedDescriptor {
     fn n_components(&self) -> usize {
         self.parts.iter().map(|part| part.n_components()).sum()
     }
@@ -32,8 +32,8 @@ impl ViewFeature for JoinedFeature {
         }
     }
 
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
-        let mut joined = FeatureTable::zeros(views.grid(), self.n_components());
+    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
+        let mut joined = DescriptorTable::zeros(views.grid(), self.n_components());
         let mut begin = 0;
         for part in &self.parts {
             let table = part.extract_all(scene, views)?;

@@ -1,20 +1,20 @@
 use crate::features::columns::ColumnSums;
-use crate::{CondensationError, FeatureTable, Picture, View, ViewFeature, ViewGrid};
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, Picture, View, ViewGrid};
 
 /// Mean and standard deviation of red, green and blue: $`[m_1, m_2, m_3, σ_1, σ_2, σ_3]`$. [Kasprzak & Szynkiewicz, Sec. 3.2]
 ///
 /// ```
-/// use wayfix_condensation::{MeanVar, Picture, ViewFeature};
+/// use wayfix_condensation::{MeanVarDescriptor, Picture, GlobalDescriptor};
 /// let picture = Picture::from_rgb(2, 1, vec![10, 7, 0, 30, 7, 0])?;
 /// let mut features = [0.0; 6];
-/// MeanVar.extract(&picture.whole(), &mut features);
+/// MeanVarDescriptor.extract(&picture.whole(), &mut features);
 /// assert_eq!(features, [20.0, 7.0, 0.0, 10.0, 0.0, 0.0]);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct MeanVar;
+pub struct MeanVarDescriptor;
 
-impl ViewFeature for MeanVar {
+impl GlobalDescriptor for MeanVarDescriptor {
     fn n_components(&self) -> usize {
         6
     }
@@ -29,9 +29,9 @@ impl ViewFeature for MeanVar {
         write(&sums, view.n_pixels(), features);
     }
 
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
+    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
         views.check(scene)?;
-        let mut table = FeatureTable::zeros(views.grid(), 6);
+        let mut table = DescriptorTable::zeros(views.grid(), 6);
         let (view_width, view_height) = views.view_size();
         let pixel = |x, y| terms(scene.pixels()[y * scene.width() + x]);
         let mut integral = vec![[0; 6]; scene.width() + 1];

@@ -12,12 +12,12 @@ mod table;
 mod view;
 mod view_grid;
 
-pub use dominance::Dominance;
-pub use fft6::Fft6;
-pub use hist6::Hist6;
-pub use joined_feature::JoinedFeature;
-pub use mean_var::MeanVar;
+pub use dominance::DominantGrayCriterion;
+pub use fft6::Fft6Descriptor;
+pub use hist6::Hist6Descriptor;
+pub use joined_feature::JoinedDescriptor;
+pub use mean_var::MeanVarDescriptor;
 pub use picture::Picture;
-pub use table::{FeatureTable, ViewFeature};
+pub use table::{DescriptorTable, GlobalDescriptor};
 pub use view::View;
 pub use view_grid::ViewGrid;

@@ -1,10 +1,10 @@
-use crate::discrete::Grid;
+use crate::discrete::PositionGrid;
 use crate::{CondensationError, Picture, StateSpace, View, ViewGrid};
 
 /// A global feature of a view: a few numbers that tell views apart. Implement the first two methods to use your own.
 ///
 /// **Laws**: `extract` writes every component, finite ones; [`extract_all`](Self::extract_all) gives the same numbers to within rounding.
-pub trait ViewFeature: Sync {
+pub trait GlobalDescriptor: Sync {
     /// How many numbers it has.
     fn n_components(&self) -> usize;
 
@@ -15,9 +15,9 @@ pub trait ViewFeature: Sync {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the scene is not of the size that the views were laid out for.
-    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<FeatureTable, CondensationError> {
+    fn extract_all(&self, scene: &Picture, views: &ViewGrid) -> Result<DescriptorTable, CondensationError> {
         views.check(scene)?;
-        let mut table = FeatureTable::zeros(views.grid(), self.n_components());
+        let mut table = DescriptorTable::zeros(views.grid(), self.n_components());
         for state in 0..views.grid().n_states() {
             self.extract(&views.view(scene, state)?, table.row_mut(state));
         }
@@ -27,12 +27,12 @@ pub trait ViewFeature: Sync {
 
 /// The feature vector of every state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FeatureTable {
+pub struct DescriptorTable {
     n_components: usize,
     values: Vec<f64>,
 }
 
-impl FeatureTable {
+impl DescriptorTable {
     /// From vectors, one a state, of places that need not be views of one scene.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl FeatureTable {
         Ok(Self { n_components, values: rows.concat() })
     }
 
-    pub(crate) fn zeros(grid: &Grid, n_components: usize) -> Self {
+    pub(crate) fn zeros(grid: &PositionGrid, n_components: usize) -> Self {
         Self { n_components, values: vec![0.0; grid.n_states() * n_components] }
     }
 

@@ -1,4 +1,4 @@
-use crate::{CondensationError, Grid, Picture, View};
+use crate::{CondensationError, Picture, PositionGrid, View};
 
 /// The views of a scene: a window that moves in steps of so many pixels, one state a position. [Kasprzak & Szynkiewicz, Sec. 2.3]
 ///
@@ -15,7 +15,7 @@ pub struct ViewGrid {
     scene: (usize, usize),
     view: (usize, usize),
     step: usize,
-    grid: Grid,
+    grid: PositionGrid,
     lefts: Vec<usize>,
     tops: Vec<usize>,
 }
@@ -37,11 +37,11 @@ impl ViewGrid {
         }
         let positions = |scene: usize, view: usize| (0..=scene - view).step_by(step).collect::<Vec<_>>();
         let (lefts, tops) = (positions(scene.0, view.0), positions(scene.1, view.1));
-        Ok(Self { scene, view, step, grid: Grid::new(lefts.len(), tops.len())?, lefts, tops })
+        Ok(Self { scene, view, step, grid: PositionGrid::new(lefts.len(), tops.len())?, lefts, tops })
     }
 
     /// The states.
-    pub fn grid(&self) -> &Grid {
+    pub fn grid(&self) -> &PositionGrid {
         &self.grid
     }
 

@@ -5,7 +5,8 @@ use crate::learning::noise::moments;
 use crate::learning::response::Response;
 use crate::learning::whitener::Whitener;
 use crate::{
-    AppearanceParams, CondensationError, FeatureTable, Light, N_DISTURBANCES, Tail, ViewFeature, ViewSource,
+    AppearanceLearningParams, CondensationError, DescriptorTable, GlobalDescriptor, LightChange,
+    LikelihoodTail, N_DISTURBANCES, ViewSource,
 };
 
 /// How every state looks and how that varies: the density $`p(m \mid s)`$ of the measurement. [Kasprzak & Szynkiewicz, Sec. 3.1]
@@ -14,14 +15,14 @@ use crate::{
 /// m = M_s + A_s θ + v, \qquad θ ∼ N(0, Θ),\; v ∼ N(0, R_s)
 /// ```
 ///
-/// $`M_s`$ are the learned features. $`θ`$, the [`Disturbance`](crate::Disturbance), is the same in every view of a run: a shift of the camera and
+/// $`M_s`$ are the learned features. $`θ`$, the [`ViewDisturbance`](crate::ViewDisturbance), is the same in every view of a run: a shift of the camera and
 /// a change of the light. $`A_s`$ is how the features answer to it and $`R_s`$ what that leaves unexplained, both learned by shifting and
 /// relighting what was learned. For light far from that of learning there is one such model a *condition*, each around its own light.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Appearance {
+pub struct AppearanceModel {
     pub(super) conditions: Vec<Condition>,
     pub(super) prior: [f64; N_DISTURBANCES], // variances
-    pub(super) tail: Tail,
+    pub(super) tail: LikelihoodTail,
     pub(super) n_components: usize,
     half_spacing: f64,
 }
@@ -29,8 +30,8 @@ pub struct Appearance {
 /// Every state in one of the lights.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Condition {
-    pub(super) light: Light,
-    pub(super) features: FeatureTable,
+    pub(super) light: LightChange,
+    pub(super) features: DescriptorTable,
     pub(super) states: Vec<StateModel>,
 }
 
@@ -42,22 +43,22 @@ pub(super) struct StateModel {
     pub(super) sensitivities: Vec<[f64; N_DISTURBANCES]>, // a row a component
 }
 
-impl Appearance {
+impl AppearanceModel {
     /// Learns every state of a source, under every condition of the parameters.
     ///
     /// # Errors
     /// [`CondensationError::Parameter`], [`CondensationError::Empty`] without conditions, or what the source refuses.
     pub fn learn(
         source: &dyn ViewSource,
-        feature: &dyn ViewFeature,
-        params: &AppearanceParams,
+        feature: &dyn GlobalDescriptor,
+        params: &AppearanceLearningParams,
     ) -> Result<Self, CondensationError> {
         params.check()?;
-        let learn = |light: &Light| Condition::learn(source, feature, light, params);
+        let learn = |light: &LightChange| Condition::learn(source, feature, light, params);
         Ok(Self {
-            conditions: params.lights.iter().map(learn).collect::<Result<_, _>>()?,
-            prior: params.disturbance.to_array().map(|sigma| sigma * sigma),
-            tail: params.tail,
+            conditions: params.light_changes.iter().map(learn).collect::<Result<_, _>>()?,
+            prior: params.disturbance_sigmas.to_array().map(|sigma| sigma * sigma),
+            tail: params.likelihood_tail,
             n_components: feature.n_components(),
             half_spacing: source.half_spacing(),
         })
@@ -69,7 +70,7 @@ impl Appearance {
     ///
     /// # Errors
     /// [`CondensationError::Parameter`] when `share` is not positive.
-    pub fn from_spread(features: FeatureTable, share: f64) -> Result<Self, CondensationError> {
+    pub fn from_spread(features: DescriptorTable, share: f64) -> Result<Self, CondensationError> {
         checked("share of the spread", share, share.is_finite() && share > 0.0, "finite and positive")?;
         let n_components = features.n_components();
         // A component that never varies weighs nothing, whatever its noise is said to be.
@@ -80,9 +81,9 @@ impl Appearance {
         let model = |row: &[f64]| StateModel::new(row, &blind, &noise);
         let states = features.rows().map(model).collect::<Result<_, _>>()?;
         Ok(Self {
-            conditions: vec![Condition { light: Light::SAME, features, states }],
+            conditions: vec![Condition { light: LightChange::SAME, features, states }],
             prior: [0.0; N_DISTURBANCES],
-            tail: Tail::Gaussian,
+            tail: LikelihoodTail::Gaussian,
             n_components,
             half_spacing: f64::INFINITY,
         })
@@ -104,12 +105,12 @@ impl Appearance {
     }
 
     /// The light of a condition, if there is one of that number.
-    pub fn light(&self, condition: usize) -> Option<Light> {
+    pub fn light(&self, condition: usize) -> Option<LightChange> {
         self.conditions.get(condition).map(|condition| condition.light)
     }
 
     /// The learned features in the light of a condition, if there is one of that number.
-    pub fn features(&self, condition: usize) -> Option<&FeatureTable> {
+    pub fn features(&self, condition: usize) -> Option<&DescriptorTable> {
         self.conditions.get(condition).map(|condition| &condition.features)
     }
 
@@ -131,13 +132,13 @@ impl Appearance {
 impl Condition {
     fn learn(
         source: &dyn ViewSource,
-        feature: &dyn ViewFeature,
-        light: &Light,
-        params: &AppearanceParams,
+        feature: &dyn GlobalDescriptor,
+        light: &LightChange,
+        params: &AppearanceLearningParams,
     ) -> Result<Self, CondensationError> {
         let features = source.features(feature, (0, 0), light)?;
         let response = Response::measure(source, feature, light, &features)?;
-        let noise = params.noise.covariances(&features, &response.residuals);
+        let noise = params.noise_covariance.covariances(&features, &response.residuals);
         let models = features.rows().zip(&response.sensitivities).zip(&noise);
         let states = models.map(|((row, a), r)| StateModel::new(row, a, r)).collect::<Result<_, _>>()?;
         Ok(Self { light: *light, features, states })

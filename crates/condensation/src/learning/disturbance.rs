@@ -1,6 +1,6 @@
-use crate::Light;
+use crate::LightChange;
 
-/// How many numbers describe a [`Disturbance`].
+/// How many numbers describe a [`ViewDisturbance`].
 pub const N_DISTURBANCES: usize = 5;
 
 /// What is the same in all views of a run and unknown before it: by how much views are shifted and the light differs.
@@ -9,7 +9,7 @@ pub const N_DISTURBANCES: usize = 5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Disturbance {
+pub struct ViewDisturbance {
     /// Shift to the right, in pixels.
     pub dx: f64,
     /// Shift down, in pixels.
@@ -22,15 +22,15 @@ pub struct Disturbance {
     pub log_gamma: f64,
 }
 
-impl Disturbance {
+impl ViewDisturbance {
     /// In the order of the fields.
     pub fn to_array(self) -> [f64; N_DISTURBANCES] {
         [self.dx, self.dy, self.gain, self.offset, self.log_gamma]
     }
 
     /// The light of a condition, changed by this.
-    pub fn applied_to(&self, light: Light) -> Light {
-        Light {
+    pub fn applied_to(&self, light: LightChange) -> LightChange {
+        LightChange {
             gain: light.gain + self.gain,
             offset: light.offset + self.offset,
             gamma: light.gamma * self.log_gamma.exp(),

@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::LogWeight;
 
 use crate::error::checked;
-use crate::{Appearance, CondensationError, N_DISTURBANCES};
+use crate::{AppearanceModel, CondensationError, N_DISTURBANCES};
 
 const N: usize = N_DISTURBANCES;
 
@@ -9,7 +9,7 @@ const N: usize = N_DISTURBANCES;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum Tail {
+pub enum LikelihoodTail {
     /// $`e^{-d^2 / 2}`$, as in the paper: a single feature that jumps decides against the true place for good.
     Gaussian,
     /// $`(1 + d^2 / ν)^{-(ν + k) / 2}`$ for $`k`$ components: outliers count, but not for ever.
@@ -19,14 +19,14 @@ pub enum Tail {
     },
 }
 
-impl Default for Tail {
+impl Default for LikelihoodTail {
     /// Four degrees of freedom, the usual compromise in robust regression. [Lange et al. 1989]
     fn default() -> Self {
         Self::StudentT { dof: 4.0 }
     }
 }
 
-impl Tail {
+impl LikelihoodTail {
     pub(super) fn check(&self) -> Result<(), CondensationError> {
         let Self::StudentT { dof } = *self else { return Ok(()) };
         checked("degrees of freedom", dof, dof.is_finite() && dof > 0.0, "finite and positive").map(|_| ())
@@ -52,7 +52,7 @@ pub(crate) struct DisturbanceBelief {
     pub(crate) covariance: [[f64; N]; N],
 }
 
-impl Appearance {
+impl AppearanceModel {
     /// Before anything was seen.
     pub(crate) fn prior_belief(&self) -> DisturbanceBelief {
         let covariance =

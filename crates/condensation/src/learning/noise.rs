@@ -1,32 +1,37 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::checked;
-use crate::{CondensationError, FeatureTable};
+use crate::{CondensationError, DescriptorTable};
 
 /// How the covariance of noise is learned from few samples a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct NoiseParams {
+pub struct NoiseCovarianceParams {
     /// Share of the covariance that is pooled over all states, the rest being the state's own: shrinkage.
-    pub pooling: f64,
+    pub pooled_share: f64,
     /// Least variance of a component, as a share of its variance over the states.
-    pub floor: f64,
+    pub min_variance_share: f64,
 }
 
-impl Default for NoiseParams {
+impl Default for NoiseCovarianceParams {
     fn default() -> Self {
-        Self { pooling: 0.5, floor: 3e-4 }
+        Self { pooled_share: 0.5, min_variance_share: 3e-4 }
     }
 }
 
-impl NoiseParams {
+impl NoiseCovarianceParams {
     pub(super) fn check(&self) -> Result<(), CondensationError> {
-        checked("pooling", self.pooling, self.pooling > 0.0 && self.pooling <= 1.0, "in (0, 1]")?;
+        checked(
+            "pooling",
+            self.pooled_share,
+            self.pooled_share > 0.0 && self.pooled_share <= 1.0,
+            "in (0, 1]",
+        )?;
         checked(
             "noise floor",
-            self.floor,
-            self.floor >= 0.0 && self.floor.is_finite(),
+            self.min_variance_share,
+            self.min_variance_share >= 0.0 && self.min_variance_share.is_finite(),
             "finite and not negative",
         )?;
         Ok(())
@@ -35,7 +40,7 @@ impl NoiseParams {
     /// Covariance of every state from residuals `residuals[sample][state]`.
     pub(super) fn covariances(
         &self,
-        features: &FeatureTable,
+        features: &DescriptorTable,
         residuals: &[Vec<DVector<f64>>],
     ) -> Vec<DMatrix<f64>> {
         let (n, k) = (features.n_states(), features.n_components());
@@ -48,15 +53,16 @@ impl NoiseParams {
         let mut pooled = own.iter().fold(DMatrix::zeros(k, k), |sum, c| sum + c) / n as f64;
         for (i, (mean, variance)) in moments(features).into_iter().enumerate() {
             // A component that never varies has no spread to take a share of; it must not make the covariance singular.
-            pooled[(i, i)] += (self.floor * variance + 1e-12 * (1.0 + mean * mean)) / self.pooling;
+            pooled[(i, i)] +=
+                (self.min_variance_share * variance + 1e-12 * (1.0 + mean * mean)) / self.pooled_share;
         }
-        own.iter_mut().for_each(|c| *c = &*c * (1.0 - self.pooling) + &pooled * self.pooling);
+        own.iter_mut().for_each(|c| *c = &*c * (1.0 - self.pooled_share) + &pooled * self.pooled_share);
         own
     }
 }
 
 /// Mean and variance of every component over the states.
-pub(super) fn moments(features: &FeatureTable) -> Vec<(f64, f64)> {
+pub(super) fn moments(features: &DescriptorTable) -> Vec<(f64, f64)> {
     let n = features.n_states() as f64;
     let component = |i: usize| features.rows().map(move |row| row[i]);
     (0..features.n_components())

@@ -1,11 +1,11 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::error::{check_size, check_state};
-use crate::{Appearance, CondensationError, FeatureTable};
+use crate::{AppearanceModel, CondensationError, DescriptorTable};
 
 /// Least, greatest and mean p-value over pairs, as in the paper's Tables 1 and 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PValues {
+pub struct PValueStatistics {
     /// The least.
     pub min: f64,
     /// The greatest.
@@ -14,7 +14,7 @@ pub struct PValues {
     pub mean: f64,
 }
 
-impl Appearance {
+impl AppearanceModel {
     /// How likely the features of a view of `state` are as far from the learned ones as `measurement` is, or farther.
     ///
     /// The chi-squared tail at the squared Mahalanobis distance $`(m - M_s)^T (A_s Θ A_s^T + R_s)^{-1} (m - M_s)`$ in the first condition: near
@@ -29,7 +29,7 @@ impl Appearance {
     }
 
     /// P-values of all pairs of different states (Table 1): how distinct the learned views are. None for a single state.
-    pub fn p_values_between_states(&self) -> Option<PValues> {
+    pub fn p_values_between_states(&self) -> Option<PValueStatistics> {
         let rows = || self.conditions[0].features.rows().enumerate();
         summarize(rows().flat_map(|(state, _)| {
             rows()
@@ -42,7 +42,7 @@ impl Appearance {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the table is of other states or features.
-    pub fn p_values_of(&self, seen: &FeatureTable) -> Result<PValues, CondensationError> {
+    pub fn p_values_of(&self, seen: &DescriptorTable) -> Result<PValueStatistics, CondensationError> {
         check_size("table of features", self.n_states(), seen.n_states())?;
         check_size("feature vector", self.n_components, seen.n_components())?;
         let each = seen.rows().enumerate().map(|(state, row)| self.tail_probability(state, row));
@@ -60,12 +60,12 @@ impl Appearance {
     }
 }
 
-fn summarize(values: impl Iterator<Item = f64>) -> Option<PValues> {
+fn summarize(values: impl Iterator<Item = f64>) -> Option<PValueStatistics> {
     let (mut n, mut sum) = (0_usize, 0.0);
     let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
     for value in values {
         (n, sum) = (n + 1, sum + value);
         (min, max) = (min.min(value), max.max(value));
     }
-    (n > 0).then(|| PValues { min, max, mean: sum / n as f64 })
+    (n > 0).then(|| PValueStatistics { min, max, mean: sum / n as f64 })
 }

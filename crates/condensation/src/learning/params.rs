@@ -1,22 +1,22 @@
 use crate::error::checked;
-use crate::{CondensationError, Disturbance, Light, NoiseParams, Tail};
+use crate::{CondensationError, LightChange, LikelihoodTail, NoiseCovarianceParams, ViewDisturbance};
 
 /// How appearance is learned. None of it depends on the scene.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct AppearanceParams {
+pub struct AppearanceLearningParams {
     /// Standard deviations of the disturbance around each condition.
-    pub disturbance: Disturbance,
+    pub disturbance_sigmas: ViewDisturbance,
     /// The lights of the conditions, as they differ from that of learning.
-    pub lights: Vec<Light>,
+    pub light_changes: Vec<LightChange>,
     /// Noise that no disturbance explains.
-    pub noise: NoiseParams,
+    pub noise_covariance: NoiseCovarianceParams,
     /// How fast likelihood falls with distance.
-    pub tail: Tail,
+    pub likelihood_tail: LikelihoodTail,
 }
 
-impl AppearanceParams {
+impl AppearanceLearningParams {
     /// For views normalized from statistics of the whole scene.
     ///
     /// What is left is a shift of some pixels (a standard deviation of 2.4 on each axis, so that five pixels are no surprise) and a light
@@ -24,10 +24,10 @@ impl AppearanceParams {
     /// but not exactly of the form gain, offset, gamma, so a tenth is allowed for.
     pub fn normalized() -> Self {
         Self {
-            disturbance: Disturbance { dx: 2.4, dy: 2.4, gain: 0.1, offset: 8.0, log_gamma: 0.1 },
-            lights: vec![Light::SAME],
-            noise: NoiseParams::default(),
-            tail: Tail::default(),
+            disturbance_sigmas: ViewDisturbance { dx: 2.4, dy: 2.4, gain: 0.1, offset: 8.0, log_gamma: 0.1 },
+            light_changes: vec![LightChange::SAME],
+            noise_covariance: NoiseCovarianceParams::default(),
+            likelihood_tail: LikelihoodTail::default(),
         }
     }
 
@@ -37,28 +37,35 @@ impl AppearanceParams {
     /// next. The features are nearly linear in the offset, so that one of ± 20 grey levels (one sigma) needs no conditions.
     ///
     /// ```
-    /// use wayfix_condensation::AppearanceParams;
-    /// assert_eq!(AppearanceParams::online().lights.len(), 15);
+    /// use wayfix_condensation::AppearanceLearningParams;
+    /// assert_eq!(AppearanceLearningParams::online().lights.len(), 15);
     /// ```
     pub fn online() -> Self {
         let gammas = (-2..=2).map(|i| 2.0_f64.powf(f64::from(i) / 3.0));
-        let lights = gammas.flat_map(|gamma| [0.6, 0.85, 1.2].map(|gain| Light { gain, offset: 0.0, gamma }));
+        let lights =
+            gammas.flat_map(|gamma| [0.6, 0.85, 1.2].map(|gain| LightChange { gain, offset: 0.0, gamma }));
         Self {
-            disturbance: Disturbance { dx: 2.4, dy: 2.4, gain: 0.12, offset: 20.0, log_gamma: 0.12 },
-            lights: lights.collect(),
+            disturbance_sigmas: ViewDisturbance {
+                dx: 2.4,
+                dy: 2.4,
+                gain: 0.12,
+                offset: 20.0,
+                log_gamma: 0.12,
+            },
+            light_changes: lights.collect(),
             ..Self::normalized()
         }
     }
 
     pub(super) fn check(&self) -> Result<(), CondensationError> {
-        for sigma in self.disturbance.to_array() {
+        for sigma in self.disturbance_sigmas.to_array() {
             let valid = sigma.is_finite() && sigma >= 0.0;
             checked("sigma of the disturbance", sigma, valid, "finite and not negative")?;
         }
-        if self.lights.is_empty() {
+        if self.light_changes.is_empty() {
             return Err(CondensationError::Empty { what: "conditions" });
         }
-        self.noise.check()?;
-        self.tail.check()
+        self.noise_covariance.check()?;
+        self.likelihood_tail.check()
     }
 }

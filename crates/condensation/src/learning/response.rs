@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::{CondensationError, FeatureTable, Light, N_DISTURBANCES, ViewFeature, ViewSource};
+use crate::{CondensationError, DescriptorTable, GlobalDescriptor, LightChange, N_DISTURBANCES, ViewSource};
 
 /// Pixels of a shift for the derivative.
 const SHIFT: i32 = 4;
@@ -26,19 +26,19 @@ pub(super) struct Response {
 impl Response {
     pub(super) fn measure(
         source: &dyn ViewSource,
-        feature: &dyn ViewFeature,
-        light: &Light,
-        features: &FeatureTable,
+        feature: &dyn GlobalDescriptor,
+        light: &LightChange,
+        features: &DescriptorTable,
     ) -> Result<Self, CondensationError> {
         let shifted = |dx, dy| source.features(feature, (dx, dy), light);
-        let relit = |light: Light| source.features(feature, (0, 0), &light);
+        let relit = |light: LightChange| source.features(feature, (0, 0), &light);
         let (right, left) = (shifted(SHIFT, 0)?, shifted(-SHIFT, 0)?);
         let (down, up) = (shifted(0, SHIFT)?, shifted(0, -SHIFT)?);
-        let dim = Light { gain: light.gain * DIM, ..*light };
+        let dim = LightChange { gain: light.gain * DIM, ..*light };
         let dimmed = relit(dim)?;
-        let lifted = relit(Light { offset: light.offset + LIFT, ..dim })?;
-        let bent = relit(Light { gamma: light.gamma * BEND, ..*light })?;
-        let unbent = relit(Light { gamma: light.gamma / BEND, ..*light })?;
+        let lifted = relit(LightChange { offset: light.offset + LIFT, ..dim })?;
+        let bent = relit(LightChange { gamma: light.gamma * BEND, ..*light })?;
+        let unbent = relit(LightChange { gamma: light.gamma / BEND, ..*light })?;
 
         let sensitivity = |state: usize| {
             let moved = |shift| source.displacement(state, shift);
@@ -72,6 +72,6 @@ impl Response {
     }
 }
 
-fn difference(plus: &FeatureTable, minus: &FeatureTable, state: usize) -> DVector<f64> {
+fn difference(plus: &DescriptorTable, minus: &DescriptorTable, state: usize) -> DVector<f64> {
     DVector::from_row_slice(plus.row(state)) - DVector::from_row_slice(minus.row(state))
 }

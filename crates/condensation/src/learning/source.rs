@@ -1,4 +1,6 @@
-use crate::{CondensationError, FeatureTable, Light, Picture, StateSpace, ViewFeature, ViewGrid};
+use crate::{
+    CondensationError, DescriptorTable, GlobalDescriptor, LightChange, Picture, StateSpace, ViewGrid,
+};
 
 /// Where learned views come from, and how they would look shifted and in another light.
 pub trait ViewSource {
@@ -11,10 +13,10 @@ pub trait ViewSource {
     /// When the light is not valid.
     fn features(
         &self,
-        feature: &dyn ViewFeature,
+        feature: &dyn GlobalDescriptor,
         shift: (i32, i32),
-        light: &Light,
-    ) -> Result<FeatureTable, CondensationError>;
+        light: &LightChange,
+    ) -> Result<DescriptorTable, CondensationError>;
 
     /// By how much the view of `state` really moves when asked to by `shift`: less where the scene ends.
     fn displacement(&self, state: usize, shift: (i32, i32)) -> (f64, f64);
@@ -51,12 +53,12 @@ impl ViewSource for SceneViews<'_> {
 
     fn features(
         &self,
-        feature: &dyn ViewFeature,
+        feature: &dyn GlobalDescriptor,
         (dx, dy): (i32, i32),
-        light: &Light,
-    ) -> Result<FeatureTable, CondensationError> {
+        light: &LightChange,
+    ) -> Result<DescriptorTable, CondensationError> {
         let views = self.views.moved(dx, dy);
-        if *light == Light::SAME {
+        if *light == LightChange::SAME {
             return feature.extract_all(self.scene, &views);
         }
         feature.extract_all(&light.apply(self.scene)?, &views)
@@ -102,17 +104,17 @@ impl ViewSource for PictureViews<'_> {
 
     fn features(
         &self,
-        feature: &dyn ViewFeature,
+        feature: &dyn GlobalDescriptor,
         (dx, dy): (i32, i32),
-        light: &Light,
-    ) -> Result<FeatureTable, CondensationError> {
+        light: &LightChange,
+    ) -> Result<DescriptorTable, CondensationError> {
         let mut rows = Vec::with_capacity(self.pictures.len());
         for picture in self.pictures {
             let mut row = vec![0.0; feature.n_components()];
             feature.extract(&light.apply(picture)?.shifted(dx, dy).whole(), &mut row);
             rows.push(row);
         }
-        FeatureTable::from_rows(&rows)
+        DescriptorTable::from_rows(&rows)
     }
 
     fn displacement(&self, _: usize, (dx, dy): (i32, i32)) -> (f64, f64) {

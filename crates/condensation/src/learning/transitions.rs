@@ -6,10 +6,10 @@ use crate::{CondensationError, SparseTransition, StateSpace};
 /// Where moves led: counts from which transition probabilities are learned. [Kasprzak & Szynkiewicz, Sec. 2.2]
 ///
 /// ```
-/// use wayfix_condensation::{Grid, Move, MoveLog, Transition};
-/// let grid = Grid::new(3, 1)?;
-/// let right = Move { dx: 1, dy: 0 };
-/// let mut log = MoveLog::new(&grid);
+/// use wayfix_condensation::{PositionGrid, GridMove, MoveCounts, TransitionModel};
+/// let grid = PositionGrid::new(3, 1)?;
+/// let right = GridMove { dx: 1, dy: 0 };
+/// let mut log = MoveCounts::new(&grid);
 /// for to in [1, 1, 0, 1] {
 ///     log.record(0, right, to)?;
 /// }
@@ -20,12 +20,12 @@ use crate::{CondensationError, SparseTransition, StateSpace};
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct MoveLog<'a, S: StateSpace> {
+pub struct MoveCounts<'a, S: StateSpace> {
     space: &'a S,
     counts: Vec<BTreeMap<(usize, usize), u32>>, // by action: from, to
 }
 
-impl<'a, S: StateSpace> MoveLog<'a, S>
+impl<'a, S: StateSpace> MoveCounts<'a, S>
 where
     S::Action: PartialEq,
 {

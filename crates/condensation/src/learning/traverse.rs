@@ -4,24 +4,24 @@ use wayfix_estimation_traits::LogWeight;
 use crate::error::{check_size, checked};
 use crate::learning::noise::moments;
 use crate::learning::whitener::Whitener;
-use crate::{CondensationError, FeatureTable, Tail};
+use crate::{CondensationError, DescriptorTable, LikelihoodTail};
 
 /// What is assumed of a traverse. None of it depends on the route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct TraverseParams {
+pub struct RouteTraverseParams {
     /// Places so far apart count as the same, so that how their views differ is noise.
-    pub tolerance: usize,
+    pub same_place_tolerance: usize,
     /// Least variance of a component, as a share of its variance over the places.
-    pub floor: f64,
+    pub min_variance_share: f64,
     /// How fast likelihood falls with distance.
-    pub tail: Tail,
+    pub likelihood_tail: LikelihoodTail,
 }
 
-impl Default for TraverseParams {
-    /// Two places, as is usual for frames of video; the floor of [`NoiseParams`](crate::NoiseParams).
+impl Default for RouteTraverseParams {
+    /// Two places, as is usual for frames of video; the floor of [`NoiseCovarianceParams`](crate::NoiseCovarianceParams).
     fn default() -> Self {
-        Self { tolerance: 2, floor: 3e-4, tail: Tail::default() }
+        Self { same_place_tolerance: 2, min_variance_share: 3e-4, likelihood_tail: LikelihoodTail::default() }
     }
 }
 
@@ -38,34 +38,42 @@ impl Default for TraverseParams {
 /// up to the first $`ρ_k \le 0`$, and the views of $`τ`$ places count as one: log-likelihoods are divided by $`τ`$. [Sokal 1997]
 ///
 /// ```
-/// use wayfix_condensation::{FeatureTable, Traverse, TraverseParams};
+/// use wayfix_condensation::{DescriptorTable, RouteTraverse, RouteTraverseParams};
 /// let place = |k: usize| (0.3 * k as f64).sin();
-/// let learned = FeatureTable::from_rows(&(0..40).map(|k| vec![place(k), place(2 * k)]).collect::<Vec<_>>())?;
-/// let traverse = Traverse::learn(&learned, &TraverseParams::default())?;
+/// let learned = DescriptorTable::from_rows(&(0..40).map(|k| vec![place(k), place(2 * k)]).collect::<Vec<_>>())?;
+/// let traverse = RouteTraverse::learn(&learned, &RouteTraverseParams::default())?;
 /// let log_likelihoods = traverse.log_likelihoods(&[place(7), place(14)])?;
 /// assert!(log_likelihoods.iter().all(|l| *l <= log_likelihoods[7]));
 /// assert!(traverse.log_likelihoods(&[f64::NAN, 0.0]).is_err());
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Traverse {
+pub struct RouteTraverse {
     places: Vec<Vec<f64>>, // whitened
     whitener: Whitener,
     correlation_length: f64,
-    tail: Tail,
+    tail: LikelihoodTail,
 }
 
-impl Traverse {
+impl RouteTraverse {
     /// Learns the features of places in the order in which they were passed.
     ///
     /// # Errors
     /// [`CondensationError::Parameter`], [`CondensationError::Empty`] when there are no two places that far apart,
     /// [`CondensationError::Gaussian`] when the features are too large for their noise.
-    pub fn learn(features: &FeatureTable, params: &TraverseParams) -> Result<Self, CondensationError> {
-        let lag = checked("tolerance", params.tolerance as f64, params.tolerance > 0, "at least 1")? as usize;
-        let floor = params.floor;
+    pub fn learn(
+        features: &DescriptorTable,
+        params: &RouteTraverseParams,
+    ) -> Result<Self, CondensationError> {
+        let lag = checked(
+            "tolerance",
+            params.same_place_tolerance as f64,
+            params.same_place_tolerance > 0,
+            "at least 1",
+        )? as usize;
+        let floor = params.min_variance_share;
         checked("noise floor", floor, floor.is_finite() && floor >= 0.0, "finite and not negative")?;
-        params.tail.check()?;
+        params.likelihood_tail.check()?;
         let n_pairs = features.n_states().saturating_sub(lag);
         if n_pairs == 0 {
             return Err(CondensationError::Empty { what: "places that far apart" });
@@ -87,7 +95,12 @@ impl Traverse {
             white
         };
         let places: Vec<Vec<f64>> = features.rows().map(whitened).collect();
-        Ok(Self { correlation_length: correlation_length(&places), places, whitener, tail: params.tail })
+        Ok(Self {
+            correlation_length: correlation_length(&places),
+            places,
+            whitener,
+            tail: params.likelihood_tail,
+        })
     }
 
     /// How many places were learned.
@@ -164,22 +177,27 @@ mod tests {
 
     #[test]
     fn what_cannot_be_learned_from_is_refused() {
-        let two = FeatureTable::from_rows(&[vec![1.0], vec![2.0]]).unwrap();
-        let learn = |params: TraverseParams| Traverse::learn(&two, &params);
-        assert!(matches!(learn(TraverseParams::default()), Err(CondensationError::Empty { .. })));
-        let params = TraverseParams { tolerance: 0, ..TraverseParams::default() };
+        let two = DescriptorTable::from_rows(&[vec![1.0], vec![2.0]]).unwrap();
+        let learn = |params: RouteTraverseParams| RouteTraverse::learn(&two, &params);
+        assert!(matches!(learn(RouteTraverseParams::default()), Err(CondensationError::Empty { .. })));
+        let params = RouteTraverseParams { same_place_tolerance: 0, ..RouteTraverseParams::default() };
         assert!(matches!(learn(params), Err(CondensationError::Parameter { .. })));
-        let params = TraverseParams { tolerance: 1, floor: f64::NAN, ..TraverseParams::default() };
+        let params = RouteTraverseParams {
+            same_place_tolerance: 1,
+            min_variance_share: f64::NAN,
+            ..RouteTraverseParams::default()
+        };
         assert!(matches!(learn(params), Err(CondensationError::Parameter { .. })));
-        let traverse = learn(TraverseParams { tolerance: 1, ..TraverseParams::default() }).unwrap();
+        let traverse =
+            learn(RouteTraverseParams { same_place_tolerance: 1, ..RouteTraverseParams::default() }).unwrap();
         assert!(matches!(traverse.log_likelihoods(&[1.0, 2.0]), Err(CondensationError::Dimension { .. })));
     }
 
     /// Places that all look the same tell nothing, and break nothing.
     #[test]
     fn a_route_without_features_leaves_all_places_equally_likely() {
-        let grey = FeatureTable::from_rows(&vec![vec![7.0, 0.0]; 9]).unwrap();
-        let traverse = Traverse::learn(&grey, &TraverseParams::default()).unwrap();
+        let grey = DescriptorTable::from_rows(&vec![vec![7.0, 0.0]; 9]).unwrap();
+        let traverse = RouteTraverse::learn(&grey, &RouteTraverseParams::default()).unwrap();
         let log_likelihoods = traverse.log_likelihoods(&[7.0, 0.0]).unwrap();
         assert!(log_likelihoods.iter().all(|l| l.is_finite() && *l == log_likelihoods[0]));
     }

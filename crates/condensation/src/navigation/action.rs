@@ -1,13 +1,13 @@
 use rand::{Rng, RngExt};
 
 use crate::discrete::entropy;
-use crate::{BestState, Localizer, Routes, StateSpace};
+use crate::{BestState, ShortestPathLengths, StateSpace, ViewLocalizer};
 
 /// How the next action is chosen while the robot is not certain where it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum ActionChoice {
+pub enum ActionSelection {
     /// As if the best state were the true one: nearer to the goal. [Kasprzak & Szynkiewicz, Sec. 2.2 (c)]
     #[default]
     Greedy,
@@ -19,14 +19,14 @@ pub enum ActionChoice {
     },
 }
 
-impl ActionChoice {
+impl ActionSelection {
     /// The index of the action to take; none when there is no way. At a goal that is doubtful the greedy choice is a random action, since
     /// standing still shows nothing new.
     pub(super) fn choose<S: StateSpace, R: Rng + ?Sized>(
         self,
         space: &S,
-        routes: &Routes,
-        localizer: &Localizer,
+        routes: &ShortestPathLengths,
+        localizer: &ViewLocalizer,
         rng: &mut R,
     ) -> Option<usize> {
         let best = localizer.best();
@@ -56,7 +56,7 @@ impl ActionChoice {
 fn most_informative<S: StateSpace>(
     space: &S,
     open: &[usize],
-    localizer: &Localizer,
+    localizer: &ViewLocalizer,
     hypotheses: usize,
 ) -> Option<usize> {
     let candidates = candidates(localizer.belief(), hypotheses);
@@ -86,7 +86,7 @@ fn candidates(belief: &[f64], n: usize) -> Vec<BestState> {
 }
 
 /// $`\sum_i w_i\, H(p(j \mid \text{the view of } i))`$ over the candidates: each in turn is imagined to be the truth.
-fn expected_entropy(localizer: &Localizer, candidates: &[BestState]) -> f64 {
+fn expected_entropy(localizer: &ViewLocalizer, candidates: &[BestState]) -> f64 {
     let after = |truth: &BestState| {
         let log_weight = |c: &BestState| c.confidence.ln() + localizer.confusion(truth.state, c.state);
         let log_weights: Vec<f64> = candidates.iter().map(log_weight).collect();

@@ -8,61 +8,65 @@ use crate::error::{check_size, probability};
 use crate::learning::DisturbanceBelief;
 use crate::navigation::moment_transition::MomentTransition;
 use crate::{
-    Appearance, BestState, CondensationError, DiscreteFilter, Disturbance, Light, Outcome, Transition,
+    AppearanceModel, BestState, CondensationError, DiscreteFilter, LightChange, MeasurementOutcome,
+    TransitionModel, ViewDisturbance,
 };
 
 /// What a localizer assumes of the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct LocalizerParams {
+pub struct ViewLocalizerParams {
     /// Share of the belief that goes everywhere in a step: the robot carried off, a place where the model is wrong.
-    pub leak: f64,
+    pub kidnapping_probability: f64,
     /// How much the disturbance may drift in a step, as a share of its prior variance.
-    pub drift: f64,
+    pub disturbance_drift: f64,
 }
 
-impl Default for LocalizerParams {
+impl Default for ViewLocalizerParams {
     /// Carried off once in a thousand steps; a disturbance that takes as many to be forgotten.
     fn default() -> Self {
-        Self { leak: 1e-3, drift: 1e-3 }
+        Self { kidnapping_probability: 1e-3, disturbance_drift: 1e-3 }
     }
 }
 
 /// Place, light and shift estimated together from global features.
 ///
 /// A discrete Bayes filter over the product of places and conditions, in which every state carries its own Gaussian belief over the
-/// [`Disturbance`]: how the views seen on the way to this state fit what was learned of them tells the light. At first every place
+/// [`ViewDisturbance`]: how the views seen on the way to this state fit what was learned of them tells the light. At first every place
 /// explains what is seen by a light of its own; the views that follow agree with one of them only.
 ///
 /// ```
 /// use std::sync::Arc;
-/// use wayfix_condensation::{Appearance, FeatureTable, Localizer, LocalizerParams};
-/// let learned = FeatureTable::from_rows(&[vec![10.0], vec![20.0], vec![30.0]])?;
-/// let appearance = Arc::new(Appearance::from_spread(learned, 0.1)?);
-/// let mut localizer = Localizer::new(appearance, LocalizerParams::default())?;
+/// use wayfix_condensation::{AppearanceModel, DescriptorTable, ViewLocalizer, ViewLocalizerParams};
+/// let learned = DescriptorTable::from_rows(&[vec![10.0], vec![20.0], vec![30.0]])?;
+/// let appearance = Arc::new(AppearanceModel::from_spread(learned, 0.1)?);
+/// let mut localizer = ViewLocalizer::new(appearance, ViewLocalizerParams::default())?;
 /// localizer.update(&[21.0])?.evidence().expect("possible");
 /// assert_eq!(localizer.best().state, 1);
 /// assert!(localizer.update(&[f64::NAN]).is_err());
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Localizer {
-    appearance: Arc<Appearance>,
-    params: LocalizerParams,
+pub struct ViewLocalizer {
+    appearance: Arc<AppearanceModel>,
+    params: ViewLocalizerParams,
     filter: DiscreteFilter, // place fastest, then condition
     disturbances: Vec<DisturbanceBelief>,
     places: Vec<f64>,
 }
 
-impl Localizer {
+impl ViewLocalizer {
     /// Nothing known: neither place nor light.
     ///
     /// # Errors
     /// [`CondensationError::Parameter`] when leak or drift is no share.
-    pub fn new(appearance: Arc<Appearance>, params: LocalizerParams) -> Result<Self, CondensationError> {
-        probability("leak", params.leak)?;
-        probability("drift", params.drift)?;
+    pub fn new(
+        appearance: Arc<AppearanceModel>,
+        params: ViewLocalizerParams,
+    ) -> Result<Self, CondensationError> {
+        probability("leak", params.kidnapping_probability)?;
+        probability("drift", params.disturbance_drift)?;
         let n_places = appearance.n_states();
         let n = n_places * appearance.n_conditions();
         Ok(Self {
@@ -78,14 +82,15 @@ impl Localizer {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] when the transition is of another space.
-    pub fn predict(&mut self, transition: &dyn Transition) -> Result<(), CondensationError> {
+    pub fn predict(&mut self, transition: &dyn TransitionModel) -> Result<(), CondensationError> {
         let n = self.places.len();
         check_size("transition", n, transition.n_states())?;
         let mut next = self.filter.belief().to_vec();
         let conditions = next.chunks_mut(n).zip(self.disturbances.chunks_mut(n));
         for (belief, disturbances) in conditions {
-            MomentTransition { transition, leak: self.params.leak }.apply(belief, disturbances);
-            disturbances.iter_mut().for_each(|d| self.appearance.widen(d, self.params.drift));
+            MomentTransition { transition, leak: self.params.kidnapping_probability }
+                .apply(belief, disturbances);
+            disturbances.iter_mut().for_each(|d| self.appearance.widen(d, self.params.disturbance_drift));
         }
         self.filter = DiscreteFilter::from_prior(next)?;
         self.sum_places();
@@ -96,7 +101,7 @@ impl Localizer {
     ///
     /// # Errors
     /// [`CondensationError::Dimension`] or [`CondensationError::NotFinite`]; the belief is as it was.
-    pub fn update(&mut self, measurement: &[f64]) -> Result<Outcome, CondensationError> {
+    pub fn update(&mut self, measurement: &[f64]) -> Result<MeasurementOutcome, CondensationError> {
         self.appearance.check(measurement)?;
         let n = self.places.len();
         let mut scratch = vec![0.0; measurement.len()];
@@ -107,7 +112,7 @@ impl Localizer {
             .map(|(i, belief)| self.appearance.absorb((i / n, i % n), measurement, belief, &mut scratch))
             .collect();
         let outcome = self.filter.update(&log_likelihoods)?;
-        if outcome != Outcome::Impossible {
+        if outcome != MeasurementOutcome::Impossible {
             self.disturbances = updated;
             self.sum_places();
         }
@@ -142,15 +147,15 @@ impl Localizer {
     }
 
     /// The light and the shift where belief is largest.
-    pub fn disturbance(&self) -> (Light, Disturbance) {
+    pub fn disturbance(&self) -> (LightChange, ViewDisturbance) {
         let best = self.filter.best().state;
-        let light = self.appearance.light(best / self.places.len()).unwrap_or(Light::SAME);
-        let disturbance = Disturbance::from_array(self.disturbances[best].mean);
+        let light = self.appearance.light(best / self.places.len()).unwrap_or(LightChange::SAME);
+        let disturbance = ViewDisturbance::from_array(self.disturbances[best].mean);
         (disturbance.applied_to(light), disturbance)
     }
 
     /// What was learned.
-    pub fn appearance(&self) -> &Appearance {
+    pub fn appearance(&self) -> &AppearanceModel {
         &self.appearance
     }
 

@@ -7,8 +7,8 @@ mod navigator;
 mod report;
 mod routes;
 
-pub use action::ActionChoice;
-pub use localizer::{Localizer, LocalizerParams};
-pub use navigator::{Navigator, NavigatorParams, World};
-pub use report::{Arrival, RunReport};
-pub use routes::Routes;
+pub use action::ActionSelection;
+pub use localizer::{ViewLocalizer, ViewLocalizerParams};
+pub use navigator::{NavigationEnvironment, Navigator, NavigatorParams};
+pub use report::{NavigationOutcome, NavigationReport};
+pub use routes::ShortestPathLengths;

@@ -1,5 +1,5 @@
 use crate::learning::DisturbanceBelief;
-use crate::{N_DISTURBANCES, Transition};
+use crate::{N_DISTURBANCES, TransitionModel};
 
 /// Below this belief a state's share of a moment is rounding noise.
 const NEGLIGIBLE: f64 = 1e-200;
@@ -8,7 +8,7 @@ const NEGLIGIBLE: f64 = 1e-200;
 ///
 /// Transitions are linear, so that $`b`$, $`b μ`$ and $`b (P + μ μ^T)`$ each go through them.
 pub(super) struct MomentTransition<'a> {
-    pub(super) transition: &'a dyn Transition,
+    pub(super) transition: &'a dyn TransitionModel,
     pub(super) leak: f64,
 }
 

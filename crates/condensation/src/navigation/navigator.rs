@@ -1,14 +1,15 @@
 use rand::Rng;
-use wayfix_integrity::Cusum;
+use wayfix_integrity::CusumTest;
 
 use crate::error::{check_size, checked};
-use crate::navigation::report::{Arrival, RunReport};
+use crate::navigation::report::{NavigationOutcome, NavigationReport};
 use crate::{
-    ActionChoice, CondensationError, Localizer, Outcome, Routes, Slip, SparseTransition, StateSpace,
+    ActionSelection, CondensationError, MeasurementOutcome, ShortestPathLengths, SlipProbabilities,
+    SparseTransition, StateSpace, ViewLocalizer,
 };
 
 /// Where a robot moves and looks: a simulation, or the robot itself.
-pub trait World<A> {
+pub trait NavigationEnvironment<A> {
     /// Does an action, as well as it can.
     fn act(&mut self, action: A);
 
@@ -22,29 +23,29 @@ pub trait World<A> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct NavigatorParams {
     /// Confidence at which the robot stops at the goal.
-    pub confidence: f64,
+    pub goal_confidence: f64,
     /// Number of consecutive views with that confidence: one view can mislead.
-    pub confirmations: usize,
+    pub n_confirmations: usize,
     /// Most moves of a run.
     pub max_steps: usize,
     /// How actions are chosen.
-    pub choice: ActionChoice,
+    pub action_selection: ActionSelection,
     /// How moves go wrong.
-    pub slip: Slip,
+    pub slip: SlipProbabilities,
     /// Mean number of false alarms per view of the test for a kidnapped robot.
-    pub false_alarm_rate: f64,
+    pub false_alarms_per_view: f64,
 }
 
 impl Default for NavigatorParams {
     /// Stops at 99.9 % in three looks, at the latest after 80 moves.
     fn default() -> Self {
         Self {
-            confidence: 0.999,
-            confirmations: 3,
+            goal_confidence: 0.999,
+            n_confirmations: 3,
             max_steps: 80,
-            choice: ActionChoice::Greedy,
-            slip: Slip::default(),
-            false_alarm_rate: 1e-6,
+            action_selection: ActionSelection::Greedy,
+            slip: SlipProbabilities::default(),
+            false_alarms_per_view: 1e-6,
         }
     }
 }
@@ -78,14 +79,14 @@ impl<S: StateSpace> Navigator<S> {
         params: NavigatorParams,
     ) -> Result<Self, CondensationError> {
         check_size("list of transitions", space.actions().len(), transitions.len())?;
-        let confidence = params.confidence;
+        let confidence = params.goal_confidence;
         checked(
             "confidence",
             confidence,
             confidence > 0.0 && confidence < 1.0,
             "between 0 and 1, both excluded",
         )?;
-        Cusum::from_false_alarm_rate(params.false_alarm_rate)?;
+        CusumTest::from_false_alarm_rate(params.false_alarms_per_view)?;
         Ok(Self { space, transitions, params })
     }
 
@@ -102,14 +103,14 @@ impl<S: StateSpace> Navigator<S> {
     pub fn run<R: Rng + ?Sized>(
         &self,
         goal: usize,
-        localizer: &mut Localizer,
-        world: &mut impl World<S::Action>,
-        watch: &mut impl FnMut(usize, &Localizer),
+        localizer: &mut ViewLocalizer,
+        world: &mut impl NavigationEnvironment<S::Action>,
+        watch: &mut impl FnMut(usize, &ViewLocalizer),
         rng: &mut R,
-    ) -> Result<RunReport, CondensationError> {
+    ) -> Result<NavigationReport, CondensationError> {
         check_size("localizer", self.space.n_states(), localizer.belief().len())?;
-        let routes = Routes::to_goal(&self.space, goal)?;
-        let mut monitor = Cusum::from_false_alarm_rate(self.params.false_alarm_rate)?;
+        let routes = ShortestPathLengths::to_goal(&self.space, goal)?;
+        let mut monitor = CusumTest::from_false_alarm_rate(self.params.false_alarms_per_view)?;
         let mut features = vec![0.0; localizer.appearance().n_components()];
         let (mut confirmed, mut steps_to_certainty, mut kidnappings) = (0, None, 0);
         let mut steps = 0;
@@ -121,24 +122,24 @@ impl<S: StateSpace> Navigator<S> {
             watch(steps, localizer);
 
             let best = localizer.best();
-            let certain = best.confidence >= self.params.confidence;
+            let certain = best.confidence >= self.params.goal_confidence;
             confirmed = if certain { confirmed + 1 } else { 0 };
             if certain {
                 steps_to_certainty.get_or_insert(steps);
             }
-            let sure = confirmed >= self.params.confirmations.max(1);
-            let report = |arrival| RunReport { arrival, steps, steps_to_certainty, best, kidnappings };
+            let sure = confirmed >= self.params.n_confirmations.max(1);
+            let report = |arrival| NavigationReport { arrival, steps, steps_to_certainty, best, kidnappings };
             if sure && best.state == goal {
-                return Ok(report(Arrival::Reached));
+                return Ok(report(NavigationOutcome::Reached));
             }
             if sure && routes.distance(best.state).is_none() {
-                return Ok(report(Arrival::Unreachable));
+                return Ok(report(NavigationOutcome::Unreachable));
             }
             if steps == self.params.max_steps {
-                return Ok(report(Arrival::Unsure));
+                return Ok(report(NavigationOutcome::Unsure));
             }
 
-            let choice = self.params.choice.choose(&self.space, &routes, localizer, rng);
+            let choice = self.params.action_selection.choose(&self.space, &routes, localizer, rng);
             // From where there is no way to the goal any action may show that the robot is elsewhere.
             let action = choice.unwrap_or_else(|| steps % self.transitions.len());
             world.act(self.space.actions()[action]);
@@ -150,9 +151,9 @@ impl<S: StateSpace> Navigator<S> {
 
 /// Forgets place and light when the measurements say that the robot is elsewhere, and begins again with this one.
 fn start_over_if_elsewhere(
-    monitor: &mut Cusum,
-    outcome: &Outcome,
-    localizer: &mut Localizer,
+    monitor: &mut CusumTest,
+    outcome: &MeasurementOutcome,
+    localizer: &mut ViewLocalizer,
     features: &[f64],
 ) -> Result<bool, CondensationError> {
     let elsewhere = monitor.observe(outcome.log_likelihood_ratio())?;

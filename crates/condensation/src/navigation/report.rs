@@ -3,7 +3,7 @@ use crate::BestState;
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Arrival {
+pub enum NavigationOutcome {
     /// The robot is at the goal with the stated confidence.
     Reached,
     /// The steps are used up and it is not sure enough.
@@ -14,9 +14,9 @@ pub enum Arrival {
 
 /// What happened in a run. Whether the robot really is at the goal only its surroundings know.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RunReport {
+pub struct NavigationReport {
     /// How it ended.
-    pub arrival: Arrival,
+    pub arrival: NavigationOutcome,
     /// Moves that were made.
     pub steps: usize,
     /// Moves until confidence first was what the parameters ask for, if it ever was.

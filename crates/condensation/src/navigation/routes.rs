@@ -6,19 +6,19 @@ use crate::{CondensationError, StateSpace};
 /// The number of actions from every state to a goal, if nothing goes wrong.
 ///
 /// ```
-/// use wayfix_condensation::{Graph, Routes};
-/// let one_way = Graph::new(3, &[(0, 1), (1, 2)])?;
-/// let routes = Routes::to_goal(&one_way, 1)?;
+/// use wayfix_condensation::{PlaceGraph, ShortestPathLengths};
+/// let one_way = PlaceGraph::new(3, &[(0, 1), (1, 2)])?;
+/// let routes = ShortestPathLengths::to_goal(&one_way, 1)?;
 /// assert_eq!((routes.distance(0), routes.distance(2)), (Some(1), None));
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Routes {
+pub struct ShortestPathLengths {
     goal: usize,
     distances: Vec<Option<u32>>,
 }
 
-impl Routes {
+impl ShortestPathLengths {
     /// Breadth first, backwards from the goal.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use crate::{CondensationError, Picture};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Light {
+pub struct LightChange {
     /// Contrast $`g`$.
     pub gain: f64,
     /// Brightness $`o`$, in grey levels.
@@ -14,7 +14,7 @@ pub struct Light {
     pub gamma: f64,
 }
 
-impl Light {
+impl LightChange {
     /// That of learning.
     pub const SAME: Self = Self { gain: 1.0, offset: 0.0, gamma: 1.0 };
 

@@ -3,5 +3,5 @@
 mod light;
 mod tone;
 
-pub use light::Light;
+pub use light::LightChange;
 pub use tone::{affine_match, histogram_match, light_match};

@@ -8,9 +8,9 @@ type Shares = [f64; 256];
 /// A channel without contrast keeps its own and is only moved.
 ///
 /// ```
-/// use wayfix_condensation::{Light, Picture, affine_match};
+/// use wayfix_condensation::{LightChange, Picture, affine_match};
 /// let learned = Picture::from_rgb(3, 1, [40_u8, 80, 160].iter().flat_map(|&grey| [grey; 3]).collect())?;
-/// let seen = Light { gain: 0.5, offset: 30.0, gamma: 1.0 }.apply(&learned)?;
+/// let seen = LightChange { gain: 0.5, offset: 30.0, gamma: 1.0 }.apply(&learned)?;
 /// assert_eq!(seen.mapped(&affine_match(&seen, &learned)), learned);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
@@ -28,9 +28,9 @@ pub fn affine_match(seen: &Picture, learned: &Picture) -> [[u8; 256]; 3] {
 /// Each value goes to where its middle rank lies among the learned ranks, interpolated, so that any monotone tone curve is undone.
 ///
 /// ```
-/// use wayfix_condensation::{Light, Picture, histogram_match};
+/// use wayfix_condensation::{LightChange, Picture, histogram_match};
 /// let learned = Picture::from_rgb(3, 1, [40_u8, 80, 160].iter().flat_map(|&grey| [grey; 3]).collect())?;
-/// let seen = Light { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?;
+/// let seen = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }.apply(&learned)?;
 /// assert_eq!(seen.mapped(&histogram_match(&seen, &learned)), learned);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
@@ -79,21 +79,21 @@ fn rounded(value: f64) -> u8 {
     value.round().clamp(0.0, 255.0) as u8
 }
 
-/// The [`Light`](crate::Light) in which `learned` looks as `seen` does, by least squares between the quantiles of all three channels; for
-/// [`Light::inverse_table`](crate::Light::inverse_table).
+/// The [`LightChange`](crate::LightChange) in which `learned` looks as `seen` does, by least squares between the quantiles of all three channels; for
+/// [`LightChange::inverse_table`](crate::LightChange::inverse_table).
 ///
 /// One curve for all channels: three numbers from the whole scene cannot follow what went out of view, as [`histogram_match`] does.
 /// None when the learned scene has no contrast.
 ///
 /// ```
-/// use wayfix_condensation::{Light, Picture, light_match};
+/// use wayfix_condensation::{LightChange, Picture, light_match};
 /// let learned = Picture::from_rgb(16, 16, (0..=255_u8).flat_map(|grey| [grey; 3]).collect())?;
-/// let light = Light { gain: 0.7, offset: 20.0, gamma: 1.3 };
+/// let light = LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 };
 /// let found = light_match(&light.apply(&learned)?, &learned).expect("contrast");
 /// assert!((found.gain - 0.7).abs() < 0.01 && (found.offset - 20.0).abs() < 1.0 && (found.gamma - 1.3).abs() < 0.02);
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```
-pub fn light_match(seen: &Picture, learned: &Picture) -> Option<crate::Light> {
+pub fn light_match(seen: &Picture, learned: &Picture) -> Option<crate::LightChange> {
     let pairs: Vec<(f64, f64)> = (0..3)
         .flat_map(|channel| {
             let ranks = middle_ranks(&shares(seen, channel));
@@ -110,7 +110,7 @@ pub fn light_match(seen: &Picture, learned: &Picture) -> Option<crate::Light> {
 }
 
 /// Gain and offset for a gamma, and the squared error.
-fn fit_line(pairs: &[(f64, f64)], gamma: f64) -> Option<(crate::Light, f64)> {
+fn fit_line(pairs: &[(f64, f64)], gamma: f64) -> Option<(crate::LightChange, f64)> {
     let n = pairs.len() as f64;
     let bent = |value: f64| 255.0 * (value / 255.0).powf(gamma);
     let x_mean = pairs.iter().map(|pair| bent(pair.0)).sum::<f64>() / n;
@@ -123,5 +123,5 @@ fn fit_line(pairs: &[(f64, f64)], gamma: f64) -> Option<(crate::Light, f64)> {
     let gain = xy / xx;
     let offset = y_mean - gain * x_mean;
     let error = pairs.iter().map(|&(x, y)| (gain * bent(x) + offset - y).powi(2)).sum();
-    (xx > 0.0 && gain > 0.0).then_some((crate::Light { gain, offset, gamma }, error))
+    (xx > 0.0 && gain > 0.0).then_some((crate::LightChange { gain, offset, gamma }, error))
 }

@@ -4,7 +4,9 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use wayfix_condensation::{FeatureTable, Grid, Move, Picture, StateSpace, World};
+use wayfix_condensation::{
+    DescriptorTable, GridMove, NavigationEnvironment, Picture, PositionGrid, StateSpace,
+};
 
 /// Soft blobs of colour on a gradient: smooth as photographs are, and different everywhere.
 pub(crate) fn scene(width: usize, height: usize, seed: u64) -> Picture {
@@ -30,16 +32,16 @@ pub(crate) fn scene(width: usize, height: usize, seed: u64) -> Picture {
 
 /// A robot on a grid of views.
 pub(crate) struct Drive {
-    pub(crate) grid: Grid,
-    pub(crate) seen: FeatureTable,
+    pub(crate) grid: PositionGrid,
+    pub(crate) seen: DescriptorTable,
     pub(crate) at: usize,
     /// After so many looks the robot is put elsewhere.
     pub(crate) kidnapped: Option<(usize, usize)>,
     pub(crate) looks: usize,
 }
 
-impl World<Move> for Drive {
-    fn act(&mut self, action: Move) {
+impl NavigationEnvironment<GridMove> for Drive {
+    fn act(&mut self, action: GridMove) {
         self.at = self.grid.step(self.at, action);
     }
 

@@ -1,6 +1,6 @@
 use nalgebra::{DefaultAllocator, Dim, OMatrix, RealField, allocator::Allocator};
 
-use crate::{Manifold, epsilon, laws::Violation, to_f64};
+use crate::{Manifold, epsilon, laws::LawViolation, to_f64};
 
 /// Fails when `error` is above `tolerance`, or is not a number.
 pub(super) fn within(
@@ -8,8 +8,8 @@ pub(super) fn within(
     error: f64,
     tolerance: f64,
     case: impl FnOnce() -> String,
-) -> Result<(), Violation> {
-    if error <= tolerance { Ok(()) } else { Err(Violation { law, case: case(), error, tolerance }) }
+) -> Result<(), LawViolation> {
+    if error <= tolerance { Ok(()) } else { Err(LawViolation { law, case: case(), error, tolerance }) }
 }
 
 /// Fails when an entry is NaN or infinite.
@@ -17,7 +17,7 @@ pub(super) fn finite<T: RealField + Copy>(
     law: &'static str,
     entries: &[T],
     case: impl FnOnce() -> String,
-) -> Result<(), Violation> {
+) -> Result<(), LawViolation> {
     let bad = entries.iter().position(|entry| !entry.is_finite());
     within(law, if bad.is_some() { f64::NAN } else { 0.0 }, 0.0, case)
 }
@@ -50,7 +50,7 @@ pub(super) fn positive<T, D>(
     matrix: &OMatrix<T, D, D>,
     strictly: bool,
     case: impl Fn() -> String,
-) -> Result<(), Violation>
+) -> Result<(), LawViolation>
 where
     T: RealField + Copy,
     D: Dim,

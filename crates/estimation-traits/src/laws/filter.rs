@@ -1,10 +1,10 @@
-use super::{Violation, check::within};
+use super::{LawViolation, check::within};
 
 /// A call to a filter with its arguments; whether the filter accepted it.
-pub type FilterCall<'a, F> = &'a dyn Fn(&mut F) -> bool;
+pub type FilterLawCall<'a, F> = &'a dyn Fn(&mut F) -> bool;
 
 /// What [`filter`](fn@filter) does with a filter of type `F` whose estimates have type `E`.
-pub struct FilterTrial<'a, F, E> {
+pub struct FilterLawTrial<'a, F, E> {
     /// The estimate of the filter.
     pub estimate: &'a dyn Fn(&F) -> E,
     /// Distance of an estimate from the true state, in any unit.
@@ -12,9 +12,9 @@ pub struct FilterTrial<'a, F, E> {
     /// Largest error after [`accepted`](Self::accepted), in the same unit. The suite lowers it to half of the first error.
     pub bound: f64,
     /// Calls that the filter must accept, in this order. Together they determine the true state.
-    pub accepted: &'a [FilterCall<'a, F>],
+    pub accepted: &'a [FilterLawCall<'a, F>],
     /// Calls that the filter must refuse: NaN, a wrong dimension.
-    pub refused: &'a [FilterCall<'a, F>],
+    pub refused: &'a [FilterLawCall<'a, F>],
 }
 
 /// The laws of a recursive filter.
@@ -36,7 +36,7 @@ pub struct FilterTrial<'a, F, E> {
 ///     }
 ///     measurement.is_finite()
 /// }
-/// let trial = laws::FilterTrial {
+/// let trial = laws::FilterLawTrial {
 ///     estimate: &|filter: &Filter| *filter,
 ///     error: &|estimate: &Filter| (estimate.0 - 5.0).abs(),
 ///     bound: 0.1,
@@ -44,12 +44,15 @@ pub struct FilterTrial<'a, F, E> {
 ///     refused: &[&|filter| update(filter, f64::NAN)],
 /// };
 /// laws::filter(&(0.0, 1.0), &trial)?;
-/// # Ok::<(), laws::Violation>(())
+/// # Ok::<(), laws::LawViolation>(())
 /// ```
 ///
 /// # Errors
 /// The first law that does not hold.
-pub fn filter<F: Clone, E: PartialEq>(filter: &F, trial: &FilterTrial<'_, F, E>) -> Result<(), Violation> {
+pub fn filter<F: Clone, E: PartialEq>(
+    filter: &F,
+    trial: &FilterLawTrial<'_, F, E>,
+) -> Result<(), LawViolation> {
     refuses(filter, trial)?;
     let start = (trial.error)(&(trial.estimate)(filter));
     let (mut first, mut second) = (filter.clone(), filter.clone());
@@ -68,7 +71,7 @@ pub fn filter<F: Clone, E: PartialEq>(filter: &F, trial: &FilterTrial<'_, F, E>)
     refuses(&first, trial)
 }
 
-fn refuses<F: Clone, E: PartialEq>(filter: &F, trial: &FilterTrial<'_, F, E>) -> Result<(), Violation> {
+fn refuses<F: Clone, E: PartialEq>(filter: &F, trial: &FilterLawTrial<'_, F, E>) -> Result<(), LawViolation> {
     let before = (trial.estimate)(filter);
     for (index, call) in trial.refused.iter().enumerate() {
         let mut after = filter.clone();
@@ -80,6 +83,6 @@ fn refuses<F: Clone, E: PartialEq>(filter: &F, trial: &FilterTrial<'_, F, E>) ->
     Ok(())
 }
 
-fn holds(law: &'static str, condition: bool, case: impl FnOnce() -> String) -> Result<(), Violation> {
+fn holds(law: &'static str, condition: bool, case: impl FnOnce() -> String) -> Result<(), LawViolation> {
     within(law, if condition { 0.0 } else { 1.0 }, 0.0, case)
 }

@@ -1,7 +1,7 @@
 use nalgebra::{DefaultAllocator, allocator::Allocator};
 
 use super::{
-    Violation,
+    LawViolation,
     check::{finite, within},
 };
 use crate::{Jacobian, Manifold, derivative::central_difference, epsilon, to_f64};
@@ -17,7 +17,7 @@ pub(super) fn agrees<X, Z>(
     point: &X,
     size: f64,
     case: impl Fn() -> String,
-) -> Result<(), Violation>
+) -> Result<(), LawViolation>
 where
     X: Manifold,
     Z: Manifold<Scalar = X::Scalar>,

@@ -1,7 +1,7 @@
 use nalgebra::DefaultAllocator;
 
 use super::{
-    Violation,
+    LawViolation,
     check::{distance, extent, rounding, within},
     tangents::{LENGTHS, tangents},
 };
@@ -12,12 +12,12 @@ use crate::{LieGroup, StateAlloc, Tangent, to_f64};
 /// ```
 /// use wayfix_estimation_traits::{Pose2, laws};
 /// laws::lie_group(&[Pose2::new(0.0, 0.0, 0.0), Pose2::new(1.0, -2.0, 3.1), Pose2::new(50.0, 3.0, -3.1)])?;
-/// # Ok::<(), laws::Violation>(())
+/// # Ok::<(), laws::LawViolation>(())
 /// ```
 ///
 /// # Errors
 /// The first law that does not hold.
-pub fn lie_group<G: LieGroup>(points: &[G]) -> Result<(), Violation>
+pub fn lie_group<G: LieGroup>(points: &[G]) -> Result<(), LawViolation>
 where
     DefaultAllocator: StateAlloc<G::Dim>,
 {
@@ -44,7 +44,7 @@ where
     Ok(())
 }
 
-fn group<G: LieGroup>(points: &[G], tolerance: f64) -> Result<(), Violation>
+fn group<G: LieGroup>(points: &[G], tolerance: f64) -> Result<(), LawViolation>
 where
     DefaultAllocator: StateAlloc<G::Dim>,
 {
@@ -66,7 +66,7 @@ where
     Ok(())
 }
 
-fn exponential<G: LieGroup>(xi: &Tangent<G>, tolerance: f64) -> Result<(), Violation>
+fn exponential<G: LieGroup>(xi: &Tangent<G>, tolerance: f64) -> Result<(), LawViolation>
 where
     DefaultAllocator: StateAlloc<G::Dim>,
 {

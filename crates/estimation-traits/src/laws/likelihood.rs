@@ -1,5 +1,5 @@
 use super::{
-    Violation,
+    LawViolation,
     check::{rounding, within},
 };
 use crate::LikelihoodModel;
@@ -15,7 +15,7 @@ pub fn likelihood<L: LikelihoodModel>(
     measurement: &L::Measurement,
     best: &L::State,
     others: &[L::State],
-) -> Result<(), Violation> {
+) -> Result<(), LawViolation> {
     let log_likelihood = model.log_likelihood(measurement);
     let peak = log_likelihood(best);
     let nan = if peak.is_finite() { 0.0 } else { f64::NAN };

@@ -1,7 +1,7 @@
 use nalgebra::{DefaultAllocator, Dim};
 
 use super::{
-    Violation,
+    LawViolation,
     check::{distance, extent, finite, rounding, within},
     jacobian::agrees,
     tangents::{LENGTHS, tangents},
@@ -17,12 +17,12 @@ use crate::{Manifold, StateAlloc, to_f64};
 /// ```
 /// use wayfix_estimation_traits::{Angle, laws};
 /// laws::manifold(&[Angle::new(0.0), Angle::new(3.1), Angle::new(-3.1)])?;
-/// # Ok::<(), laws::Violation>(())
+/// # Ok::<(), laws::LawViolation>(())
 /// ```
 ///
 /// # Errors
 /// The first law that does not hold.
-pub fn manifold<X: Manifold>(points: &[X]) -> Result<(), Violation>
+pub fn manifold<X: Manifold>(points: &[X]) -> Result<(), LawViolation>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -75,12 +75,12 @@ where
 /// ```
 /// use wayfix_estimation_traits::{Pose2, laws};
 /// laws::periodic(&[Pose2::new(1.0, 2.0, 3.0)], 2, std::f64::consts::TAU)?;
-/// # Ok::<(), laws::Violation>(())
+/// # Ok::<(), laws::LawViolation>(())
 /// ```
 ///
 /// # Errors
 /// When it does not.
-pub fn periodic<X: Manifold>(points: &[X], axis: usize, period: f64) -> Result<(), Violation>
+pub fn periodic<X: Manifold>(points: &[X], axis: usize, period: f64) -> Result<(), LawViolation>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {

@@ -1,6 +1,6 @@
 //! Law suites: run them on your own types.
 //!
-//! Each suite returns the first [`Violation`] with numbers instead of panicking, so that it serves in tests
+//! Each suite returns the first [`LawViolation`] with numbers instead of panicking, so that it serves in tests
 //! (`laws::manifold(&points).unwrap()`) and in tools. `examples/02_custom_state.rs` runs them on a state of its own.
 
 mod check;
@@ -15,11 +15,11 @@ mod sample_motion;
 mod tangents;
 mod violation;
 
-pub use filter::{FilterCall, FilterTrial, filter};
+pub use filter::{FilterLawCall, FilterLawTrial, filter};
 pub use lie_group::lie_group;
 pub use likelihood::likelihood;
 pub use manifold::{manifold, periodic};
 pub use models::{motion, sensor};
 #[cfg(feature = "sampling")]
 pub use sample_motion::sample_motion;
-pub use violation::Violation;
+pub use violation::LawViolation;

@@ -1,7 +1,7 @@
 use nalgebra::DefaultAllocator;
 
 use super::{
-    Violation,
+    LawViolation,
     check::{extent, finite, positive},
     jacobian::agrees,
 };
@@ -16,7 +16,7 @@ use crate::{Manifold, MotionModel, SensorModel, StateAlloc, UpdateAlloc};
 pub fn motion<M: MotionModel>(
     model: &M,
     states_and_controls: &[(M::State, &M::Control)],
-) -> Result<(), Violation>
+) -> Result<(), LawViolation>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -38,7 +38,7 @@ where
 ///
 /// # Errors
 /// The first law that does not hold.
-pub fn sensor<S: SensorModel>(model: &S, states: &[S::State]) -> Result<(), Violation>
+pub fn sensor<S: SensorModel>(model: &S, states: &[S::State]) -> Result<(), LawViolation>
 where
     DefaultAllocator: UpdateAlloc<<S::State as Manifold>::Dim, <S::Measurement as Manifold>::Dim>,
 {

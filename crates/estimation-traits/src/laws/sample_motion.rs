@@ -2,7 +2,7 @@ use nalgebra::{DefaultAllocator, Dim};
 use rand::Rng;
 
 use super::{
-    Violation,
+    LawViolation,
     check::{rounding, within},
 };
 use crate::{Manifold, MotionModel, SampleMotion, StateAlloc, Tangent, TangentMatrix, to_f64};
@@ -24,7 +24,7 @@ pub fn sample_motion<S, M, R>(
     states_and_controls: &[(M::State, &M::Control)],
     n: usize,
     rng: &mut R,
-) -> Result<(), Violation>
+) -> Result<(), LawViolation>
 where
     M: MotionModel,
     S: SampleMotion<State = M::State, Control = M::Control>,
@@ -47,7 +47,7 @@ fn moments_agree<X: Manifold>(
     deviations: &[Tangent<X>],
     noise: &TangentMatrix<X>,
     index: usize,
-) -> Result<(), Violation>
+) -> Result<(), LawViolation>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {

@@ -7,7 +7,7 @@ use super::{align, rms_distance};
 
 /// Association of estimated landmarks with true ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Correspondence {
+pub enum LandmarkCorrespondence {
     /// Both carry the same identities.
     ById,
     /// By distance, because the filter numbers its landmarks itself: each estimate is compared with the nearest true landmark, without alignment or
@@ -22,13 +22,13 @@ pub enum Correspondence {
 pub fn landmark_errors(
     estimated: &BTreeMap<u32, Vector2<f64>>,
     truth: &BTreeMap<u32, Vector2<f64>>,
-    correspondence: Correspondence,
+    correspondence: LandmarkCorrespondence,
     of_path: &Pose2<f64>,
 ) -> Option<(f64, f64)> {
     let pairs = |motion: &Pose2<f64>| -> Vec<(Vector2<f64>, Vector2<f64>)> {
         let partner = |id: &u32, position: &Vector2<f64>| match correspondence {
-            Correspondence::ById => truth.get(id).copied(),
-            Correspondence::Nearest => nearest(&motion.transform(position), truth),
+            LandmarkCorrespondence::ById => truth.get(id).copied(),
+            LandmarkCorrespondence::Nearest => nearest(&motion.transform(position), truth),
         };
         estimated.iter().filter_map(|(id, at)| Some((*at, partner(id, at)?))).collect()
     };
@@ -75,13 +75,16 @@ mod tests {
         let truth = map(&[(1, 0.0, 0.0), (2, 10.0, 0.0), (3, 0.0, 10.0)]);
         let estimated = map(&[(1, 0.0, 0.3), (2, 10.0, 0.4), (9, 50.0, 50.0)]);
         let (rmse, aligned) =
-            landmark_errors(&estimated, &truth, Correspondence::ById, &Pose2::new(0.0, 0.0, 0.0)).unwrap();
+            landmark_errors(&estimated, &truth, LandmarkCorrespondence::ById, &Pose2::new(0.0, 0.0, 0.0))
+                .unwrap();
         assert!((rmse - 0.125_f64.sqrt()).abs() < 1e-12); // (0.3² + 0.4²) / 2
         // Two points lie on a line of their own length; a rigid motion leaves the difference in length, half at each end.
         assert!((aligned - 0.5 * (10.0_f64.hypot(0.1) - 10.0)).abs() < 1e-12);
         let swapped = map(&[(1, 10.0, 0.0), (2, 0.0, 0.0)]);
         assert!(
-            (landmark_errors(&swapped, &truth, Correspondence::ById, &Pose2::new(0.0, 0.0, 0.0)).unwrap().0
+            (landmark_errors(&swapped, &truth, LandmarkCorrespondence::ById, &Pose2::new(0.0, 0.0, 0.0))
+                .unwrap()
+                .0
                 - 10.0)
                 .abs()
                 < 1e-12
@@ -93,12 +96,15 @@ mod tests {
         let truth = map(&[(1, 0.0, 0.0), (2, 10.0, 0.0)]);
         let swapped = map(&[(1, 10.0, 0.0), (2, 0.0, 0.0)]);
         assert_eq!(
-            landmark_errors(&swapped, &truth, Correspondence::Nearest, &Pose2::new(0.0, 0.0, 0.0)).unwrap().0,
+            landmark_errors(&swapped, &truth, LandmarkCorrespondence::Nearest, &Pose2::new(0.0, 0.0, 0.0))
+                .unwrap()
+                .0,
             0.0
         );
         let doubled = map(&[(0, 0.0, 0.0), (1, 0.0, 1.0), (2, 10.0, 0.0)]);
         let (rmse, _) =
-            landmark_errors(&doubled, &truth, Correspondence::Nearest, &Pose2::new(0.0, 0.0, 0.0)).unwrap();
+            landmark_errors(&doubled, &truth, LandmarkCorrespondence::Nearest, &Pose2::new(0.0, 0.0, 0.0))
+                .unwrap();
         assert!((rmse - (1.0_f64 / 3.0).sqrt()).abs() < 1e-12);
     }
 
@@ -108,14 +114,15 @@ mod tests {
         let turn = Pose2::new(0.2, -0.1, 0.15); // 1.5 m at the far landmarks, equal to their separation
         let turned = truth.iter().map(|(id, at)| (id + 10, turn.transform(at))).collect();
         let of_path = turn.inverse().compose(&Pose2::new(SOMEWHAT, -SOMEWHAT, SOMEWHAT));
-        let (rmse, aligned) = landmark_errors(&turned, &truth, Correspondence::Nearest, &of_path).unwrap();
+        let (rmse, aligned) =
+            landmark_errors(&turned, &truth, LandmarkCorrespondence::Nearest, &of_path).unwrap();
         assert!(rmse > 0.1 && aligned < 1e-9, "{rmse} {aligned}");
     }
 
     #[test]
     fn without_pairs_there_is_no_error() {
         let (none, some) = (map(&[]), map(&[(1, 0.0, 0.0)]));
-        for correspondence in [Correspondence::ById, Correspondence::Nearest] {
+        for correspondence in [LandmarkCorrespondence::ById, LandmarkCorrespondence::Nearest] {
             assert_eq!(landmark_errors(&none, &some, correspondence, &Pose2::new(0.0, 0.0, 0.0)), None);
             assert_eq!(landmark_errors(&some, &none, correspondence, &Pose2::new(0.0, 0.0, 0.0)), None);
         }

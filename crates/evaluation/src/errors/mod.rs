@@ -10,8 +10,8 @@ mod truth_noise;
 
 pub use alignment::{align, median_distance, rms_distance};
 pub use interval::{MeanInterval, proportion_interval};
-pub use landmarks::{Correspondence, landmark_errors};
+pub use landmarks::{LandmarkCorrespondence, landmark_errors};
 pub use positions::TruePositions;
-pub use trajectory::{Sample, TrajectoryErrors, trajectory_errors};
+pub use trajectory::{TrajectoryErrors, TrajectorySample, trajectory_errors};
 pub use truth::LONGEST_GAP;
-pub use truth::TrueTrack;
+pub use truth::ReferenceTrajectory;

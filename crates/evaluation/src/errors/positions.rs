@@ -1,5 +1,5 @@
 use nalgebra::Vector2;
-use wayfix_sensor_log::{Data, Record, Stamp};
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 
 /// True positions of one point of the robot over time, without headings: a GPS antenna.
 #[derive(Clone, Debug, Default)]
@@ -15,7 +15,7 @@ impl TruePositions {
     pub fn from_records(records: &[Record]) -> Self {
         let mut fixes: Vec<(Stamp, Vector2<f64>)> = Vec::new();
         for record in records {
-            if let Data::TruePosition(fix) = &record.data {
+            if let RecordData::TruePosition(fix) = &record.data {
                 let later = fixes.last().is_none_or(|(last, _)| *last < record.stamp);
                 if later && fix.x.is_finite() && fix.y.is_finite() {
                     fixes.push((record.stamp, Vector2::new(fix.x, fix.y)));
@@ -56,7 +56,7 @@ mod tests {
         let at = |milliseconds: u64| Stamp::from_nanoseconds(milliseconds * 1_000_000);
         let record = |milliseconds: u64| Record {
             stamp: at(milliseconds),
-            data: Data::TruePosition(TruePosition { x: milliseconds as f64, y: 0.0 }),
+            data: RecordData::TruePosition(TruePosition { x: milliseconds as f64, y: 0.0 }),
         };
         let positions = TruePositions::from_records(&[1000, 1400, 900, 3000].map(record));
         let near = |milliseconds: u64| positions.near(at(milliseconds)).map(|position| position.x);

@@ -1,12 +1,12 @@
 use nalgebra::Matrix3;
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_sensor_log::{Data, Record, Stamp};
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use super::{Sample, truth_noise::truth_noise};
+use super::{TrajectorySample, truth_noise::truth_noise};
 
 /// Reference poses over time: true ones, or estimates of another program.
 #[derive(Clone, Debug, Default)]
-pub struct TrueTrack {
+pub struct ReferenceTrajectory {
     poses: Vec<(Stamp, Pose2<f64>)>,
     noise: Matrix3<f64>,
     is_estimate: bool,
@@ -15,12 +15,12 @@ pub struct TrueTrack {
 /// Longest interval over which truth is interpolated, s; motion capture and GPS have gaps.
 pub const LONGEST_GAP: f64 = 0.5;
 
-impl TrueTrack {
+impl ReferenceTrajectory {
     /// The true poses among `records`; skips those that are not finite or go back in time.
     pub fn from_records(records: &[Record]) -> Self {
         let mut poses: Vec<(Stamp, Pose2<f64>)> = Vec::new();
         for record in records {
-            if let Data::TruePose(pose) = &record.data {
+            if let RecordData::TruePose(pose) = &record.data {
                 let later = poses.last().is_none_or(|(last, _)| *last < record.stamp);
                 if later && pose.is_finite() {
                     poses.push((record.stamp, *pose));
@@ -38,7 +38,9 @@ impl TrueTrack {
             return truth;
         }
         let as_truth = |record: &Record| match record.data {
-            Data::EstimatedPose(pose) => Record { stamp: record.stamp, data: Data::TruePose(pose) },
+            RecordData::EstimatedPose(pose) => {
+                Record { stamp: record.stamp, data: RecordData::TruePose(pose) }
+            }
             _ => record.clone(),
         };
         let track = Self::from_records(&records.iter().map(as_truth).collect::<Vec<_>>());
@@ -61,9 +63,14 @@ impl TrueTrack {
     }
 
     /// Pairs an estimate with the truth at its stamp. Adds the noise of the truth to the covariance.
-    pub fn sample(&self, stamp: Stamp, estimate: Pose2<f64>, covariance: &Matrix3<f64>) -> Option<Sample> {
+    pub fn sample(
+        &self,
+        stamp: Stamp,
+        estimate: Pose2<f64>,
+        covariance: &Matrix3<f64>,
+    ) -> Option<TrajectorySample> {
         let truth = self.at(stamp)?;
-        Some(Sample { estimate, covariance: covariance + self.noise, truth })
+        Some(TrajectorySample { estimate, covariance: covariance + self.noise, truth })
     }
 
     /// Last stamp with a true pose.
@@ -104,12 +111,12 @@ impl TrueTrack {
 mod tests {
     use super::*;
 
-    fn track(rows: &[(u64, f64)]) -> TrueTrack {
+    fn track(rows: &[(u64, f64)]) -> ReferenceTrajectory {
         let record = |&(milliseconds, heading): &(u64, f64)| Record {
             stamp: Stamp::from_nanoseconds(milliseconds * 1_000_000),
-            data: Data::TruePose(Pose2::new(milliseconds as f64, 0.0, heading)),
+            data: RecordData::TruePose(Pose2::new(milliseconds as f64, 0.0, heading)),
         };
-        TrueTrack::from_records(&rows.iter().map(record).collect::<Vec<_>>())
+        ReferenceTrajectory::from_records(&rows.iter().map(record).collect::<Vec<_>>())
     }
 
     #[test]

@@ -1,6 +1,6 @@
 use nalgebra::{Matrix3, Vector3};
 use wayfix_estimation_traits::{LieGroup, Manifold, Pose2};
-use wayfix_sensor_log::{Data, Record, Stamp};
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 
 /// Covariance of the errors of the truth, estimated from its scatter before odometry first moves; zero if the robot does not stand still.
 ///
@@ -26,12 +26,12 @@ fn standstill(records: &[Record]) -> Option<(Stamp, Stamp)> {
     let mut span: Option<(Stamp, Stamp)> = None;
     for record in records {
         let moves = match &record.data {
-            Data::Velocity(velocity) => velocity.linear != 0.0 || velocity.angular != 0.0,
-            Data::Ackermann(drive) => drive.wheel_speed != 0.0,
-            Data::OdometryIncrement(increment) => *increment != Pose2::identity(),
+            RecordData::Velocity(velocity) => velocity.linear != 0.0 || velocity.angular != 0.0,
+            RecordData::Ackermann(drive) => drive.wheel_speed != 0.0,
+            RecordData::OdometryIncrement(increment) => *increment != Pose2::identity(),
             _ => continue,
         };
-        let is_velocity = !matches!(record.data, Data::OdometryIncrement(_));
+        let is_velocity = !matches!(record.data, RecordData::OdometryIncrement(_));
         span = match span {
             // A velocity holds until the next one.
             Some((begin, _)) if moves => {
@@ -48,18 +48,18 @@ fn standstill(records: &[Record]) -> Option<(Stamp, Stamp)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::errors::TrueTrack;
+    use crate::errors::ReferenceTrajectory;
 
     fn at(milliseconds: u64) -> Stamp {
         Stamp::from_nanoseconds(milliseconds * 1_000_000)
     }
 
     fn increment(milliseconds: u64, x: f64) -> Record {
-        Record { stamp: at(milliseconds), data: Data::OdometryIncrement(Pose2::new(x, 0.0, 0.0)) }
+        Record { stamp: at(milliseconds), data: RecordData::OdometryIncrement(Pose2::new(x, 0.0, 0.0)) }
     }
 
     fn truth(milliseconds: u64, x: f64) -> Record {
-        Record { stamp: at(milliseconds), data: Data::TruePose(Pose2::new(x, 0.0, 0.0)) }
+        Record { stamp: at(milliseconds), data: RecordData::TruePose(Pose2::new(x, 0.0, 0.0)) }
     }
 
     #[test]
@@ -67,9 +67,9 @@ mod tests {
         let odometry = [increment(0, 0.0), increment(300, 0.0), increment(400, 0.5)];
         let poses = [truth(0, 0.0), truth(100, 0.001), truth(200, 0.0), truth(300, 0.001), truth(400, 0.5)];
         let records = [&odometry[..], &poses[..]].concat();
-        let noise = *TrueTrack::from_records(&records).noise();
+        let noise = *ReferenceTrajectory::from_records(&records).noise();
         assert!((noise.m11 - 0.25e-6).abs() < 1e-12, "half of the variance 0.5e-6 along x: {noise}");
         let exact = [&odometry[..], &[truth(0, 0.0), truth(300, 0.0)]].concat();
-        assert_eq!(*TrueTrack::from_records(&exact).noise(), Matrix3::zeros());
+        assert_eq!(*ReferenceTrajectory::from_records(&exact).noise(), Matrix3::zeros());
     }
 }

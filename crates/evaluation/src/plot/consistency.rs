@@ -1,13 +1,13 @@
 use super::statistics::moving_mean;
-use super::svg::axis::{Axis, Scale};
+use super::svg::axis::{Axis, AxisScale};
 use super::svg::ink::Ink;
 use super::svg::layout::{Frame, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
-use super::{Picture, PlotError};
+use super::{PlotError, SvgPlot};
 
 /// NEES or NIS over time, with the 95 % band of a consistent filter and the moving mean.
 /// ```
-/// use wayfix_evaluation::plot::{ConsistencyPlot, Scale};
+/// use wayfix_evaluation::plot::{ConsistencyPlot, AxisScale};
 /// let plot = ConsistencyPlot {
 ///     title: "Consistency".to_owned(),
 ///     statistic: "NEES".to_owned(),
@@ -15,7 +15,7 @@ use super::{Picture, PlotError};
 ///     expected: 3.0,
 ///     band: (0.216, 9.348), // chi-squared with 3 degrees of freedom
 ///     window: 2,
-///     scale: Scale::Linear,
+///     scale: AxisScale::Linear,
 /// };
 /// assert!(plot.draw()?.svg.contains("75.0 % inside"));
 /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
@@ -35,7 +35,7 @@ pub struct ConsistencyPlot {
     /// Samples in the moving mean.
     pub window: usize,
     /// Scale of the statistic; logarithmic shows an optimistic filter whole.
-    pub scale: Scale,
+    pub scale: AxisScale,
 }
 
 const PANEL_HEIGHT: f64 = 170.0;
@@ -45,8 +45,8 @@ impl ConsistencyPlot {
     ///
     /// # Errors
     /// Returns an error if the drawing library refuses.
-    pub fn draw(&self) -> Result<Picture, PlotError> {
-        let time = Axis::covering(self.samples.iter().map(|(t, _)| *t), Scale::Linear, 0.0);
+    pub fn draw(&self) -> Result<SvgPlot, PlotError> {
+        let time = Axis::covering(self.samples.iter().map(|(t, _)| *t), AxisScale::Linear, 0.0);
         let has_values =
             Axis::covering(self.samples.iter().map(|(_, value)| *value), self.scale, 0.0).is_some();
         let Some((x, y)) = time.zip(self.value_axis()).filter(|_| has_values) else {
@@ -72,7 +72,7 @@ impl ConsistencyPlot {
 
     /// Shows every sample and the band; linear from zero.
     fn value_axis(&self) -> Option<Axis> {
-        let origin = (self.scale == Scale::Linear).then_some(0.0);
+        let origin = (self.scale == AxisScale::Linear).then_some(0.0);
         let values = self.samples.iter().map(|(_, value)| *value);
         Axis::covering(
             values.chain([self.band.0, self.band.1, self.expected]).chain(origin),

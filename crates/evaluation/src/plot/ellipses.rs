@@ -1,9 +1,9 @@
-use super::svg::axis::{Axis, Scale};
+use super::svg::axis::{Axis, AxisScale};
 use super::svg::ellipse::ellipse;
 use super::svg::ink::Ink;
 use super::svg::layout::{Frame, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
-use super::{Picture, PlotError};
+use super::{PlotError, SvgPlot};
 
 /// Covariance ellipses in the plane, one panel a group, all panels with the same axes.
 ///
@@ -49,12 +49,12 @@ impl EllipsesPlot {
     ///
     /// # Errors
     /// Returns an error if the drawing library refuses.
-    pub fn draw(&self) -> Result<Picture, PlotError> {
+    pub fn draw(&self) -> Result<SvgPlot, PlotError> {
         let outline = |e: &NamedEllipse| ellipse(e.center, e.covariance, self.sigmas);
         let all: Vec<(f64, f64)> =
             self.groups.iter().flat_map(|(_, ellipses)| ellipses).flat_map(outline).collect();
-        let x = Axis::covering(all.iter().map(|point| point.0), Scale::Linear, 0.04);
-        let y = Axis::covering(all.iter().map(|point| point.1), Scale::Linear, 0.04);
+        let x = Axis::covering(all.iter().map(|point| point.0), AxisScale::Linear, 0.04);
+        let y = Axis::covering(all.iter().map(|point| point.1), AxisScale::Linear, 0.04);
         let Some((x, y)) = x.zip(y) else { return no_data(&self.title) };
         let names = self.names();
         let legend = names

@@ -1,9 +1,9 @@
 use super::statistics::quantile;
-use super::svg::axis::{Axis, Scale};
+use super::svg::axis::{Axis, AxisScale};
 use super::svg::ink::Ink;
 use super::svg::layout::{Frame, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
-use super::{Picture, PlotError};
+use super::{PlotError, SvgPlot};
 
 /// Error of a planar pose against time, inside the ±3σ band that the filter claims: x, y and heading.
 ///
@@ -43,8 +43,8 @@ impl ErrorPlot {
     ///
     /// # Errors
     /// Returns an error if the drawing library refuses.
-    pub fn draw(&self) -> Result<Picture, PlotError> {
-        let time = Axis::covering(self.samples.iter().map(|sample| sample.t), Scale::Linear, 0.0);
+    pub fn draw(&self) -> Result<SvgPlot, PlotError> {
+        let time = Axis::covering(self.samples.iter().map(|sample| sample.t), AxisScale::Linear, 0.0);
         let plate = |k| Some((k, self.plate(time?, k)?));
         let (components, plates): (Vec<usize>, Vec<Plate>) = (0..COMPONENTS.len()).filter_map(plate).unzip();
         if plates.is_empty() {
@@ -76,7 +76,7 @@ impl ErrorPlot {
         let usual_band =
             quantile(self.samples.iter().map(|sample| 3.0 * unit * sample.sigma[k]), 0.95).unwrap_or(0.0);
         let reach = largest_error.max(usual_band);
-        let y = Axis::covering([-reach, reach], Scale::Linear, 0.06)?;
+        let y = Axis::covering([-reach, reach], AxisScale::Linear, 0.06)?;
         Some(Plate { heading: format!("{name} ({})", self.share_inside(k)), x, y, height: PANEL_HEIGHT })
     }
 

@@ -7,7 +7,7 @@ use wayfix_sensor_log::EncodedImage;
 use super::svg::canvas::FONT_SIZE;
 use super::svg::layout::{WIDTH, no_data};
 use super::svg::markup::escape;
-use super::{Picture, PlotError};
+use super::{PlotError, SvgPlot};
 
 /// Rows of images of one size: camera images and results.
 ///
@@ -17,14 +17,14 @@ pub struct FilmStrip {
     /// Caption.
     pub title: String,
     /// Title of each row, with its frames from left to right.
-    pub rows: Vec<(String, Vec<FilmFrame>)>,
+    pub rows: Vec<(String, Vec<FilmStripFrame>)>,
     /// Width and height of a frame in its own pixels.
     pub frame_size: (u32, u32),
 }
 
 /// One frame of a strip.
 #[derive(Clone, Debug)]
-pub struct FilmFrame {
+pub struct FilmStripFrame {
     /// The picture.
     pub image: EncodedImage,
     /// A word or two below it.
@@ -39,7 +39,7 @@ impl FilmStrip {
     ///
     /// # Errors
     /// Returns an error if the drawing library refuses; only an empty strip needs it.
-    pub fn draw(&self) -> Result<Picture, PlotError> {
+    pub fn draw(&self) -> Result<SvgPlot, PlotError> {
         let n_columns = self.rows.iter().map(|(_, frames)| frames.len()).max().unwrap_or(0);
         let (frame_width, frame_height) = self.frame_size;
         if n_columns == 0 || frame_width == 0 || frame_height == 0 {
@@ -74,7 +74,7 @@ impl FilmStrip {
         }
         svg.push_str("</svg>\n");
         let (width, height) = (WIDTH.round() as u32, total.round() as u32);
-        Ok(Picture { title: self.title.clone(), alt, width, height, svg })
+        Ok(SvgPlot { title: self.title.clone(), alt, width, height, svg })
     }
 }
 

@@ -1,21 +1,21 @@
-use super::svg::axis::{Axis, Scale};
+use super::svg::axis::{Axis, AxisScale};
 use super::svg::ink::Ink;
 use super::svg::layout::{Frame, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
-use super::{Picture, PlotError};
+use super::{PlotError, SvgPlot};
 
 /// Several named series against one abscissa.
 ///
 /// ```
-/// use wayfix_evaluation::plot::{LinesPlot, NamedBand, Scale, Series};
+/// use wayfix_evaluation::plot::{LinesPlot, NamedBand, AxisScale, PlotSeries};
 /// let powers = |exponent: i32| (1..50).map(|n| (f64::from(n), f64::from(n).powi(exponent))).collect();
 /// let plot = LinesPlot {
 ///     title: "Cost".to_owned(),
 ///     x_label: "landmarks".to_owned(),
 ///     y_label: "multiplications".to_owned(),
-///     series: vec![Series::new("dense", powers(3)), Series::new("sparse", powers(2))],
-///     x_scale: Scale::Log10,
-///     y_scale: Scale::Log10,
+///     series: vec![PlotSeries::new("dense", powers(3)), PlotSeries::new("sparse", powers(2))],
+///     x_scale: AxisScale::Log10,
+///     y_scale: AxisScale::Log10,
 ///     band: Some(NamedBand { name: "a millisecond".to_owned(), low: 1e5, high: 1e6 }),
 /// };
 /// let svg = plot.draw()?.svg;
@@ -31,25 +31,25 @@ pub struct LinesPlot {
     /// Label of the ordinate, with its unit.
     pub y_label: String,
     /// The lines.
-    pub series: Vec<Series>,
+    pub series: Vec<PlotSeries>,
     /// Scale of the abscissa.
-    pub x_scale: Scale,
+    pub x_scale: AxisScale,
     /// Scale of the ordinate.
-    pub y_scale: Scale,
+    pub y_scale: AxisScale,
     /// Expected range of the ordinates.
     pub band: Option<NamedBand>,
 }
 
 /// A named line.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Series {
+pub struct PlotSeries {
     /// Its name in the legend.
     pub name: String,
     /// `(x, y)` with growing x.
     pub points: Vec<(f64, f64)>,
 }
 
-impl Series {
+impl PlotSeries {
     /// The line `points` called `name`.
     pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), points }
@@ -74,7 +74,7 @@ impl LinesPlot {
     ///
     /// # Errors
     /// Returns an error if the drawing library refuses.
-    pub fn draw(&self) -> Result<Picture, PlotError> {
+    pub fn draw(&self) -> Result<SvgPlot, PlotError> {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let x = Axis::covering(points().map(|point| point.0), self.x_scale, 0.0);
         let edges = self.band.iter().flat_map(|band| [band.low, band.high]);

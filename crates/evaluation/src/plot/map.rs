@@ -1,10 +1,10 @@
-use super::svg::axis::{Axis, Scale};
+use super::svg::axis::{Axis, AxisScale};
 use super::svg::ellipse::ellipse;
 use super::svg::ink::Ink;
 use super::svg::layout::{Frame, PANEL_WIDTH, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
 use super::svg::panel::Panel;
-use super::{Picture, PlotError};
+use super::{PlotError, SvgPlot};
 
 /// Paths and landmarks of a planar run; both axes have the same scale.
 /// ```
@@ -62,7 +62,7 @@ impl MapPlot {
     ///
     /// # Errors
     /// Returns an error if the drawing library refuses.
-    pub fn draw(&self) -> Result<Picture, PlotError> {
+    pub fn draw(&self) -> Result<SvgPlot, PlotError> {
         let ellipses: Vec<Vec<(f64, f64)>> = self
             .landmarks
             .iter()
@@ -162,7 +162,7 @@ struct Extent {
 impl Extent {
     /// Ranges of drawable points in x and in y.
     fn of(points: &[(f64, f64)]) -> Option<(Self, Self)> {
-        let drawable = |value: f64| Axis::covering([value], Scale::Linear, 0.0).is_some();
+        let drawable = |value: f64| Axis::covering([value], AxisScale::Linear, 0.0).is_some();
         let mut points = points.iter().filter(|(x, y)| drawable(*x) && drawable(*y));
         let first = points.next()?;
         let start = (Self { low: first.0, high: first.0 }, Self { low: first.1, high: first.1 });

@@ -1,6 +1,6 @@
 //! Plots of a run, as SVG in the colours of the reader's light or dark page.
 //!
-//! Each plot is a struct of plain numbers with a `draw` method that returns a [`Picture`]:
+//! Each plot is a struct of plain numbers with a `draw` method that returns a [`SvgPlot`]:
 //! | plot | shows |
 //! | --- | --- |
 //! | [`MapPlot`] | paths and landmarks with 2σ ellipses, one scale on both axes |
@@ -30,11 +30,11 @@ pub use consistency::ConsistencyPlot;
 pub use ellipses::{EllipsesPlot, NamedEllipse};
 pub use error::PlotError;
 pub use error_plot::{ErrorPlot, ErrorSample};
-pub use film_strip::{FilmFrame, FilmStrip};
-pub use lines::{LinesPlot, NamedBand, Series};
+pub use film_strip::{FilmStrip, FilmStripFrame};
+pub use lines::{LinesPlot, NamedBand, PlotSeries};
 pub use map::{EstimatedLandmark, MapPlot};
-pub use picture::Picture;
-pub use svg::axis::Scale;
+pub use picture::SvgPlot;
+pub use svg::axis::AxisScale;
 pub(crate) use svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
 pub(crate) use svg::markup::escape;
 pub use times::TimesPlot;

@@ -4,7 +4,7 @@ use super::svg::ink::{DARK_PALETTE, LIGHT_PALETTE};
 
 /// A drawn plot: an inline `<svg>` element whose colours are the CSS variables of the page around it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Picture {
+pub struct SvgPlot {
     /// Caption.
     pub title: String,
     /// Alternative text for readers who cannot see the picture.
@@ -18,11 +18,11 @@ pub struct Picture {
     pub svg: String,
 }
 
-impl Picture {
+impl SvgPlot {
     /// The picture as a separate file: the same element with the palette inside.
     /// ```
-    /// use wayfix_evaluation::plot::{LinesPlot, Series};
-    /// let plot = LinesPlot { series: vec![Series::new("speed", vec![(0.0, 1.0), (1.0, 3.0)])], ..Default::default() };
+    /// use wayfix_evaluation::plot::{LinesPlot, PlotSeries};
+    /// let plot = LinesPlot { series: vec![PlotSeries::new("speed", vec![(0.0, 1.0), (1.0, 3.0)])], ..Default::default() };
     /// assert!(plot.draw()?.standalone().contains("prefers-color-scheme: dark"));
     /// # Ok::<(), wayfix_evaluation::plot::PlotError>(())
     /// ```

@@ -1,11 +1,11 @@
 use std::collections::BTreeMap;
 
 use super::statistics::{median, quantile};
-use super::svg::axis::{Axis, Scale};
+use super::svg::axis::{Axis, AxisScale};
 use super::svg::ink::Ink;
 use super::svg::layout::{Frame, Plate, no_data};
 use super::svg::legend::{Legend, Mark};
-use super::{Picture, PlotError};
+use super::{PlotError, SvgPlot};
 
 /// Cost of each step, over the step number or the size of the state, with the median.
 /// ```
@@ -23,9 +23,9 @@ pub struct TimesPlot {
     /// `(abscissa, microseconds)`.
     pub points: Vec<(f64, f64)>,
     /// Scale of the abscissa.
-    pub x_scale: Scale,
+    pub x_scale: AxisScale,
     /// Scale of the time.
-    pub y_scale: Scale,
+    pub y_scale: AxisScale,
 }
 
 impl Default for TimesPlot {
@@ -34,8 +34,8 @@ impl Default for TimesPlot {
             title: "Step time".to_owned(),
             x_label: "step".to_owned(),
             points: Vec::new(),
-            x_scale: Scale::Linear,
-            y_scale: Scale::Log10,
+            x_scale: AxisScale::Linear,
+            y_scale: AxisScale::Log10,
         }
     }
 }
@@ -53,7 +53,7 @@ impl TimesPlot {
     ///
     /// # Errors
     /// Returns an error if the drawing library refuses.
-    pub fn draw(&self) -> Result<Picture, PlotError> {
+    pub fn draw(&self) -> Result<SvgPlot, PlotError> {
         let x = Axis::covering(self.points.iter().map(|point| point.0), self.x_scale, 0.02);
         let y = Axis::covering(self.points.iter().map(|point| point.1), self.y_scale, 0.05);
         let Some((x, y)) = x.zip(y) else { return no_data(&self.title) };

@@ -21,7 +21,7 @@ pub struct Metric {
     /// Unit for display, empty for plain numbers.
     pub unit: String,
     /// Uncertainty of the value, if it is a mean over seeds.
-    pub spread: Option<Spread>,
+    pub spread: Option<ConfidenceInterval>,
     /// Smallest value that passes.
     pub low: Option<f64>,
     /// Largest value that passes.
@@ -29,14 +29,14 @@ pub struct Metric {
     /// Value in the paper.
     pub paper: Option<f64>,
     /// The best other program on the same data.
-    pub peer: Option<Peer>,
+    pub peer: Option<PeerValue>,
     /// Source of the bounds: an argument, paper or peer.
     pub bound_source: Option<String>,
 }
 
 /// The 95 % interval of a mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
+pub struct ConfidenceInterval {
     /// The interval reaches this far to both sides.
     pub half_width: f64,
     /// Number of seeds.
@@ -45,7 +45,7 @@ pub struct Spread {
 
 /// Value of another program on the same data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Peer {
+pub struct PeerValue {
     /// Its name and version.
     pub name: String,
     /// Its figure, in the unit of the metric.
@@ -76,7 +76,7 @@ impl Metric {
     }
     /// The same with the best other program.
     pub fn peer(self, name: impl Into<String>, value: f64) -> Self {
-        Self { peer: Some(Peer { name: name.into(), value }), ..self }
+        Self { peer: Some(PeerValue { name: name.into(), value }), ..self }
     }
     /// Sets the source of the bounds.
     pub fn bound_from(self, source: impl Into<String>) -> Self {
@@ -107,9 +107,9 @@ struct StoredMetric {
     #[serde(default)]
     pass: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    spread: Option<Spread>,
+    spread: Option<ConfidenceInterval>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    peer: Option<Peer>,
+    peer: Option<PeerValue>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     bound_source: Option<String>,
 }

@@ -2,14 +2,14 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Machine, Metric};
-use crate::plot::Picture;
+use super::{MachineInfo, Metric};
+use crate::plot::SvgPlot;
 
 /// All suites of one call, with the data needed to repeat it.
 /// ```
-/// use wayfix_evaluation::report::{Metric, Report, Run, Suite};
-/// let run = Run { name: "robot 1".to_owned(), metrics: vec![Metric::new("nees_mean", 2.9, "").at_most(4.0)], ..Run::default() };
-/// let report = Report { suites: vec![Suite { name: "slam".to_owned(), runs: vec![run] }], seed: 1, ..Report::default() };
+/// use wayfix_evaluation::report::{Metric, Report, ReportRun, ReportSuite};
+/// let run = ReportRun { name: "robot 1".to_owned(), metrics: vec![Metric::new("nees_mean", 2.9, "").at_most(4.0)], ..ReportRun::default() };
+/// let report = Report { suites: vec![ReportSuite { name: "slam".to_owned(), runs: vec![run] }], seed: 1, ..Report::default() };
 /// assert!(report.tally().all_pass());
 /// assert!(serde_json::to_string(&report)?.contains(r#""pass":true"#));
 /// # Ok::<(), serde_json::Error>(())
@@ -17,27 +17,27 @@ use crate::plot::Picture;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// In the order in which they ran.
-    pub suites: Vec<Suite>,
+    pub suites: Vec<ReportSuite>,
     /// Seed of every generator.
     pub seed: u64,
     /// Revision of the source; `null` if unknown.
     pub commit: Option<String>,
     /// The machine.
-    pub machine: Machine,
+    pub machine: MachineInfo,
 }
 
 /// Runs that belong together: `slam`, `color`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Suite {
+pub struct ReportSuite {
     /// Its name on the command line.
     pub name: String,
     /// In the order in which they ran.
-    pub runs: Vec<Run>,
+    pub runs: Vec<ReportRun>,
 }
 
 /// One log through one estimator.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Run {
+pub struct ReportRun {
     /// Its name, unique in its suite.
     pub name: String,
     /// Figures that the seed and the log decide, bit for bit.
@@ -52,7 +52,7 @@ pub struct Run {
     pub events: BTreeMap<String, u64>,
     /// Pictures in the order of the page; the drawings themselves are in the page only.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub figures: Vec<Picture>,
+    pub figures: Vec<SvgPlot>,
     /// Remarks for the reader, a paragraph each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
@@ -70,7 +70,7 @@ pub struct Run {
     pub error: Option<String>,
 }
 
-impl Run {
+impl ReportRun {
     /// Metrics, then timings.
     pub fn all_metrics(&self) -> impl Iterator<Item = &Metric> {
         self.metrics.iter().chain(&self.timings)
@@ -83,7 +83,7 @@ mod tests {
     use serde_json::{Value, json};
 
     fn report() -> Report {
-        let run = Run {
+        let run = ReportRun {
             name: "utias-7-1".to_owned(),
             metrics: vec![
                 Metric::new("ate_rmse_m", 0.25, "m").at_most(0.5).paper(0.3),
@@ -92,15 +92,15 @@ mod tests {
             seconds: 1.5,
             timings: vec![Metric::new("step_mean_us", 12.0, "µs")],
             events: BTreeMap::from([("rejected".to_owned(), 3)]),
-            figures: vec![Picture {
+            figures: vec![SvgPlot {
                 title: "Map".to_owned(),
                 svg: "<svg></svg>".to_owned(),
-                ..Picture::default()
+                ..SvgPlot::default()
             }],
-            ..Run::default()
+            ..ReportRun::default()
         };
         Report {
-            suites: vec![Suite { name: "slam".to_owned(), runs: vec![run] }],
+            suites: vec![ReportSuite { name: "slam".to_owned(), runs: vec![run] }],
             seed: 7,
             ..Report::default()
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The machine of a report: enough to judge its times.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Machine {
+pub struct MachineInfo {
     /// Name of the processor.
     pub cpu: String,
     /// Logical cores available to this process; 0 if unknown.
@@ -16,10 +16,10 @@ pub struct Machine {
     pub platform: String,
 }
 
-impl Machine {
+impl MachineInfo {
     /// Describes this machine; unavailable properties are "unknown".
     /// ```
-    /// assert!(wayfix_evaluation::report::Machine::detect().platform.contains(std::env::consts::OS));
+    /// assert!(wayfix_evaluation::report::MachineInfo::detect().platform.contains(std::env::consts::OS));
     /// ```
     pub fn detect() -> Self {
         let cpu_info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -31,7 +31,7 @@ impl Machine {
     }
 }
 
-impl fmt::Display for Machine {
+impl fmt::Display for MachineInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { cpu, cores, platform } = self;
         let plural = if *cores == 1 { "" } else { "s" };

@@ -2,13 +2,13 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::Run;
+use super::ReportRun;
 
 /// The object that `wayfix run --json` prints: figures by name, events by name, seed.
 ///
 /// ```
-/// use wayfix_evaluation::report::{Metric, Run, RunSummary};
-/// let run = Run { metrics: vec![Metric::new("n_landmarks", 15.0, "")], ..Run::default() };
+/// use wayfix_evaluation::report::{Metric, ReportRun, RunSummary};
+/// let run = ReportRun { metrics: vec![Metric::new("n_landmarks", 15.0, "")], ..ReportRun::default() };
 /// let text = serde_json::to_string(&RunSummary::new(&run, 3))?;
 /// assert_eq!(text, r#"{"metrics":{"n_landmarks":15.0},"events":{},"seed":3}"#);
 /// # Ok::<(), serde_json::Error>(())
@@ -25,7 +25,7 @@ pub struct RunSummary {
 
 impl RunSummary {
     /// The summary of `run`.
-    pub fn new(run: &Run, seed: u64) -> Self {
+    pub fn new(run: &ReportRun, seed: u64) -> Self {
         let finite = run.all_metrics().filter(|metric| metric.value.is_finite());
         Self {
             metrics: finite.map(|metric| (metric.name.clone(), metric.value)).collect(),
@@ -42,11 +42,11 @@ mod tests {
 
     #[test]
     fn every_value_is_a_number() {
-        let run = Run {
+        let run = ReportRun {
             metrics: vec![Metric::new("ate_rmse_m", f64::NAN, "m"), Metric::new("nees_mean", 3.0, "")],
             timings: vec![Metric::new("step_mean_us", 8.5, "µs")],
             events: BTreeMap::from([("rejected".to_owned(), 2)]),
-            ..Run::default()
+            ..ReportRun::default()
         };
         let summary = serde_json::to_value(RunSummary::new(&run, 1)).unwrap();
         let expected = serde_json::json!({"metrics": {"nees_mean": 3.0, "step_mean_us": 8.5}, "events": {"rejected": 2}, "seed": 1});

@@ -3,7 +3,7 @@
 use console::{measure_text_width, truncate_str};
 
 use super::number::{duration, significant, significant_or_empty};
-use super::{Metric, Report, Run};
+use super::{Metric, Report, ReportRun};
 
 /// Style of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,9 +29,9 @@ impl TableStyle {
 /// Every run of the report, and the tally.
 ///
 /// ```
-/// use wayfix_evaluation::report::{Metric, Report, Run, Suite, table};
-/// let run = Run { name: "robot 1".to_owned(), metrics: vec![Metric::new("ate_rmse_m", 0.2, "m").at_most(0.1)], ..Run::default() };
-/// let report = Report { suites: vec![Suite { name: "slam".to_owned(), runs: vec![run] }], ..Report::default() };
+/// use wayfix_evaluation::report::{Metric, Report, ReportRun, ReportSuite, table};
+/// let run = ReportRun { name: "robot 1".to_owned(), metrics: vec![Metric::new("ate_rmse_m", 0.2, "m").at_most(0.1)], ..ReportRun::default() };
+/// let report = Report { suites: vec![ReportSuite { name: "slam".to_owned(), runs: vec![run] }], ..Report::default() };
 /// let text = table::report(&report, table::TableStyle::PLAIN);
 /// assert!(text.contains("✗ ate_rmse_m") && text.ends_with("0 within bounds, 1 not\n"));
 /// ```
@@ -49,7 +49,7 @@ pub fn report(report: &Report, style: TableStyle) -> String {
 }
 
 /// Metrics, timings and events of one run.
-pub fn run(run: &Run, style: TableStyle) -> String {
+pub fn run(run: &ReportRun, style: TableStyle) -> String {
     let rows: Vec<Row> =
         std::iter::once(HEADER.map(str::to_owned)).chain(run.all_metrics().map(row)).collect();
     let mut text = set(&rows, style);
@@ -162,7 +162,7 @@ fn set_cell(column: usize, text: &str, width: usize, colour: bool) -> String {
 mod tests {
     use super::*;
 
-    fn example() -> Run {
+    fn example() -> ReportRun {
         let metrics = vec![
             Metric::new("ate_aligned_rmse_m", 0.121, "m")
                 .at_most(0.164)
@@ -172,7 +172,7 @@ mod tests {
             Metric::new("nees_mean", 5.5, "").at_least(2.0).at_most(4.0),
             Metric::new("n_landmarks", 15.0, ""),
         ];
-        Run { name: "r".to_owned(), metrics, ..Run::default() }
+        ReportRun { name: "r".to_owned(), metrics, ..ReportRun::default() }
     }
 
     /// Position in characters, not bytes.

@@ -1,20 +1,20 @@
 use std::iter::Sum;
 use std::ops::Add;
 
-use super::{Metric, Report, Run, Suite};
+use super::{Metric, Report, ReportRun, ReportSuite};
 
 /// Number of figures that pass and fail.
 ///
 /// A figure counts if it has a bound or is not finite; a run that ended early counts as one failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct PassFailCount {
     /// Figures within their bounds.
     pub passed: usize,
     /// Figures outside their bounds or not finite, and runs that ended early.
     pub failed: usize,
 }
 
-impl Tally {
+impl PassFailCount {
     /// Whether at least one figure counts and none fails: a report without bounds does not pass.
     pub fn all_pass(self) -> bool {
         self.failed == 0 && self.passed > 0
@@ -23,44 +23,44 @@ impl Tally {
 
 impl Report {
     /// The tally of all suites.
-    pub fn tally(&self) -> Tally {
-        self.suites.iter().map(Suite::tally).sum()
+    pub fn tally(&self) -> PassFailCount {
+        self.suites.iter().map(ReportSuite::tally).sum()
     }
 }
 
-impl Suite {
+impl ReportSuite {
     /// The tally of all runs.
-    pub fn tally(&self) -> Tally {
-        self.runs.iter().map(Run::tally).sum()
+    pub fn tally(&self) -> PassFailCount {
+        self.runs.iter().map(ReportRun::tally).sum()
     }
 }
 
-impl Run {
+impl ReportRun {
     /// The tally of metrics and timings.
-    pub fn tally(&self) -> Tally {
-        let ended_early = Tally { passed: 0, failed: usize::from(self.error.is_some()) };
-        self.all_metrics().map(Metric::tally).sum::<Tally>() + ended_early
+    pub fn tally(&self) -> PassFailCount {
+        let ended_early = PassFailCount { passed: 0, failed: usize::from(self.error.is_some()) };
+        self.all_metrics().map(Metric::tally).sum::<PassFailCount>() + ended_early
     }
 }
 
 impl Metric {
-    fn tally(&self) -> Tally {
+    fn tally(&self) -> PassFailCount {
         match (self.passes(), self.is_bounded()) {
-            (false, _) => Tally { passed: 0, failed: 1 },
-            (true, true) => Tally { passed: 1, failed: 0 },
-            (true, false) => Tally::default(),
+            (false, _) => PassFailCount { passed: 0, failed: 1 },
+            (true, true) => PassFailCount { passed: 1, failed: 0 },
+            (true, false) => PassFailCount::default(),
         }
     }
 }
 
-impl Add for Tally {
+impl Add for PassFailCount {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self { passed: self.passed + other.passed, failed: self.failed + other.failed }
     }
 }
 
-impl Sum for Tally {
+impl Sum for PassFailCount {
     fn sum<I: Iterator<Item = Self>>(tallies: I) -> Self {
         tallies.fold(Self::default(), Add::add)
     }
@@ -77,10 +77,11 @@ mod tests {
             Metric::new("good", 1.0, "").at_most(2.0),
             Metric::new("bad", 3.0, "").at_most(2.0),
         ];
-        let run = Run { metrics, timings: vec![Metric::new("lost", f64::NAN, "")], ..Run::default() };
-        assert_eq!(run.tally(), Tally { passed: 1, failed: 2 });
-        let broken = Run { error: Some("no record".to_owned()), ..Run::default() };
-        assert_eq!(broken.tally(), Tally { passed: 0, failed: 1 });
+        let run =
+            ReportRun { metrics, timings: vec![Metric::new("lost", f64::NAN, "")], ..ReportRun::default() };
+        assert_eq!(run.tally(), PassFailCount { passed: 1, failed: 2 });
+        let broken = ReportRun { error: Some("no record".to_owned()), ..ReportRun::default() };
+        assert_eq!(broken.tally(), PassFailCount { passed: 0, failed: 1 });
         assert!(!Report::default().tally().all_pass(), "nothing judged is not a pass");
     }
 }

@@ -7,7 +7,7 @@ use std::{
 use anyhow::{Context, Result};
 
 use super::regress::show;
-use crate::regress::{Part, assemble, join};
+use crate::regress::{ShardResults, assemble, join};
 
 /// Merge the shares of a regression that several machines have run into one report.
 ///
@@ -27,7 +27,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
-    let parts = arguments.shares.iter().map(|share| Ok((share.clone(), Part::read(share)?)));
+    let parts = arguments.shares.iter().map(|share| Ok((share.clone(), ShardResults::read(share)?)));
     let (options, done) = join(parts.collect::<Result<_>>()?, &arguments.fixtures, &arguments.out)?;
     let report = assemble(&options, &done)?;
     fs::create_dir_all(&arguments.out)

@@ -6,7 +6,7 @@ use std::{
 use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{self, print};
 
-use crate::regress::{Options, Part, Shard, assemble, cells, run_shard, suites};
+use crate::regress::{CampaignShard, RegressOptions, ShardResults, assemble, cells, run_shard, suites};
 use wayfix_evaluation::report::{Report, table, table::TableStyle};
 
 /// Run every system on the stored logs, and on public recordings if available, and compare the figures with their bounds.
@@ -35,8 +35,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "bless")]
     seeds: u64,
     /// Do the K-th of N shares of the work and write OUT/part.json; `wayfix-experiments merge-reports` makes one report of all shares.
-    #[arg(long, value_name = "K/N", default_value_t = Shard::WHOLE, hide_default_value = true, conflicts_with = "bless")]
-    shard: Shard,
+    #[arg(long, value_name = "K/N", default_value_t = CampaignShard::WHOLE, hide_default_value = true, conflicts_with = "bless")]
+    shard: CampaignShard,
     /// Stored logs and short experiments only.
     #[arg(long)]
     quick: bool,
@@ -50,7 +50,7 @@ pub(super) struct Arguments {
 
 pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let all = || suites::names().into_iter().map(str::to_owned).collect();
-    let options = Options {
+    let options = RegressOptions {
         suites: if arguments.suites.is_empty() { all() } else { arguments.suites },
         fixtures: arguments.fixtures,
         data: arguments.data,
@@ -72,7 +72,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     bar.finish_and_clear();
 
     if shard.is_part() {
-        let path = Part::new(&options, shard, done)?.write(&options.out)?;
+        let path = ShardResults::new(&options, shard, done)?.write(&options.out)?;
         print(format!("shard {shard}: {n_mine} runs done, {}\n", path.display()))?;
         return Ok(ExitCode::SUCCESS);
     }

@@ -1,14 +1,14 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
-use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
-use wayfix_scene_sim::world::World;
+use wayfix_scene_sim::indoors::{Building, IndoorParams, RetailStore, RetailStoreParams};
+use wayfix_scene_sim::world::SensorWorld;
 
 use super::localize_trip::known_start;
 use super::summary::{largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot};
-use super::{Setup, Trip, TripResult, localize_trip};
+use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
 use wayfix_evaluation::plot::MapPlot;
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::PanoramaLocalizer;
 
 /// Laps around the shelves. [Gross et al. 2004, Fig. 4]
@@ -16,17 +16,17 @@ const N_LAPS: usize = 7;
 
 struct Lapped {
     building: Building,
-    trip: Trip,
-    course: TripResult,
+    trip: SimulatedDrive,
+    course: SimulatedDriveResult,
     /// The same with the method as printed.
-    printed: TripResult,
+    printed: SimulatedDriveResult,
 }
 
 /// Fig. 4: seven laps around shelves from an empty map, odometry as it is. Length and share of the setup play no part.
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn laps(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn laps(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     metrics.extend(mean_of("error_mean_m", "m", &seeds, |lapped| mean(&lapped.course.errors)));
@@ -49,25 +49,25 @@ pub fn laps(setup: &Setup, seed: u64) -> Result<Run> {
         "{} seeds; an area of 25 m × 10 m, {N_LAPS} laps, empty map, odometry as it is.",
         setup.n_seeds
     );
-    Ok(Run { metrics, figures, notes: vec![note], ..Run::default() })
+    Ok(ReportRun { metrics, figures, notes: vec![note], ..ReportRun::default() })
 }
 
-fn one(setup: &Setup, seed: u64) -> Result<Lapped> {
-    let building = Store::draw(StoreParams::area(), &mut Draw::World.rng(seed))?.building();
+fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Lapped> {
+    let building = RetailStore::draw(RetailStoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let route = building.aisles().laps(N_LAPS, &mut Draw::Visit(0).rng(seed))?;
     let params = IndoorParams { drive: robot(seed), ..IndoorParams::default() };
-    let trip = Trip::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
+    let trip = SimulatedDrive::drive(&building, route, params, Draw::Visit(0).streams(seed))?;
     let with = |params| localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip);
     let (course, printed) = (with(setup.localizer)?, with(LocalizerParams::printed())?);
     Ok(Lapped { building, trip, course, printed })
 }
 
-fn of_lap(course: &TripResult, lap: usize) -> &[f64] {
+fn of_lap(course: &SimulatedDriveResult, lap: usize) -> &[f64] {
     let n = course.errors.len();
     &course.errors[n * lap / N_LAPS..n * (lap + 1) / N_LAPS]
 }
 
-fn dead_reckoning_errors(trip: &Trip) -> Vec<f64> {
+fn dead_reckoning_errors(trip: &SimulatedDrive) -> Vec<f64> {
     let reckoned = trip.dead_reckoning();
     trip.steps
         .iter()
@@ -84,7 +84,7 @@ fn path(lapped: &Lapped) -> MapPlot {
 }
 
 /// Paths of a drive between the shelves.
-pub(super) fn plan(building: &Building, trip: &Trip, course: &TripResult) -> MapPlot {
+pub(super) fn plan(building: &Building, trip: &SimulatedDrive, course: &SimulatedDriveResult) -> MapPlot {
     let points = |poses: Vec<wayfix_estimation_traits::Pose2<f64>>| {
         poses.iter().map(|pose| (pose.x(), pose.y())).collect()
     };

@@ -1,12 +1,12 @@
 use anyhow::Result;
 use wayfix_appearance_cml::LocalizerParams;
-use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
+use wayfix_scene_sim::indoors::{IndoorParams, RetailStore, RetailStoreParams};
 
 use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Setup, TripResult, localize_trip};
-use wayfix_evaluation::report::{Metric, Run};
+use super::{CmlExperimentSetup, SimulatedDriveResult, localize_trip};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::PanoramaLocalizer;
 
 /// People in 25 m × 10 m: almost every view shows a person.
@@ -16,12 +16,12 @@ const N_PEOPLE: usize = 12;
 /// empty.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed.
-pub fn crowded(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn crowded(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (name, at) in [("crowded", 0), ("crowded_all_learned", 1), ("empty", 2)] {
         let references =
-            |courses: &[TripResult; 3]| courses[at].n_references.last().map_or(0.0, |n| *n as f64);
+            |courses: &[SimulatedDriveResult; 3]| courses[at].n_references.last().map_or(0.0, |n| *n as f64);
         metrics.extend(mean_of(&format!("references_{name}"), "", &seeds, references));
         metrics.extend(mean_of(&format!("error_mean_m_{name}"), "m", &seeds, |courses| {
             mean(&courses[at].errors)
@@ -31,11 +31,11 @@ pub fn crowded(setup: &Setup, seed: u64) -> Result<Run> {
         "{} seeds; an area of 25 m × 10 m with {N_PEOPLE} people, {} m, empty map, odometry as it is.",
         setup.n_seeds, setup.length_m
     );
-    Ok(Run { metrics, notes: vec![note], ..Run::default() })
+    Ok(ReportRun { metrics, notes: vec![note], ..ReportRun::default() })
 }
 
-fn one(setup: &Setup, seed: u64) -> Result<[TripResult; 3]> {
-    let building = Store::draw(StoreParams::area(), &mut Draw::World.rng(seed))?.building();
+fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 3]> {
+    let building = RetailStore::draw(RetailStoreParams::area(), &mut Draw::World.rng(seed))?.building();
     let through = |n_people, params: LocalizerParams| {
         let drive = IndoorParams { drive: robot(seed), n_people, ..IndoorParams::default() };
         let trip = tour(&building, setup.length_m, drive, (seed, 0))?;

@@ -1,12 +1,12 @@
 use anyhow::Result;
 use wayfix_appearance_cml::{Learning, LocalizerParams};
-use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
+use wayfix_scene_sim::indoors::{IndoorParams, RetailStore, RetailStoreParams};
 
 use super::localize_trip::{known_start, taught};
 use super::summary::{by_seed, largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot, tour};
-use super::{Setup, Trip, TripResult, localize_trip};
-use wayfix_evaluation::report::{Metric, Run};
+use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::histogram;
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
@@ -24,11 +24,11 @@ const COURSES: [&str; 6] =
 /// the simulated world.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn four_weeks(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (at, name) in COURSES.iter().enumerate() {
-        let of = |courses: &[TripResult; 6], value: fn(&[f64]) -> f64| value(&courses[at].errors);
+        let of = |courses: &[SimulatedDriveResult; 6], value: fn(&[f64]) -> f64| value(&courses[at].errors);
         metrics.extend(mean_of(&format!("error_mean_m_{name}"), "m", &seeds, |courses| of(courses, mean)));
         metrics.extend(mean_of(&format!("error_max_m_{name}"), "m", &seeds, |courses| of(courses, largest)));
         metrics.extend(mean_of(&format!("lost_{name}"), "", &seeds, |courses| courses[at].n_lost as f64));
@@ -42,11 +42,12 @@ pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
         ("adapting_over_static_printed", 1, 4),
         ("adapting_printed_over_static_printed", 5, 4),
     ] {
-        let error = |at: usize| move |courses: &[TripResult; 6]| mean(&courses[at].errors);
+        let error = |at: usize| move |courses: &[SimulatedDriveResult; 6]| mean(&courses[at].errors);
         metrics.extend(ratio_of(name, &seeds, error(ours), error(against)));
     }
-    let errors =
-        |at: usize| seeds.iter().flat_map(|courses: &[TripResult; 6]| courses[at].errors.clone()).collect();
+    let errors = |at: usize| {
+        seeds.iter().flat_map(|courses: &[SimulatedDriveResult; 6]| courses[at].errors.clone()).collect()
+    };
     let plot = histogram(
         "Errors four weeks later",
         2.0,
@@ -60,22 +61,22 @@ pub fn four_weeks(setup: &Setup, seed: u64) -> Result<Run> {
         "{} seeds; a store of 80 m × 50 m, {} m to learn, as much four weeks later and again with what was learned then, {:.0} % of the shelf sections rearranged, {N_PEOPLE} people.",
         setup.n_seeds,
         setup.length_m,
-        100.0 * setup.rearranged
+        100.0 * setup.rearranged_share
     );
     let each =
         |(at, name): (usize, &&str)| by_seed(name, seeds.iter().map(|courses| &courses[at].errors[..]));
     let notes = std::iter::once(note).chain(COURSES.iter().enumerate().map(each)).collect();
-    Ok(Run { metrics, figures: vec![plot.draw()?], notes, ..Run::default() })
+    Ok(ReportRun { metrics, figures: vec![plot.draw()?], notes, ..ReportRun::default() })
 }
 
 /// Two drives four weeks later: with the map as it was and while it adapts, then with the map as it was and with the adapted one; the first again as printed.
-fn one(setup: &Setup, seed: u64) -> Result<[TripResult; 6]> {
-    let store = Store::draw(StoreParams::home_store(), &mut Draw::World.rng(seed))?;
+fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 6]> {
+    let store = RetailStore::draw(RetailStoreParams::home_store(), &mut Draw::World.rng(seed))?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
     let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
-    let later = store.rearranged(setup.rearranged, &mut Draw::Rearranged(1).rng(seed))?;
+    let later = store.rearranged(setup.rearranged_share, &mut Draw::Rearranged(1).rng(seed))?;
     let trip = |drive| tour(&later.building(), setup.length_m, params, (seed, drive));
-    let drive = |map: &PanoramaMap, trip: &Trip, learning, params| {
+    let drive = |map: &PanoramaMap, trip: &SimulatedDrive, learning, params| {
         let params = LocalizerParams { learning, ..params };
         let mut localizer = PanoramaLocalizer::with_map(params, map.clone(), known_start(trip)?)?;
         Ok::<_, anyhow::Error>((localize_trip(&mut localizer, trip)?, localizer.into_map()))

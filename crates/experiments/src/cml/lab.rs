@@ -1,13 +1,13 @@
 use anyhow::Result;
-use wayfix_appearance_cml::{Forgetting, LocalizerParams, MapParams};
-use wayfix_scene_sim::indoors::{AmbientLightParams, IndoorParams, Lab};
+use wayfix_appearance_cml::{AppearanceMapParams, ForgettingMode, LocalizerParams};
+use wayfix_scene_sim::indoors::{AmbientLightParams, IndoorParams, Laboratory};
 
 use super::localize_trip::known_start;
 use super::summary::{mean, mean_of, over_seeds};
 use super::worlds::{Draw, robot, tour};
-use super::{Setup, TripResult, localize_trip};
-use wayfix_evaluation::plot::{LinesPlot, Series};
-use wayfix_evaluation::report::{Metric, Run};
+use super::{CmlExperimentSetup, SimulatedDriveResult, localize_trip};
+use wayfix_evaluation::plot::{LinesPlot, PlotSeries};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::PanoramaLocalizer;
 
 /// Mean time between two changes of lamps or curtains, seconds.
@@ -18,13 +18,13 @@ const STEPS: [usize; 4] = [2000, 4000, 6000, 8000];
 /// Table 1: references in a lab with changing lamps and curtains, with and without active forgetting.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn changing_lab(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for (name, at) in [("passive", 0), ("active", 1)] {
         for step in STEPS {
             if seeds.iter().all(|courses| courses[at].n_references.len() >= step) {
-                let count = |courses: &[TripResult; 2]| courses[at].n_references[step - 1] as f64;
+                let count = |courses: &[SimulatedDriveResult; 2]| courses[at].n_references[step - 1] as f64;
                 metrics.extend(mean_of(&format!("references_{name}_{step}"), "", &seeds, count));
             }
         }
@@ -33,13 +33,13 @@ pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
             mean(&courses[at].errors)
         }));
     }
-    let points = |course: &TripResult| {
+    let points = |course: &SimulatedDriveResult| {
         course.n_references.iter().enumerate().step_by(20).map(|(step, n)| (step as f64, *n as f64)).collect()
     };
     let series = seeds.first().map_or(Vec::new(), |[passive, active]| {
         vec![
-            Series::new("passive forgetting", points(passive)),
-            Series::new("active forgetting", points(active)),
+            PlotSeries::new("passive forgetting", points(passive)),
+            PlotSeries::new("active forgetting", points(active)),
         ]
     });
     let plot = LinesPlot {
@@ -53,12 +53,12 @@ pub fn changing_lab(setup: &Setup, seed: u64) -> Result<Run> {
         "{} seeds; somebody switches lamps or draws a curtain every {SWITCHING_S} s in the mean; empty map, odometry as it is.",
         setup.n_seeds
     );
-    Ok(Run { metrics, figures: vec![plot.draw()?], notes: vec![note], ..Run::default() })
+    Ok(ReportRun { metrics, figures: vec![plot.draw()?], notes: vec![note], ..ReportRun::default() })
 }
 
 /// Growth of the number of references in the last quarter of the steps, as a share of it.
-fn growth(name: &str, seeds: &[[TripResult; 2]], at: usize) -> Vec<Metric> {
-    let share = |courses: &[TripResult; 2]| {
+fn growth(name: &str, seeds: &[[SimulatedDriveResult; 2]], at: usize) -> Vec<Metric> {
+    let share = |courses: &[SimulatedDriveResult; 2]| {
         let counts = &courses[at].n_references;
         let at = |quarter: usize| {
             counts.get((counts.len() * quarter / 4).saturating_sub(1)).map_or(f64::NAN, |n| *n as f64)
@@ -69,17 +69,19 @@ fn growth(name: &str, seeds: &[[TripResult; 2]], at: usize) -> Vec<Metric> {
 }
 
 /// The same drive with passive, then with active forgetting.
-fn one(setup: &Setup, seed: u64) -> Result<[TripResult; 2]> {
-    let building = Lab::draw(&mut Draw::World.rng(seed)).building();
+fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<[SimulatedDriveResult; 2]> {
+    let building = Laboratory::draw(&mut Draw::World.rng(seed)).building();
     let ambient_light =
         AmbientLightParams { switching_s: Some(SWITCHING_S), ..AmbientLightParams::default() };
     let params = IndoorParams { drive: robot(seed), ambient_light, n_people: 1, ..IndoorParams::default() };
     let mut trip = tour(&building, setup.length_m, params, (seed, 0))?;
     trip.steps.truncate(STEPS[STEPS.len() - 1]);
     let with = |forgetting| {
-        let params =
-            LocalizerParams { map: MapParams { forgetting, ..setup.localizer.map }, ..setup.localizer };
+        let params = LocalizerParams {
+            map: AppearanceMapParams { forgetting_mode: forgetting, ..setup.localizer.map },
+            ..setup.localizer
+        };
         localize_trip(&mut PanoramaLocalizer::new(params, known_start(&trip)?)?, &trip)
     };
-    Ok([with(Forgetting::Passive)?, with(Forgetting::Active)?])
+    Ok([with(ForgettingMode::Passive)?, with(ForgettingMode::Active)?])
 }

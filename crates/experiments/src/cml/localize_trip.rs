@@ -4,7 +4,7 @@ use wayfix_appearance_cml::{Event, LocalizerParams, Start};
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::Gaussian;
 
-use super::Trip;
+use super::SimulatedDrive;
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 use wayfix_systems::system::Stopwatch;
 
@@ -13,7 +13,7 @@ const SURVEYED: [f64; 3] = [0.02, 0.02, 0.01];
 
 /// Results of a drive, view by view.
 #[derive(Clone, Debug, Default)]
-pub struct TripResult {
+pub struct SimulatedDriveResult {
     /// The heaviest hypothesis, if there is any.
     pub estimates: Vec<Option<Pose2<f64>>>,
     /// Distance from the truth, metres; infinite without an estimate.
@@ -32,8 +32,11 @@ pub struct TripResult {
 ///
 /// # Errors
 /// Returns an error if it refuses a step.
-pub fn localize_trip(localizer: &mut PanoramaLocalizer, trip: &Trip) -> Result<TripResult> {
-    let mut course = TripResult::default();
+pub fn localize_trip(
+    localizer: &mut PanoramaLocalizer,
+    trip: &SimulatedDrive,
+) -> Result<SimulatedDriveResult> {
+    let mut course = SimulatedDriveResult::default();
     for step in &trip.steps {
         let stopwatch = Stopwatch::start();
         if let Some(odometry) = &step.odometry {
@@ -55,7 +58,7 @@ pub fn localize_trip(localizer: &mut PanoramaLocalizer, trip: &Trip) -> Result<T
 }
 
 /// A map taught with the true poses of a trip: "manually corrected odometric data".
-pub(super) fn taught(trip: &Trip) -> Result<PanoramaMap> {
+pub(super) fn taught(trip: &SimulatedDrive) -> Result<PanoramaMap> {
     let mut teacher = PanoramaLocalizer::new(LocalizerParams::default(), Start::Anywhere)?;
     for step in &trip.steps {
         if let Some(view) = &step.view {
@@ -66,7 +69,7 @@ pub(super) fn taught(trip: &Trip) -> Result<PanoramaMap> {
 }
 
 /// A start that was measured by hand.
-pub(super) fn known_start(trip: &Trip) -> Result<Start> {
+pub(super) fn known_start(trip: &SimulatedDrive) -> Result<Start> {
     Ok(match trip.steps.first() {
         Some(first) => Start::Known(surveyed(first.pose)?),
         None => Start::Anywhere,

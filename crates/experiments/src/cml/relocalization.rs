@@ -4,16 +4,16 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use wayfix_appearance_cml::Start;
-use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
+use wayfix_scene_sim::indoors::{Building, IndoorParams, RetailStore, RetailStoreParams};
 use wayfix_scene_sim::route::Route;
 
 use super::localize_trip::{known_start, taught};
 use super::summary::over_seeds;
 use super::worlds::{Draw, robot, tour};
-use super::{Setup, Trip, TripResult, localize_trip};
+use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
 use wayfix_evaluation::errors::proportion_interval;
-use wayfix_evaluation::plot::{LinesPlot, Series};
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::plot::{LinesPlot, PlotSeries};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 
 /// A run has succeeded that ends this near, metres.
@@ -39,7 +39,7 @@ const MOST_DRAWS: usize = 1000;
 /// Number of runs with an unknown start in known stores that end near the truth after 20 m.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn global_start(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let courses = in_stores(setup, seed, |map, later, at| {
         let trip = away(later, map, at, TRAVEL_M)?;
         localize_trip(&mut PanoramaLocalizer::with_map(setup.localizer, map.clone(), Start::Anywhere)?, &trip)
@@ -50,7 +50,7 @@ pub fn global_start(setup: &Setup, seed: u64) -> Result<Run> {
 /// Number of kidnapped robots, after 20 m of correct tracking, that end near the truth after another 20 m.
 /// # Errors
 /// Returns the errors of [`global_start`].
-pub fn kidnapped(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn kidnapped(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     report("Carried away", setup, &kidnapped_results(setup, seed, TRAVEL_M)?)
 }
 
@@ -58,9 +58,11 @@ pub fn kidnapped(setup: &Setup, seed: u64) -> Result<Run> {
 /// another place.
 /// # Errors
 /// Returns the errors of [`global_start`].
-pub fn after_relocalization(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn after_relocalization(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let courses = kidnapped_results(setup, seed, FOLLOWED_M)?;
-    let after = |course: &TripResult| course.errors.get((TRAVEL_M / VIEW_M) as usize..).map(<[f64]>::to_vec);
+    let after = |course: &SimulatedDriveResult| {
+        course.errors.get((TRAVEL_M / VIEW_M) as usize..).map(<[f64]>::to_vec)
+    };
     let mut found: Vec<Vec<f64>> = courses.iter().filter_map(after).collect();
     found.retain(|errors| errors.first().is_some_and(|error| *error <= NEAR_M));
     let n_diverged = found.iter().filter(|errors| errors.iter().any(|error| *error > DIVERGED_M)).count();
@@ -83,11 +85,15 @@ pub fn after_relocalization(setup: &Setup, seed: u64) -> Result<Run> {
         found.len()
     );
     let figures = vec![quantiles("Carried away, and on", &courses).draw()?];
-    Ok(Run { metrics, figures, notes: vec![note], ..Run::default() })
+    Ok(ReportRun { metrics, figures, notes: vec![note], ..ReportRun::default() })
 }
 
 /// Robots that are tracked for 20 m, and then kidnapped to the start of a drive of `length_m`.
-fn kidnapped_results(setup: &Setup, seed: u64, length_m: f64) -> Result<Vec<TripResult>> {
+fn kidnapped_results(
+    setup: &CmlExperimentSetup,
+    seed: u64,
+    length_m: f64,
+) -> Result<Vec<SimulatedDriveResult>> {
     in_stores(setup, seed, |map, later, at| {
         let before = away(later, map, (at.0, at.1 + 1000), TRAVEL_M)?;
         let after = away(later, map, at, length_m)?;
@@ -99,13 +105,13 @@ fn kidnapped_results(setup: &Setup, seed: u64, length_m: f64) -> Result<Vec<Trip
 
 /// Several runs in each store, some days after its map was taught.
 fn in_stores(
-    setup: &Setup,
+    setup: &CmlExperimentSetup,
     seed: u64,
-    run: impl Fn(&PanoramaMap, &Building, (u64, u64)) -> Result<TripResult> + Sync,
-) -> Result<Vec<TripResult>> {
-    let stores = Setup { n_seeds: setup.n_seeds.div_ceil(RUNS_PER_STORE), ..*setup };
+    run: impl Fn(&PanoramaMap, &Building, (u64, u64)) -> Result<SimulatedDriveResult> + Sync,
+) -> Result<Vec<SimulatedDriveResult>> {
+    let stores = CmlExperimentSetup { n_seeds: setup.n_seeds.div_ceil(RUNS_PER_STORE), ..*setup };
     let courses = over_seeds(&stores, seed, |seed| {
-        let store = Store::draw(StoreParams::home_store(), &mut Draw::World.rng(seed))?;
+        let store = RetailStore::draw(RetailStoreParams::home_store(), &mut Draw::World.rng(seed))?;
         let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
         let map = taught(&tour(&store.building(), setup.length_m, params, (seed, 0))?)?;
         let later = store.rearranged(REARRANGED, &mut Draw::Rearranged(1).rng(seed))?.building();
@@ -116,11 +122,16 @@ fn in_stores(
 }
 
 /// A drive from a random crossing, through aisles of the map.
-fn away(building: &Building, map: &PanoramaMap, (seed, visit): (u64, u64), length_m: f64) -> Result<Trip> {
+fn away(
+    building: &Building,
+    map: &PanoramaMap,
+    (seed, visit): (u64, u64),
+    length_m: f64,
+) -> Result<SimulatedDrive> {
     let mut rng = Draw::Visit(visit).rng(seed);
     let route = known_route(building, map, length_m, &mut rng)?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
-    let mut trip = Trip::drive(building, route, params, Draw::Visit(visit).streams(seed))?;
+    let mut trip = SimulatedDrive::drive(building, route, params, Draw::Visit(visit).streams(seed))?;
     let mut travelled_m = 0.0;
     trip.steps.retain(|step| {
         travelled_m += step.odometry.map_or(0.0, |moved| moved.translation.norm());
@@ -145,9 +156,9 @@ fn known_route(building: &Building, map: &PanoramaMap, length_m: f64, rng: &mut 
     bail!("no drive of {length_m} m through known aisles in {MOST_DRAWS} draws")
 }
 
-fn report(title: &str, setup: &Setup, courses: &[TripResult]) -> Result<Run> {
+fn report(title: &str, setup: &CmlExperimentSetup, courses: &[SimulatedDriveResult]) -> Result<ReportRun> {
     let n = courses.len();
-    let near = |course: &&TripResult| course.errors.last().is_some_and(|error| *error <= NEAR_M);
+    let near = |course: &&SimulatedDriveResult| course.errors.last().is_some_and(|error| *error <= NEAR_M);
     let n_near = courses.iter().filter(near).count();
     let (low, high) = proportion_interval(n_near as u64, n as u64);
     let metrics = vec![
@@ -161,10 +172,15 @@ fn report(title: &str, setup: &Setup, courses: &[TripResult]) -> Result<Run> {
         setup.length_m,
         100.0 * REARRANGED
     );
-    Ok(Run { metrics, figures: vec![quantiles(title, courses).draw()?], notes: vec![note], ..Run::default() })
+    Ok(ReportRun {
+        metrics,
+        figures: vec![quantiles(title, courses).draw()?],
+        notes: vec![note],
+        ..ReportRun::default()
+    })
 }
 
-fn quantiles(title: &str, courses: &[TripResult]) -> LinesPlot {
+fn quantiles(title: &str, courses: &[SimulatedDriveResult]) -> LinesPlot {
     let n_steps = courses.iter().map(|course| course.errors.len()).min().unwrap_or(0);
     let quantile = |share: f64| {
         let at = |step: usize| {
@@ -180,9 +196,9 @@ fn quantiles(title: &str, courses: &[TripResult]) -> LinesPlot {
         x_label: "travelled, m".to_owned(),
         y_label: "position error, m".to_owned(),
         series: vec![
-            Series::new("median", quantile(0.5)),
-            Series::new("90 % of the runs are below", quantile(0.9)),
-            Series::new("95 %", quantile(0.95)),
+            PlotSeries::new("median", quantile(0.5)),
+            PlotSeries::new("90 % of the runs are below", quantile(0.9)),
+            PlotSeries::new("95 %", quantile(0.95)),
         ],
         ..LinesPlot::default()
     }

@@ -4,21 +4,21 @@ use wayfix_appearance_cml::LocalizerParams;
 /// Setup of an experiment.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Setup {
+pub struct CmlExperimentSetup {
     /// Number of seeds; each has its own world.
     pub n_seeds: u64,
     /// Length of a drive, metres, where the experiment leaves it open.
     #[serde(default)]
     pub length_m: f64,
     /// Share of the shelf sections that are rearranged between visits, where the experiment leaves it open. Default 0.4.
-    #[serde(default = "Setup::usually_rearranged")]
-    pub rearranged: f64,
+    #[serde(default = "CmlExperimentSetup::usually_rearranged")]
+    pub rearranged_share: f64,
     /// The localizer. Default as everywhere.
     #[serde(default)]
     pub localizer: LocalizerParams,
 }
 
-impl Setup {
+impl CmlExperimentSetup {
     fn usually_rearranged() -> f64 {
         0.4
     }

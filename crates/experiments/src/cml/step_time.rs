@@ -3,13 +3,13 @@ use std::hint::black_box;
 use anyhow::Result;
 use wayfix_appearance_cml::{Learning, LocalizerParams, PanoramaDescriptor, Start};
 use wayfix_estimation_traits::Pose2;
-use wayfix_scene_sim::indoors::{IndoorParams, Store, StoreParams};
+use wayfix_scene_sim::indoors::{IndoorParams, RetailStore, RetailStoreParams};
 
 use super::localize_trip::{known_start, surveyed, taught};
 use super::worlds::{Draw, robot, tour};
-use super::{Setup, Trip, TripStep, localize_trip};
-use wayfix_evaluation::plot::{LinesPlot, Scale, Series, statistics::quantile};
-use wayfix_evaluation::report::{Metric, Run};
+use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveStep, localize_trip};
+use wayfix_evaluation::plot::{AxisScale, LinesPlot, PlotSeries, statistics::quantile};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::{PanoramaLocalizer, PanoramaMap};
 use wayfix_systems::system::Stopwatch;
 
@@ -24,10 +24,11 @@ const KIDNAPPED_QUANTILE: f64 = 0.95;
 /// of the whole map for global localization. Times vary from call to call, and other runs of a report run in parallel.
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn step_time(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seed = setup.seeds(seed).start;
-    let shape = StoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..StoreParams::home_store() };
-    let building = Store::draw(shape, &mut Draw::World.rng(seed))?.building();
+    let shape =
+        RetailStoreParams { length_m: 240.0, width_m: 150.0, n_blocks: 9, ..RetailStoreParams::home_store() };
+    let building = RetailStore::draw(shape, &mut Draw::World.rng(seed))?.building();
     let params = IndoorParams { drive: robot(seed), n_people: 20, ..IndoorParams::default() };
     let learned = tour(&building, setup.length_m, params, (seed, 0))?;
     let mut again = tour(&building, 0.25 * N_STEPS as f64, params, (seed, 1))?;
@@ -35,7 +36,7 @@ pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
 
     // The smallest number of references suffices to learn the match threshold.
     let first = learned.steps.len().min(N_REFERENCES[0]);
-    let mut map = taught(&Trip { steps: learned.steps[..first].to_vec() })?;
+    let mut map = taught(&SimulatedDrive { steps: learned.steps[..first].to_vec() })?;
     let mut more = between(&learned).skip(first);
     // Half way along the part that every map contains, away from the drive.
     let elsewhere = Start::Known(surveyed(learned.steps[first / 2].pose)?);
@@ -64,12 +65,15 @@ pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
         x_label: "references".to_owned(),
         y_label: "ms".to_owned(),
         series: vec![
-            Series::new(format!("a robot that knows where it is: median of {N_STEPS} steps"), steps.clone()),
-            Series::new("one that is elsewhere: 95 % of the steps", doubts.clone()),
-            Series::new("a search of the whole map, for one that does not", searches.clone()),
+            PlotSeries::new(
+                format!("a robot that knows where it is: median of {N_STEPS} steps"),
+                steps.clone(),
+            ),
+            PlotSeries::new("one that is elsewhere: 95 % of the steps", doubts.clone()),
+            PlotSeries::new("a search of the whole map, for one that does not", searches.clone()),
         ],
-        x_scale: Scale::Log10,
-        y_scale: Scale::Log10,
+        x_scale: AxisScale::Log10,
+        y_scale: AxisScale::Log10,
         ..LinesPlot::default()
     };
     let of = |(what, times): (&str, &[(f64, f64)])| {
@@ -79,16 +83,16 @@ pub fn step_time(setup: &Setup, seed: u64) -> Result<Run> {
     let timings = [("step_median", &steps[..]), ("kidnapped_p95", &doubts), ("search_median", &searches)]
         .map(of)
         .concat();
-    Ok(Run { timings, figures: vec![plot.draw()?], ..Run::default() })
+    Ok(ReportRun { timings, figures: vec![plot.draw()?], ..ReportRun::default() })
 }
 
 /// The views of a trip, and then, round by round, views between successive ones.
-fn between(trip: &Trip) -> impl Iterator<Item = (PanoramaDescriptor, Pose2<f64>)> {
+fn between(trip: &SimulatedDrive) -> impl Iterator<Item = (PanoramaDescriptor, Pose2<f64>)> {
     // Each round adds at least one reference, or it never ends.
     (0..N_REFERENCES[6] as u32).flat_map(|round| {
         // Multiples of the golden section spread evenly; the first round is of the views themselves.
         let share = (f64::from(round) * 0.618_034).fract();
-        let view = move |pair: &[TripStep]| {
+        let view = move |pair: &[SimulatedDriveStep]| {
             let view = pair[0].view.as_ref()?.blend(pair[1].view.as_ref()?, share)?;
             Some((view, pair[0].pose))
         };
@@ -97,7 +101,7 @@ fn between(trip: &Trip) -> impl Iterator<Item = (PanoramaDescriptor, Pose2<f64>)
 }
 
 /// Seconds of searches without a belief.
-fn search_s(map: &PanoramaMap, trip: &Trip, params: &LocalizerParams) -> Vec<f64> {
+fn search_s(map: &PanoramaMap, trip: &SimulatedDrive, params: &LocalizerParams) -> Vec<f64> {
     let limit = map.match_limit(&params.map);
     let views = trip.steps.iter().filter_map(|step| step.view.as_ref());
     let search = |view: &PanoramaDescriptor| {

@@ -1,13 +1,13 @@
 use anyhow::Result;
 use rayon::prelude::*;
 
-use super::Setup;
+use super::CmlExperimentSetup;
 use wayfix_evaluation::errors::MeanInterval;
 use wayfix_evaluation::report::Metric;
 
 /// Does an experiment with every seed, side by side; the results in the order of the seeds.
 pub(super) fn over_seeds<T: Send>(
-    setup: &Setup,
+    setup: &CmlExperimentSetup,
     seed: u64,
     one: impl Fn(u64) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {

@@ -1,13 +1,13 @@
 use anyhow::Result;
-use wayfix_scene_sim::indoors::{Building, IndoorParams, Store, StoreParams};
+use wayfix_scene_sim::indoors::{Building, IndoorParams, RetailStore, RetailStoreParams};
 
 use super::area::plan;
 use super::localize_trip::known_start;
 use super::summary::{by_seed, largest, mean, mean_of, over_seeds, ratio_of};
 use super::worlds::{Draw, robot, tour};
-use super::{Setup, Trip, TripResult, localize_trip};
+use super::{CmlExperimentSetup, SimulatedDrive, SimulatedDriveResult, localize_trip};
 use wayfix_evaluation::plot::MapPlot;
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::report::{Metric, ReportRun};
 use wayfix_systems::cml::PanoramaLocalizer;
 use wayfix_systems::cml::histogram;
 
@@ -20,15 +20,15 @@ const SIZE_M: [f64; 2] = [40.0, 25.0];
 
 struct Day {
     building: Building,
-    trip: Trip,
-    course: TripResult,
+    trip: SimulatedDrive,
+    course: SimulatedDriveResult,
 }
 
 /// Fig. 6: three days from an empty map, odometry as it is; each day begins where the robot is charged.
 ///
 /// # Errors
 /// Returns an error if a drive cannot be simulated or followed, or the picture not be drawn.
-pub fn three_days(setup: &Setup, seed: u64) -> Result<Run> {
+pub fn three_days(setup: &CmlExperimentSetup, seed: u64) -> Result<ReportRun> {
     let seeds = over_seeds(setup, seed, |seed| one(setup, seed))?;
     let mut metrics: Vec<Metric> = Vec::new();
     for day in 0..N_DAYS {
@@ -64,18 +64,18 @@ pub fn three_days(setup: &Setup, seed: u64) -> Result<Run> {
         by_seed(&format!("Day {}", day + 1), seeds.iter().map(|days| &days[day].course.errors[..]))
     };
     let notes = std::iter::once(note).chain((0..N_DAYS).map(each)).collect();
-    Ok(Run { metrics, figures, notes, ..Run::default() })
+    Ok(ReportRun { metrics, figures, notes, ..ReportRun::default() })
 }
 
-fn one(setup: &Setup, seed: u64) -> Result<Vec<Day>> {
-    let shape = StoreParams {
+fn one(setup: &CmlExperimentSetup, seed: u64) -> Result<Vec<Day>> {
+    let shape = RetailStoreParams {
         length_m: SIZE_M[0],
         width_m: SIZE_M[1],
         n_blocks: 2,
         n_departments: 5,
-        ..StoreParams::home_store()
+        ..RetailStoreParams::home_store()
     };
-    let mut store = Store::draw(shape, &mut Draw::World.rng(seed))?;
+    let mut store = RetailStore::draw(shape, &mut Draw::World.rng(seed))?;
     let params = IndoorParams { drive: robot(seed), n_people: N_PEOPLE, ..IndoorParams::default() };
     let mut localizer: Option<PanoramaLocalizer> = None;
     let mut days = Vec::new();

@@ -1,20 +1,22 @@
 use anyhow::Result;
-use wayfix_appearance_cml::{Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams, TurnSense};
+use wayfix_appearance_cml::{
+    AzimuthDirection, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams,
+};
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_scene_sim::indoors::{Building, IndoorDrive, IndoorParams, IndoorStep};
-use wayfix_scene_sim::random::Streams;
+use wayfix_scene_sim::random::RandomStreams;
 use wayfix_scene_sim::route::Route;
 
 /// A simulated drive as a localizer meets it.
 #[derive(Clone, Debug)]
-pub struct Trip {
+pub struct SimulatedDrive {
     /// View by view.
-    pub steps: Vec<TripStep>,
+    pub steps: Vec<SimulatedDriveStep>,
 }
 
 /// One view with the odometry before it.
 #[derive(Clone, Debug)]
-pub struct TripStep {
+pub struct SimulatedDriveStep {
     /// Since the last view; none at the first.
     pub odometry: Option<Pose2<f64>>,
     /// The truth.
@@ -23,20 +25,26 @@ pub struct TripStep {
     pub view: Option<PanoramaDescriptor>,
 }
 
-impl Trip {
+impl SimulatedDrive {
     /// Drives along `route` and describes every view with the default parameters.
     ///
     /// # Errors
     /// Returns an error if a parameter of the simulation is out of range.
-    pub fn drive(building: &Building, route: Route, params: IndoorParams, streams: Streams) -> Result<Self> {
+    pub fn drive(
+        building: &Building,
+        route: Route,
+        params: IndoorParams,
+        streams: RandomStreams,
+    ) -> Result<Self> {
         let camera = params.camera;
         // As the simulated camera unrolls its views; everything else is the default.
-        let params_of_view = PanoramaParams { sense: TurnSense::Clockwise, ..PanoramaParams::default() };
-        let features = PanoramaFeatures::new(params_of_view, camera.columns, camera.rings)?;
+        let params_of_view =
+            PanoramaParams { azimuth_direction: AzimuthDirection::Clockwise, ..PanoramaParams::default() };
+        let features = PanoramaFeatures::new(params_of_view, camera.n_columns, camera.n_rings)?;
         let step = |step: IndoorStep| {
             let panorama = Panorama::from_rgb(step.view.width, step.view.height, step.view.rgb)?;
             let view = features.describe(&panorama).ok();
-            Ok(TripStep { odometry: step.odometry, pose: step.pose, view })
+            Ok(SimulatedDriveStep { odometry: step.odometry, pose: step.pose, view })
         };
         Ok(Self {
             steps: IndoorDrive::new(building, route, params, streams)?.map(step).collect::<Result<_>>()?,
@@ -47,7 +55,7 @@ impl Trip {
     pub fn dead_reckoning(&self) -> Vec<Pose2<f64>> {
         let Some(first) = self.steps.first() else { return Vec::new() };
         let mut pose = first.pose;
-        let mut moved = |step: &TripStep| {
+        let mut moved = |step: &SimulatedDriveStep| {
             pose = step.odometry.map_or(pose, |odometry| pose.compose(&odometry));
             pose
         };
@@ -67,7 +75,7 @@ mod tests {
 
     #[test]
     fn views_turn_with_the_robot() {
-        let building = wayfix_scene_sim::indoors::Lab::draw(&mut Draw::World.rng(SEED)).building();
+        let building = wayfix_scene_sim::indoors::Laboratory::draw(&mut Draw::World.rng(SEED)).building();
         let trip = tour(&building, 60.0, IndoorParams::default(), (SEED, 0)).unwrap();
         let mut off: Vec<f64> = trip
             .steps
@@ -87,7 +95,7 @@ mod tests {
 
     #[test]
     fn odometry_drifts_and_starts_at_the_truth() {
-        let building = wayfix_scene_sim::indoors::Lab::draw(&mut Draw::World.rng(SEED)).building();
+        let building = wayfix_scene_sim::indoors::Laboratory::draw(&mut Draw::World.rng(SEED)).building();
         let trip = tour(&building, 60.0, IndoorParams::default(), (SEED, 0)).unwrap();
         let reckoned = trip.dead_reckoning();
         let errors: Vec<f64> = trip

@@ -1,11 +1,11 @@
 use anyhow::Result;
 use rand::Rng;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_scene_sim::drive::DriveParams;
+use wayfix_scene_sim::drive::WheeledRobotParams;
 use wayfix_scene_sim::indoors::{Building, IndoorParams, calibrated_robot};
-use wayfix_scene_sim::random::Streams;
+use wayfix_scene_sim::random::RandomStreams;
 
-use super::Trip;
+use super::SimulatedDrive;
 
 /// Purpose of a random draw; each has its own generator, so that more draws of one do not change the others.
 #[derive(Clone, Copy, Debug)]
@@ -34,13 +34,13 @@ impl Draw {
     }
 
     /// The streams of a visit, beside the generator of its route.
-    pub(super) fn streams(self, seed: u64) -> Streams {
-        Streams::new(ChaCha8Rng::seed_from_u64(self.rng(seed).next_u64()))
+    pub(super) fn streams(self, seed: u64) -> RandomStreams {
+        RandomStreams::new(ChaCha8Rng::seed_from_u64(self.rng(seed).next_u64()))
     }
 }
 
 /// The robot of a seed.
-pub(super) fn robot(seed: u64) -> DriveParams {
+pub(super) fn robot(seed: u64) -> WheeledRobotParams {
     calibrated_robot(&mut Draw::Robot.rng(seed))
 }
 
@@ -50,7 +50,7 @@ pub(super) fn tour(
     length_m: f64,
     params: IndoorParams,
     (seed, visit): (u64, u64),
-) -> Result<Trip> {
+) -> Result<SimulatedDrive> {
     let route = building.aisles().tour(length_m, &mut Draw::Visit(visit).rng(seed))?;
-    Trip::drive(building, route, params, Draw::Visit(visit).streams(seed))
+    SimulatedDrive::drive(building, route, params, Draw::Visit(visit).streams(seed))
 }

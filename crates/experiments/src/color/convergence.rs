@@ -5,13 +5,13 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingBank;
-use wayfix_scene_sim::league::{LeagueParams, Lighting};
-use wayfix_scene_sim::random::Streams;
+use wayfix_scene_sim::league::{LampSetting, LeagueParams};
+use wayfix_scene_sim::random::RandomStreams;
 
 use wayfix_evaluation::{
     errors::proportion_interval,
-    plot::{LinesPlot, PlotError, Series},
-    report::{Metric, Run},
+    plot::{LinesPlot, PlotError, PlotSeries},
+    report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, StartPose, run};
 
@@ -24,16 +24,16 @@ const LAST_FRAMES: usize = 5;
 
 /// Number of successful runs, each in its own hall under unseen light.
 #[derive(Clone, Debug)]
-pub struct Convergence {
+pub struct ConvergenceCount {
     /// Whether the start is known and the robot is kidnapped later, rather than unknown.
     pub kidnapped: bool,
     /// One a seed, in their order.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<ConvergenceTrial>,
 }
 
 /// One run.
 #[derive(Clone, Debug)]
-pub struct Trial {
+pub struct ConvergenceTrial {
     /// Its seed, also of its hall.
     pub seed: u64,
     /// Position error frame by frame, metres.
@@ -50,13 +50,16 @@ pub fn global_start(
     map: &Arc<ColorMap>,
     bank: &LightingBank,
     params: &ColorSystemParams,
-) -> Result<Convergence> {
+) -> Result<ConvergenceCount> {
     let trials = trials(seeds, |seed| {
-        let drive =
-            LeagueParams { n_frames: FRAMES, lights: vec![(0, lighting(seed))], ..LeagueParams::default() };
+        let drive = LeagueParams {
+            n_frames: FRAMES,
+            lamp_settings: vec![(0, lighting(seed))],
+            ..LeagueParams::default()
+        };
         trial(seed, drive, Some(StartPose::Anywhere), map, bank, params)
     })?;
-    Ok(Convergence { kidnapped: false, trials })
+    Ok(ConvergenceCount { kidnapped: false, trials })
 }
 
 /// Starts near the truth, and is carried away after 40 frames.
@@ -68,29 +71,29 @@ pub fn kidnapped(
     map: &Arc<ColorMap>,
     bank: &LightingBank,
     params: &ColorSystemParams,
-) -> Result<Convergence> {
+) -> Result<ConvergenceCount> {
     const BEFORE: usize = 40;
     let trials = trials(seeds, |seed| {
         let drive = LeagueParams {
             n_frames: BEFORE + FRAMES,
             kidnaps: vec![BEFORE],
-            lights: vec![(0, lighting(seed))],
+            lamp_settings: vec![(0, lighting(seed))],
             ..LeagueParams::default()
         };
         trial(seed, drive, None, map, bank, params)
     })?;
-    Ok(Convergence { kidnapped: true, trials })
+    Ok(ConvergenceCount { kidnapped: true, trials })
 }
 
 /// Every other hall is dark.
-fn lighting(seed: u64) -> Lighting {
-    if seed.is_multiple_of(2) { Lighting::Dark } else { Lighting::Bright }
+fn lighting(seed: u64) -> LampSetting {
+    if seed.is_multiple_of(2) { LampSetting::Dark } else { LampSetting::Bright }
 }
 
 fn trials(
     seeds: impl IntoIterator<Item = u64>,
-    trial: impl Fn(u64) -> Result<Trial> + Sync,
-) -> Result<Vec<Trial>> {
+    trial: impl Fn(u64) -> Result<ConvergenceTrial> + Sync,
+) -> Result<Vec<ConvergenceTrial>> {
     seeds.into_iter().collect::<Vec<u64>>().into_par_iter().map(&trial).collect()
 }
 
@@ -101,16 +104,16 @@ fn trial(
     map: &Arc<ColorMap>,
     bank: &LightingBank,
     params: &ColorSystemParams,
-) -> Result<Trial> {
-    let records = drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?;
+) -> Result<ConvergenceTrial> {
+    let records = drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?;
     let run: ColorRun = run(&records, Arc::clone(map), bank.clone(), params, start, seed, |_| {})?;
     let errors = run.samples().iter().map(|(_, sample)| sample.position_error()).collect();
     let reported_tracking =
         run.samples().last().is_some_and(|(frame, _)| frame.fix == wayfix_color_model::Fix::Tracking);
-    Ok(Trial { seed, errors, reported_tracking })
+    Ok(ConvergenceTrial { seed, errors, reported_tracking })
 }
 
-impl Trial {
+impl ConvergenceTrial {
     /// Whether the last frame is near the truth.
     pub fn is_near_at_end(&self) -> bool {
         self.errors.last().is_some_and(|error| *error <= NEAR_M)
@@ -123,12 +126,12 @@ impl Trial {
     }
 }
 
-impl Convergence {
+impl ConvergenceCount {
     /// Counts, their interval, and the errors of every frame over the runs.
     ///
     /// # Errors
     /// Returns an error if the picture cannot be drawn.
-    pub fn report(&self) -> Result<Run, PlotError> {
+    pub fn report(&self) -> Result<ReportRun, PlotError> {
         let n = self.trials.len();
         let n_succeeded = self.trials.iter().filter(|trial| trial.succeeded()).count();
         let n_near_at_end = self.trials.iter().filter(|trial| trial.is_near_at_end()).count();
@@ -143,7 +146,7 @@ impl Convergence {
         if !failed.is_empty() {
             notes.push(format!("Failed: seeds {}.", failed.join(", ")));
         }
-        Ok(Run {
+        Ok(ReportRun {
             metrics: vec![
                 Metric::new("trials", n as f64, ""),
                 Metric::new("success_share", n_succeeded as f64 / n.max(1) as f64, ""),
@@ -154,7 +157,7 @@ impl Convergence {
             ],
             figures: vec![self.plot().draw()?],
             notes,
-            ..Run::default()
+            ..ReportRun::default()
         })
     }
 
@@ -180,9 +183,9 @@ impl Convergence {
             x_label: "frame".to_owned(),
             y_label: "position error, m".to_owned(),
             series: vec![
-                Series::new("median", quantile(0.5)),
-                Series::new("90 % of the runs are below", quantile(0.9)),
-                Series::new("95 %", quantile(0.95)),
+                PlotSeries::new("median", quantile(0.5)),
+                PlotSeries::new("90 % of the runs are below", quantile(0.9)),
+                PlotSeries::new("95 %", quantile(0.95)),
             ],
             ..LinesPlot::default()
         }

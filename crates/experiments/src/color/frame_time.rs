@@ -3,11 +3,11 @@ use std::sync::Arc;
 use anyhow::Result;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingBank;
-use wayfix_sensor_log::{Data, Record};
+use wayfix_sensor_log::{Record, RecordData};
 
 use wayfix_evaluation::{
-    plot::{LinesPlot, Scale, Series, statistics::median},
-    report::{Metric, Run},
+    plot::{AxisScale, LinesPlot, PlotSeries, statistics::median},
+    report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorSystemParams, run};
 
@@ -26,8 +26,8 @@ pub fn frame_time(
     bank: &LightingBank,
     params: &ColorSystemParams,
     seed: u64,
-) -> Result<Run> {
-    let mut images = records.iter().enumerate().filter(|(_, r)| matches!(r.data, Data::Image(_)));
+) -> Result<ReportRun> {
+    let mut images = records.iter().enumerate().filter(|(_, r)| matches!(r.data, RecordData::Image(_)));
     let end = images.nth(N_FRAMES).map_or(records.len(), |(at, _)| at);
     let mut points = Vec::new();
     for n_particles in N_PARTICLES {
@@ -48,10 +48,10 @@ pub fn frame_time(
         title: "Computing time of a frame".to_owned(),
         x_label: "particles".to_owned(),
         y_label: "ms".to_owned(),
-        series: vec![Series::new("median of 40 frames", points)],
-        x_scale: Scale::Log10,
-        y_scale: Scale::Log10,
+        series: vec![PlotSeries::new("median of 40 frames", points)],
+        x_scale: AxisScale::Log10,
+        y_scale: AxisScale::Log10,
         ..LinesPlot::default()
     };
-    Ok(Run { timings, figures: vec![plot.draw()?], ..Run::default() })
+    Ok(ReportRun { timings, figures: vec![plot.draw()?], ..ReportRun::default() })
 }

@@ -5,13 +5,13 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rayon::prelude::*;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingBank;
-use wayfix_scene_sim::league::{LeagueParams, Lighting};
-use wayfix_scene_sim::random::Streams;
+use wayfix_scene_sim::league::{LampSetting, LeagueParams};
+use wayfix_scene_sim::random::RandomStreams;
 use wayfix_sensor_log::Record;
 
 use wayfix_evaluation::{
     errors::MeanInterval,
-    report::{Metric, Run},
+    report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorSystemParams, run, summarize};
 
@@ -20,13 +20,13 @@ use wayfix_systems::color::{ColorSystemParams, run, summarize};
 /// Returns an error if a log cannot be simulated or no image used.
 pub fn other_halls(
     seeds: impl IntoIterator<Item = u64>,
-    lighting: Lighting,
+    lighting: LampSetting,
     map: &Arc<ColorMap>,
     bank: &LightingBank,
     params: &ColorSystemParams,
-) -> Result<Run> {
+) -> Result<ReportRun> {
     let seeds: Vec<u64> = seeds.into_iter().collect();
-    let runs: Vec<Run> = seeds
+    let runs: Vec<ReportRun> = seeds
         .par_iter()
         .map(|&seed| {
             let mut run =
@@ -34,7 +34,7 @@ pub fn other_halls(
             Ok(summarize(&mut run))
         })
         .collect::<Result<_>>()?;
-    let value = |run: &Run, name: &str| run.metrics.iter().find(|m| m.name == name).map(|m| m.value);
+    let value = |run: &ReportRun, name: &str| run.metrics.iter().find(|m| m.name == name).map(|m| m.value);
     let mut metrics = vec![Metric::new("n_halls", seeds.len() as f64, "")];
     let rates = map.colors().iter().map(|color| (format!("rate_{color}"), ""));
     let errors = [("position_mean_m", "m"), ("heading_mean_deg", "°"), ("odometry_position_mean_m", "m")];
@@ -48,11 +48,11 @@ pub fn other_halls(
     }
     let worst = runs.iter().filter_map(|run| value(run, "position_mean_m")).fold(0.0, f64::max);
     metrics.push(Metric::new("worst_hall_position_mean_m", worst, "m"));
-    Ok(Run { metrics, ..Run::default() })
+    Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
 /// The drive of the stored logs in its own hall.
-pub(super) fn drive(seed: u64, lighting: Lighting) -> Result<Vec<Record>> {
-    let drive = LeagueParams { lights: vec![(0, lighting)], ..LeagueParams::default() };
-    Ok(drive.simulate(Streams::new(ChaCha8Rng::seed_from_u64(seed)))?)
+pub(super) fn drive(seed: u64, lighting: LampSetting) -> Result<Vec<Record>> {
+    let drive = LeagueParams { lamp_settings: vec![(0, lighting)], ..LeagueParams::default() };
+    Ok(drive.simulate(RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?)
 }

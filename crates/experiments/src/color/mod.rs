@@ -6,7 +6,7 @@ mod halls;
 mod switching;
 mod withheld;
 
-pub use convergence::{Convergence, Trial, global_start, kidnapped};
+pub use convergence::{ConvergenceCount, ConvergenceTrial, global_start, kidnapped};
 pub use frame_time::frame_time;
 pub use halls::other_halls;
 pub use switching::switching;

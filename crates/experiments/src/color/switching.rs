@@ -4,15 +4,15 @@ use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::{
-    Classifier, ColorMeans, Gpb2Tracker, ImmTracker, JumpMarkovTracker, LightTracker, LightingBank,
-    PixelParams, YuvImage, YuvStandard,
+    ColorMeans, Gpb2LightingTracker, ImmLightingTracker, JumpMarkovLightingTracker, LightingBank,
+    LightingTracker, PixelClassifier, PixelLikelihoodParams, YuvImage, YuvStandard,
 };
-use wayfix_kalman::JumpMarkovParams;
-use wayfix_sensor_log::{Data, DecodedImage, Record, Stamp};
+use wayfix_kalman::JumpMarkovFilterParams;
+use wayfix_sensor_log::{DecodedImage, Record, RecordData, Stamp};
 
 use wayfix_evaluation::{
-    plot::{LinesPlot, Series},
-    report::{Metric, Run},
+    plot::{LinesPlot, PlotSeries},
+    report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorRun, ColorSystemParams, run, tally};
 
@@ -30,19 +30,19 @@ pub fn switching(
     single: &LightingBank,
     params: &ColorSystemParams,
     seed: u64,
-) -> Result<Run> {
+) -> Result<ReportRun> {
     let localized = |bank: &LightingBank| -> Result<Curve> {
         let run = run(records, Arc::clone(map), bank.clone(), params, None, seed, |_| {})?;
         Ok(rates(&run))
     };
     let curves = [("jump_markov", localized(bank)?), ("single", localized(single)?)];
-    let frames = labelled_frames(records, params.yuv, map.colors().len())?;
-    let jump = JumpMarkovParams::default();
+    let frames = labelled_frames(records, params.yuv_standard, map.colors().len())?;
+    let jump = JumpMarkovFilterParams::default();
     let pixels = &params.localizer.pixels;
     let known: [(&str, Curve); 4] = [
-        ("known_pose_jump_markov", follow(JumpMarkovTracker::new(bank, jump)?, &frames, pixels)?),
-        ("known_pose_imm", follow(ImmTracker::new(bank)?, &frames, pixels)?),
-        ("known_pose_gpb2", follow(Gpb2Tracker::new(bank)?, &frames, pixels)?),
+        ("known_pose_jump_markov", follow(JumpMarkovLightingTracker::new(bank, jump)?, &frames, pixels)?),
+        ("known_pose_imm", follow(ImmLightingTracker::new(bank)?, &frames, pixels)?),
+        ("known_pose_gpb2", follow(Gpb2LightingTracker::new(bank)?, &frames, pixels)?),
         ("known_pose_single", follow(single.member(0).clone(), &frames, pixels)?),
     ];
     let mut metrics = Vec::new();
@@ -54,14 +54,14 @@ pub fn switching(
         plot("Classification rate while lights are switched, localizing", &curves).draw()?,
         plot("The same with known poses", &known).draw()?,
     ];
-    Ok(Run { metrics, figures, ..Run::default() })
+    Ok(ReportRun { metrics, figures, ..ReportRun::default() })
 }
 
 /// Frame and rate.
 type Curve = Vec<(f64, f64)>;
 
 fn rates(run: &ColorRun) -> Curve {
-    let rate = |(at, frame): (usize, &wayfix_systems::color::FrameResult)| {
+    let rate = |(at, frame): (usize, &wayfix_systems::color::ColorFrameResult)| {
         Some((at as f64, frame.labelled.as_ref()?.rate()?))
     };
     run.system.frames().iter().enumerate().filter_map(rate).collect()
@@ -92,7 +92,7 @@ fn plot(title: &str, curves: &[(&str, Curve)]) -> LinesPlot {
         y_label: "classification rate".to_owned(),
         series: curves
             .iter()
-            .map(|(name, curve)| Series::new(name.replace('_', " "), curve.clone()))
+            .map(|(name, curve)| PlotSeries::new(name.replace('_', " "), curve.clone()))
             .collect(),
         ..LinesPlot::default()
     }
@@ -111,8 +111,8 @@ fn labelled_frames(records: &[Record], yuv: YuvStandard, n_colors: usize) -> Res
     let mut frames = Vec::new();
     for record in records {
         match &record.data {
-            Data::TrueLabels(truth) => labels = Some((record.stamp, truth)),
-            Data::Image(image) => {
+            RecordData::TrueLabels(truth) => labels = Some((record.stamp, truth)),
+            RecordData::Image(image) => {
                 let Some((_, truth)) = labels.take().filter(|(stamp, _)| *stamp == record.stamp) else {
                     continue;
                 };
@@ -144,7 +144,11 @@ fn means(image: &YuvImage, labels: &DecodedImage, n_colors: usize) -> ColorMeans
 }
 
 /// The rate of every frame after the tracker has seen it.
-fn follow(mut tracker: impl LightTracker, frames: &[Labelled], pixels: &PixelParams) -> Result<Curve> {
+fn follow(
+    mut tracker: impl LightingTracker,
+    frames: &[Labelled],
+    pixels: &PixelLikelihoodParams,
+) -> Result<Curve> {
     let mut last = frames.first().map(|frame| frame.stamp);
     let mut curve = Curve::new();
     for (at, frame) in frames.iter().enumerate() {
@@ -152,7 +156,7 @@ fn follow(mut tracker: impl LightTracker, frames: &[Labelled], pixels: &PixelPar
         tracker.predict(seconds)?;
         tracker.update(&frame.means)?;
         last = Some(frame.stamp);
-        let classifier = Classifier::new(pixels.shaded(tracker.colors()?))?;
+        let classifier = PixelClassifier::new(pixels.shaded(tracker.colors()?))?;
         let counts = tally(&frame.image, &frame.labels, &classifier, frame.means.n_colors());
         curve.extend(counts.and_then(|counts| counts.rate()).map(|rate| (at as f64, rate)));
     }

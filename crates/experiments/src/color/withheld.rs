@@ -4,13 +4,13 @@ use anyhow::{Result, ensure};
 use rayon::prelude::*;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::LightingPriors;
-use wayfix_scene_sim::league::Lighting;
+use wayfix_scene_sim::league::LampSetting;
 use wayfix_sensor_log::Record;
 
 use super::halls::drive;
 use wayfix_evaluation::{
     errors::MeanInterval,
-    report::{Metric, Run},
+    report::{Metric, ReportRun},
 };
 use wayfix_systems::color::{ColorSystemParams, priors, rate_of, run};
 
@@ -31,10 +31,10 @@ pub fn withheld(
     learned: &LightingPriors,
     params: &ColorSystemParams,
     seed: u64,
-) -> Result<Run> {
+) -> Result<ReportRun> {
     let rates = rates(records, map, learned, params, seed)?;
     let metrics = map.colors().iter().zip(&rates).flat_map(|(name, rates)| compared(name, rates)).collect();
-    Ok(Run { metrics, ..Run::default() })
+    Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
 /// The same in random halls: means over halls with 95 % intervals, the gain of the joint prior from differences in the same hall.
@@ -42,11 +42,11 @@ pub fn withheld(
 /// Returns an error if a log cannot be simulated or no image used.
 pub fn withheld_in_halls(
     seeds: impl IntoIterator<Item = u64>,
-    lighting: Lighting,
+    lighting: LampSetting,
     map: &Arc<ColorMap>,
     learned: &LightingPriors,
     params: &ColorSystemParams,
-) -> Result<Run> {
+) -> Result<ReportRun> {
     let halls: Vec<Vec<Rates>> = seeds
         .into_iter()
         .map(|seed| rates(&drive(seed, lighting)?, map, learned, params, seed))
@@ -58,7 +58,7 @@ pub fn withheld_in_halls(
         let (joint, independent) = halls.iter().filter_map(means).unzip();
         metrics.extend(compared(name, &[joint, independent]));
     }
-    Ok(Run { metrics, ..Run::default() })
+    Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
 /// Both rates and their paired difference, each a mean with its interval; empty for a colour that is rarely shown.

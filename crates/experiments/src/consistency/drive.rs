@@ -1,13 +1,13 @@
 use anyhow::{Context, Result};
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Detection, Record, Target};
+use wayfix_sensor_log::{Detection, DetectionTarget, Record, RecordData};
 use wayfix_slam_ekf::{
     EkfSlam, KnownIds, LandmarkId, Observation, RangeBearing, RangeBearingSensor, SlamParams,
 };
 
-use super::{FilterKind, Laps};
+use super::{CorridorLaps, FilterKind};
 use crate::monobot::plain_filter;
-use wayfix_evaluation::errors::Sample;
+use wayfix_evaluation::errors::TrajectorySample;
 
 /// Estimate and truth after one scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,19 +25,19 @@ pub struct ConsistencySample {
 /// Runs a simulated log through one filter from the true start: one entry per scan, from the first one after a motion.
 /// # Errors
 /// Returns an error if the log has no true start, or the filter refuses a simulated measurement.
-pub fn drive(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<Vec<ConsistencySample>> {
+pub fn drive(laps: &CorridorLaps, records: &[Record], kind: FilterKind) -> Result<Vec<ConsistencySample>> {
     let mut slam = filter(laps, records, kind)?;
     let start_stamp = records.first().context("an empty log")?.stamp;
     let motion = laps.motion();
     let (mut truth, mut has_moved, mut samples) = (*slam.robot(), false, Vec::new());
     for record in records {
         match &record.data {
-            Data::TruePose(pose) => truth = *pose,
-            Data::OdometryIncrement(increment) => {
+            RecordData::TruePose(pose) => truth = *pose,
+            RecordData::OdometryIncrement(increment) => {
                 slam.predict(&motion, increment)?;
                 has_moved = true;
             }
-            Data::Detections(detections) => {
+            RecordData::Detections(detections) => {
                 slam.update(&observations(detections), &mut KnownIds)?;
                 if has_moved {
                     samples.push(consistency_sample(
@@ -54,17 +54,17 @@ pub fn drive(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<Vec<Co
     Ok(samples)
 }
 
-fn filter(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<EkfSlam<RangeBearingSensor>> {
+fn filter(laps: &CorridorLaps, records: &[Record], kind: FilterKind) -> Result<EkfSlam<RangeBearingSensor>> {
     let start = records.iter().find_map(|record| match record.data {
-        Data::TruePose(pose) => Some(pose),
+        RecordData::TruePose(pose) => Some(pose),
         _ => None,
     });
-    let params = SlamParams { linearization: kind.linearization(), ..plain_filter() };
+    let params = SlamParams { linearization_point: kind.linearization(), ..plain_filter() };
     let mut slam = EkfSlam::new(laps.sensor(), params, start.context("a log without truth")?)?;
     if kind == FilterKind::Anchored {
         for record in records {
             match &record.data {
-                Data::TrueLandmark(landmark) if landmark.id.is_multiple_of(laps.anchor_every) => {
+                RecordData::TrueLandmark(landmark) if landmark.id.is_multiple_of(laps.anchor_every) => {
                     slam.add_anchor(LandmarkId(landmark.id), [landmark.x, landmark.y].into())?;
                 }
                 _ => {}
@@ -76,7 +76,7 @@ fn filter(laps: &Laps, records: &[Record], kind: FilterKind) -> Result<EkfSlam<R
 
 fn observations(detections: &[Detection]) -> Vec<Observation<RangeBearing>> {
     let observation = |detection: &Detection| match detection.target {
-        Target::Landmark(id) => {
+        DetectionTarget::Landmark(id) => {
             let measurement = RangeBearing::new(detection.range, detection.bearing);
             Some(Observation { label: Some(LandmarkId(id)), measurement })
         }
@@ -91,7 +91,7 @@ fn consistency_sample(
     truth: Pose2<f64>,
     seconds: f64,
 ) -> ConsistencySample {
-    let sample = Sample { estimate: *slam.robot(), covariance: slam.robot_covariance(), truth };
+    let sample = TrajectorySample { estimate: *slam.robot(), covariance: slam.robot_covariance(), truth };
     ConsistencySample {
         seconds,
         nees: sample.nees_of(&kind.error(&sample)).unwrap_or(f64::NAN),

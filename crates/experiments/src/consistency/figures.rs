@@ -1,12 +1,12 @@
 use anyhow::{Result, ensure};
 use wayfix_gaussian_core::ChiSquaredBand;
 
-use super::{ConsistencySample, FilterKind, Laps, drive};
+use super::{ConsistencySample, CorridorLaps, FilterKind, drive};
 use wayfix_evaluation::report::Metric;
 
 /// Results of one filter over all logs, scan by scan.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FilterHistory {
+pub struct FilterMonteCarloResults {
     /// Which filter.
     pub kind: FilterKind,
     /// Averages over the logs: of NEES and heading deviation the mean, of the position error the root mean square.
@@ -15,9 +15,9 @@ pub struct FilterHistory {
 
 /// All filters over the same logs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MonteCarlo {
+pub struct ConsistencyMonteCarlo {
     /// One a filter, in the order of [`FilterKind::ALL`].
-    pub courses: Vec<FilterHistory>,
+    pub courses: Vec<FilterMonteCarloResults>,
     /// 95 % band of the average NEES of a consistent filter at any one scan.
     pub band: ChiSquaredBand,
     /// 95 % band for all samples at once, for any correlation in time.
@@ -32,8 +32,8 @@ const POSE: usize = 3;
 /// Runs the filters over `n_runs` logs that differ in everything that is drawn.
 ///
 /// ```
-/// use wayfix_experiments::consistency::{Laps, monte_carlo};
-/// let laps = Laps { length_m: 20.0, width_m: 10.0, n_laps: 1, ..Laps::default() };
+/// use wayfix_experiments::consistency::{CorridorLaps, monte_carlo};
+/// let laps = CorridorLaps { length_m: 20.0, width_m: 10.0, n_laps: 1, ..CorridorLaps::default() };
 /// let all = monte_carlo(&laps, 2, 1)?;
 /// assert_eq!(all.courses.len(), 4);
 /// assert!(all.whole_run_band.low < all.band.low && all.band.high < all.whole_run_band.high);
@@ -43,7 +43,7 @@ const POSE: usize = 3;
 ///
 /// # Errors
 /// Returns an error if `n_runs` is 0, a parameter is out of range, the robot never moves or a filter fails.
-pub fn monte_carlo(laps: &Laps, n_runs: u32, seed: u64) -> Result<MonteCarlo> {
+pub fn monte_carlo(laps: &CorridorLaps, n_runs: u32, seed: u64) -> Result<ConsistencyMonteCarlo> {
     ensure!(n_runs >= 1, "an average needs a run");
     let mut runs: [Vec<Vec<ConsistencySample>>; 4] = Default::default();
     for k in 0..n_runs {
@@ -53,15 +53,15 @@ pub fn monte_carlo(laps: &Laps, n_runs: u32, seed: u64) -> Result<MonteCarlo> {
             runs.push(drive(laps, &records, kind)?);
         }
     }
-    let courses: Vec<FilterHistory> = runs
+    let courses: Vec<FilterMonteCarloResults> = runs
         .iter()
         .zip(FilterKind::ALL)
-        .map(|(runs, kind)| FilterHistory { kind, samples: average(runs) })
+        .map(|(runs, kind)| FilterMonteCarloResults { kind, samples: average(runs) })
         .collect();
     let n_samples = courses.iter().map(|course| course.samples.len()).min().unwrap_or(0);
     ensure!(n_samples > 0, "the robot never moved");
     let band = |probability| ChiSquaredBand::for_average(POSE, n_runs as usize, probability);
-    Ok(MonteCarlo {
+    Ok(ConsistencyMonteCarlo {
         courses,
         band: band(0.95)?,
         whole_run_band: band(1.0 - 0.05 / n_samples as f64)?, // Bonferroni
@@ -69,7 +69,7 @@ pub fn monte_carlo(laps: &Laps, n_runs: u32, seed: u64) -> Result<MonteCarlo> {
     })
 }
 
-impl MonteCarlo {
+impl ConsistencyMonteCarlo {
     /// The figures of all filters, their names before them.
     ///
     /// `share_outside` is of samples outside the pointwise band, `n_outside_whole_run` of samples outside the one for the whole run.
@@ -97,7 +97,7 @@ impl MonteCarlo {
     }
 }
 
-impl FilterHistory {
+impl FilterMonteCarloResults {
     fn mean(&self, value: impl Fn(&ConsistencySample) -> f64) -> f64 {
         self.samples.iter().map(value).sum::<f64>() / self.samples.len() as f64
     }
@@ -141,8 +141,10 @@ mod tests {
         let averages = average(&runs);
         assert_eq!(averages.len(), 1);
         assert_eq!((averages[0].nees, averages[0].position_error), (2.0, 12.5_f64.sqrt()));
-        let course =
-            FilterHistory { kind: FilterKind::Standard, samples: vec![look(1.0, 0.0), look(f64::NAN, 0.0)] };
+        let course = FilterMonteCarloResults {
+            kind: FilterKind::Standard,
+            samples: vec![look(1.0, 0.0), look(f64::NAN, 0.0)],
+        };
         assert_eq!(course.share_outside(&ChiSquaredBand { low: 0.0, high: 2.0 }), 0.5);
     }
 }

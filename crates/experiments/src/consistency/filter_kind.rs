@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
-use wayfix_evaluation::errors::Sample;
-use wayfix_slam_ekf::Linearization;
+use wayfix_evaluation::errors::TrajectorySample;
+use wayfix_slam_ekf::LinearizationPoint;
 
 /// The filters that are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,27 +30,27 @@ impl FilterKind {
     }
 
     /// Linearization points.
-    pub fn linearization(self) -> Linearization {
+    pub fn linearization(self) -> LinearizationPoint {
         match self {
-            Self::Standard | Self::Anchored => Linearization::Newest,
-            Self::FirstEstimates => Linearization::FirstEstimates,
-            Self::Invariant => Linearization::Invariant,
+            Self::Standard | Self::Anchored => LinearizationPoint::Newest,
+            Self::FirstEstimates => LinearizationPoint::FirstEstimates,
+            Self::Invariant => LinearizationPoint::Invariant,
         }
     }
 
     /// The error in the coordinates in which the filter takes it for Gaussian: exponential ones for the invariant filter.
     ///
     /// ```
-    /// use wayfix_evaluation::errors::Sample;
+    /// use wayfix_evaluation::errors::TrajectorySample;
     /// use wayfix_experiments::consistency::FilterKind;
     /// use nalgebra::Matrix3;
     /// use wayfix_estimation_traits::Pose2;
     /// let (estimate, truth) = (Pose2::new(0.0, 0.0, 0.0), Pose2::new(1.0, 0.0, 0.2));
-    /// let sample = Sample { estimate, covariance: Matrix3::identity(), truth };
+    /// let sample = TrajectorySample { estimate, covariance: Matrix3::identity(), truth };
     /// assert!(FilterKind::Standard.error(&sample).y.abs() < 1e-12);
     /// assert!((FilterKind::Invariant.error(&sample).y + 0.1).abs() < 1e-12); // half the turn, over one metre
     /// ```
-    pub fn error(self, sample: &Sample) -> Vector3<f64> {
+    pub fn error(self, sample: &TrajectorySample) -> Vector3<f64> {
         match self {
             Self::Invariant => sample.exponential_error(),
             _ => sample.error(),

@@ -6,11 +6,11 @@ use rand_chacha::ChaCha8Rng;
 use serde::Deserialize;
 use wayfix_scene_sim::{
     OdometryParams, PlanarParams,
-    drive::DriveParams,
-    random::Streams,
-    route::{RoundedRectangle, RouteParams},
+    drive::WheeledRobotParams,
+    random::RandomStreams,
+    route::{RoundedRectangleRoute, RouteParams},
     sensor::{GaussianOdometryParams, RangeBearingParams, range_bearing::RangeSigma},
-    world::{CorridorLoop, Layout},
+    world::{CorridorLoop, WorldLayout},
 };
 use wayfix_sensor_log::Record;
 use wayfix_slam_ekf::{IncrementMotion, RangeBearingSensor};
@@ -18,15 +18,15 @@ use wayfix_slam_ekf::{IncrementMotion, RangeBearingSensor};
 /// Laps of a corridor with landmarks on its walls, with exactly the noise that filters assume.
 ///
 /// ```
-/// use wayfix_experiments::consistency::Laps;
-/// let laps = Laps { length_m: 20.0, width_m: 10.0, n_laps: 1, ..Laps::default() };
+/// use wayfix_experiments::consistency::CorridorLaps;
+/// let laps = CorridorLaps { length_m: 20.0, width_m: 10.0, n_laps: 1, ..CorridorLaps::default() };
 /// assert_ne!(laps.simulate(1)?, laps.simulate(2)?);
 /// assert_eq!(laps.motion().heading_variance_per_step, laps.odometry_sigma_rad.powi(2));
 /// # Ok::<(), anyhow::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Laps {
+pub struct CorridorLaps {
     /// Along the middle of the corridor, m.
     pub length_m: f64,
     /// Across, m.
@@ -58,7 +58,7 @@ const CORNER_RADIUS_M: f64 = 3.0;
 /// More laps are a slip of the pen.
 const MOST_LAPS: u32 = 1000;
 
-impl Default for Laps {
+impl Default for CorridorLaps {
     fn default() -> Self {
         Self {
             length_m: 60.0,
@@ -76,14 +76,14 @@ impl Default for Laps {
     }
 }
 
-impl Laps {
+impl CorridorLaps {
     /// A log of the laps: other noise for every seed.
     ///
     /// # Errors
     /// Returns an error if a parameter is out of range.
     pub fn simulate(&self, seed: u64) -> Result<Vec<Record>> {
         ensure!(self.n_laps <= MOST_LAPS, "{} laps are more than {MOST_LAPS}", self.n_laps);
-        Ok(self.scene().simulate(&mut Streams::new(ChaCha8Rng::seed_from_u64(seed)))?)
+        Ok(self.scene().simulate(&mut RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?)
     }
 
     /// Motion model with the simulated noise.
@@ -107,7 +107,7 @@ impl Laps {
     }
 
     fn scene(&self) -> PlanarParams {
-        let around = RoundedRectangle {
+        let around = RoundedRectangleRoute {
             length_m: self.length_m,
             width_m: self.width_m,
             corner_radius_m: CORNER_RADIUS_M,
@@ -119,7 +119,7 @@ impl Laps {
             sigma_rad: self.odometry_sigma_rad,
         };
         PlanarParams {
-            layout: Layout::CorridorLoop(CorridorLoop {
+            layout: WorldLayout::CorridorLoop(CorridorLoop {
                 length_m: self.length_m,
                 width_m: self.width_m,
                 corridor_m: self.corridor_m,
@@ -128,11 +128,11 @@ impl Laps {
             n_unknown_codes: 0,
             other_robots: Vec::new(),
             route: RouteParams::RoundedRectangle(around),
-            drive: DriveParams {
+            drive: WheeledRobotParams {
                 speed_mps: SPEED_MPS,
                 acceleration_mps2: 2.0,
                 lookahead_m: 2.0,
-                ..DriveParams::default()
+                ..WheeledRobotParams::default()
             },
             odometry: OdometryParams::Gaussian(odometry),
             sensor: RangeBearingParams {
@@ -154,16 +154,16 @@ mod tests {
 
     #[test]
     fn numbers_without_meaning_are_refused() {
-        let good = Laps { n_laps: 1, ..Laps::default() };
+        let good = CorridorLaps { n_laps: 1, ..CorridorLaps::default() };
         for bad in [
-            Laps { length_m: f64::NAN, ..good },
-            Laps { width_m: f64::INFINITY, ..good },
-            Laps { width_m: 1.0, ..good }, // no block inside the corridor
-            Laps { spacing_m: 0.0, ..good },
-            Laps { max_range_m: -1.0, ..good },
-            Laps { odometry_sigma_m: -0.1, ..good },
-            Laps { bearing_sigma_rad: f64::NAN, ..good },
-            Laps { n_laps: u32::MAX, ..good },
+            CorridorLaps { length_m: f64::NAN, ..good },
+            CorridorLaps { width_m: f64::INFINITY, ..good },
+            CorridorLaps { width_m: 1.0, ..good }, // no block inside the corridor
+            CorridorLaps { spacing_m: 0.0, ..good },
+            CorridorLaps { max_range_m: -1.0, ..good },
+            CorridorLaps { odometry_sigma_m: -0.1, ..good },
+            CorridorLaps { bearing_sigma_rad: f64::NAN, ..good },
+            CorridorLaps { n_laps: u32::MAX, ..good },
         ] {
             assert!(bad.simulate(1).is_err(), "{bad:?}");
         }

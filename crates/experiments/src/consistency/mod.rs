@@ -6,10 +6,10 @@ mod drive;
 mod figures;
 mod filter_kind;
 mod laps;
-mod pictures;
+mod plots;
 
 pub use drive::{ConsistencySample, drive};
-pub use figures::{FilterHistory, MonteCarlo, monte_carlo};
+pub use figures::{ConsistencyMonteCarlo, FilterMonteCarloResults, monte_carlo};
 pub use filter_kind::FilterKind;
-pub use laps::Laps;
-pub use pictures::picture;
+pub use laps::CorridorLaps;
+pub use plots::picture;

@@ -1,9 +1,9 @@
 use anyhow::Result;
-use wayfix_condensation::FeatureTable;
+use wayfix_condensation::DescriptorTable;
 
 use super::localize::{LocalizationRun, Method, STEADY, TOLERANCE, VAGUE};
 use wayfix_evaluation::report::Metric;
-use wayfix_systems::views::FeatureKind;
+use wayfix_systems::views::DescriptorKind;
 
 /// Results of one feature in the corridor, in all variants.
 pub(super) struct Variants {
@@ -17,7 +17,7 @@ pub(super) struct Variants {
 }
 
 impl Variants {
-    pub(super) fn of(learned: &FeatureTable, seen: &FeatureTable) -> Result<Self> {
+    pub(super) fn of(learned: &DescriptorTable, seen: &DescriptorTable) -> Result<Self> {
         let share = |method| LocalizationRun::of(learned, seen, method).map(|journey| journey.share());
         Ok(Self {
             filtered: LocalizationRun::of(learned, seen, Method::Filter(STEADY))?,
@@ -32,12 +32,13 @@ impl Variants {
 }
 
 /// Share of short drives, one from each frame, of `n_frames` frames, that are localized at the end. NaN if none is that long.
-fn found_after(n_frames: usize, learned: &FeatureTable, seen: &FeatureTable) -> Result<f64> {
+fn found_after(n_frames: usize, learned: &DescriptorTable, seen: &DescriptorTable) -> Result<f64> {
     let n_starts = (seen.n_states() + 1).saturating_sub(n_frames);
     let mut n_found = 0;
     for start in 0..n_starts {
         let rows: Vec<Vec<f64>> = seen.rows().skip(start).take(n_frames).map(<[f64]>::to_vec).collect();
-        let journey = LocalizationRun::of(learned, &FeatureTable::from_rows(&rows)?, Method::Filter(STEADY))?;
+        let journey =
+            LocalizationRun::of(learned, &DescriptorTable::from_rows(&rows)?, Method::Filter(STEADY))?;
         let place = journey.best.last().copied().unwrap_or(0);
         n_found += usize::from(place.abs_diff(start + n_frames - 1) <= TOLERANCE);
     }
@@ -45,7 +46,7 @@ fn found_after(n_frames: usize, learned: &FeatureTable, seen: &FeatureTable) -> 
 }
 
 /// Share of frames found, first of the main method, then of the variants.
-pub(super) fn metrics(variants: &[(FeatureKind, Variants)]) -> Vec<Metric> {
+pub(super) fn metrics(variants: &[(DescriptorKind, Variants)]) -> Vec<Metric> {
     let column = |suffix: &'static str, value: fn(&Variants) -> f64| {
         variants
             .iter()

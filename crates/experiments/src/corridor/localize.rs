@@ -1,5 +1,7 @@
 use anyhow::Result;
-use wayfix_condensation::{DiscreteFilter, FeatureTable, SparseTransition, Traverse, TraverseParams};
+use wayfix_condensation::{
+    DescriptorTable, DiscreteFilter, RouteTraverse, RouteTraverseParams, SparseTransition,
+};
 
 /// Tolerance of a correct place, in frames: the definition of the data set.
 pub(super) const TOLERANCE: usize = 2;
@@ -34,9 +36,10 @@ pub(super) struct LocalizationRun {
 
 impl LocalizationRun {
     /// Goes through the frames of one traverse, knowing the other.
-    pub(super) fn of(learned: &FeatureTable, seen: &FeatureTable, method: Method) -> Result<Self> {
-        let params = TraverseParams { tolerance: TOLERANCE, ..TraverseParams::default() };
-        let traverse = Traverse::learn(learned, &params)?;
+    pub(super) fn of(learned: &DescriptorTable, seen: &DescriptorTable, method: Method) -> Result<Self> {
+        let params =
+            RouteTraverseParams { same_place_tolerance: TOLERANCE, ..RouteTraverseParams::default() };
+        let traverse = RouteTraverse::learn(learned, &params)?;
         let n_places = traverse.n_states();
         let motion = match method {
             Method::Filter(steps) | Method::Independent(steps) => Some(drives_on(n_places, steps)?),

@@ -4,33 +4,33 @@ use anyhow::Result;
 
 use super::{
     figures::{Variants, metrics},
-    pictures::pictures,
+    plots::plots,
     traverses::{Traverses, features},
 };
-use wayfix_evaluation::report::Run;
-use wayfix_systems::{system::Stopwatch, views::FeatureKind};
+use wayfix_evaluation::report::ReportRun;
+use wayfix_systems::{system::Stopwatch, views::DescriptorKind};
 
 /// Learns one traverse and localizes the other; see the [module](super) for the figures.
 /// # Errors
 /// Returns an error if a folder cannot be read, a frame not be decoded, or there are too few.
-pub fn run(folder: &Path) -> Result<Run> {
+pub fn run(folder: &Path) -> Result<ReportRun> {
     let stopwatch = Stopwatch::start();
     let traverses = Traverses::read(folder)?;
-    let variants = |kind: FeatureKind| {
+    let variants = |kind: DescriptorKind| {
         let (learned, seen) = (features(&traverses.learned, kind)?, features(&traverses.seen, kind)?);
         Ok((kind, Variants::of(&learned, &seen)?))
     };
-    let variants: Vec<(FeatureKind, Variants)> =
-        FeatureKind::ALL.into_iter().map(variants).collect::<Result<_>>()?;
-    Ok(Run {
+    let variants: Vec<(DescriptorKind, Variants)> =
+        DescriptorKind::ALL.into_iter().map(variants).collect::<Result<_>>()?;
+    Ok(ReportRun {
         name: "corridor".to_owned(),
         metrics: metrics(&variants),
         events: BTreeMap::from([
             ("place".to_owned(), traverses.learned.len() as u64),
             ("frame".to_owned(), traverses.seen.len() as u64),
         ]),
-        figures: pictures(&traverses, &variants)?,
+        figures: plots(&traverses, &variants)?,
         seconds: stopwatch.elapsed().as_secs_f64(),
-        ..Run::default()
+        ..ReportRun::default()
     })
 }

@@ -1,10 +1,10 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use wayfix_condensation::{Dominance, FeatureTable, Picture};
-use wayfix_sensor_log::{Data, EncodedImage, OpenOptions};
+use wayfix_condensation::{DescriptorTable, DominantGrayCriterion, Picture};
+use wayfix_sensor_log::{EncodedImage, OpenOptions, RecordData};
 
-use wayfix_systems::views::{FeatureKind, ViewsError};
+use wayfix_systems::views::{DescriptorKind, ViewsError};
 
 /// Minimum number of frames to learn the noise from.
 const MIN_FRAMES: usize = 10;
@@ -39,21 +39,21 @@ impl Traverses {
 }
 
 /// The features of every frame.
-pub(super) fn features(frames: &[Frame], kind: FeatureKind) -> Result<FeatureTable> {
-    let feature = kind.feature(Dominance::default());
+pub(super) fn features(frames: &[Frame], kind: DescriptorKind) -> Result<DescriptorTable> {
+    let feature = kind.feature(DominantGrayCriterion::default());
     let row = |frame: &Frame| {
         let mut row = vec![0.0; feature.n_components()];
         feature.extract(&frame.picture.whole(), &mut row);
         row
     };
-    Ok(FeatureTable::from_rows(&frames.iter().map(row).collect::<Vec<_>>())?)
+    Ok(DescriptorTable::from_rows(&frames.iter().map(row).collect::<Vec<_>>())?)
 }
 
 fn read(folder: &Path) -> Result<Vec<Frame>> {
     let (records, report) = wayfix_sensor_log::open(folder, &OpenOptions::default())?.read_all();
     ensure!(report.is_clean(), "{}: {report}", folder.display());
     let images = records.into_iter().filter_map(|record| match record.data {
-        Data::Image(image) => Some(image),
+        RecordData::Image(image) => Some(image),
         _ => None,
     });
     let frame = |image: EncodedImage| -> Result<Frame> {

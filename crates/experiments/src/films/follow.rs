@@ -1,6 +1,6 @@
 use anyhow::{Context, Result};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_scene_sim::film::{Film, Frame};
+use wayfix_scene_sim::film::{FilmFrame, SyntheticFilm};
 use wayfix_sensor_log::Stamp;
 use wayfix_visual_tracking::RgbImage;
 
@@ -10,7 +10,7 @@ use super::{
 };
 use wayfix_systems::{
     system::Stopwatch,
-    track::{FrameResult, Method, Start, TrackParams, Truth},
+    track::{TargetStart, TargetTruth, TrackFrameResult, TrackParams, TrackingMethod},
 };
 
 /// Runs trackers of several methods on a film, each started with the true mask of the first frame, and scores the later frames.
@@ -19,15 +19,15 @@ use wayfix_systems::{
 /// # Errors
 /// Returns an error if a tracker cannot begin, or refuses a frame.
 pub fn follow(
-    film: &Film,
-    methods: &[Method],
+    film: &SyntheticFilm,
+    methods: &[TrackingMethod],
     params: &TrackParams,
-    mut observe: impl FnMut(&FrameResult) -> Result<()>,
+    mut observe: impl FnMut(&TrackFrameResult) -> Result<()>,
 ) -> Result<Vec<FilmScore>> {
     let mut frames = film.frames()?;
     let first = frames.next().context("a film without frames")?;
-    let (picture, start) = (pixels(&first)?, Start::Mask(mask(&first.target)?));
-    let begin = |method: &Method| method.begin(params, &picture, &start);
+    let (picture, start) = (pixels(&first)?, TargetStart::Mask(mask(&first.target)?));
+    let begin = |method: &TrackingMethod| method.begin(params, &picture, &start);
     let mut trackers = methods.iter().map(begin).collect::<Result<Vec<_>, _>>()?;
     let mut rngs = vec![ChaCha8Rng::seed_from_u64(film.seed); methods.len()];
     let mut scores = vec![FilmScore::default(); methods.len()];
@@ -40,12 +40,12 @@ pub fn follow(
             let n_frames_with_truth = scores[k].iou.len();
             scores[k].add(&target, &frame)?;
             if k == 0 {
-                observe(&FrameResult {
+                observe(&TrackFrameResult {
                     index,
-                    stamp: Stamp::from_nanoseconds((1e9 * index as f64 / Film::RATE_HZ) as u64),
+                    stamp: Stamp::from_nanoseconds((1e9 * index as f64 / SyntheticFilm::RATE_HZ) as u64),
                     picture: picture.clone(),
                     target,
-                    truth: bounds(&frame.target).map_or(Truth::Absent, Truth::At),
+                    truth: bounds(&frame.target).map_or(TargetTruth::Absent, TargetTruth::At),
                     iou: scores[0].iou.get(n_frames_with_truth).copied(),
                     colors: tracker.colors(),
                     step,
@@ -56,7 +56,7 @@ pub fn follow(
     Ok(scores)
 }
 
-fn pixels(frame: &Frame) -> Result<RgbImage> {
+fn pixels(frame: &FilmFrame) -> Result<RgbImage> {
     let picture = &frame.picture;
     RgbImage::from_raw(picture.width as u32, picture.height as u32, picture.rgb.clone())
         .context("a frame of the film has not three bytes a pixel")

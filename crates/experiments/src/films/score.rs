@@ -1,6 +1,6 @@
 use anyhow::{Context, Result};
-use wayfix_scene_sim::film::{Frame, Silhouette};
-use wayfix_visual_tracking::{BitMask, BoundingBox, Target, TrackStatus};
+use wayfix_scene_sim::film::{FilmFrame, Silhouette};
+use wayfix_visual_tracking::{BitMask, BoundingBox, TargetEstimate, TrackStatus};
 
 use wayfix_systems::track::StatusScore;
 
@@ -40,7 +40,7 @@ impl FilmScore {
     ///
     /// # Errors
     /// Returns an error if an outline cannot be compared with the truth.
-    pub fn add(&mut self, target: &Target, frame: &Frame) -> Result<()> {
+    pub fn add(&mut self, target: &TargetEstimate, frame: &FilmFrame) -> Result<()> {
         let lost = target.status == TrackStatus::Lost;
         if frame.visible.area() == 0 {
             self.status.add(0.0, lost);
@@ -101,7 +101,7 @@ pub(super) fn bounds(silhouette: &Silhouette) -> Result<BoundingBox> {
     Ok(BoundingBox::from_corner(x, y, width, height)?)
 }
 
-fn inside(target: &Target, like: &Silhouette) -> Result<BitMask> {
+fn inside(target: &TargetEstimate, like: &Silhouette) -> Result<BitMask> {
     Ok(BitMask::from_polygon(like.width(), like.height(), &target.outline)?)
 }
 

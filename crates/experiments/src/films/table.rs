@@ -2,14 +2,14 @@ use std::{ops::Range, time::Duration};
 
 use anyhow::Result;
 use rayon::prelude::*;
-use wayfix_scene_sim::film::{Film, Incident};
+use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
 
 use super::{FilmScore, follow, score::mean};
 use wayfix_evaluation::{
     errors::MeanInterval,
-    report::{Metric, Run, Spread},
+    report::{ConfidenceInterval, Metric, ReportRun},
 };
-use wayfix_systems::track::{Method, RunHistory, StatusScore, TrackParams, pictures};
+use wayfix_systems::track::{RunHistory, StatusScore, TrackParams, TrackingMethod, plots};
 
 /// Frames at the end of a film by which it is judged whether the target was found again.
 const N_END: usize = 20;
@@ -19,11 +19,16 @@ const N_END: usize = 20;
 ///
 /// # Errors
 /// Returns an error if a tracker cannot begin or refuses a frame, or a picture not be drawn.
-pub fn table(film: &Film, seeds: Range<u64>, methods: &[Method], params: &TrackParams) -> Result<Run> {
+pub fn table(
+    film: &SyntheticFilm,
+    seeds: Range<u64>,
+    methods: &[TrackingMethod],
+    params: &TrackParams,
+) -> Result<ReportRun> {
     let shown = seeds.start;
     let one = |seed: u64| -> Result<(Vec<FilmScore>, RunHistory, Vec<Duration>)> {
         let (mut run_history, mut steps) = (RunHistory::default(), Vec::new());
-        let scores = follow(&Film { seed, ..*film }, methods, params, |frame| {
+        let scores = follow(&SyntheticFilm { seed, ..*film }, methods, params, |frame| {
             steps.push(frame.step);
             if seed == shown { Ok(run_history.observe(frame)?) } else { Ok(()) }
         })?;
@@ -35,26 +40,26 @@ pub fn table(film: &Film, seeds: Range<u64>, methods: &[Method], params: &TrackP
         let scores: Vec<&FilmScore> = runs.iter().map(|(scores, ..)| &scores[k]).collect();
         let prefix = method.name().replace('-', "_");
         let named = |metric: Metric| Metric { name: format!("{prefix}_{}", metric.name), ..metric };
-        metrics.extend(over_seeds(&scores, film.incident).into_iter().map(named));
+        metrics.extend(over_seeds(&scores, film.occlusion).into_iter().map(named));
     }
     let mut steps: Vec<Duration> = runs.iter().flat_map(|(.., steps)| steps).copied().collect();
     steps.sort_unstable();
     let median = steps.get(steps.len() / 2).map_or(f64::NAN, |step| 1e3 * step.as_secs_f64());
     let timings = vec![Metric::new("frame_median_ms", median, "ms")];
-    let figures =
-        runs.first().map(|(_, run_history, _)| pictures(run_history)).transpose()?.unwrap_or_default();
+    let figures = runs.first().map(|(_, run_history, _)| plots(run_history)).transpose()?.unwrap_or_default();
     let notes =
         vec![format!("{} seeds; the pictures are of seed {shown} and {}.", runs.len(), methods[0].name())];
-    Ok(Run { metrics, timings, figures, notes, ..Run::default() })
+    Ok(ReportRun { metrics, timings, figures, notes, ..ReportRun::default() })
 }
 
-fn over_seeds(scores: &[&FilmScore], incident: Incident) -> Vec<Metric> {
+fn over_seeds(scores: &[&FilmScore], incident: OcclusionEvent) -> Vec<Metric> {
     let all = |values: fn(&FilmScore) -> &Vec<f64>| -> Vec<f64> {
         scores.iter().flat_map(|score| values(score)).copied().collect()
     };
     let ious: Vec<f64> = scores.iter().map(|score| mean(&score.iou)).collect();
     let sum = |count: fn(&FilmScore) -> usize| scores.iter().map(|score| count(score)).sum::<usize>() as f64;
-    let spread = MeanInterval::of(&ious).map(|MeanInterval { half_width, n, .. }| Spread { half_width, n });
+    let spread = MeanInterval::of(&ious)
+        .map(|MeanInterval { half_width, n, .. }| ConfidenceInterval { half_width, n });
     let mut metrics = vec![
         Metric { spread, ..Metric::new("iou_mean", mean(&ious), "") },
         Metric::new("iou_lowest_seed", ious.iter().copied().fold(f64::INFINITY, f64::min), ""),
@@ -73,7 +78,7 @@ fn over_seeds(scores: &[&FilmScore], incident: Incident) -> Vec<Metric> {
     if !necks.is_empty() {
         metrics.push(Metric::new("distractor_share_mean", mean(&necks), ""));
     }
-    if incident != Incident::None {
+    if incident != OcclusionEvent::None {
         let found = scores.iter().filter(|score| score.is_correct_at_end(N_END)).count();
         metrics.push(Metric::new("reacquired_share", found as f64 / scores.len() as f64, ""));
     }

@@ -6,11 +6,11 @@ use wayfix_slam_ekf::{
     observability::ObservabilityRecorder,
 };
 
-use super::{Camera, Reference};
+use super::{FixedPositionSensor, WorldReference};
 
 /// Estimate and truth after one scan: of the first landmark, and of the mean over all.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct MonobotStep {
     /// True position of the robot, m.
     pub true_position: f64,
     /// Estimated position of the robot, m.
@@ -29,9 +29,9 @@ pub struct Step {
 
 /// One drive through the filter.
 #[derive(Clone, Debug)]
-pub struct Drive {
+pub struct MonobotDrive {
     /// One step per scan; the first one initializes the landmarks.
-    pub steps: Vec<Step>,
+    pub steps: Vec<MonobotStep>,
     /// True place of the landmarks, m.
     pub true_landmark: f64,
     /// Information of the measurements.
@@ -53,12 +53,12 @@ pub(crate) fn plain_filter() -> SlamParams {
 ///
 /// # Errors
 /// Returns an error if the filter refuses a simulated measurement.
-pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> Result<Drive> {
+pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: WorldReference) -> Result<MonobotDrive> {
     let sensor = MonobotSensor { sigma: SMALLEST_SIGMA, sigma_per_meter: params.range_noise };
     let motion = MonobotMotion { sigma: 0.0, sigma_per_meter: params.motion_noise };
-    let camera = Camera(params.external_sigma_m);
+    let camera = FixedPositionSensor(params.external_sigma_m);
     let mut slam = EkfSlam::new(sensor, plain_filter(), Vector1::new(run.positions[0]))?;
-    if reference == Reference::Anchor {
+    if reference == WorldReference::Anchor {
         slam.add_anchor(ANCHOR, Vector1::zeros())?;
     }
     let mut observability = ObservabilityRecorder::new(&slam);
@@ -67,7 +67,7 @@ pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> 
         if let Some(before) = k.checked_sub(1) {
             slam.predict(&motion, &Vector1::new(run.controls[before]))?;
         }
-        if reference == Reference::Camera {
+        if reference == WorldReference::Camera {
             let innovation = slam.update_robot(&camera, &Vector1::new(run.external_positions[k]))?;
             observability.record_robot(&slam, &Matrix1::identity(), &innovation.covariance);
         }
@@ -77,12 +77,12 @@ pub fn drive(params: &MonobotParams, run: &MonobotRun, reference: Reference) -> 
         observability.record(&slam, &seen.iter().filter_map(|seen| seen.label).collect::<Vec<_>>());
         steps.extend(step(&slam, *true_position, params.landmark_m, gains));
     }
-    Ok(Drive { steps, true_landmark: params.landmark_m, observability })
+    Ok(MonobotDrive { steps, true_landmark: params.landmark_m, observability })
 }
 
-fn observations(run: &MonobotRun, k: usize, reference: Reference) -> Vec<Observation<Vector1<f64>>> {
+fn observations(run: &MonobotRun, k: usize, reference: WorldReference) -> Vec<Observation<Vector1<f64>>> {
     let ids = (0..).map(LandmarkId);
-    let anchor = (reference == Reference::Anchor).then_some((ANCHOR, run.anchor_ranges[k]));
+    let anchor = (reference == WorldReference::Anchor).then_some((ANCHOR, run.anchor_ranges[k]));
     let all = anchor.into_iter().chain(ids.zip(run.ranges[k].iter().copied()));
     all.map(|(id, distance)| Observation { label: Some(id), measurement: Vector1::new(distance) }).collect()
 }
@@ -102,10 +102,10 @@ fn step(
     true_position: f64,
     true_landmark: f64,
     gains: [f64; 2],
-) -> Option<Step> {
+) -> Option<MonobotStep> {
     let first = slam.landmark(LandmarkId(0))?;
     let errors: Vec<f64> = slam.landmarks().map(|landmark| landmark.mean.x - true_landmark).collect();
-    Some(Step {
+    Some(MonobotStep {
         true_position,
         position: slam.robot().x,
         position_sigma: slam.robot_covariance().x.sqrt(),

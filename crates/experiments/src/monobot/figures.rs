@@ -1,16 +1,16 @@
 use anyhow::{Result, ensure};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use wayfix_scene_sim::{monobot::MonobotParams, random::Streams};
+use wayfix_scene_sim::{monobot::MonobotParams, random::RandomStreams};
 
-use super::{Drive, Reference, drive};
+use super::{MonobotDrive, WorldReference, drive};
 use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 
 /// Many drives with the same parameters and different noise.
 #[derive(Clone, Debug)]
-pub struct MonteCarlo {
+pub struct MonobotMonteCarlo {
     /// One a seed.
-    pub drives: Vec<Drive>,
+    pub drives: Vec<MonobotDrive>,
 }
 
 /// Runs `n_runs` drives.
@@ -19,20 +19,20 @@ pub struct MonteCarlo {
 /// Returns an error if `n_runs` is below 2, a parameter is out of range or the filter fails.
 pub fn monte_carlo(
     params: &MonobotParams,
-    reference: Reference,
+    reference: WorldReference,
     n_runs: u64,
     seed: u64,
-) -> Result<MonteCarlo> {
+) -> Result<MonobotMonteCarlo> {
     ensure!(n_runs >= 2, "an interval needs two runs or more, not {n_runs}");
     let one = |k: u64| {
         let seed = seed.wrapping_mul(1_000_003).wrapping_add(k); // no two of a call share one
-        let run = params.simulate(&mut Streams::new(ChaCha8Rng::seed_from_u64(seed)))?;
+        let run = params.simulate(&mut RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)))?;
         drive(params, &run, reference)
     };
-    Ok(MonteCarlo { drives: (0..n_runs).map(one).collect::<Result<_>>()? })
+    Ok(MonobotMonteCarlo { drives: (0..n_runs).map(one).collect::<Result<_>>()? })
 }
 
-impl MonteCarlo {
+impl MonobotMonteCarlo {
     /// Root mean square of the mean landmark error at the end, m.
     pub fn end_rms(&self) -> f64 {
         root_mean_square(&self.errors(|drive| drive.steps.len() - 1))
@@ -44,10 +44,11 @@ impl MonteCarlo {
         let claimed: Vec<f64> =
             self.drives.iter().filter_map(|drive| Some(drive.steps.last()?.landmark_sigma)).collect();
         let bias = MeanInterval::of(&end).map_or(f64::NAN, |mean| mean.mean.abs() / mean.half_width);
-        let gain = |steps: &[super::Step]| steps.last().map_or(f64::NAN, |step| step.gains[1]);
+        let gain = |steps: &[super::MonobotStep]| steps.last().map_or(f64::NAN, |step| step.gains[1]);
         let gains: Vec<f64> = self.drives.iter().map(|drive| gain(&drive.steps)).collect();
-        let rank =
-            |drive: &Drive| (drive.observability.rank() as f64, drive.observability.dimension() as f64);
+        let rank = |drive: &MonobotDrive| {
+            (drive.observability.rank() as f64, drive.observability.dimension() as f64)
+        };
         let (rank, dimension) = self.drives.first().map_or((f64::NAN, f64::NAN), rank);
         vec![
             Metric::new("first_landmark_rms_m", root_mean_square(&first), "m"),
@@ -61,7 +62,7 @@ impl MonteCarlo {
         ]
     }
 
-    fn errors(&self, at: impl Fn(&Drive) -> usize) -> Vec<f64> {
+    fn errors(&self, at: impl Fn(&MonobotDrive) -> usize) -> Vec<f64> {
         self.drives.iter().map(|drive| drive.steps[at(drive)].mean_landmark_error).collect()
     }
 }

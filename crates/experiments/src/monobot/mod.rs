@@ -3,12 +3,12 @@
 mod drive;
 mod figures;
 mod fisher;
-mod pictures;
+mod plots;
 mod reference;
 
 pub(crate) use drive::plain_filter;
-pub use drive::{Drive, Step, drive};
-pub use figures::{MonteCarlo, monte_carlo};
+pub use drive::{MonobotDrive, MonobotStep, drive};
+pub use figures::{MonobotMonteCarlo, monte_carlo};
 pub use fisher::{expected_rate, first_entry};
-pub use pictures::{fisher_picture, pictures};
-pub use reference::{Camera, Reference};
+pub use plots::{fisher_plot, plots};
+pub use reference::{FixedPositionSensor, WorldReference};

@@ -5,7 +5,7 @@ use wayfix_estimation_traits::SensorModel;
 /// Reference of the monobot's map to the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Reference {
+pub enum WorldReference {
     /// None: the standard filter. [Fig. 4]
     None,
     /// A landmark at the origin with known position. [Eq. 20, Fig. 5]
@@ -16,9 +16,9 @@ pub enum Reference {
 
 /// A fixed sensor that measures where the robot is on its line; its standard deviation in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera(pub f64);
+pub struct FixedPositionSensor(pub f64);
 
-impl SensorModel for Camera {
+impl SensorModel for FixedPositionSensor {
     type State = Vector1<f64>;
     type Measurement = Vector1<f64>;
 

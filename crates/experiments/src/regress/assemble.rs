@@ -1,52 +1,58 @@
 use anyhow::Result;
 
-use super::{Blessed, Bound, Done, Options, Plan, PlannedRun, over_seeds::over_seeds, plan::judge};
-use wayfix_evaluation::report::{Machine, Report, Run, Suite, commit};
+use super::{
+    CompletedRun, MetricBound, PlannedRun, ReferenceFigures, RegressOptions, SuitePlan,
+    over_seeds::over_seeds, plan::judge,
+};
+use wayfix_evaluation::report::{MachineInfo, Report, ReportRun, ReportSuite, commit};
 
 /// The report of all runs, in the order of the plans: figures over all seeds, with a verdict for each.
 ///
 /// # Errors
 /// Returns an error if a plan or the blessed figures cannot be read or written.
-pub fn assemble(options: &Options, done: &[Done]) -> Result<Report> {
+pub fn assemble(options: &RegressOptions, done: &[CompletedRun]) -> Result<Report> {
     let suites = options.suites.iter().map(|suite| assemble_suite(options, suite, done));
     Ok(Report {
         suites: suites.collect::<Result<_>>()?,
         seed: options.seed,
         commit: commit(&options.fixtures),
-        machine: Machine::detect(),
+        machine: MachineInfo::detect(),
     })
 }
 
-fn assemble_suite(options: &Options, suite: &str, done: &[Done]) -> Result<Suite> {
-    let plan = Plan::read(&options.fixtures, suite)?;
+fn assemble_suite(options: &RegressOptions, suite: &str, done: &[CompletedRun]) -> Result<ReportSuite> {
+    let plan = SuitePlan::read(&options.fixtures, suite)?;
     let of_plan = |planned: &PlannedRun| {
-        let is_of = |done: &&Done| done.cell.suite == suite && done.cell.run == planned.name;
-        let mut of_seeds: Vec<&Done> = done.iter().filter(is_of).collect();
+        let is_of = |done: &&CompletedRun| done.cell.suite == suite && done.cell.run == planned.name;
+        let mut of_seeds: Vec<&CompletedRun> = done.iter().filter(is_of).collect();
         of_seeds.sort_by_key(|done| done.cell.seed);
         let mut run = over_seeds(&of_seeds)?;
-        let is_timed = |bound: &Bound| run.timings.iter().any(|timing| timing.name == bound.metric);
+        let is_timed = |bound: &MetricBound| run.timings.iter().any(|timing| timing.name == bound.metric);
         let (of_timings, of_metrics): (Vec<_>, Vec<_>) = planned.bound.iter().cloned().partition(is_timed);
         judge(&of_metrics, &mut run.metrics);
         judge(&of_timings, &mut run.timings);
         run.notes.extend(planned.note.clone());
         Some(run)
     };
-    let mut runs: Vec<Run> = plan.run.iter().filter_map(of_plan).collect();
+    let mut runs: Vec<ReportRun> = plan.run.iter().filter_map(of_plan).collect();
 
     let blessed_path = options.fixtures.join(format!("{suite}-figures.json"));
     let stored: Vec<&str> =
         plan.run.iter().filter(|run| run.data.is_none()).map(|run| run.name.as_str()).collect();
     if options.bless {
-        Blessed::write(&blessed_path, runs.iter().filter(|run| stored.contains(&run.name.as_str())))?;
+        ReferenceFigures::write(
+            &blessed_path,
+            runs.iter().filter(|run| stored.contains(&run.name.as_str())),
+        )?;
     }
     if options.n_seeds <= 1 {
-        let blessed = Blessed::read(&blessed_path)?;
+        let blessed = ReferenceFigures::read(&blessed_path)?;
         for run in &mut runs {
             let changed = blessed.compare(run);
             run.metrics.extend(changed);
         }
     }
-    let means: Vec<Run> = plan.mean.iter().filter_map(|mean| mean.over(&runs)).collect();
+    let means: Vec<ReportRun> = plan.mean.iter().filter_map(|mean| mean.over(&runs)).collect();
     runs.extend(means);
-    Ok(Suite { name: suite.to_owned(), runs })
+    Ok(ReportSuite { name: suite.to_owned(), runs })
 }

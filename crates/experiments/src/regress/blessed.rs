@@ -2,18 +2,18 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use anyhow::{Context, Result};
 
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::report::{Metric, ReportRun};
 
 /// Reviewed reference figures of the stored logs.
 ///
 /// They are not bounds: a difference shows that a code change affected a figure. `--bless` rewrites them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Blessed(BTreeMap<String, BTreeMap<String, f64>>);
+pub struct ReferenceFigures(BTreeMap<String, BTreeMap<String, f64>>);
 
 /// Another machine may round the last digits differently; a change of the mathematics shows far above this.
 const RELATIVE_TOLERANCE: f64 = 1e-6;
 
-impl Blessed {
+impl ReferenceFigures {
     /// Reads the figures; empty if the file does not exist.
     /// # Errors
     /// Returns an error if the file is there and cannot be read.
@@ -29,9 +29,9 @@ impl Blessed {
     ///
     /// # Errors
     /// Returns an error if the file cannot be written.
-    pub fn write<'a>(path: &Path, runs: impl Iterator<Item = &'a Run>) -> Result<()> {
+    pub fn write<'a>(path: &Path, runs: impl Iterator<Item = &'a ReportRun>) -> Result<()> {
         let figures =
-            |run: &Run| run.metrics.iter().map(|metric| (metric.name.clone(), metric.value)).collect();
+            |run: &ReportRun| run.metrics.iter().map(|metric| (metric.name.clone(), metric.value)).collect();
         let all: BTreeMap<String, BTreeMap<String, f64>> =
             runs.map(|run| (run.name.clone(), figures(run))).collect();
         let text = serde_json::to_string_pretty(&all)? + "\n";
@@ -39,7 +39,7 @@ impl Blessed {
     }
 
     /// Number of figures of a run that differ from the reference, as a figure that must be 0.
-    pub fn compare(&self, run: &Run) -> Option<Metric> {
+    pub fn compare(&self, run: &ReportRun) -> Option<Metric> {
         let blessed = self.0.get(&run.name)?;
         let differs = |metric: &&Metric| match blessed.get(&metric.name) {
             Some(value) => (metric.value - value).abs() > RELATIVE_TOLERANCE * value.abs().max(1e-9),
@@ -59,12 +59,18 @@ mod tests {
     fn a_figure_that_moves_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("figures.json");
-        let run =
-            |value| Run { name: "r".into(), metrics: vec![Metric::new("a", value, "m")], ..Run::default() };
-        Blessed::write(&path, [run(1.0)].iter()).unwrap();
-        let blessed = Blessed::read(&path).unwrap();
+        let run = |value| ReportRun {
+            name: "r".into(),
+            metrics: vec![Metric::new("a", value, "m")],
+            ..ReportRun::default()
+        };
+        ReferenceFigures::write(&path, [run(1.0)].iter()).unwrap();
+        let blessed = ReferenceFigures::read(&path).unwrap();
         assert!(blessed.compare(&run(1.0 + 1e-9)).unwrap().passes());
         assert!(!blessed.compare(&run(1.0 + 1e-5)).unwrap().passes());
-        assert_eq!(Blessed::read(&folder.path().join("none.json")).unwrap().compare(&run(1.0)), None);
+        assert_eq!(
+            ReferenceFigures::read(&folder.path().join("none.json")).unwrap().compare(&run(1.0)),
+            None
+        );
     }
 }

@@ -1,11 +1,11 @@
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
-use super::{Job, Options, Plan, PlannedRun};
+use super::{PlannedJob, PlannedRun, RegressOptions, SuitePlan};
 
 /// One run with one seed: the piece of work that a shard takes or leaves.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Cell {
+pub struct SeededRun {
     /// Name of the suite.
     pub suite: String,
     /// Name of the planned run.
@@ -17,12 +17,12 @@ pub struct Cell {
 /// All requested work, in the order of the report: run by run, seed by seed.
 /// # Errors
 /// Returns an error if a plan cannot be read.
-pub fn cells(options: &Options) -> Result<Vec<Cell>> {
+pub fn cells(options: &RegressOptions) -> Result<Vec<SeededRun>> {
     let mut cells = Vec::new();
     for suite in &options.suites {
-        let plan = Plan::read(&options.fixtures, suite)?;
+        let plan = SuitePlan::read(&options.fixtures, suite)?;
         for run in plan.run.iter().filter(|run| job(options, run).is_some()) {
-            let cell = |seed| Cell { suite: suite.clone(), run: run.name.clone(), seed };
+            let cell = |seed| SeededRun { suite: suite.clone(), run: run.name.clone(), seed };
             cells.extend(options.seeds().map(cell));
         }
     }
@@ -30,12 +30,12 @@ pub fn cells(options: &Options) -> Result<Vec<Cell>> {
 }
 
 /// A run with its inputs; `None` for unavailable recordings and unrequested runs.
-pub(super) fn job<'a>(options: &'a Options, planned: &'a PlannedRun) -> Option<Job<'a>> {
+pub(super) fn job<'a>(options: &'a RegressOptions, planned: &'a PlannedRun) -> Option<PlannedJob<'a>> {
     let path = match (&planned.log, &planned.data) {
         _ if options.quick && (planned.slow || planned.data.is_some()) => return None,
         (Some(log), _) => Some(options.fixtures.join(log)),
         (None, Some(data)) => Some(options.data.as_ref()?.join(data)).filter(|path| path.exists()),
         (None, None) => None,
     };
-    (planned.data.is_none() || path.is_some()).then_some(Job { options, planned, path })
+    (planned.data.is_none() || path.is_some()).then_some(PlannedJob { options, planned, path })
 }

@@ -5,20 +5,20 @@ use std::{
 
 use anyhow::{Context, Result};
 
-use super::{Options, PlannedRun};
+use super::{PlannedRun, RegressOptions};
 
 /// A run of a plan with its inputs.
 #[derive(Clone, Debug)]
-pub struct Job<'a> {
+pub struct PlannedJob<'a> {
     /// Command-line options.
-    pub options: &'a Options,
+    pub options: &'a RegressOptions,
     /// The run.
     pub planned: &'a PlannedRun,
     /// Path of its log, if it has one.
     pub path: Option<PathBuf>,
 }
 
-impl Job<'_> {
+impl PlannedJob<'_> {
     /// Path of its log.
     /// # Errors
     /// Returns an error if the plan names none.
@@ -27,7 +27,7 @@ impl Job<'_> {
     }
 
     /// Name and place of the estimates that the run writes beside the report.
-    pub fn estimates(&self) -> (String, PathBuf) {
+    pub fn estimates_file(&self) -> (String, PathBuf) {
         let seed = self.options.seed;
         let name = match &self.planned.name {
             name if self.options.n_seeds > 1 => format!("{name}-seed-{seed}.mcap"),

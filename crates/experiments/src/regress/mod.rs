@@ -1,7 +1,7 @@
 //! `wayfix-experiments regress`: every system on stored logs, and on public recordings if available, against stated bounds.
 //!
 //! [`cells`] lists the work, run by run and seed by seed; [`run_shard`] does some or all of it; [`assemble`] makes the report. Shards on other
-//! machines leave a [`Part`] each, and [`join`] merges them.
+//! machines leave a [`ShardResults`] each, and [`join`] merges them.
 
 mod assemble;
 mod blessed;
@@ -15,10 +15,10 @@ mod shard;
 pub mod suites;
 
 pub use assemble::assemble;
-pub use blessed::Blessed;
-pub use campaign::{Cell, cells};
-pub use job::Job;
-pub use part::{Part, join};
-pub use plan::{Bound, Plan, PlannedMean, PlannedRun};
-pub use runner::{Done, Options, run_shard};
-pub use shard::Shard;
+pub use blessed::ReferenceFigures;
+pub use campaign::{SeededRun, cells};
+pub use job::PlannedJob;
+pub use part::{ShardResults, join};
+pub use plan::{MetricBound, PlannedMean, PlannedRun, SuitePlan};
+pub use runner::{CompletedRun, RegressOptions, run_shard};
+pub use shard::CampaignShard;

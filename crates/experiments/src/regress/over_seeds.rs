@@ -1,11 +1,11 @@
-use super::Done;
+use super::CompletedRun;
 use wayfix_evaluation::{
     errors::MeanInterval,
-    report::{Metric, Run, Spread},
+    report::{ConfidenceInterval, Metric, ReportRun},
 };
 
 /// Merges one run over several seeds: means with their intervals, sums of events; pictures and the log of the first. `None` if empty.
-pub(super) fn over_seeds(done: &[&Done]) -> Option<Run> {
+pub(super) fn over_seeds(done: &[&CompletedRun]) -> Option<ReportRun> {
     let (first, others) = done.split_first()?;
     if others.is_empty() {
         return Some(first.run.clone());
@@ -35,16 +35,16 @@ pub(super) fn over_seeds(done: &[&Done]) -> Option<Run> {
 }
 
 /// The mean of every figure of the first run; not a number where a seed lacks it.
-fn means(done: &[&Done], figures: impl Fn(&Run) -> &Vec<Metric>) -> Vec<Metric> {
+fn means(done: &[&CompletedRun], figures: impl Fn(&ReportRun) -> &Vec<Metric>) -> Vec<Metric> {
     let mean = |metric: &Metric| {
-        let of_seed = |done: &&Done| {
+        let of_seed = |done: &&CompletedRun| {
             let found = figures(&done.run).iter().find(|other| other.name == metric.name);
             found.map_or(f64::NAN, |found| found.value)
         };
         let values: Vec<f64> = done.iter().map(of_seed).collect();
         match MeanInterval::of(&values) {
             Some(MeanInterval { mean, half_width, n }) => {
-                Metric { value: mean, spread: Some(Spread { half_width, n }), ..metric.clone() }
+                Metric { value: mean, spread: Some(ConfidenceInterval { half_width, n }), ..metric.clone() }
             }
             None => metric.clone(),
         }
@@ -55,14 +55,18 @@ fn means(done: &[&Done], figures: impl Fn(&Run) -> &Vec<Metric>) -> Vec<Metric> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::regress::Cell;
+    use crate::regress::SeededRun;
 
-    fn done(seed: u64, value: f64) -> Done {
-        let cell = Cell { suite: "s".to_owned(), run: "r".to_owned(), seed };
+    fn done(seed: u64, value: f64) -> CompletedRun {
+        let cell = SeededRun { suite: "s".to_owned(), run: "r".to_owned(), seed };
         let events = [("lost".to_owned(), seed)].into();
-        let run =
-            Run { metrics: vec![Metric::new("error_m", value, "m")], seconds: 1.0, events, ..Run::default() };
-        Done { cell, run }
+        let run = ReportRun {
+            metrics: vec![Metric::new("error_m", value, "m")],
+            seconds: 1.0,
+            events,
+            ..ReportRun::default()
+        };
+        CompletedRun { cell, run }
     }
 
     #[test]

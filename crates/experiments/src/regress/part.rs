@@ -7,13 +7,13 @@ use std::{
 use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 
-use super::{Cell, Done, Options, Shard, cells};
-use wayfix_evaluation::report::{Run, commit};
+use super::{CampaignShard, CompletedRun, RegressOptions, SeededRun, cells};
+use wayfix_evaluation::report::{ReportRun, commit};
 
 /// Results of one shard, as a file: `part.json` in its output folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Part {
+pub struct ShardResults {
     /// The work of all shards together; equal in all of them.
     campaign: Campaign,
     /// The runs of this shard.
@@ -29,24 +29,24 @@ struct Campaign {
     seed: u64,
     n_seeds: u64,
     quick: bool,
-    cells: Vec<Cell>,
+    cells: Vec<SeededRun>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct PartRun {
-    cell: Cell,
-    run: Run,
+    cell: SeededRun,
+    run: ReportRun,
     /// The pictures, which a report stores only in its page.
     svgs: Vec<String>,
 }
 
 const FILE: &str = "part.json";
 
-impl Part {
+impl ShardResults {
     /// The results of `shard`.
     /// # Errors
     /// Returns an error if a plan cannot be read.
-    pub fn new(options: &Options, shard: Shard, done: Vec<Done>) -> Result<Self> {
+    pub fn new(options: &RegressOptions, shard: CampaignShard, done: Vec<CompletedRun>) -> Result<Self> {
         let campaign = Campaign {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: commit(&options.fixtures),
@@ -57,9 +57,11 @@ impl Part {
             quick: options.quick,
             cells: cells(options)?,
         };
-        let svgs = |run: &Run| run.figures.iter().map(|figure| figure.svg.clone()).collect();
-        let runs =
-            done.into_iter().map(|Done { cell, run }| PartRun { svgs: svgs(&run), cell, run }).collect();
+        let svgs = |run: &ReportRun| run.figures.iter().map(|figure| figure.svg.clone()).collect();
+        let runs = done
+            .into_iter()
+            .map(|CompletedRun { cell, run }| PartRun { svgs: svgs(&run), cell, run })
+            .collect();
         Ok(Self { campaign, runs })
     }
 
@@ -102,11 +104,15 @@ impl Part {
 ///
 /// # Errors
 /// Returns an error if the parts are of different campaigns, one is missing, or the same work was done twice. The message says which.
-pub fn join(parts: Vec<(PathBuf, Part)>, fixtures: &Path, out: &Path) -> Result<(Options, Vec<Done>)> {
+pub fn join(
+    parts: Vec<(PathBuf, ShardResults)>,
+    fixtures: &Path,
+    out: &Path,
+) -> Result<(RegressOptions, Vec<CompletedRun>)> {
     let Some(campaign) = parts.first().map(|(_, part)| part.campaign.clone()) else {
         bail!("no parts: give the output folders of all shards");
     };
-    let mut done: BTreeMap<Cell, Run> = BTreeMap::new();
+    let mut done: BTreeMap<SeededRun, ReportRun> = BTreeMap::new();
     for (path, part) in parts {
         ensure!(
             part.campaign == campaign,
@@ -114,7 +120,7 @@ pub fn join(parts: Vec<(PathBuf, Part)>, fixtures: &Path, out: &Path) -> Result<
             path.display()
         );
         for PartRun { cell, run, .. } in part.runs {
-            let Cell { suite, run: name, seed } = cell.clone();
+            let SeededRun { suite, run: name, seed } = cell.clone();
             ensure!(
                 done.insert(cell, run).is_none(),
                 "{suite} / {name} with seed {seed} was done twice, again in {}",
@@ -122,8 +128,8 @@ pub fn join(parts: Vec<(PathBuf, Part)>, fixtures: &Path, out: &Path) -> Result<
             );
         }
     }
-    let wanted: BTreeSet<&Cell> = campaign.cells.iter().collect();
-    if let Some(Cell { suite, run, seed }) = wanted.iter().find(|cell| !done.contains_key(**cell)) {
+    let wanted: BTreeSet<&SeededRun> = campaign.cells.iter().collect();
+    if let Some(SeededRun { suite, run, seed }) = wanted.iter().find(|cell| !done.contains_key(**cell)) {
         let n_missing = wanted.len() - done.len();
         bail!(
             "{n_missing} of {} runs are missing, the first is {suite} / {run} with seed {seed}: there were {} shards",
@@ -131,7 +137,7 @@ pub fn join(parts: Vec<(PathBuf, Part)>, fixtures: &Path, out: &Path) -> Result<
             campaign.n_shards
         );
     }
-    let options = Options {
+    let options = RegressOptions {
         suites: campaign.suites,
         fixtures: fixtures.to_owned(),
         data: None,
@@ -141,5 +147,5 @@ pub fn join(parts: Vec<(PathBuf, Part)>, fixtures: &Path, out: &Path) -> Result<
         quick: campaign.quick,
         bless: false,
     };
-    Ok((options, done.into_iter().map(|(cell, run)| Done { cell, run }).collect()))
+    Ok((options, done.into_iter().map(|(cell, run)| CompletedRun { cell, run }).collect()))
 }

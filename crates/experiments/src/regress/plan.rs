@@ -6,12 +6,12 @@ use std::{
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, de::DeserializeOwned};
 
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::report::{Metric, ReportRun};
 
 /// Runs of a suite with their bounds: a TOML file beside the stored logs.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Plan {
+pub struct SuitePlan {
     /// In the order of the report.
     pub run: Vec<PlannedRun>,
     /// Means over runs; skipped if a run is missing.
@@ -31,7 +31,7 @@ pub struct PlannedMean {
     pub metrics: Vec<String>,
     /// Bounds and figures of others.
     #[serde(default)]
-    pub bound: Vec<Bound>,
+    pub bound: Vec<MetricBound>,
 }
 
 /// One log, or one experiment that makes its own, through one system.
@@ -50,7 +50,7 @@ pub struct PlannedRun {
     pub note: Option<String>,
     /// Bounds and figures of others.
     #[serde(default)]
-    pub bound: Vec<Bound>,
+    pub bound: Vec<MetricBound>,
     /// All other keys: settings of the suite.
     #[serde(flatten)]
     settings: toml::Table,
@@ -59,7 +59,7 @@ pub struct PlannedRun {
 /// Bounds of a figure, and values to compare it with.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Bound {
+pub struct MetricBound {
     /// Name of the figure.
     pub metric: String,
     /// Smallest value that passes.
@@ -79,7 +79,7 @@ pub struct Bound {
     pub open: bool,
 }
 
-impl Plan {
+impl SuitePlan {
     /// Reads the plan of a suite, `SUITE.toml` in the folder of the stored logs.
     ///
     /// # Errors
@@ -109,8 +109,8 @@ impl PlannedRun {
 
 impl PlannedMean {
     /// The mean over `runs`; `None` if one of them did not run.
-    pub fn over(&self, runs: &[Run]) -> Option<Run> {
-        let members: Option<Vec<&Run>> =
+    pub fn over(&self, runs: &[ReportRun]) -> Option<ReportRun> {
+        let members: Option<Vec<&ReportRun>> =
             self.of.iter().map(|name| runs.iter().find(|run| &run.name == name)).collect();
         let members = members?;
         let mean = |name: &String| {
@@ -122,12 +122,12 @@ impl PlannedMean {
         let mut metrics: Vec<Metric> = self.metrics.iter().map(mean).collect();
         judge(&self.bound, &mut metrics);
         let notes = vec![format!("Mean over {}.", self.of.join(", "))];
-        Some(Run { name: self.name.clone(), metrics, notes, ..Run::default() })
+        Some(ReportRun { name: self.name.clone(), metrics, notes, ..ReportRun::default() })
     }
 }
 
 /// Adds bounds and comparison values to our figures. A bounded figure that was not measured fails as NaN.
-pub(super) fn judge(bounds: &[Bound], metrics: &mut Vec<Metric>) {
+pub(super) fn judge(bounds: &[MetricBound], metrics: &mut Vec<Metric>) {
     for bound in bounds {
         let index = metrics.iter().position(|metric| metric.name == bound.metric).unwrap_or_else(|| {
             metrics.push(Metric::new(&bound.metric, f64::NAN, ""));

@@ -3,19 +3,19 @@ use std::{fmt, str::FromStr};
 /// A share of the work: the `number`-th of `total`, from 1.
 ///
 /// ```
-/// use wayfix_experiments::regress::Shard;
-/// let third: Shard = "3/4".parse()?;
+/// use wayfix_experiments::regress::CampaignShard;
+/// let third: CampaignShard = "3/4".parse()?;
 /// assert_eq!((0..9).filter(|index| third.takes(*index)).collect::<Vec<_>>(), [2, 6]);
-/// assert!("5/4".parse::<Shard>().is_err() && "0/4".parse::<Shard>().is_err());
+/// assert!("5/4".parse::<CampaignShard>().is_err() && "0/4".parse::<CampaignShard>().is_err());
 /// # Ok::<(), String>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Shard {
+pub struct CampaignShard {
     number: usize,
     total: usize,
 }
 
-impl Shard {
+impl CampaignShard {
     /// All of the work.
     pub const WHOLE: Self = Self { number: 1, total: 1 };
 
@@ -35,7 +35,7 @@ impl Shard {
     }
 }
 
-impl FromStr for Shard {
+impl FromStr for CampaignShard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -47,7 +47,7 @@ impl FromStr for Shard {
     }
 }
 
-impl fmt::Display for Shard {
+impl fmt::Display for CampaignShard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.number, self.total)
     }

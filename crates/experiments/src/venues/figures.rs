@@ -3,7 +3,7 @@ use wayfix_color_model::ColorDensity;
 use super::{methods::Method, score::VenueScore, venue::Venue};
 use wayfix_evaluation::{
     errors::MeanInterval,
-    plot::{EllipsesPlot, LinesPlot, NamedEllipse, Picture, PlotError, Series},
+    plot::{EllipsesPlot, LinesPlot, NamedEllipse, PlotError, PlotSeries, SvgPlot},
     report::Metric,
 };
 
@@ -58,11 +58,11 @@ pub(super) fn note(scores: &[VenueScore]) -> String {
 }
 
 /// The rate of every venue by method, and carpet and ball in UV.
-pub(super) fn pictures(venues: &[Venue], scores: &[VenueScore]) -> Result<Vec<Picture>, PlotError> {
+pub(super) fn plots(venues: &[Venue], scores: &[VenueScore]) -> Result<Vec<SvgPlot>, PlotError> {
     let series = Method::ALL.into_iter().enumerate().map(|(k, method)| {
         let points =
             scores.iter().enumerate().map(|(venue, score)| (venue as f64 + 1.0, score.rates[k].balanced()));
-        Series::new(method.title(), points.collect())
+        PlotSeries::new(method.title(), points.collect())
     });
     let rates = LinesPlot {
         title: "Ball and carpet told apart in a venue left out".to_owned(),

@@ -92,8 +92,8 @@ fn filter(
     carpet: &Vector3<f64>,
 ) -> Result<LightingFilter> {
     let params = LightingParams {
-        pixel_noise: experience.priors.pixel_noise(),
-        mean_noise: experience.priors.mean_noise(),
+        pixel_color_variance: experience.priors.pixel_color_variance(),
+        mean_color_variance: experience.priors.mean_color_variance(),
         ..LightingParams::default()
     };
     let prior = priors.members().first().context("no prior")?;
@@ -105,7 +105,10 @@ fn filter(
 /// Predicted pixel distribution of a colour: the sum of the variances of its mean, of the image's mean, and of the pixels within the image.
 fn predicted(experience: &TrainingStatistics, light: &Light, color: usize) -> ColorDensity {
     let (mean, covariance) = block(&light.mean, &light.covariance, color);
-    ColorDensity { mean, covariance: covariance + experience.mean_noise() + experience.pixels[color] }
+    ColorDensity {
+        mean,
+        covariance: covariance + experience.mean_color_variance() + experience.pixels[color],
+    }
 }
 
 /// Gain of the joint prior over the independent one in predicting the venue's ball, nats: the log ratio of the densities of the mean ball given the

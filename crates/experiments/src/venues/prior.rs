@@ -1,7 +1,7 @@
 use anyhow::{Context, Result};
 use nalgebra::{DVector, Matrix3, Vector3};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_color_model::{LightingPriors, PriorParams, learn_priors};
+use wayfix_color_model::{LightingPriors, PriorLearningParams, learn_priors};
 use wayfix_gaussian_core::Gaussian;
 
 use super::venue::Venue;
@@ -30,9 +30,9 @@ impl TrainingStatistics {
         let pixels = covariances.map(|list| list.iter().sum::<Matrix3<f64>>() / list.len() as f64);
         let training: Vec<_> = venues.iter().map(|venue| venue.training()).collect();
         // With one kind of light, k-means has no random choice that affects the result.
-        let params = PriorParams {
-            pixel_noise: (0.5 * (pixels[CARPET] + pixels[BALL])).diagonal(),
-            ..PriorParams::default()
+        let params = PriorLearningParams {
+            pixel_color_variance: (0.5 * (pixels[CARPET] + pixels[BALL])).diagonal(),
+            ..PriorLearningParams::default()
         };
         let colors = ["carpet".to_owned(), "ball".to_owned()];
         let priors = learn_priors(&colors, &training, 1, &params, &mut ChaCha8Rng::seed_from_u64(0))
@@ -46,8 +46,8 @@ impl TrainingStatistics {
     }
 
     /// Variance of an image's mean of a colour, as a matrix.
-    pub(super) fn mean_noise(&self) -> Matrix3<f64> {
-        Matrix3::from_diagonal(&self.priors.mean_noise())
+    pub(super) fn mean_color_variance(&self) -> Matrix3<f64> {
+        Matrix3::from_diagonal(&self.priors.mean_color_variance())
     }
 }
 

@@ -3,7 +3,7 @@ use std::{collections::BTreeMap, path::Path};
 use anyhow::{Context, Result, bail};
 
 use super::{figures, score::score, venue::Venue};
-use wayfix_evaluation::report::Run;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::system::Stopwatch;
 
 /// Fewer venues leave too little to learn from.
@@ -12,7 +12,7 @@ const MIN_VENUES: usize = 3;
 /// Leave-one-out over the venues below `folder`; see the [module](super) for the figures.
 /// # Errors
 /// Returns an error if the folder has fewer than three venues, or a venue has no usable ball.
-pub fn run(folder: &Path) -> Result<Run> {
+pub fn run(folder: &Path) -> Result<ReportRun> {
     let stopwatch = Stopwatch::start();
     let mut venues = Venue::read_all(folder)?;
     let unusable: Vec<String> =
@@ -35,7 +35,7 @@ pub fn run(folder: &Path) -> Result<Run> {
     let scores = venues.iter().enumerate().map(left_out).collect::<Result<Vec<_>>>()?;
     let n_images = venues.iter().map(|venue| venue.images.len() as u64).sum();
     let n_skipped = venues.iter().map(|venue| venue.n_skipped).sum();
-    Ok(Run {
+    Ok(ReportRun {
         name: "venues".to_owned(),
         metrics: figures::metrics(&scores),
         seconds: stopwatch.elapsed().as_secs_f64(),
@@ -44,10 +44,10 @@ pub fn run(folder: &Path) -> Result<Run> {
             ("image_without_carpet".to_owned(), n_skipped),
             ("image_unusable".to_owned(), unusable.len() as u64),
         ]),
-        figures: figures::pictures(&venues, &scores)?,
+        figures: figures::plots(&venues, &scores)?,
         notes: vec![figures::note(&scores)],
         warnings: warning(&unusable).into_iter().collect(),
-        ..Run::default()
+        ..ReportRun::default()
     })
 }
 

@@ -1,7 +1,7 @@
 use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use wayfix_color_map::ColorId;
-use wayfix_color_model::Classifier;
+use wayfix_color_model::PixelClassifier;
 
 use super::{
     methods::{Method, joint_gain_nats},
@@ -39,7 +39,7 @@ impl Rates {
         self.right[color] as f64 / self.all[color] as f64
     }
 
-    fn count(&mut self, classifier: &Classifier, color: usize, pixels: &[[u8; 3]]) {
+    fn count(&mut self, classifier: &PixelClassifier, color: usize, pixels: &[[u8; 3]]) {
         let right = pixels.iter().filter(|pixel| classifier.classify(**pixel) == Some(ColorId(color as u8)));
         self.right[color] += right.count() as u64;
         self.all[color] += pixels.len() as u64;
@@ -53,7 +53,7 @@ pub(super) fn score(venue: &Venue, others: &[&Venue]) -> Result<VenueScore> {
     let rates = Method::ALL.into_iter().map(|method| {
         let mut rates = Rates::default();
         for image in &venue.images {
-            let classifier = Classifier::new(method.densities(&experience, image, &own_ball)?)?;
+            let classifier = PixelClassifier::new(method.densities(&experience, image, &own_ball)?)?;
             rates.count(&classifier, CARPET, &image.carpet_pixels);
             rates.count(&classifier, BALL, &image.ball_pixels);
         }

@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVector};
 use wayfix_estimation_traits::LogWeight;
 
 use super::posterior::GroupPosterior;
-use crate::{Gaussian, GaussianError, GroupEvidence, HierarchicalParams, MeanPrior, cholesky, symmetrize};
+use crate::{Gaussian, GaussianError, GroupStatistics, HierarchicalParams, MeanPrior, cholesky, symmetrize};
 
 /// The expected sufficient statistics of the groups under $`(μ, Σ)`$, summed, and $`\log p(μ, Σ, y)`$.
 pub(super) struct Expectation {
@@ -17,7 +17,7 @@ pub(super) struct Expectation {
 impl Expectation {
     /// The expectation step, with $`θ_j`$ integrated out in closed form.
     pub(super) fn new(
-        groups: &[&GroupEvidence],
+        groups: &[&GroupStatistics],
         params: &HierarchicalParams,
         estimate: &Gaussian<DVector<f64>>,
     ) -> Result<Self, GaussianError> {

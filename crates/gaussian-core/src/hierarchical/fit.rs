@@ -3,7 +3,7 @@ use wayfix_estimation_traits::LogWeight;
 
 use super::em::Expectation;
 use crate::{
-    Gaussian, GaussianError, GroupEvidence, HierarchicalParams, IterationError, gaussian::check_dimension,
+    Gaussian, GaussianError, GroupStatistics, HierarchicalParams, IterationError, gaussian::check_dimension,
 };
 
 /// A Gaussian estimated from groups, and the course of the iteration.
@@ -30,8 +30,8 @@ impl HierarchicalFit {
 /// Where much is missing there may be several optima; this finds the one above independent coordinates, from where it starts.
 ///
 /// ```
-/// use wayfix_gaussian_core::{GroupEvidence, HierarchicalParams, fit_hierarchical};
-/// let mut groups = vec![GroupEvidence::new(2); 4];
+/// use wayfix_gaussian_core::{GroupStatistics, HierarchicalParams, fit_hierarchical};
+/// let mut groups = vec![GroupStatistics::new(2); 4];
 /// for (group, values) in groups.iter_mut().zip([[1.0, 1.0], [3.0, 2.0], [1.0, 2.0], [3.0, 3.0]]) {
 ///     group.observe(&[0, 1], &values, &[0.0, 0.0])?;
 /// }
@@ -46,7 +46,7 @@ impl HierarchicalFit {
 /// hyperprior of $`Σ`$ when there are no more groups than coordinates ([`GaussianError::TooFew`]: the covariance would be singular) or a
 /// covariance becomes singular on the way; without a hyperprior of $`μ`$ when no group shows some coordinate.
 pub fn fit_hierarchical(
-    groups: &[GroupEvidence],
+    groups: &[GroupStatistics],
     params: &HierarchicalParams,
 ) -> Result<HierarchicalFit, IterationError<Box<HierarchicalFit>>> {
     let groups = check(groups, params)?;
@@ -75,9 +75,9 @@ pub fn fit_hierarchical(
 
 /// The groups with observations, if they and the hyperpriors together determine a Gaussian.
 fn check<'a>(
-    groups: &'a [GroupEvidence],
+    groups: &'a [GroupStatistics],
     params: &HierarchicalParams,
-) -> Result<Vec<&'a GroupEvidence>, GaussianError> {
+) -> Result<Vec<&'a GroupStatistics>, GaussianError> {
     let Some(first) = groups.first() else { return Err(GaussianError::Empty { what: "groups" }) };
     let dimension = first.dimension();
     params.check(dimension)?;
@@ -100,7 +100,7 @@ fn check<'a>(
 
 /// Independent coordinates, each with the moments of its own pooled observations and of the hyperpriors.
 fn start(
-    groups: &[&GroupEvidence],
+    groups: &[&GroupStatistics],
     params: &HierarchicalParams,
 ) -> Result<Gaussian<DVector<f64>>, GaussianError> {
     let dimension = groups.first().map_or_else(

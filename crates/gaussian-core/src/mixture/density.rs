@@ -1,10 +1,10 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{LogWeight, Manifold, StateAlloc};
 
-use super::{Mixture, log_sum_exp};
+use super::{GaussianMixture, log_sum_exp};
 use crate::{Gaussian, GaussianError, IterationError, moment_matched};
 
-impl<X: Manifold> Mixture<X>
+impl<X: Manifold> GaussianMixture<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -12,9 +12,9 @@ where
     ///
     /// ```
     /// use nalgebra::Vector1;
-    /// use wayfix_gaussian_core::{Gaussian, Mixture};
+    /// use wayfix_gaussian_core::{Gaussian, GaussianMixture};
     /// let standard = Gaussian::from_sigmas(Vector1::new(0.0_f64), &Vector1::new(1.0))?;
-    /// let mixture = Mixture::from_weights(vec![(2.0, standard.clone()), (1.0, standard.clone())])?;
+    /// let mixture = GaussianMixture::from_weights(vec![(2.0, standard.clone()), (1.0, standard.clone())])?;
     /// let far = Vector1::new(1e3);
     /// assert!((mixture.log_density(&far)? - standard.log_density(&far)?).abs() < 1e-9);
     /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())

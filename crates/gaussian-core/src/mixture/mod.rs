@@ -8,4 +8,4 @@ mod runnalls;
 mod west;
 
 pub use log_sum_exp::log_sum_exp;
-pub use model::Mixture;
+pub use model::GaussianMixture;

@@ -8,14 +8,14 @@ use crate::{Gaussian, GaussianError, gaussian::check_dimension};
 ///
 /// ```
 /// use nalgebra::Vector1;
-/// use wayfix_gaussian_core::{Gaussian, Mixture};
+/// use wayfix_gaussian_core::{Gaussian, GaussianMixture};
 /// let at = |x: f64| Gaussian::from_sigmas(Vector1::new(x), &Vector1::new(1.0));
-/// let mixture = Mixture::from_log_weights(vec![(-2000.0, at(0.0)?), (-2000.0, at(4.0)?)])?;
+/// let mixture = GaussianMixture::from_log_weights(vec![(-2000.0, at(0.0)?), (-2000.0, at(4.0)?)])?;
 /// assert!((mixture.weight(0) - 0.5).abs() < 1e-12);
 /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mixture<X: Manifold>
+pub struct GaussianMixture<X: Manifold>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -23,7 +23,7 @@ where
     pub(super) components: Vec<Gaussian<X>>,
 }
 
-impl<X: Manifold> Mixture<X>
+impl<X: Manifold> GaussianMixture<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {

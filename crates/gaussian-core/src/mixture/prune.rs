@@ -1,10 +1,10 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, StateAlloc};
 
-use super::Mixture;
+use super::GaussianMixture;
 use crate::GaussianError;
 
-impl<X: Manifold> Mixture<X>
+impl<X: Manifold> GaussianMixture<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -12,9 +12,9 @@ where
     ///
     /// ```
     /// use nalgebra::Vector1;
-    /// use wayfix_gaussian_core::{Gaussian, Mixture};
+    /// use wayfix_gaussian_core::{Gaussian, GaussianMixture};
     /// let at = |x: f64| Gaussian::from_sigmas(Vector1::new(x), &Vector1::new(1.0));
-    /// let mixture = Mixture::from_weights(vec![(0.7, at(0.0)?), (0.2, at(1.0)?), (0.1, at(2.0)?)])?;
+    /// let mixture = GaussianMixture::from_weights(vec![(0.7, at(0.0)?), (0.2, at(1.0)?), (0.1, at(2.0)?)])?;
     /// assert_eq!(mixture.clone().prune(0.15)?.len(), 2);
     /// assert_eq!(mixture.cap(1)?.components()[0].mean()[0], 0.0);
     /// # Ok::<(), wayfix_gaussian_core::GaussianError>(())

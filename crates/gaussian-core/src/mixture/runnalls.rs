@@ -1,10 +1,10 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{LogWeight, Manifold, StateAlloc, to_f64};
 
-use super::{Mixture, log_sum_exp, prune::check_max_components};
+use super::{GaussianMixture, log_sum_exp, prune::check_max_components};
 use crate::{Gaussian, GaussianError, IterationError, cholesky, moment_matched};
 
-impl<X: Manifold> Mixture<X>
+impl<X: Manifold> GaussianMixture<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -15,9 +15,9 @@ where
     ///
     /// ```
     /// use nalgebra::Vector1;
-    /// use wayfix_gaussian_core::{Gaussian, Mixture};
+    /// use wayfix_gaussian_core::{Gaussian, GaussianMixture};
     /// let at = |x: f64| Gaussian::from_sigmas(Vector1::new(x), &Vector1::new(1.0));
-    /// let mixture = Mixture::from_weights(vec![(1.0, at(0.0)?), (1.0, at(9.0)?), (1.0, at(0.2)?)])?;
+    /// let mixture = GaussianMixture::from_weights(vec![(1.0, at(0.0)?), (1.0, at(9.0)?), (1.0, at(0.2)?)])?;
     /// let reduced = mixture.reduce_runnalls(2)?;
     /// assert!((reduced.components()[0].mean()[0] - 0.1).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,10 +1,10 @@
 use nalgebra::DefaultAllocator;
 use wayfix_estimation_traits::{Manifold, StateAlloc};
 
-use super::{Mixture, prune::check_max_components, runnalls::merge_pair};
+use super::{GaussianMixture, prune::check_max_components, runnalls::merge_pair};
 use crate::{GaussianError, IterationError};
 
-impl<X: Manifold> Mixture<X>
+impl<X: Manifold> GaussianMixture<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -15,9 +15,9 @@ where
     ///
     /// ```
     /// use nalgebra::Vector1;
-    /// use wayfix_gaussian_core::{Gaussian, Mixture};
+    /// use wayfix_gaussian_core::{Gaussian, GaussianMixture};
     /// let at = |x: f64| Gaussian::from_sigmas(Vector1::new(x), &Vector1::new(1.0));
-    /// let mixture = Mixture::from_weights(vec![(0.5, at(0.0)?), (0.4, at(9.0)?), (0.1, at(8.0)?)])?;
+    /// let mixture = GaussianMixture::from_weights(vec![(0.5, at(0.0)?), (0.4, at(9.0)?), (0.1, at(8.0)?)])?;
     /// let reduced = mixture.reduce_west(2)?;
     /// assert!((reduced.components()[1].mean()[0] - 8.8).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

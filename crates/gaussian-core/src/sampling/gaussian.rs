@@ -8,7 +8,7 @@ use crate::Gaussian;
 
 /// $`x = μ ⊞ L n`$ with $`L L^T = Σ`$ and $`n ∼ N(0, I)`$.
 ///
-/// One factorization a sample; for many, hold a [`Sampler`].
+/// One factorization a sample; for many, hold a [`GaussianSampler`].
 ///
 /// ```
 /// use nalgebra::{Matrix2, Vector2};
@@ -31,7 +31,7 @@ where
 
 /// A Gaussian factored once, for many samples.
 #[derive(Clone, Debug)]
-pub struct Sampler<X: Manifold>
+pub struct GaussianSampler<X: Manifold>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
@@ -44,12 +44,12 @@ where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
     /// The same distribution with its covariance factored, for many samples.
-    pub fn sampler(&self) -> Sampler<X> {
-        Sampler { mean: self.mean().clone(), factor: semidefinite_factor(self.covariance()) }
+    pub fn sampler(&self) -> GaussianSampler<X> {
+        GaussianSampler { mean: self.mean().clone(), factor: semidefinite_factor(self.covariance()) }
     }
 }
 
-impl<X: Manifold> Distribution<X> for Sampler<X>
+impl<X: Manifold> Distribution<X> for GaussianSampler<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
     StandardNormal: Distribution<X::Scalar>,

@@ -3,10 +3,10 @@ use rand::{Rng, RngExt, distr::Distribution};
 use rand_distr::StandardNormal;
 use wayfix_estimation_traits::{Manifold, StateAlloc};
 
-use crate::Mixture;
+use crate::GaussianMixture;
 
 /// A component drawn by weight, then a point drawn from it.
-impl<X: Manifold> Distribution<X> for Mixture<X>
+impl<X: Manifold> Distribution<X> for GaussianMixture<X>
 where
     DefaultAllocator: StateAlloc<X::Dim>,
     StandardNormal: Distribution<X::Scalar>,

@@ -5,5 +5,5 @@ mod mixture;
 mod motion;
 mod semidefinite_factor;
 
-pub use gaussian::Sampler;
-pub use motion::GaussianMotion;
+pub use gaussian::GaussianSampler;
+pub use motion::GaussianMotionSampler;

@@ -11,7 +11,7 @@ use super::{gaussian::sample_tangent, semidefinite_factor::semidefinite_factor};
 /// use nalgebra::{Matrix1, Vector1};
 /// use rand::SeedableRng;
 /// use wayfix_estimation_traits::{MotionModel, SampleMotion};
-/// use wayfix_gaussian_core::GaussianMotion;
+/// use wayfix_gaussian_core::GaussianMotionSampler;
 /// struct Slide;
 /// impl MotionModel for Slide {
 ///     type State = Vector1<f64>;
@@ -24,14 +24,14 @@ use super::{gaussian::sample_tangent, semidefinite_factor::semidefinite_factor};
 ///     }
 /// }
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
-/// let sampler = GaussianMotion(Slide);
+/// let sampler = GaussianMotionSampler(Slide);
 /// let next = sampler.sampler(&2.0)(&Vector1::new(1.0), &mut rng);
 /// assert!((next[0] - 3.0).abs() < 0.1); // ten sigma
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GaussianMotion<M>(pub M);
+pub struct GaussianMotionSampler<M>(pub M);
 
-impl<M: MotionModel> SampleMotion for GaussianMotion<M>
+impl<M: MotionModel> SampleMotion for GaussianMotionSampler<M>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
     StandardNormal: Distribution<<M::State as Manifold>::Scalar>,

@@ -5,8 +5,8 @@ use wayfix_estimation_traits::{
 use wayfix_gaussian_core::Gaussian;
 
 use crate::{
-    Extended, Form, Innovation, KalmanError, algebra::product::joseph, algebra::transport::gaussian_at,
-    check, error::Checked, linearize::linearize_sensor,
+    ExtendedForm, FilterForm, Innovation, KalmanError, algebra::product::joseph,
+    algebra::transport::gaussian_at, check, error::Checked, linearize::linearize_sensor,
 };
 
 /// The iterated extended filter: the update relinearizes at its own result until convergence, which is Gauss-Newton on
@@ -15,34 +15,34 @@ use crate::{
 /// Each iteration works in the tangent space at its iterate, to which the prior is transformed to first order. [He et al. 2021, §IV]
 /// The reported innovation is that of the prediction, as for every other form.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IteratedExtended {
+pub struct IteratedExtendedForm {
     /// Maximum number of relinearizations; default 20.
     pub max_iterations: usize,
     /// Converged when no component moves by more than this many prior standard deviations; default 1e-6 (never below $`\sqrt ε`$).
     pub tolerance: f64,
 }
 
-impl Default for IteratedExtended {
+impl Default for IteratedExtendedForm {
     fn default() -> Self {
         Self { max_iterations: 20, tolerance: 1e-6 }
     }
 }
 
-impl<X: Manifold> Form<X> for IteratedExtended
+impl<X: Manifold> FilterForm<X> for IteratedExtendedForm
 where
     DefaultAllocator: StateAlloc<X::Dim>,
 {
     type Belief = Gaussian<X>;
 
     fn belief_from(&self, gaussian: &Gaussian<X>) -> Checked<Gaussian<X>> {
-        Extended.belief_from(gaussian)
+        ExtendedForm.belief_from(gaussian)
     }
 
     fn predict<M>(&self, belief: &Gaussian<X>, motion: &M, control: &M::Control) -> Checked<Gaussian<X>>
     where
         M: MotionModel<State = X>,
     {
-        Extended.predict(belief, motion, control)
+        ExtendedForm.predict(belief, motion, control)
     }
 
     fn update<S>(

@@ -7,9 +7,9 @@ mod sequential;
 mod square_root;
 mod unscented;
 
-pub use extended::Extended;
-pub use information::{Information, InformationBelief};
-pub use iterated::IteratedExtended;
-pub use sequential::Sequential;
-pub use square_root::{FactoredGaussian, SquareRoot};
-pub use unscented::Unscented;
+pub use extended::ExtendedForm;
+pub use information::{InformationBelief, InformationForm};
+pub use iterated::IteratedExtendedForm;
+pub use sequential::SequentialForm;
+pub use square_root::{FactoredGaussian, SquareRootForm};
+pub use unscented::UnscentedForm;

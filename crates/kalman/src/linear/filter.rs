@@ -4,7 +4,7 @@ use wayfix_gaussian_core::{ChiSquaredGate, Gaussian};
 
 use super::{LinearMotion, LinearSensor};
 use crate::{
-    Innovation, KalmanError, Update,
+    GatedUpdate, Innovation, KalmanError,
     algebra::product::{joseph, plain_difference, propagated_covariance},
     certificate::Floor,
     check,
@@ -15,7 +15,7 @@ use crate::{
 pub type LinearInnovation<T, D, M> = Innovation<OVector<T, D>, OVector<T, M>>;
 
 /// The outcome of a gated measurement in a [`KalmanFilter`].
-pub type LinearUpdate<T, D, M> = Update<OVector<T, D>, OVector<T, M>>;
+pub type LinearUpdate<T, D, M> = GatedUpdate<OVector<T, D>, OVector<T, M>>;
 
 /// The Kalman filter: linear motion, linear sensors, a Gaussian.
 ///
@@ -149,13 +149,13 @@ where
     where
         DefaultAllocator: UpdateAlloc<D, M>,
     {
-        let Some(measurement) = measurement else { return Ok(Update::Missing) };
+        let Some(measurement) = measurement else { return Ok(GatedUpdate::Missing) };
         let innovation = self.innovation(sensor, measurement)?;
         if !gate.accepts(innovation.nis()) {
-            return Ok(Update::Rejected { innovation, threshold: gate.threshold() });
+            return Ok(GatedUpdate::Rejected { innovation, threshold: gate.threshold() });
         }
         self.correct(sensor, &innovation)?;
-        Ok(Update::Accepted { innovation })
+        Ok(GatedUpdate::Accepted { innovation })
     }
 
     /// The innovation of `measurement`, without a correction.

@@ -7,21 +7,21 @@ use super::{
     hypotheses::{Hypothesis, merged, model_probabilities},
     imm::updated,
 };
-use crate::{Form, Innovation, KalmanError, check, error::Checked};
+use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
 
 /// The generalized pseudo-Bayesian filter of second order: every pair of last and present model is a hypothesis of its own until after
 /// the update, then those with the same present model are merged.
 ///
-/// $`n^2`$ filter steps where [`Imm`](super::Imm) makes $`n`$, for a posterior that is exact one step longer.
-/// [Bar-Shalom et al. 2001, §11.6.5] Any [`Form`] and any manifold.
+/// $`n^2`$ filter steps where [`ImmFilter`](super::ImmFilter) makes $`n`$, for a posterior that is exact one step longer.
+/// [Bar-Shalom et al. 2001, §11.6.5] Any [`FilterForm`] and any manifold.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{Gpb2, LinearMotion, LinearSensor, MarkovChain, Unscented};
+/// use wayfix_kalman::{Gpb2Filter, LinearMotion, LinearSensor, MarkovChain, UnscentedForm};
 /// let models = vec![LinearMotion::stationary(Matrix1::new(1e-4))?, LinearMotion::stationary(Matrix1::new(1.0))?];
 /// let prior = Gaussian::new(Vector1::new(0.0), Matrix1::new(0.1))?;
-/// let mut filter = Gpb2::new(models, MarkovChain::sticky(2, 0.95)?, Unscented::default(), &prior)?;
+/// let mut filter = Gpb2Filter::new(models, MarkovChain::sticky(2, 0.95)?, UnscentedForm::default(), &prior)?;
 /// filter.predict(&None)?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(0.01))?;
 /// assert_eq!(filter.update(&sensor, &Vector1::new(2.0))?.len(), 4); // one innovation per pair of models
@@ -29,7 +29,7 @@ use crate::{Form, Innovation, KalmanError, check, error::Checked};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Gpb2<M: MotionModel, F: Form<M::State>>
+pub struct Gpb2Filter<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -39,7 +39,7 @@ where
     hypotheses: Vec<Hypothesis<F::Belief>>,
 }
 
-impl<M: MotionModel, F: Form<M::State>> Gpb2<M, F>
+impl<M: MotionModel, F: FilterForm<M::State>> Gpb2Filter<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {

@@ -6,21 +6,21 @@ use super::{
     MarkovChain,
     hypotheses::{Hypothesis, merged, model_probabilities, reweigh},
 };
-use crate::{Form, Innovation, KalmanError, check, error::Checked};
+use crate::{FilterForm, Innovation, KalmanError, check, error::Checked};
 
 /// The interacting multiple model filter: one belief per model, mixed before every prediction.
 ///
 /// Mix with $`μ_{i|j} ∝ π_{ij} μ_i`$, predict and update each model's belief, weigh by $`μ_j ∝ \bar μ_j N(y_j; 0, S_j)`$.
-/// [Blom & Bar-Shalom 1988] Any [`Form`] and any manifold; mixing matches moments.
+/// [Blom & Bar-Shalom 1988] Any [`FilterForm`] and any manifold; mixing matches moments.
 ///
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{Extended, Imm, LinearMotion, LinearSensor, MarkovChain};
+/// use wayfix_kalman::{ExtendedForm, ImmFilter, LinearMotion, LinearSensor, MarkovChain};
 /// let still = LinearMotion::stationary(Matrix1::new(1e-4))?;
 /// let lively = LinearMotion::stationary(Matrix1::new(1.0))?;
 /// let prior = Gaussian::new(Vector1::new(0.0), Matrix1::new(0.1))?;
-/// let mut filter = Imm::new(vec![still, lively], MarkovChain::sticky(2, 0.95)?, Extended, &prior)?;
+/// let mut filter = ImmFilter::new(vec![still, lively], MarkovChain::sticky(2, 0.95)?, ExtendedForm, &prior)?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(0.01))?;
 /// for z in [0.0, 1.1, -0.6, 0.8] {
 ///     filter.predict(&None)?;
@@ -30,7 +30,7 @@ use crate::{Form, Innovation, KalmanError, check, error::Checked};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Imm<M: MotionModel, F: Form<M::State>>
+pub struct ImmFilter<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -40,7 +40,7 @@ where
     hypotheses: Vec<Hypothesis<F::Belief>>,
 }
 
-impl<M: MotionModel, F: Form<M::State>> Imm<M, F>
+impl<M: MotionModel, F: FilterForm<M::State>> ImmFilter<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -134,7 +134,7 @@ pub(super) fn updated<X, F, S>(
 ) -> Checked<(Vec<Innovation<X, S::Measurement>>, Vec<Hypothesis<F::Belief>>)>
 where
     X: Manifold,
-    F: Form<X>,
+    F: FilterForm<X>,
     S: SensorModel<State = X>,
     DefaultAllocator: StateAlloc<X::Dim> + UpdateAlloc<X::Dim, <S::Measurement as Manifold>::Dim>,
 {

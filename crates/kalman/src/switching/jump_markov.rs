@@ -3,12 +3,12 @@ use wayfix_estimation_traits::{LogWeight, Manifold, MotionModel, SensorModel, St
 use wayfix_gaussian_core::Gaussian;
 
 use super::{MarkovChain, ModelBank, hypotheses::normalized};
-use crate::{Form, KalmanError, check, error::Checked};
+use crate::{FilterForm, KalmanError, check, error::Checked};
 
 /// Jump-Markov model selection: a [`ModelBank`] whose active filter follows a Markov chain.
 ///
 /// The posterior over which filter was active when is kept as its most probable histories, each with its own bank; every measurement
-/// extends each history by every model and the best [`n_histories`](JumpMarkovParams::n_histories) survive. With one history it selects
+/// extends each history by every model and the best [`n_histories`](JumpMarkovFilterParams::n_histories) survive. With one history it selects
 /// greedily, with many it is the optimal filter as far as they reach. This is what the particles of [Schulz & Fox 2004, §III.A.3] sample,
 /// without the randomness: the number of models is small, so their optimal proposal is enumerated. Between measurements only the chain
 /// is propagated.
@@ -16,11 +16,11 @@ use crate::{Form, KalmanError, check, error::Checked};
 /// ```
 /// use nalgebra::{Matrix1, Vector1};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{Extended, JumpMarkov, JumpMarkovParams, LinearMotion, LinearSensor, MarkovChain, ModelBank};
+/// use wayfix_kalman::{ExtendedForm, JumpMarkovFilter, JumpMarkovFilterParams, LinearMotion, LinearSensor, MarkovChain, ModelBank};
 /// let brightness = |mean: f64| Gaussian::new(Vector1::new(mean), Matrix1::new(100.0));
 /// let drift = LinearMotion::stationary(Matrix1::new(1.0))?;
-/// let bank = ModelBank::new(vec![drift.clone(), drift], Extended, &[brightness(40.0)?, brightness(160.0)?])?;
-/// let mut light = JumpMarkov::new(bank, MarkovChain::sticky(2, 0.95)?, JumpMarkovParams::default())?;
+/// let bank = ModelBank::new(vec![drift.clone(), drift], ExtendedForm, &[brightness(40.0)?, brightness(160.0)?])?;
+/// let mut light = JumpMarkovFilter::new(bank, MarkovChain::sticky(2, 0.95)?, JumpMarkovFilterParams::default())?;
 /// let sensor = LinearSensor::new(Matrix1::new(1.0), Matrix1::new(25.0))?;
 /// for seen in [Some(152.0), Some(149.0), None, Some(38.0)] {
 ///     light.predict(&None)?;
@@ -31,26 +31,26 @@ use crate::{Form, KalmanError, check, error::Checked};
 /// # Ok::<(), wayfix_kalman::KalmanError>(())
 /// ```
 #[derive(Clone)]
-pub struct JumpMarkov<M: MotionModel, F: Form<M::State>>
+pub struct JumpMarkovFilter<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
     chain: MarkovChain,
-    params: JumpMarkovParams,
+    params: JumpMarkovFilterParams,
     histories: Vec<History<M, F>>,
     log_evidence: Vec<LogWeight>,
 }
 
-/// Limits of the histories of a [`JumpMarkov`].
+/// Limits of the histories of a [`JumpMarkovFilter`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct JumpMarkovParams {
+pub struct JumpMarkovFilterParams {
     /// Histories kept; default 8, 1 selects greedily.
     pub n_histories: usize,
     /// Number of measurements for which a history stores its models; default 256.
     pub history_length: usize,
 }
 
-impl Default for JumpMarkovParams {
+impl Default for JumpMarkovFilterParams {
     fn default() -> Self {
         Self { n_histories: 8, history_length: 256 }
     }
@@ -58,7 +58,7 @@ impl Default for JumpMarkovParams {
 
 /// The active models at the measurements so far, and the belief under that assumption.
 #[derive(Clone)]
-struct History<M: MotionModel, F: Form<M::State>>
+struct History<M: MotionModel, F: FilterForm<M::State>>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -77,7 +77,7 @@ struct Extension<B> {
     log_weight: LogWeight,
 }
 
-impl<M: MotionModel + Clone, F: Form<M::State> + Clone> JumpMarkov<M, F>
+impl<M: MotionModel + Clone, F: FilterForm<M::State> + Clone> JumpMarkovFilter<M, F>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
@@ -88,7 +88,7 @@ where
     pub fn new(
         bank: ModelBank<M, F>,
         chain: MarkovChain,
-        params: JumpMarkovParams,
+        params: JumpMarkovFilterParams,
     ) -> Result<Self, KalmanError> {
         check::dimension("bank of models", chain.n_models(), bank.n_models())?;
         if params.n_histories == 0 {

@@ -7,8 +7,8 @@ mod imm;
 mod jump_markov;
 mod markov_chain;
 
-pub use bank::{Candidate, ModelBank};
-pub use gpb2::Gpb2;
-pub use imm::Imm;
-pub use jump_markov::{JumpMarkov, JumpMarkovParams};
+pub use bank::{ModelBank, ModelUpdate};
+pub use gpb2::Gpb2Filter;
+pub use imm::ImmFilter;
+pub use jump_markov::{JumpMarkovFilter, JumpMarkovFilterParams};
 pub use markov_chain::MarkovChain;

@@ -1,17 +1,22 @@
 use std::ops::Range;
 
 use super::points::Points;
-use super::{Params, Scan};
+use super::{LineExtractionParams, Scan};
 
 /// Splits the echoes where the next one is too far away to be on the same surface [Borges & Aldon 2004, adaptive breakpoint detector].
 ///
 /// If a beam of range $`r`$ meets a surface at the angle $`λ`$, the next beam, $`Δφ`$ further, meets it at most
 /// $`r \sin Δφ / \sin(λ - Δφ)`$ away; three deviations of the range are added. A larger step separates surfaces, or the angle is too small.
-pub(super) fn surfaces(points: &Points, scan: &Scan, params: &Params, found: &mut Vec<Range<usize>>) {
+pub(super) fn surfaces(
+    points: &Points,
+    scan: &Scan,
+    params: &LineExtractionParams,
+    found: &mut Vec<Range<usize>>,
+) {
     let reaches: Vec<f64> = (1..=params.max_missing_beams.min(scan.ranges.len()) + 1)
         .map(|beams| reach(beams as f64 * scan.angle_increment.abs(), params.breakpoint_angle_rad))
         .collect();
-    let slack = 3.0 * params.noise.sigma_range_m;
+    let slack = 3.0 * params.beam_noise.sigma_range_m;
     found.clear();
     let mut start = 0;
     for k in 1..points.at.len() {

@@ -5,17 +5,17 @@ use crate::LineEstimate;
 /// The result of one scan.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Extraction {
+pub struct LineExtraction {
     /// The walls in the order of their first beams.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<WallSegment>,
     /// Beam counts by use.
-    pub counts: Counts,
+    pub counts: BeamCounts,
 }
 
 /// A piece of a wall, in the sensor's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Segment {
+pub struct WallSegment {
     /// The line it is on, with its covariance.
     pub estimate: LineEstimate,
     /// Its observed start, m; from here to `end` the sensor is on the left.
@@ -32,7 +32,7 @@ pub struct Segment {
     pub beams: (usize, usize),
 }
 
-impl Segment {
+impl WallSegment {
     /// From end to end, metres.
     pub fn length(&self) -> f64 {
         (self.end - self.start).norm()
@@ -42,7 +42,7 @@ impl Segment {
 /// Beam counts by use. The first five sum to the number of beams.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Counts {
+pub struct BeamCounts {
     /// Ranges in (0, max].
     pub valid: usize,
     /// NaN.
@@ -59,7 +59,7 @@ pub struct Counts {
     pub in_segments: usize,
 }
 
-impl Counts {
+impl BeamCounts {
     /// Beams without a usable echo.
     pub fn skipped(&self) -> usize {
         self.nan + self.infinite + self.not_positive + self.beyond_max

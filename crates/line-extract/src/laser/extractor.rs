@@ -8,14 +8,14 @@ use super::curvature_test::curved;
 use super::merge::merge;
 use super::pieces::{Piece, split};
 use super::points::Points;
-use super::{Counts, Extraction, Params, Scan, Segment};
-use crate::LineError;
-use crate::simplify::Simplifier;
+use super::{BeamCounts, LineExtraction, LineExtractionParams, Scan, WallSegment};
+use crate::LineExtractionError;
+use crate::simplify::ChainSimplifier;
 
-/// The walls in one scan; [`Extractor`] does the same for many, faster.
+/// The walls in one scan; [`LineExtractor`] does the same for many, faster.
 ///
 /// ```
-/// use wayfix_line_extract::{Params, Scan, extract};
+/// use wayfix_line_extract::{LineExtractionParams, Scan, extract};
 ///
 /// // A corner: a wall 2 m ahead (x = 2) and one 1 m to the left (y = 1), seen over a quarter turn.
 /// let increment = 0.5_f64.to_radians();
@@ -24,85 +24,89 @@ use crate::simplify::Simplifier;
 ///     .map(|bearing| (2.0 / bearing.cos()).min(1.0 / bearing.sin()))
 ///     .collect();
 /// let scan = Scan { angle_min: 0.0, angle_increment: increment, ranges: &ranges, max_range: 8.0 };
-/// let walls = extract(&scan, &Params::default())?.segments;
+/// let walls = extract(&scan, &LineExtractionParams::default())?.segments;
 /// assert_eq!(walls.len(), 2);
 /// assert!((walls[0].estimate.line.rho() - 2.0).abs() < 1e-3 && walls[0].estimate.line.alpha().abs() < 1e-3);
 /// assert!((walls[1].estimate.line.rho() - 1.0).abs() < 1e-3);
 /// assert!((walls[1].length() - 2.0).abs() < 0.05);
-/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 /// ```
 ///
 /// # Errors
-/// Returns [`LineError::Param`] if a parameter is out of range, and [`LineError::Scan`] or [`LineError::MoreThanATurn`] if the scan geometry is invalid.
+/// Returns [`LineExtractionError::Param`] if a parameter is out of range, and [`LineExtractionError::Scan`] or [`LineExtractionError::MoreThanATurn`] if the scan geometry is invalid.
 /// Invalid ranges are no error: their beams are skipped and counted.
-pub fn extract(scan: &Scan, params: &Params) -> Result<Extraction, LineError> {
-    Extractor::new(*params)?.extract(scan)
+pub fn extract(scan: &Scan, params: &LineExtractionParams) -> Result<LineExtraction, LineExtractionError> {
+    LineExtractor::new(*params)?.extract(scan)
 }
 
 /// Extracts the walls of a sequence of scans, with reused memory and directions computed once.
 ///
 /// ```
-/// use wayfix_line_extract::{Extractor, Params, Scan};
+/// use wayfix_line_extract::{LineExtractor, LineExtractionParams, Scan};
 ///
-/// let mut extractor = Extractor::new(Params::default())?;
+/// let mut extractor = LineExtractor::new(LineExtractionParams::default())?;
 /// let mut ranges = vec![f64::NAN; 181];
 /// let scan = Scan { angle_min: -1.57, angle_increment: 0.01745, ranges: &ranges, max_range: 8.0 };
 /// let blind = extractor.extract(&scan)?;
 /// assert_eq!((blind.segments.len(), blind.counts.nan), (0, 181));
-/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Extractor {
-    params: Params,
+pub struct LineExtractor {
+    params: LineExtractionParams,
     points: Points,
     surfaces: Vec<Range<usize>>,
-    simplifier: Simplifier,
+    simplifier: ChainSimplifier,
     corners: Vec<usize>,
     pieces: Vec<Piece>,
 }
 
-impl Extractor {
+impl LineExtractor {
     /// # Errors
-    /// Returns [`LineError::Param`] with the first value that is out of range.
-    pub fn new(params: Params) -> Result<Self, LineError> {
+    /// Returns [`LineExtractionError::Param`] with the first value that is out of range.
+    pub fn new(params: LineExtractionParams) -> Result<Self, LineExtractionError> {
         params.check()?;
         Ok(Self {
             params,
             points: Points::default(),
             surfaces: Vec::new(),
-            simplifier: Simplifier::default(),
+            simplifier: ChainSimplifier::default(),
             corners: Vec::new(),
             pieces: Vec::new(),
         })
     }
 
     /// The parameters it was made with.
-    pub fn params(&self) -> &Params {
+    pub fn params(&self) -> &LineExtractionParams {
         &self.params
     }
 
     /// Echoes to surfaces, surfaces to straight pieces, pieces to walls.
     ///
     /// # Errors
-    /// Returns [`LineError::Scan`] or [`LineError::MoreThanATurn`] if the scan geometry is invalid.
-    pub fn extract(&mut self, scan: &Scan) -> Result<Extraction, LineError> {
+    /// Returns [`LineExtractionError::Scan`] or [`LineExtractionError::MoreThanATurn`] if the scan geometry is invalid.
+    pub fn extract(&mut self, scan: &Scan) -> Result<LineExtraction, LineExtractionError> {
         self.extract_deskewed(scan, None)
     }
 
     /// The same for a sensor that moves by `step` from one beam to the next, in its own frame; walls are in the sensor frame at the first beam.
     ///
     /// # Errors
-    /// Returns the errors of [`extract`](Self::extract), and [`LineError::Scan`] if the step is not finite.
+    /// Returns the errors of [`extract`](Self::extract), and [`LineExtractionError::Scan`] if the step is not finite.
     pub fn extract_deskewed(
         &mut self,
         scan: &Scan,
         step: Option<&Isometry2<f64>>,
-    ) -> Result<Extraction, LineError> {
+    ) -> Result<LineExtraction, LineExtractionError> {
         scan.check()?;
         if let Some(value) = step.and_then(|step| step.to_matrix().iter().copied().find(|x| !x.is_finite())) {
-            return Err(LineError::Scan { what: "motion from beam to beam", value, must: "finite" });
+            return Err(LineExtractionError::Scan {
+                what: "motion from beam to beam",
+                value,
+                must: "finite",
+            });
         }
-        let mut counts = Counts::default();
+        let mut counts = BeamCounts::default();
         self.points.fill(scan, &mut counts);
         if let Some(step) = step {
             self.points.deskew(step);
@@ -114,10 +118,10 @@ impl Extractor {
             self.pieces.iter().map(segment).filter(|segment| self.is_a_wall(segment)).collect();
         counts.surfaces = self.surfaces.len();
         counts.in_segments = segments.iter().map(|segment| segment.n_points).sum();
-        Ok(Extraction { segments, counts })
+        Ok(LineExtraction { segments, counts })
     }
 
-    fn fit_pieces(&mut self) -> Result<(), LineError> {
+    fn fit_pieces(&mut self) -> Result<(), LineExtractionError> {
         self.pieces.clear();
         for surface in &self.surfaces {
             let echoes = &self.points.at[surface.clone()];
@@ -138,15 +142,15 @@ impl Extractor {
         Ok(())
     }
 
-    fn is_a_wall(&self, segment: &Segment) -> bool {
+    fn is_a_wall(&self, segment: &WallSegment) -> bool {
         segment.n_points >= self.params.min_points && segment.length() >= self.params.min_length_m
     }
 }
 
-fn segment(piece: &Piece) -> Segment {
+fn segment(piece: &Piece) -> WallSegment {
     let line = &piece.estimate.line;
     let [start, end] = piece.ends.map(|end| line.project(&end));
-    Segment {
+    WallSegment {
         estimate: piece.estimate,
         start,
         end,

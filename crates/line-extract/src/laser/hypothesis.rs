@@ -1,7 +1,7 @@
 use nalgebra::Vector2;
 
-use super::Segment;
-use crate::{LineError, LineEstimate};
+use super::WallSegment;
+use crate::{LineEstimate, LineExtractionError};
 
 /// A predicted wall: its search band, and the segments compatible with it [Andrade-Cetto, Fig. 1a].
 ///
@@ -60,16 +60,16 @@ impl WallHypothesis {
     /// Whether the line of a segment is within `n_sigma` of this one: $`d^2 \le n_σ^2`$, the ellipse of the paper.
     ///
     /// # Errors
-    /// Returns [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
-    pub fn is_compatible(&self, segment: &Segment) -> Result<bool, LineError> {
+    /// Returns [`LineExtractionError::NotPositiveDefinite`] if the sum of the covariances is not.
+    pub fn is_compatible(&self, segment: &WallSegment) -> Result<bool, LineExtractionError> {
         let squared = self.estimate.mahalanobis_squared(&segment.estimate)?;
         Ok(squared <= self.n_sigma * self.n_sigma)
     }
 
     /// The most likely of the compatible segments that overlap the band; a segment may be longer than the predicted wall.
     /// # Errors
-    /// Returns [`LineError::NotPositiveDefinite`] if a sum of covariances is not.
-    pub fn find(&self, segments: &[Segment]) -> Result<Option<usize>, LineError> {
+    /// Returns [`LineExtractionError::NotPositiveDefinite`] if a sum of covariances is not.
+    pub fn find(&self, segments: &[WallSegment]) -> Result<Option<usize>, LineExtractionError> {
         let mut best: Option<(usize, f64)> = None;
         for (k, segment) in segments.iter().enumerate() {
             let squared = self.estimate.mahalanobis_squared(&segment.estimate)?;
@@ -82,7 +82,7 @@ impl WallHypothesis {
     }
 
     /// A compatible line is inside the band's width everywhere, so only the ends remain to be checked.
-    fn reaches_in(&self, segment: &Segment) -> bool {
+    fn reaches_in(&self, segment: &WallSegment) -> bool {
         let direction = self.estimate.line.direction();
         let (a, b) = (direction.dot(&segment.start), direction.dot(&segment.end));
         let (from, to) = self.reach();

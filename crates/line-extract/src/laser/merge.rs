@@ -1,8 +1,8 @@
-use super::Params;
+use super::LineExtractionParams;
 use super::pieces::{Piece, outermost};
 
 /// Joins collinear pieces, each with the nearest earlier one that it fits [chi-squared test of the difference of $`(ρ, α)`$].
-pub(super) fn merge(pieces: &mut Vec<Piece>, params: &Params) {
+pub(super) fn merge(pieces: &mut Vec<Piece>, params: &LineExtractionParams) {
     let mut kept = 0;
     for k in 0..pieces.len() {
         let joined = (0..kept).rev().find_map(|at| Some((at, join(&pieces[at], &pieces[k], params)?)));
@@ -17,7 +17,7 @@ pub(super) fn merge(pieces: &mut Vec<Piece>, params: &Params) {
     pieces.truncate(kept);
 }
 
-fn join(a: &Piece, b: &Piece, params: &Params) -> Option<Piece> {
+fn join(a: &Piece, b: &Piece, params: &LineExtractionParams) -> Option<Piece> {
     let cannot_be_one = gap(a, b) > params.merge_gap_m
         || a.estimate.mahalanobis_squared(&b.estimate).ok()? > params.merge_gate;
     if cannot_be_one {

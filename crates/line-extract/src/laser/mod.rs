@@ -12,9 +12,9 @@ mod pieces;
 mod points;
 mod scan;
 
-pub use extraction::{Counts, Extraction, Segment};
-pub use extractor::{Extractor, extract};
+pub use extraction::{BeamCounts, LineExtraction, WallSegment};
+pub use extractor::{LineExtractor, extract};
 pub use hypothesis::WallHypothesis;
 pub use noise::RangeBearingNoise;
-pub use params::{Params, SplitMethod};
+pub use params::{LineExtractionParams, SplitMethod};
 pub use scan::Scan;

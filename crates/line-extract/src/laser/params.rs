@@ -1,16 +1,16 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::RangeBearingNoise;
-use crate::LineError;
+use crate::LineExtractionError;
 
 /// Parameters of the wall extraction; the defaults suit a SICK LMS (σ about 1 cm, beams 0.25° to 1° apart) indoors.
 ///
 /// ```
-/// use wayfix_line_extract::{Params, SplitMethod};
+/// use wayfix_line_extract::{LineExtractionParams, SplitMethod};
 ///
-/// let params = Params { min_length_m: 1.0, split: SplitMethod::SplitAndMerge, ..Params::default() };
+/// let params = LineExtractionParams { min_length_m: 1.0, split: SplitMethod::SplitAndMerge, ..LineExtractionParams::default() };
 /// assert!(params.check().is_ok());
-/// assert!(Params { split_distance_m: -0.1, ..params }.check().is_err());
+/// assert!(LineExtractionParams { split_distance_m: -0.1, ..params }.check().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -19,15 +19,15 @@ use crate::LineError;
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
-pub struct Params {
+pub struct LineExtractionParams {
     /// Noise of single beams. Default: 1 cm and 0.002 rad.
-    pub noise: RangeBearingNoise,
+    pub beam_noise: RangeBearingNoise,
     /// The flattest angle, radians, between a beam and a surface that is still taken as one surface. Default: 10°.
     pub breakpoint_angle_rad: f64,
     /// Number of consecutive missing beams that do not end a surface. Default: 2.
     pub max_missing_beams: usize,
     /// Method of splitting a surface. Default: iterative end point fit.
-    pub split: SplitMethod,
+    pub split_method: SplitMethod,
     /// A piece with a point farther off than this, metres, is split. Default: 0.05, five times the noise.
     pub split_distance_m: f64,
     /// Points at the ends of a piece farther from its line than this number of their standard deviations are dropped. Default: 3.
@@ -57,13 +57,13 @@ pub enum SplitMethod {
     SplitAndMerge,
 }
 
-impl Default for Params {
+impl Default for LineExtractionParams {
     fn default() -> Self {
         Self {
-            noise: RangeBearingNoise::default(),
+            beam_noise: RangeBearingNoise::default(),
             breakpoint_angle_rad: 10_f64.to_radians(),
             max_missing_beams: 2,
-            split: SplitMethod::default(),
+            split_method: SplitMethod::default(),
             split_distance_m: 0.05,
             end_gate_sigma: 3.0,
             merge_gate: 13.8,
@@ -75,15 +75,15 @@ impl Default for Params {
     }
 }
 
-impl Params {
-    /// Checks the range of every value; called by [`Extractor::new`](crate::Extractor::new).
+impl LineExtractionParams {
+    /// Checks the range of every value; called by [`LineExtractor::new`](crate::LineExtractor::new).
     ///
     /// # Errors
-    /// Returns [`LineError::Param`] with the first value that is out of range.
-    pub fn check(&self) -> Result<(), LineError> {
+    /// Returns [`LineExtractionError::Param`] with the first value that is out of range.
+    pub fn check(&self) -> Result<(), LineExtractionError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let not_negative = |value: f64| value >= 0.0 && value.is_finite();
-        let (noise, angle) = (&self.noise, self.breakpoint_angle_rad);
+        let (noise, angle) = (&self.beam_noise, self.breakpoint_angle_rad);
         let checks = [
             ("noise.sigma_range_m", noise.sigma_range_m, positive(noise.sigma_range_m), "positive"),
             (
@@ -102,7 +102,7 @@ impl Params {
             ("min_length_m", self.min_length_m, not_negative(self.min_length_m), "not negative"),
         ];
         match checks.into_iter().find(|(_, _, good, _)| !good) {
-            Some((what, value, _, must)) => Err(LineError::Param { what, value, must }),
+            Some((what, value, _, must)) => Err(LineExtractionError::Param { what, value, must }),
             None => Ok(()),
         }
     }

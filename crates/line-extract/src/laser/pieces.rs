@@ -6,10 +6,10 @@ use nalgebra::Vector2;
 
 use super::curvature_test::CurvatureTest;
 use super::points::Points;
-use super::{Params, SplitMethod};
+use super::{LineExtractionParams, SplitMethod};
 use crate::line::Moments;
-use crate::simplify::{Simplifier, first_max};
-use crate::{LineError, LineEstimate};
+use crate::simplify::{ChainSimplifier, first_max};
+use crate::{LineEstimate, LineExtractionError};
 
 /// A straight piece while it may still grow.
 #[derive(Clone, Debug)]
@@ -25,11 +25,11 @@ pub(super) struct Piece {
 /// The indices where a surface is split, its ends included.
 pub(super) fn split(
     surface: &[Vector2<f64>],
-    params: &Params,
-    simplifier: &mut Simplifier,
+    params: &LineExtractionParams,
+    simplifier: &mut ChainSimplifier,
     corners: &mut Vec<usize>,
-) -> Result<(), LineError> {
-    match params.split {
+) -> Result<(), LineExtractionError> {
+    match params.split_method {
         SplitMethod::EndPointFit => simplifier.simplify_into(surface, params.split_distance_m, corners)?,
         SplitMethod::SplitAndMerge => simplifier.split_where(surface.len(), corners, |start, end| {
             off_the_fit(surface, start, end, params.split_distance_m)
@@ -55,8 +55,12 @@ fn off_the_fit(surface: &[Vector2<f64>], start: usize, end: usize, limit: f64) -
 
 impl Piece {
     /// Fits a line to neighbouring echoes, without points at the ends that belong to the next wall; `None` if too few points remain.
-    pub(super) fn fit(points: &Points, mut range: Range<usize>, params: &Params) -> Option<Self> {
-        let noise = &params.noise;
+    pub(super) fn fit(
+        points: &Points,
+        mut range: Range<usize>,
+        params: &LineExtractionParams,
+    ) -> Option<Self> {
+        let noise = &params.beam_noise;
         let moments = |range: &Range<usize>, normal: &Vector2<f64>| {
             let part = &points.at[range.clone()];
             Moments::new(part, |k| noise.weight(&part[k], normal))

@@ -1,6 +1,6 @@
 use nalgebra::{Isometry2, Point2, Vector2};
 
-use super::{Counts, Scan};
+use super::{BeamCounts, Scan};
 
 /// The echoes of a scan as points, with room that is used again.
 #[derive(Clone, Debug, Default)]
@@ -15,7 +15,7 @@ pub(super) struct Points {
 
 impl Points {
     /// Turns valid ranges into points and counts the others.
-    pub(super) fn fill(&mut self, scan: &Scan, counts: &mut Counts) {
+    pub(super) fn fill(&mut self, scan: &Scan, counts: &mut BeamCounts) {
         self.aim(scan);
         self.at.clear();
         self.range.clear();
@@ -60,7 +60,7 @@ impl Points {
 }
 
 /// Reason why a range is no echo.
-fn reason(range: f64, counts: &mut Counts) -> &mut usize {
+fn reason(range: f64, counts: &mut BeamCounts) -> &mut usize {
     if range.is_nan() {
         &mut counts.nan
     } else if range.is_infinite() {

@@ -1,6 +1,6 @@
 use std::f64::consts::TAU;
 
-use crate::LineError;
+use crate::LineExtractionError;
 
 /// Maximum range, m: far beyond any laser, and without overflow or loss of relevant digits.
 const FARTHEST_M: f64 = 1e6;
@@ -19,8 +19,8 @@ pub struct Scan<'a> {
 }
 
 impl Scan<'_> {
-    pub(super) fn check(&self) -> Result<(), LineError> {
-        let refuse = |what, value, must| Err(LineError::Scan { what, value, must });
+    pub(super) fn check(&self) -> Result<(), LineExtractionError> {
+        let refuse = |what, value, must| Err(LineExtractionError::Scan { what, value, must });
         if !self.angle_min.is_finite() {
             return refuse("angle_min (rad)", self.angle_min, "finite");
         }
@@ -33,7 +33,7 @@ impl Scan<'_> {
         }
         // A full turn may repeat its first beam; logs round increments to four digits or so.
         if self.angle_increment.abs() * gaps > TAU * 1.001 {
-            return Err(LineError::MoreThanATurn {
+            return Err(LineExtractionError::MoreThanATurn {
                 n_beams: self.ranges.len(),
                 increment_rad: self.angle_increment,
             });

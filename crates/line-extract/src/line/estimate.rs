@@ -3,7 +3,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Matrix2, Vector2};
 
 use super::hessian::{HessianLine, wrap};
-use crate::LineError;
+use crate::LineExtractionError;
 
 /// A line and the covariance of its $`(ρ, α)`$, in m², m rad and rad².
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,12 +32,12 @@ impl LineEstimate {
     /// // 2 cm apart with a deviation of 1 cm each; the second time on both sides of the origin.
     /// assert!((estimate(1.0, 0.3).mahalanobis_squared(&estimate(1.02, 0.3))? - 2.0).abs() < 1e-9);
     /// assert!((estimate(0.01, 0.3).mahalanobis_squared(&estimate(-0.01, 0.3))? - 2.0).abs() < 1e-9);
-    /// # Ok::<(), wayfix_line_extract::LineError>(())
+    /// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
     /// ```
     ///
     /// # Errors
-    /// Returns [`LineError::NotPositiveDefinite`] if the sum of the covariances is not.
-    pub fn mahalanobis_squared(&self, other: &Self) -> Result<f64, LineError> {
+    /// Returns [`LineExtractionError::NotPositiveDefinite`] if the sum of the covariances is not.
+    pub fn mahalanobis_squared(&self, other: &Self) -> Result<f64, LineExtractionError> {
         let turned = wrap(other.line.alpha() - self.line.alpha());
         // The other form has the other sign of ρ, and so of the covariance between ρ and α.
         let (rho, turned, sign) = if turned.abs() > FRAC_PI_2 {
@@ -50,7 +50,7 @@ impl LineEstimate {
         let (a, b, d) = (p[(0, 0)] + q[(0, 0)], p[(0, 1)] + sign * q[(0, 1)], p[(1, 1)] + q[(1, 1)]);
         let determinant = a * d - b * b;
         if !(determinant > 0.0 && a > 0.0) {
-            return Err(LineError::NotPositiveDefinite { determinant });
+            return Err(LineExtractionError::NotPositiveDefinite { determinant });
         }
         Ok((d * delta.x * delta.x - 2.0 * b * delta.x * delta.y + a * delta.y * delta.y) / determinant)
     }

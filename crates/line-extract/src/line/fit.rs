@@ -1,7 +1,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{LineEstimate, Moments};
-use crate::{LineError, check};
+use crate::{LineExtractionError, check};
 
 /// A fitted line with its goodness of fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,19 +29,22 @@ pub struct LineFit {
 /// // σ²/n and σ²/Σs²
 /// assert!((fit.estimate.covariance[(0, 0)] - 1e-4 / 11.0).abs() < 1e-12);
 /// assert!((fit.estimate.covariance[(1, 1)] - 1e-4 / 110.0).abs() < 1e-12);
-/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 /// ```
 ///
 /// # Errors
-/// Returns [`LineError::Sizes`] unless there is a covariance for each point, [`LineError::TooFewPoints`] for fewer than two, [`LineError::Point`] and
-/// [`LineError::Param`] for points or variances that are not finite (variances: positive), [`LineError::NoDirection`] if all points are in one place.
-pub fn fit_line(points: &[Vector2<f64>], covariances: &[Matrix2<f64>]) -> Result<LineFit, LineError> {
+/// Returns [`LineExtractionError::Sizes`] unless there is a covariance for each point, [`LineExtractionError::TooFewPoints`] for fewer than two, [`LineExtractionError::Point`] and
+/// [`LineExtractionError::Param`] for points or variances that are not finite (variances: positive), [`LineExtractionError::NoDirection`] if all points are in one place.
+pub fn fit_line(
+    points: &[Vector2<f64>],
+    covariances: &[Matrix2<f64>],
+) -> Result<LineFit, LineExtractionError> {
     let got = points.len();
     if covariances.len() != got {
-        return Err(LineError::Sizes { points: got, covariances: covariances.len() });
+        return Err(LineExtractionError::Sizes { points: got, covariances: covariances.len() });
     }
     if got < 2 {
-        return Err(LineError::TooFewPoints { got, needed: 2 });
+        return Err(LineExtractionError::TooFewPoints { got, needed: 2 });
     }
     check::points(points, LARGEST)?;
     let mut moments = Moments::new(points, |_| 1.0);
@@ -49,7 +52,7 @@ pub fn fit_line(points: &[Vector2<f64>], covariances: &[Matrix2<f64>]) -> Result
         let normal = moments.line()?.line.normal();
         let variance = |k: usize| normal.dot(&(covariances[k] * normal));
         if let Some(k) = (0..got).find(|k| !(variance(*k) > 0.0 && variance(*k).is_finite())) {
-            return Err(LineError::Param {
+            return Err(LineExtractionError::Param {
                 what: "variance of a point (m²)",
                 value: variance(k),
                 must: "positive",

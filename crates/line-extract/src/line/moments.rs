@@ -1,7 +1,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{HessianLine, LineEstimate};
-use crate::LineError;
+use crate::LineExtractionError;
 
 /// The moments of points for a weighted fit: number, weight, mean and spread.
 ///
@@ -56,7 +56,7 @@ impl Moments {
     ///
     /// At the mean point, place and direction are uncorrelated with variances $`1/\sum w`$ and $`1/\sum w s^2`$, $`s`$ along the line; the
     /// covariance is carried from there to the foot of the origin's perpendicular.
-    pub(crate) fn line(&self) -> Result<LineEstimate, LineError> {
+    pub(crate) fn line(&self) -> Result<LineEstimate, LineExtractionError> {
         let [xx, xy, yy] = self.spread;
         let alpha = 0.5 * (-2.0 * xy).atan2(yy - xx);
         let (normal, direction) =
@@ -67,7 +67,7 @@ impl Moments {
         let extent_m = (along / self.weight).sqrt();
         // Below the resolution of the coordinates the direction is rounding noise.
         if !(extent_m > 1e-12 * self.mean.amax() && along.is_finite()) {
-            return Err(LineError::NoDirection { n_points: self.n_points, extent_m });
+            return Err(LineExtractionError::NoDirection { n_points: self.n_points, extent_m });
         }
         let rho = normal.dot(&self.mean);
         let arm = direction.dot(&self.mean);

@@ -4,11 +4,11 @@ use super::baseline::Baseline;
 use super::chain::Chain;
 use super::scan::Scanner;
 use super::split::{first_max, split_all, split_loop};
-use crate::LineError;
+use crate::LineExtractionError;
 
 /// Reference of a point's distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Distance {
+pub enum PointDistance {
     /// The line through both ends of the piece, as in [Andrade-Cetto, Table 2].
     #[default]
     Line,
@@ -20,7 +20,7 @@ pub enum Distance {
 ///
 /// A piece from $`v_i`$ to $`v_j`$ is split at its farthest point $`v_f`$ as long as $`d_f > ε`$, with
 /// $`d_k = |(v_j - v_i) \times (v_k - v_i)| / ‖v_j - v_i‖`$ [Andrade-Cetto, Tables 1 and 2; the square in the printed denominator would mix
-/// distance and its square]. Among equally far points the first is taken, and for [`Distance::Line`] "equally" is decided exactly. The
+/// distance and its square]. Among equally far points the first is taken, and for [`PointDistance::Line`] "equally" is decided exactly. The
 /// distance to a line through coincident points is the distance to that point.
 ///
 /// Time grows with the square of the number of points at worst: [`simplify`](crate::simplify) gives the same indices and does not have that
@@ -28,32 +28,32 @@ pub enum Distance {
 ///
 /// ```
 /// use nalgebra::Vector2;
-/// use wayfix_line_extract::{Distance, douglas_peucker};
+/// use wayfix_line_extract::{PointDistance, douglas_peucker};
 ///
 /// let corner = [(0.0, 0.0), (1.0, 0.01), (2.0, 0.0), (2.01, 1.0), (2.0, 2.0)].map(|(x, y)| Vector2::new(x, y));
-/// assert_eq!(douglas_peucker(&corner, 0.05, Distance::Line)?, [0, 2, 4]);
+/// assert_eq!(douglas_peucker(&corner, 0.05, PointDistance::Line)?, [0, 2, 4]);
 ///
 /// // A spike beyond the end is on the line, but not on the segment.
 /// let spike = [(0.0, 0.0), (5.0, 0.0), (2.0, 0.0)].map(|(x, y)| Vector2::new(x, y));
-/// assert_eq!(douglas_peucker(&spike, 0.05, Distance::Line)?, [0, 2]);
-/// assert_eq!(douglas_peucker(&spike, 0.05, Distance::Segment)?, [0, 1, 2]);
-/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// assert_eq!(douglas_peucker(&spike, 0.05, PointDistance::Line)?, [0, 2]);
+/// assert_eq!(douglas_peucker(&spike, 0.05, PointDistance::Segment)?, [0, 1, 2]);
+/// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 /// ```
 ///
 /// # Errors
-/// Returns [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
+/// Returns [`LineExtractionError::Epsilon`] for a tolerance that is negative or not finite, [`LineExtractionError::Point`] for a point that is not finite or beyond
 /// 1e150.
 pub fn douglas_peucker(
     points: &[Vector2<f64>],
     epsilon: f64,
-    distance: Distance,
-) -> Result<Vec<usize>, LineError> {
+    distance: PointDistance,
+) -> Result<Vec<usize>, LineExtractionError> {
     let chain = Chain::new(points, epsilon)?;
     let (mut kept, mut scanner) = (Vec::new(), Scanner::default());
     split_all(points.len(), &mut Vec::new(), &mut kept, |start, end| match distance {
         _ if points[start] == points[end] => split_loop(&chain, start, end),
-        Distance::Line => split_line(&chain, start, end, &mut scanner),
-        Distance::Segment => split_segment(&chain, start, end),
+        PointDistance::Line => split_line(&chain, start, end, &mut scanner),
+        PointDistance::Segment => split_segment(&chain, start, end),
     });
     Ok(kept)
 }

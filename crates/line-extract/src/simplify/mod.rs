@@ -10,7 +10,7 @@ mod scan;
 mod simplifier;
 mod split;
 
-pub use classic::{Distance, douglas_peucker};
-pub use simplifier::{Simplifier, simplify};
+pub use classic::{PointDistance, douglas_peucker};
+pub use simplifier::{ChainSimplifier, simplify};
 
 pub(crate) use split::first_max;

@@ -5,7 +5,7 @@ use super::chain::Chain;
 use super::hull_tree::HullTree;
 use super::scan::Scanner;
 use super::split::{split_all, split_loop};
-use crate::LineError;
+use crate::LineExtractionError;
 
 /// Number of tests per point, in units of $`\log_2 n`$, before hulls are built.
 const SCAN_BUDGET: usize = 2;
@@ -13,7 +13,7 @@ const SCAN_BUDGET: usize = 2;
 /// Cost of an exact comparison in fast tests: about 100 ns.
 const EXACT_COMPARISON_COST: usize = 100;
 
-/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`Distance::Line`](crate::Distance), in $`O(n \log^2 n)`$ for every chain.
+/// The indices of [`douglas_peucker`](crate::douglas_peucker) with [`PointDistance::Line`](crate::PointDistance), in $`O(n \log^2 n)`$ for every chain.
 ///
 /// While splits are balanced, a test of every point is fastest. After $`2 n \log_2 n`$ tests, convex
 /// hulls of the chain's blocks are built for the rest: the farthest point of a block is a vertex of its hull, found by bisection. This is the
@@ -22,22 +22,22 @@ const EXACT_COMPARISON_COST: usize = 100;
 ///
 /// ```
 /// use nalgebra::Vector2;
-/// use wayfix_line_extract::{Distance, douglas_peucker, simplify};
+/// use wayfix_line_extract::{PointDistance, douglas_peucker, simplify};
 ///
 /// // Each split takes one point off: looking at all of them every time would take 5e9 looks.
 /// let tooth = |k: i32| if k % 2 == 0 { 0.0 } else { 1e3 - 1e-2 * f64::from(k) };
 /// let zigzag: Vec<_> = (0..100_000).map(|k| Vector2::new(f64::from(k), tooth(k))).collect();
 /// assert_eq!(simplify(&zigzag, 1e-6)?.len(), zigzag.len());
-/// assert_eq!(simplify(&zigzag[..500], 400.0)?, douglas_peucker(&zigzag[..500], 400.0, Distance::Line)?);
-/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// assert_eq!(simplify(&zigzag[..500], 400.0)?, douglas_peucker(&zigzag[..500], 400.0, PointDistance::Line)?);
+/// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 /// ```
 ///
 /// # Errors
-/// Returns [`LineError::Epsilon`] for a tolerance that is negative or not finite, [`LineError::Point`] for a point that is not finite or beyond
+/// Returns [`LineExtractionError::Epsilon`] for a tolerance that is negative or not finite, [`LineExtractionError::Point`] for a point that is not finite or beyond
 /// 1e150.
-pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, LineError> {
+pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, LineExtractionError> {
     let mut kept = Vec::new();
-    Simplifier::default().simplify_into(points, epsilon, &mut kept)?;
+    ChainSimplifier::default().simplify_into(points, epsilon, &mut kept)?;
     Ok(kept)
 }
 
@@ -45,31 +45,31 @@ pub fn simplify(points: &[Vector2<f64>], epsilon: f64) -> Result<Vec<usize>, Lin
 ///
 /// ```
 /// use nalgebra::Vector2;
-/// use wayfix_line_extract::Simplifier;
+/// use wayfix_line_extract::ChainSimplifier;
 ///
-/// let mut simplifier = Simplifier::default();
+/// let mut simplifier = ChainSimplifier::default();
 /// let mut kept = Vec::new();
 /// for height in [0.1, 0.0] {
 ///     let chain = [Vector2::new(0.0, 0.0), Vector2::new(1.0, height), Vector2::new(2.0, 0.0)];
 ///     simplifier.simplify_into(&chain, 0.05, &mut kept)?;
 ///     assert_eq!(kept.len(), if height > 0.05 { 3 } else { 2 });
 /// }
-/// # Ok::<(), wayfix_line_extract::LineError>(())
+/// # Ok::<(), wayfix_line_extract::LineExtractionError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Simplifier {
+pub struct ChainSimplifier {
     scan_budget: usize,
     ends: Vec<usize>,
     scanner: Scanner,
 }
 
-impl Default for Simplifier {
+impl Default for ChainSimplifier {
     fn default() -> Self {
         Self { scan_budget: SCAN_BUDGET, ends: Vec::new(), scanner: Scanner::default() }
     }
 }
 
-impl Simplifier {
+impl ChainSimplifier {
     /// Asks the hulls from the beginning, which is slower on friendly chains and faster on the worst ones.
     pub fn hull_tree_only() -> Self {
         Self { scan_budget: 0, ..Self::default() }
@@ -84,7 +84,7 @@ impl Simplifier {
         points: &[Vector2<f64>],
         epsilon: f64,
         kept: &mut Vec<usize>,
-    ) -> Result<(), LineError> {
+    ) -> Result<(), LineExtractionError> {
         let chain = Chain::new(points, epsilon)?;
         let n = points.len();
         // Hulls store indices of 32 bits; a chain beyond that (64 GB) is scanned to the end.

@@ -9,7 +9,7 @@ mod streams;
 pub(crate) use parallel::map_chunks;
 #[cfg(not(feature = "parallel"))]
 pub(crate) use sequential::map_chunks;
-pub use streams::ChunkRng;
+pub use streams::ParticleChunkRng;
 pub(crate) use streams::Streams;
 
 /// Particles a chunk. Changing it changes the random numbers every particle gets, but no distribution: small enough that a hundred particles

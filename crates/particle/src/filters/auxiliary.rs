@@ -1,9 +1,9 @@
 use nalgebra::DefaultAllocator;
 use rand::Rng;
 use wayfix_estimation_traits::{LikelihoodModel, Manifold, MotionModel, SampleMotion, StateAlloc};
-use wayfix_gaussian_core::GaussianMotion;
+use wayfix_gaussian_core::GaussianMotionSampler;
 
-use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet, Systematic};
+use crate::{NormalizationReport, ParticleChunkRng, ParticleError, ParticleSet, SystematicResampler};
 
 /// The auxiliary particle filter: ancestors are chosen by the likelihood of the new measurement at their predicted state.
 /// [Pitt & Shephard 1999]
@@ -50,7 +50,7 @@ pub struct AuxiliaryFilter<M: MotionModel, L>
 where
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
-    motion: GaussianMotion<M>,
+    motion: GaussianMotionSampler<M>,
     sensor: L,
     particles: ParticleSet<M::State>,
 }
@@ -61,7 +61,7 @@ where
 {
     /// A filter that starts from `particles`.
     pub fn new(particles: ParticleSet<M::State>, motion: M, sensor: L) -> Self {
-        Self { motion: GaussianMotion(motion), sensor, particles }
+        Self { motion: GaussianMotionSampler(motion), sensor, particles }
     }
     /// The particles.
     pub fn particles(&self) -> &ParticleSet<M::State> {
@@ -80,7 +80,7 @@ where
     M::Control: Sync,
     L: LikelihoodModel<State = M::State> + Sync,
     L::Measurement: Sync,
-    GaussianMotion<M>: SampleMotion<State = M::State, Control = M::Control>,
+    GaussianMotionSampler<M>: SampleMotion<State = M::State, Control = M::Control>,
     DefaultAllocator: StateAlloc<<M::State as Manifold>::Dim>,
 {
     /// Predicts and corrects in one: ancestors by $`w_i \, p(z | μ_i)`$ with $`μ_i`$ their predicted state, then a draw from the motion of each,
@@ -105,9 +105,9 @@ where
             rng,
         );
         let first_stage = candidates.correct_with(|| (), |(), candidate| candidate.promise)?;
-        candidates.resample(&Systematic, self.particles.n_particles(), rng)?;
+        candidates.resample(&SystematicResampler, self.particles.n_particles(), rng)?;
         candidates.propagate_with(
-            || motion.sampler::<ChunkRng>(control),
+            || motion.sampler::<ParticleChunkRng>(control),
             |draw, candidate, rng| candidate.state = draw(&candidate.state, rng),
             rng,
         );

@@ -2,7 +2,7 @@ use nalgebra::{ComplexField as _, DefaultAllocator};
 use rand::Rng;
 use wayfix_estimation_traits::{LikelihoodModel, Manifold, SampleMotion, StateAlloc};
 
-use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet};
+use crate::{NormalizationReport, ParticleChunkRng, ParticleError, ParticleSet};
 
 /// The bootstrap filter (sampling importance resampling): particles are sampled from the motion model and weighted by the likelihood.
 /// [Gordon, Salmond & Smith 1993]
@@ -13,7 +13,7 @@ use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet};
 /// use nalgebra::Vector1;
 /// use rand::{Rng, RngExt, SeedableRng};
 /// use wayfix_estimation_traits::{LikelihoodModel, SampleMotion};
-/// use wayfix_particle::{BootstrapFilter, ParticleSet, Systematic};
+/// use wayfix_particle::{BootstrapFilter, ParticleSet, SystematicResampler};
 ///
 /// struct Drive;
 /// impl SampleMotion for Drive {
@@ -38,7 +38,7 @@ use crate::{ChunkRng, NormalizationReport, ParticleError, ParticleSet};
 /// for truth in [1.0, 2.0, 3.0] {
 ///     filter.predict(&1.0, &mut rng)?;
 ///     if filter.update(&truth)?.effective_share() < 0.5 {
-///         filter.particles_mut().resample(&Systematic, 500, &mut rng)?;
+///         filter.particles_mut().resample(&SystematicResampler, 500, &mut rng)?;
 ///     }
 /// }
 /// let moments = filter.particles().moments(|x| *x)?;
@@ -88,7 +88,7 @@ where
         let mut moved = self.particles.clone();
         let motion = &self.motion;
         moved.propagate_with(
-            || motion.sampler::<ChunkRng>(control),
+            || motion.sampler::<ParticleChunkRng>(control),
             |draw, state, rng| *state = draw(state, rng),
             rng,
         );

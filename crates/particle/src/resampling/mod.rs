@@ -8,8 +8,8 @@ mod stratified;
 mod systematic;
 mod walk;
 
-pub use multinomial::Multinomial;
+pub use multinomial::MultinomialResampler;
 pub use resampler::Resampler;
-pub use residual::Residual;
-pub use stratified::Stratified;
-pub use systematic::Systematic;
+pub use residual::ResidualResampler;
+pub use stratified::StratifiedResampler;
+pub use systematic::SystematicResampler;

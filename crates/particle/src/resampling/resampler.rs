@@ -1,6 +1,6 @@
 use rand::Rng;
 
-use crate::{ParticleError, Weights, memory::filled};
+use crate::{NormalizedWeights, ParticleError, memory::filled};
 
 /// Draws ancestors for the next generation of particles.
 ///
@@ -11,15 +11,15 @@ use crate::{ParticleError, Weights, memory::filled};
 ///
 /// | scheme | variance of the number of children |
 /// | --- | --- |
-/// | [`Systematic`](crate::Systematic) | smallest: it is $`⌊n w_i⌋`$ or $`⌈n w_i⌉`$. The usual choice |
-/// | [`Stratified`](crate::Stratified) | never above multinomial; less than 2 away from $`n w_i`$ |
-/// | [`Residual`](crate::Residual) | never above multinomial; at least $`⌊n w_i⌋`$ |
-/// | [`Multinomial`](crate::Multinomial) | $`n w_i (1 - w_i)`$: independent draws, for what needs them |
+/// | [`SystematicResampler`](crate::SystematicResampler) | smallest: it is $`⌊n w_i⌋`$ or $`⌈n w_i⌉`$. The usual choice |
+/// | [`StratifiedResampler`](crate::StratifiedResampler) | never above multinomial; less than 2 away from $`n w_i`$ |
+/// | [`ResidualResampler`](crate::ResidualResampler) | never above multinomial; at least $`⌊n w_i⌋`$ |
+/// | [`MultinomialResampler`](crate::MultinomialResampler) | $`n w_i (1 - w_i)`$: independent draws, for what needs them |
 ///
 /// [Douc, Cappé & Moulines 2005]
 pub trait Resampler {
     /// Fills `ancestors` with indices into `weights`, as many as it is long.
-    fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], rng: &mut R);
+    fn fill<R: Rng + ?Sized>(&self, weights: &NormalizedWeights, ancestors: &mut [usize], rng: &mut R);
 
     /// `n` ancestors in a list of their own.
     ///
@@ -27,7 +27,7 @@ pub trait Resampler {
     /// [`ParticleError::TooMany`] when they do not fit into memory.
     fn ancestors<R: Rng + ?Sized>(
         &self,
-        weights: &Weights,
+        weights: &NormalizedWeights,
         n: usize,
         rng: &mut R,
     ) -> Result<Vec<usize>, ParticleError> {

@@ -1,23 +1,23 @@
 use rand::Rng;
 
-use super::{Multinomial, Resampler, spread::expand};
-use crate::Weights;
+use super::{MultinomialResampler, Resampler, spread::expand};
+use crate::NormalizedWeights;
 
 /// $`⌊n w_i⌋`$ children for certain, the remaining ones drawn by what is left of the weights. [Liu & Chen 1998]
 ///
 /// ```
 /// use rand::SeedableRng;
-/// use wayfix_particle::{Resampler, Residual, Weights};
-/// let weights = Weights::from_linear(vec![1.0, 3.0])?;
+/// use wayfix_particle::{Resampler, ResidualResampler, NormalizedWeights};
+/// let weights = NormalizedWeights::from_linear(vec![1.0, 3.0])?;
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
-/// assert_eq!(Residual.ancestors(&weights, 4, &mut rng)?, [0, 1, 1, 1]);
+/// assert_eq!(ResidualResampler.ancestors(&weights, 4, &mut rng)?, [0, 1, 1, 1]);
 /// # Ok::<(), wayfix_particle::ParticleError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Residual;
+pub struct ResidualResampler;
 
-impl Resampler for Residual {
-    fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], rng: &mut R) {
+impl Resampler for ResidualResampler {
+    fn fill<R: Rng + ?Sized>(&self, weights: &NormalizedWeights, ancestors: &mut [usize], rng: &mut R) {
         let n = ancestors.len();
         let expected = || weights.as_slice().iter().map(|share| share * n as f64);
         // 49 × (1/49) rounds to just below 1, and its child is certain all the same.
@@ -26,9 +26,9 @@ impl Resampler for Residual {
         let rest =
             expected().zip(&children).map(|(count, certain)| (count - *certain as f64).max(0.0)).collect();
         // No rest at all means that every child was certain.
-        if let Ok(rest) = Weights::from_linear(rest) {
+        if let Ok(rest) = NormalizedWeights::from_linear(rest) {
             let drawn = &mut ancestors[..n.saturating_sub(children.iter().sum())];
-            Multinomial.fill(&rest, drawn, rng);
+            MultinomialResampler.fill(&rest, drawn, rng);
             drawn.iter().for_each(|ancestor| children[*ancestor] += 1);
         }
         let mut end = 0;

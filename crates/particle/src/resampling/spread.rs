@@ -1,4 +1,4 @@
-use crate::Weights;
+use crate::NormalizedWeights;
 
 /// How many children are written without asking whether there are so many. Most particles have fewer, and a wrong guess of the processor
 /// about a branch costs more than these writes.
@@ -8,7 +8,11 @@ const WRITTEN_BLINDLY: usize = 4;
 /// falls as $`C`$ grows.
 ///
 /// The same answer as `walk`, which goes point by point, without its unpredictable branches.
-pub(super) fn spread(weights: &Weights, points_up_to: impl Fn(f64) -> usize, ancestors: &mut [usize]) {
+pub(super) fn spread(
+    weights: &NormalizedWeights,
+    points_up_to: impl Fn(f64) -> usize,
+    ancestors: &mut [usize],
+) {
     let n = ancestors.len() as f64;
     let mut cumulative = 0.0;
     let ends = weights.as_slice().iter().map(|share| {
@@ -40,15 +44,15 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::super::walk::walk;
-    use crate::{Resampler, Stratified, Systematic, Weights};
+    use crate::{NormalizedWeights, Resampler, StratifiedResampler, SystematicResampler};
 
     /// Weights from equal to almost all on one, more and fewer of them than points.
-    fn cases(rng: &mut ChaCha8Rng) -> Vec<(Weights, usize)> {
+    fn cases(rng: &mut ChaCha8Rng) -> Vec<(NormalizedWeights, usize)> {
         let mut cases = vec![];
         for (n_weights, n) in [(1, 1), (1, 9), (9, 1), (7, 7), (1000, 1000), (1000, 37), (50, 4000), (3, 0)] {
             for power in [0, 1, 8, 40] {
                 let raw = (0..n_weights).map(|_| rng.random::<f64>().powi(power)).collect();
-                cases.push((Weights::from_linear(raw).unwrap(), n));
+                cases.push((NormalizedWeights::from_linear(raw).unwrap(), n));
             }
         }
         cases
@@ -60,13 +64,13 @@ mod tests {
         for (weights, n) in cases(&mut rng) {
             let mut walked = vec![0; n];
             let mut twin = rng.clone();
-            let fast = Systematic.ancestors(&weights, n, &mut rng).unwrap();
+            let fast = SystematicResampler.ancestors(&weights, n, &mut rng).unwrap();
             let offset: f64 = twin.random();
             walk(&weights, (0..n).map(|i| (i as f64 + 1.0 - offset) / n as f64), &mut walked);
             assert_eq!(fast, walked, "systematic, {n} by {weights:?}");
 
             let mut twin = rng.clone();
-            let fast = Stratified.ancestors(&weights, n, &mut rng).unwrap();
+            let fast = StratifiedResampler.ancestors(&weights, n, &mut rng).unwrap();
             let points = (0..n).map(|i| (i as f64 + 1.0 - twin.random::<f64>()) / n as f64);
             walk(&weights, points, &mut walked);
             assert_eq!(fast, walked, "stratified, {n} by {weights:?}");

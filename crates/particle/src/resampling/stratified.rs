@@ -1,24 +1,24 @@
 use rand::{Rng, RngExt as _};
 
 use super::{Resampler, spread::spread};
-use crate::Weights;
+use crate::NormalizedWeights;
 
 /// One random point in each of $`n`$ equal strata. [Kitagawa 1996]
 ///
 /// ```
 /// use rand::SeedableRng;
-/// use wayfix_particle::{Resampler, Stratified, Weights};
-/// let weights = Weights::from_linear(vec![1.0, 1.0])?;
+/// use wayfix_particle::{Resampler, StratifiedResampler, NormalizedWeights};
+/// let weights = NormalizedWeights::from_linear(vec![1.0, 1.0])?;
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
-/// assert_eq!(Stratified.ancestors(&weights, 4, &mut rng)?, [0, 0, 1, 1]);
+/// assert_eq!(StratifiedResampler.ancestors(&weights, 4, &mut rng)?, [0, 0, 1, 1]);
 /// # Ok::<(), wayfix_particle::ParticleError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Stratified;
+pub struct StratifiedResampler;
 
-impl Resampler for Stratified {
+impl Resampler for StratifiedResampler {
     /// Of the points $`k + 1 - v_k`$ those of all whole strata below $`n C`$ lie up to it, and perhaps the one of its own stratum.
-    fn fill<R: Rng + ?Sized>(&self, weights: &Weights, ancestors: &mut [usize], rng: &mut R) {
+    fn fill<R: Rng + ?Sized>(&self, weights: &NormalizedWeights, ancestors: &mut [usize], rng: &mut R) {
         let offsets: Vec<f64> = ancestors.iter().map(|_| rng.random()).collect();
         let points_up_to = |scaled: f64| {
             let stratum = scaled as i64 as usize;

@@ -1,9 +1,9 @@
-use crate::Weights;
+use crate::NormalizedWeights;
 
 /// For each of the ascending `points` in (0, 1] the first index whose cumulative weight reaches it.
 ///
 /// The textbook merge of two sorted lists, and the reference for `spread`.
-pub(super) fn walk(weights: &Weights, points: impl Iterator<Item = f64>, ancestors: &mut [usize]) {
+pub(super) fn walk(weights: &NormalizedWeights, points: impl Iterator<Item = f64>, ancestors: &mut [usize]) {
     let shares = weights.as_slice();
     let last = weights.last_positive();
     let (mut index, mut cumulative) = (0, shares[0]);

@@ -4,7 +4,7 @@ use wayfix_estimation_traits::LogWeight;
 use super::{ParticleSet, reweigh::add, workspace::Workspace};
 use crate::{
     ParticleError,
-    chunks::{ChunkRng, Streams, map_chunks},
+    chunks::{ParticleChunkRng, Streams, map_chunks},
     memory::{reserve, resize},
 };
 
@@ -21,7 +21,7 @@ impl<X: Clone + Send> ParticleSet<X> {
     pub fn advance_with<S, E, R>(
         &mut self,
         prepare: impl Fn() -> S + Sync,
-        step: impl Fn(&mut S, &mut X, &mut ChunkRng) -> Result<LogWeight, E> + Sync,
+        step: impl Fn(&mut S, &mut X, &mut ParticleChunkRng) -> Result<LogWeight, E> + Sync,
         rng: &mut R,
     ) -> Result<(), E>
     where

@@ -9,5 +9,5 @@ mod resample;
 mod reweigh;
 mod workspace;
 
-pub use moments::Moments;
+pub use moments::ParticleMoments;
 pub use particle_set::ParticleSet;

@@ -7,7 +7,7 @@ use crate::ParticleError;
 
 /// Mean and covariance of particles. The covariance is singular when there are fewer particles than dimensions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moments<Y: Manifold>
+pub struct ParticleMoments<Y: Manifold>
 where
     DefaultAllocator: StateAlloc<Y::Dim>,
 {
@@ -49,7 +49,7 @@ impl<X> ParticleSet<X> {
     /// # Errors
     /// [`ParticleError::NoWeight`] when every particle is impossible; [`ParticleError::Moments`] when the particles have no mean or one of
     /// them is not finite.
-    pub fn moments<Y: Manifold>(&self, part: impl Fn(&X) -> Y) -> Result<Moments<Y>, ParticleError>
+    pub fn moments<Y: Manifold>(&self, part: impl Fn(&X) -> Y) -> Result<ParticleMoments<Y>, ParticleError>
     where
         DefaultAllocator: StateAlloc<Y::Dim>,
     {
@@ -57,6 +57,6 @@ impl<X> ParticleSet<X> {
         let points: Vec<Y> = self.states.iter().map(part).collect();
         let (mean, covariance) =
             weighted_moments(&points, weights.as_slice()).map_err(GaussianError::from)?;
-        Ok(Moments { mean, covariance })
+        Ok(ParticleMoments { mean, covariance })
     }
 }

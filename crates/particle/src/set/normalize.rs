@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::LogWeight;
 
 use super::ParticleSet;
-use crate::{NormalizationReport, ParticleError, Weights};
+use crate::{NormalizationReport, NormalizedWeights, ParticleError};
 
 impl<X> ParticleSet<X> {
     /// Normalizes the weights to a sum of one, and returns their previous sum.
@@ -23,7 +23,7 @@ impl<X> ParticleSet<X> {
 /// In place, with memory for the plain weights; leaves log weights alone when it fails.
 pub(super) fn normalize(
     log_weights: &mut [LogWeight],
-    weights: &mut Weights,
+    weights: &mut NormalizedWeights,
 ) -> Result<NormalizationReport, ParticleError> {
     let log_sum = weights.assign_log(log_weights)?;
     for log_weight in log_weights {

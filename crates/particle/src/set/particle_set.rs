@@ -3,7 +3,7 @@ use wayfix_estimation_traits::LogWeight;
 
 use super::workspace::Workspace;
 use crate::{
-    ParticleError, Weights,
+    NormalizedWeights, ParticleError,
     memory::{filled, with_capacity},
     weights::check_log_weights,
 };
@@ -16,14 +16,14 @@ use crate::{
 ///
 /// ```
 /// use rand::{RngExt, SeedableRng};
-/// use wayfix_particle::{ParticleSet, Systematic};
+/// use wayfix_particle::{ParticleSet, SystematicResampler};
 /// let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
 /// let mut particles = ParticleSet::from_fn(1000, |rng| rng.random_range(0.0..10.0), &mut rng)?;
 /// particles.propagate(|x, rng| *x += 1.0 + rng.random_range(-0.1..0.1), &mut rng);
 /// particles.reweigh(|x| -0.5 * ((x - 4.0) / 0.2_f64).powi(2))?; // measured at 4, give or take 0.2
 /// let evidence = particles.normalize()?;
 /// assert!(evidence.effective_share() < 0.5);
-/// particles.resample(&Systematic, 500, &mut rng)?;
+/// particles.resample(&SystematicResampler, 500, &mut rng)?;
 /// assert!(particles.states().iter().all(|x| (x - 4.0).abs() < 1.5));
 /// # Ok::<(), wayfix_particle::ParticleError>(())
 /// ```
@@ -110,8 +110,8 @@ impl<X> ParticleSet<X> {
     ///
     /// # Errors
     /// [`ParticleError::NoWeight`] when all are zero.
-    pub fn weights(&self) -> Result<Weights, ParticleError> {
-        Weights::from_log(&self.log_weights)
+    pub fn weights(&self) -> Result<NormalizedWeights, ParticleError> {
+        NormalizedWeights::from_log(&self.log_weights)
     }
     /// $`1 / \sum_i w_i^2`$ of the normalized weights; 0 when no particle is possible.
     pub fn effective_sample_size(&self) -> f64 {

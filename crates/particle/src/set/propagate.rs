@@ -1,13 +1,17 @@
 use rand::Rng;
 
 use super::ParticleSet;
-use crate::chunks::{ChunkRng, Streams, map_chunks};
+use crate::chunks::{ParticleChunkRng, Streams, map_chunks};
 
 impl<X: Send> ParticleSet<X> {
     /// Moves every particle: $`x_i ∼ p(x_k | x_{k-1} = x_i)`$. Weights stay.
     ///
     /// The same bits for any number of threads: particles draw from a stream of their chunk, seeded from `rng`.
-    pub fn propagate<R: Rng + ?Sized>(&mut self, motion: impl Fn(&mut X, &mut ChunkRng) + Sync, rng: &mut R) {
+    pub fn propagate<R: Rng + ?Sized>(
+        &mut self,
+        motion: impl Fn(&mut X, &mut ParticleChunkRng) + Sync,
+        rng: &mut R,
+    ) {
         self.propagate_with(|| (), |(), state, rng| motion(state, rng), rng);
     }
 
@@ -17,7 +21,7 @@ impl<X: Send> ParticleSet<X> {
     pub fn propagate_with<S, R: Rng + ?Sized>(
         &mut self,
         prepare: impl Fn() -> S + Sync,
-        motion: impl Fn(&mut S, &mut X, &mut ChunkRng) + Sync,
+        motion: impl Fn(&mut S, &mut X, &mut ParticleChunkRng) + Sync,
         rng: &mut R,
     ) {
         let streams = Streams::from_generator(rng);

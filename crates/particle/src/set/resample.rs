@@ -10,7 +10,7 @@ impl<X: Clone> ParticleSet<X> {
     /// Replaces the particles by `n` children, drawn by weight; all weights are equal then. The weights need not be normalized.
     ///
     /// Returns the ancestor of each child. States are cloned: keep what is heavy behind an [`Arc`](std::sync::Arc), as
-    /// [`RaoBlackwell`](crate::RaoBlackwell) does.
+    /// [`RaoBlackwellParticle`](crate::RaoBlackwellParticle) does.
     ///
     /// # Errors
     /// [`ParticleError::NoWeight`] when every particle is impossible, [`ParticleError::NoParticles`] for `n = 0`,

@@ -1,4 +1,4 @@
-use crate::Weights;
+use crate::NormalizedWeights;
 
 /// Memory that a set of particles uses again and again: fresh memory costs more time than resampling itself.
 ///
@@ -8,13 +8,18 @@ pub(super) struct Workspace<X> {
     /// Empty between calls, so that no dead particle keeps what it shares alive.
     pub(super) states: Vec<X>,
     pub(super) log_weights: Vec<f64>,
-    pub(super) weights: Weights,
+    pub(super) weights: NormalizedWeights,
     pub(super) ancestors: Vec<usize>,
 }
 
 impl<X> Default for Workspace<X> {
     fn default() -> Self {
-        Self { states: vec![], log_weights: vec![], weights: Weights::placeholder(), ancestors: vec![] }
+        Self {
+            states: vec![],
+            log_weights: vec![],
+            weights: NormalizedWeights::placeholder(),
+            ancestors: vec![],
+        }
     }
 }
 

@@ -5,5 +5,5 @@ mod params;
 mod pursuit;
 
 pub use differential::DifferentialDrive;
-pub use params::{DriveParams, SlipParams};
-pub use pursuit::Pursuit;
+pub use params::{SlipParams, WheeledRobotParams};
+pub use pursuit::PurePursuit;

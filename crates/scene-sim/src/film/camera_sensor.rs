@@ -2,7 +2,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::sine_sum::SineSum;
 use crate::random::deviate::quick_normal;
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::RgbPicture;
 use crate::scenery::canvas::{Canvas, Color};
 
@@ -27,11 +27,11 @@ pub(super) struct CameraSensor {
 }
 
 impl CameraSensor {
-    pub(super) fn new(streams: &mut Streams) -> Self {
-        let rng = streams.of(Source::WhiteBalance);
+    pub(super) fn new(streams: &mut RandomStreams) -> Self {
+        let rng = streams.of(RandomStreamPurpose::WhiteBalance);
         let balance = [SineSum::new(7.0, rng), SineSum::new(8.0, rng)];
         let byte = |step: usize| (255.0 * libm::pow(step as f64 / STEPS as f64, 1.0 / 2.2)).round() as u8;
-        let rng = streams.of(Source::Pixels).clone();
+        let rng = streams.of(RandomStreamPurpose::Pixels).clone();
         Self { exposure: None, balance, response: (0..=STEPS).map(byte).collect(), rng }
     }
 

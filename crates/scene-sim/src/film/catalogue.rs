@@ -1,20 +1,20 @@
-use super::{Frames, Incident};
-use crate::{SimError, check};
+use super::{FilmFrames, OcclusionEvent};
+use crate::{SimulationError, check};
 
 /// A film that can be shown: its story, its length, and the seed of everything that is left to chance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Film {
+pub struct SyntheticFilm {
     /// Its name.
     pub name: &'static str,
     /// Number of frames.
     pub n_frames: usize,
     /// Event that affects the target.
-    pub incident: Incident,
+    pub occlusion: OcclusionEvent,
     /// Seed of textures, paths, light and noise.
     pub seed: u64,
 }
 
-impl Film {
+impl SyntheticFilm {
     /// Width and height of every picture, in pixels.
     pub const SIZE_PX: (usize, usize) = (320, 240);
 
@@ -30,23 +30,23 @@ impl Film {
     /// The film of that name.
     ///
     /// # Errors
-    /// Returns [`SimError::UnknownScenario`] if there is none.
-    pub fn named(name: &str) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::UnknownScenario`] if there is none.
+    pub fn named(name: &str) -> Result<Self, SimulationError> {
         let found = Self::ALL.into_iter().find(|film| film.name == name);
-        found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
+        found.ok_or_else(|| SimulationError::UnknownScenario { name: name.to_owned() })
     }
 
     /// Shows it from the beginning.
     ///
     /// # Errors
-    /// Returns [`SimError::UnknownScenario`] if it has the name of none, and [`SimError::TooMany`] frames.
-    pub fn frames(&self) -> Result<Frames, SimError> {
+    /// Returns [`SimulationError::UnknownScenario`] if it has the name of none, and [`SimulationError::TooMany`] frames.
+    pub fn frames(&self) -> Result<FilmFrames, SimulationError> {
         Self::named(self.name)?;
         check::count("frames", self.n_frames, Self::MAX_FRAMES)?;
-        Ok(Frames::new(*self))
+        Ok(FilmFrames::new(*self))
     }
 }
 
-const fn of(name: &'static str, seed: u64) -> Film {
-    Film { name, n_frames: 175, incident: Incident::None, seed }
+const fn of(name: &'static str, seed: u64) -> SyntheticFilm {
+    SyntheticFilm { name, n_frames: 175, occlusion: OcclusionEvent::None, seed }
 }

@@ -1,5 +1,5 @@
 use crate::film::sine_sum::SineSum;
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::Color;
 use crate::scenery::noise::Noise;
 
@@ -19,8 +19,8 @@ pub(super) struct Daylight {
 }
 
 impl Daylight {
-    pub(super) fn new(streams: &mut Streams) -> Self {
-        let rng = streams.of(Source::Light);
+    pub(super) fn new(streams: &mut RandomStreams) -> Self {
+        let rng = streams.of(RandomStreamPurpose::Light);
         Self { strength: SineSum::new(6.0, rng), warmth: SineSum::new(9.0, rng), leaves: Noise::new(rng) }
     }
 

@@ -3,7 +3,7 @@ use crate::scenery::RgbPicture;
 
 /// One frame of a film with its truth.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Frame {
+pub struct FilmFrame {
     /// The camera image.
     pub picture: RgbPicture,
     /// The whole target within the image, hidden parts included.

@@ -1,10 +1,10 @@
 use std::f64::consts::TAU;
 
-use crate::film::Film;
+use crate::film::SyntheticFilm;
 use crate::film::pose::{Pose, in_ellipse};
 use crate::film::sine_sum::SineSum;
 use crate::random::deviate::{below, uniform, unit};
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
 
 /// Amplitude of a hand-held camera's sway, px.
@@ -20,12 +20,12 @@ pub(super) struct Ground {
 impl Ground {
     /// Painted by `paint` on a canvas with a margin all around.
     pub(super) fn new(
-        streams: &mut Streams,
-        paint: impl FnOnce((usize, usize), &mut Streams) -> Canvas,
+        streams: &mut RandomStreams,
+        paint: impl FnOnce((usize, usize), &mut RandomStreams) -> Canvas,
     ) -> Self {
-        let (width, height) = Film::SIZE_PX;
+        let (width, height) = SyntheticFilm::SIZE_PX;
         let albedo = paint((width + 2 * MARGIN_PX, height + 2 * MARGIN_PX), streams);
-        let rng = streams.of(Source::Motion);
+        let rng = streams.of(RandomStreamPurpose::Motion);
         Self { albedo, sway: [SineSum::new(5.0, rng), SineSum::new(4.0, rng)] }
     }
 
@@ -55,9 +55,9 @@ pub(super) fn scatter(
     radii: (f64, f64),
     slim: f64,
     colors: &[Color],
-    streams: &mut Streams,
+    streams: &mut RandomStreams,
 ) {
-    let rng = streams.of(Source::Objects);
+    let rng = streams.of(RandomStreamPurpose::Objects);
     let size = (canvas.width, canvas.height);
     for _ in 0..n {
         let centre = (unit(rng) * size.0 as f64, unit(rng) * size.1 as f64);
@@ -84,9 +84,9 @@ pub(super) fn strew(
     lengths: (f64, f64),
     width: f64,
     colors: &[Color],
-    streams: &mut Streams,
+    streams: &mut RandomStreams,
 ) {
-    let rng = streams.of(Source::Objects);
+    let rng = streams.of(RandomStreamPurpose::Objects);
     for _ in 0..n {
         let from = (unit(rng) * canvas.width as f64, unit(rng) * canvas.height as f64);
         let (sin, cos) = libm::sincos(TAU * unit(rng));

@@ -1,10 +1,10 @@
-use super::Film;
-use crate::SimError;
+use super::SyntheticFilm;
+use crate::SimulationError;
 
 /// Event that affects the target in the middle of a film. All times are shares of its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Incident {
+pub enum OcclusionEvent {
     /// Nothing.
     #[default]
     None,
@@ -16,7 +16,7 @@ pub enum Incident {
     Away,
 }
 
-impl Incident {
+impl OcclusionEvent {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::None, Self::PartlyHidden, Self::Hidden, Self::Away];
 
@@ -33,15 +33,15 @@ impl Incident {
     /// The incident of that name.
     ///
     /// # Errors
-    /// Returns [`SimError::UnknownScenario`] if there is none.
-    pub fn named(name: &str) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::UnknownScenario`] if there is none.
+    pub fn named(name: &str) -> Result<Self, SimulationError> {
         let found = Self::ALL.into_iter().find(|incident| incident.name() == name);
-        found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
+        found.ok_or_else(|| SimulationError::UnknownScenario { name: name.to_owned() })
     }
 
     /// Displacement of the target to the right, px, at a share of the film's length.
     pub(super) fn aside(self, share: f64) -> f64 {
-        let away = Film::SIZE_PX.0 as f64 + 100.0;
+        let away = SyntheticFilm::SIZE_PX.0 as f64 + 100.0;
         let gone = if share < 0.5 { smooth((share - 0.35) / 0.15) } else { smooth((0.80 - share) / 0.15) };
         if self == Self::Away { away * gone } else { 0.0 }
     }
@@ -55,7 +55,7 @@ impl Incident {
         };
         let (from, until) = (0.35, 0.75);
         let passed = (share - from) / (until - from);
-        let right = passed * (Film::SIZE_PX.0 as f64 + width);
+        let right = passed * (SyntheticFilm::SIZE_PX.0 as f64 + width);
         (0.0..=1.0).contains(&passed).then_some((right - width, right))
     }
 }

@@ -2,8 +2,8 @@ use rand::Rng;
 
 use super::light::LightKind;
 use crate::random::deviate::{below, chance, normal, uniform};
-use crate::random::{GaussMarkov, Source, Streams};
-use crate::{SimError, check};
+use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
+use crate::{SimulationError, check};
 
 /// Ambient light, so that nothing is completely black.
 const STRAY: [f32; 3] = [0.12; 3];
@@ -32,7 +32,7 @@ impl AmbientLightParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         check::not_negative("σ of the daylight", self.daylight_sigma)?;
         check::positive("correlation time of the daylight (s)", self.daylight_correlation_s)?;
         check::not_negative("σ of the lamps", self.lamp_sigma)?;
@@ -60,9 +60,9 @@ impl AmbientLight {
         params: AmbientLightParams,
         n_lamps: usize,
         n_curtains: usize,
-        streams: &mut Streams,
+        streams: &mut RandomStreams,
     ) -> Self {
-        let rng = streams.of(Source::Lamps);
+        let rng = streams.of(RandomStreamPurpose::Lamps);
         let lamps = (0..n_lamps).map(|_| libm::exp(params.lamp_sigma * normal(rng)));
         let clouds = GaussMarkov::new(params.daylight_correlation_s);
         let mut ambient_light =
@@ -84,10 +84,10 @@ impl AmbientLight {
     }
 
     /// Lets time pass.
-    pub(super) fn advance(&mut self, seconds: f64, streams: &mut Streams) {
-        let clouds = self.clouds.advance(seconds, streams.of(Source::Daylight));
+    pub(super) fn advance(&mut self, seconds: f64, streams: &mut RandomStreams) {
+        let clouds = self.clouds.advance(seconds, streams.of(RandomStreamPurpose::Daylight));
         self.daylight = libm::exp(self.params.daylight_sigma * clouds);
-        let rng = streams.of(Source::Switching);
+        let rng = streams.of(RandomStreamPurpose::Switching);
         let share = self.params.switching_s.map_or(0.0, |mean_s| 1.0 - libm::exp(-seconds / mean_s));
         if chance(share, rng) {
             self.switch(rng);

@@ -1,6 +1,6 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// An omnidirectional camera, and the unwrapping of its image.
 ///
@@ -9,19 +9,19 @@ use crate::{SimError, check};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmniCameraParams {
     /// Sectors, an even number. Default 120.
-    pub columns: usize,
+    pub n_columns: usize,
     /// Rings. Default 20.
-    pub rings: usize,
+    pub n_rings: usize,
     /// Upper edge of the highest ring above the horizon, radians. Default 30°.
-    pub highest_rad: f64,
+    pub max_elevation_rad: f64,
     /// Lower edge of the lowest ring, radians. Default −30°.
-    pub lowest_rad: f64,
+    pub min_elevation_rad: f64,
     /// Height above the floor, metres. Default 1.2.
     pub height_m: f64,
     /// Rays across and down a pixel. Default 2 and 2.
-    pub rays: [usize; 2],
+    pub rays_per_pixel: [usize; 2],
     /// Standard deviation of the noise of a pixel, grey values. Default 2.
-    pub noise: f64,
+    pub pixel_noise_sigma: f64,
     /// Share of a change of light that the automatic exposure compensates, 0 to 1. Default 0.8.
     pub exposure_control: f64,
 }
@@ -29,13 +29,13 @@ pub struct OmniCameraParams {
 impl Default for OmniCameraParams {
     fn default() -> Self {
         Self {
-            columns: 120,
-            rings: 20,
-            highest_rad: PI / 6.0,
-            lowest_rad: -PI / 6.0,
+            n_columns: 120,
+            n_rings: 20,
+            max_elevation_rad: PI / 6.0,
+            min_elevation_rad: -PI / 6.0,
             height_m: 1.2,
-            rays: [2, 2],
-            noise: 2.0,
+            rays_per_pixel: [2, 2],
+            pixel_noise_sigma: 2.0,
             exposure_control: 0.8,
         }
     }
@@ -46,22 +46,27 @@ impl OmniCameraParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
-        check::above("columns of the camera", self.columns as f64, 3.5, "at least 4")?;
-        check::count("columns of the camera", self.columns, 4096)?;
-        check::at_most("columns of the camera modulo 2", (self.columns % 2) as f64, 0.0, "0")?;
-        check::above("rings of the camera", self.rings as f64, 0.5, "at least 1")?;
-        check::count("rings of the camera", self.rings, 1024)?;
-        check::above("lowest elevation (rad)", self.lowest_rad, -FRAC_PI_2, "above −π/2")?;
-        check::above("highest elevation (rad)", self.highest_rad, self.lowest_rad, "above the lowest")?;
-        check::above("highest elevation (rad)", FRAC_PI_2 - self.highest_rad, 0.0, "below π/2")?;
+    pub fn validate(&self) -> Result<(), SimulationError> {
+        check::above("columns of the camera", self.n_columns as f64, 3.5, "at least 4")?;
+        check::count("columns of the camera", self.n_columns, 4096)?;
+        check::at_most("columns of the camera modulo 2", (self.n_columns % 2) as f64, 0.0, "0")?;
+        check::above("rings of the camera", self.n_rings as f64, 0.5, "at least 1")?;
+        check::count("rings of the camera", self.n_rings, 1024)?;
+        check::above("lowest elevation (rad)", self.min_elevation_rad, -FRAC_PI_2, "above −π/2")?;
+        check::above(
+            "highest elevation (rad)",
+            self.max_elevation_rad,
+            self.min_elevation_rad,
+            "above the lowest",
+        )?;
+        check::above("highest elevation (rad)", FRAC_PI_2 - self.max_elevation_rad, 0.0, "below π/2")?;
         check::above("height of the camera (m)", self.height_m, 0.0, "above 0")?;
         check::at_most("height of the camera (m)", self.height_m, 2.5, "below the ceiling, at most 2.5")?;
-        for rays in self.rays {
+        for rays in self.rays_per_pixel {
             check::above("rays of a pixel", rays as f64, 0.5, "at least 1")?;
             check::count("rays of a pixel", rays, 16)?;
         }
-        check::not_negative("noise of the camera (grey values)", self.noise)?;
+        check::not_negative("noise of the camera (grey values)", self.pixel_noise_sigma)?;
         check::share("share of the light that the exposure takes back", self.exposure_control)
     }
 }

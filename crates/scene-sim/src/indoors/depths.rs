@@ -40,10 +40,11 @@ impl PanelHit {
 
 impl Depths {
     pub(super) fn new(params: &OmniCameraParams) -> Self {
-        let (n_azimuths, n_elevations) = (params.columns * params.rays[0], params.rings * params.rays[1]);
+        let (n_azimuths, n_elevations) =
+            (params.n_columns * params.rays_per_pixel[0], params.n_rings * params.rays_per_pixel[1]);
         let across = TAU / n_azimuths as f64;
-        let down = (params.highest_rad - params.lowest_rad) / n_elevations as f64;
-        let slope = |j| libm::tan(params.lowest_rad + (f64::from(j) + 0.5) * down);
+        let down = (params.max_elevation_rad - params.min_elevation_rad) / n_elevations as f64;
+        let slope = |j| libm::tan(params.min_elevation_rad + (f64::from(j) + 0.5) * down);
         Self {
             rays: (0..n_azimuths).map(|k| plane::direction((k as f64 + 0.5) * across)).collect(),
             slopes: (0..n_elevations as u32).map(slope).collect(),

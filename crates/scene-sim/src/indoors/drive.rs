@@ -1,17 +1,17 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::Data;
+use wayfix_sensor_log::RecordData;
 
 use super::ambient_light::AmbientLight;
 use super::params::IndoorParams;
 use super::rooms::building::Building;
 use super::rooms::crowd::Crowd;
 use super::view::ViewRenderer;
-use crate::drive::{DifferentialDrive, Pursuit};
-use crate::random::{Source, Streams};
+use crate::drive::{DifferentialDrive, PurePursuit};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::route::Route;
 use crate::scenery::RgbPicture;
 use crate::sensor::{Sensor, TrueState, WheelOdometry};
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// Time between two steps of the integration, milliseconds.
 const STEP_MS: u64 = 10;
@@ -33,23 +33,23 @@ pub struct IndoorStep {
 ///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::{indoors::{IndoorDrive, IndoorParams, Store, StoreParams}, random::Streams};
+/// use wayfix_scene_sim::{indoors::{IndoorDrive, IndoorParams, RetailStore, RetailStoreParams}, random::RandomStreams};
 /// let mut rng = ChaCha8Rng::seed_from_u64(1);
-/// let building = Store::draw(StoreParams::area(), &mut rng)?.building();
+/// let building = RetailStore::draw(RetailStoreParams::area(), &mut rng)?.building();
 /// let route = building.aisles().tour(30.0, &mut rng)?;
-/// let drive = IndoorDrive::new(&building, route, IndoorParams::default(), Streams::new(rng))?;
+/// let drive = IndoorDrive::new(&building, route, IndoorParams::default(), RandomStreams::new(rng))?;
 /// let steps: Vec<_> = drive.collect();
 /// let odometry: f64 = steps.iter().filter_map(|step| step.odometry).map(|moved| moved.translation.norm()).sum();
 /// assert!(odometry > 25.0 && steps[0].view.rgb.len() == 3 * 120 * 20);
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 pub struct IndoorDrive<'a> {
     building: &'a Building,
     route: Route,
     params: IndoorParams,
-    streams: Streams,
+    streams: RandomStreams,
     robot: DifferentialDrive,
-    driver: Pursuit,
+    driver: PurePursuit,
     wheels: WheelOdometry,
     crowd: Crowd,
     ambient_light: AmbientLight,
@@ -62,23 +62,23 @@ impl<'a> IndoorDrive<'a> {
     /// The robot at the start of its route.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
     pub fn new(
         building: &'a Building,
         route: Route,
         params: IndoorParams,
-        mut streams: Streams,
-    ) -> Result<Self, SimError> {
+        mut streams: RandomStreams,
+    ) -> Result<Self, SimulationError> {
         params.validate()?;
         let step_m = params.drive.speed_mps * f64::from(params.view_period_ms) * 1e-3;
         check::positive("way between two views (m)", step_m)?;
-        let crowd = Crowd::draw(params.n_people, &building.aisles, streams.of(Source::Crowd));
+        let crowd = Crowd::draw(params.n_people, &building.aisles, streams.of(RandomStreamPurpose::Crowd));
         let ambient_light =
             AmbientLight::new(params.ambient_light, building.n_lamps, building.n_curtains, &mut streams);
         Ok(Self {
             building,
             robot: DifferentialDrive::new(params.drive, route.at(0.0))?,
-            driver: Pursuit::default(),
+            driver: PurePursuit::default(),
             wheels: WheelOdometry::new(params.odometry())?,
             view_renderer: ViewRenderer::new(params.camera)?,
             n_left: (route.length_m() / step_m) as usize,
@@ -107,11 +107,11 @@ impl<'a> IndoorDrive<'a> {
             world: self.building,
         };
         let odometry = match self.wheels.sense(&moment, &mut self.streams).map(|reading| reading.data) {
-            Some(Data::OdometryIncrement(moved)) => Some(moved),
+            Some(RecordData::OdometryIncrement(moved)) => Some(moved),
             _ => None,
         };
         let people: Vec<_> = self.crowd.standing(&self.building.aisles, pose.translation).collect();
-        let rng = self.streams.of(Source::Picture);
+        let rng = self.streams.of(RandomStreamPurpose::Picture);
         let view = self.view_renderer.render_view(self.building, &self.ambient_light, &people, &pose, rng);
         IndoorStep { milliseconds: self.milliseconds, odometry, pose, view }
     }
@@ -128,7 +128,7 @@ impl Iterator for IndoorDrive<'_> {
         for _ in 0..period_ms / STEP_MS {
             self.advance(STEP_MS as f64 * 1e-3);
         }
-        self.crowd.advance(seconds, &self.building.aisles, self.streams.of(Source::Crowd));
+        self.crowd.advance(seconds, &self.building.aisles, self.streams.of(RandomStreamPurpose::Crowd));
         self.ambient_light.advance(seconds, &mut self.streams);
         Some(step)
     }

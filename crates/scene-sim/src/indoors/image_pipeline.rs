@@ -22,7 +22,7 @@ impl ImagePipeline {
     pub(super) fn new(params: &OmniCameraParams) -> Self {
         let tone = |i: usize| 255.0 * libm::powf(i as f32 / (N_TONES - 1) as f32, 1.0 / 2.2);
         Self {
-            noise: params.noise,
+            noise: params.pixel_noise_sigma,
             control: params.exposure_control as f32,
             tones: (0..N_TONES).map(tone).collect(),
         }

@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
 use crate::scenery::RgbPicture;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// A camera below a curved mirror: the elevation falls evenly from the outer to the inner radius of a ring in the middle of the picture.
 ///
@@ -9,14 +9,14 @@ use crate::{SimError, check};
 /// with the outer radius as the top row, the ring is the view again.
 ///
 /// ```
-/// use wayfix_scene_sim::{indoors::Mirror, scenery::RgbPicture};
+/// use wayfix_scene_sim::{indoors::MirrorCamera, scenery::RgbPicture};
 /// let view = RgbPicture { width: 4, height: 1, rgb: vec![200; 12] };
-/// let image = Mirror { side_px: 64, inner_px: 10.0, outer_px: 30.0 }.image(&view)?;
+/// let image = MirrorCamera { side_px: 64, inner_px: 10.0, outer_px: 30.0 }.image(&view)?;
 /// assert_eq!((image.width, image.rgb[0], image.rgb[3 * (32 * 64 + 52)]), (64, 0, 200));
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mirror {
+pub struct MirrorCamera {
     /// Side of the square picture, pixels.
     pub side_px: usize,
     /// Radius that shows the lowest elevation, pixels.
@@ -25,12 +25,12 @@ pub struct Mirror {
     pub outer_px: f64,
 }
 
-impl Mirror {
+impl MirrorCamera {
     /// The raw picture for a view, which should be at least as fine; black beside the ring.
     ///
     /// # Errors
     /// Returns an error if the ring does not fit into the picture, or the view is empty or has an inconsistent size.
-    pub fn image(&self, view: &RgbPicture) -> Result<RgbPicture, SimError> {
+    pub fn image(&self, view: &RgbPicture) -> Result<RgbPicture, SimulationError> {
         check::count("side of the picture (pixels)", self.side_px, 1 << 14)?;
         check::not_negative("inner radius (pixels)", self.inner_px)?;
         check::above("outer radius (pixels)", self.outer_px, self.inner_px, "above the inner")?;

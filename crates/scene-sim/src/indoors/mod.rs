@@ -1,6 +1,6 @@
 //! Stores and rooms, and the views of an omnidirectional camera: textured walls, shelves, windows, people, changing light.
 //!
-//! A [`Store`] or a [`Lab`] is drawn from a seed, and rearranged by a share some weeks later; its [`Building`] has the drivable
+//! A [`RetailStore`] or a [`Laboratory`] is drawn from a seed, and rearranged by a share some weeks later; its [`Building`] has the drivable
 //! [`Aisles`]; an [`IndoorDrive`] gives views, drifting odometry and true poses one step after another.
 //!
 //! A view is drawn panel by panel into a buffer of depths, one ray for each quarter of a pixel; each ray has its colour from a
@@ -25,10 +25,10 @@ mod view;
 pub use ambient_light::AmbientLightParams;
 pub use camera::OmniCameraParams;
 pub use drive::{IndoorDrive, IndoorStep};
-pub use mirror::Mirror;
+pub use mirror::MirrorCamera;
 pub use params::{IndoorParams, calibrated_robot};
-pub use rooms::aisles::{Aisles, Crossing};
+pub use rooms::aisles::{AisleCrossing, Aisles};
 pub use rooms::building::Building;
-pub use rooms::lab::Lab;
-pub use rooms::store::Store;
-pub use rooms::store_params::StoreParams;
+pub use rooms::lab::Laboratory;
+pub use rooms::store::RetailStore;
+pub use rooms::store_params::RetailStoreParams;

@@ -1,16 +1,16 @@
 use rand::Rng;
 
 use super::{AmbientLightParams, OmniCameraParams};
-use crate::drive::{DriveParams, SlipParams};
+use crate::drive::{SlipParams, WheeledRobotParams};
 use crate::random::deviate::normal;
 use crate::sensor::{OdometryKind, WheelOdometryParams};
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// A robot in a building, and the people around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IndoorParams {
     /// The robot; [`calibrated_robot`] draws one. Default: 0.5 m/s, wheels exactly as built, slip of 0.1 %.
-    pub drive: DriveParams,
+    pub drive: WheeledRobotParams,
     /// Time between two views, a multiple of 10 ms. Default 500: a step of 0.25 m.
     pub view_period_ms: u32,
     /// The camera.
@@ -38,7 +38,7 @@ impl IndoorParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         self.drive.validate()?;
         check::above("time between views (ms)", f64::from(self.view_period_ms), 9.0, "at least 10")?;
         check::at_most("time between views (ms) modulo 10", f64::from(self.view_period_ms % 10), 0.0, "0")?;
@@ -53,7 +53,7 @@ impl IndoorParams {
             kind: OdometryKind::Increment,
             period_ms: self.view_period_ms,
             wheel_radius_m: self.drive.wheel_radius_m,
-            track_m: self.drive.track_m,
+            wheel_separation_m: self.drive.wheel_separation_m,
             ..WheelOdometryParams::default()
         }
     }
@@ -61,21 +61,21 @@ impl IndoorParams {
 
 /// A robot with manually calibrated wheels: errors of 0.3 % in distance and 10⁻⁴ rad/m in heading (σ), in addition to slip,
 /// which turns it by 0.1° on the first metre and by 1° over 100 m.
-pub fn calibrated_robot<R: Rng + ?Sized>(rng: &mut R) -> DriveParams {
+pub fn calibrated_robot<R: Rng + ?Sized>(rng: &mut R) -> WheeledRobotParams {
     robot([3e-3 * normal(rng), 1e-4 * normal(rng)])
 }
 
 /// A robot with an error of its travel (share) and of its heading (rad/m).
-fn robot([travel, heading_per_m]: [f64; 2]) -> DriveParams {
+fn robot([travel, heading_per_m]: [f64; 2]) -> WheeledRobotParams {
     const TRACK_M: f64 = 0.5;
     let difference = 0.5 * heading_per_m * TRACK_M;
-    DriveParams {
+    WheeledRobotParams {
         speed_mps: 0.5,
-        track_m: TRACK_M,
+        wheel_separation_m: TRACK_M,
         wheel_radius_m: 0.1,
         left_radius_error: travel - difference,
         right_radius_error: travel + difference,
-        slip: SlipParams { sigma: 1e-3, correlation_time_s: 1.0, shared: 0.5 },
-        ..DriveParams::default()
+        slip: SlipParams { slip_sigma: 1e-3, correlation_time_s: 1.0, wheel_correlation: 0.5 },
+        ..WheeledRobotParams::default()
     }
 }

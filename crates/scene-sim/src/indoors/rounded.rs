@@ -3,21 +3,21 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
 
-use crate::SimError;
-use crate::route::{Piece, Route};
+use crate::SimulationError;
+use crate::route::{Route, RoutePiece};
 
 /// Through points joined by right angles, with rounded corners.
-pub(super) fn rounded(points: &[Vector2<f64>], radius: f64) -> Result<Route, SimError> {
+pub(super) fn rounded(points: &[Vector2<f64>], radius: f64) -> Result<Route, SimulationError> {
     let mut pieces = Vec::with_capacity(2 * points.len());
     let mut trimmed = 0.0;
     for (k, ends) in points.windows(2).enumerate() {
         let side = ends[1] - ends[0];
         let next = points.get(k + 2).map(|point| point - ends[1]);
         let corner = if next.is_some() { radius } else { 0.0 };
-        pieces.push(Piece { length_m: side.norm() - trimmed - corner, curvature_per_m: 0.0 });
+        pieces.push(RoutePiece { length_m: side.norm() - trimmed - corner, curvature_per_m: 0.0 });
         if let Some(next) = next {
             let curvature_per_m = side.perp(&next).signum() / radius;
-            pieces.push(Piece { length_m: FRAC_PI_2 * radius, curvature_per_m });
+            pieces.push(RoutePiece { length_m: FRAC_PI_2 * radius, curvature_per_m });
         }
         trimmed = corner;
     }

@@ -12,7 +12,7 @@ use super::panel::{Material, Panel};
 use super::rooms::building::Building;
 use super::rooms::crowd::{HALF_WIDTH_M, HEIGHTS_M};
 use crate::scenery::RgbPicture;
-use crate::{SimError, plane};
+use crate::{SimulationError, plane};
 
 /// Looks around in a building.
 #[derive(Clone, Debug)]
@@ -29,13 +29,13 @@ pub(super) struct ViewRenderer {
 pub(super) type Standing = (Vector2<f64>, [Rgb8; 3]);
 
 impl ViewRenderer {
-    pub(super) fn new(params: OmniCameraParams) -> Result<Self, SimError> {
+    pub(super) fn new(params: OmniCameraParams) -> Result<Self, SimulationError> {
         params.validate()?;
         Ok(Self {
             depths: Depths::new(&params),
             light: MixedLight::default(),
             image_pipeline: ImagePipeline::new(&params),
-            radiance: vec![[0.0; 3]; params.columns * params.rings],
+            radiance: vec![[0.0; 3]; params.n_columns * params.n_rings],
             params,
         })
     }
@@ -65,7 +65,7 @@ impl ViewRenderer {
             shading.expose(azimuth, &self.depths, &self.light, &self.params, &mut self.radiance);
         }
         let rgb = self.image_pipeline.process(&self.radiance, rng);
-        RgbPicture { width: self.params.columns, height: self.params.rings, rgb }
+        RgbPicture { width: self.params.n_columns, height: self.params.n_rings, rgb }
     }
 }
 
@@ -102,7 +102,7 @@ impl Shading<'_> {
         params: &OmniCameraParams,
         radiance: &mut [[f32; 3]],
     ) {
-        let [across, down] = params.rays;
+        let [across, down] = params.rays_per_pixel;
         let ahead = plane::direction(self.pose.heading());
         let ray = depths.ray(azimuth);
         let ray = ahead * ray.x + Vector2::new(-ahead.y, ahead.x) * ray.y;
@@ -117,10 +117,10 @@ impl Shading<'_> {
                 }
                 self.upright(met, *slope, depths.steps[1], last.1)
             };
-            let ring = params.rings - 1 - elevation / down;
+            let ring = params.n_rings - 1 - elevation / down;
             // From left to right, the front in the middle.
-            let column = (3 * params.columns / 2 - 1 - azimuth / across) % params.columns;
-            let pixel = &mut radiance[ring * params.columns + column];
+            let column = (3 * params.n_columns / 2 - 1 - azimuth / across) % params.n_columns;
+            let pixel = &mut radiance[ring * params.n_columns + column];
             for k in 0..3 {
                 pixel[k] += share * arriving[k];
             }

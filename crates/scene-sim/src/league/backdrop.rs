@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use super::Rgb;
+use super::LinearRgb;
 
 /// Background of the field. Implement it for a custom hall.
 ///
@@ -18,20 +18,20 @@ pub struct SurfaceHit {
     /// Unit normal, on the side of the eye.
     pub normal: Vector3<f64>,
     /// Its diffuse reflectance.
-    pub reflectance: Rgb,
+    pub reflectance: LinearRgb,
 }
 
 /// A hall: a dull floor, walls, and people and clutter in front of them.
 ///
 /// ```
 /// use wayfix_estimation_traits::nalgebra::Vector3;
-/// use wayfix_scene_sim::league::{Backdrop, Hall};
-/// let hall = Hall::default();
+/// use wayfix_scene_sim::league::{Backdrop, HallBackdrop};
+/// let hall = HallBackdrop::default();
 /// let seen = hall.surface_hit(&Vector3::new(0.0, 0.0, 0.2), &Vector3::x());
 /// assert_eq!((seen.point.x, seen.normal), (hall.half_length_m, -Vector3::x()));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Hall {
+pub struct HallBackdrop {
     /// Half its extent along x, metres. Default 4.
     pub half_length_m: f64,
     /// Half its extent along y, metres. Default 3.2.
@@ -42,7 +42,7 @@ pub struct Hall {
     pub seed: u64,
 }
 
-impl Default for Hall {
+impl Default for HallBackdrop {
     fn default() -> Self {
         Self { half_length_m: 4.0, half_width_m: 3.2, crowd: 0.6, seed: 0 }
     }
@@ -51,7 +51,7 @@ impl Default for Hall {
 /// Width of the place that a person takes, metres.
 const PLACE_M: f64 = 0.45;
 
-impl Backdrop for Hall {
+impl Backdrop for HallBackdrop {
     fn surface_hit(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> SurfaceHit {
         let reach = |half: f64, from: f64, along: f64| {
             if along == 0.0 { f64::INFINITY } else { ((half.copysign(along) - from) / along).max(0.0) }
@@ -76,16 +76,16 @@ impl Backdrop for Hall {
     }
 }
 
-impl Hall {
+impl HallBackdrop {
     /// Dull, with tiles that differ a little.
-    fn floor(&self, point: &Vector3<f64>) -> Rgb {
+    fn floor(&self, point: &Vector3<f64>) -> LinearRgb {
         let tile = [point.x, point.y].map(|x| (x / 0.3).floor() as i64 as u64);
         let tone = share(self.hash([1, tile[0], tile[1]]), 0);
-        Rgb::new(0.23, 0.21, 0.19) * (0.9 + 0.2 * tone)
+        LinearRgb::new(0.23, 0.21, 0.19) * (0.9 + 0.2 * tone)
     }
 
     /// Colour of a wall and the people before it, at the distance `along` from its middle and at the height `z`.
-    fn wall(&self, number: u64, along: f64, z: f64) -> Rgb {
+    fn wall(&self, number: u64, along: f64, z: f64) -> LinearRgb {
         let place = (along / PLACE_M).floor();
         let who = self.hash([2 + number, place as i64 as u64, 0]);
         let aside = (along / PLACE_M - place - 0.5).abs();
@@ -100,7 +100,7 @@ impl Hall {
             self.hash([8 + number, (along / 1.2).floor() as i64 as u64, (z / 0.9).floor() as i64 as u64]),
             0,
         );
-        let plaster = Rgb::new(0.50, 0.48, 0.44) * (0.6 + 0.5 * tone);
+        let plaster = LinearRgb::new(0.50, 0.48, 0.44) * (0.6 + 0.5 * tone);
         // Every now and then a poster or a locker.
         if panel < 0.25 {
             vivid(self.hash([9, number, (along / 1.2).floor() as i64 as u64])) * 0.8
@@ -115,32 +115,33 @@ impl Hall {
 }
 
 /// Colour of a person at the given share of their height, `aside` of the middle of their place; `None` beside them.
-fn person(who: u64, aside: f64, height: f64) -> Option<Rgb> {
+fn person(who: u64, aside: f64, height: f64) -> Option<LinearRgb> {
     let (legs, body, head) = (0.26, 0.34, 0.13);
     match height {
         h if h < 0.5 => (aside < legs && aside > 0.03).then(|| trousers(who)),
         h if h < 0.83 => (aside < body).then(|| vivid(mix(who))),
-        h if h < 1.0 => (aside < head)
-            .then(|| if h < 0.95 { Rgb::new(0.50, 0.32, 0.24) } else { Rgb::new(0.06, 0.04, 0.03) }),
+        h if h < 1.0 => (aside < head).then(|| {
+            if h < 0.95 { LinearRgb::new(0.50, 0.32, 0.24) } else { LinearRgb::new(0.06, 0.04, 0.03) }
+        }),
         _ => None,
     }
 }
 
 /// Mostly blue or dark.
-fn trousers(who: u64) -> Rgb {
+fn trousers(who: u64) -> LinearRgb {
     let tone = 0.5 + share(who, 16);
     match who >> 24 & 3 {
-        0 => Rgb::new(0.04, 0.07, 0.16) * tone,
-        1 => Rgb::new(0.05, 0.05, 0.05) * tone,
-        2 => Rgb::new(0.20, 0.17, 0.12) * tone,
-        _ => Rgb::new(0.07, 0.10, 0.20) * tone,
+        0 => LinearRgb::new(0.04, 0.07, 0.16) * tone,
+        1 => LinearRgb::new(0.05, 0.05, 0.05) * tone,
+        2 => LinearRgb::new(0.20, 0.17, 0.12) * tone,
+        _ => LinearRgb::new(0.07, 0.10, 0.20) * tone,
     }
 }
 
 /// Shirts and posters: any hue, some of them near the colours of the map.
-fn vivid(what: u64) -> Rgb {
+fn vivid(what: u64) -> LinearRgb {
     let tone = 0.3 + 0.6 * share(what, 0);
-    let tint = Rgb::new(share(what, 8), share(what, 16), share(what, 24));
+    let tint = LinearRgb::new(share(what, 8), share(what, 16), share(what, 24));
     tint.map(|t| 0.03 + 0.7 * t * t) * tone
 }
 

@@ -4,16 +4,16 @@ use rand_chacha::rand_core::SeedableRng;
 use wayfix_estimation_traits::{Pose2, Pose3};
 
 use super::{
-    CameraSimulator, LeagueParams, Legged, Lighting, Picture, Rgb, Scene, Surface, UnmappedObjects, Venue,
-    field_map, landmarks,
+    CameraSimulator, LampSetting, LeagueParams, LeaguePicture, LeagueScene, LeagueVenue, LeggedRobot,
+    LinearRgb, SceneSurface, UnmappedObjects, field_map, landmarks,
 };
-use crate::SimError;
+use crate::SimulationError;
 use crate::random::deviate::uniform;
-use crate::random::{GaussMarkov, Source, Streams};
+use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
 
 /// One frame with its truth.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
+pub struct LeagueFrame {
     /// Middle of the exposure, milliseconds after the start.
     pub milliseconds: u64,
     /// Odometry since the last frame, and its time (just before the shutter opens, milliseconds after the start); `None` at the first
@@ -26,28 +26,28 @@ pub struct Frame {
     /// True pose of the camera in the world.
     pub camera_pose: Pose3<f64>,
     /// Which lamps are on.
-    pub lighting: Lighting,
+    pub lighting: LampSetting,
     /// The image with its true labels.
-    pub picture: Picture,
+    pub picture: LeaguePicture,
 }
 
 /// Iterator over the frames of a drive.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::{league::{LeagueParams, LeagueDrive}, random::Streams};
+/// use wayfix_scene_sim::{league::{LeagueParams, LeagueDrive}, random::RandomStreams};
 /// let params = LeagueParams { n_frames: 3, ..LeagueParams::default() };
-/// let drive = LeagueDrive::new(&params, Streams::new(ChaCha8Rng::seed_from_u64(1)))?;
+/// let drive = LeagueDrive::new(&params, RandomStreams::new(ChaCha8Rng::seed_from_u64(1)))?;
 /// let stamps: Vec<u64> = drive.map(|frame| frame.milliseconds).collect();
 /// assert_eq!(stamps, [100, 200, 300]);
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 pub struct LeagueDrive {
     params: LeagueParams,
-    streams: Streams,
-    venue: Venue,
-    map: Vec<Surface>,
+    streams: RandomStreams,
+    venue: LeagueVenue,
+    map: Vec<SceneSurface>,
     things: UnmappedObjects,
-    robot: Legged,
+    robot: LeggedRobot,
     camera_simulator: CameraSimulator,
     /// Of red and of blue.
     balance: [GaussMarkov; 2],
@@ -62,11 +62,13 @@ impl LeagueDrive {
     /// The robot at its start, the camera ready.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
-    pub fn new(params: &LeagueParams, mut streams: Streams) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
+    pub fn new(params: &LeagueParams, mut streams: RandomStreams) -> Result<Self, SimulationError> {
         let venue = match params.venue_seed {
-            Some(seed) => Venue::draw(Streams::new(ChaCha8Rng::seed_from_u64(seed)).of(Source::Venue))?,
-            None => Venue::draw(streams.of(Source::Venue))?,
+            Some(seed) => LeagueVenue::draw(
+                RandomStreams::new(ChaCha8Rng::seed_from_u64(seed)).of(RandomStreamPurpose::Venue),
+            )?,
+            None => LeagueVenue::draw(streams.of(RandomStreamPurpose::Venue))?,
         };
         Self::in_venue(params, venue, streams)
     }
@@ -74,15 +76,19 @@ impl LeagueDrive {
     /// The same in a venue of one's own.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
-    pub fn in_venue(params: &LeagueParams, venue: Venue, mut streams: Streams) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
+    pub fn in_venue(
+        params: &LeagueParams,
+        venue: LeagueVenue,
+        mut streams: RandomStreams,
+    ) -> Result<Self, SimulationError> {
         params.validate(&venue.camera)?;
-        let robot = Legged::new(params.robot, params.start, landmarks(), &mut streams)?;
+        let robot = LeggedRobot::new(params.robot, params.start, landmarks(), &mut streams)?;
         let camera_simulator = CameraSimulator::new(venue.camera)?;
         let drift = GaussMarkov::new(venue.camera.white_balance_correlation_s);
         Ok(Self {
-            map: Surface::of_map(&field_map()?),
-            things: UnmappedObjects::draw(streams.of(Source::UnmappedObjects)),
+            map: SceneSurface::of_map(&field_map()?),
+            things: UnmappedObjects::draw(streams.of(RandomStreamPurpose::UnmappedObjects)),
             robot,
             camera_simulator,
             balance: [drift.clone(), drift],
@@ -95,7 +101,7 @@ impl LeagueDrive {
     }
 
     /// The venue.
-    pub fn venue(&self) -> &Venue {
+    pub fn venue(&self) -> &LeagueVenue {
         &self.venue
     }
 
@@ -108,8 +114,8 @@ impl LeagueDrive {
 
     fn kidnap(&mut self) {
         let from = self.robot.pose().translation;
-        let margin = self.params.robot.walk.margin_m;
-        let rng = self.streams.of(Source::Kidnap);
+        let margin = self.params.robot.walk.board_margin_m;
+        let rng = self.streams.of(RandomStreamPurpose::Kidnap);
         let mut to = Pose2::new(0.0, 0.0, 0.0);
         // The field is 4.2 m long: most places are far enough.
         for _ in 0..100 {
@@ -122,20 +128,20 @@ impl LeagueDrive {
         self.robot.put(to);
     }
 
-    fn lighting(&self) -> Lighting {
-        let past = self.params.lights.iter().take_while(|(frame, _)| *frame <= self.n_taken);
-        past.last().map_or(Lighting::Bright, |(_, lighting)| *lighting)
+    fn lighting(&self) -> LampSetting {
+        let past = self.params.lamp_settings.iter().take_while(|(frame, _)| *frame <= self.n_taken);
+        past.last().map_or(LampSetting::Bright, |(_, lighting)| *lighting)
     }
 
-    fn balance(&mut self) -> Rgb {
+    fn balance(&mut self) -> LinearRgb {
         let period_s = f64::from(self.params.period_ms) * 1e-3;
         let sigma = self.venue.camera.white_balance_drift;
-        let rng = self.streams.of(Source::WhiteBalance);
+        let rng = self.streams.of(RandomStreamPurpose::WhiteBalance);
         let [red, blue] = self.balance.each_mut().map(|x| libm::exp(sigma * x.advance(period_s, rng)));
-        Rgb::new(red, 1.0, blue)
+        LinearRgb::new(red, 1.0, blue)
     }
 
-    fn frame(&mut self) -> Frame {
+    fn frame(&mut self) -> LeagueFrame {
         let middle = u64::from(self.params.period_ms) * (self.n_taken as u64 + 1);
         let exposure = u64::from(self.venue.camera.exposure_ms);
         let opens = middle - exposure / 2;
@@ -151,7 +157,7 @@ impl LeagueDrive {
         self.walk_until(opens + exposure);
         let closing = self.robot.camera_pose();
         let (lighting, picture) = (self.lighting(), self.picture(&pose, [&opening, &closing]));
-        Frame { milliseconds: middle, odometry, pose, mount, camera_pose, lighting, picture }
+        LeagueFrame { milliseconds: middle, odometry, pose, mount, camera_pose, lighting, picture }
     }
 
     /// Ignored before the first frame.
@@ -162,26 +168,26 @@ impl LeagueDrive {
         (self.n_taken > 0).then_some((milliseconds, moved))
     }
 
-    fn picture(&mut self, pose: &Pose2<f64>, camera: [&Pose3<f64>; 2]) -> Picture {
+    fn picture(&mut self, pose: &Pose2<f64>, camera: [&Pose3<f64>; 2]) -> LeaguePicture {
         let mut surfaces = self.map.clone();
         if self.params.with_unmapped_objects {
             surfaces.extend(self.things.surfaces(self.milliseconds as f64 * 1e-3, pose));
         }
         let balance = self.balance();
-        let scene = Scene {
+        let scene = LeagueScene {
             surfaces,
             paints: &self.venue.paints,
             light: self.venue.light(self.lighting()),
             backdrop: &self.venue.hall,
         };
-        self.camera_simulator.take(&scene, camera, &balance, self.streams.of(Source::Picture))
+        self.camera_simulator.take(&scene, camera, &balance, self.streams.of(RandomStreamPurpose::Picture))
     }
 }
 
 impl Iterator for LeagueDrive {
-    type Item = Frame;
+    type Item = LeagueFrame;
 
-    fn next(&mut self) -> Option<Frame> {
+    fn next(&mut self) -> Option<LeagueFrame> {
         if self.n_taken >= self.params.n_frames {
             return None;
         }

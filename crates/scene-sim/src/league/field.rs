@@ -1,8 +1,8 @@
 use nalgebra::{Vector2, Vector3};
 use rand::Rng;
-use wayfix_color_map::{Band, ColorId, ColorMap, Shape};
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape, PostBand};
 
-use crate::SimError;
+use crate::SimulationError;
 use crate::random::deviate::uniform;
 
 /// The map colours, in the order of their [`ColorId`]s.
@@ -42,12 +42,12 @@ const BEACON_RADIUS_M: f64 = 0.05;
 /// ```
 /// let map = wayfix_scene_sim::league::field_map()?;
 /// assert_eq!(map.colors(), wayfix_scene_sim::league::COLOR_NAMES);
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 ///
 /// # Errors
 /// Returns the errors of the map; none occur, because the shapes are constant.
-pub fn field_map() -> Result<ColorMap, SimError> {
+pub fn field_map() -> Result<ColorMap, SimulationError> {
     let mut shapes = carpet();
     shapes.extend(lines());
     shapes.extend(boards());
@@ -69,22 +69,22 @@ pub(super) fn spot<R: Rng + ?Sized>(margin_m: f64, rng: &mut R) -> Vector2<f64> 
     Vector2::new(within(HALF_LENGTH_M), within(HALF_WIDTH_M))
 }
 
-fn polygon(color: ColorId, corners: &[[f64; 3]]) -> Shape {
-    Shape::Polygon { color, vertices: corners.iter().map(|&c| Vector3::from(c)).collect() }
+fn polygon(color: ColorId, corners: &[[f64; 3]]) -> ColoredShape {
+    ColoredShape::Polygon { color, vertices: corners.iter().map(|&c| Vector3::from(c)).collect() }
 }
 
 /// A rectangle on the ground.
-fn flat(color: ColorId, x: [f64; 2], y: [f64; 2]) -> Shape {
+fn flat(color: ColorId, x: [f64; 2], y: [f64; 2]) -> ColoredShape {
     polygon(color, &[[x[0], y[0], 0.0], [x[1], y[0], 0.0], [x[1], y[1], 0.0], [x[0], y[1], 0.0]])
 }
 
 /// An upright rectangle from the ground up.
-fn upright(color: ColorId, from: [f64; 2], to: [f64; 2], height: f64) -> Shape {
+fn upright(color: ColorId, from: [f64; 2], to: [f64; 2], height: f64) -> ColoredShape {
     let [[ax, ay], [bx, by]] = [from, to];
     polygon(color, &[[ax, ay, 0.0], [bx, by, 0.0], [bx, by, height], [ax, ay, height]])
 }
 
-fn carpet() -> Vec<Shape> {
+fn carpet() -> Vec<ColoredShape> {
     let (x, y, cut) = (HALF_LENGTH_M, HALF_WIDTH_M, CORNER_M);
     let corners = [
         [x, cut - y, 0.0],
@@ -103,7 +103,7 @@ fn carpet() -> Vec<Shape> {
     vec![polygon(GREEN, &corners), in_goal(-1.0), in_goal(1.0)]
 }
 
-fn lines() -> Vec<Shape> {
+fn lines() -> Vec<ColoredShape> {
     let half = 0.5 * LINE_M;
     let mut lines = vec![flat(WHITE, [-half, half], [-HALF_WIDTH_M, HALF_WIDTH_M])];
     lines.extend((0..CIRCLE_PIECES).map(circle_piece));
@@ -123,7 +123,7 @@ fn lines() -> Vec<Shape> {
     lines
 }
 
-fn circle_piece(idx: usize) -> Shape {
+fn circle_piece(idx: usize) -> ColoredShape {
     let angle = |k: usize| std::f64::consts::TAU * k as f64 / CIRCLE_PIECES as f64;
     let at = |k: usize, radius: f64| {
         let (sin, cos) = libm::sincos(angle(k));
@@ -133,7 +133,7 @@ fn circle_piece(idx: usize) -> Shape {
     polygon(WHITE, &[at(idx, inner), at(idx, outer), at(idx + 1, outer), at(idx + 1, inner)])
 }
 
-fn boards() -> Vec<Shape> {
+fn boards() -> Vec<ColoredShape> {
     let (x, y, cut, goal) = (HALF_LENGTH_M, HALF_WIDTH_M, CORNER_M, GOAL_HALF_WIDTH_M);
     let board = |from, to| upright(WHITE, from, to, BOARD_M);
     let mut boards = Vec::new();
@@ -147,7 +147,7 @@ fn boards() -> Vec<Shape> {
     boards
 }
 
-fn goal(side: f64) -> [Shape; 3] {
+fn goal(side: f64) -> [ColoredShape; 3] {
     let color = goal_color(side);
     let (mouth, back, y) = (side * HALF_LENGTH_M, side * (HALF_LENGTH_M + GOAL_DEPTH_M), GOAL_HALF_WIDTH_M);
     [
@@ -167,12 +167,12 @@ fn beacon_places() -> [(f64, f64); 6] {
     [(-x, -y), (0.0, -y), (x, -y), (-x, y), (0.0, y), (x, y)]
 }
 
-fn beacons() -> impl Iterator<Item = Shape> {
+fn beacons() -> impl Iterator<Item = ColoredShape> {
     beacon_places().into_iter().map(|(x, y)| {
         let own = if x == 0.0 { GREEN } else { goal_color(x) };
         let (low, high) = if y < 0.0 { (own, PINK) } else { (PINK, own) };
-        let band = |color, from, to| Band { color, from, to };
+        let band = |color, from, to| PostBand { color, from, to };
         let bands = vec![band(WHITE, 0.0, 0.2), band(low, 0.2, 0.3), band(high, 0.3, 0.4)];
-        Shape::Post { x, y, radius: BEACON_RADIUS_M, bands }
+        ColoredShape::Post { x, y, radius: BEACON_RADIUS_M, bands }
     })
 }

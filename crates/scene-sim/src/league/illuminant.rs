@@ -1,4 +1,4 @@
-use super::Rgb;
+use super::LinearRgb;
 
 /// Linear sRGB of a black body of the given temperature (kelvin, clamped to 1667 … 25 000), with luminance 1.
 ///
@@ -9,7 +9,7 @@ use super::Rgb;
 /// let (warm, day) = (black_body(2700.0), black_body(6500.0));
 /// assert!(warm.x > 2.0 * warm.z && (day.x / day.z - 1.0).abs() < 0.05);
 /// ```
-pub fn black_body(kelvin: f64) -> Rgb {
+pub fn black_body(kelvin: f64) -> LinearRgb {
     let t = 1000.0 / kelvin.clamp(1667.0, 25_000.0);
     let x = if t > 0.25 {
         ((-0.266_123_9 * t - 0.234_358_9) * t + 0.877_695_6) * t + 0.179_910
@@ -27,11 +27,11 @@ pub fn black_body(kelvin: f64) -> Rgb {
 }
 
 /// Linear sRGB of luminance 1.
-fn from_xyz(x: f64, z: f64) -> Rgb {
-    Rgb::new(
+fn from_xyz(x: f64, z: f64) -> LinearRgb {
+    LinearRgb::new(
         3.240_6 * x - 1.537_2 - 0.498_6 * z,
         -0.968_9 * x + 1.875_8 + 0.041_5 * z,
         0.055_7 * x - 0.204_0 + 1.057_0 * z,
     )
-    .sup(&Rgb::repeat(0.01))
+    .sup(&LinearRgb::repeat(0.01))
 }

@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::Pose2;
 
-use super::{CameraParams, Lighting, RobotParams};
-use crate::{SimError, check};
+use super::{CameraParams, LampSetting, LeggedRobotParams};
+use crate::{SimulationError, check};
 
 /// One drive over the field with the camera running.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,13 +13,13 @@ pub struct LeagueParams {
     /// Seed of the venue; with `None` the venue belongs to the seed of the drive. Default `None`.
     pub venue_seed: Option<u64>,
     /// The light from the frame on, in the order of the frames. Default bright from frame 0 on; so it is before the first.
-    pub lights: Vec<(usize, Lighting)>,
+    pub lamp_settings: Vec<(usize, LampSetting)>,
     /// Start pose; `None` for a random one on the field. Default `None`.
     pub start: Option<Pose2<f64>>,
     /// Frames before which the robot is kidnapped, by at least 1 m. Default none.
     pub kidnaps: Vec<usize>,
     /// The robot.
-    pub robot: RobotParams,
+    pub robot: LeggedRobotParams,
     /// Whether there are robots, a ball and a referee that no map lists. Default true.
     pub with_unmapped_objects: bool,
     /// Number of labelled frames in the log. Default 12.
@@ -32,10 +32,10 @@ impl Default for LeagueParams {
             n_frames: 280,
             period_ms: 100,
             venue_seed: None,
-            lights: vec![(0, Lighting::Bright)],
+            lamp_settings: vec![(0, LampSetting::Bright)],
             start: None,
             kidnaps: Vec::new(),
-            robot: RobotParams::default(),
+            robot: LeggedRobotParams::default(),
             with_unmapped_objects: true,
             n_labelled: 12,
         }
@@ -44,7 +44,7 @@ impl Default for LeagueParams {
 
 impl LeagueParams {
     /// Validates the parameters for this camera; those of the robot are validated when it is created.
-    pub(super) fn validate(&self, camera: &CameraParams) -> Result<(), SimError> {
+    pub(super) fn validate(&self, camera: &CameraParams) -> Result<(), SimulationError> {
         check::count("frames", self.n_frames, 100_000)?;
         let (exposure, period) = (f64::from(camera.exposure_ms), f64::from(self.period_ms));
         check::above("period of the frames (ms)", period, exposure + 2.0, "2 ms longer than the exposure")?;

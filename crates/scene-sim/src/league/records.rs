@@ -1,8 +1,8 @@
-use wayfix_sensor_log::{CameraInfo, Data, EncodedImage, Record, Stamp};
+use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
 
-use super::{Frame, LeagueDrive, LeagueParams, N_COLORS, Picture};
-use crate::random::Streams;
-use crate::{SimError, check};
+use super::{LeagueDrive, LeagueFrame, LeagueParams, LeaguePicture, N_COLORS};
+use crate::random::RandomStreams;
+use crate::{SimulationError, check};
 
 /// Stamp of the start, nanoseconds, as in [`Simulation`](crate::Simulation).
 const START_NS: u64 = 1_600_000_000_000_000_000;
@@ -17,11 +17,11 @@ impl LeagueParams {
     /// (40 pixels at least) gets labels, as a manual choice of images would.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
-    pub fn simulate(&self, streams: Streams) -> Result<Vec<Record>, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
+    pub fn simulate(&self, streams: RandomStreams) -> Result<Vec<Record>, SimulationError> {
         check::count("labelled frames", self.n_labelled, self.n_frames)?;
         let drive = LeagueDrive::new(self, streams)?;
-        let camera_info = record(0, Data::CameraInfo(camera_info(&drive)));
+        let camera_info = record(0, RecordData::CameraInfo(camera_info(&drive)));
         let quality = drive.venue().camera.jpeg_quality;
         let mut frames = Vec::with_capacity(self.n_frames);
         let mut labelled: Vec<Option<Labelled>> = vec![None; self.n_labelled];
@@ -34,7 +34,7 @@ impl LeagueParams {
         for Labelled { idx, picture, .. } in labelled.into_iter().flatten() {
             let labels = EncodedImage::png_gray(picture.width, picture.height, &picture.labels)?;
             if let Some(Record { stamp, .. }) = frames[idx].last() {
-                let record = Record { stamp: *stamp, data: Data::TrueLabels(labels) };
+                let record = Record { stamp: *stamp, data: RecordData::TrueLabels(labels) };
                 let before_picture = frames[idx].len() - 1;
                 frames[idx].insert(before_picture, record);
             }
@@ -48,10 +48,10 @@ impl LeagueParams {
 struct Labelled {
     idx: usize,
     n_colors: usize,
-    picture: Picture,
+    picture: LeaguePicture,
 }
 
-fn consider(idx: usize, picture: &Picture, best: &mut Option<Labelled>) {
+fn consider(idx: usize, picture: &LeaguePicture, best: &mut Option<Labelled>) {
     let in_view =
         |color: u8| picture.labels.iter().filter(|&&label| label == color).count() >= IN_VIEW_PIXELS;
     let n_colors = (1..=N_COLORS as u8).filter(|&color| in_view(color)).count();
@@ -61,11 +61,12 @@ fn consider(idx: usize, picture: &Picture, best: &mut Option<Labelled>) {
 }
 
 /// The picture is the last.
-fn records_of(frame: &Frame, quality: u8) -> Result<Vec<Record>, SimError> {
-    let Picture { width, height, rgb, .. } = &frame.picture;
+fn records_of(frame: &LeagueFrame, quality: u8) -> Result<Vec<Record>, SimulationError> {
+    let LeaguePicture { width, height, rgb, .. } = &frame.picture;
     let jpeg = EncodedImage::jpeg(*width, *height, rgb, quality)?;
-    let odometry = frame.odometry.map(|(when, moved)| record(when, Data::OdometryIncrement(moved)));
-    let at_once = [Data::TruePose(frame.pose), Data::CameraMount(frame.mount), Data::Image(jpeg)];
+    let odometry = frame.odometry.map(|(when, moved)| record(when, RecordData::OdometryIncrement(moved)));
+    let at_once =
+        [RecordData::TruePose(frame.pose), RecordData::CameraMount(frame.mount), RecordData::Image(jpeg)];
     let at_once = at_once.map(|data| record(frame.milliseconds, data));
     Ok(odometry.into_iter().chain(at_once).collect())
 }
@@ -82,6 +83,6 @@ fn camera_info(drive: &LeagueDrive) -> CameraInfo {
     }
 }
 
-fn record(milliseconds: u64, data: Data) -> Record {
+fn record(milliseconds: u64, data: RecordData) -> Record {
     Record { stamp: Stamp::from_nanoseconds(START_NS + milliseconds * 1_000_000), data }
 }

@@ -4,9 +4,9 @@ use nalgebra::{Vector2, Vector3};
 use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
-use super::Rgb;
+use super::LinearRgb;
 use super::field::{HALF_LENGTH_M, HALF_WIDTH_M};
-use super::picture::{Form, Material, Surface};
+use super::picture::{Material, SceneSurface, SurfaceShape};
 use crate::random::deviate::uniform;
 
 const RED: [f64; 3] = [0.55, 0.05, 0.04];
@@ -54,23 +54,25 @@ impl UnmappedObjects {
     }
 
     /// Their surfaces at a time, away from the observing robot.
-    pub fn surfaces(&self, seconds: f64, watcher: &Pose2<f64>) -> Vec<Surface> {
+    pub fn surfaces(&self, seconds: f64, watcher: &Pose2<f64>) -> Vec<SceneSurface> {
         let mut surfaces = robot(&self.red.pose(seconds, watcher, 0.4), RED);
         surfaces.extend(robot(&self.blue.pose(seconds, watcher, 0.4), BLUE));
         let ball = self.ball.pose(seconds, watcher, 0.25).translation;
         let centre = Vector3::new(ball.x, ball.y, BALL_RADIUS_M);
-        surfaces
-            .push(Surface { form: Form::Ball { centre, radius: BALL_RADIUS_M }, material: material(ORANGE) });
+        surfaces.push(SceneSurface {
+            form: SurfaceShape::Ball { centre, radius: BALL_RADIUS_M },
+            material: material(ORANGE),
+        });
         surfaces.extend(self.legs(seconds));
         surfaces
     }
 
     /// The referee walks outside the boards, along the one side.
-    fn legs(&self, seconds: f64) -> [Surface; 2] {
+    fn legs(&self, seconds: f64) -> [SceneSurface; 2] {
         let (_, cos) = libm::sincos(self.referee.phase + self.referee.rate * seconds);
         let x = self.referee.centre.x + self.referee.reach.x * cos;
-        [-0.13, 0.13].map(|aside| Surface {
-            form: Form::Tube {
+        [-0.13, 0.13].map(|aside| SceneSurface {
+            form: SurfaceShape::Tube {
                 axis: Vector3::new(x + aside, HALF_WIDTH_M + 0.35 + 0.5 * aside, 0.0),
                 radius: 0.075,
                 from: 0.0,
@@ -97,13 +99,13 @@ impl Round {
 }
 
 fn material(paint: [f64; 3]) -> Material {
-    Material::Unmapped(Rgb::from(paint))
+    Material::Unmapped(LinearRgb::from(paint))
 }
 
 /// Four legs, a body with its team's patches, a head.
-fn robot(place: &Pose2<f64>, team: [f64; 3]) -> Vec<Surface> {
-    let cuboid = |low, high, paint| Surface::cuboid(place, low, high, material(paint));
-    let mut parts: Vec<Surface> = Vec::new();
+fn robot(place: &Pose2<f64>, team: [f64; 3]) -> Vec<SceneSurface> {
+    let cuboid = |low, high, paint| SceneSurface::cuboid(place, low, high, material(paint));
+    let mut parts: Vec<SceneSurface> = Vec::new();
     for (x, y) in [(-0.09, -0.06), (-0.09, 0.04), (0.07, -0.06), (0.07, 0.04)] {
         parts.extend(cuboid([x, y, 0.0], [x + 0.03, y + 0.02, 0.11], SHELL));
     }

@@ -2,9 +2,9 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-use super::{LeagueDrive, LeagueParams, Lighting, N_COLORS, Picture, Rgb, Venue, yuv};
-use crate::random::{Source, Streams};
-use crate::{SimError, check};
+use super::{LampSetting, LeagueDrive, LeagueParams, LeaguePicture, LeagueVenue, LinearRgb, N_COLORS, yuv};
+use crate::random::{RandomStreamPurpose, RandomStreams};
+use crate::{SimulationError, check};
 
 /// Statistics of the map colours in labelled images of one venue under one light.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct TrainingVenue {
     /// Its name; the two lights of one hall share the number.
     pub name: String,
     /// The lamps that are on.
-    pub lighting: Lighting,
+    pub lighting: LampSetting,
     /// Colour means of each image.
     pub images: Vec<ColorMeans>,
     /// Variance of Y, U and V of the pixels of one colour in one picture, pooled over colours and pictures by their degrees of freedom.
@@ -61,19 +61,19 @@ impl TrainingParams {
     /// let sets = params.gather(ChaCha8Rng::seed_from_u64(1))?;
     /// assert_eq!(sets.len(), 4);
     /// assert!(sets.iter().flat_map(|set| &set.images).any(|image| image.means[0].is_some()), "some carpet");
-    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
     /// ```
     ///
     /// # Errors
     /// Returns an error if there is to be too much of anything.
-    pub fn gather(&self, mut rng: ChaCha8Rng) -> Result<Vec<TrainingVenue>, SimError> {
+    pub fn gather(&self, mut rng: ChaCha8Rng) -> Result<Vec<TrainingVenue>, SimulationError> {
         check::count("halls", self.n_halls, 10_000)?;
         check::count("pictures", self.n_images, 10_000)?;
         let mut sets = Vec::new();
         let seeds: Vec<[u64; 2]> = (0..self.n_halls).map(|_| [rng.next_u64(), rng.next_u64()]).collect();
-        for lighting in [Lighting::Dark, Lighting::Bright] {
+        for lighting in [LampSetting::Dark, LampSetting::Bright] {
             for (hall, seeds) in seeds.iter().enumerate() {
-                let seed = seeds[usize::from(lighting == Lighting::Bright)];
+                let seed = seeds[usize::from(lighting == LampSetting::Bright)];
                 sets.push(self.set(hall, lighting, seeds[0], seed)?);
             }
         }
@@ -83,16 +83,16 @@ impl TrainingParams {
     fn set(
         &self,
         hall: usize,
-        lighting: Lighting,
+        lighting: LampSetting,
         venue_seed: u64,
         seed: u64,
-    ) -> Result<TrainingVenue, SimError> {
-        let streams = |seed| Streams::new(ChaCha8Rng::seed_from_u64(seed));
-        let venue = Venue::draw(streams(venue_seed).of(Source::Venue))?;
+    ) -> Result<TrainingVenue, SimulationError> {
+        let streams = |seed| RandomStreams::new(ChaCha8Rng::seed_from_u64(seed));
+        let venue = LeagueVenue::draw(streams(venue_seed).of(RandomStreamPurpose::Venue))?;
         let params = LeagueParams {
             n_frames: self.n_images,
             period_ms: PERIOD_MS,
-            lights: vec![(0, lighting)],
+            lamp_settings: vec![(0, lighting)],
             ..LeagueParams::default()
         };
         let mut pooled = Pooled::default();
@@ -100,7 +100,7 @@ impl TrainingParams {
         for frame in LeagueDrive::in_venue(&params, venue, streams(seed))? {
             images.push(self.means(&frame.picture, &mut pooled));
         }
-        let light = if lighting == Lighting::Dark { "dark" } else { "bright" };
+        let light = if lighting == LampSetting::Dark { "dark" } else { "bright" };
         Ok(TrainingVenue {
             name: format!("hall {hall:02} {light}"),
             lighting,
@@ -110,7 +110,7 @@ impl TrainingParams {
         })
     }
 
-    fn means(&self, picture: &Picture, pooled: &mut Pooled) -> ColorMeans {
+    fn means(&self, picture: &LeaguePicture, pooled: &mut Pooled) -> ColorMeans {
         let mut sums = [Moments::default(); N_COLORS];
         for (pixel, &label) in picture.rgb.chunks_exact(3).zip(&picture.labels) {
             if let Some(sum) = usize::from(label).checked_sub(1).and_then(|color| sums.get_mut(color)) {
@@ -120,7 +120,8 @@ impl TrainingParams {
         let seen = |sum: &Moments| sum.count >= self.min_pixels.max(2);
         sums.iter().filter(|sum| seen(sum)).for_each(|sum| pooled.add(sum));
         ColorMeans {
-            means: sums.map(|sum| seen(&sum).then(|| (sum.mean() + Rgb::new(0.0, 128.0, 128.0)).into())),
+            means: sums
+                .map(|sum| seen(&sum).then(|| (sum.mean() + LinearRgb::new(0.0, 128.0, 128.0)).into())),
             counts: sums.map(|sum| sum.count),
         }
     }
@@ -130,26 +131,26 @@ impl TrainingParams {
 #[derive(Clone, Copy, Default)]
 struct Moments {
     count: usize,
-    sum: Rgb,
-    squares: Rgb,
+    sum: LinearRgb,
+    squares: LinearRgb,
 }
 
 impl Moments {
     fn add(&mut self, rgb: &[u8]) {
-        let yuv = yuv::from_rgb(&Rgb::from_iterator(rgb.iter().map(|&byte| f64::from(byte))));
+        let yuv = yuv::from_rgb(&LinearRgb::from_iterator(rgb.iter().map(|&byte| f64::from(byte))));
         self.count += 1;
         self.sum += yuv;
         self.squares += yuv.component_mul(&yuv);
     }
 
-    fn mean(&self) -> Rgb {
+    fn mean(&self) -> LinearRgb {
         self.sum / self.count as f64
     }
 }
 
 #[derive(Default)]
 struct Pooled {
-    squares: Rgb,
+    squares: LinearRgb,
     degrees_of_freedom: f64,
 }
 
@@ -159,7 +160,7 @@ impl Pooled {
         self.degrees_of_freedom += (sum.count - 1) as f64;
     }
 
-    fn variance(&self) -> Rgb {
+    fn variance(&self) -> LinearRgb {
         self.squares / self.degrees_of_freedom.max(1.0)
     }
 }

@@ -1,8 +1,8 @@
 use nalgebra::Vector3;
 use rand::Rng;
 
-use super::{CameraParams, Hall, Lamp, Lamps, N_COLORS, Rgb, black_body};
-use crate::SimError;
+use super::{CameraParams, HallBackdrop, Lamp, Lamps, LinearRgb, N_COLORS, black_body};
+use crate::SimulationError;
 use crate::random::deviate::{below, chance, normal, uniform};
 
 /// Reflectances of the map colours, in their order, before a venue's own pots of paint.
@@ -13,29 +13,29 @@ const WHITE_BALANCES_K: [f64; 3] = [2800.0, 4300.0, 5600.0];
 
 /// A place with a field: its paints, its lamps, and how the camera was set for it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Venue {
+pub struct LeagueVenue {
     /// Diffuse reflectance of each map colour.
-    pub paints: [Rgb; N_COLORS],
+    pub paints: [LinearRgb; N_COLORS],
     /// Everyday light.
     pub bright: Lamps,
     /// All lamps off but one.
     pub dark: Lamps,
     /// Surroundings of the field.
-    pub hall: Hall,
+    pub hall: HallBackdrop,
     /// The camera; set for the everyday light and never changed.
     pub camera: CameraParams,
 }
 
 /// Which lamps are on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Lighting {
+pub enum LampSetting {
     /// Everyday light.
     Bright,
     /// All lamps off but one.
     Dark,
 }
 
-impl Venue {
+impl LeagueVenue {
     /// Draws a random venue.
     ///
     /// Four or six panels (2700 to 6500 K, every one a little different, somewhat green or magenta together) hang 2.4 to 3.4 m high in two
@@ -45,15 +45,15 @@ impl Venue {
     ///
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-    /// use wayfix_scene_sim::league::Venue;
-    /// let venue = Venue::draw(&mut ChaCha8Rng::seed_from_u64(1))?;
+    /// use wayfix_scene_sim::league::LeagueVenue;
+    /// let venue = LeagueVenue::draw(&mut ChaCha8Rng::seed_from_u64(1))?;
     /// assert!([4, 6].contains(&venue.bright.lamps.len()) && venue.dark.lamps.len() == 1);
-    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
     /// ```
     ///
     /// # Errors
     /// Returns the errors of the camera; none occur for its valid constants.
-    pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Result<Self, SimError> {
+    pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Result<Self, SimulationError> {
         let paints = paints(rng);
         let kelvin = uniform(2700.0, 6500.0, rng);
         let lamps = lamps(kelvin, rng);
@@ -63,7 +63,7 @@ impl Venue {
         let dark = lighting(vec![lamps[left_on]], &paints, around, window);
         let bright = lighting(lamps, &paints, around, window);
         let camera = camera(kelvin, &paints, &bright, rng)?;
-        let hall = Hall {
+        let hall = HallBackdrop {
             half_length_m: uniform(3.2, 5.5, rng),
             half_width_m: uniform(2.3, 4.5, rng),
             crowd: uniform(0.3, 0.8, rng),
@@ -73,21 +73,21 @@ impl Venue {
     }
 
     /// The lamps that are on.
-    pub fn light(&self, lighting: Lighting) -> &Lamps {
+    pub fn light(&self, lighting: LampSetting) -> &Lamps {
         match lighting {
-            Lighting::Bright => &self.bright,
-            Lighting::Dark => &self.dark,
+            LampSetting::Bright => &self.bright,
+            LampSetting::Dark => &self.dark,
         }
     }
 }
 
-fn paints<R: Rng + ?Sized>(rng: &mut R) -> [Rgb; N_COLORS] {
+fn paints<R: Rng + ?Sized>(rng: &mut R) -> [LinearRgb; N_COLORS] {
     let carpet = libm::exp(0.12 * normal(rng));
     let mut index = 0;
     PAINTS.map(|paint| {
         let whole = if index == 0 { carpet } else { libm::exp(0.04 * normal(rng)) };
         index += 1;
-        Rgb::from(paint)
+        LinearRgb::from(paint)
             .map(|r| (r * whole * libm::exp(0.05 * normal(rng)) + uniform(0.0, 0.02, rng)).min(0.9))
     })
 }
@@ -100,8 +100,8 @@ fn lamps<R: Rng + ?Sized>(kelvin: f64, rng: &mut R) -> Vec<Lamp> {
     for row in [-1.0, 1.0] {
         for k in 0..per_row {
             let along = 2.0 * k as f64 / (per_row - 1) as f64 - 1.0;
-            let color =
-                black_body(kelvin * libm::exp(0.15 * normal(rng))).component_mul(&Rgb::new(1.0, tint, 1.0));
+            let color = black_body(kelvin * libm::exp(0.15 * normal(rng)))
+                .component_mul(&LinearRgb::new(1.0, tint, 1.0));
             let position = Vector3::new(
                 spread * along + 0.15 * normal(rng),
                 row * aside + 0.1 * normal(rng),
@@ -120,10 +120,10 @@ fn mean_luminance(lamps: &[Lamp]) -> f64 {
     0.2126 * direct.x + 0.7152 * direct.y + 0.0722 * direct.z
 }
 
-fn mean_irradiance(light: &Lamps) -> Rgb {
+fn mean_irradiance(light: &Lamps) -> LinearRgb {
     use super::LightField;
     let along = |half: f64| [-0.8, -0.4, 0.0, 0.4, 0.8].map(|share| share * half);
-    let mut sum = Rgb::zeros();
+    let mut sum = LinearRgb::zeros();
     for x in along(2.1) {
         for y in along(1.35) {
             sum += light.irradiance(&Vector3::new(x, y, 0.0), &Vector3::z());
@@ -133,11 +133,11 @@ fn mean_irradiance(light: &Lamps) -> Rgb {
 }
 
 /// Adds the light reflected by walls and ceiling (the share `around` of the direct light), that of the windows, and that reflected by the carpet.
-fn lighting(lamps: Vec<Lamp>, paints: &[Rgb; N_COLORS], around: f64, window: Rgb) -> Lamps {
+fn lighting(lamps: Vec<Lamp>, paints: &[LinearRgb; N_COLORS], around: f64, window: LinearRgb) -> Lamps {
     let mut light = Lamps { lamps, ..Lamps::default() };
     let direct = mean_irradiance(&light);
     light.ambient = direct * around + window;
-    let floor = paints[0] * 0.7 + Rgb::new(0.23, 0.21, 0.19) * 0.3;
+    let floor = paints[0] * 0.7 + LinearRgb::new(0.23, 0.21, 0.19) * 0.3;
     light.bounce = floor.component_mul(&(direct + light.ambient)) + (direct * around + window) * 0.5;
     light
 }
@@ -145,10 +145,10 @@ fn lighting(lamps: Vec<Lamp>, paints: &[Rgb; N_COLORS], around: f64, window: Rgb
 /// A camera adjusted to the everyday light, as far as its few settings allow.
 fn camera<R: Rng + ?Sized>(
     kelvin: f64,
-    paints: &[Rgb; N_COLORS],
+    paints: &[LinearRgb; N_COLORS],
     bright: &Lamps,
     rng: &mut R,
-) -> Result<CameraParams, SimError> {
+) -> Result<CameraParams, SimulationError> {
     let off = |preset: f64| (1.0 / preset - 1.0 / kelvin).abs();
     let mut presets = WHITE_BALANCES_K;
     presets.sort_by(|a, b| off(*a).total_cmp(&off(*b)));

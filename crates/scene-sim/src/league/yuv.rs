@@ -1,9 +1,9 @@
-use super::Rgb;
+use super::LinearRgb;
 
 /// ITU-R BT.601 in full range, as in JPEG files, with U and V about 0.
-pub(super) fn from_rgb(rgb: &Rgb) -> Rgb {
+pub(super) fn from_rgb(rgb: &LinearRgb) -> LinearRgb {
     let y = 0.299 * rgb.x + 0.587 * rgb.y + 0.114 * rgb.z;
-    Rgb::new(y, (rgb.z - y) / 1.772, (rgb.x - y) / 1.402)
+    LinearRgb::new(y, (rgb.z - y) / 1.772, (rgb.x - y) / 1.402)
 }
 
 /// The inverse, as bytes.

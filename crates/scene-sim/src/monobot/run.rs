@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
-use crate::random::{Source, Streams, deviate};
-use crate::{SimError, check};
+use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
+use crate::{SimulationError, check};
 
 /// The drive and its noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,16 +60,16 @@ impl MonobotParams {
     /// Simulates $`x_{k+1} = x_k + u_k + v_k`$ with $`v_k ∼ N(0, (α u_k)^2)`$, [Eq. 19]; the commands are the increments of $`x_0 + A \sin(2πk/N)`$.
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-    /// use wayfix_scene_sim::{monobot::MonobotParams, random::Streams};
-    /// let run = MonobotParams::default().simulate(&mut Streams::new(ChaCha8Rng::seed_from_u64(1)))?;
+    /// use wayfix_scene_sim::{monobot::MonobotParams, random::RandomStreams};
+    /// let run = MonobotParams::default().simulate(&mut RandomStreams::new(ChaCha8Rng::seed_from_u64(1)))?;
     /// assert_eq!((run.controls.len(), run.positions.len(), run.positions[0]), (100, 101, -1.0));
     /// assert!(run.controls.iter().sum::<f64>().abs() < 1e-12); // commanded back to where it began
-    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
     /// ```
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
-    pub fn simulate(&self, streams: &mut Streams) -> Result<MonobotRun, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
+    pub fn simulate(&self, streams: &mut RandomStreams) -> Result<MonobotRun, SimulationError> {
         self.validate()?;
         let controls: Vec<f64> = (0..self.n_steps).map(|k| self.planned(k + 1) - self.planned(k)).collect();
         let positions = self.positions(&controls, streams);
@@ -79,15 +79,22 @@ impl MonobotParams {
             |source, distance: f64| distance + noise(source, self.range_noise * distance.abs());
         let ranges = positions
             .iter()
-            .map(|x| landmarks.iter().map(|landmark| measured(Source::RangeNoise, landmark - x)).collect())
+            .map(|x| {
+                landmarks
+                    .iter()
+                    .map(|landmark| measured(RandomStreamPurpose::RangeNoise, landmark - x))
+                    .collect()
+            })
             .collect();
-        let anchor_ranges = positions.iter().map(|x| measured(Source::Anchor, -x)).collect();
-        let external_positions =
-            positions.iter().map(|x| x + noise(Source::ExternalPosition, self.external_sigma_m)).collect();
+        let anchor_ranges = positions.iter().map(|x| measured(RandomStreamPurpose::Anchor, -x)).collect();
+        let external_positions = positions
+            .iter()
+            .map(|x| x + noise(RandomStreamPurpose::ExternalPosition, self.external_sigma_m))
+            .collect();
         Ok(MonobotRun { controls, positions, landmarks, ranges, anchor_ranges, external_positions })
     }
 
-    fn validate(&self) -> Result<(), SimError> {
+    fn validate(&self) -> Result<(), SimulationError> {
         check::count("steps", self.n_steps, 1_000_000)?;
         check::count("landmarks", self.n_landmarks, 10_000)?;
         check::count("ranges", self.n_steps.saturating_mul(self.n_landmarks), 100_000_000)?;
@@ -104,10 +111,12 @@ impl MonobotParams {
         self.start_m + self.amplitude_m * libm::sin(TAU * k as f64 / self.n_steps as f64)
     }
 
-    fn positions(&self, controls: &[f64], streams: &mut Streams) -> Vec<f64> {
+    fn positions(&self, controls: &[f64], streams: &mut RandomStreams) -> Vec<f64> {
         let mut x = self.start_m;
         let moved = controls.iter().map(|u| {
-            x += u + self.motion_noise * u.abs() * deviate::normal(streams.of(Source::OdometryNoise));
+            x += u + self.motion_noise
+                * u.abs()
+                * deviate::normal(streams.of(RandomStreamPurpose::OdometryNoise));
             x
         });
         std::iter::once(self.start_m).chain(moved).collect()

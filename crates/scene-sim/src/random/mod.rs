@@ -7,4 +7,4 @@ mod streams;
 
 pub use gauss_markov::GaussMarkov;
 pub use noise_shape::NoiseShape;
-pub use streams::{Source, Streams};
+pub use streams::{RandomStreamPurpose, RandomStreams};

@@ -3,7 +3,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use rand::Rng;
 
 use super::deviate::{normal, not_zero, unit};
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// Distribution of a white error; always of mean 0 and variance 1, so that a stated σ is the standard deviation.
 /// ```
@@ -44,7 +44,7 @@ impl NoiseShape {
         }
     }
 
-    pub(crate) fn validate(self) -> Result<(), SimError> {
+    pub(crate) fn validate(self) -> Result<(), SimulationError> {
         match self {
             Self::StudentT { degrees_of_freedom } => {
                 check::above("degrees of freedom", degrees_of_freedom, 2.0, "finite and above 2")

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 /// Purpose of a random number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum Source {
+pub enum RandomStreamPurpose {
     /// Places of landmarks.
     Landmarks,
     /// Places of things with unlisted codes.
@@ -82,7 +82,7 @@ pub enum Source {
     Other(u32),
 }
 
-impl Source {
+impl RandomStreamPurpose {
     /// The number of the ChaCha stream. Stored fixtures depend on these: never renumber, only append.
     const fn stream(self) -> u64 {
         match self {
@@ -127,33 +127,33 @@ impl Source {
     }
 }
 
-/// One independent generator per [`Source`], all from one seed.
+/// One independent generator per [`RandomStreamPurpose`], all from one seed.
 ///
 /// Enabling an error source, or changing its size, does not affect the draws of the others: two logs that differ in one parameter can be
 /// compared sample by sample.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::{Rng, SeedableRng}};
-/// use wayfix_scene_sim::random::{Source, Streams};
+/// use wayfix_scene_sim::random::{RandomStreamPurpose, RandomStreams};
 ///
-/// let mut one = Streams::new(ChaCha8Rng::seed_from_u64(1));
-/// let mut other = Streams::new(ChaCha8Rng::seed_from_u64(1));
-/// other.of(Source::Outlier).next_u64(); // does not disturb …
-/// assert_eq!(one.of(Source::RangeNoise).next_u64(), other.of(Source::RangeNoise).next_u64());
+/// let mut one = RandomStreams::new(ChaCha8Rng::seed_from_u64(1));
+/// let mut other = RandomStreams::new(ChaCha8Rng::seed_from_u64(1));
+/// other.of(RandomStreamPurpose::Outlier).next_u64(); // does not disturb …
+/// assert_eq!(one.of(RandomStreamPurpose::RangeNoise).next_u64(), other.of(RandomStreamPurpose::RangeNoise).next_u64());
 /// ```
 #[derive(Clone, Debug)]
-pub struct Streams {
+pub struct RandomStreams {
     root: ChaCha8Rng,
-    open: BTreeMap<Source, ChaCha8Rng>,
+    open: BTreeMap<RandomStreamPurpose, ChaCha8Rng>,
 }
 
-impl Streams {
+impl RandomStreams {
     /// The streams with the seed of `rng`, each from its beginning, for any position of `rng`.
     pub fn new(rng: ChaCha8Rng) -> Self {
         Self { root: rng, open: BTreeMap::new() }
     }
 
     /// The generator for one source, where the last draw left it.
-    pub fn of(&mut self, source: Source) -> &mut ChaCha8Rng {
+    pub fn of(&mut self, source: RandomStreamPurpose) -> &mut ChaCha8Rng {
         self.open.entry(source).or_insert_with(|| {
             let mut rng = self.root.clone();
             rng.set_stream(source.stream());

@@ -2,12 +2,12 @@ use std::f64::consts::FRAC_PI_2;
 
 use wayfix_estimation_traits::Pose2;
 
-use super::{Piece, Route};
-use crate::{SimError, check};
+use super::{Route, RoutePiece};
+use crate::{SimulationError, check};
 
 /// Parallel rows there and back, joined by half circles; starts at the lower left, centred on the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LawnMower {
+pub struct LawnMowerRoute {
     /// Number of rows, 1 to 100 000.
     pub n_rows: usize,
     /// Straight part of each row, metres.
@@ -16,21 +16,21 @@ pub struct LawnMower {
     pub spacing_m: f64,
 }
 
-impl LawnMower {
+impl LawnMowerRoute {
     /// The open route.
     ///
     /// # Errors
     /// Returns an error if there is no row or too many, or a length is not a positive number.
-    pub fn route(&self) -> Result<Route, SimError> {
+    pub fn route(&self) -> Result<Route, SimulationError> {
         check::count("rows of the lawn-mower", self.n_rows, 100_000)?;
         check::positive("length of a row (m)", self.row_length_m)?;
         check::positive("spacing of the rows (m)", self.spacing_m)?;
-        let row = Piece { length_m: self.row_length_m, curvature_per_m: 0.0 };
+        let row = RoutePiece { length_m: self.row_length_m, curvature_per_m: 0.0 };
         let mut pieces = Vec::with_capacity(2 * self.n_rows);
         for idx in 0..self.n_rows {
             if idx > 0 {
                 let side = if idx % 2 == 1 { 1.0 } else { -1.0 };
-                pieces.push(Piece {
+                pieces.push(RoutePiece {
                     length_m: FRAC_PI_2 * self.spacing_m,
                     curvature_per_m: side * 2.0 / self.spacing_m,
                 });

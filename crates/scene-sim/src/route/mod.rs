@@ -7,9 +7,9 @@ mod pieces;
 mod rounded_rectangle;
 mod waypoints;
 
-pub use circle::Circle;
-pub use lawn_mower::LawnMower;
+pub use circle::CircleRoute;
+pub use lawn_mower::LawnMowerRoute;
 pub use params::RouteParams;
-pub use pieces::{Piece, Route};
-pub use rounded_rectangle::RoundedRectangle;
-pub use waypoints::Waypoints;
+pub use pieces::{Route, RoutePiece};
+pub use rounded_rectangle::RoundedRectangleRoute;
+pub use waypoints::WaypointRoute;

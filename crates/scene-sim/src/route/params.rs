@@ -1,36 +1,36 @@
 use rand::Rng;
 
-use super::{Circle, LawnMower, RoundedRectangle, Route, Waypoints};
-use crate::SimError;
+use super::{CircleRoute, LawnMowerRoute, RoundedRectangleRoute, Route, WaypointRoute};
+use crate::SimulationError;
 
 /// Parameters of a route.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::route::{RouteParams, Waypoints};
-/// let params = Waypoints { n_waypoints: 20, half_width_m: 5.0, turn_radius_m: 0.5 };
+/// use wayfix_scene_sim::route::{RouteParams, WaypointRoute};
+/// let params = WaypointRoute { n_waypoints: 20, half_width_m: 5.0, turn_radius_m: 0.5 };
 /// let route = RouteParams::Waypoints(params).build(&mut ChaCha8Rng::seed_from_u64(1))?;
 /// assert!(!route.is_closed() && route.length_m() > 20.0);
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RouteParams {
     /// Around a circle.
-    Circle(Circle),
+    Circle(CircleRoute),
     /// Around a rectangle.
-    RoundedRectangle(RoundedRectangle),
+    RoundedRectangle(RoundedRectangleRoute),
     /// There and back in rows.
-    LawnMower(LawnMower),
+    LawnMower(LawnMowerRoute),
     /// From one random point to the next.
-    Waypoints(Waypoints),
+    Waypoints(WaypointRoute),
 }
 
 impl RouteParams {
     /// Lays out the route; only random ones draw from `rng`.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range, and [`SimError::NoRoom`] if waypoints do not fit.
-    pub fn build<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Route, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range, and [`SimulationError::NoRoom`] if waypoints do not fit.
+    pub fn build<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Route, SimulationError> {
         match self {
             Self::Circle(circle) => circle.route(),
             Self::RoundedRectangle(rectangle) => rectangle.route(),

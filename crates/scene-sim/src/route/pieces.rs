@@ -1,6 +1,6 @@
 use wayfix_estimation_traits::Pose2;
 
-use crate::{SimError, check, plane};
+use crate::{SimulationError, check, plane};
 
 /// Maximum length of a route, m; beyond it, the arc length loses digits that the driver needs.
 const LONGEST_M: f64 = 1e7;
@@ -9,7 +9,7 @@ const CLOSING_GAP_M: f64 = 1e-6;
 
 /// A stretch of constant curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct RoutePiece {
     /// Length along the stretch, metres.
     pub length_m: f64,
     /// Curvature, 1/m: 0 straight, positive to the left.
@@ -21,17 +21,17 @@ pub struct Piece {
 /// ```
 /// use std::f64::consts::PI;
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_scene_sim::route::{Piece, Route};
-/// let half_circle = Piece { length_m: 2.0 * PI, curvature_per_m: 0.5 };
+/// use wayfix_scene_sim::route::{RoutePiece, Route};
+/// let half_circle = RoutePiece { length_m: 2.0 * PI, curvature_per_m: 0.5 };
 /// let route = Route::open(Pose2::new(0.0, 0.0, 0.0), vec![half_circle])?;
 /// assert!((route.at(2.0 * PI).y() - 4.0).abs() < 1e-12); // on the other side of a circle of radius 2 m
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
     /// Arc length and pose at the start of each piece.
     starts: Vec<(f64, Pose2<f64>)>,
-    pieces: Vec<Piece>,
+    pieces: Vec<RoutePiece>,
     length_m: f64,
     closed: bool,
 }
@@ -41,7 +41,7 @@ impl Route {
     ///
     /// # Errors
     /// Returns an error if there is no piece, a number is not finite, a length is not positive, or the whole is longer than 10 000 km.
-    pub fn open(start: Pose2<f64>, pieces: Vec<Piece>) -> Result<Self, SimError> {
+    pub fn open(start: Pose2<f64>, pieces: Vec<RoutePiece>) -> Result<Self, SimulationError> {
         check::finite("start of the route", start.x() + start.y() + start.heading())?;
         let mut starts = Vec::with_capacity(pieces.len());
         let (mut length_m, mut pose) = (0.0, start);
@@ -61,7 +61,7 @@ impl Route {
     ///
     /// # Errors
     /// Returns the errors of [`open`](Self::open), and an error if the end differs from the start by more than a micrometre or a microradian.
-    pub fn closed(start: Pose2<f64>, pieces: Vec<Piece>) -> Result<Self, SimError> {
+    pub fn closed(start: Pose2<f64>, pieces: Vec<RoutePiece>) -> Result<Self, SimulationError> {
         let route = Self::open(start, pieces)?;
         let gap = plane::relative(&start, &route.end());
         let gap_m = gap.translation.norm().max(gap.heading().abs());

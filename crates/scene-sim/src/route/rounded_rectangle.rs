@@ -2,12 +2,12 @@ use std::f64::consts::FRAC_PI_2;
 
 use wayfix_estimation_traits::Pose2;
 
-use super::{Piece, Route};
-use crate::{SimError, check};
+use super::{Route, RoutePiece};
+use crate::{SimulationError, check};
 
 /// A rectangle with rounded corners about the origin, counter-clockwise from the middle of its lower side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RoundedRectangle {
+pub struct RoundedRectangleRoute {
     /// Extent along x, metres.
     pub length_m: f64,
     /// Extent along y, metres.
@@ -16,12 +16,12 @@ pub struct RoundedRectangle {
     pub corner_radius_m: f64,
 }
 
-impl RoundedRectangle {
+impl RoundedRectangleRoute {
     /// The closed route.
     ///
     /// # Errors
     /// Returns an error if a number is not positive, or the corners do not leave straight sides.
-    pub fn route(&self) -> Result<Route, SimError> {
+    pub fn route(&self) -> Result<Route, SimulationError> {
         let r = self.corner_radius_m;
         check::positive("radius of the corners (m)", r)?;
         check::above(
@@ -36,8 +36,8 @@ impl RoundedRectangle {
             2.0 * r,
             "finite and above two corner radii",
         )?;
-        let straight = |length_m| Piece { length_m, curvature_per_m: 0.0 };
-        let corner = Piece { length_m: FRAC_PI_2 * r, curvature_per_m: 1.0 / r };
+        let straight = |length_m| RoutePiece { length_m, curvature_per_m: 0.0 };
+        let corner = RoutePiece { length_m: FRAC_PI_2 * r, curvature_per_m: 1.0 / r };
         let (along, across) = (self.length_m - 2.0 * r, self.width_m - 2.0 * r);
         let pieces = vec![
             straight(0.5 * along),

@@ -4,9 +4,9 @@ use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
-use super::{Piece, Route};
+use super::{Route, RoutePiece};
 use crate::random::deviate::uniform;
-use crate::{SimError, check, plane};
+use crate::{SimulationError, check, plane};
 
 /// Draws per waypoint before the square counts as too small for the turning circle.
 const ATTEMPTS: usize = 1000;
@@ -15,7 +15,7 @@ const ATTEMPTS: usize = 1000;
 ///
 /// Curvature is 0 or ± 1/radius; turns reach at most two radii beyond the square. Starts at the origin along x.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Waypoints {
+pub struct WaypointRoute {
     /// Number of points to visit, 1 to 100 000.
     pub n_waypoints: usize,
     /// Half the side of the square, metres.
@@ -24,12 +24,12 @@ pub struct Waypoints {
     pub turn_radius_m: f64,
 }
 
-impl Waypoints {
+impl WaypointRoute {
     /// The open route.
     ///
     /// # Errors
     /// Returns an error if a number is out of range, or points outside the turning circle are not found in the square.
-    pub fn route<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Route, SimError> {
+    pub fn route<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Route, SimulationError> {
         check::count("waypoints", self.n_waypoints, 100_000)?;
         check::positive("half width of the waypoints (m)", self.half_width_m)?;
         check::positive("turning radius (m)", self.turn_radius_m)?;
@@ -39,7 +39,7 @@ impl Waypoints {
             let wanted = self.n_waypoints;
             let (turn, straight) = (0..ATTEMPTS)
                 .find_map(|_| turn_and_go(&pose, &self.draw(rng), self.turn_radius_m))
-                .ok_or(SimError::NoRoom { what: "waypoints", placed, wanted })?;
+                .ok_or(SimulationError::NoRoom { what: "waypoints", placed, wanted })?;
             for piece in [turn, straight].into_iter().filter(|piece| piece.length_m > 0.0) {
                 pose = plane::advance(&pose, piece.length_m, piece.length_m * piece.curvature_per_m);
                 pieces.push(piece);
@@ -55,7 +55,7 @@ impl Waypoints {
 }
 
 /// The arc that turns towards `point` and the following straight line; `None` if the point lies inside the turning circle.
-fn turn_and_go(pose: &Pose2<f64>, point: &Vector2<f64>, radius: f64) -> Option<(Piece, Piece)> {
+fn turn_and_go(pose: &Pose2<f64>, point: &Vector2<f64>, radius: f64) -> Option<(RoutePiece, RoutePiece)> {
     let seen = plane::to_body(pose, point);
     let side = if seen.y < 0.0 { -1.0 } else { 1.0 };
     // Mirrored to a left turn about (0, radius).
@@ -66,6 +66,6 @@ fn turn_and_go(pose: &Pose2<f64>, point: &Vector2<f64>, radius: f64) -> Option<(
     }
     let straight = straight_squared.sqrt();
     let angle = libm::atan2(from_centre.y, from_centre.x) + FRAC_PI_2 - libm::atan2(straight, radius);
-    let turn = Piece { length_m: radius * angle.rem_euclid(TAU), curvature_per_m: side / radius };
-    Some((turn, Piece { length_m: straight, curvature_per_m: 0.0 }))
+    let turn = RoutePiece { length_m: radius * angle.rem_euclid(TAU), curvature_per_m: side / radius };
+    Some((turn, RoutePiece { length_m: straight, curvature_per_m: 0.0 }))
 }

@@ -2,13 +2,13 @@ use std::f64::consts::FRAC_PI_3;
 
 use super::laser::office_laser;
 use super::{OdometryParams, OtherRobotParams, PlanarParams, Scenario, ScenarioParams};
-use crate::drive::{DriveParams, SlipParams};
+use crate::drive::{SlipParams, WheeledRobotParams};
 use crate::monobot::MonobotParams;
 use crate::random::NoiseShape;
-use crate::route::{Circle, RoundedRectangle, RouteParams, Waypoints};
-use crate::sensor::range_bearing::{Clutter, ClutterLabel, DriftParams, RangeSigma};
+use crate::route::{CircleRoute, RoundedRectangleRoute, RouteParams, WaypointRoute};
+use crate::sensor::range_bearing::{Clutter, ClutterLabel, CorrelatedErrorParams, RangeSigma};
 use crate::sensor::{GaussianOdometryParams, OdometryKind, RangeBearingParams, WheelOdometryParams};
-use crate::world::{CorridorLoop, Layout, Roadside, UniformField};
+use crate::world::{CorridorLoop, Roadside, UniformField, WorldLayout};
 
 pub(super) fn all() -> Vec<Scenario> {
     let planar =
@@ -27,11 +27,15 @@ pub(super) fn all() -> Vec<Scenario> {
 /// Two laps of a circle with exactly the noise that filters assume, about 500 steps of 0.25 m as in the shared range-bearing logs.
 fn loop_known() -> PlanarParams {
     PlanarParams {
-        layout: Layout::UniformField(UniformField { n_landmarks: 60, half_width_m: 16.0, separation_m: 1.0 }),
+        layout: WorldLayout::UniformField(UniformField {
+            n_landmarks: 60,
+            half_width_m: 16.0,
+            separation_m: 1.0,
+        }),
         n_unknown_codes: 0,
         other_robots: Vec::new(),
-        route: RouteParams::Circle(Circle { radius_m: 10.0 }),
-        drive: DriveParams::default(),
+        route: RouteParams::Circle(CircleRoute { radius_m: 10.0 }),
+        drive: WheeledRobotParams::default(),
         odometry: OdometryParams::Gaussian(GaussianOdometryParams::default()),
         sensor: RangeBearingParams { max_range_m: 7.0, ..RangeBearingParams::default() },
         duration_ms: 250_000,
@@ -49,21 +53,25 @@ fn loop_unlabelled() -> PlanarParams {
 /// that grow with range and hang together in time, two other robots, codes that no table lists.
 fn office_velocity() -> PlanarParams {
     let wander = |half_width_m| {
-        RouteParams::Waypoints(Waypoints { n_waypoints: 60, half_width_m, turn_radius_m: 0.35 })
+        RouteParams::Waypoints(WaypointRoute { n_waypoints: 60, half_width_m, turn_radius_m: 0.35 })
     };
     PlanarParams {
-        layout: Layout::UniformField(UniformField { n_landmarks: 15, half_width_m: 3.0, separation_m: 0.8 }),
+        layout: WorldLayout::UniformField(UniformField {
+            n_landmarks: 15,
+            half_width_m: 3.0,
+            separation_m: 0.8,
+        }),
         n_unknown_codes: 2,
         other_robots: [2, 3].map(|id| OtherRobotParams { id, route: wander(2.0), speed_mps: 0.12 }).to_vec(),
         route: wander(2.2),
-        drive: DriveParams {
+        drive: WheeledRobotParams {
             speed_mps: 0.16,
             lookahead_m: 0.2,
             left_radius_error: 0.008,
             right_radius_error: -0.004,
-            track_error: 0.03,
-            slip: SlipParams { sigma: 0.06, correlation_time_s: 2.0, shared: 0.5 },
-            ..DriveParams::default()
+            wheel_separation_error: 0.03,
+            slip: SlipParams { slip_sigma: 0.06, correlation_time_s: 2.0, wheel_correlation: 0.5 },
+            ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {
             kind: OdometryKind::Velocity,
@@ -77,7 +85,7 @@ fn office_velocity() -> PlanarParams {
             bearing_sigma_rad: 0.01,
             noise_shape: NoiseShape::StudentT { degrees_of_freedom: 5.0 },
             range_bias_m: 0.02,
-            drift: DriftParams {
+            drift: CorrelatedErrorParams {
                 range: RangeSigma { constant_m: 0.02, per_meter: 0.03 },
                 bearing_sigma_rad: 0.006,
                 correlation_time_s: 8.0,
@@ -94,25 +102,25 @@ fn office_velocity() -> PlanarParams {
 /// Rocks along a road, every sin at once.
 fn rough_known() -> PlanarParams {
     PlanarParams {
-        layout: Layout::Roadside(Roadside { n_landmarks: 50, clear_m: 1.0, verge_m: 4.0 }),
+        layout: WorldLayout::Roadside(Roadside { n_landmarks: 50, clear_m: 1.0, verge_m: 4.0 }),
         n_unknown_codes: 3,
         other_robots: vec![OtherRobotParams {
             id: 2,
-            route: RouteParams::Circle(Circle { radius_m: 6.0 }),
+            route: RouteParams::Circle(CircleRoute { radius_m: 6.0 }),
             speed_mps: 0.4,
         }],
-        route: RouteParams::RoundedRectangle(RoundedRectangle {
+        route: RouteParams::RoundedRectangle(RoundedRectangleRoute {
             length_m: 24.0,
             width_m: 14.0,
             corner_radius_m: 2.0,
         }),
-        drive: DriveParams {
+        drive: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.003,
             right_radius_error: -0.001,
-            track_error: 0.02,
-            slip: SlipParams { sigma: 0.05, correlation_time_s: 1.0, shared: 0.6 },
-            ..DriveParams::default()
+            wheel_separation_error: 0.02,
+            slip: SlipParams { slip_sigma: 0.05, correlation_time_s: 1.0, wheel_correlation: 0.6 },
+            ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {
             period_ms: 250,
@@ -129,7 +137,7 @@ fn rough_known() -> PlanarParams {
             range_bias_m: 0.04,
             range_scale: 1.005,
             bearing_bias_rad: 0.01,
-            drift: DriftParams {
+            drift: CorrelatedErrorParams {
                 range: RangeSigma { constant_m: 0.02, per_meter: 0.005 },
                 bearing_sigma_rad: 0.005,
                 correlation_time_s: 3.0,
@@ -150,7 +158,7 @@ fn rough_known() -> PlanarParams {
 /// Five laps of a corridor about 64 m long, landmarks on its walls and hidden behind its corners.
 fn long_loop() -> PlanarParams {
     PlanarParams {
-        layout: Layout::CorridorLoop(CorridorLoop {
+        layout: WorldLayout::CorridorLoop(CorridorLoop {
             length_m: 22.0,
             width_m: 12.0,
             corridor_m: 3.0,
@@ -158,18 +166,18 @@ fn long_loop() -> PlanarParams {
         }),
         n_unknown_codes: 0,
         other_robots: Vec::new(),
-        route: RouteParams::RoundedRectangle(RoundedRectangle {
+        route: RouteParams::RoundedRectangle(RoundedRectangleRoute {
             length_m: 22.0,
             width_m: 12.0,
             corner_radius_m: 1.5,
         }),
-        drive: DriveParams {
+        drive: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.0005,
             right_radius_error: -0.0003,
-            track_error: 0.005,
-            slip: SlipParams { sigma: 0.02, correlation_time_s: 1.0, shared: 0.5 },
-            ..DriveParams::default()
+            wheel_separation_error: 0.005,
+            slip: SlipParams { slip_sigma: 0.02, correlation_time_s: 1.0, wheel_correlation: 0.5 },
+            ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {
             period_ms: 500,

@@ -1,23 +1,23 @@
 use wayfix_sensor_log::Record;
 
 use super::{OdometryParams, Scenario, ScenarioParams};
-use crate::drive::{DriveParams, SlipParams};
-use crate::random::{Source, Streams};
-use crate::route::{RoundedRectangle, RouteParams};
+use crate::drive::{SlipParams, WheeledRobotParams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
+use crate::route::{RoundedRectangleRoute, RouteParams};
 use crate::sensor::laser::People;
 use crate::sensor::{Laser, LaserParams, WheelOdometryParams};
-use crate::world::{Layout, OfficeFloor, PlanarWorld};
-use crate::{SimError, Simulation};
+use crate::world::{OfficeFloor, PlanarWorld, WorldLayout};
+use crate::{Simulation, SimulationError};
 
 /// Everything about one drive with a laser; the log has the walls as truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaserDriveParams {
     /// Walls.
-    pub layout: Layout,
+    pub layout: WorldLayout,
     /// Route of the robot.
     pub route: RouteParams,
     /// Motion of the robot.
-    pub drive: DriveParams,
+    pub drive: WheeledRobotParams,
     /// Odometry.
     pub odometry: OdometryParams,
     /// Laser.
@@ -32,10 +32,10 @@ impl LaserDriveParams {
     /// The log, in time order.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range, and [`SimError::NoRoom`] if objects do not fit.
-    pub fn simulate(&self, streams: &mut Streams) -> Result<Vec<Record>, SimError> {
-        let route = self.route.build(streams.of(Source::Route))?;
-        let world = PlanarWorld::new(self.layout.build(&route, streams.of(Source::Landmarks))?);
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range, and [`SimulationError::NoRoom`] if objects do not fit.
+    pub fn simulate(&self, streams: &mut RandomStreams) -> Result<Vec<Record>, SimulationError> {
+        let route = self.route.build(streams.of(RandomStreamPurpose::Route))?;
+        let world = PlanarWorld::new(self.layout.build(&route, streams.of(RandomStreamPurpose::Landmarks))?);
         let simulation = Simulation {
             drive: self.drive,
             duration_ms: self.duration_ms,
@@ -52,7 +52,7 @@ impl LaserDriveParams {
 /// %, which alone turns the odometry by 22° per lap. The scan period of a quarter of a second keeps the log below 3 MB.
 pub(super) fn office_laser() -> Scenario {
     let params = LaserDriveParams {
-        layout: Layout::OfficeFloor(OfficeFloor {
+        layout: WorldLayout::OfficeFloor(OfficeFloor {
             length_m: 28.4,
             width_m: 17.4,
             corridor_m: 2.0,
@@ -62,18 +62,18 @@ pub(super) fn office_laser() -> Scenario {
             door_m: 0.9,
             spacing_m: 5.0,
         }),
-        route: RouteParams::RoundedRectangle(RoundedRectangle {
+        route: RouteParams::RoundedRectangle(RoundedRectangleRoute {
             length_m: 28.4,
             width_m: 17.4,
             corner_radius_m: 1.0,
         }),
-        drive: DriveParams {
+        drive: WheeledRobotParams {
             speed_mps: 0.8,
             left_radius_error: 0.0008,
             right_radius_error: -0.0005,
-            track_error: 0.01,
-            slip: SlipParams { sigma: 0.03, correlation_time_s: 1.0, shared: 0.5 },
-            ..DriveParams::default()
+            wheel_separation_error: 0.01,
+            slip: SlipParams { slip_sigma: 0.03, correlation_time_s: 1.0, wheel_correlation: 0.5 },
+            ..WheeledRobotParams::default()
         },
         odometry: OdometryParams::Wheels(WheelOdometryParams {
             period_ms: 250,

@@ -13,4 +13,4 @@ pub use laser::LaserDriveParams;
 pub use named::{Scenario, ScenarioParams};
 pub use planar::{OdometryParams, OtherRobotParams, PlanarParams};
 #[cfg(feature = "indoors")]
-pub use store::StoreLapsParams;
+pub use store::RetailStoreLapsParams;

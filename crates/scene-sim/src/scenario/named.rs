@@ -4,13 +4,13 @@ use wayfix_sensor_log::{Record, Stamp};
 #[cfg(feature = "league")]
 use super::league;
 #[cfg(feature = "indoors")]
-use super::store::{self, StoreLapsParams};
+use super::store::{self, RetailStoreLapsParams};
 use super::{LaserDriveParams, PlanarParams, catalogue};
-use crate::SimError;
+use crate::SimulationError;
 #[cfg(feature = "league")]
 use crate::league::LeagueParams;
 use crate::monobot::MonobotParams;
-use crate::random::Streams;
+use crate::random::RandomStreams;
 
 /// A set-up with a name and a seed.
 /// ```
@@ -19,7 +19,7 @@ use crate::random::Streams;
 /// let scenario = Scenario::named("monobot")?;
 /// let records = scenario.simulate(ChaCha8Rng::seed_from_u64(scenario.seed))?;
 /// assert!(records.is_sorted_by_key(|record| record.stamp));
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
@@ -46,7 +46,7 @@ pub enum ScenarioParams {
     League(Box<LeagueParams>),
     /// A robot with an omnidirectional camera in a store.
     #[cfg(feature = "indoors")]
-    StoreLaps(Box<StoreLapsParams>),
+    StoreLaps(Box<RetailStoreLapsParams>),
 }
 
 impl Scenario {
@@ -72,7 +72,7 @@ impl Scenario {
     ///
     /// # Errors
     /// Returns an error if there is none.
-    pub fn named(name: &str) -> Result<Self, SimError> {
+    pub fn named(name: &str) -> Result<Self, SimulationError> {
         let all = [
             Self::all(),
             #[cfg(feature = "league")]
@@ -81,7 +81,7 @@ impl Scenario {
             Self::in_store(),
         ];
         let found = all.into_iter().flatten().find(|scenario| scenario.name == name);
-        found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
+        found.ok_or_else(|| SimulationError::UnknownScenario { name: name.to_owned() })
     }
 
     /// The same with other random draws. A store or a hall of the four-legged league is then drawn too, with unseen
@@ -90,7 +90,7 @@ impl Scenario {
     /// use wayfix_scene_sim::Scenario;
     /// let scenario = Scenario::named("office_velocity")?.with_seed(100);
     /// assert_eq!(scenario.seed, 100);
-    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
     /// ```
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = seed;
@@ -108,8 +108,8 @@ impl Scenario {
     /// The log, in time order. A generator seeded with [`seed`](Self::seed) gives the log of this name.
     /// # Errors
     /// Returns an error if a parameter is out of range.
-    pub fn simulate(&self, rng: ChaCha8Rng) -> Result<Vec<Record>, SimError> {
-        let mut streams = Streams::new(rng);
+    pub fn simulate(&self, rng: ChaCha8Rng) -> Result<Vec<Record>, SimulationError> {
+        let mut streams = RandomStreams::new(rng);
         match &self.params {
             ScenarioParams::Planar(params) => params.simulate(&mut streams),
             ScenarioParams::Laser(params) => params.simulate(&mut streams),

@@ -1,21 +1,21 @@
 use nalgebra::Vector2;
 use wayfix_sensor_log::Record;
 
-use crate::drive::DriveParams;
-use crate::random::{Source, Streams, deviate};
+use crate::drive::WheeledRobotParams;
+use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
 use crate::route::RouteParams;
 use crate::sensor::{
     GaussianOdometry, GaussianOdometryParams, RangeBearingDetector, RangeBearingParams, Sensor,
     WheelOdometry, WheelOdometryParams,
 };
-use crate::world::{Layout, OtherRobot, Plan, PlanarWorld};
-use crate::{SimError, Simulation, check};
+use crate::world::{FloorPlan, OtherRobot, PlanarWorld, WorldLayout};
+use crate::{Simulation, SimulationError, check};
 
 /// Everything about one drive in the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanarParams {
     /// Landmarks and walls.
-    pub layout: Layout,
+    pub layout: WorldLayout,
     /// Number of objects with unlisted codes 1000, 1001, …, placed randomly among the landmarks; at most 1000.
     pub n_unknown_codes: usize,
     /// Robots that drive about; at most 100.
@@ -23,7 +23,7 @@ pub struct PlanarParams {
     /// Route of the robot.
     pub route: RouteParams,
     /// Motion of the robot.
-    pub drive: DriveParams,
+    pub drive: WheeledRobotParams,
     /// Odometry.
     pub odometry: OdometryParams,
     /// Sensor.
@@ -58,10 +58,10 @@ impl PlanarParams {
     /// The log, in time order.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range, and [`SimError::NoRoom`] if objects do not fit.
-    pub fn simulate(&self, streams: &mut Streams) -> Result<Vec<Record>, SimError> {
-        let route = self.route.build(streams.of(Source::Route))?;
-        let plan = self.layout.build(&route, streams.of(Source::Landmarks))?;
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range, and [`SimulationError::NoRoom`] if objects do not fit.
+    pub fn simulate(&self, streams: &mut RandomStreams) -> Result<Vec<Record>, SimulationError> {
+        let route = self.route.build(streams.of(RandomStreamPurpose::Route))?;
+        let plan = self.layout.build(&route, streams.of(RandomStreamPurpose::Landmarks))?;
         let world = PlanarWorld {
             unknown_codes: self.unknown_codes(&plan, streams)?,
             other_robots: self.other_robots(streams)?,
@@ -79,11 +79,11 @@ impl PlanarParams {
 
     fn unknown_codes(
         &self,
-        plan: &Plan,
-        streams: &mut Streams,
-    ) -> Result<Vec<(u32, Vector2<f64>)>, SimError> {
+        plan: &FloorPlan,
+        streams: &mut RandomStreams,
+    ) -> Result<Vec<(u32, Vector2<f64>)>, SimulationError> {
         check::count("things with unknown codes", self.n_unknown_codes, 1000)?;
-        let rng = streams.of(Source::UnknownCodes);
+        let rng = streams.of(RandomStreamPurpose::UnknownCodes);
         let points = || plan.landmarks.iter().map(|l| Vector2::new(l.x, l.y));
         let (low, high) = (points().reduce(|a, b| a.inf(&b)), points().reduce(|a, b| a.sup(&b)));
         let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
@@ -95,9 +95,9 @@ impl PlanarParams {
         Ok((1000..).take(self.n_unknown_codes).map(anywhere).collect())
     }
 
-    fn other_robots(&self, streams: &mut Streams) -> Result<Vec<OtherRobot>, SimError> {
+    fn other_robots(&self, streams: &mut RandomStreams) -> Result<Vec<OtherRobot>, SimulationError> {
         check::count("other robots", self.other_robots.len(), 100)?;
-        let rng = streams.of(Source::OtherRobots);
+        let rng = streams.of(RandomStreamPurpose::OtherRobots);
         self.other_robots
             .iter()
             .map(|robot| {
@@ -110,7 +110,7 @@ impl PlanarParams {
 }
 
 impl OdometryParams {
-    pub(super) fn instrument(&self) -> Result<Box<dyn Sensor>, SimError> {
+    pub(super) fn instrument(&self) -> Result<Box<dyn Sensor>, SimulationError> {
         Ok(match self {
             Self::Gaussian(params) => Box::new(GaussianOdometry::new(*params)?),
             Self::Wheels(params) => Box::new(WheelOdometry::new(*params)?),

@@ -1,20 +1,22 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
+use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
 use super::{Scenario, ScenarioParams};
-use crate::SimError;
-use crate::indoors::{IndoorDrive, IndoorParams, IndoorStep, Store, StoreParams, calibrated_robot};
-use crate::random::Streams;
+use crate::SimulationError;
+use crate::indoors::{
+    IndoorDrive, IndoorParams, IndoorStep, RetailStore, RetailStoreParams, calibrated_robot,
+};
+use crate::random::RandomStreams;
 
 /// Stamp of the start, nanoseconds, as in [`Simulation`](crate::Simulation).
 const START_NS: u64 = 1_600_000_000_000_000_000;
 
 /// Laps around the shelves of a store with an omnidirectional camera.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StoreLapsParams {
+pub struct RetailStoreLapsParams {
     /// The store.
-    pub store: StoreParams,
+    pub store: RetailStoreParams,
     /// Seed of the store and of its robot's errors.
     pub store_seed: u64,
     /// Laps around everything.
@@ -27,8 +29,8 @@ pub struct StoreLapsParams {
 
 /// Those with views of a store.
 pub(super) fn all() -> Vec<Scenario> {
-    let params = StoreLapsParams {
-        store: StoreParams::area(),
+    let params = RetailStoreLapsParams {
+        store: RetailStoreParams::area(),
         store_seed: 31,
         n_laps: 2,
         drive: IndoorParams { n_people: 1, ..IndoorParams::default() },
@@ -37,14 +39,14 @@ pub(super) fn all() -> Vec<Scenario> {
     vec![Scenario { name: "store_area", seed: 31, params: ScenarioParams::StoreLaps(Box::new(params)) }]
 }
 
-impl StoreLapsParams {
+impl RetailStoreLapsParams {
     /// The log in time order: before each view but the first an odometry increment, then true pose and view at its stamp.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
-    pub fn simulate(&self, streams: Streams) -> Result<Vec<Record>, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
+    pub fn simulate(&self, streams: RandomStreams) -> Result<Vec<Record>, SimulationError> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.store_seed);
-        let building = Store::draw(self.store, &mut rng)?.building();
+        let building = RetailStore::draw(self.store, &mut rng)?.building();
         let params = IndoorParams { drive: calibrated_robot(&mut rng), ..self.drive };
         let route = building.aisles().laps(self.n_laps, &mut rng)?;
         let mut records = Vec::new();
@@ -54,12 +56,12 @@ impl StoreLapsParams {
         Ok(records)
     }
 
-    fn records(&self, step: &IndoorStep) -> Result<Vec<Record>, SimError> {
+    fn records(&self, step: &IndoorStep) -> Result<Vec<Record>, SimulationError> {
         let (width, height) = (step.view.width as u32, step.view.height as u32);
         let image = EncodedImage::jpeg(width, height, &step.view.rgb, self.jpeg_quality)?;
-        let odometry = step.odometry.map(Data::OdometryIncrement);
+        let odometry = step.odometry.map(RecordData::OdometryIncrement);
         let stamp = Stamp::from_nanoseconds(START_NS + step.milliseconds * 1_000_000);
-        let at_once = [Data::TruePose(step.pose), Data::Image(image)];
+        let at_once = [RecordData::TruePose(step.pose), RecordData::Image(image)];
         Ok(odometry.into_iter().chain(at_once).map(|data| Record { stamp, data }).collect())
     }
 }

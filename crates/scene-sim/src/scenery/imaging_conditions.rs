@@ -3,8 +3,8 @@ use rand_chacha::rand_core::SeedableRng;
 
 use super::RgbPicture;
 use crate::random::deviate::quick_normal;
-use crate::random::{Source, Streams};
-use crate::{SimError, check};
+use crate::random::{RandomStreamPurpose, RandomStreams};
+use crate::{SimulationError, check};
 
 /// Appearance of a scene on a later visit: another camera, another light, and another position.
 ///
@@ -65,17 +65,17 @@ impl ImagingConditions {
     /// The picture of `scene` on this visit. Beyond the edge the last pixel repeats.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] if a number is not finite or has the wrong sign, or if the image has another number of bytes than
+    /// Returns [`SimulationError::Parameter`] if a number is not finite or has the wrong sign, or if the image has another number of bytes than
     /// its size requires.
-    pub fn picture_of(&self, scene: &RgbPicture, seed: u64) -> Result<RgbPicture, SimError> {
+    pub fn picture_of(&self, scene: &RgbPicture, seed: u64) -> Result<RgbPicture, SimulationError> {
         self.check()?;
         let n_bytes = scene.width.saturating_mul(scene.height).saturating_mul(3);
         if scene.rgb.len() != n_bytes {
             let (what, value) = ("bytes of the picture", scene.rgb.len() as f64);
-            return Err(SimError::Parameter { what, value, must: "3 · width · height" });
+            return Err(SimulationError::Parameter { what, value, must: "3 · width · height" });
         }
-        let mut streams = Streams::new(ChaCha8Rng::seed_from_u64(seed));
-        let rng = streams.of(Source::Pixels);
+        let mut streams = RandomStreams::new(ChaCha8Rng::seed_from_u64(seed));
+        let rng = streams.of(RandomStreamPurpose::Pixels);
         let mut rgb = Vec::with_capacity(n_bytes);
         for y in 0..scene.height {
             for x in 0..scene.width {
@@ -106,7 +106,7 @@ impl ImagingConditions {
         ((logistic(light.min(1.0)) - dark) / (bright - dark)).clamp(0.0, 1.0)
     }
 
-    fn check(&self) -> Result<(), SimError> {
+    fn check(&self) -> Result<(), SimulationError> {
         check::finite("shift to the right", self.shift_px.0)?;
         check::finite("shift down", self.shift_px.1)?;
         self.cast.into_iter().try_for_each(|factor| check::positive("cast of colour", factor))?;

@@ -10,7 +10,7 @@
 //! let real = ImagingConditions::default().picture_of(&learned, lab.seed)?;
 //! assert_eq!((real.width, real.height), (learned.width, learned.height));
 //! assert_ne!(real.rgb, learned.rgb);
-//! # Ok::<(), wayfix_scene_sim::SimError>(())
+//! # Ok::<(), wayfix_scene_sim::SimulationError>(())
 //! ```
 
 pub(crate) mod canvas;

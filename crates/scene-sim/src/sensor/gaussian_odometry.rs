@@ -1,9 +1,9 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::Data;
+use wayfix_sensor_log::RecordData;
 
-use super::{Reading, Sensor, TrueState};
-use crate::random::{Source, Streams, deviate};
-use crate::{SimError, check, plane};
+use super::{Sensor, SensorReading, TrueState};
+use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
+use crate::{SimulationError, check, plane};
 
 /// Increments of the true pose plus white Gaussian noise: the odometry that textbook filters assume.
 ///
@@ -29,7 +29,7 @@ impl GaussianOdometryParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         check::period("period of the odometry (ms)", self.period_ms)?;
         check::not_negative("σ of odometry increments (m)", self.sigma_m)?;
         check::not_negative("σ of odometry turns (rad)", self.sigma_rad)
@@ -47,8 +47,8 @@ impl GaussianOdometry {
     /// Odometry that has not begun yet.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] if a parameter is out of range.
-    pub fn new(params: GaussianOdometryParams) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] if a parameter is out of range.
+    pub fn new(params: GaussianOdometryParams) -> Result<Self, SimulationError> {
         params.validate()?;
         Ok(Self { params, last: None })
     }
@@ -59,15 +59,15 @@ impl Sensor for GaussianOdometry {
         self.params.period_ms
     }
 
-    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut RandomStreams) -> Option<SensorReading> {
         let last = self.last.replace(moment.pose)?;
         let step = plane::relative(&last, &moment.pose);
-        let mut noise = |sigma: f64| sigma * deviate::normal(streams.of(Source::OdometryNoise));
+        let mut noise = |sigma: f64| sigma * deviate::normal(streams.of(RandomStreamPurpose::OdometryNoise));
         let noisy = Pose2::new(
             step.x() + noise(self.params.sigma_m),
             step.y() + noise(self.params.sigma_m),
             step.heading() + noise(self.params.sigma_rad),
         );
-        Some(Reading { data: Data::OdometryIncrement(noisy), stamp_offset_ms: 0 })
+        Some(SensorReading { data: RecordData::OdometryIncrement(noisy), stamp_offset_ms: 0 })
     }
 }

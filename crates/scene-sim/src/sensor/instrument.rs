@@ -1,8 +1,8 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::Data;
+use wayfix_sensor_log::RecordData;
 
-use crate::random::Streams;
-use crate::world::World;
+use crate::random::RandomStreams;
+use crate::world::SensorWorld;
 
 /// The truth at one millisecond.
 #[derive(Clone, Copy)]
@@ -14,7 +14,7 @@ pub struct TrueState<'a> {
     /// Angles of the left and right wheel since the start, rad.
     pub wheel_angles: [f64; 2],
     /// The world.
-    pub world: &'a dyn World,
+    pub world: &'a dyn SensorWorld,
 }
 
 impl TrueState<'_> {
@@ -26,9 +26,9 @@ impl TrueState<'_> {
 
 /// Output of a sensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reading {
+pub struct SensorReading {
     /// The measurement.
-    pub data: Data,
+    pub data: RecordData,
     /// Difference of the stamp from the measured moment, ms; negative for an early stamp.
     pub stamp_offset_ms: i64,
 }
@@ -42,5 +42,5 @@ pub trait Sensor {
     fn period_ms(&self) -> u32;
 
     /// The current reading; `None` if there is none.
-    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading>;
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut RandomStreams) -> Option<SensorReading>;
 }

@@ -1,11 +1,11 @@
 use std::f64::consts::TAU;
 
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Velocity};
+use wayfix_sensor_log::{RecordData, Velocity};
 
-use super::{Reading, Sensor, TrueState};
-use crate::random::{Source, Streams, deviate};
-use crate::{SimError, check, plane};
+use super::{Sensor, SensorReading, TrueState};
+use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
+use crate::{SimulationError, check, plane};
 
 /// Form of wheel odometry in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub struct WheelOdometryParams {
     /// Wheel radius believed, metres. Default 0.05.
     pub wheel_radius_m: f64,
     /// Track believed, metres. Default 0.30.
-    pub track_m: f64,
+    pub wheel_separation_m: f64,
     /// Encoder ticks per turn of a wheel; `None` measures angles exactly. Default 2000.
     pub ticks_per_turn: Option<u32>,
     /// σ of the white error of each wheel's travel, as a share of the travel. Default 0.
@@ -39,7 +39,7 @@ impl Default for WheelOdometryParams {
             kind: OdometryKind::Increment,
             period_ms: 100,
             wheel_radius_m: 0.05,
-            track_m: 0.30,
+            wheel_separation_m: 0.30,
             ticks_per_turn: Some(2000),
             travel_noise: 0.0,
         }
@@ -51,10 +51,10 @@ impl WheelOdometryParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         check::period("period of the odometry (ms)", self.period_ms)?;
         check::positive("wheel radius of the odometry (m)", self.wheel_radius_m)?;
-        check::positive("track of the odometry (m)", self.track_m)?;
+        check::positive("track of the odometry (m)", self.wheel_separation_m)?;
         check::positive("encoder ticks per turn", self.ticks_per_turn.map_or(1.0, f64::from))?;
         check::not_negative("σ of a wheel's travel", self.travel_noise)
     }
@@ -70,8 +70,8 @@ pub struct WheelOdometry {
 impl WheelOdometry {
     /// Encoders at their initial count.
     /// # Errors
-    /// Returns [`SimError::Parameter`] if a parameter is out of range.
-    pub fn new(params: WheelOdometryParams) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] if a parameter is out of range.
+    pub fn new(params: WheelOdometryParams) -> Result<Self, SimulationError> {
         params.validate()?;
         Ok(Self { params, last: None })
     }
@@ -93,23 +93,24 @@ impl Sensor for WheelOdometry {
         self.params.period_ms
     }
 
-    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut RandomStreams) -> Option<SensorReading> {
         let now = moment.wheel_angles.map(|angle| self.counted(angle));
         let last = self.last.replace(now)?;
         let [left, right] = [0, 1].map(|k| {
-            let noise = self.params.travel_noise * deviate::normal(streams.of(Source::OdometryNoise));
+            let noise =
+                self.params.travel_noise * deviate::normal(streams.of(RandomStreamPurpose::OdometryNoise));
             (now[k] - last[k]) * self.params.wheel_radius_m * (1.0 + noise)
         });
-        let (travel, turn) = (0.5 * (left + right), (right - left) / self.params.track_m);
+        let (travel, turn) = (0.5 * (left + right), (right - left) / self.params.wheel_separation_m);
         let seconds = f64::from(self.params.period_ms) * 1e-3;
         Some(match self.params.kind {
-            OdometryKind::Velocity => Reading {
-                data: Data::Velocity(Velocity { linear: travel / seconds, angular: turn / seconds }),
+            OdometryKind::Velocity => SensorReading {
+                data: RecordData::Velocity(Velocity { linear: travel / seconds, angular: turn / seconds }),
                 stamp_offset_ms: -i64::from(self.params.period_ms),
             },
             OdometryKind::Increment => {
                 let step = plane::advance(&Pose2::new(0.0, 0.0, 0.0), travel, turn);
-                Reading { data: Data::OdometryIncrement(step), stamp_offset_ms: 0 }
+                SensorReading { data: RecordData::OdometryIncrement(step), stamp_offset_ms: 0 }
             }
         })
     }

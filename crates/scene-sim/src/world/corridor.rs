@@ -1,9 +1,9 @@
 use nalgebra::Vector2;
 use rand::Rng;
 
-use super::{Plan, Wall, layout::MOST_LANDMARKS};
+use super::{FloorPlan, Wall, layout::MOST_LANDMARKS};
 use crate::random::deviate::uniform;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// A corridor around a rectangular block about the origin; landmarks hang on both walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ impl CorridorLoop {
     ///
     /// # Errors
     /// Returns an error if a number is not positive, the corridor leaves no block inside, or there are too many landmarks.
-    pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Plan, SimError> {
+    pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<FloorPlan, SimulationError> {
         check::positive("width of the corridor (m)", self.corridor_m)?;
         check::positive("spacing of the landmarks (m)", self.spacing_m)?;
         let must = "finite and above the width of the corridor";
@@ -35,7 +35,7 @@ impl CorridorLoop {
         let inner = Wall::rectangle(self.length_m - self.corridor_m, self.width_m - self.corridor_m);
         let walls: Vec<Wall> = outer.into_iter().chain(inner).collect();
         let points = walls.iter().flat_map(|wall| self.hang(wall, rng)).collect();
-        Ok(Plan::numbered(points, walls))
+        Ok(FloorPlan::numbered(points, walls))
     }
 
     /// One landmark in each section of `spacing_m`, at a random place in its middle half.

@@ -1,9 +1,9 @@
 use nalgebra::Vector2;
 use rand::Rng;
 
-use super::{Plan, layout::MOST_LANDMARKS};
+use super::{FloorPlan, layout::MOST_LANDMARKS};
 use crate::random::deviate::uniform;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// Draws per landmark before the square counts as full.
 const ATTEMPTS: usize = 1000;
@@ -31,9 +31,9 @@ impl UniformField {
     /// let field = UniformField { n_landmarks: 20, half_width_m: 5.0, separation_m: 1.0 };
     /// let plan = field.plan(&mut ChaCha8Rng::seed_from_u64(1))?;
     /// assert_eq!(plan.landmarks.len(), 20);
-    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
     /// ```
-    pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Plan, SimError> {
+    pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<FloorPlan, SimulationError> {
         check::count("landmarks", self.n_landmarks, MOST_LANDMARKS)?;
         check::positive("half width of the field (m)", self.half_width_m)?;
         check::not_negative("separation of the landmarks (m)", self.separation_m)?;
@@ -44,11 +44,11 @@ impl UniformField {
                 Some(fresh) => points.push(fresh),
                 None => {
                     let (placed, wanted) = (points.len(), self.n_landmarks);
-                    return Err(SimError::NoRoom { what: "landmarks", placed, wanted });
+                    return Err(SimulationError::NoRoom { what: "landmarks", placed, wanted });
                 }
             }
         }
-        Ok(Plan::numbered(points, Vec::new()))
+        Ok(FloorPlan::numbered(points, Vec::new()))
     }
 
     fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector2<f64> {

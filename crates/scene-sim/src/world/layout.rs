@@ -3,7 +3,7 @@ use rand::Rng;
 use wayfix_sensor_log::TrueLandmark;
 
 use super::{CorridorLoop, Office, OfficeFloor, Roadside, UniformField, Wall};
-use crate::SimError;
+use crate::SimulationError;
 use crate::route::Route;
 
 /// The most landmarks a layout places.
@@ -11,14 +11,14 @@ pub(super) const MOST_LANDMARKS: usize = 100_000;
 
 /// Landmarks and walls.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct Plan {
+pub struct FloorPlan {
     /// Points that the robot may learn.
     pub landmarks: Vec<TrueLandmark>,
     /// Walls that hide the landmarks.
     pub walls: Vec<Wall>,
 }
 
-impl Plan {
+impl FloorPlan {
     /// Landmarks numbered from 0 in the order of `points`.
     pub fn numbered(points: Vec<Vector2<f64>>, walls: Vec<Wall>) -> Self {
         let landmarks = points.iter().zip(0..).map(|(p, id)| TrueLandmark { id, x: p.x, y: p.y }).collect();
@@ -29,7 +29,7 @@ impl Plan {
 /// A kind of place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Layout {
+pub enum WorldLayout {
     /// Random landmarks in a square.
     UniformField(UniformField),
     /// A corridor around a block.
@@ -42,12 +42,12 @@ pub enum Layout {
     Roadside(Roadside),
 }
 
-impl Layout {
+impl WorldLayout {
     /// Places landmarks and walls; `route` is where the robot is going to drive.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range, and [`SimError::NoRoom`] if landmarks do not fit.
-    pub fn build<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Result<Plan, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range, and [`SimulationError::NoRoom`] if landmarks do not fit.
+    pub fn build<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Result<FloorPlan, SimulationError> {
         match self {
             Self::UniformField(field) => field.plan(rng),
             Self::CorridorLoop(corridor) => corridor.plan(rng),

@@ -11,9 +11,9 @@ mod wall;
 
 pub use corridor::CorridorLoop;
 pub use field::UniformField;
-pub use layout::{Layout, Plan};
+pub use layout::{FloorPlan, WorldLayout};
 pub use office::Office;
 pub use office_floor::OfficeFloor;
-pub use planar::{OtherRobot, PlanarWorld, World};
+pub use planar::{OtherRobot, PlanarWorld, SensorWorld};
 pub use roadside::Roadside;
 pub use wall::Wall;

@@ -1,9 +1,9 @@
 use nalgebra::Vector2;
 use rand::Rng;
 
-use super::{Plan, Wall, layout::MOST_LANDMARKS};
+use super::{FloorPlan, Wall, layout::MOST_LANDMARKS};
 use crate::random::deviate::uniform;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// Square rooms in rows and columns about the origin. A post stands near each corner (the landmarks), a door opens in the middle
 /// of each inner wall.
@@ -26,7 +26,7 @@ impl Office {
     ///
     /// # Errors
     /// Returns an error if there is no room, there are too many, or a length is out of range.
-    pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Plan, SimError> {
+    pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<FloorPlan, SimulationError> {
         check::positive("number of rooms", self.n_columns as f64 * self.n_rows as f64)?;
         let n_posts = (self.n_columns.saturating_add(1)).saturating_mul(self.n_rows.saturating_add(1));
         check::count("landmarks", n_posts, MOST_LANDMARKS)?;
@@ -45,7 +45,7 @@ impl Office {
                 self.corner(column, row) + Vector2::new(jitter(), jitter())
             })
             .collect();
-        Ok(Plan::numbered(posts, self.walls()))
+        Ok(FloorPlan::numbered(posts, self.walls()))
     }
 
     fn corner(&self, column: usize, row: usize) -> Vector2<f64> {

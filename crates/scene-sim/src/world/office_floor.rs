@@ -1,9 +1,9 @@
 use nalgebra::Vector2;
 use rand::Rng;
 
-use super::{Plan, Wall};
+use super::{FloorPlan, Wall};
 use crate::random::deviate::{chance, uniform};
-use crate::{SimError, check, plane};
+use crate::{SimulationError, check, plane};
 
 /// The most rooms on a side of the corridor.
 const MOST_ROOMS: usize = 1000;
@@ -43,9 +43,9 @@ impl OfficeFloor {
     /// let plan = floor.plan(&mut ChaCha8Rng::seed_from_u64(1))?;
     /// assert!(plan.landmarks.is_empty() && plan.walls.len() > 100);
     /// assert!((floor.area_m2() - (2.0 * 91.6 + 10.0 * 12.0)).abs() < 1e-9); // of the corridor and of the rooms
-    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
     /// ```
-    pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Plan, SimError> {
+    pub fn plan<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<FloorPlan, SimulationError> {
         self.validate()?;
         let mut walls = Vec::new();
         for turn in 0..4 {
@@ -59,7 +59,7 @@ impl OfficeFloor {
         for turn in 0..4 {
             self.add_block_side(&self.side(turn, -self.corridor_m), rng, &mut walls);
         }
-        Ok(Plan { landmarks: Vec::new(), walls })
+        Ok(FloorPlan { landmarks: Vec::new(), walls })
     }
 
     /// Floor of the corridor and of the rooms, m².
@@ -68,7 +68,7 @@ impl OfficeFloor {
         corridor + 2.0 * self.n_rooms as f64 * self.room_m * self.room_depth_m
     }
 
-    fn validate(&self) -> Result<(), SimError> {
+    fn validate(&self) -> Result<(), SimulationError> {
         check::positive("width of the corridor (m)", self.corridor_m)?;
         check::positive("spacing of the pillars (m)", self.spacing_m)?;
         let must = "finite and above the width of the corridor";

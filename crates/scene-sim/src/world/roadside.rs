@@ -3,10 +3,10 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::Vector2;
 use rand::Rng;
 
-use super::{Plan, layout::MOST_LANDMARKS};
+use super::{FloorPlan, layout::MOST_LANDMARKS};
 use crate::random::deviate::{chance, uniform};
 use crate::route::Route;
-use crate::{SimError, check, plane};
+use crate::{SimulationError, check, plane};
 
 /// Rocks on both sides of whatever road the robot takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +24,12 @@ impl Roadside {
     ///
     /// # Errors
     /// Returns an error if a number is out of range.
-    pub fn plan<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Result<Plan, SimError> {
+    pub fn plan<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Result<FloorPlan, SimulationError> {
         check::count("landmarks", self.n_landmarks, MOST_LANDMARKS)?;
         check::not_negative("clear width of the road (m)", self.clear_m)?;
         check::positive("width of the verge (m)", self.verge_m)?;
         let points = (0..self.n_landmarks).map(|_| self.rock(route, rng)).collect();
-        Ok(Plan::numbered(points, Vec::new()))
+        Ok(FloorPlan::numbered(points, Vec::new()))
     }
 
     fn rock<R: Rng + ?Sized>(&self, route: &Route, rng: &mut R) -> Vector2<f64> {

@@ -3,10 +3,10 @@
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::Camera;
 use wayfix_estimation_traits::Pose2;
-use wayfix_scene_sim::SimError;
+use wayfix_scene_sim::SimulationError;
 use wayfix_scene_sim::league::{
-    CameraParams, CameraSimulator, GaitOdometryParams, HeadParams, LeagueDrive, LeagueParams, Rgb,
-    RobotParams, SwayParams, TrainingParams, WalkParams,
+    BodySwayParams, CameraParams, CameraSimulator, GaitOdometryParams, LeagueDrive, LeagueParams,
+    LegWalkParams, LeggedRobotParams, LinearRgb, RobotHeadParams, TrainingParams,
 };
 use wayfix_scene_sim::random::NoiseShape;
 
@@ -15,9 +15,9 @@ use crate::support::{honest, streams};
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, -1.0];
 
 #[track_caller]
-fn assert_refused<T>(result: Result<T, SimError>, value: f64) {
+fn assert_refused<T>(result: Result<T, SimulationError>, value: f64) {
     let named = match result {
-        Err(SimError::Parameter { value, .. }) => Some(value.to_bits()),
+        Err(SimulationError::Parameter { value, .. }) => Some(value.to_bits()),
         _ => None,
     };
     assert_eq!(named, Some(value.to_bits()), "{value} is not named");
@@ -28,10 +28,10 @@ fn cameras() {
     for bad in BAD {
         for params in [
             CameraParams { gain: bad, ..honest() },
-            CameraParams { white_balance: Rgb::new(1.0, bad, 1.0), ..honest() },
+            CameraParams { white_balance: LinearRgb::new(1.0, bad, 1.0), ..honest() },
             CameraParams { white_balance_drift: bad, ..honest() },
             CameraParams { white_balance_correlation_s: bad, ..honest() },
-            CameraParams { vignetting: Rgb::new(0.0, 0.0, bad), ..honest() },
+            CameraParams { vignetting: LinearRgb::new(0.0, 0.0, bad), ..honest() },
             CameraParams { crosstalk: bad, ..honest() },
             CameraParams { flare: bad, ..honest() },
             CameraParams { full_well: bad, ..honest() },
@@ -47,37 +47,37 @@ fn cameras() {
     let huge = Camera::new(16_384, 16_384, 1e3, 1e3, 0.0, 0.0).expect("allowed there");
     assert!(matches!(
         CameraSimulator::new(CameraParams { camera: huge, ..honest() }),
-        Err(SimError::TooMany { .. })
+        Err(SimulationError::TooMany { .. })
     ));
 }
 
 #[test]
 fn robots() {
-    let default = RobotParams::default();
+    let default = LeggedRobotParams::default();
     for bad in BAD {
         let walks = [
-            WalkParams { speed_mps: bad, ..default.walk },
-            WalkParams { turn_radps: bad, ..default.walk },
-            WalkParams { lag_s: bad, ..default.walk },
-            WalkParams { rest_s: bad, ..default.walk },
-            WalkParams { sideways_share: bad, ..default.walk },
-            WalkParams { margin_m: bad, ..default.walk },
+            LegWalkParams { speed_mps: bad, ..default.walk },
+            LegWalkParams { turn_radps: bad, ..default.walk },
+            LegWalkParams { lag_s: bad, ..default.walk },
+            LegWalkParams { mean_rest_s: bad, ..default.walk },
+            LegWalkParams { sideways_share: bad, ..default.walk },
+            LegWalkParams { board_margin_m: bad, ..default.walk },
         ];
         let sways = [
-            SwayParams { stride_s: bad, ..default.sway },
-            SwayParams { roll_rad: bad, ..default.sway },
-            SwayParams { pitch_rad: bad, ..default.sway },
-            SwayParams { height_m: bad, ..default.sway },
-            SwayParams { unsteady_rad: bad, ..default.sway },
+            BodySwayParams { stride_s: bad, ..default.sway },
+            BodySwayParams { roll_rad: bad, ..default.sway },
+            BodySwayParams { pitch_rad: bad, ..default.sway },
+            BodySwayParams { height_m: bad, ..default.sway },
+            BodySwayParams { tilt_error_rad: bad, ..default.sway },
         ];
         let heads = [
-            HeadParams { speed_radps: bad, ..default.head },
-            HeadParams { pan_limit_rad: bad, ..default.head },
-            HeadParams { dwell_s: bad, ..default.head },
-            HeadParams { down_share: bad, ..default.head },
-            HeadParams { quantum_rad: bad, ..default.head },
-            HeadParams { lag_s: bad, ..default.head },
-            HeadParams { bias_rad: bad, ..default.head },
+            RobotHeadParams { speed_radps: bad, ..default.head },
+            RobotHeadParams { pan_limit_rad: bad, ..default.head },
+            RobotHeadParams { mean_gaze_s: bad, ..default.head },
+            RobotHeadParams { downward_gaze_share: bad, ..default.head },
+            RobotHeadParams { angle_resolution_rad: bad, ..default.head },
+            RobotHeadParams { lag_s: bad, ..default.head },
+            RobotHeadParams { bias_rad: bad, ..default.head },
         ];
         let odometries = [
             GaitOdometryParams { step_scale: [bad, 1.0], ..default.odometry },
@@ -90,10 +90,10 @@ fn robots() {
             GaitOdometryParams { drift_rad_per_m: bad, ..default.odometry },
             GaitOdometryParams { drift_correlation_s: bad, ..default.odometry },
         ];
-        let robots = walks.map(|walk| RobotParams { walk, ..default }).into_iter();
-        let robots = robots.chain(sways.map(|sway| RobotParams { sway, ..default }));
-        let robots = robots.chain(heads.map(|head| RobotParams { head, ..default }));
-        let robots = robots.chain(odometries.map(|odometry| RobotParams { odometry, ..default }));
+        let robots = walks.map(|walk| LeggedRobotParams { walk, ..default }).into_iter();
+        let robots = robots.chain(sways.map(|sway| LeggedRobotParams { sway, ..default }));
+        let robots = robots.chain(heads.map(|head| LeggedRobotParams { head, ..default }));
+        let robots = robots.chain(odometries.map(|odometry| LeggedRobotParams { odometry, ..default }));
         for robot in robots {
             let params = LeagueParams { robot, n_frames: 1, ..LeagueParams::default() };
             assert_refused(LeagueDrive::new(&params, streams(1)), bad);
@@ -118,9 +118,9 @@ fn drives() {
         60_001.0,
     );
     let labels = LeagueParams { n_frames: 3, n_labelled: 4, ..default.clone() }.simulate(streams(1));
-    assert!(matches!(labels, Err(SimError::TooMany { limit: 3, got: 4, .. })));
+    assert!(matches!(labels, Err(SimulationError::TooMany { limit: 3, got: 4, .. })));
     let many = LeagueDrive::new(&LeagueParams { n_frames: 100_001, ..default.clone() }, streams(1));
-    assert!(matches!(many, Err(SimError::TooMany { got: 100_001, .. })));
+    assert!(matches!(many, Err(SimulationError::TooMany { got: 100_001, .. })));
     let none = LeagueParams { n_frames: 0, ..default };
     assert_eq!(LeagueDrive::new(&none, streams(1)).expect("no frames are no fault").count(), 0);
 }
@@ -129,7 +129,7 @@ fn drives() {
 fn training() {
     let rng = ChaCha8Rng::seed_from_u64(1);
     let many = TrainingParams { n_halls: 10_001, ..TrainingParams::default() };
-    assert!(matches!(many.gather(rng.clone()), Err(SimError::TooMany { got: 10_001, .. })));
+    assert!(matches!(many.gather(rng.clone()), Err(SimulationError::TooMany { got: 10_001, .. })));
     let none = TrainingParams { n_images: 0, n_halls: 1, ..TrainingParams::default() };
     let sets = none.gather(rng).expect("no pictures are no fault");
     assert!(sets.iter().all(|set| set.images.is_empty() && set.pixel_variance == [0.0; 3]));

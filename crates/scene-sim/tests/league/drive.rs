@@ -1,20 +1,22 @@
 //! A whole drive: reproducible, one sin at a time, kidnaps that nobody notices.
 
 use wayfix_estimation_traits::Pose2;
-use wayfix_scene_sim::league::{CameraParams, Frame, LeagueDrive, LeagueParams, Lighting, Venue};
-use wayfix_scene_sim::random::Source;
-use wayfix_sensor_log::Data;
+use wayfix_scene_sim::league::{
+    CameraParams, LampSetting, LeagueDrive, LeagueFrame, LeagueParams, LeagueVenue,
+};
+use wayfix_scene_sim::random::RandomStreamPurpose;
+use wayfix_sensor_log::RecordData;
 
 use crate::support::{deviation, honest, mean, streams};
 
-fn frames(params: &LeagueParams, seed: u64) -> Vec<Frame> {
+fn frames(params: &LeagueParams, seed: u64) -> Vec<LeagueFrame> {
     LeagueDrive::new(params, streams(seed)).expect("sound parameters").collect()
 }
 
-fn with_camera(params: &LeagueParams, change: impl Fn(CameraParams) -> CameraParams) -> Vec<Frame> {
+fn with_camera(params: &LeagueParams, change: impl Fn(CameraParams) -> CameraParams) -> Vec<LeagueFrame> {
     let mut streams = streams(1);
-    let venue = Venue::draw(streams.of(Source::Venue)).expect("a venue");
-    let venue = Venue { camera: change(venue.camera), ..venue };
+    let venue = LeagueVenue::draw(streams.of(RandomStreamPurpose::Venue)).expect("a venue");
+    let venue = LeagueVenue { camera: change(venue.camera), ..venue };
     LeagueDrive::in_venue(params, venue, streams).expect("sound parameters").collect()
 }
 
@@ -34,15 +36,18 @@ fn more_frames_begin_with_the_same() {
 #[test]
 fn the_light_changes_the_pictures_and_nothing_else() {
     let bright = LeagueParams { n_frames: 6, ..LeagueParams::default() };
-    let switched =
-        LeagueParams { lights: vec![(2, Lighting::Dark), (4, Lighting::Bright)], ..bright.clone() };
+    let switched = LeagueParams {
+        lamp_settings: vec![(2, LampSetting::Dark), (4, LampSetting::Bright)],
+        ..bright.clone()
+    };
     for (idx, (a, b)) in frames(&bright, 1).into_iter().zip(frames(&switched, 1)).enumerate() {
         assert_eq!(
             (a.pose, a.mount, a.odometry, &a.picture.labels),
             (b.pose, b.mount, b.odometry, &b.picture.labels)
         );
-        let grey = |frame: &Frame| mean(&frame.picture.rgb.iter().map(|&c| f64::from(c)).collect::<Vec<_>>());
-        let is_dark = b.lighting == Lighting::Dark;
+        let grey =
+            |frame: &LeagueFrame| mean(&frame.picture.rgb.iter().map(|&c| f64::from(c)).collect::<Vec<_>>());
+        let is_dark = b.lighting == LampSetting::Dark;
         assert_eq!(is_dark, (2..4).contains(&idx));
         assert_eq!(is_dark, grey(&b) < 0.7 * grey(&a), "{} {}", grey(&b), grey(&a));
         assert_eq!(is_dark, a.picture != b.picture, "same noise in the same light");
@@ -61,9 +66,10 @@ fn the_white_balance_drifts_as_asked_for() {
             ..honest()
         }
     };
-    let sums = |frames: Vec<Frame>, channel: usize| -> Vec<f64> {
-        let sum =
-            |frame: &Frame| frame.picture.rgb.iter().skip(channel).step_by(3).map(|&c| f64::from(c)).sum();
+    let sums = |frames: Vec<LeagueFrame>, channel: usize| -> Vec<f64> {
+        let sum = |frame: &LeagueFrame| {
+            frame.picture.rgb.iter().skip(channel).step_by(3).map(|&c| f64::from(c)).sum()
+        };
         frames.iter().map(sum).collect()
     };
     for (channel, sigma) in [(0, 0.1), (1, 0.0), (2, 0.1)] {
@@ -84,7 +90,7 @@ fn the_white_balance_drifts_as_asked_for() {
 #[test]
 fn sins_of_the_camera_leave_the_drive_as_it_was() {
     let params = LeagueParams { n_frames: 4, ..LeagueParams::default() };
-    let but_looks = |frames: Vec<Frame>| -> Vec<_> {
+    let but_looks = |frames: Vec<LeagueFrame>| -> Vec<_> {
         frames.into_iter().map(|f| (f.pose, f.odometry, f.camera_pose, f.picture.labels)).collect()
     };
     let sinful = with_camera(&params, |own| own);
@@ -129,7 +135,7 @@ fn the_log_has_its_records_in_order_and_labels_where_asked_for() {
     let count = |kind| kinds.iter().filter(|&&k| k == kind).count();
     assert_eq!((count("image"), count("true labels"), count("odometry increment")), (9, 3, 8));
     for pair in records.windows(2) {
-        if let (Data::TrueLabels(labels), Data::Image(image)) = (&pair[0].data, &pair[1].data) {
+        if let (RecordData::TrueLabels(labels), RecordData::Image(image)) = (&pair[0].data, &pair[1].data) {
             let (labels, image) = (labels.decode_gray().expect("PNG"), image.decode_rgb().expect("JPEG"));
             assert_eq!((labels.width, labels.height), (image.width, image.height));
             assert_eq!(pair[0].stamp, pair[1].stamp);

@@ -1,7 +1,9 @@
 //! The light: colour temperature, fall-off, shading by the angle, and what a venue makes of it.
 
 use wayfix_estimation_traits::nalgebra::Vector3;
-use wayfix_scene_sim::league::{Lamp, Lamps, LightField, Lighting, N_COLORS, Rgb, Venue, black_body};
+use wayfix_scene_sim::league::{
+    Lamp, LampSetting, Lamps, LeagueVenue, LightField, LinearRgb, N_COLORS, black_body,
+};
 
 use crate::support::{Blank, channel, field_in, honest, looking, streams, take};
 
@@ -21,9 +23,9 @@ fn a_black_body_has_the_tabulated_color() {
 
 #[test]
 fn light_falls_off_over_the_carpet_as_in_the_picture() {
-    let lamp = Lamp { position: Vector3::new(-1.0, 0.0, 2.5), strength: Rgb::repeat(5.0) };
+    let lamp = Lamp { position: Vector3::new(-1.0, 0.0, 2.5), strength: LinearRgb::repeat(5.0) };
     let light = Lamps { lamps: vec![lamp], ..Lamps::default() };
-    let (backdrop, paints) = (Blank(Rgb::zeros()), [Rgb::repeat(0.5); N_COLORS]);
+    let (backdrop, paints) = (Blank(LinearRgb::zeros()), [LinearRgb::repeat(0.5); N_COLORS]);
     let scene = field_in(&light, &backdrop, &paints);
     let below = |x: f64| {
         let pose = looking([x, 0.7, 0.5], 0.0, std::f64::consts::FRAC_PI_2);
@@ -39,11 +41,11 @@ fn light_falls_off_over_the_carpet_as_in_the_picture() {
 
 #[test]
 fn surfaces_are_shaded_by_the_angle_to_the_lamp() {
-    let lamp = Lamp { position: Vector3::new(0.0, 0.0, 2.0), strength: Rgb::repeat(1.0) };
+    let lamp = Lamp { position: Vector3::new(0.0, 0.0, 2.0), strength: LinearRgb::repeat(1.0) };
     let light = Lamps { lamps: vec![lamp], ..Lamps::default() };
     let at = Vector3::new(1.0, 0.0, 0.0);
     let towards = light.irradiance(&at, &-Vector3::x());
-    assert!(towards.x > 0.0 && light.irradiance(&at, &Vector3::x()) == Rgb::zeros());
+    assert!(towards.x > 0.0 && light.irradiance(&at, &Vector3::x()) == LinearRgb::zeros());
     // Direction to the lamp is (−1, 0, 2)/√5: upright faces get half of what the ground gets.
     assert!((towards.x / light.irradiance(&at, &Vector3::z()).x - 0.5).abs() < 1e-15);
 }
@@ -51,9 +53,10 @@ fn surfaces_are_shaded_by_the_angle_to_the_lamp() {
 #[test]
 fn in_the_dark_one_lamp_of_the_same_hall_is_left() {
     for seed in 0..20 {
-        let venue = Venue::draw(streams(seed).of(wayfix_scene_sim::random::Source::Venue)).expect("a venue");
-        let left_on = venue.light(Lighting::Dark).lamps[0];
-        assert!(venue.light(Lighting::Bright).lamps.contains(&left_on));
+        let venue = LeagueVenue::draw(streams(seed).of(wayfix_scene_sim::random::RandomStreamPurpose::Venue))
+            .expect("a venue");
+        let left_on = venue.light(LampSetting::Dark).lamps[0];
+        assert!(venue.light(LampSetting::Bright).lamps.contains(&left_on));
         let middle = |light: &Lamps| light.irradiance(&Vector3::zeros(), &Vector3::z()).y;
         let share = middle(&venue.dark) / middle(&venue.bright);
         assert!((0.05..0.5).contains(&share), "one of four or six, nearer or further: {share}");

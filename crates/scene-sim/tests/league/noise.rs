@@ -1,6 +1,6 @@
 //! Noise of the chip.
 
-use wayfix_scene_sim::league::{CameraParams, Rgb};
+use wayfix_scene_sim::league::{CameraParams, LinearRgb};
 
 use crate::support::{deviation, honest, mean, of_blank};
 
@@ -10,7 +10,7 @@ fn shot_and_read_noise_add_up() {
         [(0.5, 500.0, 0.0), (0.1, 500.0, 0.0), (0.5, 1e15, 0.03), (0.2, 500.0, 0.02)]
     {
         let camera = CameraParams { full_well, read_noise, ..honest() };
-        let picture = of_blank(camera, Rgb::repeat(signal));
+        let picture = of_blank(camera, LinearRgb::repeat(signal));
         let green: Vec<f64> = picture.rgb.chunks_exact(3).map(|rgb| f64::from(rgb[1])).collect();
         let n = green.len() as f64;
         // Rounding to whole levels adds 1/12.

@@ -3,16 +3,17 @@
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_scene_sim::league::{
-    GaitOdometryParams, HeadParams, Legged, RobotParams, SwayParams, WalkParams, landmarks,
+    BodySwayParams, GaitOdometryParams, LegWalkParams, LeggedRobot, LeggedRobotParams, RobotHeadParams,
+    landmarks,
 };
 use wayfix_scene_sim::{plane, space};
 
 use crate::support::{mean, streams};
 
 /// Errors of the reported mount over a minute: angle (radians) and height (metres), root mean square.
-fn mount_errors(params: RobotParams, seed: u64) -> (f64, f64) {
+fn mount_errors(params: LeggedRobotParams, seed: u64) -> (f64, f64) {
     let mut streams = streams(seed);
-    let mut robot = Legged::new(params, None, landmarks(), &mut streams).expect("a sound robot");
+    let mut robot = LeggedRobot::new(params, None, landmarks(), &mut streams).expect("a sound robot");
     let (mut angles, mut heights) = (vec![], vec![]);
     for millisecond in 0..60_000 {
         robot.step(&mut streams);
@@ -29,7 +30,7 @@ fn mount_errors(params: RobotParams, seed: u64) -> (f64, f64) {
 #[test]
 fn the_reported_mount_is_off_by_about_a_degree() {
     for seed in 1..5 {
-        let (angle, height) = mount_errors(RobotParams::default(), seed);
+        let (angle, height) = mount_errors(LeggedRobotParams::default(), seed);
         println!("seed {seed}: {:.2}° and {:.1} mm", angle.to_degrees(), height * 1e3);
         assert!((0.6..2.5).contains(&angle.to_degrees()), "{}°", angle.to_degrees());
         assert!(height < 0.01, "{height} m");
@@ -38,10 +39,16 @@ fn the_reported_mount_is_off_by_about_a_degree() {
 
 #[test]
 fn without_sway_and_errors_of_the_joints_the_mount_is_true() {
-    let default = RobotParams::default();
-    let params = RobotParams {
-        sway: SwayParams { roll_rad: 0.0, pitch_rad: 0.0, height_m: 0.0, unsteady_rad: 0.0, ..default.sway },
-        head: HeadParams { quantum_rad: 0.0, lag_s: 0.0, bias_rad: 0.0, ..default.head },
+    let default = LeggedRobotParams::default();
+    let params = LeggedRobotParams {
+        sway: BodySwayParams {
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+            height_m: 0.0,
+            tilt_error_rad: 0.0,
+            ..default.sway
+        },
+        head: RobotHeadParams { angle_resolution_rad: 0.0, lag_s: 0.0, bias_rad: 0.0, ..default.head },
         ..default
     };
     let (angle, height) = mount_errors(params, 1);
@@ -51,11 +58,11 @@ fn without_sway_and_errors_of_the_joints_the_mount_is_true() {
 
 /// Sums of the true and the reported motion, forwards, sideways and turning, over 100 s.
 fn odometry(odometry: GaitOdometryParams, sideways_share: f64) -> [(f64, f64); 3] {
-    let default = RobotParams::default();
-    let walk = WalkParams { sideways_share, ..default.walk };
-    let params = RobotParams { odometry, walk, ..default };
+    let default = LeggedRobotParams::default();
+    let walk = LegWalkParams { sideways_share, ..default.walk };
+    let params = LeggedRobotParams { odometry, walk, ..default };
     let mut streams = streams(3);
-    let mut robot = Legged::new(params, None, landmarks(), &mut streams).expect("a sound robot");
+    let mut robot = LeggedRobot::new(params, None, landmarks(), &mut streams).expect("a sound robot");
     let mut sums = [(0.0, 0.0); 3];
     for _ in 0..1000 {
         let before = robot.pose();
@@ -78,7 +85,7 @@ fn odometry_is_off_by_a_scale_per_axis() {
         turn_scale: [1.1, 1.1],
         noise: 0.0,
         drift_rad_per_m: 0.0,
-        ..RobotParams::default().odometry
+        ..LeggedRobotParams::default().odometry
     };
     // Without turning, the parts of a way add up exactly; and turns always do.
     let ([x, y, _], [_, _, turn]) = (odometry(silent, 1.0), odometry(silent, 0.0));
@@ -90,11 +97,11 @@ fn odometry_is_off_by_a_scale_per_axis() {
 
 #[test]
 fn odometry_of_a_robot_at_rest_is_nothing() {
-    let walk = WalkParams { speed_mps: 0.0, rest_s: 1e9, ..RobotParams::default().walk };
+    let walk = LegWalkParams { speed_mps: 0.0, mean_rest_s: 1e9, ..LeggedRobotParams::default().walk };
     let mut streams = streams(1);
-    let params = RobotParams { walk, ..RobotParams::default() };
+    let params = LeggedRobotParams { walk, ..LeggedRobotParams::default() };
     let start = Pose2::new(0.5, 0.0, 0.0);
-    let mut robot = Legged::new(params, Some(start), landmarks(), &mut streams).expect("a sound robot");
+    let mut robot = LeggedRobot::new(params, Some(start), landmarks(), &mut streams).expect("a sound robot");
     (0..400).for_each(|_| robot.step(&mut streams));
     assert_eq!(robot.odometry(0.1, &mut streams), Pose2::new(0.0, 0.0, 0.0));
     assert_eq!(robot.pose(), start);
@@ -103,11 +110,11 @@ fn odometry_of_a_robot_at_rest_is_nothing() {
 #[test]
 fn the_head_looks_at_landmarks_within_reach() {
     let mut streams = streams(2);
-    let params = RobotParams {
-        head: HeadParams { down_share: 0.0, ..RobotParams::default().head },
-        ..RobotParams::default()
+    let params = LeggedRobotParams {
+        head: RobotHeadParams { downward_gaze_share: 0.0, ..LeggedRobotParams::default().head },
+        ..LeggedRobotParams::default()
     };
-    let mut robot = Legged::new(params, None, landmarks(), &mut streams).expect("a sound robot");
+    let mut robot = LeggedRobot::new(params, None, landmarks(), &mut streams).expect("a sound robot");
     let mut n_in_view = 0;
     for _ in 0..600 {
         (0..100).for_each(|_| robot.step(&mut streams));

@@ -3,33 +3,33 @@
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};
 use wayfix_scene_sim::league::{
-    Backdrop, CameraParams, CameraSimulator, Chroma, Lamps, LightField, N_COLORS, Picture, Rgb, Scene,
-    Surface, SurfaceHit,
+    Backdrop, CameraParams, CameraSimulator, ChromaSubsampling, Lamps, LeaguePicture, LeagueScene,
+    LightField, LinearRgb, N_COLORS, SceneSurface, SurfaceHit,
 };
-use wayfix_scene_sim::random::Streams;
+use wayfix_scene_sim::random::RandomStreams;
 use wayfix_scene_sim::space;
 
-pub(crate) fn streams(seed: u64) -> Streams {
-    Streams::new(ChaCha8Rng::seed_from_u64(seed))
+pub(crate) fn streams(seed: u64) -> RandomStreams {
+    RandomStreams::new(ChaCha8Rng::seed_from_u64(seed))
 }
 
 /// Linear, noiseless, without falling corners.
 pub(crate) fn honest() -> CameraParams {
     CameraParams {
-        vignetting: Rgb::zeros(),
+        vignetting: LinearRgb::zeros(),
         crosstalk: 0.0,
         flare: 0.0,
         full_well: 1e15,
         read_noise: 0.0,
         gamma: 1.0,
-        chroma: Chroma::Each,
+        chroma_subsampling: ChromaSubsampling::Each,
         white_balance_drift: 0.0,
         ..CameraParams::ers7().expect("a sound camera")
     }
 }
 
 /// A wall of one reflectance wherever one looks.
-pub(crate) struct Blank(pub(crate) Rgb);
+pub(crate) struct Blank(pub(crate) LinearRgb);
 
 impl Backdrop for Blank {
     fn surface_hit(&self, eye: &Vector3<f64>, direction: &Vector3<f64>) -> SurfaceHit {
@@ -38,31 +38,31 @@ impl Backdrop for Blank {
 }
 
 pub(crate) fn even_light() -> Lamps {
-    Lamps { lamps: vec![], ambient: Rgb::repeat(1.0), bounce: Rgb::repeat(1.0) }
+    Lamps { lamps: vec![], ambient: LinearRgb::repeat(1.0), bounce: LinearRgb::repeat(1.0) }
 }
 
 /// A picture of a blank wall of this reflectance.
-pub(crate) fn of_blank(camera: CameraParams, reflectance: Rgb) -> Picture {
-    let paints = [Rgb::zeros(); N_COLORS];
+pub(crate) fn of_blank(camera: CameraParams, reflectance: LinearRgb) -> LeaguePicture {
+    let paints = [LinearRgb::zeros(); N_COLORS];
     let (light, backdrop) = (even_light(), Blank(reflectance));
-    let scene = Scene { surfaces: vec![], paints: &paints, light: &light, backdrop: &backdrop };
+    let scene = LeagueScene { surfaces: vec![], paints: &paints, light: &light, backdrop: &backdrop };
     let pose = looking([0.0, 0.0, 0.3], 0.0, 0.0);
     take(camera, &scene, [&pose, &pose])
 }
 
-pub(crate) fn take(camera: CameraParams, scene: &Scene<'_>, poses: [&Pose3<f64>; 2]) -> Picture {
+pub(crate) fn take(camera: CameraParams, scene: &LeagueScene<'_>, poses: [&Pose3<f64>; 2]) -> LeaguePicture {
     let mut camera_simulator = CameraSimulator::new(camera).expect("a sound camera");
-    camera_simulator.take(scene, poses, &Rgb::repeat(1.0), &mut ChaCha8Rng::seed_from_u64(5))
+    camera_simulator.take(scene, poses, &LinearRgb::repeat(1.0), &mut ChaCha8Rng::seed_from_u64(5))
 }
 
 /// The field in even light, every colour painted its own grey.
 pub(crate) fn field_in<'a>(
     light: &'a dyn LightField,
     backdrop: &'a dyn Backdrop,
-    paints: &'a [Rgb],
-) -> Scene<'a> {
+    paints: &'a [LinearRgb],
+) -> LeagueScene<'a> {
     let map = wayfix_scene_sim::league::field_map().expect("a sound map");
-    Scene { surfaces: Surface::of_map(&map), paints, light, backdrop }
+    LeagueScene { surfaces: SceneSurface::of_map(&map), paints, light, backdrop }
 }
 
 pub(crate) fn looking(from: [f64; 3], yaw: f64, pitch: f64) -> Pose3<f64> {
@@ -70,7 +70,7 @@ pub(crate) fn looking(from: [f64; 3], yaw: f64, pitch: f64) -> Pose3<f64> {
 }
 
 /// One channel of a pixel.
-pub(crate) fn channel(picture: &Picture, column: u32, row: u32, channel: usize) -> f64 {
+pub(crate) fn channel(picture: &LeaguePicture, column: u32, row: u32, channel: usize) -> f64 {
     f64::from(picture.rgb[3 * (row * picture.width + column) as usize + channel])
 }
 

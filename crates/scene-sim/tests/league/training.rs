@@ -1,7 +1,7 @@
 //! Training venues: two groups of light, colours that keep their order, colours that are missing.
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_scene_sim::league::{Lighting, N_COLORS, TrainingParams, TrainingVenue};
+use wayfix_scene_sim::league::{LampSetting, N_COLORS, TrainingParams, TrainingVenue};
 
 use crate::support::mean;
 
@@ -22,7 +22,7 @@ fn forty_four_sets_in_two_groups() {
     let whites = |lighting| -> Vec<f64> {
         sets.iter().filter(|s| s.lighting == lighting).filter_map(|s| mean_of(s, 1, 0)).collect()
     };
-    let (dark, bright) = (whites(Lighting::Dark), whites(Lighting::Bright));
+    let (dark, bright) = (whites(LampSetting::Dark), whites(LampSetting::Bright));
     let (brightest, dimmest) =
         (dark.iter().fold(0.0, |a: f64, b| a.max(*b)), bright.iter().fold(255.0, |a: f64, b| a.min(*b)));
     assert!(brightest < dimmest, "Y of white: dark up to {brightest}, bright from {dimmest}");
@@ -46,7 +46,7 @@ fn some_colors_are_missing_and_counts_say_so() {
 fn the_colors_of_a_hall_hang_together() {
     // Correlation between Y of green and of white over the halls of one light: what a joint prior lives on.
     let sets = sets();
-    for lighting in [Lighting::Dark, Lighting::Bright] {
+    for lighting in [LampSetting::Dark, LampSetting::Bright] {
         let pairs: Vec<(f64, f64)> = sets
             .iter()
             .filter(|set| set.lighting == lighting)

@@ -4,7 +4,8 @@ use wayfix_color_map::Camera;
 use wayfix_estimation_traits::nalgebra::Vector3;
 use wayfix_estimation_traits::{Pose3, nalgebra::Vector2};
 use wayfix_scene_sim::league::{
-    Form, LeagueDrive, LeagueParams, Material, N_COLORS, Picture, Rgb, Surface, field_map,
+    LeagueDrive, LeagueParams, LeaguePicture, LinearRgb, Material, N_COLORS, SceneSurface, SurfaceShape,
+    field_map,
 };
 
 use crate::support::{Blank, even_light, field_in, honest, looking, streams, take};
@@ -32,12 +33,12 @@ fn footprint(middle: Vector2<f64>) -> impl Iterator<Item = Vector2<f64>> {
 #[test]
 fn pixel_of_a_single_map_colour_has_that_label() {
     let map = field_map().expect("a sound map");
-    let (light, backdrop, paints) = (even_light(), Blank(Rgb::zeros()), [Rgb::zeros(); N_COLORS]);
+    let (light, backdrop, paints) = (even_light(), Blank(LinearRgb::zeros()), [LinearRgb::zeros(); N_COLORS]);
     let scene = field_in(&light, &backdrop, &paints);
     let camera = honest().camera;
     let (mut n_labelled, mut n_off, mut n_uniform) = (0, 0, 0);
     for pose in poses() {
-        let Picture { labels, .. } = take(honest(), &scene, [&pose, &pose]);
+        let LeaguePicture { labels, .. } = take(honest(), &scene, [&pose, &pose]);
         for (pixel, &label) in labels.iter().enumerate() {
             let middle = Vector2::new((pixel % 208) as f64 + 0.5, (pixel / 208) as f64 + 0.5);
             let here = cast(&map, &camera, &pose, middle);
@@ -62,16 +63,16 @@ fn pixel_of_a_single_map_colour_has_that_label() {
 
 #[test]
 fn unmapped_object_occludes_and_has_no_label() {
-    let (light, backdrop, paints) = (even_light(), Blank(Rgb::zeros()), [Rgb::zeros(); N_COLORS]);
+    let (light, backdrop, paints) = (even_light(), Blank(LinearRgb::zeros()), [LinearRgb::zeros(); N_COLORS]);
     let mut scene = field_in(&light, &backdrop, &paints);
     let pose = looking([0.0, 0.0, 0.25], 0.0, 0.2);
-    let label = |picture: &Picture| picture.labels[120 * 208 + 104];
+    let label = |picture: &LeaguePicture| picture.labels[120 * 208 + 104];
     assert_eq!(label(&take(honest(), &scene, [&pose, &pose])), 1, "carpet");
     // The ray of that pixel falls by tan(0.2 + 0.21) a metre.
     let centre = Vector3::new(0.4, 0.0, 0.08);
-    scene.surfaces.push(Surface {
-        form: Form::Ball { centre, radius: 0.06 },
-        material: Material::Unmapped(Rgb::repeat(0.5)),
+    scene.surfaces.push(SceneSurface {
+        form: SurfaceShape::Ball { centre, radius: 0.06 },
+        material: Material::Unmapped(LinearRgb::repeat(0.5)),
     });
     let hidden = take(honest(), &scene, [&pose, &pose]);
     assert_eq!(label(&hidden), 0);

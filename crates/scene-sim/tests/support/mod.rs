@@ -4,13 +4,13 @@
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::Scenario;
-use wayfix_scene_sim::random::Streams;
+use wayfix_scene_sim::random::RandomStreams;
 use wayfix_scene_sim::sensor::{RangeBearingDetector, RangeBearingParams, Sensor, TrueState};
-use wayfix_scene_sim::world::{Plan, PlanarWorld};
-use wayfix_sensor_log::{Data, Detection, Record, TrueLandmark};
+use wayfix_scene_sim::world::{FloorPlan, PlanarWorld};
+use wayfix_sensor_log::{Detection, Record, RecordData, TrueLandmark};
 
-pub(crate) fn streams(seed: u64) -> Streams {
-    Streams::new(ChaCha8Rng::seed_from_u64(seed))
+pub(crate) fn streams(seed: u64) -> RandomStreams {
+    RandomStreams::new(ChaCha8Rng::seed_from_u64(seed))
 }
 
 pub(crate) fn run(name: &str, seed: u64) -> Vec<Record> {
@@ -20,7 +20,7 @@ pub(crate) fn run(name: &str, seed: u64) -> Vec<Record> {
 
 pub(crate) fn world(landmarks: &[(f64, f64)]) -> PlanarWorld {
     let numbered = landmarks.iter().zip(0..).map(|(&(x, y), id)| TrueLandmark { id, x, y });
-    PlanarWorld::new(Plan { landmarks: numbered.collect(), walls: vec![] })
+    PlanarWorld::new(FloorPlan { landmarks: numbered.collect(), walls: vec![] })
 }
 
 /// What the log gets from each of `n_looks` looks; `None` for a look that was lost.
@@ -28,7 +28,7 @@ pub(crate) fn looks(
     params: RangeBearingParams,
     world: &PlanarWorld,
     n_looks: u64,
-    streams: &mut Streams,
+    streams: &mut RandomStreams,
 ) -> Vec<Option<Vec<Detection>>> {
     let mut sensor = RangeBearingDetector::new(params).expect("valid parameters");
     (0..n_looks)
@@ -40,7 +40,7 @@ pub(crate) fn looks(
                 world,
             };
             let reading = sensor.sense(&moment, streams)?;
-            let Data::Detections(detections) = reading.data else {
+            let RecordData::Detections(detections) = reading.data else {
                 unreachable!("the sensor only makes detections")
             };
             Some(detections)

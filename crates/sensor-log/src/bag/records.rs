@@ -13,7 +13,7 @@ use crate::formats::format::shortened;
 use crate::image::picture;
 use crate::planar::heading_of;
 use crate::ros::{self, Header, RosMessage, Twist};
-use crate::{Data, EncodedImage, LaserScan, ProblemKind, Record, Stamp, Velocity};
+use crate::{EncodedImage, LaserScan, ProblemKind, Record, RecordData, Stamp, Velocity};
 
 /// The fixed frame that localization places the robot in. [REP 105]
 const MAP_FRAME: &str = "map";
@@ -71,14 +71,16 @@ impl BagRecords {
             }
             RosMessage::CameraInfo(message) => {
                 let info = camera::pinhole(&message, self.choice.is_rectified)?;
-                Ok(one(at(&message.header)?, Data::CameraInfo(info)))
+                Ok(one(at(&message.header)?, RecordData::CameraInfo(info)))
             }
             RosMessage::Odometry(message) => self.odometry(at(&message.header)?, kind, &message),
             RosMessage::Pose(message) => {
                 let (stamp, pose) = (at(&message.header)?, planar(&message.pose)?);
                 Ok(one(
                     stamp,
-                    if kind == Kind::TruePose { Data::TruePose } else { Data::EstimatedPose }(pose),
+                    if kind == Kind::TruePose { RecordData::TruePose } else { RecordData::EstimatedPose }(
+                        pose,
+                    ),
                 ))
             }
             RosMessage::Twist(message) => {
@@ -148,9 +150,9 @@ impl BagRecords {
             && self.laser_mount.replace(mount) != Some(mount)
         {
             self.n_laser_mounts += 1;
-            records.extend(one(stamp, Data::LaserMount(mount.pose)));
+            records.extend(one(stamp, RecordData::LaserMount(mount.pose)));
         }
-        records.extend(one(stamp, Data::Scan(scan)));
+        records.extend(one(stamp, RecordData::Scan(scan)));
         Ok(records)
     }
 
@@ -161,10 +163,10 @@ impl BagRecords {
         if let Some(frame_in_body) = placed {
             let mount = camera::mount(frame, &frame_in_body);
             if self.camera_mount.replace(mount) != Some(mount) {
-                records.extend(one(stamp, Data::CameraMount(mount)));
+                records.extend(one(stamp, RecordData::CameraMount(mount)));
             }
         }
-        records.extend(one(stamp, Data::Image(image)));
+        records.extend(one(stamp, RecordData::Image(image)));
         records
     }
 
@@ -184,7 +186,7 @@ impl BagRecords {
         message: &ros::Odometry<'_>,
     ) -> Result<Vec<Record>, Fault> {
         if kind == Kind::TruePose {
-            return Ok(one(stamp, Data::TruePose(planar(&message.pose)?)));
+            return Ok(one(stamp, RecordData::TruePose(planar(&message.pose)?)));
         }
         if self.body.as_deref() != Some(message.child_frame_id) {
             self.body = Some(message.child_frame_id.to_owned());
@@ -193,7 +195,7 @@ impl BagRecords {
             return Ok(one(stamp, velocity(&message.twist)?));
         }
         let increment = self.odometer.increment(stamp, planar(&message.pose)?)?;
-        Ok(increment.map_or_else(Vec::new, |increment| one(stamp, Data::OdometryIncrement(increment))))
+        Ok(increment.map_or_else(Vec::new, |increment| one(stamp, RecordData::OdometryIncrement(increment))))
     }
 
     /// The stamp matters only for motions: a static transform holds at any time.
@@ -217,19 +219,19 @@ impl BagRecords {
         let is_odometry = last_part(parent) == ODOMETRY_FRAME;
         if is_odometry && self.choice.moves_by_transforms {
             let increment = self.odometer.increment(stamp, on_the_ground(&pose))?;
-            records.extend(increment.map(|step| Record { stamp, data: Data::OdometryIncrement(step) }));
+            records.extend(increment.map(|step| Record { stamp, data: RecordData::OdometryIncrement(step) }));
         }
         if (is_odometry || last_part(parent) == MAP_FRAME)
             && self.choice.estimates_by_transforms
             && let Some(on_map) = self.transforms.in_ancestor(child, MAP_FRAME)
         {
-            records.extend(one(stamp, Data::EstimatedPose(on_the_ground(&on_map))));
+            records.extend(one(stamp, RecordData::EstimatedPose(on_the_ground(&on_map))));
         }
         Ok(records)
     }
 }
 
-fn one(stamp: Stamp, data: Data) -> Vec<Record> {
+fn one(stamp: Stamp, data: RecordData) -> Vec<Record> {
     vec![Record { stamp, data }]
 }
 
@@ -246,10 +248,10 @@ fn stamp(header: &Header<'_>, log_time: Stamp) -> Result<Stamp, Fault> {
     }
 }
 
-fn velocity(twist: &Twist) -> Result<Data, Fault> {
+fn velocity(twist: &Twist) -> Result<RecordData, Fault> {
     let (linear, angular) = (twist.linear[0], twist.angular[2]);
     finite([linear, angular])?;
-    Ok(Data::Velocity(Velocity { linear, angular }))
+    Ok(RecordData::Velocity(Velocity { linear, angular }))
 }
 
 fn on_the_ground(pose: &Pose3<f64>) -> Pose2<f64> {

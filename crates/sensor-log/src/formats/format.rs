@@ -15,15 +15,15 @@ use crate::text::{Lines, carmen, range_bearing, tum, utias, victoria_park};
 
 /// Storage format of a log.
 /// ```
-/// use wayfix_sensor_log::Format;
-/// assert_eq!("range-bearing".parse::<Format>()?, Format::RangeBearing);
-/// assert_eq!(Format::Utias.to_string(), "utias");
-/// assert!("rosbag".parse::<Format>().is_err());
+/// use wayfix_sensor_log::LogFormat;
+/// assert_eq!("range-bearing".parse::<LogFormat>()?, LogFormat::RangeBearing);
+/// assert_eq!(LogFormat::Utias.to_string(), "utias");
+/// assert!("rosbag".parse::<LogFormat>().is_err());
 /// # Ok::<(), wayfix_sensor_log::LogError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Format {
+pub enum LogFormat {
     /// A folder of the UTIAS Multi-Robot Cooperative Localization and Mapping set.
     Utias,
     /// A folder of the Victoria Park set: `odometry.csv`, `trees.csv` and optionally `gps.csv`.
@@ -42,7 +42,7 @@ pub enum Format {
     Images,
 }
 
-impl Format {
+impl LogFormat {
     const ALL: [Self; 8] = [
         Self::Utias,
         Self::RangeBearing,
@@ -127,7 +127,7 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
-impl fmt::Display for Format {
+impl fmt::Display for LogFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Utias => "utias",
@@ -142,7 +142,7 @@ impl fmt::Display for Format {
     }
 }
 
-impl FromStr for Format {
+impl FromStr for LogFormat {
     type Err = LogError;
     fn from_str(name: &str) -> Result<Self, LogError> {
         Self::ALL

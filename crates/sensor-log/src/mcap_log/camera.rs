@@ -9,19 +9,19 @@ use super::topics;
 use crate::fault::{Fault, finite, inconsistent, spatial};
 use crate::formats::format::shortened;
 use crate::image::{Anymap, Pixels, picture};
-use crate::{CameraInfo, Data, EncodedImage, ImageFormat, LogError, Record, Stamp};
+use crate::{CameraInfo, EncodedImage, ImageFormat, LogError, Record, RecordData, Stamp};
 
 /// Rejects records that a reader could not restore.
 pub(super) fn check(record: &Record) -> Result<(), LogError> {
     let stamp = record.stamp;
     match &record.data {
-        Data::CameraInfo(info) if !info.sees() => {
+        RecordData::CameraInfo(info) if !info.sees() => {
             let CameraInfo { width, height, fx, fy, .. } = *info;
             Err(LogError::BadCamera { width, height, fx, fy, stamp })
         }
-        Data::Image(image) if !is_image(image) => Err(no_image(record, image)),
+        RecordData::Image(image) if !is_image(image) => Err(no_image(record, image)),
         // Labels must be compressed; an uncompressed image has another message type.
-        Data::TrueLabels(image) if !is_image(image) || image.format == ImageFormat::Pnm => {
+        RecordData::TrueLabels(image) if !is_image(image) || image.format == ImageFormat::Pnm => {
             Err(no_image(record, image))
         }
         _ => Ok(()),
@@ -121,7 +121,7 @@ pub(super) fn info(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> 
             format!("not a pinhole camera: skew {skew}, distortion {model:?} {d:?}; rectify the images");
         return Err(inconsistent(&reason));
     }
-    Ok(vec![Record { stamp, data: Data::CameraInfo(info) }])
+    Ok(vec![Record { stamp, data: RecordData::CameraInfo(info) }])
 }
 
 pub(super) fn mount(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
@@ -129,7 +129,7 @@ pub(super) fn mount(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault>
     let stamp = stamp(message.timestamp, log_time)?;
     let (t, q) = (message.translation.unwrap_or_default(), message.rotation.unwrap_or_default());
     let pose = spatial([t.x, t.y, t.z], [q.x, q.y, q.z, q.w])?;
-    Ok(vec![Record { stamp, data: Data::CameraMount(pose) }])
+    Ok(vec![Record { stamp, data: RecordData::CameraMount(pose) }])
 }
 
 pub(super) fn raw_image(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
@@ -137,13 +137,13 @@ pub(super) fn raw_image(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fa
     let stamp = stamp(message.timestamp, log_time)?;
     let RawImage { width, height, step, encoding, data, .. } = &message;
     let pixels = Pixels { width: *width, height: *height, encoding, step: *step, data };
-    Ok(vec![Record { stamp, data: Data::Image(pixels.uncompressed()?) }])
+    Ok(vec![Record { stamp, data: RecordData::Image(pixels.uncompressed()?) }])
 }
 
 pub(super) fn image(
     bytes: &[u8],
     log_time: Stamp,
-    to_data: impl Fn(EncodedImage) -> Data,
+    to_data: impl Fn(EncodedImage) -> RecordData,
 ) -> Result<Vec<Record>, Fault> {
     let message: CompressedImage = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;

@@ -14,6 +14,6 @@ mod writing;
 pub use reading::file::McapFile;
 pub(crate) use reading::folder::{files_in, files_of};
 pub(crate) use reading::reader::McapRecords;
-pub use writing::drawing::{Drawing, ImageOutline, Shape};
-pub use writing::sink::{ChannelKey, Message, MessageSink, Sinks};
+pub use writing::drawing::{DrawingShape, ImageOutline, ViewerDrawing};
+pub use writing::sink::{ChannelKey, Message, MessageSink, MessageSinks};
 pub use writing::writer::{McapWriter, MessageWriter};

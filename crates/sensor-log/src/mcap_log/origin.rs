@@ -7,17 +7,17 @@ use std::collections::BTreeMap;
 use mcap::records::Metadata;
 
 use super::reading::fields::Fields;
-use crate::Format;
+use crate::LogFormat;
 
 const NAME: &str = "wayfix";
 const KEY: &str = "origin";
 
-pub(super) fn encode(origin: Format) -> Metadata {
+pub(super) fn encode(origin: LogFormat) -> Metadata {
     Metadata { name: NAME.to_owned(), metadata: BTreeMap::from([(KEY.to_owned(), origin.to_string())]) }
 }
 
 /// The origin in a metadata record; `None` for other programs' records and formats of later versions.
-pub(super) fn decode(body: &[u8]) -> Option<Format> {
+pub(super) fn decode(body: &[u8]) -> Option<LogFormat> {
     let mut fields = Fields(body);
     if fields.str()? != NAME {
         return None;
@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn the_key_is_found_among_others_and_nothing_is_made_up() {
-        assert_eq!(decode(&body("wayfix", &[("a", "b"), ("origin", "utias")])), Some(Format::Utias));
+        assert_eq!(decode(&body("wayfix", &[("a", "b"), ("origin", "utias")])), Some(LogFormat::Utias));
         assert_eq!(decode(&body("wayfix", &[("origin", "a format of the future")])), None);
         assert_eq!(decode(&body("wayfix", &[("a", "origin")])), None);
         assert_eq!(decode(&body("another program", &[("origin", "utias")])), None);

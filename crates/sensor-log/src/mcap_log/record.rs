@@ -1,5 +1,5 @@
 use super::{MessageSink, MessageWriter, camera, scan, topics, vehicle, writing::encode};
-use crate::{Data, ImageFormat, LogError, Record};
+use crate::{ImageFormat, LogError, Record, RecordData};
 
 impl<S: MessageSink> MessageWriter<S> {
     /// Writes a record to the topic of its kind (see [`topics`]); reading restores it to the bit (negative zeros lose their sign).
@@ -10,57 +10,61 @@ impl<S: MessageSink> MessageWriter<S> {
         let stamp = record.stamp;
         record.data.check_finite().map_err(|what| LogError::NotFinite { what, stamp })?;
         camera::check(record)?;
-        if let Data::TrueLandmark(_) | Data::TrueWall(_) = record.data {
+        if let RecordData::TrueLandmark(_) | RecordData::TrueWall(_) = record.data {
             return self.hold(record);
         }
         self.flush_pending_cloud()?;
         let timestamp = encode::timestamp(stamp)?;
         match &record.data {
-            Data::Velocity(velocity) => {
+            RecordData::Velocity(velocity) => {
                 self.message(topics::VELOCITY, stamp, &encode::velocity(timestamp, velocity))
             }
-            Data::OdometryIncrement(step) => {
+            RecordData::OdometryIncrement(step) => {
                 self.pose_in_frame(topics::INCREMENT, stamp, topics::BODY_FRAME, step)
             }
-            Data::Ackermann(drive) => {
+            RecordData::Ackermann(drive) => {
                 self.message(topics::ACKERMANN, stamp, &vehicle::encode_drive(timestamp, drive))
             }
-            Data::DetectionWidths(widths) => {
+            RecordData::DetectionWidths(widths) => {
                 self.message(topics::DETECTION_WIDTHS, stamp, &vehicle::encode_widths(timestamp, widths))
             }
-            Data::Scan(scan) => {
+            RecordData::Scan(scan) => {
                 let frame = self.scan_frame;
                 let message = scan::encode_scan(timestamp, frame, scan);
                 self.message_with(topics::SCAN, &scan::metadata(scan), stamp, &message)?;
                 self.message(topics::SCAN_POINTS, stamp, &scan::encode_points(timestamp, frame, scan))
             }
-            Data::LaserMount(pose) => {
+            RecordData::LaserMount(pose) => {
                 self.scan_frame = topics::LASER_FRAME;
                 self.message(topics::LASER_MOUNT, stamp, &scan::encode_mount(timestamp, pose))
             }
-            Data::TruePosition(position) => {
+            RecordData::TruePosition(position) => {
                 self.message(topics::TRUE_POSITION, stamp, &vehicle::encode_position(timestamp, position))
             }
-            Data::Detections(detections) => {
+            RecordData::Detections(detections) => {
                 self.message(topics::DETECTIONS, stamp, &encode::detections(timestamp, detections))
             }
-            Data::TruePose(pose) => self.pose_in_frame(topics::TRUE_POSE, stamp, topics::WORLD_FRAME, pose),
-            Data::EstimatedPose(pose) => {
+            RecordData::TruePose(pose) => {
+                self.pose_in_frame(topics::TRUE_POSE, stamp, topics::WORLD_FRAME, pose)
+            }
+            RecordData::EstimatedPose(pose) => {
                 self.pose_in_frame(topics::ESTIMATED_POSE, stamp, topics::WORLD_FRAME, pose)
             }
-            Data::TrueLandmark(_) | Data::TrueWall(_) => Ok(()),
-            Data::CameraInfo(info) => {
+            RecordData::TrueLandmark(_) | RecordData::TrueWall(_) => Ok(()),
+            RecordData::CameraInfo(info) => {
                 self.message(topics::CAMERA_INFO, stamp, &camera::encode_info(timestamp, info))
             }
-            Data::CameraMount(pose) => {
+            RecordData::CameraMount(pose) => {
                 self.message(topics::CAMERA_MOUNT, stamp, &camera::encode_mount(timestamp, pose))?;
                 self.message(topics::CAMERA_OPTICAL, stamp, &camera::encode_optical(timestamp))
             }
-            Data::Image(image) if image.format == ImageFormat::Pnm => {
+            RecordData::Image(image) if image.format == ImageFormat::Pnm => {
                 self.message(topics::IMAGE, stamp, &camera::encode_raw_image(timestamp, image))
             }
-            Data::Image(image) => self.message(topics::IMAGE, stamp, &camera::encode_image(timestamp, image)),
-            Data::TrueLabels(image) => {
+            RecordData::Image(image) => {
+                self.message(topics::IMAGE, stamp, &camera::encode_image(timestamp, image))
+            }
+            RecordData::TrueLabels(image) => {
                 self.message(topics::TRUE_LABELS, stamp, &camera::encode_image(timestamp, image))
             }
         }

@@ -10,7 +10,7 @@ use wayfix_estimation_traits::Pose2;
 use super::reading::decode::{decode, planar, stamp};
 use super::{topics, writing::encode};
 use crate::fault::{Fault, finite, inconsistent};
-use crate::{Data, LaserScan, Record, Stamp};
+use crate::{LaserScan, Record, RecordData, Stamp};
 
 const INCREMENT: &str = "angle_increment";
 const RANGE_MAX: &str = "range_max";
@@ -83,7 +83,7 @@ pub(super) fn mount(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault>
     let message: FrameTransform = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;
     let pose = planar(&messages::Pose { position: message.translation, orientation: message.rotation })?;
-    Ok(vec![Record { stamp, data: Data::LaserMount(pose) }])
+    Ok(vec![Record { stamp, data: RecordData::LaserMount(pose) }])
 }
 
 pub(super) fn scan(channel: ScanChannel, bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault> {
@@ -103,7 +103,7 @@ pub(super) fn scan(channel: ScanChannel, bytes: &[u8], log_time: Stamp) -> Resul
         beam_period: channel.beam_period.unwrap_or(0.0),
         ranges: message.ranges,
     };
-    Ok(vec![Record { stamp, data: Data::Scan(scan) }])
+    Ok(vec![Record { stamp, data: RecordData::Scan(scan) }])
 }
 
 /// Most writers use a missing or zero quaternion for no rotation.

@@ -1,22 +1,22 @@
 //! Topic and Foxglove schema of each kind of record in an MCAP file.
 //! | topic | schema | frame | record |
 //! | --- | --- | --- | --- |
-//! | [`VELOCITY`] | `foxglove.Odometry`, the two velocities | [`BODY_FRAME`] in [`ODOMETRY_FRAME`] | [`Data::Velocity`](crate::Data::Velocity) |
-//! | [`INCREMENT`] | `foxglove.PoseInFrame`, new pose in the old body frame | [`BODY_FRAME`] | [`Data::OdometryIncrement`](crate::Data::OdometryIncrement) |
-//! | [`ACKERMANN`] | `foxglove.JointStates`, velocity of `wheel`, position of `steering` | | [`Data::Ackermann`](crate::Data::Ackermann) |
-//! | [`DETECTIONS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`Data::Detections`](crate::Data::Detections) |
-//! | [`DETECTION_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`Data::DetectionWidths`](crate::Data::DetectionWidths) |
-//! | [`SCAN`] | `foxglove.LaserScan`; `angle_increment`, `range_max` and, where it is known, `beam_period` in the metadata of the channel | [`BODY_FRAME`] | [`Data::Scan`](crate::Data::Scan) |
-//! | [`LASER_MOUNT`] | `foxglove.FrameTransform` | [`LASER_FRAME`] in [`BODY_FRAME`] | [`Data::LaserMount`](crate::Data::LaserMount) |
-//! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`Data::TruePosition`](crate::Data::TruePosition) |
-//! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::TruePose`](crate::Data::TruePose) |
-//! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`Data::TrueLandmark`](crate::Data::TrueLandmark) |
-//! | [`TRUE_WALLS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `end_x`, `end_y`, `id` | [`WORLD_FRAME`] | [`Data::TrueWall`](crate::Data::TrueWall) |
-//! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`Data::EstimatedPose`](crate::Data::EstimatedPose) |
-//! | [`CAMERA_INFO`] | `foxglove.CameraCalibration` | [`CAMERA_OPTICAL_FRAME`] | [`Data::CameraInfo`](crate::Data::CameraInfo) |
-//! | [`CAMERA_MOUNT`] | `foxglove.FrameTransform` | [`CAMERA_FRAME`] in [`BODY_FRAME`] | [`Data::CameraMount`](crate::Data::CameraMount) |
-//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG, or `foxglove.RawImage` | [`CAMERA_OPTICAL_FRAME`] | [`Data::Image`](crate::Data::Image) |
-//! | [`TRUE_LABELS`] | `foxglove.CompressedImage`, grey PNG | [`CAMERA_OPTICAL_FRAME`] | [`Data::TrueLabels`](crate::Data::TrueLabels) |
+//! | [`VELOCITY`] | `foxglove.Odometry`, the two velocities | [`BODY_FRAME`] in [`ODOMETRY_FRAME`] | [`RecordData::Velocity`](crate::RecordData::Velocity) |
+//! | [`INCREMENT`] | `foxglove.PoseInFrame`, new pose in the old body frame | [`BODY_FRAME`] | [`RecordData::OdometryIncrement`](crate::RecordData::OdometryIncrement) |
+//! | [`ACKERMANN`] | `foxglove.JointStates`, velocity of `wheel`, position of `steering` | | [`RecordData::Ackermann`](crate::RecordData::Ackermann) |
+//! | [`DETECTIONS`] | `foxglove.PointCloud` with `range`, `bearing`, `x`, `y`, `z`, `kind`, `id` | [`BODY_FRAME`] | [`RecordData::Detections`](crate::RecordData::Detections) |
+//! | [`DETECTION_WIDTHS`] | `foxglove.PointCloud` with `width`, `x`, `y`, `z` | [`BODY_FRAME`] | [`RecordData::DetectionWidths`](crate::RecordData::DetectionWidths) |
+//! | [`SCAN`] | `foxglove.LaserScan`; `angle_increment`, `range_max` and, where it is known, `beam_period` in the metadata of the channel | [`BODY_FRAME`] | [`RecordData::Scan`](crate::RecordData::Scan) |
+//! | [`LASER_MOUNT`] | `foxglove.FrameTransform` | [`LASER_FRAME`] in [`BODY_FRAME`] | [`RecordData::LaserMount`](crate::RecordData::LaserMount) |
+//! | [`TRUE_POSITION`] | `foxglove.PointCloud` with `x`, `y`, `z` | [`WORLD_FRAME`] | [`RecordData::TruePosition`](crate::RecordData::TruePosition) |
+//! | [`TRUE_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`RecordData::TruePose`](crate::RecordData::TruePose) |
+//! | [`TRUE_LANDMARKS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `id` | [`WORLD_FRAME`] | [`RecordData::TrueLandmark`](crate::RecordData::TrueLandmark) |
+//! | [`TRUE_WALLS`] | `foxglove.PointCloud` with `x`, `y`, `z`, `end_x`, `end_y`, `id` | [`WORLD_FRAME`] | [`RecordData::TrueWall`](crate::RecordData::TrueWall) |
+//! | [`ESTIMATED_POSE`] | `foxglove.PoseInFrame` | [`WORLD_FRAME`] | [`RecordData::EstimatedPose`](crate::RecordData::EstimatedPose) |
+//! | [`CAMERA_INFO`] | `foxglove.CameraCalibration` | [`CAMERA_OPTICAL_FRAME`] | [`RecordData::CameraInfo`](crate::RecordData::CameraInfo) |
+//! | [`CAMERA_MOUNT`] | `foxglove.FrameTransform` | [`CAMERA_FRAME`] in [`BODY_FRAME`] | [`RecordData::CameraMount`](crate::RecordData::CameraMount) |
+//! | [`IMAGE`] | `foxglove.CompressedImage`, JPEG or PNG, or `foxglove.RawImage` | [`CAMERA_OPTICAL_FRAME`] | [`RecordData::Image`](crate::RecordData::Image) |
+//! | [`TRUE_LABELS`] | `foxglove.CompressedImage`, grey PNG | [`CAMERA_OPTICAL_FRAME`] | [`RecordData::TrueLabels`](crate::RecordData::TrueLabels) |
 //!
 //! With every camera mount, [`CAMERA_OPTICAL`] places the optical frame (z forward, x right, y down) that viewers draw images in.
 //!

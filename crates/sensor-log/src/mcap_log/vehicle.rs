@@ -7,7 +7,7 @@ use super::cloud::{self, Column};
 use super::reading::decode::{decode, point_fields, read_points, stamp};
 use super::{topics, writing::encode};
 use crate::fault::{Fault, finite, inconsistent};
-use crate::{AckermannDrive, Data, Record, Stamp, TruePosition};
+use crate::{AckermannDrive, Record, RecordData, Stamp, TruePosition};
 
 const WHEEL: &str = "wheel";
 const STEERING: &str = "steering";
@@ -31,7 +31,7 @@ pub(super) fn drive(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault>
         return Err(inconsistent("joints without the velocity of \"wheel\" or the position of \"steering\""));
     };
     finite([wheel_speed, steering])?;
-    let data = Data::Ackermann(AckermannDrive { wheel_speed, steering });
+    let data = RecordData::Ackermann(AckermannDrive { wheel_speed, steering });
     Ok(vec![Record { stamp: stamp(message.timestamp, log_time)?, data }])
 }
 
@@ -46,7 +46,7 @@ pub(super) fn position(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fau
     let positions =
         read_points(&cloud, |point| Some(TruePosition { x: x.float(point)?, y: y.float(point)? }))?;
     finite(positions.iter().flat_map(|position| [position.x, position.y]))?;
-    let to_record = |position| Record { stamp, data: Data::TruePosition(position) };
+    let to_record = |position| Record { stamp, data: RecordData::TruePosition(position) };
     Ok(positions.into_iter().map(to_record).collect())
 }
 
@@ -62,5 +62,5 @@ pub(super) fn widths(bytes: &[u8], log_time: Stamp) -> Result<Vec<Record>, Fault
     let [width] = point_fields(&cloud, ["width"])?;
     let widths = read_points(&cloud, |point| width.float(point))?;
     finite(widths.iter().copied())?;
-    Ok(vec![Record { stamp: stamp(cloud.timestamp, log_time)?, data: Data::DetectionWidths(widths) }])
+    Ok(vec![Record { stamp: stamp(cloud.timestamp, log_time)?, data: RecordData::DetectionWidths(widths) }])
 }

@@ -1,4 +1,4 @@
-use crate::{Problem, ProblemKind, ReadReport, Stamp, TruePosition};
+use crate::{ProblemKind, ReadReport, RowProblem, Stamp, TruePosition};
 
 /// Limit of the two steps around a fix, m; if both are longer, the fix is a jump of the receiver.
 const MAX_STEP_M: f64 = 30.0;
@@ -20,7 +20,7 @@ pub(super) fn drop_jumps(
                 let reason =
                     format!("fix {before:.0} m from the one before and {after:.0} m from the one after");
                 let (file, kind) = (file.to_owned(), ProblemKind::Inconsistent);
-                report.leave_out(Problem { file, row, kind, reason }, 1);
+                report.leave_out(RowProblem { file, row, kind, reason }, 1);
             }
             _ => kept.push((stamp, position)),
         }

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use super::row::RowError;
 use crate::formats::compressed::{TextReader, end_of_damaged, open_text};
-use crate::{LogEnd, LogError, Problem, ProblemKind, ReadReport};
+use crate::{LogEnd, LogError, ProblemKind, ReadReport, RowProblem};
 
 /// Maximum length of a row, in bytes. Rows of known formats are shorter: scanners of 1,440 beams print about 20 kB with remissions.
 const MAX_LINE_BYTES: usize = 64 << 10;
@@ -149,7 +149,7 @@ impl ReadReport {
             Ok(()) => self.rows_read += 1,
             Err(RowError { kind, reason }) => {
                 self.rows_read += u64::from(kind.keeps_the_row());
-                self.add(Problem { file: file.to_owned(), row, kind, reason });
+                self.add(RowProblem { file: file.to_owned(), row, kind, reason });
             }
         }
     }

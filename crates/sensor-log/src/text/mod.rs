@@ -18,4 +18,4 @@ pub(crate) mod utias;
 pub(crate) mod victoria_park;
 
 pub(crate) use lines::Lines;
-pub use relations::{Relation, read_relations};
+pub use relations::{PoseRelation, read_relations};

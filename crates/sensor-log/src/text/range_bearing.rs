@@ -11,7 +11,9 @@ use wayfix_estimation_traits::Pose2;
 use super::Lines;
 use super::row::{RowError, columns, id, number};
 use crate::formats::format::shortened;
-use crate::{Data, Detection, LogError, ProblemKind, ReadReport, Record, Stamp, Target, TrueLandmark};
+use crate::{
+    Detection, DetectionTarget, LogError, ProblemKind, ReadReport, Record, RecordData, Stamp, TrueLandmark,
+};
 
 /// Time between two steps, nanoseconds.
 const STEP_NANOSECONDS: u64 = 100_000_000;
@@ -49,8 +51,11 @@ fn parse(row: &str) -> Result<Line, RowError> {
         "P" => Line::Pose(Pose2::new(number(first)?, b, c)),
         "O" => Line::Odometry(Pose2::new(number(first)?, b, c)),
         _ => {
-            let target =
-                if matches!(first, "-1" | "?") { Target::Unlabelled } else { Target::Landmark(id(first)?) };
+            let target = if matches!(first, "-1" | "?") {
+                DetectionTarget::Unlabelled
+            } else {
+                DetectionTarget::Landmark(id(first)?)
+            };
             Line::Detection(Detection { target, range: b, bearing: c })
         }
     })
@@ -72,17 +77,17 @@ impl Steps {
         match line {
             Line::Landmark(landmark) => {
                 let stamp = Stamp::default();
-                self.landmarks.push(Record { stamp, data: Data::TrueLandmark(landmark) });
+                self.landmarks.push(Record { stamp, data: RecordData::TrueLandmark(landmark) });
             }
             Line::Pose(pose) => {
                 self.next_step_if(self.has_pose || self.has_odometry || !self.detections.is_empty());
                 self.has_pose = true;
-                self.record(Data::TruePose(pose));
+                self.record(RecordData::TruePose(pose));
             }
             Line::Odometry(increment) => {
                 self.next_step_if(self.has_odometry || !self.detections.is_empty());
                 self.has_odometry = true;
-                self.record(Data::OdometryIncrement(increment));
+                self.record(RecordData::OdometryIncrement(increment));
             }
             Line::Detection(detection) => self.detections.push(detection),
         }
@@ -99,11 +104,11 @@ impl Steps {
     fn finish_detections(&mut self) {
         if !self.detections.is_empty() {
             let detections = std::mem::take(&mut self.detections);
-            self.record(Data::Detections(detections));
+            self.record(RecordData::Detections(detections));
         }
     }
 
-    fn record(&mut self, data: Data) {
+    fn record(&mut self, data: RecordData) {
         let stamp = Stamp::from_nanoseconds(self.step.saturating_mul(STEP_NANOSECONDS));
         self.records.push(Record { stamp, data });
     }

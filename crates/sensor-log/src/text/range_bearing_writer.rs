@@ -2,7 +2,7 @@ use std::io::{self, Write};
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
 
-use crate::{Data, Detection, Record, Stamp, Target, WriteReport};
+use crate::{Detection, DetectionTarget, Record, RecordData, Stamp, WriteReport};
 
 /// Writes the records of one stamp as one step. The format has no stamps, so they are lost.
 ///
@@ -15,7 +15,7 @@ pub(crate) fn write(
     let mut step = Step::default();
     let mut step_stamp: Option<Stamp> = None;
     for record in records {
-        if let Data::TrueLandmark(landmark) = &record.data {
+        if let RecordData::TrueLandmark(landmark) = &record.data {
             writeln!(out, "L {} {} {}", landmark.id, landmark.x, landmark.y)?;
             report.records_written += 1;
             continue;
@@ -24,9 +24,9 @@ pub(crate) fn write(
             std::mem::take(&mut step).write(out)?;
         }
         match &record.data {
-            Data::TruePose(pose) => step.pose = Some(*pose),
-            Data::OdometryIncrement(increment) => step.add_motion(increment),
-            Data::Detections(detections) => {
+            RecordData::TruePose(pose) => step.pose = Some(*pose),
+            RecordData::OdometryIncrement(increment) => step.add_motion(increment),
+            RecordData::Detections(detections) => {
                 step.detections.extend(detections.iter().filter(|detection| report.can_write(detection)));
             }
             other => {
@@ -63,7 +63,7 @@ impl Step {
         writeln!(out, "O {} {} {}", motion.x(), motion.y(), motion.heading())?;
         for Detection { target, range, bearing } in self.detections {
             match target {
-                Target::Landmark(id) => writeln!(out, "Z {id} {range} {bearing}")?,
+                DetectionTarget::Landmark(id) => writeln!(out, "Z {id} {range} {bearing}")?,
                 _ => writeln!(out, "Z ? {range} {bearing}")?,
             }
         }
@@ -75,9 +75,9 @@ impl WriteReport {
     /// The format has no place for other robots and unknown codes.
     fn can_write(&mut self, detection: &Detection) -> bool {
         let what = match detection.target {
-            Target::Landmark(_) | Target::Unlabelled => return true,
-            Target::Robot(_) => "detection of a robot",
-            Target::UnknownCode(_) => "detection of an unknown code",
+            DetectionTarget::Landmark(_) | DetectionTarget::Unlabelled => return true,
+            DetectionTarget::Robot(_) => "detection of a robot",
+            DetectionTarget::UnknownCode(_) => "detection of an unknown code",
         };
         self.leave_out(what);
         false

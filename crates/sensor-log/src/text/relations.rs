@@ -8,7 +8,7 @@ use crate::{LogError, ReadReport, Stamp};
 
 /// True relative pose of two robot poses: the SLAM benchmark of Freiburg scores trajectories by these [Kümmerle et al. 2009].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Relation {
+pub struct PoseRelation {
     /// Stamp of the first pose.
     pub from: Stamp,
     /// Stamp of the second pose.
@@ -33,13 +33,13 @@ pub struct Relation {
 ///
 /// # Errors
 /// Returns an error if the file cannot be read. Single bad lines are in the report.
-pub fn read_relations(path: impl AsRef<Path>) -> Result<(Vec<Relation>, ReadReport), LogError> {
+pub fn read_relations(path: impl AsRef<Path>) -> Result<(Vec<PoseRelation>, ReadReport), LogError> {
     let mut relations = Vec::new();
     let mut report = ReadReport::default();
     Lines::open(path.as_ref())?.for_each_row(&mut report, |row| {
         let [from, to, x, y, _, _, _, heading] = columns(row)?;
         let pose = Pose2::new(number(x)?, number(y)?, number(heading)?);
-        relations.push(Relation { from: stamp(from)?, to: stamp(to)?, pose });
+        relations.push(PoseRelation { from: stamp(from)?, to: stamp(to)?, pose });
         Ok(())
     })?;
     Ok((relations, report))

@@ -17,7 +17,9 @@ use super::scan_odometry::ScanOdometry;
 use super::time_order::{Timed, in_time_order};
 use crate::formats::compressed::{end_of_damaged, open_text};
 use crate::formats::format::shortened;
-use crate::{Data, Format, LaserScan, LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record, Stamp};
+use crate::{
+    LaserScan, LogEnd, LogError, LogFormat, PoseKind, ProblemKind, ReadReport, Record, RecordData, Stamp,
+};
 
 /// Maximum size of a file, in bytes; it bounds the memory used.
 const MAX_BYTES: u64 = 256 << 20;
@@ -40,8 +42,8 @@ pub(crate) fn read(path: &Path, poses: PoseKind, report: &mut ReadReport) -> Res
     scans.sort_by_key(|scan| scan.stamp);
     let mut odometry = ScanOdometry::default();
     let to_records = |Timed { stamp, item: (pose, scan), .. }: Timed<(Pose2<f64>, LaserScan)>| {
-        let motion = odometry.scan(stamp.seconds(), pose).map(Data::OdometryIncrement);
-        let data = [Some(poses.data(pose)), motion, Some(Data::Scan(scan))];
+        let motion = odometry.scan(stamp.seconds(), pose).map(RecordData::OdometryIncrement);
+        let data = [Some(poses.data(pose)), motion, Some(RecordData::Scan(scan))];
         data.into_iter().flatten().map(move |data| Record { stamp, data })
     };
     let scans = in_time_order(&file, scans, report);
@@ -57,7 +59,7 @@ fn read_text(path: &Path, report: &mut ReadReport) -> Result<Vec<u8>, LogError> 
     }
     if text.len() as u64 > MAX_BYTES {
         let reason = format!("more than {MAX_BYTES} bytes");
-        return Err(LogError::NotThisFormat { path: path.into(), format: Format::ScanJson, reason });
+        return Err(LogError::NotThisFormat { path: path.into(), format: LogFormat::ScanJson, reason });
     }
     Ok(text)
 }

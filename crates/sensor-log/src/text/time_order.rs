@@ -1,5 +1,5 @@
 use super::clock_faults::{ClockFault, clock_faults};
-use crate::{Problem, ProblemKind, ReadReport, Stamp};
+use crate::{ProblemKind, ReadReport, RowProblem, Stamp};
 
 /// Content of a row of a text file, with its line and its time.
 pub(super) struct Timed<T> {
@@ -20,7 +20,7 @@ pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut Rea
             Some((_, ClockFault::Outlier)) => {
                 let reason = format!("{} is far from the times of the rows around it", row.stamp);
                 report.leave_out(
-                    Problem { file: file.to_owned(), row: row.row, kind: ProblemKind::BadStamp, reason },
+                    RowProblem { file: file.to_owned(), row: row.row, kind: ProblemKind::BadStamp, reason },
                     1,
                 );
                 continue;
@@ -40,7 +40,7 @@ pub(super) fn in_time_order<T>(file: &str, rows: Vec<Timed<T>>, report: &mut Rea
         let (before, after) = (&pair[0], &pair[1]);
         if after.stamp < before.stamp {
             let reason = format!("{} comes after {}; sorted into its place", after.stamp, before.stamp);
-            report.add(Problem {
+            report.add(RowProblem {
                 file: file.to_owned(),
                 row: after.row,
                 kind: ProblemKind::OutOfOrder,
@@ -72,7 +72,7 @@ fn longest<T>(
         let (begin, end) = (begin.row, end.row);
         let reason = format!("the clock is set back {cuts}; {n_out} rows before or after are left out");
         report.leave_out(
-            Problem { file: file.to_owned(), row: first.row, kind: ProblemKind::TooLate, reason },
+            RowProblem { file: file.to_owned(), row: first.row, kind: ProblemKind::TooLate, reason },
             n_out as u64,
         );
         report.warn(

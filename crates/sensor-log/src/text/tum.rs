@@ -13,7 +13,7 @@ use super::row::{RowError, exactly, number, stamp};
 use super::time_order::{Timed, in_time_order};
 use crate::formats::compressed::open_text;
 use crate::planar::{NORM_TOLERANCE, heading_of, quaternion_of};
-use crate::{Data, LogError, PoseKind, ProblemKind, ReadReport, Record, WriteReport};
+use crate::{LogError, PoseKind, ProblemKind, ReadReport, Record, RecordData, WriteReport};
 
 pub(crate) fn looks_like(row: &str) -> bool {
     parse(row, &ORDER, PoseKind::default()).is_ok()
@@ -86,7 +86,7 @@ pub(crate) fn write(
     report: &mut WriteReport,
 ) -> io::Result<()> {
     for record in records {
-        let (Data::TruePose(pose) | Data::EstimatedPose(pose)) = &record.data else {
+        let (RecordData::TruePose(pose) | RecordData::EstimatedPose(pose)) = &record.data else {
             report.leave_out(record.data.kind());
             continue;
         };

@@ -14,7 +14,8 @@ use super::Lines;
 use super::row::{RowError, columns, id, number, stamp};
 use super::time_order::{Timed, in_time_order};
 use crate::{
-    Data, Detection, Format, LogError, ProblemKind, ReadReport, Record, Stamp, Target, TrueLandmark, Velocity,
+    Detection, DetectionTarget, LogError, LogFormat, ProblemKind, ReadReport, Record, RecordData, Stamp,
+    TrueLandmark, Velocity,
 };
 
 /// The set's numbering: subjects up to here are robots, the others landmarks.
@@ -42,7 +43,7 @@ fn robot_of_file(name: &str) -> Option<u32> {
 pub(crate) fn choose_robot(folder: &Path, asked: Option<u32>) -> Result<u32, LogError> {
     if fs::metadata(folder).map_err(|source| LogError::io(folder, source))?.is_file() {
         let reason = "a UTIAS set is a folder; give the folder that holds Barcodes.dat".to_owned();
-        return Err(LogError::NotThisFormat { path: folder.into(), format: Format::Utias, reason });
+        return Err(LogError::NotThisFormat { path: folder.into(), format: LogFormat::Utias, reason });
     }
     let present = robots_present(folder)?;
     let path = || folder.to_path_buf();
@@ -81,7 +82,7 @@ fn optional(records: Result<Vec<Record>, LogError>) -> Result<Vec<Record>, LogEr
     }
 }
 
-fn read_barcodes(path: &Path, report: &mut ReadReport) -> Result<BTreeMap<u32, Target>, LogError> {
+fn read_barcodes(path: &Path, report: &mut ReadReport) -> Result<BTreeMap<u32, DetectionTarget>, LogError> {
     let mut targets = BTreeMap::new();
     Lines::open(path)?.for_each_row(report, |row| {
         let [subject, barcode] = columns(row)?;
@@ -93,7 +94,11 @@ fn read_barcodes(path: &Path, report: &mut ReadReport) -> Result<BTreeMap<u32, T
             )),
             Entry::Vacant(slot) => {
                 let is_robot = subject <= LAST_ROBOT_SUBJECT;
-                slot.insert(if is_robot { Target::Robot(subject) } else { Target::Landmark(subject) });
+                slot.insert(if is_robot {
+                    DetectionTarget::Robot(subject)
+                } else {
+                    DetectionTarget::Landmark(subject)
+                });
                 Ok(())
             }
         }
@@ -104,7 +109,7 @@ fn read_barcodes(path: &Path, report: &mut ReadReport) -> Result<BTreeMap<u32, T
 fn read_true_poses(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     read_stamped(path, report, |[t, x, y, heading]| {
         let pose = Pose2::new(number(x)?, number(y)?, number(heading)?);
-        Ok((stamp(t)?, Data::TruePose(pose)))
+        Ok((stamp(t)?, RecordData::TruePose(pose)))
     })
     .map(to_records)
 }
@@ -112,7 +117,7 @@ fn read_true_poses(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, 
 fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     read_stamped(path, report, |[t, linear, angular]| {
         let velocity = Velocity { linear: number(linear)?, angular: number(angular)? };
-        Ok((stamp(t)?, Data::Velocity(velocity)))
+        Ok((stamp(t)?, RecordData::Velocity(velocity)))
     })
     .map(to_records)
 }
@@ -120,12 +125,12 @@ fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, Lo
 /// Rows of equal stamp form one scan, in file order.
 fn read_detections(
     path: &Path,
-    targets: &BTreeMap<u32, Target>,
+    targets: &BTreeMap<u32, DetectionTarget>,
     report: &mut ReadReport,
 ) -> Result<Vec<Record>, LogError> {
     let detections = read_stamped(path, report, |[t, barcode, range, bearing]| {
         let (stamp, barcode) = (stamp(t)?, id(barcode)?);
-        let target = targets.get(&barcode).copied().unwrap_or(Target::UnknownCode(barcode));
+        let target = targets.get(&barcode).copied().unwrap_or(DetectionTarget::UnknownCode(barcode));
         Ok((stamp, Detection { target, range: number(range)?, bearing: number(bearing)? }))
     })?;
     let mut looks: BTreeMap<Stamp, Vec<Detection>> = BTreeMap::new();
@@ -134,7 +139,7 @@ fn read_detections(
     }
     Ok(looks
         .into_iter()
-        .map(|(stamp, detections)| Record { stamp, data: Data::Detections(detections) })
+        .map(|(stamp, detections)| Record { stamp, data: RecordData::Detections(detections) })
         .collect())
 }
 
@@ -143,13 +148,13 @@ fn read_landmarks(path: &Path, start: Stamp, report: &mut ReadReport) -> Result<
     Lines::open(path)?.for_each_row(report, |row| {
         let [subject, x, y, _, _] = columns(row)?;
         let landmark = TrueLandmark { id: id(subject)?, x: number(x)?, y: number(y)? };
-        landmarks.push(Record { stamp: start, data: Data::TrueLandmark(landmark) });
+        landmarks.push(Record { stamp: start, data: RecordData::TrueLandmark(landmark) });
         Ok(())
     })?;
     Ok(landmarks)
 }
 
-fn to_records(rows: Vec<Timed<Data>>) -> Vec<Record> {
+fn to_records(rows: Vec<Timed<RecordData>>) -> Vec<Record> {
     rows.into_iter().map(|Timed { stamp, item: data, .. }| Record { stamp, data }).collect()
 }
 

@@ -19,7 +19,8 @@ use super::row::{RowError, comma_columns, id, number, stamp};
 use super::time_order::{Timed, in_time_order};
 use crate::formats::format::shortened;
 use crate::{
-    AckermannDrive, Data, Detection, Format, LogError, ReadReport, Record, Stamp, Target, TruePosition,
+    AckermannDrive, Detection, DetectionTarget, LogError, LogFormat, ReadReport, Record, RecordData, Stamp,
+    TruePosition,
 };
 
 const ODOMETRY: &str = "odometry.csv";
@@ -35,7 +36,7 @@ pub(crate) fn is_in(folder: &Path) -> bool {
 pub(crate) fn read(folder: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
     if folder.is_file() {
         let reason = format!("the set is a folder; give the one that holds {ODOMETRY} and {TREES}");
-        return Err(LogError::NotThisFormat { path: folder.into(), format: Format::VictoriaPark, reason });
+        return Err(LogError::NotThisFormat { path: folder.into(), format: LogFormat::VictoriaPark, reason });
     }
     // The stable sort keeps this order at equal stamps: truth, odometry, detections.
     let mut records = read_fixes(&folder.join(GPS), report)?;
@@ -51,13 +52,13 @@ fn read_odometry(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, Lo
         let drive = AckermannDrive { wheel_speed: number(speed)?, steering: number(steering)? };
         Ok((stamp(t)?, drive))
     })?;
-    let to_record = |Timed { stamp, item, .. }| Record { stamp, data: Data::Ackermann(item) };
+    let to_record = |Timed { stamp, item, .. }| Record { stamp, data: RecordData::Ackermann(item) };
     Ok(rows.into_iter().map(to_record).collect())
 }
 
 /// Rows of equal stamp form one scan, in file order.
 fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogError> {
-    let take = |[t, range, bearing, diameter]: [&str; 4], target: Target| {
+    let take = |[t, range, bearing, diameter]: [&str; 4], target: DetectionTarget| {
         let (stamp, range, width) = (stamp(t)?, number(range)?, number(diameter)?);
         let bearing = wrap_angle(number(bearing)? - std::f64::consts::FRAC_PI_2);
         Ok((stamp, (width, Detection { target, range, bearing })))
@@ -65,13 +66,16 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
     let trees = if is_labelled(path)? {
         let header = ["t_s", "range_m", "bearing_rad", "diameter_m", "landmark"];
         read_rows(path, header, report, |[t, range, bearing, diameter, landmark]| {
-            let target =
-                if landmark.is_empty() { Target::Unlabelled } else { Target::Landmark(id(landmark)?) };
+            let target = if landmark.is_empty() {
+                DetectionTarget::Unlabelled
+            } else {
+                DetectionTarget::Landmark(id(landmark)?)
+            };
             take([t, range, bearing, diameter], target)
         })?
     } else {
         let header = ["t_s", "range_m", "bearing_rad", "diameter_m"];
-        read_rows(path, header, report, |row| take(row, Target::Unlabelled))?
+        read_rows(path, header, report, |row| take(row, DetectionTarget::Unlabelled))?
     };
     let mut looks: BTreeMap<Stamp, (Vec<f64>, Vec<Detection>)> = BTreeMap::new();
     for Timed { stamp, item: (width, detection), .. } in trees {
@@ -80,7 +84,8 @@ fn read_trees(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
         detections.push(detection);
     }
     let to_records = |(stamp, (widths, detections))| {
-        [Data::DetectionWidths(widths), Data::Detections(detections)].map(|data| Record { stamp, data })
+        [RecordData::DetectionWidths(widths), RecordData::Detections(detections)]
+            .map(|data| Record { stamp, data })
     };
     Ok(looks.into_iter().flat_map(to_records).collect())
 }
@@ -100,7 +105,7 @@ fn read_fixes(path: &Path, report: &mut ReadReport) -> Result<Vec<Record>, LogEr
         Err(LogError::NotFound { .. }) => return Ok(Vec::new()),
         rows => rows?.into_iter().map(|Timed { row, stamp, item }| (row, stamp, item)),
     };
-    let to_record = |(stamp, position)| Record { stamp, data: Data::TruePosition(position) };
+    let to_record = |(stamp, position)| Record { stamp, data: RecordData::TruePosition(position) };
     Ok(drop_jumps(GPS, fixes.collect(), report).into_iter().map(to_record).collect())
 }
 
@@ -137,5 +142,5 @@ fn check_header<R: std::io::BufRead, const N: usize>(
         return Ok(());
     }
     let reason = format!("line {} is {:?} instead of {:?}", row.number, shortened(text), header.join(","));
-    Err(LogError::NotThisFormat { path: path.into(), format: Format::VictoriaPark, reason })
+    Err(LogError::NotThisFormat { path: path.into(), format: LogFormat::VictoriaPark, reason })
 }

@@ -8,7 +8,9 @@ use std::path::Path;
 use crate::common::bag::{Bag, ODOMETRY, SCAN, TRANSFORMS, odometry, scan, transforms};
 use crate::common::cdr::Encoder;
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, Format, LogError, OpenOptions, ProblemKind, ReadReport, Record, open};
+use wayfix_sensor_log::{
+    LogError, LogFormat, OpenOptions, ProblemKind, ReadReport, Record, RecordData, open,
+};
 
 const SECOND: u64 = 1_000_000_000;
 const MOUNT: [f64; 3] = [0.2, 0.1, 0.0];
@@ -58,13 +60,13 @@ fn read_folder(folder: &Path) -> (Vec<Record>, ReadReport) {
 }
 
 fn scan_seconds(records: &[Record]) -> Vec<u64> {
-    let is_scan = |record: &&Record| matches!(record.data, Data::Scan(_));
+    let is_scan = |record: &&Record| matches!(record.data, RecordData::Scan(_));
     records.iter().filter(is_scan).map(|record| record.stamp.nanoseconds() / SECOND).collect()
 }
 
 fn mounts(records: &[Record]) -> Vec<Pose2<f64>> {
     let mount = |record: &Record| match &record.data {
-        Data::LaserMount(mount) => Some(*mount),
+        RecordData::LaserMount(mount) => Some(*mount),
         _ => None,
     };
     records.iter().filter_map(mount).collect()
@@ -253,7 +255,9 @@ fn unusable_range_limit_is_no_limit_and_is_said_once() {
         }
         let (records, report) = bag.read();
         assert_eq!(scan_seconds(&records), [1, 2, 3, 4], "{limits:?}");
-        let Data::Scan(last) = &records.last().unwrap().data else { unreachable!("the scan comes last") };
+        let RecordData::Scan(last) = &records.last().unwrap().data else {
+            unreachable!("the scan comes last")
+        };
         assert_eq!(last.echoes().count(), 3, "{limits:?}");
         let n_said = report.warnings.iter().filter(|warning| warning.name == "range_limit_unknown").count();
         assert_eq!(n_said, usize::from(limits[1] != f32::MAX), "{limits:?}");
@@ -299,14 +303,14 @@ fn missing_first_part_is_said() {
 #[test]
 fn message_about_a_wrong_format_reads_well_for_all() {
     let formats = [
-        Format::Utias,
-        Format::VictoriaPark,
-        Format::RangeBearing,
-        Format::Tum,
-        Format::Carmen,
-        Format::ScanJson,
-        Format::Mcap,
-        Format::Images,
+        LogFormat::Utias,
+        LogFormat::VictoriaPark,
+        LogFormat::RangeBearing,
+        LogFormat::Tum,
+        LogFormat::Carmen,
+        LogFormat::ScanJson,
+        LogFormat::Mcap,
+        LogFormat::Images,
     ];
     for format in formats {
         let error = LogError::NotThisFormat { path: "x".into(), format, reason: "it is empty".into() };

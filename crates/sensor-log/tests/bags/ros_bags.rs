@@ -11,7 +11,8 @@ use crate::common::bag::{
 use mcap::WriteOptions;
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::{
-    Data, Format, LogEnd, LogError, LogSummary, OpenOptions, ProblemKind, Record, TopicUse, convert, open,
+    LogEnd, LogError, LogFormat, LogSummary, OpenOptions, ProblemKind, Record, RecordData, TopicUse, convert,
+    open,
 };
 
 const DRIVE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/ros2_drive.mcap");
@@ -49,27 +50,29 @@ fn a_bag_of_rosbags_has_the_records_that_its_messages_mean() {
     let (mut path, mut n_truths, mut n_steps) = (circle(0, 1.05 * 1.5), 0, 0);
     for record in &records {
         match &record.data {
-            Data::TruePose(pose) => {
+            RecordData::TruePose(pose) => {
                 assert!(pose.inverse().compose(&circle(n_truths, 1.5)).log().norm() < 1e-12);
                 n_truths += 1;
             }
-            Data::OdometryIncrement(step) => {
+            RecordData::OdometryIncrement(step) => {
                 n_steps += 1;
                 path = path.compose(step);
                 assert!(path.inverse().compose(&circle(n_steps, 1.05 * 1.5)).log().norm() < 1e-12);
             }
-            Data::LaserMount(mount) => {
+            RecordData::LaserMount(mount) => {
                 assert!(mount.inverse().compose(&Pose2::new(0.3, 0.0, 0.5)).log().norm() < 1e-12);
             }
-            Data::CameraMount(mount) => {
+            RecordData::CameraMount(mount) => {
                 assert!((mount.translation - nalgebra::Vector3::new(0.1, 0.0, 0.6)).norm() < 1e-12);
                 assert!(mount.rotation.angle() < 1e-12);
             }
-            Data::CameraInfo(info) => {
+            RecordData::CameraInfo(info) => {
                 assert_eq!((info.cx, info.cy, info.fx, info.fy), (8.0, 6.0, 20.0, 21.0));
             }
-            Data::Image(image) => assert_eq!(image.decode_rgb().unwrap().pixels[16 * 3 + 3..][..2], [20, 15]),
-            Data::Scan(scan) => {
+            RecordData::Image(image) => {
+                assert_eq!(image.decode_rgb().unwrap().pixels[16 * 3 + 3..][..2], [20, 15])
+            }
+            RecordData::Scan(scan) => {
                 assert_eq!((scan.ranges.len(), scan.echoes().count()), (91, 88));
                 assert_eq!(scan.angle_min, f64::from((0.5 * PI) as f32)); // head down: the first beam is left
             }
@@ -85,7 +88,7 @@ fn a_bag_converted_to_foxglove_reads_the_same() {
     let path = folder.path().join("converted.mcap");
     let from_bag = open(DRIVE, &OpenOptions::default()).unwrap();
     let records = open(DRIVE, &OpenOptions::default()).unwrap().read_all().0;
-    convert(from_bag, &path, Format::Mcap).unwrap();
+    convert(from_bag, &path, LogFormat::Mcap).unwrap();
     let (back, report) = open(&path, &OpenOptions::default()).unwrap().read_all();
     // Scans hold NaN where nothing came back, so they are compared as they are printed.
     assert_eq!(format!("{back:?}"), format!("{records:?}"));
@@ -111,7 +114,7 @@ fn a_folder_is_the_bag_in_it_unless_there_are_several() {
 fn another_laser_is_read_when_it_is_asked_for() {
     let topics = vec!["/scan_rear".to_owned()];
     let log = open(DRIVE, &OpenOptions { topics, ..Default::default() }).unwrap();
-    let scans = log.filter(|record| matches!(record.data, Data::Scan(_))).count();
+    let scans = log.filter(|record| matches!(record.data, RecordData::Scan(_))).count();
     assert_eq!(scans, 3);
 }
 
@@ -131,7 +134,7 @@ fn topics_that_cannot_be_had_are_told_with_those_that_can() {
     fs::write(&path, "O 1 0 0\n").unwrap();
     let options = OpenOptions { topics: vec!["/scan".to_owned()], ..Default::default() };
     let error = open(Path::new(&path), &options).unwrap_err();
-    assert!(matches!(error, LogError::NoTopics { format: Format::RangeBearing, .. }), "{error}");
+    assert!(matches!(error, LogError::NoTopics { format: LogFormat::RangeBearing, .. }), "{error}");
 }
 
 #[test]
@@ -155,7 +158,7 @@ fn odometry_that_only_knows_its_velocity_is_read_as_that() {
         .0
         .iter()
         .map(|record| match record.data {
-            Data::Velocity(velocity) if velocity.angular == 0.5 => velocity.linear,
+            RecordData::Velocity(velocity) if velocity.angular == 0.5 => velocity.linear,
             _ => panic!("{record:?}"),
         })
         .collect();
@@ -175,7 +178,7 @@ fn motion_falls_back_to_transforms_and_then_to_velocity() {
     }
     let (records, report) = bag.read();
     assert_eq!(kinds(&records), ["odometry increment"; 2]);
-    assert_eq!(records[0].data, Data::OdometryIncrement(Pose2::new(1.0, 0.0, 0.0)));
+    assert_eq!(records[0].data, RecordData::OdometryIncrement(Pose2::new(1.0, 0.0, 0.0)));
     assert_eq!(report.ignored["/cmd_vel (geometry_msgs/msg/Twist)"], 3);
     let (records, _) = still.read();
     assert_eq!(kinds(&records), ["velocity"; 3]);
@@ -202,7 +205,7 @@ fn a_map_frame_is_an_estimate_unless_a_topic_tells_one() {
     let estimates: Vec<Pose2<f64>> = localized(None)
         .iter()
         .filter_map(|record| match record.data {
-            Data::EstimatedPose(pose) => Some(pose),
+            RecordData::EstimatedPose(pose) => Some(pose),
             _ => None,
         })
         .collect();
@@ -217,7 +220,7 @@ fn a_map_frame_is_an_estimate_unless_a_topic_tells_one() {
         ["estimated pose", "odometry increment", "estimated pose"]
     );
     let with_truth = localized(Some("/vicon/robot"));
-    let n_true = with_truth.iter().filter(|record| matches!(record.data, Data::TruePose(_))).count();
+    let n_true = with_truth.iter().filter(|record| matches!(record.data, RecordData::TruePose(_))).count();
     assert_eq!((n_true, with_truth.len()), (2, 5), "truth does not replace the estimates");
 }
 
@@ -234,7 +237,7 @@ fn damaged_messages_are_told_and_the_rest_of_the_bag_is_read() {
     bag.put("/odom", ODOMETRY, 0, odometry(4, [0.5, 0.0, 0.0], 0.0));
     let (records, report) = bag.read();
     assert_eq!(kinds(&records), ["laser scan", "odometry increment"]);
-    assert_eq!(records[1].data, Data::OdometryIncrement(Pose2::new(0.5, 0.0, 0.0)));
+    assert_eq!(records[1].data, RecordData::OdometryIncrement(Pose2::new(0.5, 0.0, 0.0)));
     let problems = [(ProblemKind::NotFinite, 1), (ProblemKind::BadStamp, 1), (ProblemKind::Undecodable, 2)];
     assert_eq!(report.problems, BTreeMap::from(problems));
     assert!(report.examples[1].reason.contains("0x0007 is XCDR2"), "{report}");
@@ -250,7 +253,7 @@ fn time_that_goes_back_is_told_as_in_every_log() {
     let (records, report) = bag.read();
     assert!(records.is_sorted_by_key(|record| record.stamp));
     assert_eq!(report.problems, BTreeMap::from([(ProblemKind::TooLate, 2)]), "{report}");
-    let scans = records.iter().filter(|record| matches!(record.data, Data::Scan(_))).count();
+    let scans = records.iter().filter(|record| matches!(record.data, RecordData::Scan(_))).count();
     assert_eq!(scans, 3, "a scan that is seconds behind the ones before it is none of them");
 }
 

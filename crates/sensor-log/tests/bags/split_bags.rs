@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use crate::common::bag::{Bag, ODOMETRY, POSE, SCAN, TRANSFORMS, odometry, pose, scan, transforms};
 use wayfix_sensor_log::{
-    Data, Format, LogEnd, LogError, OpenOptions, ReadReport, Record, Stamp, Velocity, open, open_all, write,
+    LogEnd, LogError, LogFormat, OpenOptions, ReadReport, Record, RecordData, Stamp, Velocity, open,
+    open_all, write,
 };
 
 const STEPS: i32 = 40;
@@ -94,12 +95,12 @@ fn our_own_logs_are_read_in_parts_too() {
     let folder = tempfile::tempdir().unwrap();
     let record = |k: u64| Record {
         stamp: Stamp::from_nanoseconds(k * 100_000_000),
-        data: Data::Velocity(Velocity { linear: k as f64, angular: 0.1 }),
+        data: RecordData::Velocity(Velocity { linear: k as f64, angular: 0.1 }),
     };
     let parts = [0..400, 400..401, 401..900].map(|range| range.map(record).collect::<Vec<_>>());
     let paths = ["a", "b", "c"].map(|name| folder.path().join(format!("{name}.mcap")));
     for (path, records) in paths.iter().zip(&parts) {
-        write(path, Format::Mcap, records.clone()).unwrap();
+        write(path, LogFormat::Mcap, records.clone()).unwrap();
     }
     let [a, b, c] = &paths;
     let (records, report) = open_all(&[c, a, b], &OpenOptions::default()).unwrap().read_all();

@@ -22,15 +22,15 @@ use crate::{
 )]
 pub struct JointCompatibilityParams {
     /// Probability with which correct pairings pass, individually and jointly: chi-squared quantiles with their degrees of freedom.
-    pub probability: f64,
+    pub gate_probability: f64,
     /// NIS above which an observation is certainly of no landmark in the map. In between it is ignored.
-    pub certainly_new: f64,
+    pub new_landmark_nis: f64,
     /// Minimum difference between the NIS of a pairing and those of all other candidates of the observation; otherwise the observation is ambiguous
     /// and ignored. 0 always takes the best. Parallel walls and rows of trees need a larger value.
     pub ambiguity_margin: f64,
     /// Maximum number of pairings tried per scan. When it is reached, the best set so far is used. Unlike a limit in milliseconds, it gives
     /// the same result on every machine.
-    pub n_trials: usize,
+    pub max_pairings: usize,
     /// Whether the sensor detects each landmark at most once per scan, as with bar codes: a detection beside an associated one then belongs to
     /// another landmark. `false` for detectors that may split a trunk in two.
     pub one_detection_per_landmark: bool,
@@ -39,10 +39,10 @@ pub struct JointCompatibilityParams {
 impl Default for JointCompatibilityParams {
     fn default() -> Self {
         Self {
-            probability: 0.999,
-            certainly_new: 40.0,
+            gate_probability: 0.999,
+            new_landmark_nis: 40.0,
             ambiguity_margin: 0.0,
-            n_trials: 2000,
+            max_pairings: 2000,
             one_detection_per_landmark: false,
         }
     }
@@ -78,7 +78,9 @@ impl JointCompatibility {
     /// # Errors
     /// Returns [`SlamError::Parameter`] if a parameter is out of range.
     pub fn new(params: JointCompatibilityParams) -> Result<Self, SlamError> {
-        let JointCompatibilityParams { probability, certainly_new, .. } = params;
+        let JointCompatibilityParams {
+            gate_probability: probability, new_landmark_nis: certainly_new, ..
+        } = params;
         let Ok(first) = ChiSquaredGate::from_probability(1, probability) else {
             let range = "between 0 and 1, exclusive";
             return Err(SlamError::Parameter { name: "probability", value: probability, range });
@@ -113,7 +115,7 @@ impl JointCompatibility {
     /// Computes the quantiles up to `dimension` degrees of freedom.
     fn prepare_gates(&mut self, dimension: usize) {
         for degrees in self.gates.len() + 1..=dimension {
-            let gate = ChiSquaredGate::from_probability(degrees, self.params.probability);
+            let gate = ChiSquaredGate::from_probability(degrees, self.params.gate_probability);
             // The quantile grows with the degrees of freedom. If its computation fails, the last one is used; it is stricter.
             let last = self.gates.last().copied().unwrap_or(0.0);
             self.gates.push(gate.map_or(last, |gate| gate.threshold()));
@@ -132,9 +134,9 @@ where
     ) -> Vec<Association> {
         let size = MeasurementDim::<M>::DIM;
         self.prepare_gates(size * observations.len());
-        let candidates = Candidates::within(self.params.certainly_new, filter, observations);
+        let candidates = Candidates::within(self.params.new_landmark_nis, filter, observations);
         let gate = self.gates.get(size.wrapping_sub(1)).copied().unwrap_or(0.0);
-        let mut search = Search::new(filter, &candidates, &self.gates, gate, self.params.n_trials);
+        let mut search = Search::new(filter, &candidates, &self.gates, gate, self.params.max_pairings);
         search.run();
         self.n_cut_short += usize::from(search.is_cut_short());
         let pairings = search.best;

@@ -18,9 +18,9 @@ use crate::{
 )]
 pub struct NearestNeighbourParams {
     /// NIS up to which an observation is associated with its nearest landmark. 13.8 is the 0.999 quantile for range and bearing.
-    pub accept: f64,
+    pub gate_nis: f64,
     /// NIS above which it is certainly of none. In between it is ignored: it neither corrects nor becomes a landmark.
-    pub certainly_new: f64,
+    pub new_landmark_nis: f64,
     /// Whether the sensor detects each landmark at most once per scan, as with bar codes: a detection beside an associated one then belongs to
     /// another landmark. `false` for detectors that may split a trunk in two.
     pub one_detection_per_landmark: bool,
@@ -28,7 +28,7 @@ pub struct NearestNeighbourParams {
 
 impl Default for NearestNeighbourParams {
     fn default() -> Self {
-        Self { accept: 13.8155, certainly_new: 40.0, one_detection_per_landmark: false }
+        Self { gate_nis: 13.8155, new_landmark_nis: 40.0, one_detection_per_landmark: false }
     }
 }
 
@@ -49,7 +49,7 @@ impl NearestNeighbour {
     /// # Errors
     /// Returns [`SlamError::Parameter`] if the thresholds are not positive and ordered.
     pub fn new(params: NearestNeighbourParams) -> Result<Self, SlamError> {
-        let NearestNeighbourParams { accept, certainly_new, .. } = params;
+        let NearestNeighbourParams { gate_nis: accept, new_landmark_nis: certainly_new, .. } = params;
         if !(accept > 0.0 && accept.is_finite()) {
             return Err(SlamError::Parameter { name: "accept", value: accept, range: "positive" });
         }
@@ -84,11 +84,11 @@ where
         filter: &EkfSlam<M>,
         observations: &[Observation<M::Measurement>],
     ) -> Vec<Association> {
-        let candidates = Candidates::within(self.params.certainly_new, filter, observations);
+        let candidates = Candidates::within(self.params.new_landmark_nis, filter, observations);
         let nearest: Vec<Option<(usize, f64)>> = candidates
             .of_observation
             .iter()
-            .map(|of_one| nearest_within(self.params.accept, of_one))
+            .map(|of_one| nearest_within(self.params.gate_nis, of_one))
             .collect();
         let keeps_its_own = |(own, candidate): (usize, &Option<(usize, f64)>)| {
             let (prediction, nis) = (*candidate)?;

@@ -3,7 +3,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector, DefaultAllocator, DimName, OMatrix, OVector, allocator::Allocator};
 
 use super::{JointCovariance, SparseJacobian, compressed::CompressedCovariance};
-use crate::MapForm;
+use crate::CovarianceUpdate;
 
 /// The joint covariance of robot and map in either form, as the filter uses it.
 #[derive(Clone, Debug)]
@@ -13,21 +13,23 @@ pub(crate) enum MapCovariance {
 }
 
 impl MapCovariance {
-    pub(crate) fn from_robot<R: DimName>(form: MapForm, robot: &OMatrix<f64, R, R>) -> Self
+    pub(crate) fn from_robot<R: DimName>(form: CovarianceUpdate, robot: &OMatrix<f64, R, R>) -> Self
     where
         DefaultAllocator: Allocator<R, R>,
     {
         match form {
-            MapForm::Full => Self::Full(JointCovariance::from_robot(robot)),
-            MapForm::Compressed => Self::Compressed(Box::new(CompressedCovariance::from_robot(robot))),
+            CovarianceUpdate::Full => Self::Full(JointCovariance::from_robot(robot)),
+            CovarianceUpdate::Compressed => {
+                Self::Compressed(Box::new(CompressedCovariance::from_robot(robot)))
+            }
         }
     }
 
     /// A whole matrix, of which the first `n_robot` rows are the robot's.
-    pub(crate) fn from_matrix(form: MapForm, n_robot: usize, matrix: DMatrix<f64>) -> Self {
+    pub(crate) fn from_matrix(form: CovarianceUpdate, n_robot: usize, matrix: DMatrix<f64>) -> Self {
         match form {
-            MapForm::Full => Self::Full(JointCovariance::from_matrix(matrix)),
-            MapForm::Compressed => {
+            CovarianceUpdate::Full => Self::Full(JointCovariance::from_matrix(matrix)),
+            CovarianceUpdate::Compressed => {
                 Self::Compressed(Box::new(CompressedCovariance::from_matrix(n_robot, matrix)))
             }
         }

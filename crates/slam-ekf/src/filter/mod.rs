@@ -14,9 +14,9 @@ mod step;
 mod update;
 mod update_robot;
 
-pub use linearization::Linearization;
+pub use linearization::LinearizationPoint;
 pub use map_management::confirmation::ConfirmationParams;
 pub use map_management::merge::MergingParams;
-pub use params::{MapForm, OutlierRule, SlamParams, UpdateOrder};
+pub use params::{CovarianceUpdate, OutlierRule, SlamParams, UpdateOrder};
 pub use predicted_measurement::PredictedMeasurement;
 pub use state::{EkfSlam, LandmarkEstimate};

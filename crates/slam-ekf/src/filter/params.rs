@@ -1,4 +1,4 @@
-use super::{ConfirmationParams, Linearization, MergingParams};
+use super::{ConfirmationParams, LinearizationPoint, MergingParams};
 use crate::SlamError;
 
 /// Parameters of the filter, the same for every kind of landmark.
@@ -11,7 +11,7 @@ use crate::SlamError;
 )]
 pub struct SlamParams {
     /// Treatment of observations outside the gate.
-    pub outliers: OutlierRule,
+    pub outlier_rule: OutlierRule,
     /// Probability with which a correct observation passes the gate: a chi-squared quantile with the measurement's degrees of freedom.
     /// At 0.9999 (18.4 for range and bearing) one correct observation in ten thousand fails.
     pub gate_probability: f64,
@@ -19,11 +19,11 @@ pub struct SlamParams {
     /// outliers.
     pub student_t_degrees_of_freedom: f64,
     /// Joint or sequential correction with the observations of one scan.
-    pub order: UpdateOrder,
+    pub update_order: UpdateOrder,
     /// Storage of the joint covariance: full or compressed.
-    pub map: MapForm,
+    pub covariance_update: CovarianceUpdate,
     /// Linearization points, which decide whether the filter stays consistent on long loops.
-    pub linearization: Linearization,
+    pub linearization_point: LinearizationPoint,
     /// Revisions after which a landmark leaves the state, see [`EkfSlam::retire`](crate::EkfSlam::retire); never, if not given. The
     /// paper: 50.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
@@ -74,13 +74,13 @@ pub enum UpdateOrder {
 ///     slam.update(&look, &mut KnownIds)?;
 ///     Ok::<_, SlamError>(slam.robot().x())
 /// };
-/// assert!((robot(MapForm::Full)? - robot(MapForm::Compressed)?).abs() < 1e-12);
+/// assert!((robot(CovarianceUpdate::Full)? - robot(CovarianceUpdate::Compressed)?).abs() < 1e-12);
 /// # Ok::<(), SlamError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum MapForm {
+pub enum CovarianceUpdate {
     /// One matrix, up to date: a correction costs the square of the number of landmarks in the map.
     #[default]
     Full,
@@ -102,12 +102,12 @@ impl UpdateOrder {
 impl Default for SlamParams {
     fn default() -> Self {
         Self {
-            outliers: OutlierRule::default(),
+            outlier_rule: OutlierRule::default(),
             gate_probability: 0.9999,
             student_t_degrees_of_freedom: 4.0,
-            order: UpdateOrder::Joint,
-            map: MapForm::default(),
-            linearization: Linearization::default(),
+            update_order: UpdateOrder::Joint,
+            covariance_update: CovarianceUpdate::default(),
+            linearization_point: LinearizationPoint::default(),
             retire_after: None,
             confirmation: ConfirmationParams::default(),
             merging: None,

@@ -2,7 +2,7 @@ use nalgebra::{DefaultAllocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Jacobian, Manifold, TangentMatrix};
 
 use super::{
-    EkfSlam, Linearization, map_management::retire::Retired, search_region::SearchRegion, state::Slot,
+    EkfSlam, LinearizationPoint, map_management::retire::Retired, search_region::SearchRegion, state::Slot,
 };
 use crate::{Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
@@ -133,8 +133,8 @@ where
         slot: Option<&Slot<M::Landmark>>,
     ) -> Option<PredictedMeasurement<M>> {
         let expected = self.model.expected(&self.robot, mean);
-        let linearized_at = match (slot, self.params.linearization) {
-            (Some(slot), Linearization::FirstEstimates) => &slot.first,
+        let linearized_at = match (slot, self.params.linearization_point) {
+            (Some(slot), LinearizationPoint::FirstEstimates) => &slot.first,
             _ => mean,
         };
         let robot_jacobian = self.model.robot_jacobian(&self.robot, linearized_at);

@@ -9,8 +9,8 @@ use super::{
     state::Slot,
 };
 use crate::{
-    LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SavedLandmark, SavedRetired, SlamAlloc,
-    SlamError, Snapshot, covariance::MapCovariance,
+    LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SavedLandmark, SavedRetiredLandmark,
+    SlamAlloc, SlamError, SlamSnapshot, covariance::MapCovariance,
 };
 
 impl<M: LandmarkModel> EkfSlam<M>
@@ -18,7 +18,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<M>, LandmarkDim<M>, MeasurementDim<M>>,
 {
     /// The complete state of the filter as a plain value. Cost O(n²).
-    pub fn snapshot(&self) -> Snapshot<M::Robot, M::Landmark> {
+    pub fn snapshot(&self) -> SlamSnapshot<M::Robot, M::Landmark> {
         let mut slots: Vec<(&LandmarkId, &Slot<M::Landmark>)> = self.landmarks.iter().collect();
         slots.sort_unstable_by_key(|(_, slot)| slot.offset);
         let saved = |(id, slot): (&LandmarkId, &Slot<M::Landmark>)| SavedLandmark {
@@ -30,7 +30,7 @@ where
             n_missed_in_a_row: slot.n_missed_in_a_row,
             last_seen: slot.last_seen,
         };
-        Snapshot {
+        SlamSnapshot {
             n_updates: self.n_updates,
             robot: self.robot.clone(),
             landmarks: slots.into_iter().map(saved).collect(),
@@ -70,9 +70,9 @@ where
     pub fn resume(
         model: M,
         params: SlamParams,
-        snapshot: Snapshot<M::Robot, M::Landmark>,
+        snapshot: SlamSnapshot<M::Robot, M::Landmark>,
     ) -> Result<Self, SlamError> {
-        let Snapshot { n_updates, robot, landmarks, anchors, retired, covariance } = snapshot;
+        let SlamSnapshot { n_updates, robot, landmarks, anchors, retired, covariance } = snapshot;
         let mut slam = Self::new(model, params, robot)?;
         check_count("n_updates", n_updates, usize::MAX / 2)?;
         slam.n_updates = n_updates;
@@ -101,7 +101,7 @@ where
             offset += LandmarkDim::<M>::DIM;
         }
         slam.covariance = MapCovariance::from_matrix(
-            params.map,
+            params.covariance_update,
             RobotDim::<M>::DIM,
             joint_covariance(offset, &covariance)?,
         );
@@ -112,12 +112,12 @@ where
 fn saved_retired<L: Manifold<Scalar = f64, Dim: DimName>>(
     id: LandmarkId,
     retired: &Retired<L>,
-) -> SavedRetired<L>
+) -> SavedRetiredLandmark<L>
 where
     DefaultAllocator: Allocator<L::Dim, L::Dim>,
 {
     let Retired { mean, covariance } = retired.clone();
-    SavedRetired { id, mean, covariance: covariance.iter().copied().collect() }
+    SavedRetiredLandmark { id, mean, covariance: covariance.iter().copied().collect() }
 }
 
 fn marginal<L: Manifold<Scalar = f64, Dim: DimName>>(entries: &[f64]) -> Result<TangentMatrix<L>, SlamError>

@@ -3,7 +3,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{DMatrix, DefaultAllocator, DimName};
 use wayfix_estimation_traits::{Manifold, TangentMatrix};
 
-use super::{Linearization, MapForm, SlamParams, gates::Gates, map_management::retire::Retired};
+use super::{
+    CovarianceUpdate, LinearizationPoint, SlamParams, gates::Gates, map_management::retire::Retired,
+};
 use crate::{
     LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
     covariance::MapCovariance,
@@ -103,10 +105,12 @@ where
             return Err(SlamError::NotFinite { what: "start pose" });
         }
         super::predict::check_covariance("start covariance", &covariance)?;
-        if params.linearization != Linearization::Newest && model.symmetries().is_empty() {
+        if params.linearization_point != LinearizationPoint::Newest && model.symmetries().is_empty() {
             return Err(SlamError::NoSymmetry);
         }
-        if params.linearization == Linearization::Invariant && params.map == MapForm::Compressed {
+        if params.linearization_point == LinearizationPoint::Invariant
+            && params.covariance_update == CovarianceUpdate::Compressed
+        {
             return Err(SlamError::InvariantNeedsFullMap);
         }
         Ok(Self {
@@ -117,7 +121,7 @@ where
             landmarks: BTreeMap::new(),
             anchors: BTreeMap::new(),
             retired: BTreeMap::new(),
-            covariance: MapCovariance::from_robot(params.map, &covariance),
+            covariance: MapCovariance::from_robot(params.covariance_update, &covariance),
             n_updates: 0,
         })
     }

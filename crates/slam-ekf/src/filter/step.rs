@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector, DefaultAllocator, DimName, allocator::Allocator, linalg::Cholesky};
 use wayfix_estimation_traits::{Manifold, Tangent, TangentMatrix};
 
-use super::{EkfSlam, Linearization};
+use super::{EkfSlam, LinearizationPoint};
 use crate::{LandmarkDim, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc};
 
 impl<M: LandmarkModel> EkfSlam<M>
@@ -20,17 +20,17 @@ where
     /// ```
     pub(super) fn step(&mut self, step: &DVector<f64>) {
         let robot_step = Tangent::<M::Robot>::from_fn(|row, _| step[row]);
-        match self.params.linearization {
-            Linearization::Newest => {
+        match self.params.linearization_point {
+            LinearizationPoint::Newest => {
                 self.step_robot(&robot_step);
                 self.step_landmarks(step);
             }
-            Linearization::FirstEstimates => {
+            LinearizationPoint::FirstEstimates => {
                 let (before, corrected) = (self.robot.clone(), self.robot.retract(&robot_step));
                 self.transport_robot(&before, corrected);
                 self.step_landmarks(step);
             }
-            Linearization::Invariant => self.step_with_the_world(step),
+            LinearizationPoint::Invariant => self.step_with_the_world(step),
         }
     }
 

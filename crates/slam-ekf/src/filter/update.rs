@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     Association, DataAssociation, Innovation, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim,
-    Observation, Outcome, OutlierRule, RobotDim, SlamAlloc, SlamError, StepReport,
+    Observation, ObservationOutcome, OutlierRule, RobotDim, SlamAlloc, SlamError, UpdateReport,
     covariance::SparseJacobian,
 };
 
@@ -42,7 +42,7 @@ where
         &mut self,
         observations: &[Observation<M::Measurement>],
         association: &mut impl DataAssociation<M>,
-    ) -> Result<StepReport<M::Measurement>, SlamError> {
+    ) -> Result<UpdateReport<M::Measurement>, SlamError> {
         let usable: Vec<usize> =
             (0..observations.len()).filter(|&i| self.model.is_usable(&observations[i].measurement)).collect();
         let candidates: Vec<_> = usable.iter().map(|&i| observations[i].clone()).collect();
@@ -54,16 +54,16 @@ where
         let associated: Vec<_> = usable.into_iter().zip(associations).collect();
 
         self.n_updates += 1;
-        let mut outcomes = vec![Outcome::Unusable; observations.len()];
+        let mut outcomes = vec![ObservationOutcome::Unusable; observations.len()];
         let mut taken = BTreeSet::new();
-        for batch in associated.chunks(self.params.order.batch_size(associated.len())) {
+        for batch in associated.chunks(self.params.update_order.batch_size(associated.len())) {
             self.update_batch(observations, batch, &mut taken, &mut outcomes);
         }
         let merges = self.merge_duplicates();
         self.remove_undetected();
         self.retire_revised();
         self.covariance.end_update();
-        Ok(StepReport { outcomes, merges })
+        Ok(UpdateReport { outcomes, merges })
     }
 
     /// Observations that are linearized at the same state: gate each, correct with all, start new landmarks.
@@ -72,21 +72,23 @@ where
         observations: &[Observation<M::Measurement>],
         batch: &[(usize, Association)],
         taken: &mut BTreeSet<LandmarkId>,
-        outcomes: &mut [Outcome<M::Measurement>],
+        outcomes: &mut [ObservationOutcome<M::Measurement>],
     ) {
         let (mut accepted, mut new) = (Vec::new(), Vec::new());
         for &(i, association) in batch {
             let measurement = &observations[i].measurement;
             outcomes[i] = match association {
                 Association::Matched(id) | Association::New(id) if !taken.insert(id) => {
-                    Outcome::Duplicate { landmark: id }
+                    ObservationOutcome::Duplicate { landmark: id }
                 }
                 Association::Matched(id) => self.weigh(id, i, measurement, &mut accepted),
-                Association::New(id) => Outcome::Initialized { landmark: id },
-                Association::Ambiguous => Outcome::Ambiguous,
-                Association::Unlabelled => Outcome::Unlabelled,
+                Association::New(id) => ObservationOutcome::Initialized { landmark: id },
+                Association::Ambiguous => ObservationOutcome::Ambiguous,
+                Association::Unlabelled => ObservationOutcome::Unlabelled,
             };
-            if let Outcome::Initialized { landmark } | Outcome::Restarted { landmark } = outcomes[i] {
+            if let ObservationOutcome::Initialized { landmark } | ObservationOutcome::Restarted { landmark } =
+                outcomes[i]
+            {
                 new.push((i, landmark));
             }
         }
@@ -96,12 +98,12 @@ where
                 self.count_detection(predicted.landmark);
                 self.extend(predicted.landmark, &observations[*index].measurement);
             } else {
-                outcomes[*index] = Outcome::Unusable;
+                outcomes[*index] = ObservationOutcome::Unusable;
             }
         }
         for (i, id) in new {
             if self.start(id, &observations[i].measurement).is_err() {
-                outcomes[i] = Outcome::Unusable;
+                outcomes[i] = ObservationOutcome::Unusable;
             }
         }
     }
@@ -113,10 +115,10 @@ where
         index: usize,
         measurement: &M::Measurement,
         accepted: &mut Vec<Accepted<M>>,
-    ) -> Outcome<M::Measurement> {
+    ) -> ObservationOutcome<M::Measurement> {
         let noise = self.model.noise(measurement);
         if check_covariance("measurement noise", &noise).is_err() {
-            return Outcome::Unusable;
+            return ObservationOutcome::Unusable;
         }
         let predicted = self.predicted_measurement(landmark);
         let seen = predicted.and_then(|predicted| {
@@ -124,22 +126,22 @@ where
             Some((predicted.innovation(measurement, &noise)?, predicted, noise))
         });
         let Some((innovation, predicted, noise)) = seen else {
-            return Outcome::Unusable;
+            return ObservationOutcome::Unusable;
         };
         let threshold = self.gates.threshold(innovation.residual.len());
         if self.exceeds_restart_nis(landmark, &innovation) {
-            return Outcome::Restarted { landmark };
+            return ObservationOutcome::Restarted { landmark };
         }
-        if innovation.nis > threshold && self.params.outliers == OutlierRule::Reject {
-            return Outcome::Rejected { landmark, innovation, threshold };
+        if innovation.nis > threshold && self.params.outlier_rule == OutlierRule::Reject {
+            return ObservationOutcome::Rejected { landmark, innovation, threshold };
         }
         let noise_scale = self.params.noise_scale(innovation.nis, threshold);
         let noise = noise * noise_scale + &predicted.landmark_noise;
         if noise.amax() >= LARGEST_VARIANCE {
-            return Outcome::Rejected { landmark, innovation, threshold }; // so far out that its weight would be zero
+            return ObservationOutcome::Rejected { landmark, innovation, threshold }; // so far out that its weight would be zero
         }
         accepted.push(Accepted { index, predicted, innovation: innovation.clone(), noise });
-        Outcome::Accepted { landmark, innovation, noise_scale }
+        ObservationOutcome::Accepted { landmark, innovation, noise_scale }
     }
 
     /// All accepted observations at once: one joint linear correction of covariance and means. Returns `None` and changes nothing if their

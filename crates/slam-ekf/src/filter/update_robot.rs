@@ -69,7 +69,7 @@ where
         let innovation = Innovation { nis: residual.dot(&factor.solve(&residual)), residual, covariance };
         let size = <S::Measurement as Manifold>::Dim::DIM;
         let threshold = self.robot_gate(size)?;
-        if innovation.nis > threshold && self.params.outliers == OutlierRule::Reject {
+        if innovation.nis > threshold && self.params.outlier_rule == OutlierRule::Reject {
             return Err(SlamError::Outlier { nis: innovation.nis, threshold });
         }
         let noise = noise * self.params.noise_scale(innovation.nis, threshold);

@@ -17,7 +17,7 @@ pub struct CmlDrawing {
 /// Number of views between two writes of the whole path and the references.
 const PERIOD: usize = 20;
 
-impl system::Drawing for CmlDrawing {
+impl system::EstimateDrawing for CmlDrawing {
     type System = CmlSystem;
 
     fn draw(&mut self, _: &Record, system: &CmlSystem, writer: &mut EstimateWriter) -> Result<(), LogError> {

@@ -1,12 +1,12 @@
-use super::{CmlRun, FrameResult, Task};
+use super::{CmlRun, CmlTask, CmlViewResult};
 use crate::system::System;
 use wayfix_evaluation::{
-    errors::Sample,
-    report::{Metric, Run},
+    errors::TrajectorySample,
+    report::{Metric, ReportRun},
 };
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
-pub fn summarize(run: &mut CmlRun) -> Run {
+pub fn summarize(run: &mut CmlRun) -> ReportRun {
     let mut metrics = errors(run);
     let frames = run.system.frames();
     let n = frames.len() as f64;
@@ -14,24 +14,24 @@ pub fn summarize(run: &mut CmlRun) -> Run {
     metrics.push(Metric::new("n_references", run.system.localizer().map().len() as f64, ""));
     metrics.push(Metric::new("n_views", n, ""));
     metrics.push(Metric::new("certain_share", certain / n.max(1.0), ""));
-    let micros = |frame: &FrameResult| 1e6 * frame.step.as_secs_f64();
+    let micros = |frame: &CmlViewResult| 1e6 * frame.step.as_secs_f64();
     let timings = vec![
         Metric::new("step_mean_us", frames.iter().map(micros).sum::<f64>() / n.max(1.0), "µs"),
         Metric::new("step_max_us", frames.iter().map(micros).fold(0.0, f64::max), "µs"),
     ];
     let mut notes = vec![task(run.task).to_owned()];
     notes.extend(run.notes.iter().cloned());
-    Run { metrics, timings, events: run.system.events().counts(), notes, ..Run::default() }
+    ReportRun { metrics, timings, events: run.system.events().counts(), notes, ..ReportRun::default() }
 }
 
 /// Description of the task in one sentence.
-pub fn task(task: Task) -> &'static str {
+pub fn task(task: CmlTask) -> &'static str {
     match task {
-        Task::ConcurrentMapBuilding => {
+        CmlTask::ConcurrentMapBuilding => {
             "concurrent map building and localization: the map grew from nothing, the start was known"
         }
-        Task::LearnThenLocalize => "learn, then localize: the map was taught with known poses first",
-        Task::LocalizeInSavedMap => "localization in a saved map",
+        CmlTask::LearnThenLocalize => "learn, then localize: the map was taught with known poses first",
+        CmlTask::LocalizeInSavedMap => "localization in a saved map",
     }
 }
 
@@ -55,14 +55,14 @@ fn errors(run: &CmlRun) -> Vec<Metric> {
         }),
         "odometry_error_mean_m",
     ));
-    if run.task != Task::ConcurrentMapBuilding {
+    if run.task != CmlTask::ConcurrentMapBuilding {
         metrics.extend(mean(samples.iter().filter_map(nearest_error), "nearest_view_error_mean_m"));
     }
     metrics
 }
 
 /// Distance from the true position to the reference nearest in appearance, m: no filter, no odometry.
-fn nearest_error((frame, sample): &(&FrameResult, Sample)) -> Option<f64> {
+fn nearest_error((frame, sample): &(&CmlViewResult, TrajectorySample)) -> Option<f64> {
     let (_, [x, y]) = frame.nearest?;
     Some((x - sample.truth.x()).hypot(y - sample.truth.y()))
 }

@@ -1,4 +1,4 @@
-use wayfix_evaluation::plot::{LinesPlot, Series};
+use wayfix_evaluation::plot::{LinesPlot, PlotSeries};
 
 /// Shares of the steps by error, in classes of equal width, as outlines. The last class holds all larger errors.
 pub fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> LinesPlot {
@@ -21,7 +21,7 @@ pub fn histogram(title: &str, most_m: f64, courses: Vec<(String, Vec<f64>)>) -> 
         title: title.to_owned(),
         x_label: "position error, m".to_owned(),
         y_label: "share of the steps, %".to_owned(),
-        series: courses.into_iter().map(|(name, errors)| Series::new(name, outline(&errors))).collect(),
+        series: courses.into_iter().map(|(name, errors)| PlotSeries::new(name, outline(&errors))).collect(),
         ..LinesPlot::default()
     }
 }

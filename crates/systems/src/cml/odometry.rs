@@ -34,8 +34,12 @@ mod tests {
                 Pose2::new(turn.sin(), 1.0 - turn.cos(), turn)
             })
             .collect();
-        let none =
-            OdometryNoise { forward: 0.0, sideways: 0.0, heading_per_meter: 0.0, heading_per_radian: 0.0 };
+        let none = OdometryNoise {
+            forward_sigma_per_meter: 0.0,
+            sideways_sigma_per_meter: 0.0,
+            heading_sigma_per_meter: 0.0,
+            heading_sigma_per_radian: 0.0,
+        };
         let end = |noise: &OdometryNoise| {
             synthetic_odometry(&path, noise, 1)
                 .iter()

@@ -14,13 +14,13 @@ pub struct CmlParams {
     /// Delay of the odometry stamps relative to images of the same motion, s; negative if odometry is stamped early.
     pub odometry_delay: f64,
     /// Uncertainty of the poses of the training views.
-    pub taught_pose: PoseSigmas,
+    pub taught_pose_uncertainty: PoseSigmas,
     /// Uncertainty of the start pose.
-    pub start: PoseSigmas,
+    pub start_uncertainty: PoseSigmas,
     /// Synthetic odometry for a folder of frames, which has none.
     pub synthetic_odometry: SyntheticOdometry,
     /// Parameters of the panorama descriptors.
-    pub views: PanoramaParams,
+    pub panorama_descriptor: PanoramaParams,
     /// The localizer.
     pub localizer: LocalizerParams,
 }
@@ -30,10 +30,10 @@ impl Default for CmlParams {
         Self {
             velocity_hold: VELOCITY_HOLD,
             odometry_delay: 0.0,
-            taught_pose: PoseSigmas::default(),
-            start: PoseSigmas::default(),
+            taught_pose_uncertainty: PoseSigmas::default(),
+            start_uncertainty: PoseSigmas::default(),
             synthetic_odometry: SyntheticOdometry::default(),
-            views: PanoramaParams::default(),
+            panorama_descriptor: PanoramaParams::default(),
             localizer: LocalizerParams::default(),
         }
     }
@@ -44,14 +44,14 @@ impl Default for CmlParams {
 #[serde(default, deny_unknown_fields)]
 pub struct PoseSigmas {
     /// Of x and y, m.
-    pub position: f64,
+    pub position_sigma: f64,
     /// Of the heading, rad.
-    pub heading: f64,
+    pub heading_sigma: f64,
 }
 
 impl Default for PoseSigmas {
     fn default() -> Self {
-        Self { position: 0.02, heading: 0.05 }
+        Self { position_sigma: 0.02, heading_sigma: 0.05 }
     }
 }
 

@@ -1,19 +1,19 @@
 use anyhow::{Result, ensure};
-use wayfix_appearance_cml::{Donut, Learning, PanoramaParams, TurnSense};
+use wayfix_appearance_cml::{AzimuthDirection, Learning, OmnidirectionalRing, PanoramaParams};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
+use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
 use super::{
     CmlParams, ViewReader,
-    recording::{Frame, Heading, Recording, TurnEvidence, path, turn_evidence},
+    recording::{AzimuthDirectionEvidence, FrameRecording, HeadingSource, PosedFrame, path, turn_evidence},
     synthetic_odometry,
 };
 use crate::system::{HeldVelocity, PlausibleIncrement, check_velocity};
-use wayfix_evaluation::errors::TrueTrack;
+use wayfix_evaluation::errors::ReferenceTrajectory;
 
 /// Contents of a run: the training views, and the records to process after training.
 #[derive(Clone, Debug, Default)]
-pub struct Plan {
+pub struct CmlRunPlan {
     /// Training views with their poses.
     pub training_views: Vec<(EncodedImage, Pose2<f64>)>,
     /// In time order.
@@ -26,11 +26,11 @@ pub struct Plan {
 
 /// How to read the camera.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct CameraChoice {
+pub struct CameraReadingMode {
     /// The ring of a raw omnidirectional image.
-    pub donut: Option<Donut>,
+    pub donut: Option<OmnidirectionalRing>,
     /// Turning sense of the panorama columns; determined from the turns if not given.
-    pub sense: Option<TurnSense>,
+    pub sense: Option<AzimuthDirection>,
 }
 
 /// σ of an unknown heading, rad.
@@ -39,25 +39,25 @@ const ANY_HEADING: f64 = 3.0;
 /// Number of frames compared to find the turning sense of the columns.
 const N_EVIDENCE: usize = 400;
 
-impl Plan {
+impl CmlRunPlan {
     /// Builds a plan from folders of frames. Every `withhold`-th frame is localized and the others are learned. With `learn_from`, its frames are
     /// learned and all others localized. With `withhold` 0, no frame is learned. Sets the turning sense of the columns.
     ///
     /// # Errors
     /// Returns an error if no frame can be read.
     pub fn of_recording(
-        recording: &Recording,
-        learn_from: Option<&Recording>,
+        recording: &FrameRecording,
+        learn_from: Option<&FrameRecording>,
         withhold: usize,
         params: &mut CmlParams,
-        camera: &CameraChoice,
+        camera: &CameraReadingMode,
         seed: u64,
     ) -> Result<Self> {
         let mut notes = Vec::new();
         let taught = learn_from.unwrap_or(recording);
-        let mut heading = Heading::of(&recording.frames);
-        if Heading::of(&taught.frames) != heading {
-            heading = Heading::AlongPath;
+        let mut heading = HeadingSource::of(&recording.frames);
+        if HeadingSource::of(&taught.frames) != heading {
+            heading = HeadingSource::AlongPath;
             notes.push(
                 "only one of the two tables has headings: those of the paths are taken for both".to_owned(),
             );
@@ -66,15 +66,15 @@ impl Plan {
         let (_, along) = path::poses(&taught.frames, heading, smoothing);
         let images = taught.frames.iter().map(|frame| &frame.image);
         let evidence = evidence(images.zip(along.iter().map(Pose2::heading)), params, camera);
-        if let (Heading::AlongPath, Some(evidence)) = (heading, evidence) {
+        if let (HeadingSource::AlongPath, Some(evidence)) = (heading, evidence) {
             heading = match evidence {
-                _ if evidence.is_fixed() => Heading::Fixed,
-                _ if evidence.is_unrelated() => Heading::Unknown,
+                _ if evidence.is_fixed() => HeadingSource::Fixed,
+                _ if evidence.is_unrelated() => HeadingSource::Unknown,
                 _ => heading,
             };
         }
-        if heading == Heading::Unknown {
-            params.taught_pose.heading = ANY_HEADING;
+        if heading == HeadingSource::Unknown {
+            params.taught_pose_uncertainty.heading_sigma = ANY_HEADING;
             // A map that grows during the run has no training views.
             if learn_from.is_some() || withhold > 0 {
                 params.localizer.learning = Learning::Static;
@@ -98,13 +98,13 @@ impl Plan {
             }
         };
         let records = records(&recording.frames, &measured, &increments, |index| !is_taught(index));
-        Ok(Self { training_views, records, notes, headings_are_measured: heading == Heading::Given })
+        Ok(Self { training_views, records, notes, headings_are_measured: heading == HeadingSource::Given })
     }
 
     /// Columns and rows of the panorama of the first usable view.
     pub fn first_size(&self, reader: &mut ViewReader) -> Option<(usize, usize)> {
         let images = self.records.iter().filter_map(|record| match &record.data {
-            Data::Image(image) => Some(image),
+            RecordData::Image(image) => Some(image),
             _ => None,
         });
         let mut described = images.filter_map(|image| reader.describe(image).ok());
@@ -122,24 +122,24 @@ impl Plan {
         records: Vec<Record>,
         withhold: usize,
         params: &mut CmlParams,
-        camera: &CameraChoice,
+        camera: &CameraReadingMode,
     ) -> Result<Self> {
         let turns = image_headings(&records, params.velocity_hold);
         let evidence = evidence(turns.iter().map(|(image, heading)| (*image, *heading)), params, camera);
         let mut plan = Self { headings_are_measured: true, ..Self::default() };
-        plan.notes.push(choose_sense(evidence, Heading::Given, params, camera));
+        plan.notes.push(choose_sense(evidence, HeadingSource::Given, params, camera));
         if withhold == 0 {
             plan.records = records;
             return Ok(plan);
         }
-        let truth = TrueTrack::from_records(&records);
+        let truth = ReferenceTrajectory::from_records(&records);
         ensure!(
             truth.last_stamp().is_some(),
             "nothing can be taught: the log has no true poses (without --withhold the map is built as the robot goes)"
         );
         let mut n_images = 0;
         for record in records {
-            if let Data::Image(image) = &record.data {
+            if let RecordData::Image(image) = &record.data {
                 n_images += 1;
                 if n_images % withhold != 0 {
                     if let Some(pose) = truth.at(record.stamp) {
@@ -155,7 +155,7 @@ impl Plan {
 }
 
 fn records(
-    frames: &[Frame],
+    frames: &[PosedFrame],
     poses: &[Pose2<f64>],
     increments: &[Pose2<f64>],
     is_seen: impl Fn(usize) -> bool,
@@ -166,11 +166,11 @@ fn records(
         let stamp = Stamp::from_seconds(frame.seconds - origin).unwrap_or_default();
         let mut push = |data| records.push(Record { stamp, data });
         if let Some(increment) = index.checked_sub(1).and_then(|before| increments.get(before)) {
-            push(Data::OdometryIncrement(*increment));
+            push(RecordData::OdometryIncrement(*increment));
         }
-        push(Data::TruePose(*pose));
+        push(RecordData::TruePose(*pose));
         if is_seen(index) {
-            push(Data::Image(frame.image.clone()));
+            push(RecordData::Image(frame.image.clone()));
         }
     }
     records
@@ -183,18 +183,18 @@ fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage,
     let mut headings = Vec::new();
     for record in records {
         let mut advance = || {
-            let motion = held.until(record.stamp, velocity_hold);
+            let motion = held.motion_until(record.stamp, velocity_hold);
             pose = motion.map_or(pose, |motion| pose.compose(&motion.increment));
         };
         match &record.data {
-            Data::OdometryIncrement(increment) if plausible.check(record.stamp, increment).is_ok() => {
+            RecordData::OdometryIncrement(increment) if plausible.check(record.stamp, increment).is_ok() => {
                 pose = pose.compose(increment);
             }
-            Data::Velocity(velocity) if check_velocity(*velocity).is_ok() => {
+            RecordData::Velocity(velocity) if check_velocity(*velocity).is_ok() => {
                 advance();
                 let _: Result<(), String> = held.hold(record.stamp, *velocity);
             }
-            Data::Image(image) => {
+            RecordData::Image(image) => {
                 advance();
                 headings.push((image, pose.heading()));
             }
@@ -208,9 +208,10 @@ fn image_headings(records: &[Record], velocity_hold: f64) -> Vec<(&EncodedImage,
 fn evidence<'a>(
     images: impl Iterator<Item = (&'a EncodedImage, f64)>,
     params: &CmlParams,
-    camera: &CameraChoice,
-) -> Option<TurnEvidence> {
-    let views = PanoramaParams { sense: TurnSense::Clockwise, ..params.views };
+    camera: &CameraReadingMode,
+) -> Option<AzimuthDirectionEvidence> {
+    let views =
+        PanoramaParams { azimuth_direction: AzimuthDirection::Clockwise, ..params.panorama_descriptor };
     let mut reader = ViewReader::new(views, camera.donut);
     let (views, headings): (Vec<_>, Vec<f64>) = images
         .take(N_EVIDENCE)
@@ -220,39 +221,42 @@ fn evidence<'a>(
 }
 
 fn choose_sense(
-    evidence: Option<TurnEvidence>,
-    heading: Heading,
+    evidence: Option<AzimuthDirectionEvidence>,
+    heading: HeadingSource,
     params: &mut CmlParams,
-    camera: &CameraChoice,
+    camera: &CameraReadingMode,
 ) -> String {
     let told = match (camera.sense, evidence) {
         (Some(sense), _) => {
-            params.views.sense = sense;
+            params.panorama_descriptor.azimuth_direction = sense;
             "as told"
         }
-        (None, Some(evidence)) if !matches!(heading, Heading::Fixed | Heading::Unknown) => {
+        (None, Some(evidence)) if !matches!(heading, HeadingSource::Fixed | HeadingSource::Unknown) => {
             let counterclockwise = evidence.is_counterclockwise();
-            params.views.sense =
-                if counterclockwise { TurnSense::Counterclockwise } else { TurnSense::Clockwise };
+            params.panorama_descriptor.azimuth_direction = if counterclockwise {
+                AzimuthDirection::Counterclockwise
+            } else {
+                AzimuthDirection::Clockwise
+            };
             "as the turns of the robot show"
         }
         _ => "by default",
     };
-    let sense = match params.views.sense {
-        TurnSense::Clockwise => "clockwise, left to right",
-        TurnSense::Counterclockwise => "counterclockwise",
+    let sense = match params.panorama_descriptor.azimuth_direction {
+        AzimuthDirection::Clockwise => "clockwise, left to right",
+        AzimuthDirection::Counterclockwise => "counterclockwise",
     };
     format!("columns go {sense}, {told}")
 }
 
-fn describe_heading(heading: Heading) -> &'static str {
+fn describe_heading(heading: HeadingSource) -> &'static str {
     match heading {
-        Heading::Given => "headings are those of the table",
-        Heading::AlongPath => "the table has no headings: the robot is taken to look along its path",
-        Heading::Unknown => {
+        HeadingSource::Given => "headings are those of the table",
+        HeadingSource::AlongPath => "the table has no headings: the robot is taken to look along its path",
+        HeadingSource::Unknown => {
             "the table has no headings, and the views turn otherwise than the path: their headings are not used, and a taught map stays as it is"
         }
-        Heading::Fixed => {
+        HeadingSource::Fixed => {
             "the table has no headings, and the views do not turn: the camera is taken to look the same way always"
         }
     }

@@ -1,12 +1,14 @@
 use anyhow::{Result, anyhow};
-use wayfix_appearance_cml::{Donut, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams};
+use wayfix_appearance_cml::{
+    OmnidirectionalRing, Panorama, PanoramaDescriptor, PanoramaFeatures, PanoramaParams,
+};
 use wayfix_sensor_log::EncodedImage;
 
 /// Computes descriptors of camera images: panoramas, or raw images whose ring is unwrapped first.
 #[derive(Clone, Debug)]
 pub struct ViewReader {
     params: PanoramaParams,
-    donut: Option<Donut>,
+    donut: Option<OmnidirectionalRing>,
     /// Created for the size of the first image.
     features: Option<PanoramaFeatures>,
 }
@@ -16,7 +18,7 @@ const OVERSAMPLING: usize = 3;
 
 impl ViewReader {
     /// A reader of panoramas, or of raw images with a ring.
-    pub fn new(params: PanoramaParams, donut: Option<Donut>) -> Self {
+    pub fn new(params: PanoramaParams, donut: Option<OmnidirectionalRing>) -> Self {
         Self { params, donut, features: None }
     }
 

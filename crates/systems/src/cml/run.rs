@@ -5,16 +5,16 @@ use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
 use wayfix_appearance_cml::Start;
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_sensor_log::{Data, Record};
+use wayfix_sensor_log::{Record, RecordData};
 
-use super::{CmlParams, CmlSystem, FrameResult, Plan, PoseSigmas, system::gaussian};
+use super::{CmlParams, CmlRunPlan, CmlSystem, CmlViewResult, PoseSigmas, system::gaussian};
 
-use crate::system::{DriveStep, KnownStart, ODOMETRY, System, check_overlap, drive, without_odometry_delay};
-use wayfix_evaluation::errors::{Sample, TrueTrack};
+use crate::system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, drive, without_odometry_delay};
+use wayfix_evaluation::errors::{ReferenceTrajectory, TrajectorySample};
 
 /// Task of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Task {
+pub enum CmlTask {
     /// Builds the map while localizing in it, from a known start.
     ConcurrentMapBuilding,
     /// Learns views with known poses, then localizes others.
@@ -39,11 +39,11 @@ pub enum StartPlace {
 /// Localized views and the truth.
 pub struct CmlRun {
     /// The task.
-    pub task: Task,
+    pub task: CmlTask,
     /// The system in its last state.
     pub system: CmlSystem,
     /// True poses, where there are any.
-    pub truth: TrueTrack,
+    pub truth: ReferenceTrajectory,
     /// Whether the true headings were measured.
     pub headings_are_measured: bool,
     /// Remarks for the user.
@@ -56,21 +56,21 @@ pub struct CmlRun {
 /// Returns an error if there is no usable image.
 pub fn run(
     mut system: CmlSystem,
-    plan: &Plan,
-    task: Task,
+    plan: &CmlRunPlan,
+    task: CmlTask,
     start: StartPlace,
     params: &CmlParams,
     seed: u64,
-    observe: impl FnMut(DriveStep<'_, CmlSystem>),
+    observe: impl FnMut(RunStep<'_, CmlSystem>),
 ) -> Result<CmlRun> {
-    if !plan.records.iter().any(|record| matches!(record.data, Data::Image(_))) {
+    if !plan.records.iter().any(|record| matches!(record.data, RecordData::Image(_))) {
         bail!("there are no images to localize (`wayfix info` shows what a log holds)");
     }
-    check_overlap(&plan.records, ODOMETRY, ("images", |data| matches!(data, Data::Image(_))))?;
+    check_overlap(&plan.records, ODOMETRY, ("images", |data| matches!(data, RecordData::Image(_))))?;
     for (image, pose) in &plan.training_views {
-        system.teach(image, pose, &params.taught_pose)?;
+        system.teach(image, pose, &params.taught_pose_uncertainty)?;
     }
-    system.start(begin(start, &params.start, seed)?)?;
+    system.start(begin(start, &params.start_uncertainty, seed)?)?;
     let records = without_odometry_delay(&plan.records, params.odometry_delay);
     drive(&mut system, records.iter(), observe);
     if system.frames().is_empty() {
@@ -81,7 +81,7 @@ pub fn run(
     Ok(CmlRun {
         task,
         system,
-        truth: TrueTrack::from_records(&plan.records),
+        truth: ReferenceTrajectory::from_records(&plan.records),
         headings_are_measured: plan.headings_are_measured,
         notes: plan.notes.clone(),
     })
@@ -90,17 +90,19 @@ pub fn run(
 /// The true pose at the first motion or view. If truth begins later, odometry extrapolates its first pose back.
 pub fn first_true_pose(records: &[Record]) -> Option<Pose2<f64>> {
     let (_, moves) = ODOMETRY;
-    let first =
-        records.iter().position(|record| moves(&record.data) || matches!(record.data, Data::Image(_)))?;
+    let first = records
+        .iter()
+        .position(|record| moves(&record.data) || matches!(record.data, RecordData::Image(_)))?;
     // An increment begins at the record before it.
-    let is_increment = matches!(records[first].data, Data::OdometryIncrement(_));
+    let is_increment = matches!(records[first].data, RecordData::OdometryIncrement(_));
     let begin = if is_increment { first.saturating_sub(1) } else { first };
-    let start = KnownStart::at(records[begin].stamp, &TrueTrack::from_records(records), records)?;
+    let start =
+        TrueStartPose::at(records[begin].stamp, &ReferenceTrajectory::from_records(records), records)?;
     Some(start.pose)
 }
 
 /// Uncertainty of a start pose that defines the frame of a map.
-const EXACT: PoseSigmas = PoseSigmas { position: 1e-3, heading: 1e-3 };
+const EXACT: PoseSigmas = PoseSigmas { position_sigma: 1e-3, heading_sigma: 1e-3 };
 
 fn begin(start: StartPlace, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
     Ok(match start {
@@ -111,8 +113,11 @@ fn begin(start: StartPlace, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
             // Draws the start error from the stated uncertainty.
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let mut normal = |sigma: f64| sigma * rng.sample::<f64, _>(StandardNormal);
-            let error =
-                Vector3::new(normal(sigmas.position), normal(sigmas.position), normal(sigmas.heading));
+            let error = Vector3::new(
+                normal(sigmas.position_sigma),
+                normal(sigmas.position_sigma),
+                normal(sigmas.heading_sigma),
+            );
             Start::Known(gaussian(&pose.retract(&error), sigmas)?)
         }
     })
@@ -120,17 +125,17 @@ fn begin(start: StartPlace, sigmas: &PoseSigmas, seed: u64) -> Result<Start> {
 
 impl CmlRun {
     /// Localized views with the true pose at their stamp.
-    pub fn samples(&self) -> Vec<(&FrameResult, Sample)> {
-        let sample = |frame: &FrameResult| {
+    pub fn samples(&self) -> Vec<(&CmlViewResult, TrajectorySample)> {
+        let sample = |frame: &CmlViewResult| {
             let (pose, truth) = (frame.pose.as_ref()?, self.truth.at(frame.stamp)?);
-            Some(Sample { estimate: *pose.mean(), covariance: *pose.covariance(), truth })
+            Some(TrajectorySample { estimate: *pose.mean(), covariance: *pose.covariance(), truth })
         };
         let frames = self.system.frames().iter();
         frames.filter_map(|frame| Some((frame, sample(frame)?))).collect()
     }
 
     /// Seconds since the first view.
-    pub fn seconds(&self, frame: &FrameResult) -> f64 {
+    pub fn seconds(&self, frame: &CmlViewResult) -> f64 {
         self.system.frames().first().map_or(0.0, |first| frame.stamp.seconds_since(first.stamp))
     }
 }

@@ -4,7 +4,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use wayfix_appearance_cml::{ArchiveEnd, ArchiveError, ArchiveParams, Journal, MapArchive};
+use wayfix_appearance_cml::{
+    MapArchive, MapArchiveEnd, MapArchiveError, MapArchiveJournal, MapArchiveParams,
+};
 use wayfix_sensor_log::{Record, Stamp};
 
 use super::{CmlSystem, PanoramaLocalizer};
@@ -13,7 +15,7 @@ use crate::saved::write_atomically;
 /// Errors of writing and reading a map.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum SavedViewsError {
+pub enum SavedViewMapError {
     /// An operating-system error.
     #[error("{}", path.display())]
     Io {
@@ -28,7 +30,7 @@ pub enum SavedViewsError {
         /// Path of the file.
         path: PathBuf,
         /// The reason.
-        source: ArchiveError,
+        source: MapArchiveError,
     },
     /// No view was processed, so there is nothing to save.
     #[error("no view was seen, so there is no map to save")]
@@ -39,17 +41,17 @@ pub enum SavedViewsError {
 ///
 /// # Errors
 /// Returns an error if the file cannot be read, is damaged, or has an unsupported version.
-pub fn read_map(path: &Path) -> Result<MapArchive, SavedViewsError> {
-    let bytes = fs::read(path).map_err(|source| SavedViewsError::Io { path: path.to_owned(), source })?;
+pub fn read_map(path: &Path) -> Result<MapArchive, SavedViewMapError> {
+    let bytes = fs::read(path).map_err(|source| SavedViewMapError::Io { path: path.to_owned(), source })?;
     MapArchive::from_bytes(&bytes)
-        .map_err(|source| SavedViewsError::Archive { path: path.to_owned(), source })
+        .map_err(|source| SavedViewMapError::Archive { path: path.to_owned(), source })
 }
 
 /// A message if the end of the map is missing.
 pub fn end_note(archive: &MapArchive) -> Option<String> {
     match archive.end() {
-        ArchiveEnd::Whole => None,
-        ArchiveEnd::Interrupted { whole_bytes } => Some(format!(
+        MapArchiveEnd::Whole => None,
+        MapArchiveEnd::Interrupted { whole_bytes } => Some(format!(
             "saving the map was interrupted: it is whole up to byte {whole_bytes}, the rest is left out"
         )),
     }
@@ -64,11 +66,11 @@ pub struct MapSaver {
     period: Option<f64>,
     saved_at: Option<Stamp>,
     open: Option<OpenJournal>,
-    failure: Option<SavedViewsError>,
+    failure: Option<SavedViewMapError>,
 }
 
 struct OpenJournal {
-    journal: Journal,
+    journal: MapArchiveJournal,
     file: File,
     n_snapshot: usize,
     n_appended: usize,
@@ -94,34 +96,36 @@ impl MapSaver {
     ///
     /// # Errors
     /// Returns an error if this or any previous save failed.
-    pub fn finish(mut self, system: &CmlSystem) -> Result<(), SavedViewsError> {
+    pub fn finish(mut self, system: &CmlSystem) -> Result<(), SavedViewMapError> {
         self.snapshot(system)?;
         self.failure.map_or(Ok(()), Err)
     }
 
-    fn save(&mut self, system: &CmlSystem) -> Result<(), SavedViewsError> {
+    fn save(&mut self, system: &CmlSystem) -> Result<(), SavedViewMapError> {
         match &self.open {
             Some(open) if open.n_appended <= open.n_snapshot => self.append(system.localizer()),
             _ => self.snapshot(system),
         }
     }
 
-    fn snapshot(&mut self, system: &CmlSystem) -> Result<(), SavedViewsError> {
+    fn snapshot(&mut self, system: &CmlSystem) -> Result<(), SavedViewMapError> {
         let reader = system.reader();
-        let params =
-            ArchiveParams { views: *reader.params(), size: reader.size().ok_or(SavedViewsError::NoView)? };
+        let params = MapArchiveParams {
+            views: *reader.params(),
+            size: reader.size().ok_or(SavedViewMapError::NoView)?,
+        };
         let (map, state) = (system.localizer().map(), system.localizer().state());
         let bytes = MapArchive::to_bytes(&params, map, state);
         self.open = None;
         let opened = write_atomically(&self.path, &bytes)
             .and_then(|()| OpenOptions::new().append(true).open(&self.path));
         let file = opened.map_err(|source| self.io(source))?;
-        let journal = Journal::after(map);
+        let journal = MapArchiveJournal::after(map);
         self.open = Some(OpenJournal { journal, file, n_snapshot: bytes.len(), n_appended: 0 });
         Ok(())
     }
 
-    fn append(&mut self, localizer: &PanoramaLocalizer) -> Result<(), SavedViewsError> {
+    fn append(&mut self, localizer: &PanoramaLocalizer) -> Result<(), SavedViewMapError> {
         let Some(open) = &mut self.open else { return Ok(()) };
         let bytes = open.journal.changes(localizer.map(), localizer.state());
         open.n_appended += bytes.len();
@@ -134,7 +138,7 @@ impl MapSaver {
         Ok(())
     }
 
-    fn io(&self, source: io::Error) -> SavedViewsError {
-        SavedViewsError::Io { path: self.path.clone(), source }
+    fn io(&self, source: io::Error) -> SavedViewMapError {
+        SavedViewMapError::Io { path: self.path.clone(), source }
     }
 }

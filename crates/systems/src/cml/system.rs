@@ -7,11 +7,11 @@ use wayfix_appearance_cml::{
 };
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_gaussian_core::Gaussian;
-use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
+use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
 
 use super::{CmlParams, PoseSigmas, ViewReader};
 use crate::system::{
-    Events, HeldVelocity, PlausibleIncrement, Stopwatch, System, check_velocity, warn_of_lag,
+    EventCounts, HeldVelocity, PlausibleIncrement, Stopwatch, System, check_velocity, warn_of_lag,
 };
 
 /// The localizer of panoramas with an index, which avoids comparing with every reference.
@@ -34,13 +34,13 @@ pub struct CmlSystem {
     last_view: Option<PanoramaDescriptor>,
     /// Turn since the view before, estimated from the views alone, rad.
     seen_turns: Vec<Option<f64>>,
-    frames: Vec<FrameResult>,
-    events: Events,
+    frames: Vec<CmlViewResult>,
+    events: EventCounts,
 }
 
 /// Result of one view.
 #[derive(Clone, Debug)]
-pub struct FrameResult {
+pub struct CmlViewResult {
     /// Capture time.
     pub stamp: Stamp,
     /// The most probable pose, with covariance in its body frame; `None` while the pose is unknown.
@@ -77,12 +77,12 @@ impl CmlSystem {
             last_view: None,
             seen_turns: Vec::new(),
             frames: Vec::new(),
-            events: Events::default(),
+            events: EventCounts::default(),
         })
     }
 
     /// Results of all views so far.
-    pub fn frames(&self) -> &[FrameResult] {
+    pub fn frames(&self) -> &[CmlViewResult] {
         &self.frames
     }
 
@@ -142,7 +142,7 @@ impl CmlSystem {
 
     /// Predicts the pose to `stamp` with the held velocity.
     fn advance_to(&mut self, stamp: Stamp) -> Result<(), String> {
-        let Some(held) = self.velocity.until(stamp, self.velocity_hold) else { return Ok(()) };
+        let Some(held) = self.velocity.motion_until(stamp, self.velocity_hold) else { return Ok(()) };
         if held.unknown_seconds > 0.0 {
             let hold = self.velocity_hold;
             self.events.warn(
@@ -173,7 +173,7 @@ impl CmlSystem {
                 _ => "other",
             });
         }
-        self.frames.push(FrameResult {
+        self.frames.push(CmlViewResult {
             stamp,
             pose: self.localizer.estimate().cloned(),
             is_certain: outcome.estimate.is_some(),
@@ -198,23 +198,26 @@ impl CmlSystem {
 
 /// A Gaussian with this mean and these standard deviations.
 pub(super) fn gaussian(pose: &Pose2<f64>, sigmas: &PoseSigmas) -> anyhow::Result<Gaussian<Pose2<f64>>> {
-    Ok(Gaussian::from_sigmas(*pose, &Vector3::new(sigmas.position, sigmas.position, sigmas.heading))?)
+    Ok(Gaussian::from_sigmas(
+        *pose,
+        &Vector3::new(sigmas.position_sigma, sigmas.position_sigma, sigmas.heading_sigma),
+    )?)
 }
 
 impl System for CmlSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
-            Data::OdometryIncrement(increment) => {
+            RecordData::OdometryIncrement(increment) => {
                 self.plausible.check(record.stamp, increment)?;
                 self.advance_to(record.stamp)?;
                 self.move_by(increment)
             }
-            Data::Velocity(velocity) => {
+            RecordData::Velocity(velocity) => {
                 check_velocity(*velocity)?;
                 self.advance_to(record.stamp)?;
                 self.velocity.hold(record.stamp, *velocity)
             }
-            Data::Image(image) => {
+            RecordData::Image(image) => {
                 self.advance_to(record.stamp)?;
                 self.see(record.stamp, image)
             }
@@ -222,7 +225,7 @@ impl System for CmlSystem {
         }
     }
 
-    fn events(&mut self) -> &mut Events {
+    fn events(&mut self) -> &mut EventCounts {
         &mut self.events
     }
 }

@@ -1,9 +1,9 @@
 use nalgebra::Matrix2;
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
+use wayfix_sensor_log::{DrawingShape, LogError, Record, ViewerDrawing, topics};
 
-use super::{ColorSystem, FrameResult};
+use super::{ColorFrameResult, ColorSystem};
 use crate::system::{self, EstimateLog, EstimateWriter};
 
 /// Writes the camera's images, the path and the particles beside the records, for viewers.
@@ -22,7 +22,7 @@ const PATH_PERIOD: usize = 20;
 const SIGMAS: f64 = 2.0;
 const ROBOT_COLOR: [f64; 4] = [0.12, 0.47, 0.71, 1.0];
 
-impl system::Drawing for ColorDrawing {
+impl system::EstimateDrawing for ColorDrawing {
     type System = ColorSystem;
 
     fn draw(
@@ -49,16 +49,16 @@ impl system::Drawing for ColorDrawing {
     }
 }
 
-fn robot(frame: &FrameResult) -> Vec<Drawing> {
+fn robot(frame: &ColorFrameResult) -> Vec<ViewerDrawing> {
     let pose = frame.pose.mean();
     let rotation = pose.rotation_matrix();
     let covariance: Matrix2<f64> =
         rotation * frame.pose.covariance().fixed_view::<2, 2>(0, 0) * rotation.transpose();
     let Ok(ellipse) = CovarianceEllipse::at_sigmas(&covariance, SIGMAS) else { return Vec::new() };
-    let shape = Shape::Ellipse {
+    let shape = DrawingShape::Ellipse {
         center: [pose.x(), pose.y()],
         semi_axes: [ellipse.semi_major, ellipse.semi_minor],
         angle: ellipse.angle,
     };
-    vec![Drawing { id: "robot".to_owned(), color: ROBOT_COLOR, shape }]
+    vec![ViewerDrawing { id: "robot".to_owned(), color: ROBOT_COLOR, shape }]
 }

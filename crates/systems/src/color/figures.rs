@@ -4,19 +4,19 @@ use wayfix_estimation_traits::Pose2;
 use super::{ColorRun, LabelCounts, rate_of};
 use crate::system::System;
 use wayfix_evaluation::{
-    errors::{MeanInterval, Sample, trajectory_errors},
-    report::{Metric, Run},
+    errors::{MeanInterval, TrajectorySample, trajectory_errors},
+    report::{Metric, ReportRun},
 };
 
 /// Minimum number of labelled pixels of a colour in an image for a rate of its own.
 const MIN_PIXELS: u64 = 20;
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
-pub fn summarize(run: &mut ColorRun) -> Run {
+pub fn summarize(run: &mut ColorRun) -> ReportRun {
     let mut metrics = localization(run);
     metrics.extend(classification(run));
     let frames = run.system.frames();
-    let mean = |value: &dyn Fn(&super::FrameResult) -> f64| {
+    let mean = |value: &dyn Fn(&super::ColorFrameResult) -> f64| {
         frames.iter().map(value).sum::<f64>() / frames.len().max(1) as f64
     };
     metrics.push(Metric::new("ess_mean", mean(&|frame| frame.effective_particles), ""));
@@ -27,15 +27,15 @@ pub fn summarize(run: &mut ColorRun) -> Run {
         Metric::new("frame_mean_ms", mean(&|frame| 1e3 * frame.step.as_secs_f64()), "ms"),
         Metric::new("frame_max_ms", 1e3 * longest.as_secs_f64(), "ms"),
     ];
-    Run { metrics, timings, events: run.system.events().counts(), ..Run::default() }
+    ReportRun { metrics, timings, events: run.system.events().counts(), ..ReportRun::default() }
 }
 
 fn localization(run: &ColorRun) -> Vec<Metric> {
-    let samples: Vec<Sample> = run.samples().into_iter().map(|(_, sample)| sample).collect();
+    let samples: Vec<TrajectorySample> = run.samples().into_iter().map(|(_, sample)| sample).collect();
     let Some(errors) = trajectory_errors(&samples) else { return Vec::new() };
     let n = samples.len() as f64;
-    let positions: Vec<f64> = samples.iter().map(Sample::position_error).collect();
-    let heading = samples.iter().map(Sample::heading_error).sum::<f64>() / n;
+    let positions: Vec<f64> = samples.iter().map(TrajectorySample::position_error).collect();
+    let heading = samples.iter().map(TrajectorySample::heading_error).sum::<f64>() / n;
     let mut metrics = vec![
         Metric::new("position_mean_m", positions.iter().sum::<f64>() / n, "m"),
         Metric::new("position_max_m", positions.iter().copied().fold(0.0, f64::max), "m"),

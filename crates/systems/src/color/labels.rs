@@ -1,5 +1,5 @@
 use wayfix_color_map::ColorId;
-use wayfix_color_model::{Classifier, YuvImage};
+use wayfix_color_model::{PixelClassifier, YuvImage};
 use wayfix_sensor_log::DecodedImage;
 
 /// Number of labelled pixels of each map colour that were classified correctly.
@@ -30,7 +30,7 @@ impl LabelCounts {
 pub fn tally(
     image: &YuvImage,
     labels: &DecodedImage,
-    classifier: &Classifier,
+    classifier: &PixelClassifier,
     n_colors: usize,
 ) -> Option<LabelCounts> {
     if (labels.width, labels.height) != (image.width(), image.height()) {

@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use wayfix_color_map::{ColorMap, Shape};
+use wayfix_color_map::{ColorMap, ColoredShape};
 use wayfix_sensor_log::read_text;
 
 /// Reads a map of coloured surfaces from TOML or, with the extension `.json`, from JSON.
@@ -21,11 +21,11 @@ pub fn read_map(path: &Path) -> Result<ColorMap> {
 /// The outlines of the map's surfaces seen from above, to draw paths on.
 pub fn field_lines(map: &ColorMap) -> Vec<Vec<(f64, f64)>> {
     const CORNERS: u32 = 12;
-    let outline = |shape: &Shape| match shape {
-        Shape::Polygon { vertices, .. } => {
+    let outline = |shape: &ColoredShape| match shape {
+        ColoredShape::Polygon { vertices, .. } => {
             vertices.iter().chain(vertices.first()).map(|vertex| (vertex.x, vertex.y)).collect()
         }
-        Shape::Post { x, y, radius, .. } => (0..=CORNERS)
+        ColoredShape::Post { x, y, radius, .. } => (0..=CORNERS)
             .map(|k| {
                 let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(CORNERS)).sin_cos();
                 (x + radius * cos, y + radius * sin)

@@ -1,6 +1,6 @@
 //! Adaptive colour localization on logs: the robot's pose on a coloured field, and the effect of the light on the colours.
 //!
-//! [`run`] passes the records of a log through a [`ColorSystem`] with a map and priors; [`summarize`] gives the figures, [`pictures`] the pictures.
+//! [`run`] passes the records of a log through a [`ColorSystem`] with a map and priors; [`summarize`] gives the figures, [`plots`] the pictures.
 
 mod estimates;
 mod figures;
@@ -8,7 +8,7 @@ mod labels;
 mod map;
 mod params;
 mod particle_film;
-mod pictures;
+mod plots;
 pub mod priors;
 mod run;
 mod system;
@@ -17,8 +17,8 @@ pub use estimates::{ColorDrawing, ColorEstimateLog};
 pub use figures::summarize;
 pub use labels::{LabelCounts, rate_of, tally};
 pub use map::{field_lines, read_map};
-pub use params::{ColorSystemParams, StartParams};
+pub use params::{ColorSystemParams, StartPoseUncertainty};
 pub use particle_film::ParticleFilm;
-pub use pictures::{film, pictures, uv_ellipses};
+pub use plots::{film, plots, uv_ellipses};
 pub use run::{ColorRun, n_images, run};
-pub use system::{ColorSystem, FrameResult, StartPose};
+pub use system::{ColorFrameResult, ColorSystem, StartPose};

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{EncodedImage, Stamp};
 
 use super::{ColorRun, ColorSystem, field_lines};
-use wayfix_evaluation::plot::{FilmFrame, FilmStrip, Picture};
+use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, SvgPlot};
 
 /// Frames of the film; each represents a part of the run.
 const N_FRAMES: usize = 6;
@@ -54,10 +54,10 @@ impl ParticleFilm {
     ///
     /// # Errors
     /// Returns an error if a frame cannot be encoded.
-    pub fn draw(&self, run: &ColorRun) -> Result<Picture> {
+    pub fn draw(&self, run: &ColorRun) -> Result<SvgPlot> {
         let field = field_lines(run.system.map());
         let sheet = Sheet::around(&field);
-        let frame = |moment: &Moment| -> Result<FilmFrame> {
+        let frame = |moment: &Moment| -> Result<FilmStripFrame> {
             let mut sheet = sheet.clone();
             field.iter().for_each(|line| sheet.line(line, LINES));
             moment.particles.iter().for_each(|&particle| sheet.disc(particle, 1.5, PARTICLES));
@@ -67,9 +67,9 @@ impl ParticleFilm {
             sheet.pose(&moment.estimate, ESTIMATE);
             let image = EncodedImage::png_rgb(WIDTH as u32, sheet.height as u32, &sheet.pixels.concat())?;
             let caption = format!("{:.1} s, {} particles", run.seconds(moment.stamp), moment.particles.len());
-            Ok(FilmFrame { image, caption })
+            Ok(FilmStripFrame { image, caption })
         };
-        let frames: Vec<FilmFrame> = self.kept.iter().flatten().map(frame).collect::<Result<_>>()?;
+        let frames: Vec<FilmStripFrame> = self.kept.iter().flatten().map(frame).collect::<Result<_>>()?;
         let legends = ["blue: particles about the most probable place", "orange: estimate, red: truth"];
         let rows = frames.chunks(FRAMES_A_ROW).zip(legends);
         let film = FilmStrip {

@@ -6,8 +6,8 @@ use anyhow::{Context, Result};
 use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_model::{
-    ColorMeans, LightingBank, LightingFilter, LightingParams, LightingPriors, PixelSpread, PriorParams,
-    TrainingVenue, learn_priors,
+    ColorMeans, LightingBank, LightingFilter, LightingParams, LightingPriors, PooledPixelVariance,
+    PriorLearningParams, TrainingVenue, learn_priors,
 };
 use wayfix_kalman::MarkovChain;
 use wayfix_scene_sim::league::{COLOR_NAMES, TrainingParams};
@@ -49,7 +49,7 @@ pub fn learn_from_simulation(k: usize) -> Result<LightingPriors> {
         .collect();
     let colors = COLOR_NAMES.map(str::to_owned);
     let mut rng = ChaCha8Rng::seed_from_u64(TRAINING_SEED + 1);
-    Ok(learn_priors(&colors, &venues, k, &PriorParams::default(), &mut rng)?)
+    Ok(learn_priors(&colors, &venues, k, &PriorLearningParams::default(), &mut rng)?)
 }
 
 fn training_venue(venue: wayfix_scene_sim::league::TrainingVenue) -> TrainingVenue {
@@ -60,7 +60,7 @@ fn training_venue(venue: wayfix_scene_sim::league::TrainingVenue) -> TrainingVen
     TrainingVenue {
         name: venue.name,
         images: venue.images.into_iter().map(image).collect(),
-        pixels: Some(PixelSpread {
+        pixels: Some(PooledPixelVariance {
             variances: Vector3::from(venue.pixel_variance),
             degrees_of_freedom: venue.degrees_of_freedom,
         }),
@@ -73,10 +73,12 @@ fn training_venue(venue: wayfix_scene_sim::league::TrainingVenue) -> TrainingVen
 /// Returns an error if a prior or a parameter is invalid.
 pub fn bank(priors: &LightingPriors, params: &ColorSystemParams) -> Result<LightingBank> {
     let lighting = LightingParams {
-        pixel_noise: params.pixel_noise.map_or(priors.pixel_noise(), Vector3::from),
-        mean_noise: params.mean_noise.map_or(priors.mean_noise(), Vector3::from),
-        drift: params.drift,
-        unseen: params.unseen,
+        pixel_color_variance: params
+            .pixel_color_variance
+            .map_or(priors.pixel_color_variance(), Vector3::from),
+        mean_color_variance: params.mean_color_variance.map_or(priors.mean_color_variance(), Vector3::from),
+        lighting_drift: params.lighting_drift,
+        unseen_colors: params.unseen_colors,
     };
     let filters = priors.members().iter().map(|prior| LightingFilter::new(prior.clone(), lighting));
     let chain = MarkovChain::sticky(priors.members().len(), params.light_persistence)?;

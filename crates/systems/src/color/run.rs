@@ -7,22 +7,22 @@ use rand_distr::StandardNormal;
 use wayfix_color_map::ColorMap;
 use wayfix_color_model::LightingBank;
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_sensor_log::{Data, Record, Stamp};
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 
-use super::{ColorSystem, ColorSystemParams, FrameResult, StartPose};
-use crate::system::KnownStart;
+use super::{ColorFrameResult, ColorSystem, ColorSystemParams, StartPose};
+use crate::system::TrueStartPose;
 use crate::{
     slam::{warn_of_no_overlap, warn_of_start},
-    system::{DriveStep, ODOMETRY, System, check_overlap, drive, without_odometry_delay},
+    system::{ODOMETRY, RunStep, System, check_overlap, drive, without_odometry_delay},
 };
-use wayfix_evaluation::errors::{Sample, TrueTrack};
+use wayfix_evaluation::errors::{ReferenceTrajectory, TrajectorySample};
 
 /// Results of colour localization on a log, with the truth of the log.
 pub struct ColorRun {
     /// The system in its last state.
     pub system: ColorSystem,
     /// True poses, where the log has them.
-    pub truth: TrueTrack,
+    pub truth: ReferenceTrajectory,
 }
 
 /// Processes the records of a log with the localizer and shows each step to `observe`.
@@ -39,14 +39,14 @@ pub fn run(
     params: &ColorSystemParams,
     start: Option<StartPose>,
     seed: u64,
-    observe: impl FnMut(DriveStep<'_, ColorSystem>),
+    observe: impl FnMut(RunStep<'_, ColorSystem>),
 ) -> Result<ColorRun> {
-    let Some(first_image) = records.iter().find(|record| matches!(record.data, Data::Image(_))) else {
+    let Some(first_image) = records.iter().find(|record| matches!(record.data, RecordData::Image(_))) else {
         bail!("the log has no camera images (`wayfix info` shows what a log holds)");
     };
-    check_overlap(records, ODOMETRY, ("images", |data| matches!(data, Data::Image(_))))?;
-    let truth = TrueTrack::from_records(records);
-    let known = KnownStart::at(first_image.stamp, &truth, records).filter(|_| start.is_none());
+    check_overlap(records, ODOMETRY, ("images", |data| matches!(data, RecordData::Image(_))))?;
+    let truth = ReferenceTrajectory::from_records(records);
+    let known = TrueStartPose::at(first_image.stamp, &truth, records).filter(|_| start.is_none());
     let start = start.unwrap_or_else(|| match known {
         Some(known) => StartPose::Near(guess(&known.pose, params, seed)),
         None => StartPose::Anywhere,
@@ -69,7 +69,7 @@ pub fn run(
 
 /// Number of camera frames in a log.
 pub fn n_images(records: &[Record]) -> usize {
-    records.iter().filter(|record| matches!(record.data, Data::Image(_))).count()
+    records.iter().filter(|record| matches!(record.data, RecordData::Image(_))).count()
 }
 
 /// A start pose drawn around the truth with the stated uncertainty.
@@ -78,16 +78,21 @@ fn guess(truth: &Pose2<f64>, params: &ColorSystemParams, seed: u64) -> Pose2<f64
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(1);
     let mut normal = |sigma: f64| sigma * rng.sample::<f64, _>(StandardNormal);
-    let (position, heading) = (params.start.position_sigma, params.start.heading_sigma);
+    let (position, heading) =
+        (params.start_uncertainty.position_sigma, params.start_uncertainty.heading_sigma);
     truth.retract(&nalgebra::Vector3::new(normal(position), normal(position), normal(heading)))
 }
 
 impl ColorRun {
     /// Frames with the true pose at their stamp.
-    pub fn samples(&self) -> Vec<(&FrameResult, Sample)> {
-        let sample = |frame: &FrameResult| {
+    pub fn samples(&self) -> Vec<(&ColorFrameResult, TrajectorySample)> {
+        let sample = |frame: &ColorFrameResult| {
             let truth = self.truth.at(frame.stamp)?;
-            Some(Sample { estimate: *frame.pose.mean(), covariance: *frame.pose.covariance(), truth })
+            Some(TrajectorySample {
+                estimate: *frame.pose.mean(),
+                covariance: *frame.pose.covariance(),
+                truth,
+            })
         };
         self.system.frames().iter().filter_map(|frame| Some((frame, sample(frame)?))).collect()
     }

@@ -4,19 +4,20 @@ use nalgebra::Vector3;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_color_map::{Camera, ColorMap};
 use wayfix_color_model::{
-    Classifier, ColorDensity, ColorLocalizer, Fix, LightingBank, LookUpTable, OdometryStep, Start, YuvImage,
+    ColorDensity, ColorLocalizer, ColorLookUpTable, Fix, LightingBank, OdometryStep, PixelClassifier, Start,
+    YuvImage,
 };
 use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use wayfix_gaussian_core::Gaussian;
-use wayfix_sensor_log::{CameraInfo, Data, EncodedImage, Record, Stamp};
+use wayfix_sensor_log::{CameraInfo, EncodedImage, Record, RecordData, Stamp};
 
 use super::{ColorSystemParams, LabelCounts, tally};
-use crate::system::{Events, PlausibleIncrement, Stopwatch, System};
+use crate::system::{EventCounts, PlausibleIncrement, Stopwatch, System};
 
 /// Knowledge of the start pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StartPose {
-    /// Near this pose, with the uncertainty of [`StartParams`](super::StartParams).
+    /// Near this pose, with the uncertainty of [`StartPoseUncertainty`](super::StartPoseUncertainty).
     Near(Pose2<f64>),
     /// Anywhere on the field.
     Anywhere,
@@ -36,9 +37,9 @@ pub struct ColorSystem {
     pending: Pending,
     plausible: PlausibleIncrement,
     odometry: Option<Pose2<f64>>,
-    frames: Vec<FrameResult>,
-    table: Option<LookUpTable>,
-    events: Events,
+    frames: Vec<ColorFrameResult>,
+    table: Option<ColorLookUpTable>,
+    events: EventCounts,
 }
 
 /// Motion since the last frame.
@@ -50,7 +51,7 @@ struct Pending {
 
 /// Result of one frame.
 #[derive(Clone, Debug)]
-pub struct FrameResult {
+pub struct ColorFrameResult {
     /// Capture time.
     pub stamp: Stamp,
     /// The pose estimate, with covariance in its body frame.
@@ -103,12 +104,12 @@ impl ColorSystem {
             odometry,
             frames: Vec::new(),
             table: None,
-            events: Events::default(),
+            events: EventCounts::default(),
         }
     }
 
     /// Results of all frames so far.
-    pub fn frames(&self) -> &[FrameResult] {
+    pub fn frames(&self) -> &[ColorFrameResult] {
         &self.frames
     }
 
@@ -149,9 +150,8 @@ impl ColorSystem {
                 table.rebuild_if_changed(colors).map_err(|error| error.to_string())?;
                 table
             }
-            None => {
-                LookUpTable::new(colors, Some(self.params.background.clone())).map_err(|e| e.to_string())?
-            }
+            None => ColorLookUpTable::new(colors, Some(self.params.background_model.clone()))
+                .map_err(|e| e.to_string())?,
         };
         let classified = table.classify_image(image);
         self.table = Some(table);
@@ -172,8 +172,9 @@ impl ColorSystem {
         let info = self.camera.ok_or("no camera info before this image")?;
         let mount = self.mount.ok_or("no camera mount before this image")?;
         let decoded = image.decode_rgb().map_err(|error| error.to_string())?;
-        let image = YuvImage::from_rgb(decoded.width, decoded.height, &decoded.pixels, self.params.yuv)
-            .map_err(|error| error.to_string())?;
+        let image =
+            YuvImage::from_rgb(decoded.width, decoded.height, &decoded.pixels, self.params.yuv_standard)
+                .map_err(|error| error.to_string())?;
 
         let stopwatch = Stopwatch::start();
         let outcome = self.localize(stamp, info, &mount, &image).map_err(|error| error.to_string())?;
@@ -186,7 +187,7 @@ impl ColorSystem {
         });
 
         let labelled = self.labelled(stamp, &image);
-        self.frames.push(FrameResult {
+        self.frames.push(ColorFrameResult {
             stamp,
             pose: outcome.estimate.pose,
             fix: outcome.fix,
@@ -233,32 +234,32 @@ impl ColorSystem {
     fn labelled(&mut self, stamp: Stamp, image: &YuvImage) -> Option<LabelCounts> {
         let (_, labels) = self.labels.take().filter(|(labelled, _)| *labelled == stamp)?;
         let labels = labels.decode_gray().ok()?;
-        let classifier = Classifier::new(self.colors()).ok()?;
+        let classifier = PixelClassifier::new(self.colors()).ok()?;
         tally(image, &labels, &classifier, self.map.colors().len())
     }
 }
 
 fn start(start: StartPose, params: &ColorSystemParams) -> anyhow::Result<Start> {
     let StartPose::Near(pose) = start else { return Ok(Start::Anywhere) };
-    let sigma = params.start.position_sigma;
-    let sigmas = Vector3::new(sigma, sigma, params.start.heading_sigma);
+    let sigma = params.start_uncertainty.position_sigma;
+    let sigmas = Vector3::new(sigma, sigma, params.start_uncertainty.heading_sigma);
     Ok(Start::Near(Gaussian::from_sigmas(pose, &sigmas)?))
 }
 
 impl System for ColorSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
-            Data::CameraInfo(info) => self.camera = Some(*info),
-            Data::CameraMount(mount) => self.mount = Some(*mount),
-            Data::TrueLabels(labels) => self.labels = Some((record.stamp, labels.clone())),
-            Data::OdometryIncrement(increment) => self.move_by(record.stamp, increment)?,
-            Data::Image(image) => self.see(record.stamp, image)?,
+            RecordData::CameraInfo(info) => self.camera = Some(*info),
+            RecordData::CameraMount(mount) => self.mount = Some(*mount),
+            RecordData::TrueLabels(labels) => self.labels = Some((record.stamp, labels.clone())),
+            RecordData::OdometryIncrement(increment) => self.move_by(record.stamp, increment)?,
+            RecordData::Image(image) => self.see(record.stamp, image)?,
             _ => {}
         }
         Ok(())
     }
 
-    fn events(&mut self) -> &mut Events {
+    fn events(&mut self) -> &mut EventCounts {
         &mut self.events
     }
 }

@@ -1,4 +1,4 @@
-use wayfix_sensor_log::{Data, Drawing, LogError, Record, Shape, topics};
+use wayfix_sensor_log::{DrawingShape, LogError, Record, RecordData, ViewerDrawing, topics};
 
 use super::{LineSystem, ScanWalls};
 use crate::system::{self, EstimateLog, EstimateWriter};
@@ -23,7 +23,7 @@ impl Default for LineDrawing {
 
 const WALL_COLOR: [f64; 4] = [0.84, 0.15, 0.16, 1.0];
 
-impl system::Drawing for LineDrawing {
+impl system::EstimateDrawing for LineDrawing {
     type System = LineSystem;
 
     const DRAWS_POSES: bool = false;
@@ -34,11 +34,11 @@ impl system::Drawing for LineDrawing {
         system: &LineSystem,
         writer: &mut EstimateWriter,
     ) -> Result<(), LogError> {
-        if let Data::TruePose(pose) | Data::EstimatedPose(pose) = &record.data {
+        if let RecordData::TruePose(pose) | RecordData::EstimatedPose(pose) = &record.data {
             let (world, body) = (topics::WORLD_FRAME, topics::BODY_FRAME);
             writer.frame_transform("/tf", record.stamp, world, body, pose)?;
         }
-        if let Data::LaserMount(_) = record.data {
+        if let RecordData::LaserMount(_) = record.data {
             self.frame = topics::LASER_FRAME;
         }
         let Some(scan) = system.scans().get(self.n_written) else { return Ok(()) };
@@ -49,12 +49,16 @@ impl system::Drawing for LineDrawing {
     }
 }
 
-fn drawings(scan: &ScanWalls, n_before: usize) -> Vec<Drawing> {
+fn drawings(scan: &ScanWalls, n_before: usize) -> Vec<ViewerDrawing> {
     let path = |wall: usize| match scan.segments.get(wall) {
         Some(segment) => vec![segment.start.into(), segment.end.into()],
         None => Vec::new(),
     };
     (0..n_before.max(scan.segments.len()))
-        .map(|wall| Drawing { id: format!("wall {wall}"), color: WALL_COLOR, shape: Shape::Path(path(wall)) })
+        .map(|wall| ViewerDrawing {
+            id: format!("wall {wall}"),
+            color: WALL_COLOR,
+            shape: DrawingShape::Path(path(wall)),
+        })
         .collect()
 }

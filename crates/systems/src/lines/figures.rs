@@ -1,11 +1,11 @@
-use wayfix_line_extract::Segment;
+use wayfix_line_extract::WallSegment;
 
 use super::{LineSystem, WallScore};
 use crate::system::System;
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::report::{Metric, ReportRun};
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
-pub fn summarize(system: &mut LineSystem) -> Run {
+pub fn summarize(system: &mut LineSystem) -> ReportRun {
     let n_used = system.scans().len() as f64;
     let segments = || system.scans().iter().flat_map(|scan| &scan.segments);
     let mut metrics = vec![
@@ -23,7 +23,7 @@ pub fn summarize(system: &mut LineSystem) -> Run {
         timings.push(Metric::new("scan_mean_us", 1e6 * seconds / n_used, "µs"));
         timings.push(Metric::new("scans_per_second", n_used / seconds, "Hz"));
     }
-    Run { metrics, timings, events: system.events().counts(), ..Run::default() }
+    ReportRun { metrics, timings, events: system.events().counts(), ..ReportRun::default() }
 }
 
 fn beside_truth(score: WallScore) -> Vec<Metric> {
@@ -38,7 +38,7 @@ fn beside_truth(score: WallScore) -> Vec<Metric> {
 }
 
 /// RMS distance of the echoes from the walls fitted to them, m.
-fn residual_rms<'a>(segments: impl Iterator<Item = &'a Segment>) -> Option<f64> {
+fn residual_rms<'a>(segments: impl Iterator<Item = &'a WallSegment>) -> Option<f64> {
     let (sum, n_points) = segments.fold((0.0, 0.0), |(sum, n_points), segment| {
         let n = segment.n_points as f64;
         (sum + n * segment.rms_m.powi(2), n_points + n)

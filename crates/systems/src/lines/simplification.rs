@@ -5,10 +5,10 @@ use nalgebra::Vector2;
 use rand::{Rng, RngExt};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use rand_distr::StandardNormal;
-use wayfix_line_extract::{Distance, douglas_peucker, simplify};
+use wayfix_line_extract::{PointDistance, douglas_peucker, simplify};
 
 use crate::system::Stopwatch;
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::report::{Metric, ReportRun};
 
 type Chain = Vec<Vector2<f64>>;
 
@@ -16,14 +16,14 @@ type Chain = Vec<Vector2<f64>>;
 ///
 /// # Errors
 /// Returns an error if a chain is invalid.
-pub fn simplification(n_chains: u32, seed: u64) -> Result<Run> {
+pub fn simplification(n_chains: u32, seed: u64) -> Result<ReportRun> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (mut n_differ, mut kept, mut points, mut excess) = (0, 0, 0, f64::NEG_INFINITY);
     for k in 0..n_chains {
         let chain = random_chain(k, &mut rng);
         let epsilon = rng.random_range(0.01..2.0);
         let indices = simplify(&chain, epsilon)?;
-        n_differ += u32::from(indices != douglas_peucker(&chain, epsilon, Distance::Line)?);
+        n_differ += u32::from(indices != douglas_peucker(&chain, epsilon, PointDistance::Line)?);
         kept += indices.len();
         points += chain.len();
         excess = farthest(&chain, &indices).map_or(excess, |farthest| excess.max(farthest - epsilon));
@@ -36,9 +36,11 @@ pub fn simplification(n_chains: u32, seed: u64) -> Result<Run> {
     ];
     let timings = vec![
         timed("simplify_zigzag_100000_ms", || simplify(&zigzag(100_000), 1e-6).map(drop))?,
-        timed("classic_zigzag_5000_ms", || douglas_peucker(&zigzag(5_000), 1e-6, Distance::Line).map(drop))?,
+        timed("classic_zigzag_5000_ms", || {
+            douglas_peucker(&zigzag(5_000), 1e-6, PointDistance::Line).map(drop)
+        })?,
     ];
-    Ok(Run { metrics, timings, ..Run::default() })
+    Ok(ReportRun { metrics, timings, ..ReportRun::default() })
 }
 
 /// Distance of the farthest point from the line through the kept points on both sides; `None` if all were kept.

@@ -1,20 +1,20 @@
 use std::time::Duration;
 
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_line_extract::{Extractor, LineError, Params, Scan, Segment};
-use wayfix_sensor_log::{Data, LaserScan, Record, Stamp, TrueWall};
+use wayfix_line_extract::{LineExtractionError, LineExtractionParams, LineExtractor, Scan, WallSegment};
+use wayfix_sensor_log::{LaserScan, Record, RecordData, Stamp, TrueWall};
 
-use crate::system::{Events, Stopwatch, System, largest_echo};
+use crate::system::{EventCounts, Stopwatch, System, largest_echo};
 
 /// Extracts the walls of every scan of a log.
 pub struct LineSystem {
-    extractor: Extractor,
+    extractor: LineExtractor,
     pose: Option<(Stamp, Pose2<f64>)>,
     mount: Pose2<f64>,
     scans: Vec<ScanWalls>,
     true_walls: Vec<TrueWall>,
     n_scans: u64,
-    events: Events,
+    events: EventCounts,
 }
 
 /// A scan and the walls in it.
@@ -27,7 +27,7 @@ pub struct ScanWalls {
     /// Echoes: bearing, rad, and range, m.
     pub echoes: Vec<(f64, f64)>,
     /// Walls in the sensor frame.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<WallSegment>,
     /// Computing time.
     pub step: Duration,
 }
@@ -37,8 +37,8 @@ impl LineSystem {
     ///
     /// # Errors
     /// Returns an error if a parameter makes no sense.
-    pub fn new(params: Params) -> Result<Self, LineError> {
-        let extractor = Extractor::new(params)?;
+    pub fn new(params: LineExtractionParams) -> Result<Self, LineExtractionError> {
+        let extractor = LineExtractor::new(params)?;
         Ok(Self {
             extractor,
             pose: None,
@@ -46,7 +46,7 @@ impl LineSystem {
             scans: Vec::new(),
             true_walls: Vec::new(),
             n_scans: 0,
-            events: Events::default(),
+            events: EventCounts::default(),
         })
     }
 
@@ -87,19 +87,19 @@ impl LineSystem {
 impl System for LineSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
-            Data::TruePose(pose) => self.pose = Some((record.stamp, *pose)),
-            Data::EstimatedPose(pose) if self.pose.is_none_or(|(at, _)| at != record.stamp) => {
+            RecordData::TruePose(pose) => self.pose = Some((record.stamp, *pose)),
+            RecordData::EstimatedPose(pose) if self.pose.is_none_or(|(at, _)| at != record.stamp) => {
                 self.pose = Some((record.stamp, *pose));
             }
-            Data::LaserMount(mount) => self.mount = *mount,
-            Data::TrueWall(wall) => self.true_walls.push(*wall),
-            Data::Scan(scan) => return self.take_scan(record.stamp, scan),
+            RecordData::LaserMount(mount) => self.mount = *mount,
+            RecordData::TrueWall(wall) => self.true_walls.push(*wall),
+            RecordData::Scan(scan) => return self.take_scan(record.stamp, scan),
             _ => {}
         }
         Ok(())
     }
 
-    fn events(&mut self) -> &mut Events {
+    fn events(&mut self) -> &mut EventCounts {
         &mut self.events
     }
 }

@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
 use wayfix_estimation_traits::Pose2;
-use wayfix_line_extract::{HessianLine, LineEstimate, Segment};
+use wayfix_line_extract::{HessianLine, LineEstimate, WallSegment};
 use wayfix_sensor_log::TrueWall;
 
 use super::ScanWalls;
@@ -29,7 +29,7 @@ pub struct WallScore {
 
 const SAME_WALL_M: f64 = 0.15;
 const ON_WALL_M: f64 = 0.03;
-/// Twice the limits of [`Params`](wayfix_line_extract::Params).
+/// Twice the limits of [`LineExtractionParams`](wayfix_line_extract::LineExtractionParams).
 const IN_SIGHT: (usize, f64) = (10, 0.6);
 
 impl WallScore {
@@ -61,7 +61,7 @@ impl WallScore {
         self.n_missed += visible_walls.iter().filter(|wall| !found.contains(wall)).count();
     }
 
-    fn compare(&mut self, segment: &Segment, wall: &Wall) {
+    fn compare(&mut self, segment: &WallSegment, wall: &Wall) {
         let exact = LineEstimate { line: wall.line(), covariance: Matrix2::zeros() };
         let squared = segment.estimate.mahalanobis_squared(&exact).unwrap_or(f64::INFINITY);
         self.n_true += 1;
@@ -130,7 +130,7 @@ impl Wall {
 mod tests {
     use std::time::Duration;
 
-    use wayfix_line_extract::{Params, Scan, extract};
+    use wayfix_line_extract::{LineExtractionParams, Scan, extract};
     use wayfix_sensor_log::Stamp;
 
     use super::*;
@@ -145,7 +145,7 @@ mod tests {
             stamp: Stamp::default(),
             pose: Some(Pose2::new(1.0, 1.0, std::f64::consts::FRAC_PI_2)),
             echoes: ranges.iter().enumerate().map(|(beam, range)| (bearing(beam), *range)).collect(),
-            segments: extract(&scan, &Params::default()).unwrap().segments,
+            segments: extract(&scan, &LineExtractionParams::default()).unwrap().segments,
             step: Duration::ZERO,
         }
     }

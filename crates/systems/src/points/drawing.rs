@@ -1,4 +1,4 @@
-use wayfix_sensor_log::{Drawing, LogError, Shape, Stamp, topics};
+use wayfix_sensor_log::{DrawingShape, LogError, Stamp, ViewerDrawing, topics};
 use wayfix_slam_ekf::EkfSlam;
 
 use super::PointSensor;
@@ -17,13 +17,17 @@ pub(super) fn draw_map(
     writer.scene_update("/estimate/map", stamp, topics::WORLD_FRAME, &drawings)
 }
 
-fn map(filter: &EkfSlam<PointSensor>) -> (Vec<[f64; 2]>, Vec<Drawing>) {
+fn map(filter: &EkfSlam<PointSensor>) -> (Vec<[f64; 2]>, Vec<ViewerDrawing>) {
     let (mut points, mut drawings) = (Vec::new(), Vec::new());
     for landmark in filter.landmarks() {
         let position = [landmark.mean.x, landmark.mean.y];
         points.push(position);
-        let shape = Shape::Marker { position, radius: 0.05, text: landmark.id.to_string() };
-        drawings.push(Drawing { id: format!("landmark {}", landmark.id), color: LANDMARK_COLOR, shape });
+        let shape = DrawingShape::Marker { position, radius: 0.05, text: landmark.id.to_string() };
+        drawings.push(ViewerDrawing {
+            id: format!("landmark {}", landmark.id),
+            color: LANDMARK_COLOR,
+            shape,
+        });
         let id = format!("ellipse {}", landmark.id);
         drawings.extend(ellipse(id, LANDMARK_COLOR, position, landmark.covariance));
     }

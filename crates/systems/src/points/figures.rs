@@ -1,14 +1,14 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_evaluation::{
     errors::{align, landmark_errors, median_distance, rms_distance},
-    report::{Metric, Run},
+    report::{Metric, ReportRun},
 };
 
 use super::PointRun;
 use crate::slam::summary;
 
 /// The figures and events of a run, ready for the report.
-pub fn summarize(run: &mut PointRun) -> Run {
+pub fn summarize(run: &mut PointRun) -> ReportRun {
     let mut of_map = position_metrics(run);
     let samples = run.samples();
     let of_path =

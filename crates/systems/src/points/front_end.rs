@@ -1,6 +1,8 @@
 use nalgebra::{Matrix3, Vector2};
 use wayfix_estimation_traits::{LieGroup, MotionModel, Pose2};
-use wayfix_sensor_log::{AckermannDrive, Data, Detection, LogError, Record, Stamp, Target, Velocity};
+use wayfix_sensor_log::{
+    AckermannDrive, Detection, DetectionTarget, LogError, Record, RecordData, Stamp, Velocity,
+};
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkId, MountedSensor, Observation, RangeBearing, RangeBearingSensor, ScaledMotion,
     ScaledPose, ScaledRangeBearingSensor, SlamError, SlamParams,
@@ -95,10 +97,10 @@ impl FrontEnd for PointFrontEnd {
                 estimator.events.count("second_odometry");
                 Ok(())
             }
-            Data::Velocity(velocity) => self.take_velocity(stamp, *velocity, estimator),
-            Data::Ackermann(drive) => self.take_drive(stamp, *drive, estimator),
-            Data::OdometryIncrement(increment) => self.take_increment(stamp, increment, estimator),
-            Data::Detections(detections) => self.take_detections(stamp, detections, estimator),
+            RecordData::Velocity(velocity) => self.take_velocity(stamp, *velocity, estimator),
+            RecordData::Ackermann(drive) => self.take_drive(stamp, *drive, estimator),
+            RecordData::OdometryIncrement(increment) => self.take_increment(stamp, increment, estimator),
+            RecordData::Detections(detections) => self.take_detections(stamp, detections, estimator),
             _ => Ok(()),
         }
     }
@@ -146,7 +148,7 @@ impl PointFrontEnd {
     ) -> Result<(), String> {
         self.plausible.check(stamp, increment)?;
         let stopwatch = Stopwatch::start();
-        estimator.predict(&ScaledMotion(self.params.increment), increment)?;
+        estimator.predict(&ScaledMotion(self.params.increment_noise), increment)?;
         estimator.step += stopwatch.elapsed();
         estimator.dead_reckoning = estimator.dead_reckoning.compose(increment);
         self.time = stamp;
@@ -174,7 +176,7 @@ impl PointFrontEnd {
         })?;
         estimator.step += stopwatch.elapsed();
         // The filter is at the exposure of the sensor; the estimate is at its stamp.
-        let motion = ScaledMotion(SequentialMotion(self.params.velocity));
+        let motion = ScaledMotion(SequentialMotion(self.params.velocity_noise));
         let (state, covariance) =
             estimator.predicted(&motion, self.commands.between(self.time, stamp).as_slice());
         let covariance = covariance.fixed_view::<3, 3>(0, 0).into_owned();
@@ -200,11 +202,11 @@ impl PointFrontEnd {
         }
         let stopwatch = Stopwatch::start();
         let controls = self.commands.between(self.time, time);
-        let motion = SequentialMotion(self.params.velocity);
+        let motion = SequentialMotion(self.params.velocity_noise);
         estimator.predict(&ScaledMotion(motion), controls.as_slice())?;
         estimator.dead_reckoning = motion.propagate(&estimator.dead_reckoning, &controls);
         for control in &self.commands.known_between(self.time, time) {
-            let moved = self.params.velocity.propagate(&Pose2::identity(), control);
+            let moved = self.params.velocity_noise.propagate(&Pose2::identity(), control);
             self.motion.add(&moved, control.duration);
         }
         self.predict_unknown_motion(self.commands.unknown_seconds(self.time, time), estimator)?;
@@ -237,13 +239,13 @@ impl PointFrontEnd {
         let mut observations = Vec::with_capacity(detections.len());
         for detection in detections {
             let label = match detection.target {
-                Target::Landmark(id) => Some(LandmarkId(id)),
-                Target::Unlabelled => None,
-                Target::Robot(_) => {
+                DetectionTarget::Landmark(id) => Some(LandmarkId(id)),
+                DetectionTarget::Unlabelled => None,
+                DetectionTarget::Robot(_) => {
                     estimator.events.count("robot_detection");
                     continue;
                 }
-                Target::UnknownCode(_) => {
+                DetectionTarget::UnknownCode(_) => {
                     estimator.events.count("unknown_code");
                     continue;
                 }

@@ -1,7 +1,7 @@
 use clap::ValueEnum;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use wayfix_sensor_log::{Format, LogMeta};
+use wayfix_sensor_log::{LogFormat, LogMeta};
 use wayfix_slam_ekf::{
     AckermannVehicle, ConfirmationParams, CorrelatedNoise, IncrementMotion, JointCompatibilityParams,
     MergingParams, NearestNeighbourParams, OutlierRule, RangeBearingSensor, SlamParams, VelocityMotion,
@@ -12,23 +12,23 @@ use crate::{settings::over_defaults, slam::AssociationRule, system::VELOCITY_HOL
 /// Everything that can be set for EKF-SLAM on a log.
 ///
 /// ```
-/// use wayfix_systems::points::{PointSlamParams, Profile};
-/// let params = PointSlamParams::from_toml("profile = 'utias'\n[filter]\ngate_probability = 0.99", Profile::Generic)?;
+/// use wayfix_systems::points::{PointSlamParams, RobotProfile};
+/// let params = PointSlamParams::from_toml("profile = 'utias'\n[filter]\ngate_probability = 0.99", RobotProfile::Generic)?;
 /// assert_eq!(params.filter.gate_probability, 0.99);
-/// assert_eq!(params.velocity, PointSlamParams::of(Profile::Utias).velocity); // not named in the file
+/// assert_eq!(params.velocity, PointSlamParams::of(RobotProfile::Utias).velocity); // not named in the file
 /// # Ok::<(), toml::de::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointSlamParams {
     /// The robot whose defaults these are.
-    pub profile: Profile,
+    pub profile: RobotProfile,
     /// How detections find their landmarks; when not given, by identity where the log has identities, else joint compatibility.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub association: Option<AssociationRule>,
     /// Start pose, m and rad; when not given, the truth where odometry starts, a fit to the first true positions, or the origin.
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub start: Option<[f64; 3]>,
+    pub start_pose: Option<[f64; 3]>,
     /// Number of true landmarks of the log, nearest to the start first, that the robot is given as known: anchors that tie the map to the
     /// world. For logs that have true landmarks.
     pub n_anchors: usize,
@@ -41,9 +41,9 @@ pub struct PointSlamParams {
     /// Noise of the range-bearing sensor.
     pub sensor: RangeBearingSensor,
     /// Noise of velocity odometry.
-    pub velocity: VelocityMotion,
+    pub velocity_noise: VelocityMotion,
     /// Noise of odometry increments.
-    pub increment: IncrementMotion,
+    pub increment_noise: IncrementMotion,
     /// Gate and outliers; its `merging` is for landmarks that were found without identities.
     pub filter: SlamParams,
     /// Thresholds of nearest neighbour.
@@ -108,7 +108,7 @@ impl Default for RobotParams {
 /// A kind of robot and its defaults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-pub enum Profile {
+pub enum RobotProfile {
     /// Nothing is known of the robot: a good sensor (5 cm, 0.01 rad), odometry as it comes.
     Generic,
     /// The simulated range-bearing logs for comparing programs: 0.02 m and 0.005 rad for every increment, 0.05 m and 0.01 rad
@@ -120,13 +120,13 @@ pub enum Profile {
     Utias,
 }
 
-impl Profile {
+impl RobotProfile {
     /// The robot that recorded a log, as far as the format tells that it was first stored in.
     pub fn of_log(meta: &LogMeta) -> Self {
         match meta.first_format() {
-            Format::Utias => Self::Utias,
-            Format::RangeBearing => Self::RangeBearing,
-            Format::VictoriaPark => Self::VictoriaPark,
+            LogFormat::Utias => Self::Utias,
+            LogFormat::RangeBearing => Self::RangeBearing,
+            LogFormat::VictoriaPark => Self::VictoriaPark,
             _ => Self::Generic,
         }
     }
@@ -134,19 +134,19 @@ impl Profile {
 
 impl PointSlamParams {
     /// The defaults of a kind of robot.
-    pub fn of(profile: Profile) -> Self {
+    pub fn of(profile: RobotProfile) -> Self {
         match profile {
-            Profile::Generic => Self {
+            RobotProfile::Generic => Self {
                 profile,
                 association: None,
-                start: None,
+                start_pose: None,
                 n_anchors: 0,
                 robot: RobotParams::default(),
                 mounting: MountingParams::default(),
                 vehicle: AckermannVehicle::default(),
                 sensor: RangeBearingSensor::default(),
-                velocity: VelocityMotion::default(),
-                increment: IncrementMotion::default(),
+                velocity_noise: VelocityMotion::default(),
+                increment_noise: IncrementMotion::default(),
                 filter: SlamParams::default(),
                 nearest_neighbour: NearestNeighbourParams::default(),
                 joint_compatibility: JointCompatibilityParams::default(),
@@ -157,18 +157,18 @@ impl PointSlamParams {
                 },
                 record_observability: false,
             },
-            Profile::RangeBearing => Self {
-                increment: IncrementMotion {
+            RobotProfile::RangeBearing => Self {
+                increment_noise: IncrementMotion {
                     translation_variance_per_meter: 0.0,
                     heading_variance_per_meter: 0.0,
                     heading_variance_per_radian: 0.0,
                     translation_variance_per_step: 0.02 * 0.02,
                     heading_variance_per_step: 0.005 * 0.005,
                 },
-                ..Self::of(Profile::Generic)
+                ..Self::of(RobotProfile::Generic)
             }
             .named(profile),
-            Profile::VictoriaPark => Self {
+            RobotProfile::VictoriaPark => Self {
                 mounting: MountingParams {
                     sensor_x: 3.78,
                     sensor_y: 0.5,
@@ -184,7 +184,7 @@ impl PointSlamParams {
                     half_field_of_view: 1.3,
                     correlated_noise: None,
                 },
-                velocity: VelocityMotion {
+                velocity_noise: VelocityMotion {
                     linear_sigma: 0.0,
                     angular_sigma: 0.0,
                     turning_sigma: 0.05,
@@ -193,12 +193,12 @@ impl PointSlamParams {
                     ..VelocityMotion::default()
                 },
                 nearest_neighbour: NearestNeighbourParams {
-                    certainly_new: 60.0,
+                    new_landmark_nis: 60.0,
                     ..NearestNeighbourParams::default()
                 },
                 joint_compatibility: JointCompatibilityParams {
-                    probability: 0.99,
-                    certainly_new: 60.0,
+                    gate_probability: 0.99,
+                    new_landmark_nis: 60.0,
                     ..JointCompatibilityParams::default()
                 },
                 unlabelled_confirmation: ConfirmationParams {
@@ -207,11 +207,11 @@ impl PointSlamParams {
                     min_detection_rate: 0.4,
                     ..ConfirmationParams::default()
                 },
-                ..Self::of(Profile::Generic)
+                ..Self::of(RobotProfile::Generic)
             }
             .named(profile),
             // Measured as residuals against truth on set 7, robots 1-3 (docs/adr/0019-parameters-of-the-utias-profile.md).
-            Profile::Utias => Self {
+            RobotProfile::Utias => Self {
                 robot: RobotParams {
                     sensor_latency: 0.04,
                     command_delay: 0.15,
@@ -236,17 +236,17 @@ impl PointSlamParams {
                         common_bearing_sigma: 0.018,
                     }),
                 },
-                velocity: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
+                velocity_noise: VelocityMotion { speed_loss_in_turns: 0.8, ..VelocityMotion::default() },
                 filter: SlamParams {
                     // Errors hang together in time and have heavy tails: doubt begins at the average misfit, d² = 2.
-                    outliers: OutlierRule::Downweight,
+                    outlier_rule: OutlierRule::Downweight,
                     gate_probability: 0.632,
                     // The tubes of a group stand 0.18-0.3 m apart.
-                    merging: Some(MergingParams { separation: 0.13, n_sigmas: 2.0 }),
+                    merging: Some(MergingParams { min_separation: 0.13, n_sigmas: 2.0 }),
                     ..SlamParams::default()
                 },
                 joint_compatibility: JointCompatibilityParams {
-                    certainly_new: 20.0,
+                    new_landmark_nis: 20.0,
                     one_detection_per_landmark: true,
                     ..JointCompatibilityParams::default()
                 },
@@ -255,7 +255,7 @@ impl PointSlamParams {
                     max_missed: Some(20),
                     ..ConfirmationParams::default()
                 },
-                ..Self::of(Profile::Generic)
+                ..Self::of(RobotProfile::Generic)
             }
             .named(profile),
         }
@@ -266,17 +266,17 @@ impl PointSlamParams {
     /// # Errors
     /// When the text is not TOML, a key is unknown or a value has the wrong type. Ranges are checked by
     /// [`validated`](Self::validated).
-    pub fn from_toml(text: &str, profile: Profile) -> Result<Self, toml::de::Error> {
+    pub fn from_toml(text: &str, profile: RobotProfile) -> Result<Self, toml::de::Error> {
         #[derive(Deserialize)]
         struct Named {
-            profile: Option<Profile>,
+            profile: Option<RobotProfile>,
         }
         let named: Named = toml::from_str(text)?;
         let defaults = Self::of(named.profile.unwrap_or(profile));
         over_defaults(&defaults, text)
     }
 
-    fn named(self, profile: Profile) -> Self {
+    fn named(self, profile: RobotProfile) -> Self {
         Self { profile, ..self }
     }
 }
@@ -288,8 +288,8 @@ mod tests {
     #[test]
     fn a_file_changes_what_it_names_and_nothing_else() {
         let text = "association = 'nn'\n[robot]\ncommand_delay = 0.2\n[filter.confirmation]\nmax_missed = 7";
-        let params = PointSlamParams::from_toml(text, Profile::Utias).unwrap();
-        let mut expected = PointSlamParams::of(Profile::Utias);
+        let params = PointSlamParams::from_toml(text, RobotProfile::Utias).unwrap();
+        let mut expected = PointSlamParams::of(RobotProfile::Utias);
         expected.association = Some(AssociationRule::Nn);
         expected.robot.command_delay = 0.2;
         expected.filter.confirmation.max_missed = Some(7);
@@ -298,13 +298,13 @@ mod tests {
 
     #[test]
     fn the_profile_of_the_file_goes_before_that_of_the_log() {
-        let params = PointSlamParams::from_toml("profile = 'range-bearing'", Profile::Utias).unwrap();
-        assert_eq!(params, PointSlamParams::of(Profile::RangeBearing));
+        let params = PointSlamParams::from_toml("profile = 'range-bearing'", RobotProfile::Utias).unwrap();
+        assert_eq!(params, PointSlamParams::of(RobotProfile::RangeBearing));
     }
 
     #[test]
     fn what_is_not_understood_is_named() {
-        let error = |text| PointSlamParams::from_toml(text, Profile::Generic).unwrap_err().to_string();
+        let error = |text| PointSlamParams::from_toml(text, RobotProfile::Generic).unwrap_err().to_string();
         for (text, named) in [
             ("[sensor]\nrange_sigm = 1.0", "`range_sigm`"),
             ("[sensor]\nrange_sigma = 'far'", "`sensor.range_sigma`"),
@@ -319,10 +319,15 @@ mod tests {
 
     #[test]
     fn parameters_survive_being_written() {
-        for profile in [Profile::Generic, Profile::RangeBearing, Profile::VictoriaPark, Profile::Utias] {
+        for profile in [
+            RobotProfile::Generic,
+            RobotProfile::RangeBearing,
+            RobotProfile::VictoriaPark,
+            RobotProfile::Utias,
+        ] {
             let params = PointSlamParams::of(profile);
             let text = toml::to_string(&params).unwrap();
-            assert_eq!(PointSlamParams::from_toml(&text, Profile::Generic).unwrap(), params);
+            assert_eq!(PointSlamParams::from_toml(&text, RobotProfile::Generic).unwrap(), params);
         }
     }
 }

@@ -24,8 +24,8 @@ impl PointSlamParams {
     /// The same parameters, when each is within its range.
     ///
     /// ```
-    /// use wayfix_systems::points::{PointSlamParams, Profile};
-    /// let mut params = PointSlamParams::of(Profile::Generic).validated()?;
+    /// use wayfix_systems::points::{PointSlamParams, RobotProfile};
+    /// let mut params = PointSlamParams::of(RobotProfile::Generic).validated()?;
     /// params.sensor.bearing_sigma = -0.01;
     /// let error = params.validated().unwrap_err().to_string();
     /// assert_eq!(error, "parameter sensor.bearing_sigma is -0.01, must be from 1e-9 to 1e6");
@@ -35,7 +35,16 @@ impl PointSlamParams {
     /// # Errors
     /// [`SlamError::Parameter`] for the first that is not.
     pub fn validated(self) -> Result<Self, SlamError> {
-        let Self { robot, mounting, vehicle, sensor, velocity, increment, filter, .. } = &self;
+        let Self {
+            robot,
+            mounting,
+            vehicle,
+            sensor,
+            velocity_noise: velocity,
+            increment_noise: increment,
+            filter,
+            ..
+        } = &self;
         let unlabelled_confirmation = &self.unlabelled_confirmation;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
@@ -92,7 +101,7 @@ impl PointSlamParams {
                 correlated_noise.common_bearing_sigma,
                 NOT_NEGATIVE,
             ),
-            ("filter.merging.separation", merging.separation, NOT_NEGATIVE),
+            ("filter.merging.separation", merging.min_separation, NOT_NEGATIVE),
             ("filter.merging.n_sigmas", merging.n_sigmas, NOT_NEGATIVE),
             ("sensor.sensor_range", sensor.sensor_range, THRESHOLD),
             ("sensor.half_field_of_view", sensor.half_field_of_view, THRESHOLD),
@@ -134,7 +143,7 @@ impl PointSlamParams {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::Profile;
+    use crate::points::RobotProfile;
 
     /// Every number of the parameters, by its path in the file.
     fn numbers(prefix: &str, table: &toml::Table, found: &mut Vec<String>) {
@@ -149,13 +158,13 @@ mod tests {
     }
 
     fn with(path: &str, value: &str) -> PointSlamParams {
-        PointSlamParams::from_toml(&format!("{path} = {value}"), Profile::Utias).unwrap()
+        PointSlamParams::from_toml(&format!("{path} = {value}"), RobotProfile::Utias).unwrap()
     }
 
     #[test]
     fn no_number_may_be_nan_or_negative_and_the_error_names_it() {
         let mut paths = Vec::new();
-        let all = toml::Table::try_from(PointSlamParams::of(Profile::Utias)).unwrap();
+        let all = toml::Table::try_from(PointSlamParams::of(RobotProfile::Utias)).unwrap();
         numbers("", &all, &mut paths);
         assert!(paths.len() > 20, "{paths:?}");
         let in_the_filter = ["filter.gate_probability", "filter.student_t_degrees_of_freedom"];
@@ -174,7 +183,12 @@ mod tests {
 
     #[test]
     fn the_defaults_of_every_profile_are_in_range() {
-        for profile in [Profile::Generic, Profile::RangeBearing, Profile::VictoriaPark, Profile::Utias] {
+        for profile in [
+            RobotProfile::Generic,
+            RobotProfile::RangeBearing,
+            RobotProfile::VictoriaPark,
+            RobotProfile::Utias,
+        ] {
             assert!(PointSlamParams::of(profile).validated().is_ok());
         }
     }
@@ -182,7 +196,7 @@ mod tests {
     #[test]
     fn a_sensor_without_noise_is_refused() {
         let text = "[sensor]\nrange_sigma = 0.0\nrange_sigma_per_meter = 0.0";
-        let params = PointSlamParams::from_toml(text, Profile::Generic).unwrap();
+        let params = PointSlamParams::from_toml(text, RobotProfile::Generic).unwrap();
         assert!(matches!(params.validated(), Err(SlamError::Parameter { value: 0.0, .. })));
     }
 }

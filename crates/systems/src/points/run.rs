@@ -3,14 +3,14 @@ use std::collections::BTreeMap;
 use anyhow::{Result, bail};
 use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
-use wayfix_evaluation::errors::{Correspondence, TruePositions, TrueTrack, align};
-use wayfix_sensor_log::{Data, Record, Stamp, Target};
+use wayfix_evaluation::errors::{LandmarkCorrespondence, ReferenceTrajectory, TruePositions, align};
+use wayfix_sensor_log::{DetectionTarget, Record, RecordData, Stamp};
 use wayfix_slam_ekf::LandmarkId;
 
-use super::{PointFrontEnd, PointSlamParams, PointSystem, SavedMap};
+use super::{PointFrontEnd, PointSlamParams, PointSystem, SavedPointMap};
 use crate::{
     slam::{AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_start},
-    system::{DriveStep, Events, KnownStart, ODOMETRY, System, check_overlap},
+    system::{EventCounts, ODOMETRY, RunStep, System, TrueStartPose, check_overlap},
 };
 
 /// A log that went through EKF-SLAM with points; the true map has the landmarks by identity.
@@ -26,7 +26,7 @@ pub type PointRun = SlamRun<PointFrontEnd, BTreeMap<u32, Vector2<f64>>>;
 pub fn run(
     records: &[Record],
     params: &PointSlamParams,
-    observe: impl FnMut(DriveStep<'_, PointSystem>),
+    observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
     let Some(start_stamp) = start_stamp(records) else {
         bail!(
@@ -34,19 +34,19 @@ pub fn run(
         );
     };
     let association = association(records, params.association)?;
-    check_overlap(records, ODOMETRY, ("detections", |data| matches!(data, Data::Detections(_))))?;
-    let truth = TrueTrack::from_records(records);
+    check_overlap(records, ODOMETRY, ("detections", |data| matches!(data, RecordData::Detections(_))))?;
+    let truth = ReferenceTrajectory::from_records(records);
     let true_positions = TruePositions::from_records(records);
     let from =
         |start| PointSystem::with_points(params.clone(), association, start_stamp, start, truth.noise());
-    let known = KnownStart::at(start_stamp, &truth, records).filter(|_| params.start.is_none());
-    let start = if params.start.is_none() && known.is_none() {
+    let known = TrueStartPose::at(start_stamp, &truth, records).filter(|_| params.start_pose.is_none());
+    let start = if params.start_pose.is_none() && known.is_none() {
         fitted_start(from(Pose2::new(0.0, 0.0, 0.0))?, records, &true_positions)
     } else {
-        start_pose(params.start, known)
+        start_pose(params.start_pose, known)
     };
     let mut system = from(start)?;
-    if params.start.is_none() {
+    if params.start_pose.is_none() {
         warn_of_start(system.events(), known, &truth);
     }
     for (id, landmark) in anchors(records, association, &start, params.n_anchors) {
@@ -62,22 +62,22 @@ pub fn run(
 /// # Errors
 /// When the map is of another kind or is no state of the filter, when no later detection can be used, or a parameter is out of range.
 pub fn run_on(
-    saved: SavedMap,
+    saved: SavedPointMap,
     records: &[Record],
     params: &PointSlamParams,
-    observe: impl FnMut(DriveStep<'_, PointSystem>),
+    observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
     let association = saved.association;
     let system = PointSystem::resume(params.clone(), saved)?;
     self::association(records, Some(association))?;
-    drive_through(system, TrueTrack::from_records(records), records, observe)
+    drive_through(system, ReferenceTrajectory::from_records(records), records, observe)
 }
 
 fn drive_through(
     system: PointSystem,
-    truth: TrueTrack,
+    truth: ReferenceTrajectory,
     records: &[Record],
-    observe: impl FnMut(DriveStep<'_, PointSystem>),
+    observe: impl FnMut(RunStep<'_, PointSystem>),
 ) -> Result<PointRun> {
     let true_positions = TruePositions::from_records(records);
     let last_odometry = records.iter().rev().find_map(odometry_stamp).unwrap_or_default();
@@ -105,10 +105,10 @@ impl PointRun {
         self.system.filter().landmarks().map(|landmark| (landmark.id.0, landmark.mean)).collect()
     }
     /// How estimated landmarks are compared with true ones.
-    pub fn correspondence(&self) -> Correspondence {
+    pub fn correspondence(&self) -> LandmarkCorrespondence {
         match self.system.association() {
-            AssociationRule::Known => Correspondence::ById,
-            AssociationRule::Nn | AssociationRule::Jcbb => Correspondence::Nearest,
+            AssociationRule::Known => LandmarkCorrespondence::ById,
+            AssociationRule::Nn | AssociationRule::Jcbb => LandmarkCorrespondence::Nearest,
         }
     }
 }
@@ -136,12 +136,12 @@ fn fitted_start(mut pilot: PointSystem, records: &[Record], positions: &TruePosi
     align(pairs.into_iter())
 }
 
-fn has_used_a_detection(events: &Events) -> bool {
+fn has_used_a_detection(events: &EventCounts) -> bool {
     ["new_landmark", "accepted", "accepted_downweighted"].iter().any(|name| events.get(name) > 0)
 }
 
 /// The first refusal and how many there were, or else what happened to the detections.
-fn why(events: &Events) -> String {
+fn why(events: &EventCounts) -> String {
     let Some(first) = events.refusals().first() else {
         let counts: Vec<String> = events.counts().iter().map(|(name, n)| format!("{name} {n}")).collect();
         let what = if counts.is_empty() { "all detections are empty".to_owned() } else { counts.join(", ") };
@@ -156,14 +156,17 @@ fn start_stamp(records: &[Record]) -> Option<Stamp> {
     let first = records.iter().find(|record| odometry_stamp(record).is_some())?;
     let earlier = records.iter().map(|record| record.stamp).take_while(|stamp| *stamp < first.stamp).last();
     match first.data {
-        Data::OdometryIncrement(_) => Some(earlier.unwrap_or(first.stamp)),
+        RecordData::OdometryIncrement(_) => Some(earlier.unwrap_or(first.stamp)),
         _ => Some(first.stamp),
     }
 }
 
 fn odometry_stamp(record: &Record) -> Option<Stamp> {
-    matches!(record.data, Data::Velocity(_) | Data::Ackermann(_) | Data::OdometryIncrement(_))
-        .then_some(record.stamp)
+    matches!(
+        record.data,
+        RecordData::Velocity(_) | RecordData::Ackermann(_) | RecordData::OdometryIncrement(_)
+    )
+    .then_some(record.stamp)
 }
 
 /// The rule that was asked for, else by identity where there are identities.
@@ -185,12 +188,12 @@ fn association(records: &[Record], asked: Option<AssociationRule>) -> Result<Ass
 /// Whether any detection of a landmark carries an identity; `None` when there are no such detections.
 fn has_identities(records: &[Record]) -> Option<bool> {
     let detections = records.iter().flat_map(|record| match &record.data {
-        Data::Detections(detections) => detections.as_slice(),
+        RecordData::Detections(detections) => detections.as_slice(),
         _ => &[],
     });
     detections.fold(None, |found, detection| match detection.target {
-        Target::Landmark(_) => Some(true),
-        Target::Unlabelled => found.or(Some(false)),
+        DetectionTarget::Landmark(_) => Some(true),
+        DetectionTarget::Unlabelled => found.or(Some(false)),
         _ => found,
     })
 }
@@ -212,7 +215,7 @@ fn anchors(
 
 fn true_landmarks(records: &[Record]) -> BTreeMap<u32, Vector2<f64>> {
     let landmark = |record: &Record| match record.data {
-        Data::TrueLandmark(landmark) => Some((landmark.id, Vector2::new(landmark.x, landmark.y))),
+        RecordData::TrueLandmark(landmark) => Some((landmark.id, Vector2::new(landmark.x, landmark.y))),
         _ => None,
     };
     records.iter().filter_map(landmark).collect()

@@ -1,6 +1,6 @@
 use nalgebra::{Matrix3, Vector2};
 use serde::{Deserialize, Serialize};
-use wayfix_sensor_log::{Data, Stamp, Velocity};
+use wayfix_sensor_log::{RecordData, Stamp, Velocity};
 use wayfix_slam_ekf::{ScaledPose, SlamError};
 
 use super::{PointFrontEnd, PointSlamParams, PointSystem};
@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// A map of points.
-pub type SavedMap = SlamState<ScaledPose, Vector2<f64>, PointState>;
+pub type SavedPointMap = SlamState<ScaledPose, Vector2<f64>, PointState>;
 
 /// All that a [`PointFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,11 +43,11 @@ pub enum OdometryKind {
 
 impl OdometryKind {
     /// The kind of a record; `None` when it is no odometry.
-    pub(super) fn of(data: &Data) -> Option<Self> {
+    pub(super) fn of(data: &RecordData) -> Option<Self> {
         match data {
-            Data::Velocity(_) => Some(Self::Velocities),
-            Data::OdometryIncrement(_) => Some(Self::Increments),
-            Data::Ackermann(_) => Some(Self::Drives),
+            RecordData::Velocity(_) => Some(Self::Velocities),
+            RecordData::OdometryIncrement(_) => Some(Self::Increments),
+            RecordData::Ackermann(_) => Some(Self::Drives),
             _ => None,
         }
     }
@@ -71,7 +71,7 @@ impl PointSystem {
     ///
     /// # Errors
     /// Returns an error if the map has another association rule, or holds invalid numbers.
-    pub(super) fn resume(params: PointSlamParams, saved: SavedMap) -> Result<Self, SavedMapError> {
+    pub(super) fn resume(params: PointSlamParams, saved: SavedPointMap) -> Result<Self, SavedMapError> {
         let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end } = saved;
         let PointState { time, odometry, commands, motion } = front_end;
         check_association(params.association, association)?;

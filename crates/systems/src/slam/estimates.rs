@@ -3,7 +3,7 @@ use std::marker::PhantomData;
 use nalgebra::{DefaultAllocator, Matrix2};
 use wayfix_estimation_traits::Pose2;
 use wayfix_gaussian_core::CovarianceEllipse;
-use wayfix_sensor_log::{Drawing, LogError, Record, Shape, topics};
+use wayfix_sensor_log::{DrawingShape, LogError, Record, ViewerDrawing, topics};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 use super::{FrontEnd, SlamSystem, StampedEstimate};
@@ -31,7 +31,7 @@ const MAP_PERIOD: usize = 20;
 const SIGMAS: f64 = 2.0;
 const ROBOT_COLOR: [f64; 4] = [0.12, 0.47, 0.71, 1.0];
 
-impl<F: FrontEnd> system::Drawing for SlamDrawing<F>
+impl<F: FrontEnd> system::EstimateDrawing for SlamDrawing<F>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -68,7 +68,7 @@ fn draw_stamped_estimate(
     writer.scene_update("/estimate/robot", stamp, world, &robot(stamped_estimate))
 }
 
-fn robot(stamped_estimate: &StampedEstimate) -> Vec<Drawing> {
+fn robot(stamped_estimate: &StampedEstimate) -> Vec<ViewerDrawing> {
     let rotation = stamped_estimate.pose.rotation_matrix();
     let covariance = rotation * stamped_estimate.covariance.fixed_view::<2, 2>(0, 0) * rotation.transpose();
     let center = [stamped_estimate.pose.x(), stamped_estimate.pose.y()];
@@ -81,8 +81,12 @@ pub(crate) fn ellipse(
     color: [f64; 4],
     center: [f64; 2],
     covariance: Matrix2<f64>,
-) -> Option<Drawing> {
+) -> Option<ViewerDrawing> {
     let ellipse = CovarianceEllipse::at_sigmas(&covariance, SIGMAS).ok()?;
     let semi_axes = [ellipse.semi_major, ellipse.semi_minor];
-    Some(Drawing { id, color, shape: Shape::Ellipse { center, semi_axes, angle: ellipse.angle } })
+    Some(ViewerDrawing {
+        id,
+        color,
+        shape: DrawingShape::Ellipse { center, semi_axes, angle: ellipse.angle },
+    })
 }

@@ -4,12 +4,12 @@ use nalgebra::{DMatrix, DefaultAllocator, Dim, Matrix3, OMatrix, allocator::Allo
 use wayfix_estimation_traits::{Manifold, MotionModel, Pose2, TangentMatrix};
 use wayfix_sensor_log::Stamp;
 use wayfix_slam_ekf::{
-    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, Outcome, RobotDim,
-    SlamAlloc, StepReport, observability::ObservabilityRecorder,
+    EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Observation, ObservationOutcome,
+    RobotDim, SlamAlloc, UpdateReport, observability::ObservabilityRecorder,
 };
 
 use super::{AssociationRule, ChosenRule, event_name};
-use crate::system::Events;
+use crate::system::EventCounts;
 
 /// The estimate at the stamp of one scan of the sensor, from all records up to it.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ where
     pub(super) observability: Option<ObservabilityRecorder>,
     pub(crate) dead_reckoning: Pose2<f64>,
     pub(super) stamped_estimates: Vec<StampedEstimate>,
-    pub(crate) events: Events,
+    pub(crate) events: EventCounts,
     /// Computing time since the last estimate.
     pub(crate) step: Duration,
 }
@@ -61,7 +61,7 @@ where
             association,
             dead_reckoning: start,
             stamped_estimates: Vec::new(),
-            events: Events::default(),
+            events: EventCounts::default(),
             step: Duration::ZERO,
         }
     }
@@ -85,7 +85,7 @@ where
         &mut self,
         observations: &[Observation<M::Measurement>],
         describe: impl Fn(&M::Measurement) -> String,
-    ) -> Result<StepReport<M::Measurement>, String> {
+    ) -> Result<UpdateReport<M::Measurement>, String> {
         let report = self.filter.update(observations, &mut self.association);
         let report = report.map_err(|error| error.to_string())?;
         if let Some(recorder) = &mut self.observability {
@@ -94,10 +94,12 @@ where
         for (Observation { measurement, .. }, outcome) in observations.iter().zip(&report.outcomes) {
             let name = event_name(outcome);
             match outcome {
-                Outcome::Unusable => {
+                ObservationOutcome::Unusable => {
                     self.events.refuse(name, format!("{} is not usable", describe(measurement)));
                 }
-                Outcome::Duplicate { landmark } if self.association.rule() == AssociationRule::Known => {
+                ObservationOutcome::Duplicate { landmark }
+                    if self.association.rule() == AssociationRule::Known =>
+                {
                     self.events.refuse(name, format!("landmark {landmark} a second time in one scan"));
                 }
                 _ => self.events.count(name),
@@ -150,7 +152,7 @@ where
 }
 
 /// Sum and number of the NIS of what corrected.
-pub(crate) fn nis<Z: Manifold<Scalar = f64>>(report: &StepReport<Z>) -> (f64, usize)
+pub(crate) fn nis<Z: Manifold<Scalar = f64>>(report: &UpdateReport<Z>) -> (f64, usize)
 where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
@@ -158,14 +160,14 @@ where
 }
 
 /// Landmarks that corrected or started in a scan.
-fn seen_landmarks<Z: Manifold<Scalar = f64>>(report: &StepReport<Z>) -> Vec<LandmarkId>
+fn seen_landmarks<Z: Manifold<Scalar = f64>>(report: &UpdateReport<Z>) -> Vec<LandmarkId>
 where
     DefaultAllocator: Allocator<Z::Dim> + Allocator<Z::Dim, Z::Dim>,
 {
-    let seen = |outcome: &Outcome<Z>| match outcome {
-        Outcome::Accepted { landmark, .. }
-        | Outcome::Initialized { landmark }
-        | Outcome::Restarted { landmark } => Some(*landmark),
+    let seen = |outcome: &ObservationOutcome<Z>| match outcome {
+        ObservationOutcome::Accepted { landmark, .. }
+        | ObservationOutcome::Initialized { landmark }
+        | ObservationOutcome::Restarted { landmark } => Some(*landmark),
         _ => None,
     };
     report.outcomes.iter().filter_map(seen).collect()

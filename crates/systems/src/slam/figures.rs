@@ -1,7 +1,7 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
-    errors::{Sample, trajectory_errors},
-    report::{Metric, Run},
+    errors::{TrajectorySample, trajectory_errors},
+    report::{Metric, ReportRun},
 };
 use wayfix_slam_ekf::{
     LandmarkDim, MeasurementDim, RobotDim, SlamAlloc, observability::ObservabilityRecorder,
@@ -13,7 +13,7 @@ use super::{FrontEnd, SlamRun, StampedEstimate};
 const REJECTIONS: [&str; 4] = ["gated", "duplicate", "unusable", "record_refused"];
 
 /// The figures and events of a run, ready for the report; `of_map` are the figures of the kind of landmark.
-pub(crate) fn summary<F: FrontEnd, T>(run: &mut SlamRun<F, T>, of_map: Vec<Metric>) -> Run
+pub(crate) fn summary<F: FrontEnd, T>(run: &mut SlamRun<F, T>, of_map: Vec<Metric>) -> ReportRun
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -25,7 +25,7 @@ where
     metrics.push(Metric::new("n_landmarks", n_landmarks as f64, ""));
     metrics.push(Metric::new("n_rejected", n_rejected as f64, ""));
     let timings = timings(run.system.stamped_estimates());
-    let mut summary = Run { metrics, timings, events: run.events().counts(), ..Run::default() };
+    let mut summary = ReportRun { metrics, timings, events: run.events().counts(), ..ReportRun::default() };
     unobservable_directions(run.system.observability(), &mut summary);
     summary
 }
@@ -36,7 +36,7 @@ where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
     let samples = run.samples();
-    let errors_of = |samples: Vec<Sample>| trajectory_errors(&samples);
+    let errors_of = |samples: Vec<TrajectorySample>| trajectory_errors(&samples);
     let mut metrics = Vec::new();
     if let Some(errors) = errors_of(samples.iter().map(|(_, sample)| *sample).collect()) {
         metrics.push(Metric::new("ate_rmse_m", errors.ate_rmse, "m"));
@@ -45,8 +45,10 @@ where
         let nees = errors.nees_mean.filter(|_| !run.truth.is_estimate());
         metrics.extend(nees.map(|nees| Metric::new("nees_mean", nees, "")));
     }
-    let reckoned =
-        |(at, sample): &(StampedEstimate, Sample)| Sample { estimate: at.dead_reckoning, ..*sample };
+    let reckoned = |(at, sample): &(StampedEstimate, TrajectorySample)| TrajectorySample {
+        estimate: at.dead_reckoning,
+        ..*sample
+    };
     if let Some(errors) = errors_of(samples.iter().map(reckoned).collect()) {
         metrics.push(Metric::new("dead_reckoning_aligned_rmse_m", errors.ate_aligned_rmse, "m"));
     }
@@ -54,7 +56,7 @@ where
 }
 
 /// Adds which motions of the whole map nothing has ever constrained, where that was recorded.
-fn unobservable_directions(recorder: Option<&ObservabilityRecorder>, summary: &mut Run) {
+fn unobservable_directions(recorder: Option<&ObservabilityRecorder>, summary: &mut ReportRun) {
     let Some(recorder) = recorder else { return };
     let free = recorder.unobservable_directions();
     summary.metrics.push(Metric::new("state_dimension", recorder.dimension() as f64, ""));

@@ -9,7 +9,7 @@ mod estimator;
 mod event_name;
 mod figures;
 mod front_end;
-mod pictures;
+mod plots;
 mod run;
 mod saved;
 mod start;
@@ -24,10 +24,10 @@ pub use estimator::{Estimator, StampedEstimate};
 use event_name::event_name;
 pub(crate) use figures::summary;
 pub use front_end::{FrontEnd, FrontEndState};
-pub(crate) use pictures::pictures_with;
+pub(crate) use plots::plots_with;
 pub use run::SlamRun;
 pub(crate) use saved::check_association;
-pub use saved::{SavedMapError, Saver, SlamState};
+pub use saved::{PeriodicSaver, SavedMapError, SlamState};
 pub(crate) use start::{
     start_pose, warn_of_an_empty_map, warn_of_no_overlap, warn_of_reference, warn_of_start,
 };

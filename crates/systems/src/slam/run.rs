@@ -1,10 +1,10 @@
 use nalgebra::{DefaultAllocator, Vector2};
-use wayfix_evaluation::errors::{Sample, TruePositions, TrueTrack};
+use wayfix_evaluation::errors::{ReferenceTrajectory, TrajectorySample, TruePositions};
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 
 use super::{FrontEnd, SlamSystem, StampedEstimate, warn_of_an_empty_map, warn_of_no_overlap};
-use crate::system::{DriveStep, Events, System, drive};
+use crate::system::{EventCounts, RunStep, System, drive};
 
 /// A log that went through EKF-SLAM, beside the truth that the log holds; `T` is the true map.
 pub struct SlamRun<F: FrontEnd, T>
@@ -14,7 +14,7 @@ where
     /// The system in its last state.
     pub system: SlamSystem<F>,
     /// True poses, or those that another program corrected, where the log has them.
-    pub truth: TrueTrack,
+    pub truth: ReferenceTrajectory,
     /// True positions of the antenna, where the log has them.
     pub true_positions: TruePositions,
     /// The true map, where the log has it.
@@ -31,7 +31,7 @@ where
     pub(crate) fn through(
         mut self,
         records: &[Record],
-        observe: impl FnMut(DriveStep<'_, SlamSystem<F>>),
+        observe: impl FnMut(RunStep<'_, SlamSystem<F>>),
     ) -> Self {
         drive(&mut self.system, records, observe);
         let estimates = self.system.stamped_estimates();
@@ -44,7 +44,7 @@ where
     }
 
     /// Estimates with their true poses.
-    pub fn samples(&self) -> Vec<(StampedEstimate, Sample)> {
+    pub fn samples(&self) -> Vec<(StampedEstimate, TrajectorySample)> {
         let sample = |estimate: &StampedEstimate| {
             let StampedEstimate { stamp, pose, covariance, .. } = estimate;
             Some((*estimate, self.truth.sample(*stamp, *pose, covariance)?))
@@ -69,7 +69,7 @@ where
     }
 
     /// What happened.
-    pub fn events(&mut self) -> &mut Events {
+    pub fn events(&mut self) -> &mut EventCounts {
         self.system.events()
     }
 }

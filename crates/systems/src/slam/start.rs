@@ -1,13 +1,17 @@
 use wayfix_estimation_traits::Pose2;
-use wayfix_evaluation::errors::TrueTrack;
+use wayfix_evaluation::errors::ReferenceTrajectory;
 use wayfix_sensor_log::Stamp;
 
-use crate::system::{Events, KnownStart};
+use crate::system::{EventCounts, TrueStartPose};
 
 /// Says where the start pose comes from, unless it is the truth at the start.
-pub(crate) fn warn_of_start(events: &mut Events, known: Option<KnownStart>, truth: &TrueTrack) {
+pub(crate) fn warn_of_start(
+    events: &mut EventCounts,
+    known: Option<TrueStartPose>,
+    truth: &ReferenceTrajectory,
+) {
     match known {
-        Some(KnownStart { seconds_late, .. }) if seconds_late > 0.0 => events.warn(
+        Some(TrueStartPose { seconds_late, .. }) if seconds_late > 0.0 => events.warn(
             "truth_begins_late",
             format!(
                 "the truth begins {seconds_late:.2} s after the first observation: odometry leads the start pose back from there (`start` sets it)"
@@ -22,7 +26,7 @@ pub(crate) fn warn_of_start(events: &mut Events, known: Option<KnownStart>, trut
 }
 
 /// Says when a run has made no map.
-pub(crate) fn warn_of_an_empty_map(events: &mut Events, n_landmarks: usize) {
+pub(crate) fn warn_of_an_empty_map(events: &mut EventCounts, n_landmarks: usize) {
     if n_landmarks == 0 {
         events.warn(
             "map_is_empty",
@@ -32,7 +36,7 @@ pub(crate) fn warn_of_an_empty_map(events: &mut Events, n_landmarks: usize) {
 }
 
 /// Says when errors are differences from the poses of another program.
-pub(crate) fn warn_of_reference(events: &mut Events, truth: &TrueTrack) {
+pub(crate) fn warn_of_reference(events: &mut EventCounts, truth: &ReferenceTrajectory) {
     if truth.is_estimate() {
         events.warn(
             "reference_is_another_estimate",
@@ -42,7 +46,11 @@ pub(crate) fn warn_of_reference(events: &mut Events, truth: &TrueTrack) {
 }
 
 /// Says when true poses have no time in common with the estimates.
-pub(crate) fn warn_of_no_overlap(events: &mut Events, truth: &TrueTrack, estimated: Option<(Stamp, Stamp)>) {
+pub(crate) fn warn_of_no_overlap(
+    events: &mut EventCounts,
+    truth: &ReferenceTrajectory,
+    estimated: Option<(Stamp, Stamp)>,
+) {
     let (Some((first, last)), Some((begin, end))) = (truth.span(), estimated) else { return };
     if end < first || last < begin {
         events.warn(
@@ -53,7 +61,7 @@ pub(crate) fn warn_of_no_overlap(events: &mut Events, truth: &TrueTrack, estimat
 }
 
 /// The pose of parameters, else the known one, else the origin.
-pub(crate) fn start_pose(given: Option<[f64; 3]>, known: Option<KnownStart>) -> Pose2<f64> {
+pub(crate) fn start_pose(given: Option<[f64; 3]>, known: Option<TrueStartPose>) -> Pose2<f64> {
     let given = given.map(|[x, y, heading]| Pose2::new(x, y, heading));
     given.or(known.map(|known| known.pose)).unwrap_or(Pose2::new(0.0, 0.0, 0.0))
 }

@@ -3,11 +3,11 @@ use wayfix_estimation_traits::Pose2;
 use wayfix_sensor_log::{Record, Stamp};
 use wayfix_slam_ekf::{
     EkfSlam, LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
-    Snapshot, observability::ObservabilityRecorder,
+    SlamSnapshot, observability::ObservabilityRecorder,
 };
 
 use super::{AssociationRule, Estimator, FrontEnd, SavedMapError, SlamState, StampedEstimate};
-use crate::system::{Events, System};
+use crate::system::{EventCounts, System};
 
 /// EKF-SLAM that takes records; `F` is the front end of a kind of landmark.
 pub struct SlamSystem<F: FrontEnd>
@@ -43,7 +43,7 @@ where
     /// The system with a saved map; the front end has its saved state already.
     pub(crate) fn resumed(
         self,
-        filter: Snapshot<<F::Model as LandmarkModel>::Robot, <F::Model as LandmarkModel>::Landmark>,
+        filter: SlamSnapshot<<F::Model as LandmarkModel>::Robot, <F::Model as LandmarkModel>::Landmark>,
         next_id: Option<u32>,
         taken_until: u64,
     ) -> Result<Self, SavedMapError> {
@@ -113,7 +113,7 @@ where
     fn finish(&mut self) -> Result<(), String> {
         self.front_end.finish(&mut self.estimator)
     }
-    fn events(&mut self) -> &mut Events {
+    fn events(&mut self) -> &mut EventCounts {
         &mut self.estimator.events
     }
 }

@@ -6,7 +6,7 @@ use super::System;
 
 /// State shown to an observer of [`drive`] after each record.
 #[derive(Clone, Copy, Debug)]
-pub struct DriveStep<'a, S> {
+pub struct RunStep<'a, S> {
     /// The system after the record.
     pub system: &'a S,
     /// The record, with the stamp at which the system took it.
@@ -21,7 +21,7 @@ pub struct DriveStep<'a, S> {
 pub fn drive<S: System, R: Borrow<Record>>(
     system: &mut S,
     records: impl IntoIterator<Item = R>,
-    mut observe: impl FnMut(DriveStep<'_, S>),
+    mut observe: impl FnMut(RunStep<'_, S>),
 ) {
     let mut latest = Stamp::default();
     let mut records = records.into_iter().enumerate().peekable();
@@ -37,7 +37,7 @@ pub fn drive<S: System, R: Borrow<Record>>(
         if let Err(reason) = taken {
             system.events().refuse("record_refused", reason);
         }
-        observe(DriveStep { system, record, next: records.peek().map(|(_, next)| next.borrow()) });
+        observe(RunStep { system, record, next: records.peek().map(|(_, next)| next.borrow()) });
     }
     if let Err(reason) = system.finish() {
         system.events().refuse("record_refused", reason);
@@ -46,35 +46,35 @@ pub fn drive<S: System, R: Borrow<Record>>(
 
 #[cfg(test)]
 mod tests {
-    use wayfix_sensor_log::{Data, Velocity};
+    use wayfix_sensor_log::{RecordData, Velocity};
 
     use super::*;
-    use crate::system::Events;
+    use crate::system::EventCounts;
 
     /// Passes records in time order and rejects the others.
     #[derive(Default)]
     struct OneWay {
         taken: Vec<u64>,
-        events: Events,
+        events: EventCounts,
     }
 
     impl System for OneWay {
         fn take(&mut self, record: &Record) -> Result<(), String> {
             match record.data {
-                Data::Velocity(velocity) if velocity.linear < 0.0 => Err("backwards".to_owned()),
+                RecordData::Velocity(velocity) if velocity.linear < 0.0 => Err("backwards".to_owned()),
                 _ => {
                     self.taken.push(record.stamp.nanoseconds());
                     Ok(())
                 }
             }
         }
-        fn events(&mut self) -> &mut Events {
+        fn events(&mut self) -> &mut EventCounts {
             &mut self.events
         }
     }
 
     fn record(nanoseconds: u64, linear: f64) -> Record {
-        let data = Data::Velocity(Velocity { linear, angular: 0.0 });
+        let data = RecordData::Velocity(Velocity { linear, angular: 0.0 });
         Record { stamp: Stamp::from_nanoseconds(nanoseconds), data }
     }
 

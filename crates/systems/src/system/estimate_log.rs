@@ -1,15 +1,17 @@
 use std::path::Path;
 
-use wayfix_sensor_log::{Data, Format, LogError, McapFile, MessageWriter, Record, Sinks, topics};
+use wayfix_sensor_log::{
+    LogError, LogFormat, McapFile, MessageSinks, MessageWriter, Record, RecordData, topics,
+};
 
 /// Writer of estimates, to files or viewers.
-pub type EstimateWriter = MessageWriter<Sinks>;
+pub type EstimateWriter = MessageWriter<MessageSinks>;
 
 /// Topic of pose estimates in the log that come from another program.
 pub const OTHER_POSES: &str = "/other/pose";
 
 /// Draws a system's estimates for a viewer.
-pub trait Drawing: Default {
+pub trait EstimateDrawing: Default {
     /// The system.
     type System;
 
@@ -29,18 +31,18 @@ pub trait Drawing: Default {
 }
 
 /// Writes the estimates of a system beside the records of its log, to an MCAP file or to the viewers Foxglove and Rerun.
-pub struct EstimateLog<D: Drawing> {
+pub struct EstimateLog<D: EstimateDrawing> {
     writer: EstimateWriter,
     drawing: D,
     failure: Option<LogError>,
 }
 
-impl<D: Drawing> EstimateLog<D> {
+impl<D: EstimateDrawing> EstimateLog<D> {
     /// Creates the file; `origin` is the format of the source log.
     ///
     /// # Errors
     /// Returns an error if the file cannot be created.
-    pub fn create(path: &Path, origin: Format) -> Result<Self, LogError> {
+    pub fn create(path: &Path, origin: LogFormat) -> Result<Self, LogError> {
         Self::new(vec![Box::new(McapFile::create(path)?)], origin)
     }
 
@@ -48,7 +50,7 @@ impl<D: Drawing> EstimateLog<D> {
     ///
     /// # Errors
     /// Returns an error if a sink fails.
-    pub fn new(sinks: Sinks, origin: Format) -> Result<Self, LogError> {
+    pub fn new(sinks: MessageSinks, origin: LogFormat) -> Result<Self, LogError> {
         let mut writer = MessageWriter::into_sink(sinks);
         writer.origin(origin)?;
         Ok(Self { writer, drawing: D::default(), failure: None })
@@ -74,7 +76,7 @@ impl<D: Drawing> EstimateLog<D> {
 
     fn write(&mut self, record: &Record, system: &D::System) -> Result<(), LogError> {
         let written = match &record.data {
-            Data::EstimatedPose(pose) if D::DRAWS_POSES && pose.is_finite() => {
+            RecordData::EstimatedPose(pose) if D::DRAWS_POSES && pose.is_finite() => {
                 self.writer.pose_in_frame(OTHER_POSES, record.stamp, topics::WORLD_FRAME, pose)
             }
             _ => self.writer.record(record),

@@ -1,13 +1,13 @@
 use std::{collections::BTreeMap, fmt};
 
-use wayfix_sensor_log::{Stamp, Warning};
+use wayfix_sensor_log::{LogWarning, Stamp};
 
 /// Event counts by kind, and the first unusable records.
 ///
 /// ```
-/// use wayfix_systems::system::Events;
+/// use wayfix_systems::system::EventCounts;
 /// use wayfix_sensor_log::Stamp;
-/// let mut events = Events::default();
+/// let mut events = EventCounts::default();
 /// events.at_record(7, Stamp::from_nanoseconds(5_000_000_000));
 /// events.count("accepted");
 /// events.refuse("unusable", "range 0 m".to_owned());
@@ -15,17 +15,17 @@ use wayfix_sensor_log::{Stamp, Warning};
 /// assert_eq!(events.refusals()[0].to_string(), "record 7 at 5.000000000 s: range 0 m");
 /// ```
 #[derive(Clone, Debug, Default)]
-pub struct Events {
+pub struct EventCounts {
     counts: BTreeMap<&'static str, u64>,
-    refusals: Vec<Refusal>,
+    refusals: Vec<RefusedRecord>,
     n_refusals: u64,
-    warnings: Vec<Warning>,
+    warnings: Vec<LogWarning>,
     record: (usize, Stamp),
 }
 
 /// A record, or one of its detections, that the system could not use.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Refusal {
+pub struct RefusedRecord {
     /// Index of the record in the log, from 0.
     pub index: usize,
     /// Its stamp.
@@ -37,7 +37,7 @@ pub struct Refusal {
 /// Maximum number of listed refusals; the others are only counted.
 const MOST_LISTED: usize = 20;
 
-impl Events {
+impl EventCounts {
     /// Sets the record of the following events.
     pub fn at_record(&mut self, index: usize, stamp: Stamp) {
         self.record = (index, stamp);
@@ -56,19 +56,19 @@ impl Events {
         self.n_refusals += 1;
         if self.refusals.len() < MOST_LISTED {
             let (index, stamp) = self.record;
-            self.refusals.push(Refusal { index, stamp, reason });
+            self.refusals.push(RefusedRecord { index, stamp, reason });
         }
     }
     /// Counts an event and adds a warning for the user; each text appears once.
     pub fn warn(&mut self, name: &'static str, text: impl Into<String>) {
         self.count(name);
-        let warning = Warning { name, text: text.into() };
+        let warning = LogWarning { name, text: text.into() };
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
         }
     }
     /// Warnings for the user, in order of occurrence.
-    pub fn warnings(&self) -> &[Warning] {
+    pub fn warnings(&self) -> &[LogWarning] {
         &self.warnings
     }
     /// Count of a kind of event.
@@ -80,7 +80,7 @@ impl Events {
         self.counts.iter().map(|(name, n)| ((*name).to_owned(), *n)).collect()
     }
     /// The first refusals, up to a limit.
-    pub fn refusals(&self) -> &[Refusal] {
+    pub fn refusals(&self) -> &[RefusedRecord] {
         &self.refusals
     }
     /// Number of refusals, listed or not.
@@ -89,7 +89,7 @@ impl Events {
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for RefusedRecord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "record {} at {}: {}", self.index, self.stamp, self.reason)
     }

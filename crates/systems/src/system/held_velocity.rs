@@ -63,7 +63,7 @@ impl HeldVelocity {
     /// The motion from the last call to `stamp`; `None` without a velocity or if no time has passed.
     ///
     /// The velocity holds for `longest` seconds after its stamp.
-    pub fn until(&mut self, stamp: Stamp, longest: f64) -> Option<HeldMotion> {
+    pub fn motion_until(&mut self, stamp: Stamp, longest: f64) -> Option<HeldMotion> {
         let Held { stamp: since, used_until, linear, angular } = self.held?;
         let now = stamp.nanoseconds();
         if now <= used_until {
@@ -91,20 +91,20 @@ mod tests {
     #[test]
     fn velocity_holds_until_the_next() {
         let mut held = HeldVelocity::default();
-        assert_eq!(held.until(at(5), 1.0), None);
+        assert_eq!(held.motion_until(at(5), 1.0), None);
         held.hold(at(1000), FORWARD).unwrap();
-        assert!((held.until(at(1500), 1.0).unwrap().increment.x() - 1.0).abs() < 1e-12);
-        assert_eq!(held.until(at(1500), 1.0), None);
-        assert!((held.until(at(1600), 1.0).unwrap().increment.x() - 0.2).abs() < 1e-9);
+        assert!((held.motion_until(at(1500), 1.0).unwrap().increment.x() - 1.0).abs() < 1e-12);
+        assert_eq!(held.motion_until(at(1500), 1.0), None);
+        assert!((held.motion_until(at(1600), 1.0).unwrap().increment.x() - 0.2).abs() < 1e-9);
     }
 
     #[test]
     fn velocity_expires_and_the_rest_is_unknown() {
         let mut held = HeldVelocity::default();
         held.hold(at(1000), FORWARD).unwrap();
-        let motion = held.until(at(4000), 1.0).unwrap();
+        let motion = held.motion_until(at(4000), 1.0).unwrap();
         assert!((motion.increment.x() - 2.0).abs() < 1e-12 && (motion.unknown_seconds - 2.0).abs() < 1e-12);
-        let motion = held.until(at(4500), 1.0).unwrap();
+        let motion = held.motion_until(at(4500), 1.0).unwrap();
         assert!(motion.increment.x() == 0.0 && (motion.unknown_seconds - 0.5).abs() < 1e-12);
     }
 
@@ -115,7 +115,7 @@ mod tests {
             held.hold(at(0), FORWARD).unwrap();
             let error = held.hold(at(100), Velocity { linear, angular: 0.0 }).unwrap_err();
             assert!(error.len() < 120, "{error}");
-            assert!((held.until(at(200), 1.0).unwrap().increment.x() - 0.4).abs() < 1e-12);
+            assert!((held.motion_until(at(200), 1.0).unwrap().increment.x() - 0.4).abs() < 1e-12);
         }
     }
 }

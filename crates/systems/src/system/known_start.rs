@@ -1,23 +1,23 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_evaluation::errors::TrueTrack;
-use wayfix_sensor_log::{Data, Record, Stamp};
+use wayfix_evaluation::errors::ReferenceTrajectory;
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 
 use super::HeldVelocity;
 
 /// The true pose at the start of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KnownStart {
+pub struct TrueStartPose {
     /// The true pose at the start.
     pub pose: Pose2<f64>,
     /// Time from the start to the first true pose, s; odometry bridges it.
     pub seconds_late: f64,
 }
 
-impl KnownStart {
+impl TrueStartPose {
     /// The true pose at `at`. If truth begins later, odometry extrapolates its first pose back to `at`.
     ///
     /// Returns `None` if no truth is usable or odometry does not cover the interval.
-    pub fn at(at: Stamp, truth: &TrueTrack, records: &[Record]) -> Option<Self> {
+    pub fn at(at: Stamp, truth: &ReferenceTrajectory, records: &[Record]) -> Option<Self> {
         if let Some(pose) = truth.at(at) {
             return Some(Self { pose, seconds_late: 0.0 });
         }
@@ -29,7 +29,7 @@ impl KnownStart {
 
 /// Motion between two times from the odometry of a log; `None` without odometry.
 fn motion_between(records: &[Record], from: Stamp, to: Stamp) -> Option<Pose2<f64>> {
-    let has_increments = records.iter().any(|record| matches!(record.data, Data::OdometryIncrement(_)));
+    let has_increments = records.iter().any(|record| matches!(record.data, RecordData::OdometryIncrement(_)));
     if has_increments { by_increments(records, from, to) } else { by_velocities(records, from, to) }
 }
 
@@ -38,7 +38,7 @@ fn by_increments(records: &[Record], from: Stamp, to: Stamp) -> Option<Pose2<f64
     let mut moved = Pose2::identity();
     let mut before: Option<Stamp> = None;
     for record in records {
-        let Data::OdometryIncrement(increment) = &record.data else { continue };
+        let RecordData::OdometryIncrement(increment) = &record.data else { continue };
         let begin = before.replace(record.stamp).unwrap_or(from);
         let whole = record.stamp.seconds_since(begin);
         let inside = record.stamp.min(to).seconds_since(begin.max(from));
@@ -53,20 +53,20 @@ fn by_velocities(records: &[Record], from: Stamp, to: Stamp) -> Option<Pose2<f64
     let mut held = HeldVelocity::default();
     let mut moved = None;
     for record in records {
-        let Data::Velocity(velocity) = record.data else { continue };
+        let RecordData::Velocity(velocity) = record.data else { continue };
         if record.stamp >= to {
             break;
         }
-        let motion = held.until(record.stamp.max(from), f64::INFINITY);
+        let motion = held.motion_until(record.stamp.max(from), f64::INFINITY);
         let so_far = moved.get_or_insert(Pose2::identity());
         if let Some(motion) = motion {
             *so_far = so_far.compose(&motion.increment);
         }
         if held.hold(record.stamp, velocity).is_ok() && record.stamp < from {
-            let _ = held.until(from, f64::INFINITY); // skip the motion before the interval
+            let _ = held.motion_until(from, f64::INFINITY); // skip the motion before the interval
         }
     }
-    let rest = held.until(to, f64::INFINITY);
+    let rest = held.motion_until(to, f64::INFINITY);
     moved.map(|moved| rest.map_or(moved, |rest| moved.compose(&rest.increment)))
 }
 
@@ -81,30 +81,31 @@ mod tests {
     }
 
     fn increment(milliseconds: u64, x: f64) -> Record {
-        Record { stamp: at(milliseconds), data: Data::OdometryIncrement(Pose2::new(x, 0.0, 0.0)) }
+        Record { stamp: at(milliseconds), data: RecordData::OdometryIncrement(Pose2::new(x, 0.0, 0.0)) }
     }
 
     fn truth(milliseconds: u64, x: f64) -> Record {
-        Record { stamp: at(milliseconds), data: Data::TruePose(Pose2::new(x, 0.0, 0.0)) }
+        Record { stamp: at(milliseconds), data: RecordData::TruePose(Pose2::new(x, 0.0, 0.0)) }
     }
 
     #[test]
     fn truth_that_begins_late_is_led_back_by_odometry() {
         let odometry = [increment(0, 0.0), increment(1000, 1.0), increment(2000, 2.0)];
         let records = [&odometry[..], &[truth(1500, 7.0), truth(1600, 7.2)]].concat();
-        let track = TrueTrack::from_records(&records);
-        let start = KnownStart::at(at(500), &track, &records).unwrap();
+        let track = ReferenceTrajectory::from_records(&records);
+        let start = TrueStartPose::at(at(500), &track, &records).unwrap();
         assert!((start.pose.x() - (7.0 - 0.5 - 1.0)).abs() < 1e-12, "{start:?}");
         assert!((start.seconds_late - 1.0).abs() < 1e-12);
-        assert_eq!(KnownStart::at(at(1500), &track, &records).unwrap().seconds_late, 0.0);
-        assert_eq!(KnownStart::at(at(500), &TrueTrack::default(), &records), None);
+        assert_eq!(TrueStartPose::at(at(1500), &track, &records).unwrap().seconds_late, 0.0);
+        assert_eq!(TrueStartPose::at(at(500), &ReferenceTrajectory::default(), &records), None);
     }
 
     #[test]
     fn velocities_lead_back_as_well() {
-        let data = Data::Velocity(Velocity { linear: 2.0, angular: 0.0 });
+        let data = RecordData::Velocity(Velocity { linear: 2.0, angular: 0.0 });
         let records = [Record { stamp: at(0), data }, truth(1500, 7.0), truth(1600, 7.2)];
-        let start = KnownStart::at(at(500), &TrueTrack::from_records(&records), &records).unwrap();
+        let start =
+            TrueStartPose::at(at(500), &ReferenceTrajectory::from_records(&records), &records).unwrap();
         assert!((start.pose.x() - 5.0).abs() < 1e-12, "{start:?}");
     }
 }

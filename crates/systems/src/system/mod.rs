@@ -13,16 +13,16 @@ mod overlap;
 mod plausible_increment;
 mod stopwatch;
 
-pub use drive::{DriveStep, drive};
-pub use estimate_log::{Drawing, EstimateLog, EstimateWriter, OTHER_POSES};
-pub use events::{Events, Refusal};
+pub use drive::{RunStep, drive};
+pub use estimate_log::{EstimateDrawing, EstimateLog, EstimateWriter, OTHER_POSES};
+pub use events::{EventCounts, RefusedRecord};
 pub use held_velocity::{FASTEST, HeldMotion, HeldVelocity, VELOCITY_HOLD, check_velocity};
-pub use known_start::KnownStart;
+pub use known_start::TrueStartPose;
 pub use laser::largest_echo;
 pub use motion_statistics::MotionStatistics;
 pub use odometry_delay::without_odometry_delay;
 pub use odometry_lag::warn_of_lag;
-pub use overlap::{NamedKind, ODOMETRY, check_overlap};
+pub use overlap::{NamedRecordKind, ODOMETRY, check_overlap};
 pub use plausible_increment::PlausibleIncrement;
 pub use stopwatch::Stopwatch;
 
@@ -45,5 +45,5 @@ pub trait System {
         Ok(())
     }
     /// Events so far.
-    fn events(&mut self) -> &mut Events;
+    fn events(&mut self) -> &mut EventCounts;
 }

@@ -30,18 +30,19 @@ pub fn without_odometry_delay(records: &[Record], delay: f64) -> Cow<'_, [Record
 #[cfg(test)]
 mod tests {
     use wayfix_estimation_traits::Pose2;
-    use wayfix_sensor_log::Data;
+    use wayfix_sensor_log::RecordData;
 
     use super::*;
 
-    fn at(milliseconds: u64, data: Data) -> Record {
+    fn at(milliseconds: u64, data: RecordData) -> Record {
         Record { stamp: Stamp::from_nanoseconds(milliseconds * 1_000_000), data }
     }
 
     #[test]
     fn late_odometry_moves_before_the_records_of_its_time() {
-        let odometry = |milliseconds| at(milliseconds, Data::OdometryIncrement(Pose2::new(1.0, 0.0, 0.0)));
-        let look = at(800, Data::Detections(Vec::new()));
+        let odometry =
+            |milliseconds| at(milliseconds, RecordData::OdometryIncrement(Pose2::new(1.0, 0.0, 0.0)));
+        let look = at(800, RecordData::Detections(Vec::new()));
         let log = [odometry(100), look.clone(), odometry(1000)];
         assert!(matches!(without_odometry_delay(&log, 0.0), Cow::Borrowed(_)));
         assert_eq!(without_odometry_delay(&log, 0.25).as_ref(), [odometry(0), odometry(750), look.clone()]);

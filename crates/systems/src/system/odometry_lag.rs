@@ -1,7 +1,7 @@
 use wayfix_estimation_traits::{LieGroup, Pose2};
 use wayfix_sensor_log::Stamp;
 
-use super::Events;
+use super::EventCounts;
 
 /// Largest lag searched, s: larger offsets indicate another clock.
 const LARGEST_LAG: f64 = 1.0;
@@ -15,7 +15,7 @@ const LIKELIHOOD_RATIO_THRESHOLD: f64 = 23.9;
 /// `odometry` is the dead-reckoned pose at each scan or image; `seen_turns` is the turn since the previous one, estimated from
 /// scans or images alone, rad.
 pub fn warn_of_lag(
-    events: &mut Events,
+    events: &mut EventCounts,
     odometry: &[(Stamp, Pose2<f64>)],
     seen_turns: &[Option<f64>],
     delay: f64,

@@ -1,20 +1,25 @@
 use anyhow::{Result, bail};
-use wayfix_sensor_log::{Data, Record, Stamp};
+use wayfix_sensor_log::{Record, RecordData, Stamp};
 
 use super::VELOCITY_HOLD;
 
 /// A kind of record, for messages.
-pub type NamedKind<'a> = (&'a str, fn(&Data) -> bool);
+pub type NamedRecordKind<'a> = (&'a str, fn(&RecordData) -> bool);
 
 /// Records that move a robot.
-pub const ODOMETRY: NamedKind<'static> =
-    ("odometry", |data| matches!(data, Data::OdometryIncrement(_) | Data::Velocity(_) | Data::Ackermann(_)));
+pub const ODOMETRY: NamedRecordKind<'static> = ("odometry", |data| {
+    matches!(data, RecordData::OdometryIncrement(_) | RecordData::Velocity(_) | RecordData::Ackermann(_))
+});
 
 /// Checks that two kinds of record overlap in time, if a log has both.
 ///
 /// # Errors
 /// Returns both intervals if they are disjoint: the records come from different clocks or drives.
-pub fn check_overlap(records: &[Record], first: NamedKind<'_>, second: NamedKind<'_>) -> Result<()> {
+pub fn check_overlap(
+    records: &[Record],
+    first: NamedRecordKind<'_>,
+    second: NamedRecordKind<'_>,
+) -> Result<()> {
     let (Some(a), Some(b)) = (span(records, first.1), span(records, second.1)) else { return Ok(()) };
     // A velocity also covers the time after it.
     if a.0.seconds_since(b.1) <= VELOCITY_HOLD && b.0.seconds_since(a.1) <= VELOCITY_HOLD {
@@ -31,7 +36,7 @@ pub fn check_overlap(records: &[Record], first: NamedKind<'_>, second: NamedKind
     )
 }
 
-fn span(records: &[Record], is: fn(&Data) -> bool) -> Option<(Stamp, Stamp)> {
+fn span(records: &[Record], is: fn(&RecordData) -> bool) -> Option<(Stamp, Stamp)> {
     let mut stamps = records.iter().filter(|record| is(&record.data)).map(|record| record.stamp);
     let first = stamps.next()?;
     Some(stamps.fold((first, first), |(low, high), stamp| (low.min(stamp), high.max(stamp))))
@@ -44,15 +49,15 @@ mod tests {
 
     use super::*;
 
-    const TRUTH: NamedKind<'static> = ("truth", |data| matches!(data, Data::TruePose(_)));
+    const TRUTH: NamedRecordKind<'static> = ("truth", |data| matches!(data, RecordData::TruePose(_)));
 
     fn records(odometry: u64, truth: u64) -> Vec<Record> {
-        let velocity = Data::Velocity(Velocity { linear: 0.1, angular: 0.0 });
-        let at = |second: u64, data: &Data| Record {
+        let velocity = RecordData::Velocity(Velocity { linear: 0.1, angular: 0.0 });
+        let at = |second: u64, data: &RecordData| Record {
             stamp: Stamp::from_nanoseconds(second * 1_000_000_000),
             data: data.clone(),
         };
-        let truth_data = Data::TruePose(Pose2::new(0.0, 0.0, 0.0));
+        let truth_data = RecordData::TruePose(Pose2::new(0.0, 0.0, 0.0));
         vec![
             at(odometry, &velocity),
             at(odometry + 5, &velocity),

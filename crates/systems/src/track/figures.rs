@@ -2,10 +2,10 @@ use std::time::Duration;
 
 use super::TrackRun;
 use crate::system::System;
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::report::{Metric, ReportRun};
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
-pub fn summarize(run: &mut TrackRun) -> Run {
+pub fn summarize(run: &mut TrackRun) -> ReportRun {
     let (score, totals) = (run.system.score(), *run.system.totals());
     let judged = [
         ("iou_mean", score.iou_mean(), ""),
@@ -34,7 +34,7 @@ pub fn summarize(run: &mut TrackRun) -> Run {
         Metric::new("frame_max_ms", ms(totals.longest), "ms"),
     ];
     let notes = coverage(run.system.truth().len(), run.system.n_frames()).into_iter().collect();
-    Run { metrics, timings, events: run.system.events().counts(), notes, ..Run::default() }
+    ReportRun { metrics, timings, events: run.system.events().counts(), notes, ..ReportRun::default() }
 }
 
 /// A note if the list of true boxes has another length than the sequence.

@@ -1,7 +1,8 @@
 use nalgebra::{Matrix3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use wayfix_visual_tracking::{
-    ColorSpace, ContourTracker, CorrelationTracker, HeadTracker, RgbImage, Target, Tracker, TrackingError,
+    ColorSpace, ContourTracker, CorrelationTracker, HeadTracker, RgbImage, TargetEstimate, Tracker,
+    TrackingError,
 };
 
 /// A tracker of any method.
@@ -10,7 +11,11 @@ pub trait FrameTracker {
     ///
     /// # Errors
     /// Returns the errors of [`Tracker::track`].
-    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError>;
+    fn track_frame(
+        &mut self,
+        picture: &RgbImage,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<TargetEstimate, TrackingError>;
 
     /// Colour distribution of the target, for trackers that model it.
     fn colors(&self) -> Option<TargetColors> {
@@ -30,13 +35,21 @@ pub struct TargetColors {
 }
 
 impl FrameTracker for CorrelationTracker {
-    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError> {
+    fn track_frame(
+        &mut self,
+        picture: &RgbImage,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<TargetEstimate, TrackingError> {
         self.track(picture, rng)
     }
 }
 
 impl FrameTracker for HeadTracker {
-    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError> {
+    fn track_frame(
+        &mut self,
+        picture: &RgbImage,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<TargetEstimate, TrackingError> {
         self.track(picture, rng)
     }
 }
@@ -48,13 +61,17 @@ pub(super) struct ContourFrameTracker {
 }
 
 impl FrameTracker for ContourFrameTracker {
-    fn track_frame(&mut self, picture: &RgbImage, rng: &mut ChaCha8Rng) -> Result<Target, TrackingError> {
+    fn track_frame(
+        &mut self,
+        picture: &RgbImage,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<TargetEstimate, TrackingError> {
         self.tracker.track(picture, rng)
     }
 
     fn colors(&self) -> Option<TargetColors> {
         let colors = self.tracker.colors();
-        let variances = Matrix3::from_diagonal(&colors.magnitudes.map(|magnitude| magnitude * magnitude));
+        let variances = Matrix3::from_diagonal(&colors.axis_sigmas.map(|magnitude| magnitude * magnitude));
         let covariance = colors.axes * variances * colors.axes.transpose();
         Some(TargetColors { space: self.space, mean: colors.mean, covariance })
     }

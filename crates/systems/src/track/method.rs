@@ -4,12 +4,12 @@ use wayfix_visual_tracking::{
     ContourTracker, CorrelationTracker, HeadTracker, RgbImage, TrackingCues, TrackingError,
 };
 
-use super::{FrameTracker, Start, TrackParams, frame_tracker::ContourFrameTracker};
+use super::{FrameTracker, TargetStart, TrackParams, frame_tracker::ContourFrameTracker};
 
 /// Tracking method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Method {
+pub enum TrackingMethod {
     /// A correlation filter over gradients and colours: a box around any target.
     #[default]
     Box,
@@ -25,7 +25,7 @@ pub enum Method {
     ContourShapeOnly,
 }
 
-impl Method {
+impl TrackingMethod {
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -46,7 +46,7 @@ impl Method {
         self,
         params: &TrackParams,
         picture: &RgbImage,
-        start: &Start,
+        start: &TargetStart,
     ) -> Result<Box<dyn FrameTracker>, TrackingError> {
         let mut contour = params.contour;
         match self {
@@ -60,13 +60,13 @@ impl Method {
                 return Ok(Box::new(HeadTracker::new(picture, bounds, params.head.clone())?));
             }
             Self::Contour => {}
-            Self::ContourFixedColors => contour.adapts = false,
+            Self::ContourFixedColors => contour.adapts_colors = false,
             Self::ContourColorOnly => contour.cues = TrackingCues::Color,
             Self::ContourShapeOnly => contour.cues = TrackingCues::Shape,
         }
         let tracker = match start {
-            Start::Box(bounds) => ContourTracker::from_box(picture, bounds, contour)?,
-            Start::Mask(mask) => ContourTracker::from_mask(picture, mask, contour)?,
+            TargetStart::Box(bounds) => ContourTracker::from_box(picture, bounds, contour)?,
+            TargetStart::Mask(mask) => ContourTracker::from_mask(picture, mask, contour)?,
         };
         Ok(Box::new(ContourFrameTracker { tracker, space: contour.color_space }))
     }

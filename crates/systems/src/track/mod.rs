@@ -1,13 +1,13 @@
 //! Target tracking in image sequences: the command `wayfix run track`.
 //!
-//! A [`TrackSystem`] passes the images of a log one by one to the tracker of a [`Method`]. [`TrueBoxes`] holds the true target boxes and
-//! [`Score`] the tracking accuracy; [`summarize`] gives the figures and [`pictures`] the pictures. Memory use is independent of the
+//! A [`TrackSystem`] passes the images of a log one by one to the tracker of a [`TrackingMethod`]. [`TrueBoxes`] holds the true target boxes and
+//! [`BoxScore`] the tracking accuracy; [`summarize`] gives the figures and [`plots`] the pictures. Memory use is independent of the
 //! number of frames.
 //!
 //! ```
-//! use wayfix_systems::track::{Score, TrueBoxes};
+//! use wayfix_systems::track::{BoxScore, TrueBoxes};
 //! let truth = TrueBoxes::parse("10,10,20,20\n11,10,20,20\n0,0,0,0\n")?;
-//! let mut score = Score::default();
+//! let mut score = BoxScore::default();
 //! for (index, estimate) in [(0, truth.at(0).target()), (1, None)] {
 //!     score.add(estimate.as_ref(), &truth.at(index).target().expect("in sight"));
 //! }
@@ -32,14 +32,14 @@ mod truth;
 pub use error::TrackError;
 pub use figures::summarize;
 pub use frame_tracker::{FrameTracker, TargetColors};
-pub use method::Method;
+pub use method::TrackingMethod;
 pub use output::estimates::TrackLog;
-pub use output::pictures::pictures;
+pub use output::plots::plots;
 pub use output::run_history::RunHistory;
 pub use params::TrackParams;
 pub use run::{TrackRun, run};
-pub use score::Score;
-pub use start::Start;
+pub use score::BoxScore;
+pub use start::TargetStart;
 pub use status_score::StatusScore;
-pub use system::{FrameResult, TrackSetup, TrackSystem};
-pub use truth::{TrueBoxes, Truth, parse_box};
+pub use system::{TrackFrameResult, TrackSystem, TrackerConfig};
+pub use truth::{TargetTruth, TrueBoxes, parse_box};

@@ -1,7 +1,7 @@
-use wayfix_sensor_log::{Data, Log, ProblemKind, Record};
+use wayfix_sensor_log::{Log, ProblemKind, Record, RecordData};
 
 use super::{RunHistory, TrackError, TrackSystem};
-use crate::system::{DriveStep, System, drive};
+use crate::system::{RunStep, System, drive};
 
 /// Results of a tracker on a log.
 pub struct TrackRun {
@@ -22,9 +22,9 @@ pub fn run(
 ) -> Result<TrackRun, TrackError> {
     let mut run_history = RunHistory::default();
     let mut kept = Ok(());
-    drive(&mut system, log.by_ref(), |DriveStep { system, record, .. }| {
+    drive(&mut system, log.by_ref(), |RunStep { system, record, .. }| {
         // Only image records change the frame.
-        if let (Ok(()), Data::Image(_), Some(frame)) = (&kept, &record.data, system.frame()) {
+        if let (Ok(()), RecordData::Image(_), Some(frame)) = (&kept, &record.data, system.frame()) {
             kept = run_history.observe(frame);
         }
         observe(system, record);

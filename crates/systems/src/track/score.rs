@@ -10,10 +10,10 @@ const NEAR_PX: f64 = 20.0;
 /// A frame without an estimate has overlap 0 and is not precise.
 ///
 /// ```
-/// use wayfix_systems::track::Score;
+/// use wayfix_systems::track::BoxScore;
 /// use wayfix_visual_tracking::BoundingBox;
 /// let truth = BoundingBox::from_corner(0.0, 0.0, 30.0, 30.0)?;
-/// let mut score = Score::default();
+/// let mut score = BoxScore::default();
 /// score.add(Some(&BoundingBox::from_corner(10.0, 0.0, 30.0, 30.0)?), &truth); // overlap 1/2, off by 10 px
 /// score.add(Some(&BoundingBox::from_corner(25.0, 0.0, 30.0, 30.0)?), &truth); // 1/11, off by 25 px
 /// assert!((score.iou_mean().unwrap() - (0.5 + 1.0 / 11.0) / 2.0).abs() < 1e-12);
@@ -22,7 +22,7 @@ const NEAR_PX: f64 = 20.0;
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Score {
+pub struct BoxScore {
     n_frames: u64,
     iou_sum: f64,
     n_above: [u64; N_THRESHOLDS],
@@ -31,7 +31,7 @@ pub struct Score {
     center_error_sum: f64,
 }
 
-impl Score {
+impl BoxScore {
     /// Counts a frame with a visible target; `None` is a frame without an estimate.
     pub fn add(&mut self, estimate: Option<&BoundingBox>, truth: &BoundingBox) {
         self.n_frames += 1;

@@ -8,21 +8,21 @@ use super::TrackError;
 /// Position of the target in the first image.
 ///
 /// ```
-/// use wayfix_systems::track::Start;
+/// use wayfix_systems::track::TargetStart;
 /// use wayfix_visual_tracking::{BitMask, BoundingBox};
 /// let mask = BitMask::from_fn(20, 10, |u, v| (4..9).contains(&u) && v > 6)?;
-/// assert_eq!(Start::Mask(mask).bounding_box()?, BoundingBox::from_corner(4.0, 7.0, 5.0, 3.0)?);
+/// assert_eq!(TargetStart::Mask(mask).bounding_box()?, BoundingBox::from_corner(4.0, 7.0, 5.0, 3.0)?);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub enum Start {
+pub enum TargetStart {
     /// A bounding box.
     Box(BoundingBox),
     /// A mask of the target's pixels.
     Mask(BitMask),
 }
 
-impl Start {
+impl TargetStart {
     /// Reads a mask from an image file: every pixel that is not black belongs to the target.
     ///
     /// # Errors

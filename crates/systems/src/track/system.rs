@@ -1,41 +1,42 @@
 use std::time::Duration;
 
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-use wayfix_sensor_log::{Data, EncodedImage, Record, Stamp};
-use wayfix_visual_tracking::{RgbImage, Target, TrackStatus};
+use wayfix_sensor_log::{EncodedImage, Record, RecordData, Stamp};
+use wayfix_visual_tracking::{RgbImage, TargetEstimate, TrackStatus};
 
 use super::{
-    FrameTracker, Method, Score, Start, StatusScore, TargetColors, TrackError, TrackParams, TrueBoxes, Truth,
+    BoxScore, FrameTracker, StatusScore, TargetColors, TargetStart, TargetTruth, TrackError, TrackParams,
+    TrackingMethod, TrueBoxes,
 };
-use crate::system::{Events, Stopwatch, System};
+use crate::system::{EventCounts, Stopwatch, System};
 
 /// A tracker that processes the images of a log.
 ///
 /// It starts in the first readable frame, with the given box or mask, or else with the first true box. An unreadable or rejected frame has no
 /// estimate. If its truth is known, it counts with overlap 0, like a frame in which the tracker reports the target lost.
 pub struct TrackSystem {
-    setup: TrackSetup,
+    setup: TrackerConfig,
     rng: ChaCha8Rng,
     tracker: Option<Box<dyn FrameTracker>>,
     failure: Option<TrackError>,
     next_index: usize,
-    last: Option<FrameResult>,
+    last: Option<TrackFrameResult>,
     was_lost: bool,
-    score: Score,
+    score: BoxScore,
     status_score: StatusScore,
     totals: Totals,
-    events: Events,
+    events: EventCounts,
 }
 
 /// Setup of a [`TrackSystem`].
 #[derive(Clone, Debug, Default)]
-pub struct TrackSetup {
+pub struct TrackerConfig {
     /// The tracker.
-    pub method: Method,
+    pub method: TrackingMethod,
     /// Its parameters.
     pub params: TrackParams,
     /// Position of the target in the first frame; `None` uses the first true box.
-    pub init: Option<Start>,
+    pub init: Option<TargetStart>,
     /// The true boxes.
     pub truth: TrueBoxes,
     /// Frame rate of a folder, in Hz. It gives the frame number from the stamp; without it, frames are counted.
@@ -44,7 +45,7 @@ pub struct TrackSetup {
 
 /// Result of one frame.
 #[derive(Clone, Debug)]
-pub struct FrameResult {
+pub struct TrackFrameResult {
     /// Frame number in the sequence, from 0, including unreadable frames.
     pub index: usize,
     /// Capture time.
@@ -52,9 +53,9 @@ pub struct FrameResult {
     /// The pixels.
     pub picture: RgbImage,
     /// The tracker's estimate.
-    pub target: Target,
+    pub target: TargetEstimate,
     /// The truth of this frame.
-    pub truth: Truth,
+    pub truth: TargetTruth,
     /// Overlap with the truth, 0 if the tracker reports the target lost; `None` without a true box.
     pub iou: Option<f64>,
     /// Colour distribution of the target, if the tracker models it.
@@ -75,8 +76,8 @@ pub(super) struct Totals {
 
 impl TrackSystem {
     /// Creates a system before its first image.
-    pub fn new(setup: TrackSetup, seed: u64) -> Self {
-        let mut events = Events::default();
+    pub fn new(setup: TrackerConfig, seed: u64) -> Self {
+        let mut events = EventCounts::default();
         if let Some(doubt) = setup.truth.unusable_lines_message() {
             events.warn("truth_line_unusable", doubt);
         }
@@ -88,7 +89,7 @@ impl TrackSystem {
             next_index: 0,
             last: None,
             was_lost: false,
-            score: Score::default(),
+            score: BoxScore::default(),
             status_score: StatusScore::default(),
             totals: Totals::default(),
             events,
@@ -96,12 +97,12 @@ impl TrackSystem {
     }
 
     /// Result of the newest frame; `None` if it has no estimate.
-    pub fn frame(&self) -> Option<&FrameResult> {
+    pub fn frame(&self) -> Option<&TrackFrameResult> {
         self.last.as_ref()
     }
 
     /// Tracking accuracy so far.
-    pub fn score(&self) -> &Score {
+    pub fn score(&self) -> &BoxScore {
         &self.score
     }
 
@@ -144,7 +145,7 @@ impl TrackSystem {
     /// Counts the next frame as one without an estimate.
     fn without_estimate(&mut self) {
         self.last = None;
-        if let (true, Truth::At(truth)) = (self.has_begun(), self.setup.truth.at(self.next_index)) {
+        if let (true, TargetTruth::At(truth)) = (self.has_begun(), self.setup.truth.at(self.next_index)) {
             self.score.add(None, &truth);
         }
         self.totals.n_without_estimate += 1;
@@ -174,7 +175,10 @@ impl TrackSystem {
     }
 
     /// Tracks the target in a frame; `None` before the first box.
-    fn follow(&mut self, image: &EncodedImage) -> Result<Option<(RgbImage, Target, Duration)>, String> {
+    fn follow(
+        &mut self,
+        image: &EncodedImage,
+    ) -> Result<Option<(RgbImage, TargetEstimate, Duration)>, String> {
         if self.failure.is_some() {
             return Err("the tracker could not begin".to_owned());
         }
@@ -187,7 +191,7 @@ impl TrackSystem {
             let target = tracker.track_frame(&picture, &mut self.rng).map_err(|error| error.to_string())?;
             return Ok(Some((picture, target, stopwatch.elapsed())));
         }
-        let first_true_box = || self.setup.truth.at(self.next_index).target().map(Start::Box);
+        let first_true_box = || self.setup.truth.at(self.next_index).target().map(TargetStart::Box);
         let Some(start) = self.setup.init.clone().or_else(first_true_box) else {
             return Ok(None);
         };
@@ -196,7 +200,7 @@ impl TrackSystem {
             Ok((tracker, bounding_box)) => {
                 self.tracker = Some(tracker);
                 let (outline, status) = (Vec::new(), TrackStatus::Tracked);
-                let target = Target { bounding_box, outline, status, quality: 1.0 };
+                let target = TargetEstimate { bounding_box, outline, status, quality: 1.0 };
                 Ok(Some((picture, target, Duration::ZERO)))
             }
             Err(source) => {
@@ -206,22 +210,22 @@ impl TrackSystem {
         }
     }
 
-    fn account(&mut self, stamp: Stamp, picture: RgbImage, target: Target, step: Duration) {
+    fn account(&mut self, stamp: Stamp, picture: RgbImage, target: TargetEstimate, step: Duration) {
         let index = self.next_index;
         let truth = self.setup.truth.at(index);
         let lost = target.status == TrackStatus::Lost;
         let estimate = (!lost).then_some(&target.bounding_box);
-        if let Truth::At(truth) = &truth {
+        if let TargetTruth::At(truth) = &truth {
             self.score.add(estimate, truth);
         }
         match truth {
-            Truth::At(truth) => self.status_score.add(target.bounding_box.iou(&truth), lost),
-            Truth::Absent => self.status_score.add(0.0, lost),
-            Truth::Unknown => {}
+            TargetTruth::At(truth) => self.status_score.add(target.bounding_box.iou(&truth), lost),
+            TargetTruth::Absent => self.status_score.add(0.0, lost),
+            TargetTruth::Unknown => {}
         }
         match (lost, truth) {
-            (true, Truth::Absent) => self.events.count("absent_and_lost"),
-            (false, Truth::Absent) => self.events.count("absent_and_tracked"),
+            (true, TargetTruth::Absent) => self.events.count("absent_and_lost"),
+            (false, TargetTruth::Absent) => self.events.count("absent_and_tracked"),
             _ => {}
         }
         match (self.was_lost, lost) {
@@ -239,19 +243,19 @@ impl TrackSystem {
         let iou = truth.target().map(|truth| estimate.map_or(0.0, |estimate| estimate.iou(&truth)));
         let colors = self.tracker.as_ref().and_then(|tracker| tracker.colors());
         self.next_index += 1;
-        self.last = Some(FrameResult { index, stamp, picture, target, truth, iou, colors, step });
+        self.last = Some(TrackFrameResult { index, stamp, picture, target, truth, iou, colors, step });
     }
 }
 
 impl System for TrackSystem {
     fn take(&mut self, record: &Record) -> Result<(), String> {
         match &record.data {
-            Data::Image(image) => self.see(record.stamp, image),
+            RecordData::Image(image) => self.see(record.stamp, image),
             _ => Ok(()),
         }
     }
 
-    fn events(&mut self) -> &mut Events {
+    fn events(&mut self) -> &mut EventCounts {
         &mut self.events
     }
 }

@@ -7,7 +7,7 @@ use super::TrackError;
 /// True boxes of the target, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrueBoxes {
-    frames: Vec<Truth>,
+    frames: Vec<TargetTruth>,
     n_unusable: usize,
     /// The first invalid lines.
     unusable: Vec<String>,
@@ -18,7 +18,7 @@ const MOST_NAMED: usize = 3;
 
 /// Truth of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Truth {
+pub enum TargetTruth {
     /// The target is in this box.
     At(BoundingBox),
     /// The target is not in the image.
@@ -27,7 +27,7 @@ pub enum Truth {
     Unknown,
 }
 
-impl Truth {
+impl TargetTruth {
     /// The true box, if it is known and in the image.
     pub fn target(self) -> Option<BoundingBox> {
         match self {
@@ -69,8 +69,8 @@ impl TrueBoxes {
         let n_header = usize::from(text.lines().next().is_some_and(is_header) && text.lines().count() > 1);
         for (index, line) in text.lines().enumerate().skip(n_header) {
             found.frames.push(match parse_box(line) {
-                Ok(Some(target)) => Truth::At(target),
-                Ok(None) => Truth::Absent,
+                Ok(Some(target)) => TargetTruth::At(target),
+                Ok(None) => TargetTruth::Absent,
                 Err(source) => {
                     let error = TrackError::Line { line: index + 1, source: Box::new(source) };
                     if found.unusable.len() < MOST_NAMED {
@@ -79,7 +79,7 @@ impl TrueBoxes {
                     }
                     found.n_unusable += 1;
                     first_error.get_or_insert(error);
-                    Truth::Unknown
+                    TargetTruth::Unknown
                 }
             });
         }
@@ -101,8 +101,8 @@ impl TrueBoxes {
     }
 
     /// Truth of a frame, counted from 0.
-    pub fn at(&self, frame: usize) -> Truth {
-        self.frames.get(frame).copied().unwrap_or(Truth::Unknown)
+    pub fn at(&self, frame: usize) -> TargetTruth {
+        self.frames.get(frame).copied().unwrap_or(TargetTruth::Unknown)
     }
 
     /// Number of frames.

@@ -1,6 +1,6 @@
-use wayfix_condensation::ActionChoice;
+use wayfix_condensation::ActionSelection;
 
-use super::{Trial, ViewsRun};
+use super::{ViewTrial, ViewsRun};
 use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 
 /// Compares greedy and informed choice of actions on the same drives, with equal starts and goals.
@@ -8,8 +8,8 @@ use wayfix_evaluation::{errors::MeanInterval, report::Metric};
 /// A drive that never became certain counts with all its moves, so neither choice gains by excluding drives. Differences are greedy minus
 /// informed, with the paired 95 % interval: above 0 the informed choice saves moves.
 pub fn compare_choices(greedy: &ViewsRun, informed: &ViewsRun) -> Vec<Metric> {
-    let certain = |trial: &Trial| trial.report.steps_to_certainty.unwrap_or(trial.report.steps) as f64;
-    let all = |trial: &Trial| trial.report.steps as f64;
+    let certain = |trial: &ViewTrial| trial.report.steps_to_certainty.unwrap_or(trial.report.steps) as f64;
+    let all = |trial: &ViewTrial| trial.report.steps as f64;
     let mut metrics = vec![Metric::new("pairs", greedy.trials.len().min(informed.trials.len()) as f64, "")];
     for (name, run) in [("greedy", greedy), ("informed", informed)] {
         let successes = run.trials.iter().filter(|trial| trial.succeeded()).count();
@@ -23,9 +23,14 @@ pub fn compare_choices(greedy: &ViewsRun, informed: &ViewsRun) -> Vec<Metric> {
 }
 
 /// The choice compared with the greedy one.
-pub const INFORMED: ActionChoice = ActionChoice::Informed { hypotheses: 16 };
+pub const INFORMED: ActionSelection = ActionSelection::Informed { hypotheses: 16 };
 
-fn saved(name: &str, greedy: &ViewsRun, informed: &ViewsRun, figure: impl Fn(&Trial) -> f64) -> Vec<Metric> {
+fn saved(
+    name: &str,
+    greedy: &ViewsRun,
+    informed: &ViewsRun,
+    figure: impl Fn(&ViewTrial) -> f64,
+) -> Vec<Metric> {
     let figures = |run: &ViewsRun| run.trials.iter().map(&figure).collect::<Vec<f64>>();
     let (greedy, informed) = (figures(greedy), figures(informed));
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;

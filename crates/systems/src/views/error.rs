@@ -1,7 +1,7 @@
 use std::{io, path::PathBuf};
 
 use wayfix_condensation::CondensationError;
-use wayfix_scene_sim::SimError;
+use wayfix_scene_sim::SimulationError;
 use wayfix_sensor_log::ImageError;
 
 /// Errors of learning views and of driving between them.
@@ -70,7 +70,7 @@ pub enum ViewsError {
     },
     /// A scene cannot be composed or rendered.
     #[error(transparent)]
-    Scenery(#[from] SimError),
+    Scenery(#[from] SimulationError),
     /// An error of the library.
     #[error(transparent)]
     Condensation(#[from] CondensationError),

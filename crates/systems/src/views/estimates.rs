@@ -1,10 +1,12 @@
 use anyhow::Result;
 use wayfix_condensation::Picture;
-use wayfix_sensor_log::{Data, EncodedImage, ImageOutline, MessageWriter, Record, Sinks, Stamp, topics};
+use wayfix_sensor_log::{
+    EncodedImage, ImageOutline, MessageSinks, MessageWriter, Record, RecordData, Stamp, topics,
+};
 
 use super::{
-    Step, ViewSystem, ViewsError, ViewsRun,
-    pictures::{BEST, GOAL, JPEG_QUALITY, TRUTH, belief_image, slowest},
+    ViewSystem, ViewTrialStep, ViewsError, ViewsRun,
+    plots::{BEST, GOAL, JPEG_QUALITY, TRUTH, belief_image, slowest},
 };
 use crate::system::EstimateWriter;
 
@@ -18,10 +20,10 @@ const NANOSECONDS_A_MOVE: u64 = 1_000_000_000;
 ///
 /// # Errors
 /// Returns an error if the drive cannot be repeated, an image cannot be encoded or a sink fails.
-pub fn draw_drive(run: &ViewsRun, real: &Picture, seed: u64, sinks: Sinks) -> Result<()> {
+pub fn draw_drive(run: &ViewsRun, real: &Picture, seed: u64, sinks: MessageSinks) -> Result<()> {
     let (width, height) = (real.width() as u32, real.height() as u32);
     let scene = EncodedImage::jpeg(width, height, real.pixels().as_flattened(), JPEG_QUALITY)?;
-    let mut drawing = Drawing { writer: MessageWriter::into_sink(sinks), scene };
+    let mut drawing = EstimateDrawing { writer: MessageWriter::into_sink(sinks), scene };
     let mut failure = None;
     run.system.trial(seed, slowest(&run.trials), |step| {
         if failure.is_none() {
@@ -34,15 +36,15 @@ pub fn draw_drive(run: &ViewsRun, real: &Picture, seed: u64, sinks: Sinks) -> Re
     }
 }
 
-struct Drawing {
+struct EstimateDrawing {
     writer: EstimateWriter,
     scene: EncodedImage,
 }
 
-impl Drawing {
-    fn draw(&mut self, system: &ViewSystem, step: &Step<'_>) -> Result<()> {
+impl EstimateDrawing {
+    fn draw(&mut self, system: &ViewSystem, step: &ViewTrialStep<'_>) -> Result<()> {
         let stamp = Stamp::from_nanoseconds(step.number as u64 * NANOSECONDS_A_MOVE);
-        self.writer.record(&Record { stamp, data: Data::Image(self.scene.clone()) })?;
+        self.writer.record(&Record { stamp, data: RecordData::Image(self.scene.clone()) })?;
         let best = step.localizer.best().state;
         let marked = [(step.goal, GOAL), (best, BEST), (step.at, TRUTH)];
         let outlines: Vec<ImageOutline> =

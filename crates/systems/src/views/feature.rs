@@ -1,11 +1,14 @@
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::{Dominance, Fft6, Hist6, JoinedFeature, MeanVar, ViewFeature};
+use wayfix_condensation::{
+    DominantGrayCriterion, Fft6Descriptor, GlobalDescriptor, Hist6Descriptor, JoinedDescriptor,
+    MeanVarDescriptor,
+};
 
 /// Feature measured in a view. [Kasprzak & Szynkiewicz, Sec. 3]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum FeatureKind {
+pub enum DescriptorKind {
     /// Mean and standard deviation of red, green and blue.
     MeanVar,
     /// Moduli of the first six Fourier components along the rows.
@@ -16,7 +19,7 @@ pub enum FeatureKind {
     Joined,
 }
 
-impl FeatureKind {
+impl DescriptorKind {
     /// The three features of the paper.
     pub const OF_THE_PAPER: [Self; 3] = [Self::MeanVar, Self::Fft6, Self::Hist6];
     /// These three, and their concatenation.
@@ -43,12 +46,12 @@ impl FeatureKind {
     }
 
     /// The feature; `dominance` defines the numbers of the histogram.
-    pub fn feature(self, dominance: Dominance) -> Box<dyn ViewFeature + Send> {
+    pub fn feature(self, dominance: DominantGrayCriterion) -> Box<dyn GlobalDescriptor + Send> {
         match self {
-            Self::MeanVar => Box::new(MeanVar),
-            Self::Fft6 => Box::new(Fft6),
-            Self::Hist6 => Box::new(Hist6 { dominance }),
-            Self::Joined => Box::new(JoinedFeature::new(
+            Self::MeanVar => Box::new(MeanVarDescriptor),
+            Self::Fft6 => Box::new(Fft6Descriptor),
+            Self::Hist6 => Box::new(Hist6Descriptor { dominance }),
+            Self::Joined => Box::new(JoinedDescriptor::new(
                 Self::OF_THE_PAPER.into_iter().map(|part| part.feature(dominance)).collect(),
             )),
         }

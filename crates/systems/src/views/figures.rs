@@ -1,19 +1,19 @@
 use std::collections::BTreeMap;
 
-use wayfix_condensation::{Arrival, StateSpace};
+use wayfix_condensation::{NavigationOutcome, StateSpace};
 
-use super::{Trial, ViewsRun};
+use super::{ViewTrial, ViewsRun};
 use wayfix_evaluation::{
     errors::proportion_interval,
-    report::{Metric, Run},
+    report::{Metric, ReportRun},
 };
 
 /// Figures and events of a run for the report. Names follow the contract of `docs/architecture.md`.
-pub fn summarize(run: &ViewsRun) -> Run {
+pub fn summarize(run: &ViewsRun) -> ReportRun {
     let trials = &run.trials;
-    let count = |is: &dyn Fn(&Trial) -> bool| trials.iter().filter(|trial| is(trial)).count();
+    let count = |is: &dyn Fn(&ViewTrial) -> bool| trials.iter().filter(|trial| is(trial)).count();
     let n = trials.len();
-    let successes = count(&Trial::succeeded);
+    let successes = count(&ViewTrial::succeeded);
     let (low, high) = proportion_interval(successes as u64, n as u64);
     let certain: Vec<f64> =
         trials.iter().filter_map(|trial| trial.report.steps_to_certainty).map(|steps| steps as f64).collect();
@@ -41,25 +41,31 @@ pub fn summarize(run: &ViewsRun) -> Run {
     let kidnappings: usize = trials.iter().map(|trial| trial.report.kidnappings).sum();
     let events = [
         ("arrived", successes),
-        ("arrived_elsewhere", count(&Trial::is_false_arrival)),
+        ("arrived_elsewhere", count(&ViewTrial::is_false_arrival)),
         ("arrived_next_to_goal", count(&|trial| trial.is_false_arrival() && is_beside(run, trial))),
-        ("unsure", count(&|trial| trial.report.arrival == Arrival::Unsure)),
+        ("unsure", count(&|trial| trial.report.arrival == NavigationOutcome::Unsure)),
         ("kidnapping_detected", kidnappings),
     ];
     let events: BTreeMap<String, u64> =
         events.into_iter().map(|(name, n)| (name.to_owned(), n as u64)).collect();
-    Run { metrics, timings, events, notes: failures(trials).into_iter().collect(), ..Run::default() }
+    ReportRun {
+        metrics,
+        timings,
+        events,
+        notes: failures(trials).into_iter().collect(),
+        ..ReportRun::default()
+    }
 }
 
 /// Whether a trial ended in one of the eight places around its goal.
-fn is_beside(run: &ViewsRun, trial: &Trial) -> bool {
+fn is_beside(run: &ViewsRun, trial: &ViewTrial) -> bool {
     let grid = run.system.views().grid();
     let ((x, y), (goal_x, goal_y)) = (grid.place(trial.end), grid.place(trial.goal));
     x.abs_diff(goal_x).max(y.abs_diff(goal_y)) == 1
 }
 
 /// The failed trials, for inspection.
-fn failures(trials: &[Trial]) -> Option<String> {
+fn failures(trials: &[ViewTrial]) -> Option<String> {
     const LISTED: usize = 5;
     let failed: Vec<String> = (0_u32..)
         .zip(trials)

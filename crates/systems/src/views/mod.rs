@@ -1,20 +1,20 @@
 //! State condensation on images: estimates which view of a scene the robot sees, from global image features.
 //!
 //! A [`ViewSystem`] learns one image of a scene and drives in another image of it, taken later. [`run`] makes many drives between random
-//! places, [`summarize`] gives their figures and [`pictures`] shows them.
-//! [`composed`] makes scenes that need no file. [`p_value_metrics`] and
+//! places, [`summarize`] gives their figures and [`plots`] shows them.
+//! [`composed_scene_pair`] makes scenes that need no file. [`p_value_metrics`] and
 //! [`compare_choices`] compute further metrics.
 //!
 //! ```
-//! use wayfix_systems::views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams};
+//! use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSetup, ViewsParams};
 //! use wayfix_condensation::Picture;
 //! let pixel = |i: usize| {
 //!     let (x, y) = ((i % 160) as f64, (i / 160) as f64);
 //!     [x / 23.0 + (y / 31.0).sin(), x * y / 3000.0, y / 19.0].map(|phase| (60.0 * phase.sin() + 120.0) as u8)
 //! };
 //! let learned = Picture::from_rgb(160, 120, (0..160 * 120).flat_map(pixel).collect())?;
-//! let real = RealScene::default().of(&learned)?; // other light, some pixels aside
-//! let setup = Setup { view: 64, step: 16, feature: FeatureKind::Joined, normalization: Normalization::WholeScene };
+//! let real = SceneChange::default().of(&learned)?; // other light, some pixels aside
+//! let setup = ViewSetup { view: 64, step: 16, feature: DescriptorKind::Joined, normalization: LightNormalization::WholeScene };
 //! let run = views::run(&learned, &real, &setup, &ViewsParams::default(), 10, 1, &|| ())?;
 //! assert!(run.trials.iter().filter(|trial| trial.succeeded()).count() >= 9);
 //! # Ok::<(), views::ViewsError>(())
@@ -27,7 +27,7 @@ mod feature;
 mod figures;
 mod normalization;
 mod params;
-mod pictures;
+mod plots;
 mod run;
 mod scenes;
 mod statistics;
@@ -36,16 +36,16 @@ mod system;
 pub use choices::{INFORMED, compare_choices};
 pub use error::ViewsError;
 pub use estimates::draw_drive;
-pub use feature::FeatureKind;
+pub use feature::DescriptorKind;
 pub use figures::summarize;
-pub use normalization::Normalization;
+pub use normalization::LightNormalization;
 pub use params::ViewsParams;
-pub use pictures::shade;
-pub use pictures::{belief_film, pictures};
+pub use plots::shade;
+pub use plots::{belief_film, plots};
 pub use run::{ViewsRun, run};
-pub use scenes::composed::composed;
-pub use scenes::real_scene::RealScene;
+pub use scenes::composed::composed_scene_pair;
+pub use scenes::real_scene::SceneChange;
 pub use scenes::register::mean_shift;
-pub use scenes::scene::{Scene, read_scene};
+pub use scenes::scene::{SceneImage, read_scene};
 pub use statistics::p_value_metrics;
-pub use system::{Setup, Step, Trial, ViewSystem};
+pub use system::{ViewSetup, ViewSystem, ViewTrial, ViewTrialStep};

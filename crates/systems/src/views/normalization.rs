@@ -1,13 +1,13 @@
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::{AppearanceParams, Picture, light_match};
+use wayfix_condensation::{AppearanceLearningParams, Picture, light_match};
 
 use super::{ViewsError, ViewsParams};
 
 /// Normalization of the current light to that of learning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Normalization {
+pub enum LightNormalization {
     /// None: the views are used as they are.
     None,
     /// By the statistics of the whole real scene, as in the paper; a robot that sees one view at a time does not have them.
@@ -17,7 +17,7 @@ pub enum Normalization {
     Online,
 }
 
-impl Normalization {
+impl LightNormalization {
     /// Its name in figures.
     pub fn name(self) -> &'static str {
         match self {
@@ -28,10 +28,10 @@ impl Normalization {
     }
 
     /// Parameters of the appearance learned for this normalization.
-    pub fn appearance(self, params: &ViewsParams) -> &AppearanceParams {
+    pub fn appearance(self, params: &ViewsParams) -> &AppearanceLearningParams {
         match self {
-            Self::None | Self::WholeScene => &params.whole_scene,
-            Self::Online => &params.online,
+            Self::None | Self::WholeScene => &params.whole_scene_appearance,
+            Self::Online => &params.online_appearance,
         }
     }
 

@@ -1,6 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use wayfix_condensation::{AppearanceParams, Dominance, LocalizerParams, NavigatorParams};
+use wayfix_condensation::{
+    AppearanceLearningParams, DominantGrayCriterion, NavigatorParams, ViewLocalizerParams,
+};
 
 use crate::settings::over_defaults;
 
@@ -17,25 +19,25 @@ use crate::settings::over_defaults;
 #[serde(deny_unknown_fields)]
 pub struct ViewsParams {
     /// Definition of the numbers of `hist6`.
-    pub dominance: Dominance,
+    pub dominant_gray_criterion: DominantGrayCriterion,
     /// When a run ends, and how actions are chosen.
     pub navigator: NavigatorParams,
     /// Parameters of the localizer.
-    pub localizer: LocalizerParams,
+    pub localizer: ViewLocalizerParams,
     /// Appearance for views normalized by the whole scene, or not normalized.
-    pub whole_scene: AppearanceParams,
+    pub whole_scene_appearance: AppearanceLearningParams,
     /// Appearance for light that is estimated jointly with the place.
-    pub online: AppearanceParams,
+    pub online_appearance: AppearanceLearningParams,
 }
 
 impl Default for ViewsParams {
     fn default() -> Self {
         Self {
-            dominance: Dominance::default(),
+            dominant_gray_criterion: DominantGrayCriterion::default(),
             navigator: NavigatorParams::default(),
-            localizer: LocalizerParams::default(),
-            whole_scene: AppearanceParams::normalized(),
-            online: AppearanceParams::online(),
+            localizer: ViewLocalizerParams::default(),
+            whole_scene_appearance: AppearanceLearningParams::normalized(),
+            online_appearance: AppearanceLearningParams::online(),
         }
     }
 }

@@ -3,7 +3,7 @@ use std::time::Duration;
 use rayon::prelude::*;
 use wayfix_condensation::Picture;
 
-use super::{Setup, Trial, ViewSystem, ViewsError, ViewsParams};
+use super::{ViewSetup, ViewSystem, ViewTrial, ViewsError, ViewsParams};
 use crate::system::Stopwatch;
 
 /// Drives between random places of a learned scene.
@@ -12,7 +12,7 @@ pub struct ViewsRun {
     /// The learned and the real scene.
     pub system: ViewSystem,
     /// The trials, in order.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<ViewTrial>,
     /// Duration of learning.
     pub learning: Duration,
     /// Duration of all drives.
@@ -28,7 +28,7 @@ pub struct ViewsRun {
 pub fn run(
     learned: &Picture,
     real: &Picture,
-    setup: &Setup,
+    setup: &ViewSetup,
     params: &ViewsParams,
     n_trials: u64,
     seed: u64,

@@ -3,11 +3,11 @@ use std::{cell::Cell, sync::Arc};
 use rand::RngExt;
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 use wayfix_condensation::{
-    Appearance, Arrival, FeatureTable, Grid, Localizer, Move, Navigator, Picture, RunReport, SceneViews,
-    Slip, StateSpace, ViewGrid, World,
+    AppearanceModel, DescriptorTable, GridMove, NavigationEnvironment, NavigationOutcome, NavigationReport,
+    Navigator, Picture, PositionGrid, SceneViews, SlipProbabilities, StateSpace, ViewGrid, ViewLocalizer,
 };
 
-use super::{FeatureKind, Normalization, ViewsError, ViewsParams};
+use super::{DescriptorKind, LightNormalization, ViewsError, ViewsParams};
 
 /// Maximum product of places and lights; one update then takes about half a second.
 const MAX_HYPOTHESES: usize = 500_000;
@@ -17,30 +17,30 @@ const SLIPS: u64 = 1 << 32;
 
 /// Division of a scene into views, and the feature measured in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Setup {
+pub struct ViewSetup {
     /// Width and height of a view, pixels.
     pub view: usize,
     /// Pixels between neighbouring views.
     pub step: usize,
     /// The feature.
-    pub feature: FeatureKind,
+    pub feature: DescriptorKind,
     /// Normalization of the light.
-    pub normalization: Normalization,
+    pub normalization: LightNormalization,
 }
 
 /// A learned scene, and the same scene as it is now. Only the simulated world of a trial knows the true place.
 #[derive(Clone, Debug)]
 pub struct ViewSystem {
     views: ViewGrid,
-    appearance: Arc<Appearance>,
-    seen: FeatureTable,
-    navigator: Navigator<Grid>,
+    appearance: Arc<AppearanceModel>,
+    seen: DescriptorTable,
+    navigator: Navigator<PositionGrid>,
     params: ViewsParams,
 }
 
 /// One drive from a random place to a random goal.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trial {
+pub struct ViewTrial {
     /// First place.
     pub start: usize,
     /// Goal place.
@@ -48,13 +48,13 @@ pub struct Trial {
     /// Last place.
     pub end: usize,
     /// Report of the navigator.
-    pub report: RunReport,
+    pub report: NavigationReport,
     /// Belief in the true place after every update.
     pub belief_in_truth: Vec<f64>,
 }
 
 /// The state of a trial after a view.
-pub struct Step<'a> {
+pub struct ViewTrialStep<'a> {
     /// Moves so far.
     pub number: usize,
     /// True place of the robot.
@@ -62,7 +62,7 @@ pub struct Step<'a> {
     /// Goal place.
     pub goal: usize,
     /// The belief.
-    pub localizer: &'a Localizer,
+    pub localizer: &'a ViewLocalizer,
 }
 
 impl ViewSystem {
@@ -74,7 +74,7 @@ impl ViewSystem {
     pub fn learn(
         learned: &Picture,
         real: &Picture,
-        setup: &Setup,
+        setup: &ViewSetup,
         params: &ViewsParams,
     ) -> Result<Self, ViewsError> {
         let size = |picture: &Picture| (picture.width(), picture.height());
@@ -89,14 +89,14 @@ impl ViewSystem {
         }
         let views = ViewGrid::new(size(learned), (setup.view, setup.view), setup.step)?;
         let appearance_params = setup.normalization.appearance(params);
-        let (n_states, n_conditions) = (views.grid().n_states(), appearance_params.lights.len());
+        let (n_states, n_conditions) = (views.grid().n_states(), appearance_params.light_changes.len());
         if n_states.saturating_mul(n_conditions) > MAX_HYPOTHESES {
             return Err(ViewsError::TooManyStates { n_states, n_conditions, max: MAX_HYPOTHESES });
         }
-        let feature = setup.feature.feature(params.dominance);
+        let feature = setup.feature.feature(params.dominant_gray_criterion);
         let source = SceneViews::new(learned, &views)?;
-        let appearance = Arc::new(Appearance::learn(&source, &*feature, appearance_params)?);
-        Localizer::new(Arc::clone(&appearance), params.localizer)?; // rejects invalid parameters before the first trial
+        let appearance = Arc::new(AppearanceModel::learn(&source, &*feature, appearance_params)?);
+        ViewLocalizer::new(Arc::clone(&appearance), params.localizer)?; // rejects invalid parameters before the first trial
         let seen = feature.extract_all(&setup.normalization.apply(real, learned)?, &views)?;
         let navigator = Navigator::new(*views.grid(), params.navigator)?;
         Ok(Self { views, appearance, seen, navigator, params: params.clone() })
@@ -108,12 +108,12 @@ impl ViewSystem {
     }
 
     /// The learned appearance.
-    pub fn appearance(&self) -> &Appearance {
+    pub fn appearance(&self) -> &AppearanceModel {
         &self.appearance
     }
 
     /// The features of every view of the real scene.
-    pub fn seen(&self) -> &FeatureTable {
+    pub fn seen(&self) -> &DescriptorTable {
         &self.seen
     }
 
@@ -121,7 +121,12 @@ impl ViewSystem {
     ///
     /// # Errors
     /// Returns [`ViewsError::Condensation`].
-    pub fn trial(&self, seed: u64, index: u64, mut watch: impl FnMut(Step<'_>)) -> Result<Trial, ViewsError> {
+    pub fn trial(
+        &self,
+        seed: u64,
+        index: u64,
+        mut watch: impl FnMut(ViewTrialStep<'_>),
+    ) -> Result<ViewTrial, ViewsError> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(index);
         let grid = *self.views.grid();
@@ -132,46 +137,46 @@ impl ViewSystem {
         slips.set_stream(SLIPS + index);
         let mut drive =
             Drive { grid, seen: &self.seen, at: &at, slip: self.params.navigator.slip, rng: slips };
-        let mut localizer = Localizer::new(Arc::clone(&self.appearance), self.params.localizer)?;
+        let mut localizer = ViewLocalizer::new(Arc::clone(&self.appearance), self.params.localizer)?;
         let mut belief_in_truth = Vec::new();
-        let mut observe = |number: usize, localizer: &Localizer| {
+        let mut observe = |number: usize, localizer: &ViewLocalizer| {
             belief_in_truth.push(localizer.belief()[at.get()]);
-            watch(Step { number, at: at.get(), goal, localizer });
+            watch(ViewTrialStep { number, at: at.get(), goal, localizer });
         };
         let report = self.navigator.run(goal, &mut localizer, &mut drive, &mut observe, &mut rng)?;
-        Ok(Trial { start, goal, end: at.get(), report, belief_in_truth })
+        Ok(ViewTrial { start, goal, end: at.get(), report, belief_in_truth })
     }
 }
 
-impl Trial {
+impl ViewTrial {
     /// Whether the robot reports the goal and is there. An uncertain end is no success.
     pub fn succeeded(&self) -> bool {
-        self.report.arrival == Arrival::Reached && self.end == self.goal
+        self.report.arrival == NavigationOutcome::Reached && self.end == self.goal
     }
 
     /// Whether the robot reports the goal and is not there.
     pub fn is_false_arrival(&self) -> bool {
-        self.report.arrival == Arrival::Reached && self.end != self.goal
+        self.report.arrival == NavigationOutcome::Reached && self.end != self.goal
     }
 }
 
 /// True state of the robot in a trial.
 struct Drive<'a> {
-    grid: Grid,
-    seen: &'a FeatureTable,
+    grid: PositionGrid,
+    seen: &'a DescriptorTable,
     at: &'a Cell<usize>,
-    slip: Slip,
+    slip: SlipProbabilities,
     rng: ChaCha8Rng,
 }
 
-impl World<Move> for Drive<'_> {
+impl NavigationEnvironment<GridMove> for Drive<'_> {
     /// Executes an action; with the model's probabilities nothing happens, or another action.
-    fn act(&mut self, action: Move) {
+    fn act(&mut self, action: GridMove) {
         let u: f64 = self.rng.random();
         let done = match u {
-            u if u < self.slip.stay_probability => Move::STAY,
+            u if u < self.slip.stay_probability => GridMove::STAY,
             u if u < self.slip.stay_probability + self.slip.other_action_probability => {
-                Move::ALL[self.rng.random_range(0..Move::ALL.len())]
+                GridMove::ALL[self.rng.random_range(0..GridMove::ALL.len())]
             }
             _ => action,
         };

@@ -1,4 +1,4 @@
-use wayfix_sensor_log::{Drawing, LogError, Shape, Stamp, topics};
+use wayfix_sensor_log::{DrawingShape, LogError, Stamp, ViewerDrawing, topics};
 use wayfix_slam_ekf::EkfSlam;
 
 use super::WallModel;
@@ -12,12 +12,12 @@ pub(super) fn draw_map(
     stamp: Stamp,
     writer: &mut EstimateWriter,
 ) -> Result<(), LogError> {
-    let drawings: Vec<Drawing> = filter
+    let drawings: Vec<ViewerDrawing> = filter
         .landmarks()
-        .map(|wall| Drawing {
+        .map(|wall| ViewerDrawing {
             id: format!("wall {}", wall.id),
             color: WALL_COLOR,
-            shape: Shape::Path(wall.mean.ends().map(Into::into).to_vec()),
+            shape: DrawingShape::Path(wall.mean.ends().map(Into::into).to_vec()),
         })
         .collect();
     writer.scene_update("/estimate/walls", stamp, topics::WORLD_FRAME, &drawings)

@@ -1,12 +1,12 @@
 use wayfix_estimation_traits::{LieGroup, wrap_angle};
-use wayfix_evaluation::report::{Metric, Run};
-use wayfix_sensor_log::{Relation, Stamp};
+use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_sensor_log::{PoseRelation, Stamp};
 
 use super::WallRun;
 use crate::slam::{StampedEstimate, summary};
 
 /// The figures and events of a run, ready for the report.
-pub fn summarize(run: &mut WallRun) -> Run {
+pub fn summarize(run: &mut WallRun) -> ReportRun {
     let mut of_map = Vec::new();
     if let Some((_, last)) = run.samples().last() {
         of_map.push(Metric::new("end_error_m", last.position_error(), "m"));
@@ -33,9 +33,9 @@ fn wall_metrics(nees: &[f64]) -> Vec<Metric> {
 /// same of dead reckoning. [Kümmerle et al. 2009, Eq. 2]
 ///
 /// Relations count whose stamps both have a estimate within 10 ms.
-pub fn relation_metrics(run: &WallRun, relations: &[Relation]) -> Vec<Metric> {
+pub fn relation_metrics(run: &WallRun, relations: &[PoseRelation]) -> Vec<Metric> {
     let stamped_estimates = run.system.stamped_estimates();
-    let pairs: Vec<(&Relation, &StampedEstimate, &StampedEstimate)> = relations
+    let pairs: Vec<(&PoseRelation, &StampedEstimate, &StampedEstimate)> = relations
         .iter()
         .filter_map(|relation| {
             Some((relation, near(stamped_estimates, relation.from)?, near(stamped_estimates, relation.to)?))
@@ -44,7 +44,7 @@ pub fn relation_metrics(run: &WallRun, relations: &[Relation]) -> Vec<Metric> {
     if pairs.is_empty() {
         return Vec::new();
     }
-    let mean = |error: &dyn Fn(&(&Relation, &StampedEstimate, &StampedEstimate)) -> f64| {
+    let mean = |error: &dyn Fn(&(&PoseRelation, &StampedEstimate, &StampedEstimate)) -> f64| {
         pairs.iter().map(error).sum::<f64>() / pairs.len() as f64
     };
     let translation = mean(&|(relation, from, to)| {

@@ -2,22 +2,22 @@ use std::collections::VecDeque;
 
 use nalgebra::Matrix3;
 use wayfix_estimation_traits::{LieGroup, Pose2, wrap_angle};
-use wayfix_line_extract::Extractor;
-use wayfix_scan_match::Matcher;
-use wayfix_sensor_log::{Data, LaserScan, LogError, Record, Stamp};
+use wayfix_line_extract::LineExtractor;
+use wayfix_scan_match::ScanMatcher;
+use wayfix_sensor_log::{LaserScan, LogError, Record, RecordData, Stamp};
 use wayfix_slam_ekf::{
     DriftingPose, DriftingPoseSensor, EkfSlam, MountedSensor, Observation, WallMeasurement, WallSensor,
 };
 
 use super::{
     KeyframeThreshold, WallSlamParams, WallState, drawing,
-    odometry::{Motion, Odometry},
+    odometry::{Motion, OdometryBetweenScans},
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan, WaitingScan, beam_step},
 };
 use crate::{
     slam::{AssociationRule, ChosenRule, Estimator, FrontEnd, SlamSystem, nis},
-    system::{EstimateWriter, Events, PlausibleIncrement, Stopwatch, check_velocity},
+    system::{EstimateWriter, EventCounts, PlausibleIncrement, Stopwatch, check_velocity},
 };
 
 /// Walls seen by a laser that may sit anywhere on a robot whose odometry may drift.
@@ -30,13 +30,13 @@ pub type WallSystem = SlamSystem<WallFrontEnd>;
 pub struct WallFrontEnd {
     pub(super) params: WallSlamParams,
     pub(super) moves_by_velocity: bool,
-    extractor: Extractor,
-    pub(super) matcher: Option<Matcher>,
+    extractor: LineExtractor,
+    pub(super) matcher: Option<ScanMatcher>,
     /// The scan that was looked at last, which those after it are laid on.
     pub(super) last_keyframe: Option<KeyframeScan>,
     /// The way since.
     pub(super) relative_motion: RelativeMotion,
-    pub(super) odometry: Odometry,
+    pub(super) odometry: OdometryBetweenScans,
     /// Where the laser is now, where the log says it and the parameters do not.
     pub(super) current_laser_mount: Option<Pose2<f64>>,
     /// Whether the log places the laser, and not the parameters.
@@ -76,13 +76,13 @@ impl WallSystem {
         let filter = EkfSlam::with_start_covariance(sensor, params.filter, state, covariance)?;
         let estimator = Estimator::new(filter, association, params.record_observability, start);
         let front_end = WallFrontEnd {
-            extractor: Extractor::new(params.lines)?,
-            matcher: params.match_scans.then(|| Matcher::new(params.scan_match)).transpose()?,
+            extractor: LineExtractor::new(params.line_extraction)?,
+            matcher: params.match_scans.then(|| ScanMatcher::new(params.scan_match)).transpose()?,
             last_keyframe: None,
             relative_motion: RelativeMotion::default(),
             params,
             moves_by_velocity,
-            odometry: Odometry::default(),
+            odometry: OdometryBetweenScans::default(),
             current_laser_mount: None,
             laser_follows_log: false,
             plausible: PlausibleIncrement::default(),
@@ -108,14 +108,16 @@ impl FrontEnd for WallFrontEnd {
 
     fn take(&mut self, record: &Record, estimator: &mut Walls) -> Result<(), String> {
         match &record.data {
-            Data::OdometryIncrement(increment) => self.take_increment(record.stamp, increment, estimator),
-            Data::Velocity(velocity) if self.moves_by_velocity => {
+            RecordData::OdometryIncrement(increment) => {
+                self.take_increment(record.stamp, increment, estimator)
+            }
+            RecordData::Velocity(velocity) if self.moves_by_velocity => {
                 check_velocity(*velocity)?;
                 self.advance_to(record.stamp, estimator);
                 self.odometry.hold(record.stamp, *velocity)
             }
-            Data::Scan(scan) => self.take_or_wait(record.stamp, scan, estimator),
-            Data::LaserMount(mount) if self.laser_follows_log => {
+            RecordData::Scan(scan) => self.take_or_wait(record.stamp, scan, estimator),
+            RecordData::LaserMount(mount) if self.laser_follows_log => {
                 self.current_laser_mount = Some(*mount);
                 Ok(())
             }
@@ -197,7 +199,7 @@ impl WallFrontEnd {
         let Motion { increment, error, unknown_seconds } = motion;
         self.relative_motion = self
             .relative_motion
-            .then(&self.params.increment, estimator.filter.robot().heading_drift, increment)
+            .then(&self.params.increment_noise, estimator.filter.robot().heading_drift, increment)
             .with_added_covariance(error);
         estimator.dead_reckoning = estimator.dead_reckoning.compose(increment);
         if *unknown_seconds > self.params.velocity_hold {
@@ -282,7 +284,7 @@ impl WallFrontEnd {
     }
 
     /// A scan with the motion of the laser while it was taken, by the velocity that odometry tells.
-    fn placed(&self, scan: &LaserScan, laser: &Pose2<f64>, events: &mut Events) -> PlacedScan {
+    fn placed(&self, scan: &LaserScan, laser: &Pose2<f64>, events: &mut EventCounts) -> PlacedScan {
         let twist = self.odometry.twist().filter(|_| self.params.deskew_scans);
         let step = twist.map_or(Ok(None), |twist| beam_step(scan, laser, &twist));
         if step.is_err() {

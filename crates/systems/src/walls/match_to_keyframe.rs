@@ -1,5 +1,5 @@
 use nalgebra::{DMatrix, Vector1};
-use wayfix_scan_match::{Cloud, Guess};
+use wayfix_scan_match::{InitialGuess, ScanPointCloud};
 
 use super::{
     front_end::{WallFrontEnd, Walls},
@@ -12,7 +12,7 @@ const LEAST_OVERLAP: f64 = 0.15;
 impl WallFrontEnd {
     /// Corrects the motion since the last keyframe, and the drift, by matching a scan to that of the keyframe. Returns the heading of
     /// the match alone, relative to the keyframe.
-    pub(super) fn match_to_keyframe(&mut self, cloud: &Cloud, estimator: &mut Walls) -> Option<f64> {
+    pub(super) fn match_to_keyframe(&mut self, cloud: &ScanPointCloud, estimator: &mut Walls) -> Option<f64> {
         let mut laser_heading = None;
         self.relative_motion =
             self.relative_motion.with_odometry_noise_per_scan(&self.params.odometry_noise_per_scan);
@@ -20,7 +20,8 @@ impl WallFrontEnd {
             let drift_variance = estimator.filter.robot_covariance()[(3, 3)];
             let covariance = self.relative_motion.total_covariance(drift_variance);
             let others = self.relative_motion.guesses_without_odometry();
-            let guess = Guess { pose: self.relative_motion.motion, covariance, alternative_poses: &others };
+            let guess =
+                InitialGuess { pose: self.relative_motion.motion, covariance, alternative_poses: &others };
             let found = matcher.align(&look.cloud, cloud, &guess);
             if let Some(found) = found.ok().filter(|found| found.overlap >= LEAST_OVERLAP) {
                 estimator.events.count("scan_matched");

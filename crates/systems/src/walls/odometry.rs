@@ -7,7 +7,7 @@ use crate::system::{HeldVelocity, MotionStatistics};
 
 /// The motion that a log tells, cut at the stamps of the scans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Odometry {
+pub struct OdometryBetweenScans {
     /// Stamp of the last increment, nanoseconds.
     known_until: Option<u64>,
     /// The motion up to here is used, nanoseconds; nothing before the first scan is.
@@ -27,7 +27,7 @@ pub(super) struct Motion {
     pub(super) unknown_seconds: f64,
 }
 
-impl Odometry {
+impl OdometryBetweenScans {
     /// Whether increments reach to this stamp.
     pub(super) fn reaches(&self, stamp: Stamp) -> bool {
         self.known_until.is_some_and(|known| stamp.nanoseconds() <= known)
@@ -96,7 +96,7 @@ impl Odometry {
 
     /// The motion up to `stamp` by the velocity that holds; `None` when no time has passed.
     pub(super) fn held_until(&mut self, stamp: Stamp, longest: f64) -> Option<Motion> {
-        let held = self.velocity.until(stamp, longest)?;
+        let held = self.velocity.motion_until(stamp, longest)?;
         self.statistics.add(&held.increment, held.seconds);
         let error = self.statistics.unknown_motion(held.unknown_seconds);
         if held.unknown_seconds > 0.0 {
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn increment_is_cut_at_the_scans_in_proportion_to_time() {
-        let mut odometry = Odometry::default();
+        let mut odometry = OdometryBetweenScans::default();
         odometry.cut(&Pose2::new(9.0, 0.0, 0.0), at(1000), &[]);
         odometry.start(at(1000));
         let motions = odometry.cut(&Pose2::new(1.0, 0.0, 0.0), at(2000), &[at(1100), at(1400)]);
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn motion_before_the_first_scan_is_left_out() {
-        let mut odometry = Odometry::default();
+        let mut odometry = OdometryBetweenScans::default();
         odometry.cut(&Pose2::new(9.0, 0.0, 0.0), at(1000), &[]);
         odometry.start(at(1500));
         let motions = odometry.cut(&Pose2::new(1.0, 0.0, 0.0), at(2000), &[at(1500)]);
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn increment_at_the_stamp_of_the_one_before_is_used_once() {
-        let mut odometry = Odometry::default();
+        let mut odometry = OdometryBetweenScans::default();
         odometry.cut(&Pose2::new(9.0, 0.0, 0.0), at(1000), &[]);
         odometry.start(at(1000));
         let motions = odometry.cut(&Pose2::new(1.0, 0.0, 0.0), at(1000), &[at(1000)]);
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn motion_is_unknown_where_increments_have_ended() {
-        let mut odometry = Odometry::default();
+        let mut odometry = OdometryBetweenScans::default();
         odometry.cut(&Pose2::new(0.5, 0.0, 0.0), at(0), &[]);
         odometry.start(at(0));
         odometry.cut(&Pose2::new(0.5, 0.0, 0.0), at(1000), &[]);

@@ -2,10 +2,10 @@ use anyhow::ensure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::Pose2;
-use wayfix_line_extract::Params as LineParams;
-use wayfix_scan_match::Params as ScanMatchParams;
+use wayfix_line_extract::LineExtractionParams;
+use wayfix_scan_match::ScanMatchParams;
 use wayfix_slam_ekf::{
-    ConfirmationParams, IncrementMotion, JointCompatibility, JointCompatibilityParams, Linearization,
+    ConfirmationParams, IncrementMotion, JointCompatibility, JointCompatibilityParams, LinearizationPoint,
     NearestNeighbour, NearestNeighbourParams, SlamError, SlamParams, WallSensor,
 };
 
@@ -27,10 +27,10 @@ pub struct WallSlamParams {
     pub association: AssociationRule,
     /// Start pose, m and rad; when not given, that of the log where odometry starts, or the origin.
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub start: Option<[f64; 3]>,
+    pub start_pose: Option<[f64; 3]>,
     /// Where the laser sits on the robot: x forward, y left, heading; m and rad. When not given, where the log says, or the middle.
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub laser: Option<[f64; 3]>,
+    pub laser_pose: Option<[f64; 3]>,
     /// How many true walls of the log, nearest to the start first, the robot is given as known: anchors that tie the map to the world. For
     /// experiments with logs that have true walls.
     pub n_anchors: usize,
@@ -43,7 +43,7 @@ pub struct WallSlamParams {
     /// How that is done.
     pub scan_match: ScanMatchParams,
     /// How walls are found in a scan.
-    pub lines: LineParams,
+    pub line_extraction: LineExtractionParams,
     /// Pieces shorter than this correct nothing, m: legs, posters and door leaves.
     pub min_wall_length: f64,
     /// How walls are seen.
@@ -58,7 +58,7 @@ pub struct WallSlamParams {
     /// Whether the motion of the laser during a scan is taken out, where the log says the time from beam to beam.
     pub deskew_scans: bool,
     /// Noise of odometry increments.
-    pub increment: IncrementMotion,
+    pub increment_noise: IncrementMotion,
     /// Gate and outliers.
     pub filter: SlamParams,
     /// Thresholds of nearest neighbour.
@@ -107,28 +107,28 @@ impl Default for WallSlamParams {
     fn default() -> Self {
         Self {
             association: AssociationRule::Jcbb,
-            start: None,
-            laser: None,
+            start_pose: None,
+            laser_pose: None,
             n_anchors: 0,
             keyframes: KeyframeThreshold::default(),
             odometry_noise_per_scan: OdometryNoisePerScan::default(),
             match_scans: true,
             scan_match: ScanMatchParams::default(),
-            lines: LineParams::default(),
+            line_extraction: LineExtractionParams::default(),
             min_wall_length: 1.0,
             sensor: WallSensor::default(),
             heading_drift_sigma: 0.05,
             velocity_hold: VELOCITY_HOLD,
             odometry_delay: 0.0,
             deskew_scans: true,
-            increment: IncrementMotion {
+            increment_noise: IncrementMotion {
                 translation_variance_per_meter: 1e-2,
                 heading_variance_per_meter: 5e-3,
                 heading_variance_per_radian: 3e-2,
                 ..IncrementMotion::default()
             },
             filter: SlamParams {
-                linearization: Linearization::FirstEstimates,
+                linearization_point: LinearizationPoint::FirstEstimates,
                 confirmation: ConfirmationParams {
                     n_detections: 3,
                     max_missed: Some(10),
@@ -138,7 +138,7 @@ impl Default for WallSlamParams {
             },
             nearest_neighbour: NearestNeighbourParams::default(),
             joint_compatibility: JointCompatibilityParams {
-                probability: 0.95,
+                gate_probability: 0.95,
                 ambiguity_margin: 9.0,
                 ..JointCompatibilityParams::default()
             },
@@ -157,7 +157,7 @@ const NOT_NEGATIVE: Range = (0.0, "from 0 to 1e6");
 impl WallSlamParams {
     /// Where the laser sits on the robot.
     pub(super) fn mount(&self) -> Pose2<f64> {
-        let [x, y, heading] = self.laser.unwrap_or_default();
+        let [x, y, heading] = self.laser_pose.unwrap_or_default();
         Pose2::new(x, y, heading)
     }
 
@@ -174,7 +174,7 @@ impl WallSlamParams {
     /// # Errors
     /// The first that is not, by name.
     pub fn validated(self) -> anyhow::Result<Self> {
-        self.lines.check()?;
+        self.line_extraction.check()?;
         self.scan_match.check()?;
         NearestNeighbour::new(self.nearest_neighbour)?;
         JointCompatibility::new(self.joint_compatibility)?;
@@ -182,9 +182,14 @@ impl WallSlamParams {
             self.association != AssociationRule::Known,
             "parameter association is known, but walls have no identities: use nn or jcbb"
         );
-        let WallSensor { rho_sigma, alpha_sigma, largest_gap, sensor_range, half_field_of_view } =
-            self.sensor;
-        let increment = &self.increment;
+        let WallSensor {
+            rho_sigma,
+            alpha_sigma,
+            max_wall_gap: largest_gap,
+            sensor_range,
+            half_field_of_view,
+        } = self.sensor;
+        let increment = &self.increment_noise;
         for (name, value, (low, range)) in [
             ("sensor.rho_sigma", rho_sigma, POSITIVE),
             ("sensor.alpha_sigma", alpha_sigma, POSITIVE),
@@ -228,7 +233,8 @@ impl WallSlamParams {
             let (name, value) = ("odometry_delay", self.odometry_delay);
             return Err(SlamError::Parameter { name, value, range: "from -60 to 60" }.into());
         }
-        if let Some(value) = self.laser.iter().chain(&self.start).flatten().find(|v| !v.is_finite()) {
+        if let Some(value) = self.laser_pose.iter().chain(&self.start_pose).flatten().find(|v| !v.is_finite())
+        {
             return Err(
                 SlamError::Parameter { name: "laser or start", value: *value, range: "finite" }.into()
             );

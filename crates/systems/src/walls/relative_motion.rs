@@ -1,7 +1,7 @@
 use nalgebra::{Matrix1, Matrix3, Matrix4, Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 use wayfix_estimation_traits::{LieGroup, Manifold, MotionModel, Pose2, SensorModel};
-use wayfix_scan_match::Alignment;
+use wayfix_scan_match::ScanAlignment;
 use wayfix_slam_ekf::{DriftingPose, IncrementMotion};
 
 use super::OdometryNoisePerScan;
@@ -105,7 +105,7 @@ impl RelativeMotion {
     }
 
     /// The heading that the points of a match alone ask for, without odometry; `None` where they leave a direction open.
-    pub(super) fn heading_from_match(&self, found: &Alignment) -> Option<f64> {
+    pub(super) fn heading_from_match(&self, found: &ScanAlignment) -> Option<f64> {
         let asked = found.information.try_inverse()? * found.information_vector;
         let heading = self.motion.retract(&asked).heading();
         heading.is_finite().then_some(heading)
@@ -114,7 +114,7 @@ impl RelativeMotion {
     /// What a match of two scans says of the drift: its change and the variance of that; `None` where it says nothing.
     ///
     /// The match measures $`δ = b\, κ + w`$ with information $`Λ`$, where $`w`$ is what odometry errs beside the drift, with covariance $`Q`$.
-    pub(super) fn drift_from_match(&self, found: &Alignment) -> Option<(f64, f64)> {
+    pub(super) fn drift_from_match(&self, found: &ScanAlignment) -> Option<(f64, f64)> {
         let gain = (Matrix3::identity() + found.information * self.covariance).try_inverse()?;
         let information = self.drift_jacobian.dot(&(gain * found.information * self.drift_jacobian));
         let change = self.drift_jacobian.dot(&(gain * found.information_vector)) / information;
@@ -122,7 +122,7 @@ impl RelativeMotion {
     }
 
     /// The motion that odometry and a match make together, once the drift has changed by `drift_change`.
-    pub(super) fn corrected_by(&self, found: &Alignment, drift_change: f64) -> Option<Self> {
+    pub(super) fn corrected_by(&self, found: &ScanAlignment, drift_change: f64) -> Option<Self> {
         let Self { motion, covariance, drift_jacobian, .. } = *self;
         // Q (1 + Λ Q)⁻¹ is (Q⁻¹ + Λ)⁻¹, also where odometry is certain.
         let posterior = covariance * (Matrix3::identity() + found.information * covariance).try_inverse()?;
@@ -207,7 +207,7 @@ mod tests {
         let mean = gain * asked;
         let posterior = joint - gain * joint.fixed_rows::<3>(1);
 
-        let found = Alignment {
+        let found = ScanAlignment {
             pose: relative_motion.motion,
             correction: Vector3::zeros(),
             information,

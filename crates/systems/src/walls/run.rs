@@ -1,15 +1,15 @@
 use anyhow::{Result, bail};
 use wayfix_estimation_traits::Manifold;
-use wayfix_evaluation::errors::{Sample, TruePositions, TrueTrack};
-use wayfix_sensor_log::{Data, Record, Stamp, TrueWall};
+use wayfix_evaluation::errors::{ReferenceTrajectory, TrajectorySample, TruePositions};
+use wayfix_sensor_log::{Record, RecordData, Stamp, TrueWall};
 use wayfix_slam_ekf::LandmarkId;
 
-use super::{SavedWalls, WallFrontEnd, WallSlamParams, WallSystem, truth};
+use super::{SavedWallMap, WallFrontEnd, WallSlamParams, WallSystem, truth};
 use crate::{
     slam::{
         AssociationRule, FIRST_ANCHOR, SlamRun, StampedEstimate, start_pose, warn_of_reference, warn_of_start,
     },
-    system::{DriveStep, KnownStart, ODOMETRY, System, check_overlap, warn_of_lag, without_odometry_delay},
+    system::{ODOMETRY, RunStep, System, TrueStartPose, check_overlap, warn_of_lag, without_odometry_delay},
 };
 
 /// A log of scans that went through EKF-SLAM with walls.
@@ -25,28 +25,28 @@ pub type WallRun = SlamRun<WallFrontEnd, Vec<TrueWall>>;
 pub fn run(
     records: &[Record],
     params: &WallSlamParams,
-    observe: impl FnMut(DriveStep<'_, WallSystem>),
+    observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
-    let first = |is: fn(&Data) -> bool| records.iter().find(|record| is(&record.data));
-    let Some(scan) = first(|data| matches!(data, Data::Scan(_))) else {
+    let first = |is: fn(&RecordData) -> bool| records.iter().find(|record| is(&record.data));
+    let Some(scan) = first(|data| matches!(data, RecordData::Scan(_))) else {
         bail!("the log has no laser scans (`wayfix info` shows what a log holds)");
     };
     // A log may tell of the same motion twice.
-    let moves_by_velocity = first(|data| matches!(data, Data::OdometryIncrement(_))).is_none();
-    if moves_by_velocity && first(|data| matches!(data, Data::Velocity(_))).is_none() {
+    let moves_by_velocity = first(|data| matches!(data, RecordData::OdometryIncrement(_))).is_none();
+    if moves_by_velocity && first(|data| matches!(data, RecordData::Velocity(_))).is_none() {
         bail!(
             "the log has neither odometry increments nor velocities, which EKF-SLAM with walls needs (`wayfix info` shows what it holds)"
         );
     }
-    check_overlap(records, ODOMETRY, ("laser scans", |data| matches!(data, Data::Scan(_))))?;
-    let track = TrueTrack::from_records_or_estimates(records);
-    let known = KnownStart::at(scan.stamp, &track, records).filter(|_| params.start.is_none());
-    let start = start_pose(params.start, known);
-    let laser = params.laser.or_else(|| laser_mount(records));
-    let placed = WallSlamParams { laser, ..params.clone() };
+    check_overlap(records, ODOMETRY, ("laser scans", |data| matches!(data, RecordData::Scan(_))))?;
+    let track = ReferenceTrajectory::from_records_or_estimates(records);
+    let known = TrueStartPose::at(scan.stamp, &track, records).filter(|_| params.start_pose.is_none());
+    let start = start_pose(params.start_pose, known);
+    let laser = params.laser_pose.or_else(|| laser_mount(records));
+    let placed = WallSlamParams { laser_pose: laser, ..params.clone() };
     let mut system = WallSystem::with_walls(placed, start, track.noise(), moves_by_velocity)?;
-    system.front_end.laser_follows_log = params.laser.is_none();
-    if params.start.is_none() {
+    system.front_end.laser_follows_log = params.laser_pose.is_none();
+    if params.start_pose.is_none() {
         warn_of_start(system.events(), known, &track);
     }
     let true_walls = truth::true_walls(records);
@@ -65,23 +65,23 @@ pub fn run(
 /// # Errors
 /// When the map is of another kind or is no state of the filter, when no later scan can be used, or a parameter is out of range.
 pub fn run_on(
-    saved: SavedWalls,
+    saved: SavedWallMap,
     records: &[Record],
     params: &WallSlamParams,
     association: Option<AssociationRule>,
-    observe: impl FnMut(DriveStep<'_, WallSystem>),
+    observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let system = WallSystem::resume(params.clone(), saved, association)?;
-    let track = TrueTrack::from_records_or_estimates(records);
+    let track = ReferenceTrajectory::from_records_or_estimates(records);
     drive_through(system, track, truth::true_walls(records), records, observe)
 }
 
 fn drive_through(
     system: WallSystem,
-    truth: TrueTrack,
+    truth: ReferenceTrajectory,
     true_map: Vec<TrueWall>,
     records: &[Record],
-    observe: impl FnMut(DriveStep<'_, WallSystem>),
+    observe: impl FnMut(RunStep<'_, WallSystem>),
 ) -> Result<WallRun> {
     let delay = system.front_end.params.odometry_delay;
     let records = without_odometry_delay(records, delay);
@@ -98,11 +98,11 @@ fn drive_through(
     let seen_turns = run.system.seen_turns().to_vec();
     warn_of_lag(run.events(), &dead_reckoning, &seen_turns, delay);
     let samples = run.samples();
-    let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, Sample)| {
+    let is_odometry = |(stamped_estimate, sample): &(StampedEstimate, TrajectorySample)| {
         sample.truth.local(&stamped_estimate.dead_reckoning).norm() < SAME
     };
     if !samples.is_empty() && samples.iter().all(is_odometry) {
-        run.truth = TrueTrack::default();
+        run.truth = ReferenceTrajectory::default();
         run.events().warn(
             "reference_is_odometry",
             "the poses of the log are its odometry: there are no figures of accuracy",
@@ -115,7 +115,7 @@ fn drive_through(
 /// Where the log says that the laser is first; the system follows a laser that moves.
 fn laser_mount(records: &[Record]) -> Option<[f64; 3]> {
     records.iter().find_map(|record| match record.data {
-        Data::LaserMount(mount) => Some([mount.x(), mount.y(), mount.heading()]),
+        RecordData::LaserMount(mount) => Some([mount.x(), mount.y(), mount.heading()]),
         _ => None,
     })
 }

@@ -1,7 +1,7 @@
 use nalgebra::{Isometry2, Vector3};
 use wayfix_estimation_traits::{LieGroup, Pose2};
-use wayfix_line_extract::{Extraction, Extractor, LineError, Scan};
-use wayfix_scan_match::{Cloud, ScanMatchError};
+use wayfix_line_extract::{LineExtraction, LineExtractionError, LineExtractor, Scan};
+use wayfix_scan_match::{ScanMatchError, ScanPointCloud};
 use wayfix_sensor_log::{LaserScan, Stamp};
 
 use crate::system::largest_echo;
@@ -26,7 +26,7 @@ pub(super) struct PlacedScan {
 /// A scan that walls were taken from.
 pub(super) struct KeyframeScan {
     pub(super) scan: PlacedScan,
-    pub(super) cloud: Cloud,
+    pub(super) cloud: ScanPointCloud,
 }
 
 /// A laser that needs longer for a scan is not one of a robot; a `time_increment` that says so is wrong, s.
@@ -51,15 +51,16 @@ pub(super) fn beam_step(
 
 impl PlacedScan {
     /// The points of the scan in the frame of the robot at the first beam.
-    pub(super) fn cloud(&self) -> Result<Cloud, ScanMatchError> {
+    pub(super) fn cloud(&self) -> Result<ScanPointCloud, ScanMatchError> {
         let LaserScan { angle_min, angle_increment, ranges, .. } = &self.scan;
         let (step, max_range) = (self.beam_step.as_ref(), largest_echo(&self.scan));
-        let cloud = Cloud::from_ranges_deskewed(*angle_min, *angle_increment, ranges, max_range, step)?;
+        let cloud =
+            ScanPointCloud::from_ranges_deskewed(*angle_min, *angle_increment, ranges, max_range, step)?;
         Ok(cloud.transformed(&self.laser))
     }
 
     /// The walls of the scan in the frame of the laser at the first beam.
-    pub(super) fn walls(&self, extractor: &mut Extractor) -> Result<Extraction, LineError> {
+    pub(super) fn walls(&self, extractor: &mut LineExtractor) -> Result<LineExtraction, LineExtractionError> {
         let LaserScan { angle_min, angle_increment, ranges, .. } = &self.scan;
         let (angle_min, angle_increment) = (*angle_min, *angle_increment);
         let scan = Scan { angle_min, angle_increment, ranges, max_range: largest_echo(&self.scan) };

@@ -6,14 +6,14 @@ use wayfix_slam_ekf::{DriftingPose, SlamError, Wall};
 
 use super::{
     WallFrontEnd, WallSlamParams, WallSystem,
-    odometry::Odometry,
+    odometry::OdometryBetweenScans,
     relative_motion::RelativeMotion,
     scan::{KeyframeScan, PlacedScan},
 };
 use crate::slam::{AssociationRule, FrontEndState, SavedMapError, SlamState, check_association};
 
 /// A map of walls.
-pub type SavedWalls = SlamState<DriftingPose, Wall, WallState>;
+pub type SavedWallMap = SlamState<DriftingPose, Wall, WallState>;
 
 /// All that a [`WallFrontEnd`] remembers between two records.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,7 +27,7 @@ pub struct WallState {
     /// Whether velocities move the robot, and not increments.
     pub moves_by_velocity: bool,
     /// How far odometry is used, and the velocity that holds.
-    pub odometry: Odometry,
+    pub odometry: OdometryBetweenScans,
     /// The motion since the last keyframe.
     pub relative_motion: RelativeMotion,
     /// The scan of the last keyframe.
@@ -59,7 +59,7 @@ impl FrontEndState for WallState {
 impl WallState {
     pub(super) fn of(front_end: &WallFrontEnd) -> Self {
         Self {
-            laser: front_end.params.laser,
+            laser: front_end.params.laser_pose,
             current_laser_mount: front_end.current_laser_mount,
             laser_follows_log: front_end.laser_follows_log,
             moves_by_velocity: front_end.moves_by_velocity,
@@ -110,15 +110,15 @@ impl WallSystem {
     /// Returns an error if the map has another association rule, or holds invalid numbers.
     pub(super) fn resume(
         params: WallSlamParams,
-        saved: SavedWalls,
+        saved: SavedWallMap,
         asked: Option<AssociationRule>,
     ) -> anyhow::Result<Self> {
         let SlamState { filter, association, next_id, taken_until, dead_reckoning, front_end: state } = saved;
         check_association(asked, association)?;
         state.check()?;
-        let laser_follows_log = params.laser.is_none() && state.laser_follows_log;
-        let laser = params.laser.or(state.laser);
-        let params = WallSlamParams { association, laser, ..params };
+        let laser_follows_log = params.laser_pose.is_none() && state.laser_follows_log;
+        let laser = params.laser_pose.or(state.laser);
+        let params = WallSlamParams { association, laser_pose: laser, ..params };
         let mut system =
             Self::with_walls(params, dead_reckoning, &Matrix3::zeros(), state.moves_by_velocity)?;
         let front_end = &mut system.front_end;

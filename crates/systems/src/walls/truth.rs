@@ -2,13 +2,13 @@ use std::cmp::Ordering;
 
 use nalgebra::{Vector2, linalg::Cholesky};
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_sensor_log::{Data, Record, TrueWall};
+use wayfix_sensor_log::{Record, RecordData, TrueWall};
 use wayfix_slam_ekf::{LandmarkEstimate, Wall, WallLine};
 
 /// The true walls of a log, in its order.
 pub(super) fn true_walls(records: &[Record]) -> Vec<TrueWall> {
     let wall = |record: &Record| match record.data {
-        Data::TrueWall(wall) => Some(wall),
+        RecordData::TrueWall(wall) => Some(wall),
         _ => None,
     };
     records.iter().filter_map(wall).collect()

@@ -9,23 +9,23 @@ use image::RgbImage;
 /// Pixels are counted from the corner of the part.
 ///
 /// ```
-/// use wayfix_visual_tracking::{BinImage, BinSet, ColorQuantizer, ColorSpace, RgbImage};
+/// use wayfix_visual_tracking::{ColorBinImage, ColorBinSet, ColorQuantizer, ColorSpace, RgbImage};
 /// let picture = RgbImage::from_raw(3, 1, vec![255, 0, 0, 0, 0, 255, 250, 9, 0]).expect("3 bytes a pixel");
 /// let quantizer = ColorQuantizer::new(ColorSpace::Rgb, [8, 8, 8])?;
-/// let image = BinImage::new(&quantizer, &picture)?;
-/// let reddish = BinSet::from_points(&quantizer, [[1.0, 0.0, 0.0]]);
+/// let image = ColorBinImage::new(&quantizer, &picture)?;
+/// let reddish = ColorBinSet::from_points(&quantizer, [[1.0, 0.0, 0.0]]);
 /// let mask = image.segment(&reddish)?;
 /// assert_eq!([0, 1, 2].map(|u| mask.get(u, 0)), [true, false, true]);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BinImage {
+pub struct ColorBinImage {
     width: usize,
     n_bins: usize,
     bins: Vec<u16>,
 }
 
-impl BinImage {
+impl ColorBinImage {
     /// The bins of a picture.
     ///
     /// # Errors

@@ -1,23 +1,23 @@
-use super::{BinImage, ColorQuantizer};
+use super::{ColorBinImage, ColorQuantizer};
 use crate::mask::ones;
 
 /// Which bins of a colour space are "on", one bit a bin.
 ///
 /// ```
-/// use wayfix_visual_tracking::{BinSet, ColorQuantizer, ColorSpace};
+/// use wayfix_visual_tracking::{ColorBinSet, ColorQuantizer, ColorSpace};
 /// let quantizer = ColorQuantizer::new(ColorSpace::Opponent, [16, 16, 16])?;
-/// let set = BinSet::from_points(&quantizer, [[0.5, 0.5, 0.1], [0.5, 0.5, 0.11], [f64::NAN, 0.5, 0.5]]);
+/// let set = ColorBinSet::from_points(&quantizer, [[0.5, 0.5, 0.1], [0.5, 0.5, 0.11], [f64::NAN, 0.5, 0.5]]);
 /// assert_eq!(set.len(), 1);
 /// assert_eq!(set.dilated(&quantizer).len(), 27);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BinSet {
+pub struct ColorBinSet {
     n_bins: usize,
     words: Vec<u64>,
 }
 
-impl BinSet {
+impl ColorBinSet {
     /// No bin is on.
     pub fn empty(quantizer: &ColorQuantizer) -> Self {
         Self::of_size(quantizer.n_bins())
@@ -33,7 +33,7 @@ impl BinSet {
     }
 
     /// The bins that a picture has.
-    pub fn of_image(image: &BinImage) -> Self {
+    pub fn of_image(image: &ColorBinImage) -> Self {
         let mut set = Self::of_size(image.n_bins());
         image.bins().iter().for_each(|&bin| set.insert(bin));
         set
@@ -123,14 +123,18 @@ mod tests {
         for space in [ColorSpace::Opponent, ColorSpace::Hsi] {
             let quantizer = ColorQuantizer::new(space, [5, 1, 7]).unwrap();
             for center in 0..quantizer.n_bins() as u16 {
-                let mut set = BinSet::empty(&quantizer);
+                let mut set = ColorBinSet::empty(&quantizer);
                 set.insert(center);
                 let at = quantizer.axes_of_bin(center);
                 let near = |bin| {
                     let apart = |axis: usize| at[axis].abs_diff(quantizer.axes_of_bin(bin)[axis]);
                     (apart(0) <= 1 || space == ColorSpace::Hsi && apart(0) == 4) && apart(2) <= 1
                 };
-                assert_eq!(set.dilated(&quantizer), BinSet::from_fn(&quantizer, near), "{space:?} {at:?}");
+                assert_eq!(
+                    set.dilated(&quantizer),
+                    ColorBinSet::from_fn(&quantizer, near),
+                    "{space:?} {at:?}"
+                );
             }
         }
     }
@@ -138,7 +142,7 @@ mod tests {
     #[test]
     fn bins_go_in_and_out_and_those_beyond_the_last_never_in() {
         let quantizer = ColorQuantizer::new(ColorSpace::Rgb, [3, 5, 7]).unwrap();
-        let mut set = BinSet::empty(&quantizer);
+        let mut set = ColorBinSet::empty(&quantizer);
         for bin in [0, 63, 64, 104, 105, 127, 128, u16::MAX] {
             set.insert(bin);
         }

@@ -1,14 +1,14 @@
-use super::{BinImage, BinSet, ColorQuantizer};
+use super::{ColorBinImage, ColorBinSet, ColorQuantizer};
 use crate::error::{check_size, checked, probability};
 use crate::{BitMask, TrackingError};
 
 /// Number of pixels per colour bin, as counts or as a blend of counts.
 /// ```
-/// use wayfix_visual_tracking::{BinImage, ColorHistogram, ColorQuantizer, ColorSpace, RgbImage};
+/// use wayfix_visual_tracking::{ColorBinImage, ColorHistogram, ColorQuantizer, ColorSpace, RgbImage};
 /// let quantizer = ColorQuantizer::new(ColorSpace::Rgb, [2, 2, 2])?;
 /// let of = |bytes: Vec<u8>| -> Result<_, wayfix_visual_tracking::TrackingError> {
 ///     let picture = RgbImage::from_raw(4, 1, bytes).expect("3 bytes a pixel");
-///     Ok(ColorHistogram::of_image(&BinImage::new(&quantizer, &picture)?))
+///     Ok(ColorHistogram::of_image(&ColorBinImage::new(&quantizer, &picture)?))
 /// };
 /// let mut model = of(vec![0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255])?;
 /// let candidate = of(vec![0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255])?;
@@ -30,7 +30,7 @@ impl ColorHistogram {
     }
 
     /// Of all pixels.
-    pub fn of_image(image: &BinImage) -> Self {
+    pub fn of_image(image: &ColorBinImage) -> Self {
         Self::counted(image.n_bins(), [image.bins()])
     }
 
@@ -38,7 +38,7 @@ impl ColorHistogram {
     ///
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if image and mask differ in size.
-    pub fn of_mask(image: &BinImage, mask: &BitMask) -> Result<Self, TrackingError> {
+    pub fn of_mask(image: &ColorBinImage, mask: &BitMask) -> Result<Self, TrackingError> {
         mask.check_size((image.width(), image.height()))?;
         Ok(Self::counted(image.n_bins(), mask.runs().map(|(v, run)| &image.row(v)[run])))
     }
@@ -110,9 +110,9 @@ impl ColorHistogram {
     }
 
     /// The bins with more than `threshold` pixels; with 0 those that have a pixel.
-    pub fn bins_above(&self, threshold: f64) -> BinSet {
+    pub fn bins_above(&self, threshold: f64) -> ColorBinSet {
         let above = |bin: u16| self.counts[usize::from(bin)] > threshold;
-        BinSet::from_predicate(self.counts.len(), above)
+        ColorBinSet::from_predicate(self.counts.len(), above)
     }
 
     /// Counts pixels by their bins.

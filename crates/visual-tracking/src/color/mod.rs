@@ -10,8 +10,8 @@ mod segmentation;
 mod sliding;
 mod space;
 
-pub use bin_image::BinImage;
-pub use bin_set::BinSet;
+pub use bin_image::ColorBinImage;
+pub use bin_set::ColorBinSet;
 pub use custom_space::CustomColorSpace;
 pub use histogram::ColorHistogram;
 pub use quantizer::ColorQuantizer;

@@ -1,15 +1,15 @@
 //! From colours to pixels: which pixels are in a set of bins.
 
-use super::{BinImage, BinSet};
+use super::{ColorBinImage, ColorBinSet};
 use crate::error::check_size;
 use crate::{BitMask, TrackingError};
 
-impl BinImage {
+impl ColorBinImage {
     /// The pixels whose bin is on: $`S(u, v) = 1`$ where $`H(r, g, b) > 0`$. [Andrade-Cetto & Sanfeliu, Sec. 3.3]
     ///
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if the set has another number of bins.
-    pub fn segment(&self, set: &BinSet) -> Result<BitMask, TrackingError> {
+    pub fn segment(&self, set: &ColorBinSet) -> Result<BitMask, TrackingError> {
         check_size("set of bins", self.n_bins(), set.n_bins())?;
         // A byte per bin allows a faster look-up than a bit.
         let mut on = vec![0_u8; self.n_bins()];
@@ -27,7 +27,7 @@ impl BinImage {
     /// One look-up gives the membership of a pixel's bin in 64 sets. 64 pixels give a square of bits; its transpose holds one word of every mask.
     /// # Errors
     /// Returns the errors of [`segment`](Self::segment).
-    pub fn segment_all(&self, sets: &[BinSet]) -> Result<Vec<BitMask>, TrackingError> {
+    pub fn segment_all(&self, sets: &[ColorBinSet]) -> Result<Vec<BitMask>, TrackingError> {
         for set in sets {
             check_size("set of bins", self.n_bins(), set.n_bins())?;
         }
@@ -54,7 +54,7 @@ impl BinImage {
 }
 
 /// For every bin, which of up to 64 sets have it.
-fn members(sets: &[BinSet], n_bins: usize) -> Vec<u64> {
+fn members(sets: &[ColorBinSet], n_bins: usize) -> Vec<u64> {
     let mut members = vec![0; n_bins];
     for (k, set) in sets.iter().enumerate() {
         set.iter().for_each(|bin| members[usize::from(bin)] |= 1 << k);

@@ -1,17 +1,17 @@
 use std::ops::Range;
 
-use super::{BinImage, ColorHistogram, RowSpans};
+use super::{ColorBinImage, ColorHistogram, RowSpans};
 
 /// The histogram of a shape that moves over an image: each move counts only the pixels in which the two positions differ.
 /// [Birchfield 1998; Andrade-Cetto & Sanfeliu, Sec. 3.2]
 ///
 /// Parts of the shape outside the image contribute no pixels.
 /// ```
-/// use wayfix_visual_tracking::{BinImage, ColorQuantizer, ColorSpace, RgbImage, RowSpans, SlidingHistogram};
+/// use wayfix_visual_tracking::{ColorBinImage, ColorQuantizer, ColorSpace, RgbImage, RowSpans, SlidingHistogram};
 /// let bytes = (0..3 * 40 * 30).map(|i| (i * i / 7) as u8).collect();
 /// let picture = RgbImage::from_raw(40, 30, bytes).expect("3 bytes a pixel");
 /// let quantizer = ColorQuantizer::new(ColorSpace::Opponent, [16, 16, 4])?;
-/// let image = BinImage::new(&quantizer, &picture)?;
+/// let image = ColorBinImage::new(&quantizer, &picture)?;
 /// let ellipse = RowSpans::ellipse([6.0, 9.0])?;
 /// let mut sliding = SlidingHistogram::new(&image, ellipse.clone(), [20, 15]);
 /// sliding.move_to([21, 14]);
@@ -20,7 +20,7 @@ use super::{BinImage, ColorHistogram, RowSpans};
 /// ```
 #[derive(Clone, Debug)]
 pub struct SlidingHistogram<'a> {
-    image: &'a BinImage,
+    image: &'a ColorBinImage,
     spans: RowSpans,
     center: [i64; 2],
     histogram: ColorHistogram,
@@ -28,7 +28,7 @@ pub struct SlidingHistogram<'a> {
 
 impl<'a> SlidingHistogram<'a> {
     /// Counts the pixels of a shape centred in column and row `center`.
-    pub fn new(image: &'a BinImage, spans: RowSpans, center: [i64; 2]) -> Self {
+    pub fn new(image: &'a ColorBinImage, spans: RowSpans, center: [i64; 2]) -> Self {
         let rows = spans.rows_within(center, image.height());
         let covered = rows.map(|v| &image.row(v)[spans.columns_within(center, v, image.width())]);
         let histogram = ColorHistogram::counted(image.n_bins(), covered);
@@ -71,7 +71,7 @@ impl<'a> SlidingHistogram<'a> {
 type Placed<'a> = (&'a RowSpans, [i64; 2]);
 
 /// Removes the pixels that are only under the old shape, then adds those only under the new one.
-fn exchange(image: &BinImage, histogram: &mut ColorHistogram, old: Placed<'_>, new: Placed<'_>) {
+fn exchange(image: &ColorBinImage, histogram: &mut ColorHistogram, old: Placed<'_>, new: Placed<'_>) {
     let rows = |(spans, center): Placed<'_>| spans.rows_within(center, image.height());
     let columns = |(spans, center): Placed<'_>, v| spans.columns_within(center, v, image.width());
     // Rows between two shapes far apart are in neither.

@@ -6,7 +6,7 @@ use super::hypotheses::samples::Samples;
 use super::scene::Scene;
 use super::search::in_other_light;
 use super::{ContourTracker, TrackingCues};
-use crate::{BinSet, BitMask, ColorCloud, ColorState, Outline, RgbImage, TrackStatus, TrackingError};
+use crate::{BitMask, ColorBinSet, ColorCloud, ColorState, Outline, RgbImage, TrackStatus, TrackingError};
 
 /// Result of a search for the target, and the data to learn from it.
 pub(super) struct Found {
@@ -67,7 +67,7 @@ impl ContourTracker {
         let states = self.hypotheses(rng)?;
         let stride = states.len().div_ceil(self.params.n_search_samples);
         let mut states: Vec<ColorState> = states.into_iter().step_by(stride).collect();
-        if self.params.adapts {
+        if self.params.adapts_colors {
             states.extend(in_other_light(self.params.color_space, &self.reference.colors));
         }
         let found = map_each(&states, |state| scene.find(state));
@@ -87,7 +87,7 @@ impl ContourTracker {
         scene: &Scene<'_>,
         candidate: Candidate,
         state: &ColorState,
-        set: &BinSet,
+        set: &ColorBinSet,
         mask: &BitMask,
         samples: Samples,
     ) -> Result<Found, TrackingError> {
@@ -99,14 +99,14 @@ impl ContourTracker {
             quality *= scene.color_similarity(state, &candidate, mask)?;
         }
         let candidate = candidate.refined(scene, mask);
-        let cloud = if self.params.adapts { scene.colors_of(&candidate, set, mask)? } else { None };
+        let cloud = if self.params.adapts_colors { scene.colors_of(&candidate, set, mask)? } else { None };
         let blob_outline = || Outline::of_mask(mask, scene.region.rect.corner());
         let outline = if self.params.cues == TrackingCues::Color { blob_outline() } else { None };
         Ok(Found { candidate, quality, regrown, outline, cloud, samples })
     }
 
     fn hypotheses<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<ColorState>, TrackingError> {
-        if self.params.adapts {
+        if self.params.adapts_colors {
             return self.samples.predicted(&self.dynamics, &self.params, rng);
         }
         Ok(vec![ColorState::at_rest(&self.reference.colors)])

@@ -29,21 +29,21 @@ pub struct ContourTrackerParams {
     /// Which cues are used. Default both.
     pub cues: TrackingCues,
     /// Whether the colours adapt; otherwise they stay fixed at the start values. Default true.
-    pub adapts: bool,
+    pub adapts_colors: bool,
     /// Space of the colours. Default [`ColorSpace::Opponent`].
     pub color_space: ColorSpace,
     /// Bins of its axes. Default 32 each.
-    pub bins: [usize; 3],
+    pub color_bins: [usize; 3],
     /// Hypotheses about the colours a picture. Default 100.
     pub n_samples: usize,
     /// Share of the samples that start from the colours found in the last picture and not from the samples of before; 0 is plain
     /// CONDENSATION. Default 0.5.
     pub anchored_share: f64,
     /// Share of the velocity that the colour state keeps, from 0 to 1. Default 0.5.
-    pub damping: f64,
+    pub velocity_retention: f64,
     /// Noise of the colour state per picture: centroid (3), magnitudes (3), in units of the colour space, and angles (2) in radians.
     /// Default 0.015 each, 0.006 each, 0.05 each.
-    pub noise: [f64; 8],
+    pub color_state_noise: [f64; 8],
     /// A bin is the target's if it is this many times as frequent among the predicted colours as around the target; 0 takes every bin with
     /// a colour in it, as the paper does. Default 1.
     pub background_odds: f64,
@@ -53,11 +53,11 @@ pub struct ContourTrackerParams {
     /// Most points in a colour set. Default 512.
     pub max_colors: usize,
     /// $`μ_1, μ_2, μ_3`$: weights of the affine similarity, the area and the Euler number. Default 1, 1, 0.5.
-    pub mu: [f64; 3],
+    pub quality_weights: [f64; 3],
     /// $`σ`$ of the weights. Default 0.15.
-    pub sigma: f64,
+    pub quality_sigma: f64,
     /// $`μ`$ of the predicted area: share of its last change that is extrapolated. Default 0.5.
-    pub area_gain: f64,
+    pub area_extrapolation: f64,
     /// Weight of the mean area of the last seconds in the predicted area, against gradual shrinking or growing of the contour; 0 as in the
     /// paper. Default 0.3.
     pub area_memory: f64,
@@ -83,19 +83,19 @@ impl Default for ContourTrackerParams {
     fn default() -> Self {
         Self {
             cues: TrackingCues::default(),
-            adapts: true,
+            adapts_colors: true,
             color_space: ColorSpace::Opponent,
-            bins: [32; 3],
+            color_bins: [32; 3],
             n_samples: 100,
             anchored_share: 0.5,
-            damping: 0.5,
-            noise: [0.015, 0.015, 0.015, 0.006, 0.006, 0.006, 0.05, 0.05],
+            velocity_retention: 0.5,
+            color_state_noise: [0.015, 0.015, 0.015, 0.006, 0.006, 0.006, 0.05, 0.05],
             background_odds: 1.0,
             color_memory: 0.8,
             max_colors: 512,
-            mu: [1.0, 1.0, 0.5],
-            sigma: 0.15,
-            area_gain: 0.5,
+            quality_weights: [1.0, 1.0, 0.5],
+            quality_sigma: 0.15,
+            area_extrapolation: 0.5,
             area_memory: 0.3,
             euler_number_range: 10.0,
             morphology_radius: 1,
@@ -116,10 +116,10 @@ impl ContourTrackerParams {
         Self {
             background_odds: 0.0,
             color_memory: 0.0,
-            area_gain: 1.0,
+            area_extrapolation: 1.0,
             area_memory: 0.0,
             anchored_share: 0.0,
-            bins: [16; 3],
+            color_bins: [16; 3],
             ..Self::default()
         }
     }
@@ -145,18 +145,18 @@ impl ContourTrackerParams {
         for (what, value) in [
             ("background_odds", self.background_odds),
             ("edge_contrast", self.edge_contrast),
-            ("area_gain", self.area_gain),
+            ("area_gain", self.area_extrapolation),
         ] {
             checked(what, value, value.is_finite() && value >= 0.0, "finite, not negative")?;
         }
         for (what, value) in [
-            ("sigma", self.sigma),
+            ("sigma", self.quality_sigma),
             ("euler_number_range", self.euler_number_range),
-            ("sum of mu", self.mu.iter().sum()),
+            ("sum of mu", self.quality_weights.iter().sum()),
         ] {
             checked(what, value, value.is_finite() && value > 0.0, "finite, positive")?;
         }
-        for value in self.mu {
+        for value in self.quality_weights {
             checked("mu", value, value >= 0.0, "not negative")?;
         }
         for (what, radius) in
@@ -168,6 +168,6 @@ impl ContourTrackerParams {
     }
 
     pub(super) fn noise(&self) -> ColorVector {
-        ColorVector::from(self.noise)
+        ColorVector::from(self.color_state_noise)
     }
 }

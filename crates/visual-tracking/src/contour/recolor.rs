@@ -1,7 +1,7 @@
 use super::{TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
-use crate::Element;
+use crate::StructuringElement;
 use crate::picture::rgb_pixels;
-use crate::{BinSet, BitMask, ColorCloud, TrackingError};
+use crate::{BitMask, ColorBinSet, ColorCloud, TrackingError};
 
 /// Share of the expected area that the pixels of a new colour set must have.
 const LEAST_SHARE: f64 = 0.25;
@@ -17,7 +17,7 @@ impl Scene<'_> {
     pub(super) fn colors_of(
         &self,
         candidate: &Candidate,
-        set: &BinSet,
+        set: &ColorBinSet,
         mask: &BitMask,
     ) -> Result<Option<ColorCloud>, TrackingError> {
         let inside = self.interior(candidate, mask)?;
@@ -55,7 +55,7 @@ impl Scene<'_> {
             TrackingCues::Color => mask.clone(),
             _ => self.region.inside(self.reference.snake.outline_at(&candidate.map)?.points())?,
         };
-        let core = inside.eroded(Element::Square { radius: 1 });
+        let core = inside.eroded(StructuringElement::Square { radius: 1 });
         Ok(if 2 * core.area() >= inside.area() { core } else { inside })
     }
 }

@@ -1,5 +1,5 @@
-use super::{Agreement, TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
-use crate::Element;
+use super::{SegmentationAgreement, TrackingCues, hypotheses::candidate::Candidate, scene::Scene};
+use crate::StructuringElement;
 use crate::{BitMask, ColorEdges, SnakeParams, TrackingError};
 
 /// Overlap of contour and segmentation from which on both count as consistent.
@@ -16,7 +16,7 @@ impl Candidate {
         if params.band_radius == 0 || params.cues != TrackingCues::ColorAndShape {
             return self;
         }
-        let band = mask.boundary().dilated(Element::Square { radius: params.band_radius });
+        let band = mask.boundary().dilated(StructuringElement::Square { radius: params.band_radius });
         let edges =
             ColorEdges::new(scene.picture, params.edge_contrast).within(&band, scene.region.rect.corner());
         // The snake is where it belongs but for the width of the band.
@@ -24,7 +24,8 @@ impl Candidate {
         let snake = &scene.reference.snake;
         let fit = snake.fit(&self.map, &edges, &near);
         let area = snake.area_at(&fit.map);
-        let area_agrees = Agreement::of_areas(scene.expected_area, area) >= self.agreement.area - AREA_SLACK;
+        let area_agrees =
+            SegmentationAgreement::of_areas(scene.expected_area, area) >= self.agreement.area - AREA_SLACK;
         if fit.support >= 0.5 * self.agreement.affine && area_agrees {
             (self.map, self.area) = (fit.map, area);
         }

@@ -1,10 +1,10 @@
 use crate::PixelRect;
-use crate::{BinImage, BinSet, BitMask, BoundingBox, ColorQuantizer, RgbImage, TrackingError};
+use crate::{BitMask, BoundingBox, ColorBinImage, ColorBinSet, ColorQuantizer, RgbImage, TrackingError};
 
 /// A part of a picture with the bins of its pixels.
 pub(super) struct Region {
     pub(super) rect: PixelRect,
-    pub(super) bins: BinImage,
+    pub(super) bins: ColorBinImage,
 }
 
 impl Region {
@@ -30,7 +30,7 @@ impl Region {
     }
 
     fn of(picture: &RgbImage, quantizer: &ColorQuantizer, rect: PixelRect) -> Result<Self, TrackingError> {
-        Ok(Self { rect, bins: BinImage::within(quantizer, picture, &rect)? })
+        Ok(Self { rect, bins: ColorBinImage::within(quantizer, picture, &rect)? })
     }
 
     /// The pixels inside an outline.
@@ -56,7 +56,7 @@ impl Region {
     }
 
     /// The pixels of a set of bins.
-    pub(super) fn segment(&self, set: &BinSet) -> BitMask {
+    pub(super) fn segment(&self, set: &ColorBinSet) -> BitMask {
         self.bins.segment(set).expect("invariant: one quantizer for all")
     }
 }

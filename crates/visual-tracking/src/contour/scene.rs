@@ -1,6 +1,8 @@
 use super::{ContourTrackerParams, reference::Reference, region::Region};
-use crate::Element;
-use crate::{AffineMap, BinSet, BitMask, ColorQuantizer, ColorState, Connectivity, RgbImage, TrackingError};
+use crate::StructuringElement;
+use crate::{
+    AffineMap, BitMask, ColorBinSet, ColorQuantizer, ColorState, Connectivity, RgbImage, TrackingError,
+};
 
 /// Data shared by all hypotheses about one image.
 pub(super) struct Scene<'a> {
@@ -40,11 +42,11 @@ impl<'a> Scene<'a> {
             return Ok(None);
         };
         let expected = region.inside(outline.points())?;
-        let near =
-            expected.dilated(Element::Square { radius: (0.25 * radius).max(LEAST_MARGIN / 2.0) as usize });
+        let near = expected
+            .dilated(StructuringElement::Square { radius: (0.25 * radius).max(LEAST_MARGIN / 2.0) as usize });
         let mut background = region.shares(&near.not());
         background.iter_mut().for_each(|share| *share *= params.background_odds as f32);
-        let expected_area = reference.expected_area(params.area_gain, params.area_memory);
+        let expected_area = reference.expected_area(params.area_extrapolation, params.area_memory);
         Ok(Some(Self {
             params,
             quantizer,
@@ -59,7 +61,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The target's bins under a hypothesis: those that contain colours, more of them than the background.
-    pub(super) fn bin_set(&self, state: &ColorState) -> BinSet {
+    pub(super) fn bin_set(&self, state: &ColorState) -> ColorBinSet {
         let warp = state.warp_from(&self.reference.colors);
         let total = self.reference.cloud.n_pixels() as f32;
         let warped = self.reference.cloud.warped(&warp);
@@ -67,7 +69,7 @@ impl<'a> Scene<'a> {
             .filter_map(|(color, count)| Some((self.quantizer.bin_of_point(color.into())?, count as f32)))
             .collect();
         counts.sort_unstable_by_key(|(bin, _)| *bin);
-        let mut set = BinSet::empty(self.quantizer);
+        let mut set = ColorBinSet::empty(self.quantizer);
         for same in counts.chunk_by(|a, b| a.0 == b.0) {
             let share = same.iter().map(|(_, count)| count).sum::<f32>() / total;
             if share > self.background[usize::from(same[0].0)] {
@@ -79,7 +81,7 @@ impl<'a> Scene<'a> {
 
     /// The target in the segmentation by a set of bins: the blob with the largest overlap with the expected position, and those whose centre
     /// lies in the expected target.
-    pub(super) fn target_mask(&self, set: &BinSet) -> Option<BitMask> {
+    pub(super) fn target_mask(&self, set: &ColorBinSet) -> Option<BitMask> {
         let blobs = self.segment(set).blobs(Connectivity::Eight);
         let main = blobs.most_overlapping(&self.expected).expect("invariant: one region for all")?;
         let mut index = 0..;
@@ -91,11 +93,13 @@ impl<'a> Scene<'a> {
     }
 
     /// The pixels of a set of bins, after closing and opening.
-    pub(super) fn segment(&self, set: &BinSet) -> BitMask {
+    pub(super) fn segment(&self, set: &ColorBinSet) -> BitMask {
         let mask = self.region.segment(set);
         match self.params.morphology_radius {
             0 => mask,
-            radius => mask.closed(Element::Square { radius }).opened(Element::Square { radius }),
+            radius => mask
+                .closed(StructuringElement::Square { radius })
+                .opened(StructuringElement::Square { radius }),
         }
     }
 }

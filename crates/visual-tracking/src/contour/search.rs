@@ -180,7 +180,7 @@ mod tests {
             // 3^(4/6) = 2.08, the step next to a gain of two.
             let Some(twice) = lit.get(10) else { continue };
             assert!((twice.mean() - of(2).mean).amax() < 0.03, "{space:?}");
-            assert!((twice.magnitudes() - of(2).magnitudes).amax() < 0.01, "{space:?}");
+            assert!((twice.magnitudes() - of(2).axis_sigmas).amax() < 0.01, "{space:?}");
         }
     }
 }

@@ -3,11 +3,11 @@ use super::hypotheses::samples::Samples;
 use super::reference::Reference;
 use super::region::Region;
 use super::{ContourTracker, ContourTrackerParams};
-use crate::Element;
+use crate::StructuringElement;
 use crate::error::check_size;
 use crate::picture::rgb_pixels;
 use crate::{
-    AffineSnake, BinSet, BitMask, BoundingBox, ColorCloud, ColorDynamics, ColorQuantizer, Connectivity,
+    AffineSnake, BitMask, BoundingBox, ColorBinSet, ColorCloud, ColorDynamics, ColorQuantizer, Connectivity,
     Outline, RgbImage, TrackStatus, TrackingError,
 };
 
@@ -35,8 +35,8 @@ impl ContourTracker {
         params: ContourTrackerParams,
     ) -> Result<Self, TrackingError> {
         params.validate()?;
-        let quantizer = ColorQuantizer::new(params.color_space, params.bins)?;
-        let dynamics = ColorDynamics::constant_velocity(params.damping, &params.noise())?;
+        let quantizer = ColorQuantizer::new(params.color_space, params.color_bins)?;
+        let dynamics = ColorDynamics::constant_velocity(params.velocity_retention, &params.noise())?;
         let snake = AffineSnake::new(outline, &params.snake)?;
         let size = (picture.width() as usize, picture.height() as usize);
         let inside = BitMask::from_polygon(size.0, size.1, outline.points())?;
@@ -73,7 +73,7 @@ impl ContourTracker {
         bounds: &BoundingBox,
         params: ContourTrackerParams,
     ) -> Result<Self, TrackingError> {
-        let quantizer = ColorQuantizer::new(params.color_space, params.bins)?;
+        let quantizer = ColorQuantizer::new(params.color_space, params.color_bins)?;
         Self::from_outline(picture, &outline_in_box(picture, &quantizer, bounds)?, params)
     }
 }
@@ -94,14 +94,14 @@ fn outline_in_box(
     let (right, bottom) = (x + bounds.width(), y + bounds.height());
     let box_mask = region.inside(&[[x, y], [right, y], [right, bottom], [x, bottom]])?;
     let inner = region.shares(&region.inside(ellipse.points())?);
-    let outer = region.shares(&box_mask.dilated(Element::Square { radius: 2 }).not());
-    let set = BinSet::from_fn(quantizer, |bin| inner[usize::from(bin)] > outer[usize::from(bin)]);
+    let outer = region.shares(&box_mask.dilated(StructuringElement::Square { radius: 2 }).not());
+    let set = ColorBinSet::from_fn(quantizer, |bin| inner[usize::from(bin)] > outer[usize::from(bin)]);
     // Closes small gaps in the colours of the target and removes thin parts.
     let limb = (LIMB * (bounds.width() * bounds.height()).sqrt()).max(1.0) as usize;
-    let closed = region.segment(&set).and(&box_mask)?.closed(Element::Square { radius: 2 });
+    let closed = region.segment(&set).and(&box_mask)?.closed(StructuringElement::Square { radius: 2 });
     let blobs = closed
         .without_holes(Connectivity::Eight)
-        .opened(Element::Square { radius: limb })
+        .opened(StructuringElement::Square { radius: limb })
         .blobs(Connectivity::Eight);
     let blob = blobs.largest().and_then(|largest| blobs.mask(largest));
     let body = blob.and_then(|mask| Outline::of_mask(&mask, region.rect.corner())).and_then(without_notches);

@@ -8,8 +8,8 @@ use super::hypotheses::samples::Samples;
 use super::reference::Reference;
 use crate::error::check_size;
 use crate::{
-    AffineSnake, ColorDynamics, ColorQuantizer, Outline, PrincipalColors, RgbImage, Target, TrackStatus,
-    Tracker, TrackingError,
+    AffineSnake, ColorDynamics, ColorQuantizer, Outline, PrincipalColors, RgbImage, TargetEstimate,
+    TrackStatus, Tracker, TrackingError,
 };
 
 /// Tracks a target by its colours, which change, and its contour, which moves by affine maps: CONDENSATION in colour space, validated by
@@ -68,7 +68,7 @@ impl ContourTracker {
     }
 
     /// The target is where it was found.
-    fn accept(&mut self, found: Found) -> Result<Target, TrackingError> {
+    fn accept(&mut self, found: Found) -> Result<TargetEstimate, TrackingError> {
         let mut reference = self.reference.clone();
         let mut samples = found.samples;
         let Candidate { map, area, .. } = found.candidate;
@@ -97,7 +97,7 @@ impl ContourTracker {
         picture: &RgbImage,
         here: Option<Found>,
         rng: &mut R,
-    ) -> Result<Target, TrackingError> {
+    ) -> Result<TargetEstimate, TrackingError> {
         let outline = self.reference.snake.outline();
         // Excludes the candidate that was just rejected.
         let here = here.filter(|_| self.status == TrackStatus::Lost);
@@ -135,7 +135,11 @@ impl Tracker for ContourTracker {
     ///
     /// # Errors
     /// Returns [`TrackingError::Dimension`] if image and first image differ in size.
-    fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, rng: &mut R) -> Result<Target, TrackingError> {
+    fn track<R: Rng + ?Sized>(
+        &mut self,
+        picture: &RgbImage,
+        rng: &mut R,
+    ) -> Result<TargetEstimate, TrackingError> {
         check_size("width of the picture", self.size.0, picture.width() as usize)?;
         check_size("height of the picture", self.size.1, picture.height() as usize)?;
         match self.follow(picture, rng)? {
@@ -152,6 +156,11 @@ impl Tracker for ContourTracker {
     }
 }
 
-fn target(outline: &Outline, status: TrackStatus, quality: f64) -> Target {
-    Target { bounding_box: outline.bounding_box(), outline: outline.points().to_vec(), status, quality }
+fn target(outline: &Outline, status: TrackStatus, quality: f64) -> TargetEstimate {
+    TargetEstimate {
+        bounding_box: outline.bounding_box(),
+        outline: outline.points().to_vec(),
+        status,
+        quality,
+    }
 }

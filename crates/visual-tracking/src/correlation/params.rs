@@ -19,36 +19,36 @@ pub struct CorrelationTrackerParams {
     /// Width of the response that is desired at the target, in sides of the target. Default 1/16.
     pub response_width: f64,
     /// Weight of the previous filter in learning, in units of the energy of an image. Default 2.5.
-    pub inertia: f64,
+    pub previous_filter_weight: f64,
     /// Weight by which the filter's two domains are brought to agree, in the same units. Default 0.2.
-    pub penalty: f64,
+    pub domain_agreement_weight: f64,
     /// Share of the colour channels in the energy of a picture, unless the first one is grey. Default 0.2.
-    pub color_share: f64,
+    pub color_channel_share: f64,
     /// Share of the grey values, the rest being gradients. Default 0.05.
-    pub grey_share: f64,
+    pub gray_channel_share: f64,
     /// Weight of the colour histograms relative to the filter in the search. Default 0.3.
-    pub color_weight: f64,
+    pub color_histogram_weight: f64,
     /// Rate at which the colour histograms follow. Default 0.04.
-    pub color_rate: f64,
+    pub color_histogram_rate: f64,
     /// Standard deviation of the motion of a target between two images, in sides of the target. Default 2.
-    pub motion_width: f64,
+    pub motion_sigma: f64,
     /// Scales that are compared, an odd number. Default 17.
-    pub n_scales: usize,
+    pub n_scale_hypotheses: usize,
     /// Factor between two scales. Default 1.03.
     pub scale_step: f64,
     /// Rate at which the filter over scales follows. Default 0.025.
-    pub scale_rate: f64,
+    pub scale_filter_rate: f64,
     /// Peak-to-sidelobe ratio, in standard deviations of the response, below which there is no evidence of the target. Noise reaches 5 to 9.
     /// Default 10.
     pub no_evidence_below: f64,
     /// Pictures in a row without evidence after which the target is lost. Default 8.
     pub lost_after: usize,
     /// Standing out above which a picture is learned. Default 12.
-    pub learn_above: f64,
+    pub learn_above_psr: f64,
     /// Standing out above which a target is recognized, after an occlusion or a loss. Default 15.
-    pub recognize_above: f64,
+    pub recognize_above_psr: f64,
     /// Minimum share of the typical response for recognition; three fifths of it suffice for a lost target. Default 0.5.
-    pub recognize_share: f64,
+    pub recognition_response_share: f64,
     /// Share of the typical colour agreement below which a target must also be recognized by its shape. Default 0.5.
     pub color_agreement_share: f64,
     /// Images after which a changed target is accepted, if its old appearance is not found in another place. Default 60.
@@ -62,21 +62,21 @@ impl Default for CorrelationTrackerParams {
         Self {
             padding: 4.0,
             response_width: 0.0625,
-            inertia: 2.5,
-            penalty: 0.2,
-            color_share: 0.2,
-            grey_share: 0.05,
-            color_weight: 0.3,
-            color_rate: 0.04,
-            motion_width: 2.0,
-            n_scales: 17,
+            previous_filter_weight: 2.5,
+            domain_agreement_weight: 0.2,
+            color_channel_share: 0.2,
+            gray_channel_share: 0.05,
+            color_histogram_weight: 0.3,
+            color_histogram_rate: 0.04,
+            motion_sigma: 2.0,
+            n_scale_hypotheses: 17,
             scale_step: 1.03,
-            scale_rate: 0.025,
+            scale_filter_rate: 0.025,
             no_evidence_below: 10.0,
             lost_after: 8,
-            learn_above: 12.0,
-            recognize_above: 15.0,
-            recognize_share: 0.5,
+            learn_above_psr: 12.0,
+            recognize_above_psr: 15.0,
+            recognition_response_share: 0.5,
             color_agreement_share: 0.5,
             forget_after: 60,
             n_searches: 2,
@@ -89,30 +89,35 @@ impl CorrelationTrackerParams {
         let positive = |what, value: f64| checked(what, value, value > 0.0 && value.is_finite(), "positive");
         checked("padding", self.padding, (1.5..=8.0).contains(&self.padding), "between 1.5 and 8")?;
         positive("response width", self.response_width)?;
-        positive("penalty", self.penalty)?;
-        positive("motion width", self.motion_width)?;
-        checked("inertia", self.inertia, self.inertia >= 0.0 && self.inertia.is_finite(), "not negative")?;
-        let share = self.color_share + self.grey_share;
+        positive("penalty", self.domain_agreement_weight)?;
+        positive("motion width", self.motion_sigma)?;
+        checked(
+            "inertia",
+            self.previous_filter_weight,
+            self.previous_filter_weight >= 0.0 && self.previous_filter_weight.is_finite(),
+            "not negative",
+        )?;
+        let share = self.color_channel_share + self.gray_channel_share;
         checked("colour and grey share", share, (0.0..1.0).contains(&share), "below 1")?;
         for (what, value) in [
-            ("colour share", self.color_share),
-            ("grey share", self.grey_share),
-            ("colour weight", self.color_weight),
-            ("colour rate", self.color_rate),
-            ("scale rate", self.scale_rate),
-            ("share to recognize by", self.recognize_share),
+            ("colour share", self.color_channel_share),
+            ("grey share", self.gray_channel_share),
+            ("colour weight", self.color_histogram_weight),
+            ("colour rate", self.color_histogram_rate),
+            ("scale rate", self.scale_filter_rate),
+            ("share to recognize by", self.recognition_response_share),
             ("share of alike colours", self.color_agreement_share),
         ] {
             probability(what, value)?;
         }
-        let odd = self.n_scales % 2 == 1 && self.n_scales <= 99;
-        checked("number of scales", self.n_scales as f64, odd, "odd, at most 99")?;
+        let odd = self.n_scale_hypotheses % 2 == 1 && self.n_scale_hypotheses <= 99;
+        checked("number of scales", self.n_scale_hypotheses as f64, odd, "odd, at most 99")?;
         let step = (1.001..=1.5).contains(&self.scale_step);
         checked("scale step", self.scale_step, step, "between 1.001 and 1.5")?;
         for (what, value) in [
             ("standing out for doubt", self.no_evidence_below),
-            ("standing out for learning", self.learn_above),
-            ("standing out to recognize", self.recognize_above),
+            ("standing out for learning", self.learn_above_psr),
+            ("standing out to recognize", self.recognize_above_psr),
         ] {
             checked(what, value, value >= 0.0, "not negative")?;
         }

@@ -39,8 +39,8 @@ impl Recognizer {
     pub(super) fn new(picture: &RgbImage, size: [f64; 2], params: &CorrelationTrackerParams) -> Self {
         let window = Window::around(size, params.padding);
         let is_grey = rgb_pixels(picture).iter().all(|&[r, g, b]| r == g && g == b);
-        let color = if is_grey { 0.0 } else { params.color_share as f32 };
-        let grey = params.grey_share as f32;
+        let color = if is_grey { 0.0 } else { params.color_channel_share as f32 };
+        let grey = params.gray_channel_share as f32;
         let sigma = params.response_width * window.target_cells();
         let filter = CorrelationFilter::new(SIDE, sigma, window.support());
         Self { window, filter, shares: Shares { gradient: 1.0 - color - grey, grey, color } }

@@ -10,7 +10,7 @@ use super::response::Peak;
 use super::scale_filter::ScaleFilter;
 use super::window::{Pose, SIDE};
 use crate::error::check_size;
-use crate::{BoundingBox, Target, TrackStatus, Tracker};
+use crate::{BoundingBox, TargetEstimate, TrackStatus, Tracker};
 use crate::{RgbImage, TrackingError};
 
 /// Sides below which a target has no shape, in pixels.
@@ -109,7 +109,7 @@ impl CorrelationTracker {
         let recognizer = Recognizer::new(picture, size, &params);
         let pose = Pose { center: target.center(), scale: 1.0 };
         let sample = recognizer.sample_at(picture, pose);
-        let learning = Learning { inertia: 0.0, penalty: params.penalty as f32 };
+        let learning = Learning { inertia: 0.0, penalty: params.domain_agreement_weight as f32 };
         let current = recognizer.filter.learned(None, &sample.spectrum, learning);
         let typical_response = recognizer.evidence(&current, &sample).value;
         if typical_response <= 0.0 {
@@ -118,7 +118,7 @@ impl CorrelationTracker {
         let mut colors = ColorRatio::new();
         colors.learn(&sample.patch, recognizer.window.target_pixels(), 1.0);
         let typical_color_agreement = colors.agreement(&sample.patch, recognizer.window.target_pixels());
-        let mut scales = ScaleFilter::new(params.n_scales, params.scale_step, size);
+        let mut scales = ScaleFilter::new(params.n_scale_hypotheses, params.scale_step, size);
         scales.learn(picture, pose.center, size, 1.0);
         Ok(Self {
             params,
@@ -159,7 +159,7 @@ impl CorrelationTracker {
         let evidence = self.recognizer.evidence(&self.current, &sample);
         let is_unlike = !self.recognized(trust) && !self.has_target_colors(&sample);
         // a dissimilar result needs a higher response
-        let least = if is_unlike { self.params.recognize_above } else { self.params.no_evidence_below };
+        let least = if is_unlike { self.params.recognize_above_psr } else { self.params.no_evidence_below };
         if evidence.peak_to_sidelobe < least {
             self.n_without_evidence += 1;
             self.n_lost = usize::from(is_unlike || self.n_without_evidence > self.params.lost_after);
@@ -177,8 +177,8 @@ impl CorrelationTracker {
         let window = &self.recognizer.window;
         let mut response = self.recognizer.response(&self.current, around);
         let score = window.box_means(&self.colors.of(&around.patch));
-        let prior = window.shift_prior(self.params.motion_width);
-        let weight = self.params.color_weight as f32;
+        let prior = window.shift_prior(self.params.motion_sigma);
+        let weight = self.params.color_histogram_weight as f32;
         for ((value, score), prior) in response.iter_mut().zip(&score).zip(&prior) {
             *value = ((1.0 - weight) * *value + weight * score) * prior;
         }
@@ -201,8 +201,8 @@ impl CorrelationTracker {
 
     pub(super) fn recognized(&self, evidence: FilterResponse) -> bool {
         // a lost target has changed more since it was learned, and a lower threshold carries no risk
-        let share = self.params.recognize_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
-        evidence.peak_to_sidelobe > self.params.recognize_above
+        let share = self.params.recognition_response_share * if self.n_lost > 0 { 0.6 } else { 1.0 };
+        evidence.peak_to_sidelobe > self.params.recognize_above_psr
             && evidence.value > share * self.typical_response
     }
 
@@ -231,17 +231,20 @@ impl CorrelationTracker {
         let agreement = self.agreement(sample);
         let may_be_another =
             !recognized && !self.is_typical(agreement) && self.n_untrusted <= self.params.forget_after;
-        if evidence.peak_to_sidelobe < self.params.learn_above || may_be_another {
+        if evidence.peak_to_sidelobe < self.params.learn_above_psr || may_be_another {
             return;
         }
         let window = &self.recognizer.window;
-        let learning = Learning { inertia: self.params.inertia as f32, penalty: self.params.penalty as f32 };
+        let learning = Learning {
+            inertia: self.params.previous_filter_weight as f32,
+            penalty: self.params.domain_agreement_weight as f32,
+        };
         self.current = self.recognizer.filter.learned(Some(&self.current), &sample.spectrum, learning);
         if self.n_recentering == 0 {
-            self.colors.learn(&sample.patch, window.target_pixels(), self.params.color_rate as f32);
+            self.colors.learn(&sample.patch, window.target_pixels(), self.params.color_histogram_rate as f32);
         }
         let size = window.size(self.pose.scale);
-        self.scales.learn(picture, self.pose.center, size, self.params.scale_rate as f32);
+        self.scales.learn(picture, self.pose.center, size, self.params.scale_filter_rate as f32);
         self.learned.clone_from(&sample.patch);
         if recognized || self.n_untrusted > self.params.forget_after {
             self.trusted.clone_from(&self.current);
@@ -254,12 +257,16 @@ impl CorrelationTracker {
 }
 
 impl Tracker for CorrelationTracker {
-    fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, _rng: &mut R) -> Result<Target, TrackingError> {
+    fn track<R: Rng + ?Sized>(
+        &mut self,
+        picture: &RgbImage,
+        _rng: &mut R,
+    ) -> Result<TargetEstimate, TrackingError> {
         check_size("width of a picture", self.picture_size.0, picture.width() as usize)?;
         check_size("height of a picture", self.picture_size.1, picture.height() as usize)?;
         let quality = if self.n_lost > 0 { self.search(picture) } else { self.follow(picture) };
         let [width, height] = self.recognizer.window.size(self.pose.scale);
-        Ok(Target {
+        Ok(TargetEstimate {
             bounding_box: BoundingBox::from_center(self.pose.center, width, height)?,
             outline: Vec::new(),
             status: if self.n_lost > 0 { TrackStatus::Lost } else { TrackStatus::Tracked },

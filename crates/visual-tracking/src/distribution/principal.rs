@@ -24,7 +24,7 @@ pub struct PrincipalColors {
     /// The centroid $`\mathbf m`$.
     pub mean: Vector3<f64>,
     /// Standard deviations along the axes, $`\boldsymbol λ`$.
-    pub magnitudes: Vector3<f64>,
+    pub axis_sigmas: Vector3<f64>,
     /// The axes, as columns.
     pub axes: Rotation3<f64>,
 }
@@ -65,7 +65,7 @@ impl PrincipalColors {
             let axis = axes.column(i);
             axis.dot(&(covariance * axis)).max(0.0).sqrt()
         });
-        Ok(Self { mean, magnitudes, axes: Rotation3::from_matrix_unchecked(axes) })
+        Ok(Self { mean, axis_sigmas: magnitudes, axes: Rotation3::from_matrix_unchecked(axes) })
     }
 
     /// The angles $`θ, φ`$ that turn the leading axes of `previous` into these: $`θ`$ turns the first axis towards the second, $`φ`$ lifts
@@ -147,7 +147,7 @@ mod tests {
             assert!(next.axes.angle_to(&previous.axes) < 0.3, "step {step}");
             previous = next;
         }
-        assert!(previous.magnitudes[1] > previous.magnitudes[0]);
+        assert!(previous.axis_sigmas[1] > previous.axis_sigmas[0]);
     }
 
     #[test]
@@ -156,7 +156,7 @@ mod tests {
         let previous = PrincipalColors::of(&ellipsoid(&axes, [0.2, 0.1, 0.05]), &[1.0; 6], None).unwrap();
         let one_color = PrincipalColors::of(&[Vector3::repeat(0.5)], &[3.0], Some(&previous)).unwrap();
         assert!(one_color.axes.angle_to(&previous.axes) < 1e-6);
-        assert_eq!(one_color.magnitudes, Vector3::zeros());
+        assert_eq!(one_color.axis_sigmas, Vector3::zeros());
         let line = [Vector3::new(0.1, 0.5, 0.5), Vector3::new(0.9, 0.5, 0.5)];
         let planar = PrincipalColors::of(&line, &[1.0; 2], Some(&previous)).unwrap();
         assert!((planar.axes.matrix().determinant() - 1.0).abs() < 1e-9);

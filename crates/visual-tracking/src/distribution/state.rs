@@ -38,7 +38,7 @@ impl ColorState {
     pub fn at_rest(reference: &PrincipalColors) -> Self {
         let mut value = ColorVector::zeros();
         value.fixed_rows_mut::<3>(0).copy_from(&reference.mean);
-        value.fixed_rows_mut::<3>(3).copy_from(&reference.magnitudes);
+        value.fixed_rows_mut::<3>(3).copy_from(&reference.axis_sigmas);
         Self { value, velocity: ColorVector::zeros() }
     }
 
@@ -63,7 +63,7 @@ impl ColorState {
         let [theta, phi] = self.angles();
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), theta)
             * Rotation3::from_axis_angle(&Vector3::y_axis(), -phi);
-        let scales = reference.magnitudes.zip_map(&self.magnitudes(), ColorWarp::scale);
+        let scales = reference.axis_sigmas.zip_map(&self.magnitudes(), ColorWarp::scale);
         ColorWarp::new(&reference.mean, &self.mean(), &reference.axes, &turn, &scales)
     }
 

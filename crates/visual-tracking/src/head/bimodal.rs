@@ -119,7 +119,7 @@ fn nearer(means: &[[f64; 3]; 2], center: &[f64; 3]) -> u8 {
 mod tests {
     use super::*;
     use crate::RgbImage;
-    use crate::{BinImage, ColorSpace};
+    use crate::{ColorBinImage, ColorSpace};
 
     const SKIN: [u8; 3] = [220, 160, 130];
     const HAIR: [u8; 3] = [60, 40, 30];
@@ -127,7 +127,7 @@ mod tests {
     fn histogram(quantizer: &ColorQuantizer, colors: &[[u8; 3]]) -> ColorHistogram {
         let bytes = colors.iter().flatten().copied().collect();
         let picture = RgbImage::from_raw(colors.len() as u32, 1, bytes).expect("3 bytes a pixel");
-        ColorHistogram::of_image(&BinImage::new(quantizer, &picture).unwrap())
+        ColorHistogram::of_image(&ColorBinImage::new(quantizer, &picture).unwrap())
     }
 
     #[test]

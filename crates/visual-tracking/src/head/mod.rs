@@ -9,5 +9,5 @@ mod surroundings;
 mod tracker;
 
 pub use params::HeadTrackerParams;
-pub use scale_source::{LocalScale, ScaleSource};
+pub use scale_source::{ScaleSource, SearchedScale};
 pub use tracker::HeadTracker;

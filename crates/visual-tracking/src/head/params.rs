@@ -11,9 +11,9 @@ use crate::error::{checked, probability};
 )]
 pub struct HeadTrackerParams {
     /// Bins of the axes $`B − G`$, $`G − R`$ and $`R + G + B`$. Default 32, 32, 8.
-    pub bins: [usize; 3],
+    pub color_bins: [usize; 3],
     /// Whether to use two modes, skin and hair, of variable proportion; otherwise one histogram. Default true.
-    pub bimodal: bool,
+    pub bimodal_colors: bool,
     /// Search radius around the predicted position, in semi-axes of the ellipse. Default 0.5.
     pub search_radius: f64,
     /// Factor between the three sizes that are compared. Default 1.04.
@@ -22,7 +22,7 @@ pub struct HeadTrackerParams {
     /// head.
     pub gradient_weight: f64,
     /// Rate $`a`$ at which the colours adapt. [Eq. 29] Default 0.1.
-    pub adaptation: f64,
+    pub color_adaptation_rate: f64,
     /// Intersection above which they do. Default 0.6.
     pub adapt_above: f64,
     /// Intersection below which there is no evidence of the head. Default 0.3.
@@ -34,12 +34,12 @@ pub struct HeadTrackerParams {
 impl Default for HeadTrackerParams {
     fn default() -> Self {
         Self {
-            bins: [32, 32, 8],
-            bimodal: true,
+            color_bins: [32, 32, 8],
+            bimodal_colors: true,
             search_radius: 0.5,
             scale_step: 1.04,
             gradient_weight: 0.25,
-            adaptation: 0.1,
+            color_adaptation_rate: 0.1,
             adapt_above: 0.6,
             no_evidence_below: 0.3,
             lost_after: 8,
@@ -59,7 +59,7 @@ impl HeadTrackerParams {
         checked("scale step", self.scale_step, step, "between 1 and 1.5")?;
         for (what, value) in [
             ("gradient weight", self.gradient_weight),
-            ("adaptation", self.adaptation),
+            ("adaptation", self.color_adaptation_rate),
             ("intersection to adapt", self.adapt_above),
             ("intersection for doubt", self.no_evidence_below),
         ] {

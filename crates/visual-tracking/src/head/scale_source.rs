@@ -24,9 +24,9 @@ pub trait ScaleSource {
 
 /// Leaves the scale to the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LocalScale;
+pub struct SearchedScale;
 
-impl ScaleSource for LocalScale {
+impl ScaleSource for SearchedScale {
     fn scale(&mut self, _picture: &RgbImage, _center: [f64; 2]) -> Option<f64> {
         None
     }

@@ -1,7 +1,7 @@
 use super::bimodal::BimodalHistogram;
 use super::edge::{GradientField, Rim};
 use crate::TrackingError;
-use crate::{BinImage, RowSpans, SlidingHistogram};
+use crate::{ColorBinImage, RowSpans, SlidingHistogram};
 
 /// Steps along an axis of a search; between two of them is searched again, pixel by pixel.
 const STEPS: i64 = 8;
@@ -19,7 +19,7 @@ pub(super) struct Candidate {
 
 /// A picture in which the head is searched.
 pub(super) struct Search<'a> {
-    pub(super) bins: &'a BinImage,
+    pub(super) bins: &'a ColorBinImage,
     pub(super) field: &'a GradientField,
     pub(super) model: &'a BimodalHistogram,
     pub(super) gradient_weight: f64,

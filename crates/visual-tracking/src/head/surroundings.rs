@@ -1,14 +1,14 @@
 use std::f64::consts::SQRT_2;
 
 use crate::TrackingError;
-use crate::{BinImage, ColorHistogram, RowSpans, SlidingHistogram};
+use crate::{ColorBinImage, ColorHistogram, RowSpans, SlidingHistogram};
 
 /// The counts of a head without the colours that are more frequent, by share, in the ring outside the ellipse.
 ///
 /// The ring and the ellipse have equal areas. A box that is too large contains background at its rim; the background's colours would become a
 /// mode of the head. If no colour is left, all are kept.
 pub(super) fn own_colors(
-    bins: &BinImage,
+    bins: &ColorBinImage,
     head: &ColorHistogram,
     center: [i64; 2],
     semi_axes: [f64; 2],

@@ -4,13 +4,13 @@ use std::f64::consts::TAU;
 use super::bimodal::BimodalHistogram;
 use super::edge::GradientField;
 use super::params::HeadTrackerParams;
-use super::scale_source::{LocalScale, ScaleSource};
+use super::scale_source::{ScaleSource, SearchedScale};
 use super::search::{Candidate, Search};
 use super::surroundings::own_colors;
 use crate::error::{check_size, checked};
 use crate::{
-    BinImage, BitMask, BoundingBox, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans, SlidingHistogram,
-    Target, TrackStatus, Tracker,
+    BitMask, BoundingBox, ColorBinImage, ColorHistogram, ColorQuantizer, ColorSpace, RowSpans,
+    SlidingHistogram, TargetEstimate, TrackStatus, Tracker,
 };
 use crate::{RgbImage, TrackingError};
 
@@ -46,7 +46,7 @@ const N_OUTLINE: usize = 48;
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct HeadTracker<S = LocalScale> {
+pub struct HeadTracker<S = SearchedScale> {
     params: HeadTrackerParams,
     picture_size: (usize, usize),
     quantizer: ColorQuantizer,
@@ -102,22 +102,22 @@ impl HeadTracker {
         picture: &RgbImage,
         head: BoundingBox,
         params: HeadTrackerParams,
-        histogram: impl FnOnce(&BinImage, RowSpans, [i64; 2]) -> Result<ColorHistogram, TrackingError>,
+        histogram: impl FnOnce(&ColorBinImage, RowSpans, [i64; 2]) -> Result<ColorHistogram, TrackingError>,
     ) -> Result<Self, TrackingError> {
         params.validate()?;
         let base = [head.width() / 2.0, head.height() / 2.0];
         for semi_axis in base {
             checked("semi-axis of the head", semi_axis, semi_axis >= MIN_SEMI_AXIS, "at least 3 pixels")?;
         }
-        let quantizer = ColorQuantizer::new(ColorSpace::Opponent, params.bins)?;
-        let bins = BinImage::new(&quantizer, picture)?;
+        let quantizer = ColorQuantizer::new(ColorSpace::Opponent, params.color_bins)?;
+        let bins = ColorBinImage::new(&quantizer, picture)?;
         let center = head.center().map(|c| c.floor() as i64);
         let histogram = histogram(&bins, RowSpans::ellipse(base)?, center)?;
         let own = own_colors(&bins, &histogram, center, base)?;
-        let model = BimodalHistogram::new(&quantizer, &own, params.bimodal)?;
+        let model = BimodalHistogram::new(&quantizer, &own, params.bimodal_colors)?;
         let state = HeadState { center, velocity: [0; 2], scale: 1.0, n_without_evidence: 0, is_lost: false };
         let picture_size = (picture.width() as usize, picture.height() as usize);
-        Ok(Self { params, picture_size, quantizer, model, scale_source: LocalScale, base, state })
+        Ok(Self { params, picture_size, quantizer, model, scale_source: SearchedScale, base, state })
     }
 }
 
@@ -148,7 +148,7 @@ impl<S: ScaleSource> HeadTracker<S> {
     /// The best ellipse; of a lost head, in the whole picture.
     fn found(
         &self,
-        bins: &BinImage,
+        bins: &ColorBinImage,
         field: &GradientField,
         scales: &[f64],
     ) -> Result<Option<Candidate>, TrackingError> {
@@ -164,7 +164,7 @@ impl<S: ScaleSource> HeadTracker<S> {
         search.best(middle, middle[0].max(middle[1]), &sizes[sizes.len() / 2..][..1])
     }
 
-    fn accept(&mut self, bins: &BinImage, candidate: Candidate) -> Result<(), TrackingError> {
+    fn accept(&mut self, bins: &ColorBinImage, candidate: Candidate) -> Result<(), TrackingError> {
         let HeadState { center, is_lost, .. } = self.state;
         if is_lost && candidate.color < self.params.adapt_above {
             return Ok(());
@@ -186,19 +186,19 @@ impl<S: ScaleSource> HeadTracker<S> {
         if candidate.color >= self.params.adapt_above {
             let spans = RowSpans::ellipse(candidate.semi_axes)?;
             let histogram = SlidingHistogram::new(bins, spans, candidate.center).into_histogram();
-            self.model.adapt(histogram.counts(), self.params.adaptation);
+            self.model.adapt(histogram.counts(), self.params.color_adaptation_rate);
         }
         Ok(())
     }
 
-    fn target(&self, quality: f64) -> Result<Target, TrackingError> {
+    fn target(&self, quality: f64) -> Result<TargetEstimate, TrackingError> {
         let center = self.state.center.map(|c| c as f64 + 0.5);
         let [a, b] = self.base.map(|axis| axis * self.state.scale);
         let point = |i: usize| {
             let angle = TAU * i as f64 / N_OUTLINE as f64;
             [center[0] + a * libm::cos(angle), center[1] + b * libm::sin(angle)]
         };
-        Ok(Target {
+        Ok(TargetEstimate {
             bounding_box: BoundingBox::from_center(center, 2.0 * a, 2.0 * b)?,
             outline: (0..N_OUTLINE).map(point).collect(),
             status: if self.state.is_lost { TrackStatus::Lost } else { TrackStatus::Tracked },
@@ -208,11 +208,15 @@ impl<S: ScaleSource> HeadTracker<S> {
 }
 
 impl<S: ScaleSource> Tracker for HeadTracker<S> {
-    fn track<R: Rng + ?Sized>(&mut self, picture: &RgbImage, _rng: &mut R) -> Result<Target, TrackingError> {
+    fn track<R: Rng + ?Sized>(
+        &mut self,
+        picture: &RgbImage,
+        _rng: &mut R,
+    ) -> Result<TargetEstimate, TrackingError> {
         check_size("width of a picture", self.picture_size.0, picture.width() as usize)?;
         check_size("height of a picture", self.picture_size.1, picture.height() as usize)?;
         let scales = self.scales(picture)?;
-        let bins = BinImage::new(&self.quantizer, picture)?;
+        let bins = ColorBinImage::new(&self.quantizer, picture)?;
         let candidate = self.found(&bins, &GradientField::new(picture), &scales)?;
         let Some(candidate) = candidate else { return self.target(0.0) };
         self.accept(&bins, candidate)?;

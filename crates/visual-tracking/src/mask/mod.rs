@@ -14,5 +14,5 @@ pub use bit_mask::BitMask;
 pub(crate) use bit_mask::check_extent;
 pub use blobs::{Blob, Blobs};
 pub use connectivity::Connectivity;
-pub use morphology::Element;
+pub use morphology::StructuringElement;
 pub(crate) use runs::ones;

@@ -3,7 +3,7 @@ use crate::BitMask;
 
 /// Structuring element; a radius of 0 is a single pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Element {
+pub enum StructuringElement {
     /// $`(2r + 1)^2`$ pixels.
     Square {
         /// $`r`$ in pixels.
@@ -20,20 +20,22 @@ pub enum Element {
 /// complement; closing only adds pixels and opening only takes some away.
 ///
 /// ```
-/// use wayfix_visual_tracking::{BitMask, Element};
-/// let square = Element::Square { radius: 1 };
+/// use wayfix_visual_tracking::{BitMask, StructuringElement};
+/// let square = StructuringElement::Square { radius: 1 };
 /// let mask = BitMask::from_fn(100, 9, |u, v| (60..69).contains(&u) && v != 4)?;
 /// assert_eq!(mask.closed(square).area(), 9 * 9);
-/// assert_eq!(mask.eroded(Element::Cross { radius: 2 }).area(), 5 * (2 + 2));
-/// assert_eq!(mask.opened(Element::Square { radius: 2 }).area(), 9 * 8);
+/// assert_eq!(mask.eroded(StructuringElement::Cross { radius: 2 }).area(), 5 * (2 + 2));
+/// assert_eq!(mask.opened(StructuringElement::Square { radius: 2 }).area(), 9 * 8);
 /// # Ok::<(), wayfix_visual_tracking::TrackingError>(())
 /// ```
 impl BitMask {
     /// Every pixel that the element reaches from one that is on.
-    pub fn dilated(&self, element: Element) -> Self {
+    pub fn dilated(&self, element: StructuringElement) -> Self {
         match element {
-            Element::Square { radius } => self.spread_along_rows(radius).spread_along_columns(radius),
-            Element::Cross { radius } => {
+            StructuringElement::Square { radius } => {
+                self.spread_along_rows(radius).spread_along_columns(radius)
+            }
+            StructuringElement::Cross { radius } => {
                 let mut words = self.spread_along_rows(radius).words().to_vec();
                 let columns = self.spread_along_columns(radius);
                 words.iter_mut().zip(columns.words()).for_each(|(a, b)| *a |= b);
@@ -43,17 +45,17 @@ impl BitMask {
     }
 
     /// Every pixel round which the element fits.
-    pub fn eroded(&self, element: Element) -> Self {
+    pub fn eroded(&self, element: StructuringElement) -> Self {
         self.not().dilated(element).not()
     }
 
     /// Opening: erosion, then dilation; it removes parts thinner than the element.
-    pub fn opened(&self, element: Element) -> Self {
+    pub fn opened(&self, element: StructuringElement) -> Self {
         self.eroded(element).dilated(element)
     }
 
     /// With gaps filled that are too thin for the element: dilated, then eroded.
-    pub fn closed(&self, element: Element) -> Self {
+    pub fn closed(&self, element: StructuringElement) -> Self {
         self.dilated(element).eroded(element)
     }
 

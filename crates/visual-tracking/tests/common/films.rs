@@ -4,9 +4,9 @@
 
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
-use wayfix_scene_sim::film::{Film, Frame, Silhouette};
+use wayfix_scene_sim::film::{FilmFrame, Silhouette, SyntheticFilm};
 use wayfix_visual_tracking::{
-    BitMask, ContourTracker, ContourTrackerParams, RgbImage, Target, TrackStatus, Tracker as _,
+    BitMask, ContourTracker, ContourTrackerParams, RgbImage, TargetEstimate, TrackStatus, Tracker as _,
 };
 
 /// What became of every frame after the first.
@@ -54,7 +54,7 @@ impl Record {
 }
 
 /// Tracks a film from the true mask of its first frame.
-pub(crate) fn follow(film: &Film, params: ContourTrackerParams) -> Record {
+pub(crate) fn follow(film: &SyntheticFilm, params: ContourTrackerParams) -> Record {
     let mut frames = film.frames().expect("a known film");
     let first = frames.next().expect("frames");
     let start = ContourTracker::from_mask(&picture_of(&first), &mask_of(&first.target), params);
@@ -70,8 +70,8 @@ pub(crate) fn follow(film: &Film, params: ContourTrackerParams) -> Record {
     )
 }
 
-fn step(frame: &Frame, target: &Target) -> Step {
-    let found = contour_mask(target, Film::SIZE_PX);
+fn step(frame: &FilmFrame, target: &TargetEstimate) -> Step {
+    let found = contour_mask(target, SyntheticFilm::SIZE_PX);
     let tracked = target.status == TrackStatus::Tracked;
     let overlap = found.iou(&mask_of(&frame.target)).expect("one size");
     Step {
@@ -88,7 +88,7 @@ fn mean<'a>(steps: impl ExactSizeIterator<Item = &'a Step>) -> f64 {
     steps.map(|step| step.overlap).sum::<f64>() / n
 }
 
-pub(crate) fn picture_of(frame: &Frame) -> RgbImage {
+pub(crate) fn picture_of(frame: &FilmFrame) -> RgbImage {
     let rgb = &frame.picture;
     RgbImage::from_raw(rgb.width as u32, rgb.height as u32, rgb.rgb.clone()).expect("3 bytes a pixel")
 }
@@ -99,6 +99,6 @@ pub(crate) fn mask_of(silhouette: &Silhouette) -> BitMask {
     BitMask::from_fn(width, silhouette.height(), inside).expect("pixels")
 }
 
-pub(crate) fn contour_mask(target: &Target, size: (usize, usize)) -> BitMask {
+pub(crate) fn contour_mask(target: &TargetEstimate, size: (usize, usize)) -> BitMask {
     BitMask::from_polygon(size.0, size.1, &target.outline).expect("finite points")
 }

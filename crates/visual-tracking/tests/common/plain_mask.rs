@@ -1,6 +1,6 @@
 //! Masks one pixel at a time, from the definitions: what words are compared with.
 
-use wayfix_visual_tracking::{BitMask, Connectivity, Element};
+use wayfix_visual_tracking::{BitMask, Connectivity, StructuringElement};
 
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct Plain {
@@ -27,11 +27,11 @@ impl Plain {
         })
     }
 
-    pub(crate) fn dilated(&self, element: Element) -> Self {
+    pub(crate) fn dilated(&self, element: StructuringElement) -> Self {
         self.map(|u, v| reach(element, self.width.max(self.height)).any(|(du, dv)| self.get(u + du, v + dv)))
     }
 
-    pub(crate) fn eroded(&self, element: Element) -> Self {
+    pub(crate) fn eroded(&self, element: StructuringElement) -> Self {
         self.map(|u, v| {
             let mut reach = reach(element, self.width.max(self.height));
             reach.all(|(du, dv)| self.get(u + du, v + dv) || !self.has(u + du, v + dv))
@@ -133,10 +133,10 @@ impl std::fmt::Debug for Plain {
 }
 
 /// The pixels of an element; beyond `limit` there are none to reach.
-fn reach(element: Element, limit: i64) -> impl Iterator<Item = (i64, i64)> {
+fn reach(element: StructuringElement, limit: i64) -> impl Iterator<Item = (i64, i64)> {
     let (radius, cross) = match element {
-        Element::Square { radius } => (radius, false),
-        Element::Cross { radius } => (radius, true),
+        StructuringElement::Square { radius } => (radius, false),
+        StructuringElement::Cross { radius } => (radius, true),
     };
     let radius = (radius as i64).min(limit);
     let all = (-radius..=radius).flat_map(move |dv| (-radius..=radius).map(move |du| (du, dv)));
@@ -145,8 +145,8 @@ fn reach(element: Element, limit: i64) -> impl Iterator<Item = (i64, i64)> {
 
 fn neighbours(connectivity: Connectivity) -> impl Iterator<Item = (i64, i64)> {
     let element = match connectivity {
-        Connectivity::Four => Element::Cross { radius: 1 },
-        Connectivity::Eight => Element::Square { radius: 1 },
+        Connectivity::Four => StructuringElement::Cross { radius: 1 },
+        Connectivity::Eight => StructuringElement::Square { radius: 1 },
     };
     reach(element, 1).filter(|&step| step != (0, 0))
 }

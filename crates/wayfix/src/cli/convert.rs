@@ -2,7 +2,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Result, bail};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{Format, OpenOptions};
+use wayfix_sensor_log::{LogFormat, OpenOptions};
 
 use super::input::Topics;
 
@@ -21,10 +21,10 @@ pub(super) struct Arguments {
     output: PathBuf,
     /// Input format: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: detected from the content].
     #[arg(long, value_name = "FORMAT")]
-    from: Option<Format>,
+    from: Option<LogFormat>,
     /// Output format: mcap, range-bearing or tum [default: from the file extension].
     #[arg(long, value_name = "FORMAT")]
-    to: Option<Format>,
+    to: Option<LogFormat>,
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
     robot: Option<u32>,
@@ -43,9 +43,9 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let extension = arguments.output.extension().and_then(|extension| extension.to_str());
     let format = match (arguments.to, extension) {
         (Some(format), _) => format,
-        (None, Some("mcap")) => Format::Mcap,
-        (None, Some("txt")) => Format::RangeBearing,
-        (None, Some("tum")) => Format::Tum,
+        (None, Some("mcap")) => LogFormat::Mcap,
+        (None, Some("txt")) => LogFormat::RangeBearing,
+        (None, Some("tum")) => LogFormat::Tum,
         _ => bail!(
             "{}: the ending names no format, say --to mcap, range-bearing or tum",
             arguments.output.display()

@@ -2,7 +2,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::Result;
 use wayfix_evaluation::terminal::print;
-use wayfix_sensor_log::{Format, LogSummary, OpenOptions};
+use wayfix_sensor_log::{LogFormat, LogSummary, OpenOptions};
 
 use super::input::Topics;
 
@@ -14,7 +14,7 @@ pub(super) struct Arguments {
     path: PathBuf,
     /// Input format: utias, victoria-park, range-bearing, tum, carmen, scan-json, mcap or images [default: detected from the content].
     #[arg(long)]
-    format: Option<Format>,
+    format: Option<LogFormat>,
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
     robot: Option<u32>,

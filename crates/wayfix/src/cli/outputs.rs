@@ -5,14 +5,16 @@ use std::{
 
 use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{Format, McapFile, Sinks};
+use wayfix_sensor_log::{LogFormat, McapFile, MessageSinks};
 
 use super::{common::Common, live::Live};
 use wayfix_evaluation::{
-    plot::Picture,
-    report::{Machine, Report, Run, RunSummary, Suite, foxglove_layout, table, table::TableStyle},
+    plot::SvgPlot,
+    report::{
+        MachineInfo, Report, ReportRun, ReportSuite, RunSummary, foxglove_layout, table, table::TableStyle,
+    },
 };
-use wayfix_systems::system::{Drawing, EstimateLog};
+use wayfix_systems::system::{EstimateDrawing, EstimateLog};
 
 /// The estimates beside the report.
 const ESTIMATES: &str = "estimates.mcap";
@@ -43,8 +45,8 @@ impl<'a> Outputs<'a> {
     }
 
     /// Destinations of messages; none without a folder and without a live view. Waits for the first live viewer.
-    pub(super) fn sinks(&mut self) -> Result<Sinks> {
-        let mut sinks: Sinks = Vec::new();
+    pub(super) fn sinks(&mut self) -> Result<MessageSinks> {
+        let mut sinks: MessageSinks = Vec::new();
         if let Some(path) = self.file(ESTIMATES) {
             sinks.push(Box::new(McapFile::create(path)?));
             self.log = Some(ESTIMATES);
@@ -54,16 +56,19 @@ impl<'a> Outputs<'a> {
     }
 
     /// Draws the estimates, if there is a folder or a viewer.
-    pub(super) fn estimates<D: Drawing>(&mut self, origin: Format) -> Result<Option<EstimateLog<D>>> {
+    pub(super) fn estimates<D: EstimateDrawing>(
+        &mut self,
+        origin: LogFormat,
+    ) -> Result<Option<EstimateLog<D>>> {
         let sinks = self.sinks()?;
         Ok(if sinks.is_empty() { None } else { Some(EstimateLog::new(sinks, origin)?) })
     }
 
     /// Prints the figures, writes the report if there is a folder, and waits until all viewers have disconnected.
-    pub(super) fn show(self, mut run: Run, pictures: impl FnOnce() -> Result<Vec<Picture>>) -> Result<()> {
+    pub(super) fn show(self, mut run: ReportRun, plots: impl FnOnce() -> Result<Vec<SvgPlot>>) -> Result<()> {
         let Common { json, seed, .. } = *self.common;
         if self.common.out.is_some() {
-            run.figures = pictures()?;
+            run.figures = plots()?;
             run.log = self.log.map(str::to_owned);
             run.layout = self.write_layout()?;
         }
@@ -91,14 +96,14 @@ impl<'a> Outputs<'a> {
     }
 }
 
-fn write_report(out: &Path, suite: &str, run: Run, seed: u64) -> Result<()> {
+fn write_report(out: &Path, suite: &str, run: ReportRun, seed: u64) -> Result<()> {
     for (number, figure) in run.figures.iter().enumerate() {
         let path = out.join(format!("figure-{}.svg", number + 1));
         fs::write(&path, figure.standalone()).with_context(|| format!("cannot write {}", path.display()))?;
     }
     let log = run.log.as_ref().map(|log| format!(", {log}")).unwrap_or_default();
-    let suites = vec![Suite { name: suite.to_owned(), runs: vec![run] }];
-    Report { suites, seed, commit: None, machine: Machine::detect() }.write(out)?;
+    let suites = vec![ReportSuite { name: suite.to_owned(), runs: vec![run] }];
+    Report { suites, seed, commit: None, machine: MachineInfo::detect() }.write(out)?;
     print_message(format!("wrote index.html, report.json{log} and the figures as SVG to {}", out.display()));
     Ok(())
 }

@@ -10,7 +10,7 @@ use wayfix_evaluation::terminal::print;
 use wayfix_systems::{
     cml::CmlParams,
     color::ColorSystemParams,
-    points::{PointSlamParams, Profile},
+    points::{PointSlamParams, RobotProfile},
     track::TrackParams,
     views::ViewsParams,
     walls::WallSlamParams,
@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     system: SystemName,
     /// The robot profile whose defaults are shown, for `slam`.
     #[arg(long, value_enum, value_name = "NAME", default_value = "generic")]
-    profile: Profile,
+    profile: RobotProfile,
     /// Print the JSON schema.
     #[arg(long)]
     schema: bool,
@@ -60,7 +60,7 @@ pub(super) fn main(arguments: Arguments) -> Result<ExitCode> {
     let text = match arguments.system {
         SystemName::Slam => text(&PointSlamParams::of(arguments.profile), arguments.schema),
         SystemName::Walls => text(&WallSlamParams::default(), arguments.schema),
-        SystemName::Lines => text(&wayfix_line_extract::Params::default(), arguments.schema),
+        SystemName::Lines => text(&wayfix_line_extract::LineExtractionParams::default(), arguments.schema),
         SystemName::Color => text(&ColorSystemParams::default(), arguments.schema),
         SystemName::Views => text(&ViewsParams::default(), arguments.schema),
         SystemName::Track => text(&TrackParams::default(), arguments.schema),

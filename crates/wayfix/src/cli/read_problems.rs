@@ -1,7 +1,7 @@
-use wayfix_sensor_log::{Log, LogEnd, ReadReport, Record, Warning};
+use wayfix_sensor_log::{Log, LogEnd, LogWarning, ReadReport, Record};
 
 use wayfix_evaluation::terminal::print_message;
-use wayfix_systems::system::Events;
+use wayfix_systems::system::EventCounts;
 
 /// Reads all records of a log; prints read problems and assumptions.
 pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
@@ -13,7 +13,7 @@ pub(super) fn read_all(log: Log) -> (Vec<Record>, ReadReport) {
 }
 
 /// Prints refusals and assumptions of the run, counts read problems, and returns all warnings for the report.
-pub(super) fn add_read_problems(events: &mut Events, read: &ReadReport) -> Vec<String> {
+pub(super) fn add_read_problems(events: &mut EventCounts, read: &ReadReport) -> Vec<String> {
     for refusal in events.refusals() {
         print_message(format!("refused {refusal}"));
     }
@@ -26,7 +26,7 @@ pub(super) fn add_read_problems(events: &mut Events, read: &ReadReport) -> Vec<S
     if read.end != LogEnd::Complete {
         events.count("log_incomplete");
     }
-    for Warning { name, .. } in &read.warnings {
+    for LogWarning { name, .. } in &read.warnings {
         events.count(name);
     }
     read.warnings.iter().chain(events.warnings()).map(|warning| warning.text.clone()).collect()

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, anyhow};
 use clap::builder::PossibleValuesParser;
 use wayfix_evaluation::terminal::{self, print};
 use wayfix_scene_sim::{
-    film::{Film, Frame, Incident, Silhouette},
+    film::{FilmFrame, OcclusionEvent, Silhouette, SyntheticFilm},
     scenery::{ImagingConditions, RgbPicture, Scenery},
 };
 
@@ -21,14 +21,14 @@ pub(super) enum Command {
     /// A target under changing light, for `run track`: frames, true boxes, and the mask of the target in the first frame.
     Film {
         /// The film.
-        #[arg(value_parser = PossibleValuesParser::new(Film::ALL.map(|film| film.name)))]
+        #[arg(value_parser = PossibleValuesParser::new(SyntheticFilm::ALL.map(|film| film.name)))]
         name: String,
         /// Folder for `frames/`, `truth.txt` and `mask.png`.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
         /// Event that affects the target during the film.
-        #[arg(long, value_name = "WHAT", default_value = Incident::None.name(),
-              value_parser = PossibleValuesParser::new(Incident::ALL.map(Incident::name)))]
+        #[arg(long, value_name = "WHAT", default_value = OcclusionEvent::None.name(),
+              value_parser = PossibleValuesParser::new(OcclusionEvent::ALL.map(OcclusionEvent::name)))]
         incident: String,
         /// Number of frames, 25 per second.
         #[arg(long, value_name = "N", default_value_t = 175)]
@@ -58,8 +58,12 @@ Examples:
 pub(super) fn main(command: Command) -> Result<ExitCode> {
     match command {
         Command::Film { name, out, incident, frames, seed } => {
-            let film =
-                Film { n_frames: frames, incident: Incident::named(&incident)?, seed, ..Film::named(&name)? };
+            let film = SyntheticFilm {
+                n_frames: frames,
+                occlusion: OcclusionEvent::named(&incident)?,
+                seed,
+                ..SyntheticFilm::named(&name)?
+            };
             shoot(&film, &out)?;
             print(format!(
                 "{0}: {frames} frames\n\nwayfix run track --frames {0}/frames --truth {0}/truth.txt\n",
@@ -78,7 +82,7 @@ pub(super) fn main(command: Command) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn shoot(film: &Film, out: &Path) -> Result<()> {
+fn shoot(film: &SyntheticFilm, out: &Path) -> Result<()> {
     let folder = out.join("frames");
     create(&folder)?;
     let mut truth = String::new();
@@ -97,7 +101,7 @@ fn shoot(film: &Film, out: &Path) -> Result<()> {
 }
 
 /// The box of the whole target, hidden parts included; zeros if the target is not visible.
-fn true_box(frame: &Frame) -> String {
+fn true_box(frame: &FilmFrame) -> String {
     let seen = frame.visible.bounding_box().and_then(|_| frame.target.bounding_box());
     let [x, y, width, height] = seen.unwrap_or_default();
     format!("{x},{y},{width},{height}\n")

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use wayfix_sensor_log::{Data, Format, OpenOptions, PoseKind, Record};
+use wayfix_sensor_log::{LogFormat, OpenOptions, PoseKind, Record, RecordData};
 
 use super::read_problems::read_all;
 use wayfix_systems::system::check_overlap;
@@ -24,9 +24,10 @@ impl TruthFile {
 
 /// Replaces the true poses and positions of the log by those of the file.
 fn with_truth(mut records: Vec<Record>, path: &Path) -> Result<Vec<Record>> {
-    let options = OpenOptions { format: Some(Format::Tum), poses: PoseKind::True, ..OpenOptions::default() };
+    let options =
+        OpenOptions { format: Some(LogFormat::Tum), poses: PoseKind::True, ..OpenOptions::default() };
     let (poses, _) = read_all(wayfix_sensor_log::open(path, &options)?);
-    let is_true = |data: &Data| matches!(data, Data::TruePose(_) | Data::TruePosition(_));
+    let is_true = |data: &RecordData| matches!(data, RecordData::TruePose(_) | RecordData::TruePosition(_));
     if !poses.iter().any(|record| is_true(&record.data)) {
         bail!("it holds no pose");
     }
@@ -35,8 +36,10 @@ fn with_truth(mut records: Vec<Record>, path: &Path) -> Result<Vec<Record>> {
     records.sort_by_key(|record| record.stamp); // at equal stamps the log's order is kept, and truth comes last
     check_overlap(
         &records,
-        ("the truth", |data| matches!(data, Data::TruePose(_))),
-        ("the log", |data| !matches!(data, Data::TruePose(_) | Data::TrueLandmark(_) | Data::TrueWall(_))),
+        ("the truth", |data| matches!(data, RecordData::TruePose(_))),
+        ("the log", |data| {
+            !matches!(data, RecordData::TruePose(_) | RecordData::TrueLandmark(_) | RecordData::TrueWall(_))
+        }),
     )?;
     Ok(records)
 }

@@ -24,7 +24,7 @@ const GRACE: Duration = Duration::from_secs(2);
 /// use wayfix::live::{LiveError, LiveServer, Pace};
 /// # use wayfix_systems::{points::PointFrontEnd, slam::SlamEstimateLog};
 /// let server = LiveServer::start(([127, 0, 0, 1], 0).into())?; // port 0: any that is free
-/// let estimates = SlamEstimateLog::<PointFrontEnd>::new(vec![server.sink(Pace::new(1.0)?)], wayfix_sensor_log::Format::Utias)?;
+/// let estimates = SlamEstimateLog::<PointFrontEnd>::new(vec![server.sink(Pace::new(1.0)?)], wayfix_sensor_log::LogFormat::Utias)?;
 /// assert!(server.url().starts_with("ws://127.0.0.1:"));
 /// let again = LiveServer::start(server.address());
 /// assert!(matches!(again, Err(LiveError::InUse { .. })));

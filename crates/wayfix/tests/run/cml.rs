@@ -7,7 +7,7 @@ use crate::common::{Scratch, wayfix};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::LieGroup;
-use wayfix_sensor_log::{Data, EncodedImage, Format};
+use wayfix_sensor_log::{EncodedImage, LogFormat, RecordData};
 
 use super::cml_drive::{Drive, frames_run, log_run, run_cml};
 
@@ -144,16 +144,16 @@ fn views_that_show_nothing_are_counted_and_passed_over() {
     let (scratch, drive) = (Scratch::new(), Drive::new());
     let mut records = drive.records();
     let images: Vec<usize> =
-        (0..records.len()).filter(|index| matches!(records[*index].data, Data::Image(_))).collect();
+        (0..records.len()).filter(|index| matches!(records[*index].data, RecordData::Image(_))).collect();
     let blank = |width: u32, grey: u8| {
         let pixels = vec![grey; 3 * width as usize * 20];
-        Data::Image(EncodedImage::png_rgb(width, 20, &pixels).unwrap())
+        RecordData::Image(EncodedImage::png_rgb(width, 20, &pixels).unwrap())
     };
     records[images[0]].data = blank(120, 90);
     records[images[50]].data = blank(120, 255);
     records[images[51]].data = blank(60, 90);
     let path = scratch.path("blank.mcap");
-    wayfix_sensor_log::write(&path, Format::Mcap, records).unwrap();
+    wayfix_sensor_log::write(&path, LogFormat::Mcap, records).unwrap();
     let outcome = log_run(&path, &[]);
     assert_eq!(outcome.event("record_refused"), 3, "{}", outcome.stderr);
     for why in ["blank view", "saturated view", "60 × 20"] {

@@ -8,10 +8,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use wayfix_estimation_traits::Pose2;
 use wayfix_scene_sim::{
-    indoors::{IndoorDrive, IndoorParams, Store, StoreParams, calibrated_robot},
-    random::Streams,
+    indoors::{IndoorDrive, IndoorParams, RetailStore, RetailStoreParams, calibrated_robot},
+    random::RandomStreams,
 };
-use wayfix_sensor_log::{Data, EncodedImage, Format, Record, Stamp};
+use wayfix_sensor_log::{EncodedImage, LogFormat, Record, RecordData, Stamp};
 
 pub(crate) const WORLD_SEED: u64 = 5;
 pub(crate) const LAPS: usize = 2;
@@ -24,10 +24,10 @@ pub(crate) struct Drive {
 impl Drive {
     pub(crate) fn new() -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(WORLD_SEED);
-        let building = Store::draw(StoreParams::area(), &mut rng).unwrap().building();
+        let building = RetailStore::draw(RetailStoreParams::area(), &mut rng).unwrap().building();
         let route = building.aisles().laps(LAPS, &mut rng).unwrap();
         let params = IndoorParams { drive: calibrated_robot(&mut rng), ..IndoorParams::default() };
-        let steps = IndoorDrive::new(&building, route, params, Streams::new(rng)).unwrap();
+        let steps = IndoorDrive::new(&building, route, params, RandomStreams::new(rng)).unwrap();
         let frame = |step: wayfix_scene_sim::indoors::IndoorStep| {
             let view = &step.view;
             let image = EncodedImage::png_rgb(view.width as u32, view.height as u32, &view.rgb).unwrap();
@@ -59,16 +59,16 @@ impl Drive {
         for (index, (image, pose, odometry)) in self.frames.iter().enumerate() {
             let stamp = Stamp::from_nanoseconds(500_000_000 * index as u64);
             let mut push = |data| records.push(Record { stamp, data });
-            push(Data::TruePose(*pose));
-            odometry.iter().for_each(|odometry| push(Data::OdometryIncrement(*odometry)));
-            push(Data::Image(image.clone()));
+            push(RecordData::TruePose(*pose));
+            odometry.iter().for_each(|odometry| push(RecordData::OdometryIncrement(*odometry)));
+            push(RecordData::Image(image.clone()));
         }
         records
     }
 
     pub(crate) fn log(&self, scratch: &Scratch) -> PathBuf {
         let path = scratch.path("area.mcap");
-        wayfix_sensor_log::write(&path, Format::Mcap, self.records()).unwrap();
+        wayfix_sensor_log::write(&path, LogFormat::Mcap, self.records()).unwrap();
         path
     }
 }

@@ -4,19 +4,20 @@
 use std::path::PathBuf;
 
 use crate::common::Scratch;
-use wayfix_sensor_log::{Data, Format, Stamp};
+use wayfix_sensor_log::{LogFormat, RecordData, Stamp};
 
 use super::cml_drive::{Drive, log_run};
 
 /// The log with odometry that comes `seconds` later than what the camera shows.
 fn with_late_odometry(drive: &Drive, scratch: &Scratch, seconds: f64) -> PathBuf {
     let mut records = drive.records();
-    for record in records.iter_mut().filter(|record| matches!(record.data, Data::OdometryIncrement(_))) {
+    for record in records.iter_mut().filter(|record| matches!(record.data, RecordData::OdometryIncrement(_)))
+    {
         record.stamp = Stamp::from_nanoseconds(record.stamp.nanoseconds() + (seconds * 1e9) as u64);
     }
     records.sort_by_key(|record| record.stamp);
     let path = scratch.path("late.mcap");
-    wayfix_sensor_log::write(&path, Format::Mcap, records).unwrap();
+    wayfix_sensor_log::write(&path, LogFormat::Mcap, records).unwrap();
     path
 }
 

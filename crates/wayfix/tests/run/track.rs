@@ -5,7 +5,7 @@
 use std::{ffi::OsStr, fmt::Write, fs, path::PathBuf};
 
 use crate::common::{Outcome, Scratch, wayfix};
-use wayfix_scene_sim::film::Film;
+use wayfix_scene_sim::film::SyntheticFilm;
 use wayfix_sensor_log::EncodedImage;
 
 const N_FRAMES: usize = 16;
@@ -19,7 +19,7 @@ struct Shot {
 impl Shot {
     fn new() -> Self {
         let (scratch, mut boxes) = (Scratch::new(), Vec::new());
-        let film = Film { n_frames: N_FRAMES, ..Film::named("head").unwrap() };
+        let film = SyntheticFilm { n_frames: N_FRAMES, ..SyntheticFilm::named("head").unwrap() };
         for (index, frame) in film.frames().unwrap().enumerate() {
             let png = EncodedImage::png_rgb(320, 240, &frame.picture.rgb).unwrap();
             scratch.file(&format!("frames/{index}.png"), &png.bytes);
@@ -191,7 +191,7 @@ fn a_start_that_makes_no_sense_is_refused() {
 #[test]
 fn a_mask_begins_where_its_pixels_are() {
     let shot = Shot::new();
-    let film = Film { n_frames: 1, ..Film::named("head").unwrap() };
+    let film = SyntheticFilm { n_frames: 1, ..SyntheticFilm::named("head").unwrap() };
     let first = film.frames().unwrap().next().unwrap();
     let bytes: Vec<u8> = first.target.pixels().iter().flat_map(|&on| [0, 0, u8::from(on)]).collect();
     shot.scratch.file("mask.png", EncodedImage::png_rgb(320, 240, &bytes).unwrap().bytes);

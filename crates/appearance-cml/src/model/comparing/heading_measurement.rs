@@ -1,5 +1,5 @@
 use super::super::interpolate::{KERNEL_WIDTH, groups, nearest_of, shares, turn_of};
-use super::super::{PlaceMatch, ViewScale};
+use super::super::{PlaceMatch, ViewDistanceScale};
 use crate::AppearanceError;
 
 /// Which way the robot looks, as the references say that lie around it.
@@ -28,7 +28,7 @@ impl HeadingMeasurement {
     /// When a place is not finite.
     pub(crate) fn of(
         place_matches: &[PlaceMatch],
-        scale: &ViewScale,
+        scale: &ViewDistanceScale,
     ) -> Result<Option<Self>, AppearanceError> {
         let groups = groups(place_matches, scale);
         let Some(group) = groups.first().map(|group| nearest_of(group)) else { return Ok(None) };

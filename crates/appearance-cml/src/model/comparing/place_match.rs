@@ -3,13 +3,13 @@ use wayfix_estimation_traits::{Manifold, Pose2};
 use wayfix_gaussian_core::Gaussian;
 
 use super::super::PlaceComponent;
-use crate::Match;
+use crate::ReferenceMatch;
 
 /// A place whose reference looks like the view: what it says of the pose, and how strongly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceMatch {
     /// Which reference, and by how much it differs.
-    pub matched: Match,
+    pub matched: ReferenceMatch,
     /// Which of its places.
     pub place: usize,
     /// Weight of the place in the map, in [0, 1].
@@ -22,7 +22,7 @@ pub struct PlaceMatch {
 
 impl PlaceMatch {
     pub(in crate::model) fn new(
-        matched: Match,
+        matched: ReferenceMatch,
         (place, component): (usize, &PlaceComponent),
         similarity: f64,
     ) -> Self {

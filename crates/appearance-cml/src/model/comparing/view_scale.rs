@@ -4,7 +4,7 @@ use crate::AppearanceError;
 
 /// How much two views differ whose places are so far apart along the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LagSample {
+pub struct ViewDifferenceSample {
     /// Length of the way between them, m.
     pub lag: f64,
     /// Distance of the views.
@@ -18,11 +18,11 @@ pub struct LagSample {
 /// taken, so that people who pass by do not stretch the scale.
 ///
 /// ```
-/// use wayfix_appearance_cml::{LagSample, ViewScale};
-/// let mut scale = ViewScale::default();
+/// use wayfix_appearance_cml::{ViewDifferenceSample, ViewDistanceScale};
+/// let mut scale = ViewDistanceScale::default();
 /// for _ in 0..20 {
-///     scale.add_near(LagSample { lag: 0.1, distance: 1.0 });
-///     scale.add_ahead(LagSample { lag: 0.5, distance: 1.5 });
+///     scale.add_near(ViewDifferenceSample { lag: 0.1, distance: 1.0 });
+///     scale.add_ahead(ViewDifferenceSample { lag: 0.5, distance: 1.5 });
 ///     scale.add_far(3.0);
 /// }
 /// assert!((scale.step() - 0.1).abs() < 1e-12);
@@ -31,9 +31,9 @@ pub struct LagSample {
 /// assert!(scale.match_limit(0.8) > 1.5 && scale.match_limit(0.8) < 3.0);
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct ViewScale {
-    near: VecDeque<LagSample>,
-    ahead: VecDeque<LagSample>,
+pub struct ViewDistanceScale {
+    near: VecDeque<ViewDifferenceSample>,
+    ahead: VecDeque<ViewDifferenceSample>,
     far: VecDeque<f64>,
     fitted: Fitted,
 }
@@ -55,12 +55,16 @@ const ENOUGH_FAR: usize = 10;
 /// Share of the far views that the sill lies under: places that look alike by chance.
 const SILL_QUANTILE: f64 = 0.1;
 
-impl ViewScale {
+impl ViewDistanceScale {
     /// A scale from its samples, as [`near`](Self::near), [`ahead`](Self::ahead) and [`far`](Self::far) give them.
     ///
     /// # Errors
     /// When one is not finite or negative.
-    pub fn from_parts(near: &[LagSample], ahead: &[LagSample], far: &[f64]) -> Result<Self, AppearanceError> {
+    pub fn from_parts(
+        near: &[ViewDifferenceSample],
+        ahead: &[ViewDifferenceSample],
+        far: &[f64],
+    ) -> Result<Self, AppearanceError> {
         let mut scale = Self::default();
         for (samples, kept) in [(near, &mut scale.near), (ahead, &mut scale.ahead)] {
             for sample in samples {
@@ -78,7 +82,7 @@ impl ViewScale {
     }
 
     /// Takes in two views one step apart; one that is not finite is passed over.
-    pub fn add_near(&mut self, sample: LagSample) {
+    pub fn add_near(&mut self, sample: ViewDifferenceSample) {
         if sample.lag.is_finite() && sample.distance.is_finite() {
             keep(&mut self.near, sample);
             self.fit();
@@ -86,7 +90,7 @@ impl ViewScale {
     }
 
     /// Takes in two views a few steps apart; one that is not finite is passed over.
-    pub fn add_ahead(&mut self, sample: LagSample) {
+    pub fn add_ahead(&mut self, sample: ViewDifferenceSample) {
         if sample.lag.is_finite() && sample.distance.is_finite() {
             keep(&mut self.ahead, sample);
             self.fit();
@@ -102,11 +106,11 @@ impl ViewScale {
     }
 
     /// Samples one step apart, the oldest first.
-    pub fn near(&self) -> impl Iterator<Item = LagSample> {
+    pub fn near(&self) -> impl Iterator<Item = ViewDifferenceSample> {
         self.near.iter().copied()
     }
     /// Samples a few steps apart, the oldest first.
-    pub fn ahead(&self) -> impl Iterator<Item = LagSample> {
+    pub fn ahead(&self) -> impl Iterator<Item = ViewDifferenceSample> {
         self.ahead.iter().copied()
     }
     /// Distances to references of far places, the oldest first.
@@ -194,13 +198,13 @@ mod tests {
 
     #[test]
     fn nothing_matches_before_two_views_are_known() {
-        let scale = ViewScale::default();
+        let scale = ViewDistanceScale::default();
         assert_eq!((scale.match_limit(0.5), scale.step(), scale.to_meters(1.0)), (0.0, 0.0, 0.0));
     }
 
     #[test]
     fn strange_is_what_one_far_place_of_ten_is_not() {
-        let mut scale = ViewScale::default();
+        let mut scale = ViewDistanceScale::default();
         assert_eq!(scale.distinct_view_distance(), f64::INFINITY);
         for k in 0..100 {
             scale.add_far(1.0 + 0.002 * f64::from(k));
@@ -210,11 +214,11 @@ mod tests {
 
     #[test]
     fn people_and_bad_numbers_do_not_stretch_the_scale() {
-        let mut scale = ViewScale::default();
+        let mut scale = ViewDistanceScale::default();
         for k in 0..100 {
             // Somebody stands before the camera in every fourth view.
-            scale.add_near(LagSample { lag: 0.1, distance: if k % 4 == 0 { 9.0 } else { 0.3 } });
-            scale.add_near(LagSample { lag: f64::NAN, distance: 0.3 });
+            scale.add_near(ViewDifferenceSample { lag: 0.1, distance: if k % 4 == 0 { 9.0 } else { 0.3 } });
+            scale.add_near(ViewDifferenceSample { lag: f64::NAN, distance: 0.3 });
             scale.add_far(f64::INFINITY);
         }
         assert_eq!((scale.step(), scale.step_distance()), (0.1, 0.3));
@@ -223,17 +227,17 @@ mod tests {
 
     #[test]
     fn a_scale_is_its_samples() {
-        let mut scale = ViewScale::default();
+        let mut scale = ViewDistanceScale::default();
         for k in 0..300 {
             let x = f64::from(k % 7);
-            scale.add_near(LagSample { lag: 0.1, distance: 0.3 + 0.01 * x });
-            scale.add_ahead(LagSample { lag: 0.4, distance: 0.6 + 0.01 * x });
+            scale.add_near(ViewDifferenceSample { lag: 0.1, distance: 0.3 + 0.01 * x });
+            scale.add_ahead(ViewDifferenceSample { lag: 0.4, distance: 0.6 + 0.01 * x });
             scale.add_far(1.0 + 0.01 * x);
         }
         let (near, ahead, far): (Vec<_>, Vec<_>, Vec<_>) =
             (scale.near().collect(), scale.ahead().collect(), scale.far().collect());
         assert_eq!(near.len(), KEPT, "the oldest make room");
-        assert_eq!(ViewScale::from_parts(&near, &ahead, &far), Ok(scale.clone()));
-        assert!(ViewScale::from_parts(&near, &ahead, &[f64::NAN]).is_err());
+        assert_eq!(ViewDistanceScale::from_parts(&near, &ahead, &far), Ok(scale.clone()));
+        assert!(ViewDistanceScale::from_parts(&near, &ahead, &[f64::NAN]).is_err());
     }
 }

@@ -2,11 +2,11 @@ use std::sync::Arc;
 
 use nalgebra::{DVector, Vector3};
 use wayfix_gaussian_core::{Gaussian, GaussianError, moment_matched};
-use wayfix_kalman::{Gpb2, Imm, MarkovChain, Sequential};
+use wayfix_kalman::{Gpb2Filter, ImmFilter, MarkovChain, SequentialForm};
 
 use super::{
     super::filter::check_seconds,
-    LightTracker,
+    LightingTracker,
     models::{LightMotion, seen},
 };
 use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter};
@@ -16,15 +16,15 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFil
 /// Its models share one state, so an inactive light of the bank cannot keep its own. They differ in the motion of the state: it drifts, or
 /// it switches to one of the bank's lights and restarts at its prior. [Blom & Bar-Shalom 1988]
 #[derive(Clone)]
-pub struct ImmTracker {
-    filter: Imm<LightMotion, Sequential>,
+pub struct ImmLightingTracker {
+    filter: ImmFilter<LightMotion, SequentialForm>,
     noise: Noise,
 }
 
-/// As [`ImmTracker`], with mixing after the next image, so that two images determine a switch. [Bar-Shalom et al. 2001, §11.6.5]
+/// As [`ImmLightingTracker`], with mixing after the next image, so that two images determine a switch. [Bar-Shalom et al. 2001, §11.6.5]
 #[derive(Clone)]
-pub struct Gpb2Tracker {
-    filter: Gpb2<LightMotion, Sequential>,
+pub struct Gpb2LightingTracker {
+    filter: Gpb2Filter<LightMotion, SequentialForm>,
     noise: Noise,
 }
 
@@ -35,14 +35,14 @@ struct Noise {
     pixel: Vector3<f64>,
 }
 
-impl ImmTracker {
+impl ImmLightingTracker {
     /// Starts from the mixture of the bank's priors. Noise and drift are those of the first member; the probability of a switch is the chain's
     /// mean.
     /// # Errors
     /// Returns an error if the priors have no common Gaussian.
     pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
-        Ok(Self { filter: Imm::new(motions, chain, Sequential, &start)?, noise })
+        Ok(Self { filter: ImmFilter::new(motions, chain, SequentialForm, &start)?, noise })
     }
 
     /// Probabilities that the light drifts, and that it has just switched to each member of the bank.
@@ -51,17 +51,17 @@ impl ImmTracker {
     }
 }
 
-impl Gpb2Tracker {
-    /// As [`ImmTracker::new`].
+impl Gpb2LightingTracker {
+    /// As [`ImmLightingTracker::new`].
     ///
     /// # Errors
     /// Returns an error if the priors have no common Gaussian.
     pub fn new(bank: &LightingBank) -> Result<Self, ColorModelError> {
         let Models { motions, chain, start, noise } = Models::of(bank)?;
-        Ok(Self { filter: Gpb2::new(motions, chain, Sequential, &start)?, noise })
+        Ok(Self { filter: Gpb2Filter::new(motions, chain, SequentialForm, &start)?, noise })
     }
 
-    /// As [`ImmTracker::probabilities`].
+    /// As [`ImmLightingTracker::probabilities`].
     pub fn probabilities(&self) -> Vec<f64> {
         self.filter.model_probabilities()
     }
@@ -80,7 +80,7 @@ impl Models {
         let start = moment_matched(bank.chain().initial(), &priors).map_err(GaussianError::from)?;
         let params =
             bank.members().first().map(|light: &Arc<LightingFilter>| *light.params()).unwrap_or_default();
-        let drift = LightMotion::Drift { drift: params.drift, prior: Arc::new(start.clone()) };
+        let drift = LightMotion::Drift { drift: params.lighting_drift, prior: Arc::new(start.clone()) };
         let switches = priors.into_iter().map(|prior| LightMotion::Switch { to: Arc::new(prior) });
         let row = switching(bank.chain());
         Ok(Self {
@@ -88,7 +88,11 @@ impl Models {
             // The probability of a switch does not depend on the last model.
             chain: MarkovChain::new(&vec![row.clone(); row.len()], &row)?,
             start,
-            noise: Noise { n_colors: bank.n_colors(), mean: params.mean_noise, pixel: params.pixel_noise },
+            noise: Noise {
+                n_colors: bank.n_colors(),
+                mean: params.mean_color_variance,
+                pixel: params.pixel_color_variance,
+            },
         })
     }
 }
@@ -104,7 +108,7 @@ fn switching(chain: &MarkovChain) -> Vec<f64> {
 /// Both filters have the same calls, but no trait in common.
 macro_rules! light_tracker {
     ($tracker:ty) => {
-        impl LightTracker for $tracker {
+        impl LightingTracker for $tracker {
             fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
                 check_seconds(seconds)?;
                 Ok(self.filter.predict(&seconds)?)
@@ -126,5 +130,5 @@ macro_rules! light_tracker {
     };
 }
 
-light_tracker!(ImmTracker);
-light_tracker!(Gpb2Tracker);
+light_tracker!(ImmLightingTracker);
+light_tracker!(Gpb2LightingTracker);

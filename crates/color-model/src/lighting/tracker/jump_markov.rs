@@ -1,10 +1,10 @@
 use nalgebra::{DVector, Vector3};
 use wayfix_gaussian_core::Gaussian;
-use wayfix_kalman::{JumpMarkov, JumpMarkovParams, ModelBank, Sequential};
+use wayfix_kalman::{JumpMarkovFilter, JumpMarkovFilterParams, ModelBank, SequentialForm};
 
 use super::{
     super::filter::check_seconds,
-    LightTracker,
+    LightingTracker,
     models::{LightMotion, seen},
 };
 use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFilter};
@@ -13,15 +13,15 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFil
 /// histories of the active light, instead of particles that sample them.
 /// ```
 /// use nalgebra::{DMatrix, DVector, Vector3};
-/// use wayfix_color_model::{ColorMeans, JumpMarkovTracker, LightTracker, LightingBank, LightingFilter, LightingParams};
+/// use wayfix_color_model::{ColorMeans, JumpMarkovLightingTracker, LightingTracker, LightingBank, LightingFilter, LightingParams};
 /// use wayfix_gaussian_core::Gaussian;
-/// use wayfix_kalman::{JumpMarkovParams, MarkovChain};
+/// use wayfix_kalman::{JumpMarkovFilterParams, MarkovChain};
 /// let light = |y: f64| {
 ///     let prior = Gaussian::new(DVector::from_vec(vec![y, 128.0, 128.0]), DMatrix::identity(3, 3) * 100.0)?;
 ///     LightingFilter::new(prior, LightingParams::default())
 /// };
 /// let bank = LightingBank::new(vec![light(60.0)?, light(160.0)?], MarkovChain::sticky(2, 0.98)?)?;
-/// let mut tracker = JumpMarkovTracker::new(&bank, JumpMarkovParams::default())?;
+/// let mut tracker = JumpMarkovLightingTracker::new(&bank, JumpMarkovFilterParams::default())?;
 /// for y in [150.0, 151.0, 66.0] {
 ///     tracker.predict(0.04)?;
 ///     tracker.update(&ColorMeans::new([(Some(Vector3::new(y, 128.0, 128.0)), 500)]))?;
@@ -31,30 +31,31 @@ use crate::{ColorDensity, ColorMeans, ColorModelError, LightingBank, LightingFil
 /// # Ok::<(), wayfix_color_model::ColorModelError>(())
 /// ```
 #[derive(Clone)]
-pub struct JumpMarkovTracker {
-    filter: JumpMarkov<LightMotion, Sequential>,
+pub struct JumpMarkovLightingTracker {
+    filter: JumpMarkovFilter<LightMotion, SequentialForm>,
     n_colors: usize,
-    mean_noise: Vector3<f64>,
-    pixel_noise: Vector3<f64>,
+    mean_color_variance: Vector3<f64>,
+    pixel_color_variance: Vector3<f64>,
 }
 
-impl JumpMarkovTracker {
+impl JumpMarkovLightingTracker {
     /// Starts from the state of the bank's members. Noise is that of the first member.
     /// # Errors
     /// Returns an error if no history is to be kept.
-    pub fn new(bank: &LightingBank, params: JumpMarkovParams) -> Result<Self, ColorModelError> {
+    pub fn new(bank: &LightingBank, params: JumpMarkovFilterParams) -> Result<Self, ColorModelError> {
         let belief = |light: &LightingFilter| {
             Gaussian::from_parts_unchecked(light.mean().clone(), light.covariance().clone())
         };
         let beliefs: Vec<_> = bank.members().iter().map(|light| belief(light)).collect();
         let motions = bank.members().iter().map(|light| LightMotion::drift_of(light)).collect();
-        let models: ModelBank<LightMotion, Sequential> = ModelBank::new(motions, Sequential, &beliefs)?;
+        let models: ModelBank<LightMotion, SequentialForm> =
+            ModelBank::new(motions, SequentialForm, &beliefs)?;
         let noise = bank.members().first().map(|light| *light.params()).unwrap_or_default();
         Ok(Self {
-            filter: JumpMarkov::new(models, bank.chain().clone(), params)?,
+            filter: JumpMarkovFilter::new(models, bank.chain().clone(), params)?,
             n_colors: bank.n_colors(),
-            mean_noise: noise.mean_noise,
-            pixel_noise: noise.pixel_noise,
+            mean_color_variance: noise.mean_color_variance,
+            pixel_color_variance: noise.pixel_color_variance,
         })
     }
 
@@ -74,7 +75,7 @@ impl JumpMarkovTracker {
     }
 }
 
-impl LightTracker for JumpMarkovTracker {
+impl LightingTracker for JumpMarkovLightingTracker {
     fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         check_seconds(seconds)?;
         Ok(self.filter.predict(&seconds)?)
@@ -82,7 +83,7 @@ impl LightTracker for JumpMarkovTracker {
 
     fn update(&mut self, means: &ColorMeans) -> Result<(), ColorModelError> {
         means.check(self.n_colors)?;
-        if let Some((sensor, values)) = seen(means, &self.mean_noise)? {
+        if let Some((sensor, values)) = seen(means, &self.mean_color_variance)? {
             self.filter.update(&sensor, Some(&values))?;
         }
         Ok(())
@@ -90,6 +91,6 @@ impl LightTracker for JumpMarkovTracker {
 
     fn colors(&self) -> Result<Vec<ColorDensity>, ColorModelError> {
         let belief = self.estimate();
-        Ok(ColorDensity::all(belief.mean(), belief.covariance(), self.pixel_noise).collect())
+        Ok(ColorDensity::all(belief.mean(), belief.covariance(), self.pixel_color_variance).collect())
     }
 }

@@ -5,8 +5,8 @@ mod jump_markov;
 mod models;
 mod single;
 
-pub use interacting::{Gpb2Tracker, ImmTracker};
-pub use jump_markov::JumpMarkovTracker;
+pub use interacting::{Gpb2LightingTracker, ImmLightingTracker};
+pub use jump_markov::JumpMarkovLightingTracker;
 
 use super::{ColorDensity, ColorMeans};
 use crate::ColorModelError;
@@ -15,12 +15,12 @@ use crate::ColorModelError;
 /// | tracker | state | cost of an image |
 /// | --- | --- | --- |
 /// | [`LightingFilter`](super::LightingFilter) | one Gaussian for all lights | one update |
-/// | [`JumpMarkovTracker`] | a Gaussian for each light of the bank; one that comes back is known already | histories × members |
-/// | [`ImmTracker`] | one Gaussian a model, mixed: a switch starts from that light's prior again | members + 1 |
-/// | [`Gpb2Tracker`] | the same, mixed one image later | (members + 1)² |
+/// | [`JumpMarkovLightingTracker`] | a Gaussian for each light of the bank; one that comes back is known already | histories × members |
+/// | [`ImmLightingTracker`] | one Gaussian a model, mixed: a switch starts from that light's prior again | members + 1 |
+/// | [`Gpb2LightingTracker`] | the same, mixed one image later | (members + 1)² |
 ///
 /// **Laws**: a call that fails changes nothing; without images [`colors`](Self::colors) never become more certain.
-pub trait LightTracker {
+pub trait LightingTracker {
     /// Lets `seconds` pass.
     ///
     /// # Errors

@@ -7,21 +7,21 @@ use wayfix_estimation_traits::MotionModel;
 use wayfix_gaussian_core::Gaussian;
 use wayfix_kalman::LinearSensor;
 
-use super::super::Drift;
+use super::super::LightingDrift;
 use crate::{ColorMeans, ColorModelError, LightingFilter};
 
 /// Motion of the light over an interval (the control).
 #[derive(Clone, Debug)]
 pub(super) enum LightMotion {
     /// It drifts.
-    Drift { drift: Drift, prior: Arc<Gaussian<DVector<f64>>> },
+    Drift { drift: LightingDrift, prior: Arc<Gaussian<DVector<f64>>> },
     /// The light switches to another one and restarts at its prior.
     Switch { to: Arc<Gaussian<DVector<f64>>> },
 }
 
 impl LightMotion {
     pub(super) fn drift_of(filter: &LightingFilter) -> Self {
-        Self::Drift { drift: filter.params().drift, prior: Arc::new(filter.prior().clone()) }
+        Self::Drift { drift: filter.params().lighting_drift, prior: Arc::new(filter.prior().clone()) }
     }
 }
 
@@ -43,8 +43,8 @@ impl MotionModel for LightMotion {
     fn jacobian(&self, state: &DVector<f64>, seconds: &f64) -> DMatrix<f64> {
         let n = state.len();
         match self {
-            Self::Drift { drift: Drift::RandomWalk(_), .. } => DMatrix::identity(n, n),
-            Self::Drift { drift: Drift::TowardsPrior(time_constant), .. } => {
+            Self::Drift { drift: LightingDrift::RandomWalk(_), .. } => DMatrix::identity(n, n),
+            Self::Drift { drift: LightingDrift::TowardsPrior(time_constant), .. } => {
                 DMatrix::from_diagonal_element(n, n, (-seconds / time_constant).exp())
             }
             Self::Switch { .. } => DMatrix::zeros(n, n),

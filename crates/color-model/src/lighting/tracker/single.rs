@@ -1,8 +1,8 @@
-use super::LightTracker;
+use super::LightingTracker;
 use crate::{ColorDensity, ColorMeans, ColorModelError, LightingFilter};
 
 /// One Gaussian for whatever the light does.
-impl LightTracker for LightingFilter {
+impl LightingTracker for LightingFilter {
     fn predict(&mut self, seconds: f64) -> Result<(), ColorModelError> {
         LightingFilter::predict(self, seconds)
     }

@@ -1,6 +1,6 @@
 /// Scale of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scale {
+pub enum AxisScale {
     /// Equal differences, equal distances.
     #[default]
     Linear,
@@ -8,7 +8,7 @@ pub enum Scale {
     Log10,
 }
 
-impl Scale {
+impl AxisScale {
     /// Position on the scale; `None` if the value cannot be drawn.
     fn apply(self, value: f64) -> Option<f64> {
         let scaled = match self {
@@ -24,7 +24,7 @@ impl Scale {
 /// A range of numbers and how they are spaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::plot) struct Axis {
-    scale: Scale,
+    scale: AxisScale,
     /// Ends on the scale (logarithms for a logarithmic one).
     low: f64,
     high: f64,
@@ -34,7 +34,7 @@ impl Axis {
     /// The axis that covers every drawable value with `padding` (a share of the range) on both sides; `None` without values.
     pub(in crate::plot) fn covering(
         values: impl IntoIterator<Item = f64>,
-        scale: Scale,
+        scale: AxisScale,
         padding: f64,
     ) -> Option<Self> {
         let (low, high) = values
@@ -53,7 +53,7 @@ impl Axis {
 
     /// The linear axis from `low` to `high`, as they are.
     pub(in crate::plot) fn linear(low: f64, high: f64) -> Self {
-        Self { scale: Scale::Linear, low, high }
+        Self { scale: AxisScale::Linear, low, high }
     }
 
     /// Relative position of `value`: 0 at the low end, 1 at the high end; `None` if it cannot be drawn.
@@ -64,16 +64,16 @@ impl Axis {
     /// The values at both ends.
     pub(in crate::plot) fn ends(&self) -> (f64, f64) {
         match self.scale {
-            Scale::Linear => (self.low, self.high),
-            Scale::Log10 => (10f64.powf(self.low), 10f64.powf(self.high)),
+            AxisScale::Linear => (self.low, self.high),
+            AxisScale::Log10 => (10f64.powf(self.low), 10f64.powf(self.high)),
         }
     }
 
     /// About `count` round numbers on the axis with their labels.
     pub(in crate::plot) fn ticks(&self, count: usize) -> Vec<(f64, String)> {
         match self.scale {
-            Scale::Linear => self.linear_ticks(count),
-            Scale::Log10 => self.decade_ticks(count),
+            AxisScale::Linear => self.linear_ticks(count),
+            AxisScale::Log10 => self.decade_ticks(count),
         }
     }
 
@@ -146,7 +146,7 @@ mod tests {
     fn ticks_are_round_numbers_inside_the_axis() {
         assert_eq!(labels(Axis::linear(-0.31, 0.33), 5), ["−0.2", "0.0", "0.2"]);
         assert_eq!(labels(Axis::linear(3.0, 97.0), 5), ["20", "40", "60", "80"]);
-        let decades = Axis::covering([0.002, 30.0], Scale::Log10, 0.0).unwrap();
+        let decades = Axis::covering([0.002, 30.0], AxisScale::Log10, 0.0).unwrap();
         assert_eq!(labels(decades, 6), ["0.01", "0.1", "1", "10"]);
     }
 
@@ -159,7 +159,7 @@ mod tests {
             vec![1e149, -1e149],
             vec![f64::NAN, 2.0, f64::INFINITY],
         ] {
-            let axis = Axis::covering(values.iter().copied(), Scale::Linear, 0.05).unwrap();
+            let axis = Axis::covering(values.iter().copied(), AxisScale::Linear, 0.05).unwrap();
             let finite: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
             assert!(
                 finite.iter().all(|value| (0.0..=1.0).contains(&axis.fraction(*value).unwrap())),
@@ -167,7 +167,7 @@ mod tests {
             );
             assert!(!axis.ticks(5).is_empty(), "{finite:?}");
         }
-        assert_eq!(Axis::covering([f64::NAN], Scale::Linear, 0.1), None);
-        assert_eq!(Axis::covering([0.0, -3.0], Scale::Log10, 0.1), None);
+        assert_eq!(Axis::covering([f64::NAN], AxisScale::Linear, 0.1), None);
+        assert_eq!(Axis::covering([0.0, -3.0], AxisScale::Log10, 0.1), None);
     }
 }

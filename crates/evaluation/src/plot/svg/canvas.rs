@@ -5,7 +5,7 @@ use plotters::element::{Circle, PathElement, Polygon, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontDesc, FontFamily, FontStyle, ShapeStyle, TextStyle};
 
-use super::super::{Picture, PlotError};
+use super::super::{PlotError, SvgPlot};
 use super::decimate::Pixel;
 use super::ink::Ink;
 use super::markup::escape;
@@ -34,7 +34,7 @@ pub(in crate::plot) fn paint(
     alt: String,
     (width, height): (f64, f64),
     painter: impl FnOnce(&Brush) -> Result<(), PlotError>,
-) -> Result<Picture, PlotError> {
+) -> Result<SvgPlot, PlotError> {
     let mut svg = String::new();
     let size = ((width * UNITS_PER_PIXEL).round() as u32, (height * UNITS_PER_PIXEL).round() as u32);
     let brush = Brush { area: SVGBackend::with_string(&mut svg, size).into_drawing_area() };
@@ -43,7 +43,7 @@ pub(in crate::plot) fn paint(
     drop(brush);
     let (width, height) = (width.round() as u32, height.round() as u32);
     let svg = dress(&svg, (width, height), size, &alt);
-    Ok(Picture { title: title.to_owned(), alt, width, height, svg })
+    Ok(SvgPlot { title: title.to_owned(), alt, width, height, svg })
 }
 
 /// Replaces the root element and the colours of the backend's text, and removes repeated attributes.

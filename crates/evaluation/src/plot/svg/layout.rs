@@ -1,4 +1,4 @@
-use super::super::{Picture, PlotError};
+use super::super::{PlotError, SvgPlot};
 use super::axis::Axis;
 use super::canvas::{Anchor, paint};
 use super::ink::Ink;
@@ -39,7 +39,7 @@ impl Frame<'_> {
         self,
         plates: &[Plate],
         fill: impl Fn(usize, &Panel) -> Result<(), PlotError>,
-    ) -> Result<Picture, PlotError> {
+    ) -> Result<SvgPlot, PlotError> {
         let legend_height = self.legend.height(WIDTH - LEFT);
         let height = legend_height + plates.iter().map(|plate| HEADING + plate.height + FOOTING).sum::<f64>()
             - (plates.len().max(1) - 1) as f64 * (FOOTING - BETWEEN);
@@ -62,7 +62,7 @@ impl Frame<'_> {
 const BETWEEN: f64 = 24.0;
 
 /// A picture with the text "no data".
-pub(in crate::plot) fn no_data(title: &str) -> Result<Picture, PlotError> {
+pub(in crate::plot) fn no_data(title: &str) -> Result<SvgPlot, PlotError> {
     const HEIGHT: f64 = 120.0;
     paint(title, format!("{title}: no data"), (WIDTH, HEIGHT), |brush| {
         let (left, top, right, bottom) = (0.5, 0.5, WIDTH - 0.5, HEIGHT - 0.5);

@@ -3,7 +3,7 @@
 mod overview;
 mod run;
 
-use super::{Report, Suite};
+use super::{Report, ReportSuite};
 use crate::plot::{DARK_PALETTE, LIGHT_PALETTE, escape};
 
 /// The page.
@@ -30,7 +30,7 @@ const SCRIPT: &str = include_str!("page.js");
 const LIGHT_VERDICTS: &str = "--pass:#1b7a43;--fail:#b3261e;--fail-wash:#fbeae8";
 const DARK_VERDICTS: &str = "--pass:#63cb95;--fail:#ff8a80;--fail-wash:#3a1d1b";
 
-fn section(suite: &Suite, k: usize) -> String {
+fn section(suite: &ReportSuite, k: usize) -> String {
     let name = escape(&suite.name);
     let runs: String =
         suite.runs.iter().enumerate().map(|(n, run)| run::article(run, &anchor(k, Some(n)))).collect();
@@ -69,17 +69,17 @@ fn number_cell(value: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::{LinesPlot, Series};
-    use crate::report::{Metric, Run};
+    use crate::plot::{LinesPlot, PlotSeries};
+    use crate::report::{Metric, ReportRun};
 
     fn hostile() -> Report {
         let evil = "</script><script>alert(\"1\")</script>&<img src=x onerror='x'>";
         let plot = LinesPlot {
             title: evil.to_owned(),
-            series: vec![Series::new(evil, vec![(0.0, 1.0), (1.0, 2.0)])],
+            series: vec![PlotSeries::new(evil, vec![(0.0, 1.0), (1.0, 2.0)])],
             ..Default::default()
         };
-        let run = Run {
+        let run = ReportRun {
             name: evil.to_owned(),
             metrics: vec![Metric::new(evil, f64::NAN, evil).at_most(1.0).peer(evil, 2.0).bound_from(evil)],
             events: [(evil.to_owned(), 1)].into(),
@@ -88,9 +88,9 @@ mod tests {
             log: Some("javascript:alert(1)\" onclick=\"x".to_owned()),
             layout: Some("javascript:alert(1)\" onclick=\"x".to_owned()),
             error: Some(evil.to_owned()),
-            ..Run::default()
+            ..ReportRun::default()
         };
-        let suite = Suite { name: evil.to_owned(), runs: vec![run.clone(), run] };
+        let suite = ReportSuite { name: evil.to_owned(), runs: vec![run.clone(), run] };
         Report { suites: vec![suite], commit: Some(evil.to_owned()), ..Report::default() }
     }
 

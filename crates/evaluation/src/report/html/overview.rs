@@ -1,5 +1,5 @@
 use super::super::number::duration;
-use super::super::{Metric, Report, Run, Suite, Tally};
+use super::super::{Metric, PassFailCount, Report, ReportRun, ReportSuite};
 use super::{anchor, number_cell, table};
 use crate::plot::escape;
 
@@ -23,19 +23,19 @@ pub(super) fn header(report: &Report) -> String {
 }
 
 /// The runs of a suite side by side, one column a metric; empty for a single run.
-pub(super) fn comparison(suite: &Suite, k: usize) -> String {
+pub(super) fn comparison(suite: &ReportSuite, k: usize) -> String {
     if suite.runs.len() < 2 {
         return String::new();
     }
     let mut names: Vec<&str> = Vec::new();
-    for metric in suite.runs.iter().flat_map(Run::all_metrics) {
+    for metric in suite.runs.iter().flat_map(ReportRun::all_metrics) {
         if !names.contains(&metric.name.as_str()) {
             names.push(&metric.name);
         }
     }
     let heads: Vec<(&str, bool)> =
         std::iter::once(("run", false)).chain(names.iter().map(|name| (*name, true))).collect();
-    let row = |(n, run): (usize, &Run)| {
+    let row = |(n, run): (usize, &ReportRun)| {
         let cells: String = names
             .iter()
             .map(|name| value_cell(run.all_metrics().find(|metric| metric.name == *name)))
@@ -46,8 +46,8 @@ pub(super) fn comparison(suite: &Suite, k: usize) -> String {
     table(&format!("{}: all runs", suite.name), &heads, &rows)
 }
 
-fn verdict(tally: Tally) -> String {
-    let Tally { passed, failed } = tally;
+fn verdict(tally: PassFailCount) -> String {
+    let PassFailCount { passed, failed } = tally;
     let (class, words) = match (passed, failed) {
         (0, 0) => ("open", "No figure has a bound".to_owned()),
         (_, 0) => ("pass", format!("All {passed} bounded figures are within their bounds")),
@@ -57,8 +57,8 @@ fn verdict(tally: Tally) -> String {
 }
 
 fn contents(report: &Report) -> String {
-    let row = |(k, n, suite, run): (usize, usize, &Suite, &Run)| {
-        let Tally { passed, failed } = run.tally();
+    let row = |(k, n, suite, run): (usize, usize, &ReportSuite, &ReportRun)| {
+        let PassFailCount { passed, failed } = run.tally();
         let class = if failed > 0 { " class=\"failed\"" } else { "" };
         let counts: String = [passed, failed].map(|count| number_cell(Some(count as f64))).concat();
         let time =
@@ -77,7 +77,7 @@ fn contents(report: &Report) -> String {
     if rows.is_empty() { String::new() } else { table("Runs", &heads, &rows) }
 }
 
-fn run_head(run: &Run, anchor: &str) -> String {
+fn run_head(run: &ReportRun, anchor: &str) -> String {
     format!("<th scope=\"row\"><a href=\"#{anchor}\">{}</a></th>", escape(&run.name))
 }
 

@@ -1,12 +1,12 @@
 use std::fmt::Write as _;
 
 use super::super::number::{duration, significant};
-use super::super::{Metric, Run, Spread};
+use super::super::{ConfidenceInterval, Metric, ReportRun};
 use super::{number_cell, table};
-use crate::plot::{Picture, escape};
+use crate::plot::{SvgPlot, escape};
 
 /// One run: pictures, figures, events, log.
-pub(super) fn article(run: &Run, anchor: &str) -> String {
+pub(super) fn article(run: &ReportRun, anchor: &str) -> String {
     let figures: String = run.figures.iter().filter(|picture| !picture.svg.is_empty()).map(figure).collect();
     let figures =
         if figures.is_empty() { figures } else { format!("<div class=\"figures\">\n{figures}</div>\n") };
@@ -21,11 +21,11 @@ pub(super) fn article(run: &Run, anchor: &str) -> String {
     )
 }
 
-fn figure(picture: &Picture) -> String {
+fn figure(picture: &SvgPlot) -> String {
     format!("<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n", escape(&picture.title), picture.svg)
 }
 
-fn remarks(run: &Run) -> String {
+fn remarks(run: &ReportRun) -> String {
     let error = run
         .error
         .iter()
@@ -37,7 +37,7 @@ fn remarks(run: &Run) -> String {
 }
 
 /// The columns for bounds, paper and peers appear only if at least one row has a value.
-fn metrics(run: &Run) -> String {
+fn metrics(run: &ReportRun) -> String {
     let heads = [
         ("figure", false),
         ("ours", true),
@@ -83,7 +83,7 @@ fn comparison(metric: &Metric) -> String {
 fn value_cell(metric: &Metric) -> String {
     let cell = number_cell(Some(metric.value));
     match metric.spread {
-        Some(Spread { half_width, n }) => {
+        Some(ConfidenceInterval { half_width, n }) => {
             let spread = format!(" <small>± {} of {n}</small></td>", significant(half_width));
             cell.replacen("</td>", &spread, 1)
         }
@@ -101,7 +101,7 @@ fn peer_cell(metric: &Metric) -> String {
     )
 }
 
-fn events(run: &Run) -> String {
+fn events(run: &ReportRun) -> String {
     let mut rows = String::new();
     for (name, count) in &run.events {
         let _ = writeln!(
@@ -118,7 +118,7 @@ fn events(run: &Run) -> String {
     }
 }
 
-fn log_link(run: &Run) -> String {
+fn log_link(run: &ReportRun) -> String {
     let file = |path: &String| format!("<a href=\"{}\" download>{}</a>", as_reference(path), escape(path));
     let Some(log) = &run.log else { return String::new() };
     let layout = run.layout.as_ref().map(|layout| {

@@ -1,9 +1,9 @@
 use anyhow::Result;
 use serde::Deserialize;
 
-use super::super::Job;
-use crate::cml::{self as experiments, Setup};
-use wayfix_evaluation::report::Run;
+use super::super::PlannedJob;
+use crate::cml::{self as experiments, CmlExperimentSetup};
+use wayfix_evaluation::report::ReportRun;
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -11,9 +11,9 @@ use wayfix_evaluation::report::Run;
 struct Settings {
     experiment: Experiment,
     /// Size of the full experiment.
-    full: Setup,
+    full: CmlExperimentSetup,
     /// The same with `--quick`, where that is something else.
-    quick: Option<Setup>,
+    quick: Option<CmlExperimentSetup>,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -40,7 +40,7 @@ enum Experiment {
 }
 
 /// An experiment with the localizer.
-pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
     let setup = settings.quick.filter(|_| job.options.quick).unwrap_or(settings.full);
     let experiment = match settings.experiment {

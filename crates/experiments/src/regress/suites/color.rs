@@ -4,14 +4,14 @@ use crate::color as experiments;
 use anyhow::Result;
 use serde::Deserialize;
 use wayfix_color_map::ColorMap;
-use wayfix_scene_sim::{Scenario, ScenarioParams, league::Lighting};
+use wayfix_scene_sim::{Scenario, ScenarioParams, league::LampSetting};
 use wayfix_sensor_log::{OpenOptions, Record};
 
-use super::super::Job;
-use wayfix_evaluation::report::Run;
+use super::super::PlannedJob;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     color::{self, ColorEstimateLog, ColorSystemParams, ParticleFilm, priors},
-    system::{DriveStep, System},
+    system::{RunStep, System},
 };
 
 /// Settings of a run.
@@ -77,7 +77,7 @@ fn ten() -> u64 {
 }
 
 /// An experiment with the localizer.
-pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
     if let Experiment::Venues = settings.experiment {
         return crate::venues::run(job.log()?);
@@ -100,15 +100,17 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
         }
         Experiment::GlobalStart => Ok(experiments::global_start(seeds, &map, &bank, &params)?.report()?),
         Experiment::Kidnapped => Ok(experiments::kidnapped(seeds, &map, &bank, &params)?.report()?),
-        Experiment::OtherHallsDark => experiments::other_halls(seeds, Lighting::Dark, &map, &bank, &params),
+        Experiment::OtherHallsDark => {
+            experiments::other_halls(seeds, LampSetting::Dark, &map, &bank, &params)
+        }
         Experiment::OtherHallsBright => {
-            experiments::other_halls(seeds, Lighting::Bright, &map, &bank, &params)
+            experiments::other_halls(seeds, LampSetting::Bright, &map, &bank, &params)
         }
         Experiment::WithheldHallsDark => {
-            experiments::withheld_in_halls(seeds, Lighting::Dark, &map, &learned, &params)
+            experiments::withheld_in_halls(seeds, LampSetting::Dark, &map, &learned, &params)
         }
         Experiment::WithheldHallsBright => {
-            experiments::withheld_in_halls(seeds, Lighting::Bright, &map, &learned, &params)
+            experiments::withheld_in_halls(seeds, LampSetting::Bright, &map, &learned, &params)
         }
         Experiment::FrameTime => experiments::frame_time(&records(job)?, &map, &bank, &params, seed),
         Experiment::Venues => crate::venues::run(job.log()?),
@@ -117,7 +119,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
 
 impl Settings {
     /// Seeds disjoint from those of the stored logs and of the training venues.
-    fn seeds(&self, job: &Job<'_>) -> Range<u64> {
+    fn seeds(&self, job: &PlannedJob<'_>) -> Range<u64> {
         const FIRST: u64 = 10_000;
         let n = if job.options.quick { self.n_seeds_quick } else { self.n_seeds };
         let first = FIRST + 1000 * job.options.seed;
@@ -125,24 +127,24 @@ impl Settings {
     }
 }
 
-fn records(job: &Job<'_>) -> Result<Vec<Record>> {
+fn records(job: &PlannedJob<'_>) -> Result<Vec<Record>> {
     Ok(wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all().0)
 }
 
 /// The frames at which the light of a stored log changes.
-fn switches(job: &Job<'_>) -> Vec<usize> {
+fn switches(job: &PlannedJob<'_>) -> Vec<usize> {
     let name = job.planned.log.as_ref().and_then(|log| log.file_stem()).and_then(|stem| stem.to_str());
     match name.and_then(|name| Scenario::named(name).ok()).map(|scenario| scenario.params) {
         Some(ScenarioParams::League(drive)) => {
-            drive.lights.iter().map(|(frame, _)| *frame).filter(|frame| *frame > 0).collect()
+            drive.lamp_settings.iter().map(|(frame, _)| *frame).filter(|frame| *frame > 0).collect()
         }
         _ => Vec::new(),
     }
 }
 
-fn localize(job: &Job<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Result<Run> {
+fn localize(job: &PlannedJob<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Result<ReportRun> {
     let log = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?;
-    let (name, path) = job.estimates();
+    let (name, path) = job.estimates_file();
     let mut estimates = ColorEstimateLog::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let bank = priors::bank(&priors::built_in()?, params)?;
@@ -154,17 +156,17 @@ fn localize(job: &Job<'_>, map: Arc<ColorMap>, params: &ColorSystemParams) -> Re
         params,
         None,
         job.options.seed,
-        |DriveStep { system, record, .. }| {
+        |RunStep { system, record, .. }| {
             estimates.observe(record, system);
             particles.observe(system);
         },
     )?;
     estimates.finish()?;
     run.system.events().add("log_problem", read.n_problems());
-    let mut figures = color::pictures(&run)?;
+    let mut figures = color::plots(&run)?;
     figures.push(particles.draw(&run)?);
     figures.push(color::film(&mut run, &records, FILM_FRAMES)?);
-    Ok(Run { log: Some(name), figures, ..color::summarize(&mut run) })
+    Ok(ReportRun { log: Some(name), figures, ..color::summarize(&mut run) })
 }
 
 /// Frames of the film strip.

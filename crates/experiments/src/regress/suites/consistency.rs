@@ -2,12 +2,12 @@ use anyhow::Result;
 use serde::Deserialize;
 use wayfix_scene_sim::monobot::MonobotParams;
 
-use super::super::Job;
+use super::super::PlannedJob;
 use crate::{
-    consistency::{self, Laps},
-    monobot::{self, Reference},
+    consistency::{self, CorridorLaps},
+    monobot::{self, WorldReference},
 };
-use wayfix_evaluation::report::{Metric, Run};
+use wayfix_evaluation::report::{Metric, ReportRun};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -17,7 +17,7 @@ enum Settings {
     Fisher { n_landmarks: Vec<u32>, n_steps: usize },
     /// Many drives with one kind of reference.
     Monobot {
-        reference: Reference,
+        reference: WorldReference,
         n_runs: u64,
         #[serde(flatten)]
         noise: Noise,
@@ -30,7 +30,7 @@ enum Settings {
         noise: Noise,
     },
     /// Laps of a loop in the plane, through all kinds of filters.
-    Laps { n_runs: u32, n_runs_quick: u32, laps: Laps },
+    Laps { n_runs: u32, n_runs_quick: u32, laps: CorridorLaps },
 }
 
 /// Noise of the monobot: the paper states none.
@@ -42,13 +42,13 @@ struct Noise {
 }
 
 /// The paper's one-dimensional experiments, and laps in the plane.
-pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     match job.planned.settings()? {
         Settings::Fisher { n_landmarks, n_steps } => fisher(&n_landmarks, n_steps),
         Settings::Monobot { reference, n_runs, noise } => {
             let all = monobot::monte_carlo(&noise.params(1), reference, n_runs, job.options.seed)?;
-            let figures = all.drives.first().map(monobot::pictures).transpose()?.unwrap_or_default();
-            Ok(Run { metrics: all.metrics(), figures, ..Run::default() })
+            let figures = all.drives.first().map(monobot::plots).transpose()?.unwrap_or_default();
+            Ok(ReportRun { metrics: all.metrics(), figures, ..ReportRun::default() })
         }
         Settings::Laps { n_runs, n_runs_quick, laps } => {
             run_laps(job, &laps, if job.options.quick { n_runs_quick } else { n_runs })
@@ -57,7 +57,7 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     }
 }
 
-fn fisher(n_landmarks: &[u32], n_steps: usize) -> Result<Run> {
+fn fisher(n_landmarks: &[u32], n_steps: usize) -> Result<ReportRun> {
     let mut metrics = Vec::new();
     for n in n_landmarks {
         let entry = monobot::first_entry(*n, n_steps)?.last().copied().unwrap_or(f64::NAN);
@@ -69,28 +69,32 @@ fn fisher(n_landmarks: &[u32], n_steps: usize) -> Result<Run> {
             "",
         ));
     }
-    Ok(Run { metrics, figures: vec![monobot::fisher_picture(n_landmarks, n_steps)?], ..Run::default() })
+    Ok(ReportRun {
+        metrics,
+        figures: vec![monobot::fisher_plot(n_landmarks, n_steps)?],
+        ..ReportRun::default()
+    })
 }
 
-fn landmarks(job: &Job<'_>, n_landmarks: &[usize], n_runs: u64, noise: Noise) -> Result<Run> {
+fn landmarks(job: &PlannedJob<'_>, n_landmarks: &[usize], n_runs: u64, noise: Noise) -> Result<ReportRun> {
     let mut metrics: Vec<Metric> = Vec::new();
     for n in n_landmarks {
-        let all = monobot::monte_carlo(&noise.params(*n), Reference::None, n_runs, job.options.seed)?;
+        let all = monobot::monte_carlo(&noise.params(*n), WorldReference::None, n_runs, job.options.seed)?;
         metrics.push(Metric::new(format!("end_landmark_rms_m_n{n}"), all.end_rms(), "m"));
     }
     let fall = metrics.first().zip(metrics.last()).map_or(f64::NAN, |(few, many)| few.value / many.value);
     metrics.push(Metric::new("landmark_rms_ratio", fall, ""));
-    Ok(Run { metrics, ..Run::default() })
+    Ok(ReportRun { metrics, ..ReportRun::default() })
 }
 
-fn run_laps(job: &Job<'_>, laps: &Laps, n_runs: u32) -> Result<Run> {
+fn run_laps(job: &PlannedJob<'_>, laps: &CorridorLaps, n_runs: u32) -> Result<ReportRun> {
     let all = consistency::monte_carlo(laps, n_runs, job.options.seed)?;
     let note = format!(
         "{n_runs} logs; a consistent filter's average NEES is in {:.2} to {:.2} at any one look, and in {:.2} to {:.2} at all looks, with 95 %.",
         all.band.low, all.band.high, all.whole_run_band.low, all.whole_run_band.high
     );
     let figures = vec![consistency::picture(&all)?];
-    Ok(Run { metrics: all.metrics(), figures, notes: vec![note], ..Run::default() })
+    Ok(ReportRun { metrics: all.metrics(), figures, notes: vec![note], ..ReportRun::default() })
 }
 
 impl Noise {

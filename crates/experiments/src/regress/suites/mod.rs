@@ -10,11 +10,11 @@ mod views;
 
 use anyhow::{Context, Result};
 
-use super::Job;
-use wayfix_evaluation::report::Run;
+use super::PlannedJob;
+use wayfix_evaluation::report::ReportRun;
 
 /// Does one run.
-pub(super) type Runner = fn(&Job<'_>) -> Result<Run>;
+pub(super) type Runner = fn(&PlannedJob<'_>) -> Result<ReportRun>;
 
 const SUITES: [(&str, Runner); 7] = [
     ("cml", cml::run),

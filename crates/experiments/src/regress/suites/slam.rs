@@ -4,12 +4,12 @@ use anyhow::Result;
 use serde::Deserialize;
 use wayfix_sensor_log::{OpenOptions, read_relations};
 
-use super::super::Job;
-use wayfix_evaluation::report::Run;
+use super::super::PlannedJob;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
-    points::{self, PointSlamParams, PointSystem, Profile},
+    points::{self, PointSlamParams, PointSystem, RobotProfile},
     slam::{AssociationRule, SlamEstimateLog},
-    system::DriveStep,
+    system::RunStep,
     walls::{self, WallSlamParams},
 };
 
@@ -22,7 +22,7 @@ struct Settings {
     /// Data association.
     association: Option<AssociationRule>,
     /// The robot profile, if it differs from that of the log's format.
-    profile: Option<Profile>,
+    profile: Option<RobotProfile>,
     /// A file of parameters, relative to the folder of the plan.
     params: Option<PathBuf>,
     /// Whether the landmarks are walls in laser scans.
@@ -33,33 +33,33 @@ struct Settings {
 }
 
 /// A log through EKF-SLAM.
-pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
     if settings.walls {
         return with_walls(job, &settings);
     }
     let options = OpenOptions { robot: settings.robot, ..OpenOptions::default() };
     let log = wayfix_sensor_log::open(job.log()?, &options)?;
-    let profile = settings.profile.unwrap_or(Profile::of_log(log.meta()));
+    let profile = settings.profile.unwrap_or(RobotProfile::of_log(log.meta()));
     let mut params = match &settings.params {
         Some(file) => PointSlamParams::from_toml(&job.read(file)?, profile)?,
         None => PointSlamParams::of(profile),
     };
     params.association = settings.association.or(params.association);
 
-    let (name, path) = job.estimates();
+    let (name, path) = job.estimates_file();
     let mut estimates = SlamEstimateLog::create(&path, log.meta().first_format())?;
     let (records, read) = log.read_all();
     let observe =
-        |DriveStep { system, record, .. }: DriveStep<'_, PointSystem>| estimates.observe(record, system);
+        |RunStep { system, record, .. }: RunStep<'_, PointSystem>| estimates.observe(record, system);
     let mut slam = points::run(&records, &params, observe)?;
     estimates.finish()?;
     slam.events().add("log_problem", read.n_problems());
-    Ok(Run { log: Some(name), figures: points::pictures(&slam)?, ..points::summarize(&mut slam) })
+    Ok(ReportRun { log: Some(name), figures: points::plots(&slam)?, ..points::summarize(&mut slam) })
 }
 
 /// A log of laser scans through EKF-SLAM with walls.
-fn with_walls(job: &Job<'_>, settings: &Settings) -> Result<Run> {
+fn with_walls(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let params = match &settings.params {
         Some(file) => WallSlamParams::from_toml(&job.read(file)?)?,
         None => WallSlamParams::default(),
@@ -67,7 +67,7 @@ fn with_walls(job: &Job<'_>, settings: &Settings) -> Result<Run> {
     let (records, read) = wayfix_sensor_log::open(job.log()?, &OpenOptions::default())?.read_all();
     let mut slam = walls::run(&records, &params, |_| ())?;
     slam.events().add("log_problem", read.n_problems());
-    let mut run = Run { figures: walls::pictures(&slam)?, ..walls::summarize(&mut slam) };
+    let mut run = ReportRun { figures: walls::plots(&slam)?, ..walls::summarize(&mut slam) };
     if let Some(relations) = &settings.relations {
         let (relations, _) = read_relations(job.recording(relations)?)?;
         run.metrics.extend(walls::relation_metrics(&slam, &relations));

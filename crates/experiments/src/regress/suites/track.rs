@@ -3,12 +3,14 @@ use std::path::PathBuf;
 use crate::films;
 use anyhow::{Context, Result};
 use serde::Deserialize;
-use wayfix_scene_sim::film::{Film, Incident};
-use wayfix_sensor_log::{Format, OpenOptions};
+use wayfix_scene_sim::film::{OcclusionEvent, SyntheticFilm};
+use wayfix_sensor_log::{LogFormat, OpenOptions};
 
-use super::super::Job;
-use wayfix_evaluation::report::Run;
-use wayfix_systems::track::{self, Method, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes};
+use super::super::PlannedJob;
+use wayfix_evaluation::report::ReportRun;
+use wayfix_systems::track::{
+    self, TrackLog, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
+};
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -27,7 +29,7 @@ struct Settings {
     #[serde(default = "fifty")]
     n_frames_quick: usize,
     /// The trackers.
-    methods: Vec<Method>,
+    methods: Vec<TrackingMethod>,
     /// True boxes of a recording, relative to the folder given by `--data`.
     truth: Option<PathBuf>,
 }
@@ -45,7 +47,7 @@ fn fifty() -> usize {
 }
 
 /// A film or a recording through its trackers.
-pub(super) fn run(job: &Job<'_>) -> Result<Run> {
+pub(super) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
     match &settings.film {
         Some(name) => film(job, &settings, name),
@@ -53,9 +55,9 @@ pub(super) fn run(job: &Job<'_>) -> Result<Run> {
     }
 }
 
-fn film(job: &Job<'_>, settings: &Settings, name: &str) -> Result<Run> {
-    let incident = settings.incident.as_deref().map(Incident::named).transpose()?.unwrap_or_default();
-    let mut film = Film { incident, ..Film::named(name)? };
+fn film(job: &PlannedJob<'_>, settings: &Settings, name: &str) -> Result<ReportRun> {
+    let incident = settings.incident.as_deref().map(OcclusionEvent::named).transpose()?.unwrap_or_default();
+    let mut film = SyntheticFilm { occlusion: incident, ..SyntheticFilm::named(name)? };
     let mut n_seeds = settings.n_seeds;
     if job.options.quick {
         (film.n_frames, n_seeds) = (settings.n_frames_quick, settings.n_seeds_quick);
@@ -64,18 +66,18 @@ fn film(job: &Job<'_>, settings: &Settings, name: &str) -> Result<Run> {
     films::table(&film, first..first + n_seeds, &settings.methods, &TrackParams::default())
 }
 
-fn recording(job: &Job<'_>, settings: &Settings) -> Result<Run> {
-    let options = OpenOptions { format: Some(Format::Images), ..OpenOptions::default() };
+fn recording(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
+    let options = OpenOptions { format: Some(LogFormat::Images), ..OpenOptions::default() };
     let mut log = wayfix_sensor_log::open(job.log()?, &options)?;
     let truth = settings.truth.as_ref().context("a recording needs `truth`")?;
     let truth = TrueBoxes::read(&job.recording(truth)?)?;
     let method = *settings.methods.first().context("give `methods`")?;
     let rate_hz = Some(options.frame_rate_hz);
-    let setup = TrackSetup { method, truth, rate_hz, ..TrackSetup::default() };
+    let setup = TrackerConfig { method, truth, rate_hz, ..TrackerConfig::default() };
     let system = TrackSystem::new(setup, job.options.seed);
-    let (name, path) = job.estimates();
+    let (name, path) = job.estimates_file();
     let mut estimates = TrackLog::create(&path, &path.with_extension("txt"), log.meta().first_format())?;
     let mut run = track::run(system, &mut log, |system, record| estimates.observe(record, system))?;
     estimates.finish(run.system.n_frames())?;
-    Ok(Run { log: Some(name), figures: track::pictures(&run.run_history)?, ..track::summarize(&mut run) })
+    Ok(ReportRun { log: Some(name), figures: track::plots(&run.run_history)?, ..track::summarize(&mut run) })
 }

@@ -1,13 +1,13 @@
 use std::f64::consts::TAU;
 
-use super::{Scene, SceneModel};
+use super::{LeagueScene, SceneModel};
 use crate::film::daylight::Daylight;
 use crate::film::ground::{Ground, scatter, strew};
 use crate::film::pose::{Pose, in_ellipse};
 use crate::film::sine_sum::SineSum;
-use crate::film::{Film, Silhouette};
+use crate::film::{Silhouette, SyntheticFilm};
 use crate::random::deviate::{chance, uniform, unit};
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, distance, mix, scaled, times};
 use crate::scenery::noise::Noise;
 
@@ -33,10 +33,10 @@ pub(super) struct Beetle {
 }
 
 impl Beetle {
-    pub(super) fn new(streams: &mut Streams) -> Self {
+    pub(super) fn new(streams: &mut RandomStreams) -> Self {
         let ground = Ground::new(streams, sandy_ground);
         let daylight = Daylight::new(streams);
-        let rng = streams.of(Source::Motion);
+        let rng = streams.of(RandomStreamPurpose::Motion);
         let sense = if chance(0.5, rng) { 1.0 } else { -1.0 };
         let (start, rate) = (TAU * unit(rng), sense * TAU / uniform(8.0, 10.0, rng));
         let path = [SineSum::new(7.0, rng), SineSum::new(6.0, rng)];
@@ -62,8 +62,8 @@ impl Beetle {
 }
 
 impl SceneModel for Beetle {
-    fn render(&self, seconds: f64, aside: f64) -> Scene {
-        let size = Film::SIZE_PX;
+    fn render(&self, seconds: f64, aside: f64) -> LeagueScene {
+        let size = SyntheticFilm::SIZE_PX;
         let pose = self.pose(seconds, aside);
         let (ground, light) = (self.ground.at(seconds), self.daylight.at(seconds));
         // The soft shadow is to the lower right of the body.
@@ -82,7 +82,7 @@ impl SceneModel for Beetle {
         let inside = |x: f64, y: f64| body(pose.to_body(x, y)) * pose.px();
         canvas.paint_in(&window, inside, |x, y| shade(pose.to_body(x, y), light(x, y)));
         let target = Silhouette::of(size, &window, inside);
-        Scene { canvas, target, distractor: Silhouette::empty(size) }
+        LeagueScene { canvas, target, distractor: Silhouette::empty(size) }
     }
 
     fn light(&self, seconds: f64) -> Color {
@@ -141,8 +141,8 @@ fn sheen(color: Color, light: Color, share: f64) -> Color {
     mix(color, scaled(light, 0.6), share)
 }
 
-fn sandy_ground((width, height): (usize, usize), streams: &mut Streams) -> Canvas {
-    let noise = Noise::new(streams.of(Source::Texture));
+fn sandy_ground((width, height): (usize, usize), streams: &mut RandomStreams) -> Canvas {
+    let noise = Noise::new(streams.of(RandomStreamPurpose::Texture));
     let mut canvas = Canvas::new(width, height, |x, y| {
         let (patch, grain) = (noise.fractal(x / 70.0, y / 70.0, 4), noise.at(x / 1.7, y / 1.7));
         scaled(mix([0.46, 0.37, 0.25], [0.30, 0.24, 0.17], patch), 0.82 + 0.36 * grain)

@@ -1,11 +1,11 @@
 use std::f64::consts::TAU;
 
-use super::{Scene, SceneModel};
+use super::{LeagueScene, SceneModel};
 use crate::film::pose::{Pose, in_ellipse};
 use crate::film::sine_sum::SineSum;
-use crate::film::{Film, Silhouette};
+use crate::film::{Silhouette, SyntheticFilm};
 use crate::random::deviate::{uniform, unit};
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
 use crate::scenery::noise::Noise;
 
@@ -18,10 +18,10 @@ const CHANGE: f64 = 0.17;
 pub(super) struct Circles {
     wall: Noise,
     /// The first is the target.
-    circles: Vec<Circle>,
+    circles: Vec<CircleRoute>,
 }
 
-struct Circle {
+struct CircleRoute {
     home: (f64, f64),
     path: [SineSum; 2],
     range: (f64, f64),
@@ -35,10 +35,10 @@ struct Circle {
 }
 
 impl Circles {
-    pub(super) fn new(streams: &mut Streams) -> Self {
-        let wall = Noise::new(streams.of(Source::Texture));
-        let rng = streams.of(Source::Motion);
-        let mut circle = |home, range, radius_px, hue_ahead| Circle {
+    pub(super) fn new(streams: &mut RandomStreams) -> Self {
+        let wall = Noise::new(streams.of(RandomStreamPurpose::Texture));
+        let rng = streams.of(RandomStreamPurpose::Motion);
+        let mut circle = |home, range, radius_px, hue_ahead| CircleRoute {
             home,
             path: [SineSum::new(6.0, rng), SineSum::new(5.0, rng)],
             range,
@@ -54,7 +54,7 @@ impl Circles {
         {
             circles.push(circle(home, (70.0, 55.0), (14.0, 30.0), 0.26 + 0.12 * i as f64));
         }
-        let rng = streams.of(Source::Light);
+        let rng = streams.of(RandomStreamPurpose::Light);
         let turn = unit(rng);
         circles[0].hue_ahead = turn;
         for other in &mut circles[1..] {
@@ -72,8 +72,8 @@ impl Circles {
 }
 
 impl SceneModel for Circles {
-    fn render(&self, seconds: f64, aside: f64) -> Scene {
-        let size = Film::SIZE_PX;
+    fn render(&self, seconds: f64, aside: f64) -> LeagueScene {
+        let size = SyntheticFilm::SIZE_PX;
         let mut canvas = Canvas::new(size.0, size.1, |x, y| {
             let mottled = self.wall.fractal(x / 40.0, y / 40.0, 3);
             scaled(mix([0.30, 0.31, 0.34], [0.16, 0.19, 0.20], mottled), 1.1 - 0.3 * y / size.1 as f64)
@@ -105,7 +105,7 @@ impl SceneModel for Circles {
                 target = Silhouette::of(size, &window, inside);
             }
         }
-        Scene { canvas, target, distractor: Silhouette::empty(size) }
+        LeagueScene { canvas, target, distractor: Silhouette::empty(size) }
     }
 
     fn light(&self, _seconds: f64) -> Color {

@@ -1,10 +1,10 @@
-use super::{Scene, SceneModel};
+use super::{LeagueScene, SceneModel};
 use crate::film::ground::Ground;
 use crate::film::pose::{Pose, in_ellipse};
 use crate::film::sine_sum::SineSum;
-use crate::film::{Film, Silhouette};
+use crate::film::{Silhouette, SyntheticFilm};
 use crate::random::deviate::uniform;
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, distance, mix, scaled, times};
 use crate::scenery::noise::Noise;
 
@@ -32,13 +32,13 @@ pub(super) struct Head {
 }
 
 impl Head {
-    pub(super) fn new(streams: &mut Streams) -> Self {
+    pub(super) fn new(streams: &mut RandomStreams) -> Self {
         let room = Ground::new(streams, furnished_room);
-        let strands = Noise::new(streams.of(Source::Texture));
-        let rng = streams.of(Source::Motion);
+        let strands = Noise::new(streams.of(RandomStreamPurpose::Texture));
+        let rng = streams.of(RandomStreamPurpose::Motion);
         let path = [SineSum::new(6.0, rng), SineSum::new(5.0, rng)];
         let (tilt, size, yaw) = (SineSum::new(4.0, rng), SineSum::new(7.0, rng), SineSum::new(7.0, rng));
-        let rng = streams.of(Source::Light);
+        let rng = streams.of(RandomStreamPurpose::Light);
         let (brightness, daylight, from) =
             (SineSum::new(6.0, rng), SineSum::new(8.0, rng), SineSum::new(7.0, rng));
         Self { room, path, tilt, size, yaw, brightness, daylight, from, strands }
@@ -87,8 +87,8 @@ impl Head {
 }
 
 impl SceneModel for Head {
-    fn render(&self, seconds: f64, aside: f64) -> Scene {
-        let size = Film::SIZE_PX;
+    fn render(&self, seconds: f64, aside: f64) -> LeagueScene {
+        let size = SyntheticFilm::SIZE_PX;
         let (pose, lamp, from) = (self.pose(seconds, aside), self.lamp(seconds), self.from.at(seconds));
         let yaw = 2.6 * self.yaw.at(seconds);
         let light = |x: f64| scaled(lamp, 1.0 + 0.35 * from * (x / 160.0 - 1.0));
@@ -108,7 +108,7 @@ impl SceneModel for Head {
         let window = pose.window(1.0, size);
         canvas.paint_in(&window, head, |x, y| times(self.shade(pose.to_body(x, y), yaw, from), light(x)));
         let target = Silhouette::of(size, &window, head);
-        Scene { canvas, target, distractor: Silhouette::empty(size) }
+        LeagueScene { canvas, target, distractor: Silhouette::empty(size) }
     }
 
     fn light(&self, seconds: f64) -> Color {
@@ -117,13 +117,13 @@ impl SceneModel for Head {
 }
 
 /// A plastered wall with a door and a cupboard of wood, a window and a plant.
-fn furnished_room((width, height): (usize, usize), streams: &mut Streams) -> Canvas {
-    let noise = Noise::new(streams.of(Source::Texture));
+fn furnished_room((width, height): (usize, usize), streams: &mut RandomStreams) -> Canvas {
+    let noise = Noise::new(streams.of(RandomStreamPurpose::Texture));
     let h = height as f64;
     let mut canvas =
         Canvas::new(width, height, |x, y| scaled(WALL, 0.85 + 0.25 * noise.fractal(x / 50.0, y / 50.0, 3)));
     let wood = |x: f64, y: f64| scaled(WOOD, 0.75 + 0.5 * noise.fractal(x / 3.0, y / 45.0, 2));
-    let rng = streams.of(Source::Objects);
+    let rng = streams.of(RandomStreamPurpose::Objects);
     let door = uniform(15.0, 60.0, rng);
     canvas.rectangle((door, 38.0), (door + 62.0, h + 1.0), wood);
     for top in [50.0, 145.0] {

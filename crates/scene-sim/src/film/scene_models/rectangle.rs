@@ -2,11 +2,11 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::{Scene, SceneModel};
+use super::{LeagueScene, SceneModel};
 use crate::film::sine_sum::SineSum;
-use crate::film::{Film, Silhouette};
+use crate::film::{Silhouette, SyntheticFilm};
 use crate::random::deviate::{chance, uniform, unit};
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, Window, mix, scaled, times};
 use crate::scenery::noise::Noise;
 
@@ -42,10 +42,10 @@ pub(super) struct Rectangle {
 }
 
 impl Rectangle {
-    pub(super) fn new(streams: &mut Streams) -> Self {
-        let grain = Noise::new(streams.of(Source::Texture));
+    pub(super) fn new(streams: &mut RandomStreams) -> Self {
+        let grain = Noise::new(streams.of(RandomStreamPurpose::Texture));
         let wall = furnished_wall(&grain, streams);
-        let rng = streams.of(Source::Motion);
+        let rng = streams.of(RandomStreamPurpose::Motion);
         let sense = if chance(0.5, rng) { 1.0 } else { -1.0 };
         Self {
             wall,
@@ -55,7 +55,7 @@ impl Rectangle {
             pitch: SineSum::new(5.0, rng),
             roll: SineSum::new(6.0, rng),
             radius: SineSum::new(7.0, rng),
-            power: SineSum::new(3.0, streams.of(Source::Light)),
+            power: SineSum::new(3.0, streams.of(RandomStreamPurpose::Light)),
             grain,
         }
     }
@@ -95,8 +95,8 @@ impl Rectangle {
 }
 
 impl SceneModel for Rectangle {
-    fn render(&self, seconds: f64, aside: f64) -> Scene {
-        let size = Film::SIZE_PX;
+    fn render(&self, seconds: f64, aside: f64) -> LeagueScene {
+        let size = SyntheticFilm::SIZE_PX;
         let power = self.power(seconds);
         let lamp = project(&Vector3::from(LAMP));
         let mut canvas = Canvas::new(size.0, size.1, |x, y| {
@@ -120,7 +120,7 @@ impl SceneModel for Rectangle {
             plane.hit(x, y).map_or([0.0; 3], |(point, spot)| self.radiance(&point, &plane, spot, power))
         });
         let target = Silhouette::of(size, &window, inside);
-        Scene { canvas, target, distractor: Silhouette::empty(size) }
+        LeagueScene { canvas, target, distractor: Silhouette::empty(size) }
     }
 
     fn light(&self, seconds: f64) -> Color {
@@ -171,8 +171,8 @@ fn project(point: &Vector3<f64>) -> (f64, f64) {
 }
 
 /// A papered wall with a shelf of books and a picture.
-fn furnished_wall(noise: &Noise, streams: &mut Streams) -> Canvas {
-    let (width, height) = Film::SIZE_PX;
+fn furnished_wall(noise: &Noise, streams: &mut RandomStreams) -> Canvas {
+    let (width, height) = SyntheticFilm::SIZE_PX;
     let mut wall = Canvas::new(width, height, |x, y| {
         let stripe = if (x / 16.0).floor().rem_euclid(2.0) > 0.5 { 0.92 } else { 1.0 };
         scaled([0.42, 0.44, 0.40], stripe * (0.85 + 0.3 * noise.fractal(x / 25.0, y / 25.0, 3)))
@@ -185,7 +185,7 @@ fn furnished_wall(noise: &Noise, streams: &mut Streams) -> Canvas {
             mix([0.12, 0.25, 0.40], [0.20, 0.34, 0.16], (y - 30.0) / 52.0)
         }
     });
-    let rng = streams.of(Source::Objects);
+    let rng = streams.of(RandomStreamPurpose::Objects);
     let mut left = 200.0;
     while left < 316.0 {
         let (thick, tall) = (uniform(5.0, 12.0, rng), uniform(26.0, 42.0, rng));

@@ -1,12 +1,12 @@
 use std::f64::consts::TAU;
 
-use super::{Scene, SceneModel};
+use super::{LeagueScene, SceneModel};
 use crate::film::daylight::Daylight;
 use crate::film::ground::{Ground, scatter, strew};
 use crate::film::pose::{Pose, in_ellipse};
 use crate::film::sine_sum::SineSum;
-use crate::film::{Film, Silhouette};
-use crate::random::{Source, Streams};
+use crate::film::{Silhouette, SyntheticFilm};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, distance, mix, scaled, times};
 use crate::scenery::noise::Noise;
 
@@ -38,11 +38,11 @@ pub(super) struct Snail {
 }
 
 impl Snail {
-    pub(super) fn new(streams: &mut Streams) -> Self {
+    pub(super) fn new(streams: &mut RandomStreams) -> Self {
         let ground = Ground::new(streams, cluttered_ground);
         let daylight = Daylight::new(streams);
-        let skin = Noise::new(streams.of(Source::Texture));
-        let rng = streams.of(Source::Motion);
+        let skin = Noise::new(streams.of(RandomStreamPurpose::Texture));
+        let rng = streams.of(RandomStreamPurpose::Motion);
         let path = [SineSum::new(8.0, rng), SineSum::new(9.0, rng)];
         let (tilt, size, slim) = (SineSum::new(6.0, rng), SineSum::new(8.0, rng), SineSum::new(7.0, rng));
         let (neck, nod) = (SineSum::new(3.5, rng), SineSum::new(3.0, rng));
@@ -77,8 +77,8 @@ impl Snail {
 }
 
 impl SceneModel for Snail {
-    fn render(&self, seconds: f64, aside: f64) -> Scene {
-        let size = Film::SIZE_PX;
+    fn render(&self, seconds: f64, aside: f64) -> LeagueScene {
+        let size = SyntheticFilm::SIZE_PX;
         let (pose, tip) = (self.pose(seconds, aside), self.tip(seconds));
         let (ground, light) = (self.ground.at(seconds), self.daylight.at(seconds));
         let mut canvas = Canvas::new(size.0, size.1, |x, y| times(ground(x, y), light(x, y)));
@@ -101,7 +101,7 @@ impl SceneModel for Snail {
         canvas.paint_in(&window, shell, |x, y| times(self.shell_color(pose.to_body(x, y)), light(x, y)));
         let target = Silhouette::of(size, &window, shell);
         let distractor = Silhouette::of(size, &window, neck).without(&target);
-        Scene { canvas, target, distractor }
+        LeagueScene { canvas, target, distractor }
     }
 
     fn light(&self, seconds: f64) -> Color {
@@ -109,8 +109,8 @@ impl SceneModel for Snail {
     }
 }
 
-fn cluttered_ground((width, height): (usize, usize), streams: &mut Streams) -> Canvas {
-    let noise = Noise::new(streams.of(Source::Texture));
+fn cluttered_ground((width, height): (usize, usize), streams: &mut RandomStreams) -> Canvas {
+    let noise = Noise::new(streams.of(RandomStreamPurpose::Texture));
     let mut canvas = Canvas::new(width, height, |x, y| {
         let (patch, grain) = (noise.fractal(x / 45.0, y / 45.0, 4), noise.at(x / 2.2, y / 2.2));
         scaled(mix([0.10, 0.15, 0.05], [0.19, 0.16, 0.10], patch), 0.75 + 0.5 * grain)

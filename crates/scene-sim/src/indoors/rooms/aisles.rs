@@ -7,7 +7,7 @@ use wayfix_estimation_traits::Pose2;
 use super::super::rounded::rounded;
 use crate::random::deviate::{below, uniform};
 use crate::route::Route;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// Longest tour, metres: a day's drive and more.
 const LONGEST_M: f64 = 100_000.0;
@@ -26,17 +26,17 @@ pub struct Aisles {
 }
 
 /// A crossing: number of the aisle along y, then along x.
-pub type Crossing = [usize; 2];
+pub type AisleCrossing = [usize; 2];
 
 impl Aisles {
     /// All crossings.
-    pub fn crossings(&self) -> Vec<Crossing> {
+    pub fn crossings(&self) -> Vec<AisleCrossing> {
         let (n, m) = (self.xs.len(), self.ys.len());
         (0..n * m).map(|i| [i % n, i / n]).collect()
     }
 
     /// Position of a crossing, m.
-    pub fn place(&self, [i, j]: Crossing) -> Vector2<f64> {
+    pub fn place(&self, [i, j]: AisleCrossing) -> Vector2<f64> {
         Vector2::new(self.xs[i], self.ys[j])
     }
 
@@ -45,7 +45,7 @@ impl Aisles {
     ///
     /// # Errors
     /// Returns an error if the length is no length.
-    pub fn tour<R: Rng + ?Sized>(&self, length_m: f64, rng: &mut R) -> Result<Route, SimError> {
+    pub fn tour<R: Rng + ?Sized>(&self, length_m: f64, rng: &mut R) -> Result<Route, SimulationError> {
         self.tour_from([0, 0], length_m, rng)
     }
 
@@ -55,10 +55,10 @@ impl Aisles {
     /// Returns an error if the length is no length, or there is no such crossing.
     pub fn tour_from<R: Rng + ?Sized>(
         &self,
-        start: Crossing,
+        start: AisleCrossing,
         length_m: f64,
         rng: &mut R,
-    ) -> Result<Route, SimError> {
+    ) -> Result<Route, SimulationError> {
         check::positive("length of the tour (m)", length_m)?;
         check::at_most("length of the tour (m)", length_m, LONGEST_M, "at most 1e5")?;
         check::count("crossing along x", start[0], self.xs.len() - 1)?;
@@ -69,10 +69,11 @@ impl Aisles {
         let mut sum_m = self.distance(walk[0], walk[1]);
         while sum_m < length_m {
             let (last, here) = (walk[walk.len() - 2], walk[walk.len() - 1]);
-            let times = |to: &Crossing| driven.get(&edge(here, *to)).copied().unwrap_or(0);
-            let ahead: Vec<Crossing> = self.neighbours(here).into_iter().filter(|to| *to != last).collect();
+            let times = |to: &AisleCrossing| driven.get(&edge(here, *to)).copied().unwrap_or(0);
+            let ahead: Vec<AisleCrossing> =
+                self.neighbours(here).into_iter().filter(|to| *to != last).collect();
             let least = ahead.iter().map(times).min().unwrap_or(0);
-            let fresh: Vec<Crossing> = ahead.into_iter().filter(|to| times(to) == least).collect();
+            let fresh: Vec<AisleCrossing> = ahead.into_iter().filter(|to| times(to) == least).collect();
             let next = fresh[below(fresh.len(), rng)];
             *driven.entry(edge(here, next)).or_insert(0) += 1;
             sum_m += self.distance(here, next);
@@ -85,12 +86,12 @@ impl Aisles {
     ///
     /// # Errors
     /// Returns an error if there are no laps, or more than the longest tour.
-    pub fn laps<R: Rng + ?Sized>(&self, n_laps: usize, rng: &mut R) -> Result<Route, SimError> {
+    pub fn laps<R: Rng + ?Sized>(&self, n_laps: usize, rng: &mut R) -> Result<Route, SimulationError> {
         check::positive("laps", n_laps as f64)?;
         check::count("laps", n_laps, 1000)?;
         let (right, top) = (self.xs.len() - 1, self.ys.len() - 1);
         let corners = [[0, 0], [right, 0], [right, top], [0, top]];
-        let mut walk: Vec<Crossing> = corners.into_iter().cycle().take(4 * n_laps).collect();
+        let mut walk: Vec<AisleCrossing> = corners.into_iter().cycle().take(4 * n_laps).collect();
         walk.push([0, 0]);
         self.route(&walk, rng)
     }
@@ -101,19 +102,19 @@ impl Aisles {
     }
 
     /// The crossings next to one.
-    pub(in crate::indoors) fn neighbours(&self, [i, j]: Crossing) -> Vec<Crossing> {
+    pub(in crate::indoors) fn neighbours(&self, [i, j]: AisleCrossing) -> Vec<AisleCrossing> {
         let along =
             |k: usize, n: usize| [k.checked_sub(1), (k + 1 < n).then_some(k + 1)].into_iter().flatten();
         let x = along(i, self.xs.len()).map(|i| [i, j]);
         x.chain(along(j, self.ys.len()).map(|j| [i, j])).collect()
     }
 
-    pub(in crate::indoors) fn distance(&self, a: Crossing, b: Crossing) -> f64 {
+    pub(in crate::indoors) fn distance(&self, a: AisleCrossing, b: AisleCrossing) -> f64 {
         (self.place(a) - self.place(b)).norm()
     }
 
     /// A route through the crossings, with each straight stretch offset randomly from the middle; the first stretch starts in the middle.
-    fn route<R: Rng + ?Sized>(&self, walk: &[Crossing], rng: &mut R) -> Result<Route, SimError> {
+    fn route<R: Rng + ?Sized>(&self, walk: &[AisleCrossing], rng: &mut R) -> Result<Route, SimulationError> {
         let mut points = vec![self.place(walk[0])];
         let mut aside = 0.0;
         for three in walk.windows(3) {
@@ -134,6 +135,6 @@ impl Aisles {
     }
 }
 
-fn edge(a: Crossing, b: Crossing) -> [Crossing; 2] {
+fn edge(a: AisleCrossing, b: AisleCrossing) -> [AisleCrossing; 2] {
     if a < b { [a, b] } else { [b, a] }
 }

@@ -1,7 +1,7 @@
 use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Target, TrueLandmark};
+use wayfix_sensor_log::{DetectionTarget, TrueLandmark};
 
 use super::super::ambient_light::AmbientLight;
 use super::super::camera::OmniCameraParams;
@@ -12,10 +12,10 @@ use super::super::texture::Texture;
 use super::super::view::ViewRenderer;
 use super::aisles::Aisles;
 use crate::scenery::RgbPicture;
-use crate::world::{Wall, World};
-use crate::{SimError, check};
+use crate::world::{SensorWorld, Wall};
+use crate::{SimulationError, check};
 
-/// Rooms with their furniture: the result of [`Store`](crate::indoors::Store) and [`Lab`](crate::indoors::Lab).
+/// Rooms with their furniture: the result of [`RetailStore`](crate::indoors::RetailStore) and [`Laboratory`](crate::indoors::Laboratory).
 ///
 /// The origin is in the middle of the floor, x along its length.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,19 +50,19 @@ impl Building {
     /// ```
     /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
     /// use wayfix_estimation_traits::Pose2;
-    /// use wayfix_scene_sim::indoors::{Lab, OmniCameraParams};
+    /// use wayfix_scene_sim::indoors::{Laboratory, OmniCameraParams};
     /// let mut rng = ChaCha8Rng::seed_from_u64(1);
-    /// let lab = Lab::draw(&mut rng).building();
+    /// let lab = Laboratory::draw(&mut rng).building();
     /// let view = lab.render_view(&Pose2::new(0.0, -3.7, 0.0), OmniCameraParams::default(), &mut rng)?;
     /// assert_eq!((view.width, view.height), (120, 20));
-    /// # Ok::<(), wayfix_scene_sim::SimError>(())
+    /// # Ok::<(), wayfix_scene_sim::SimulationError>(())
     /// ```
     pub fn render_view<R: Rng + ?Sized>(
         &self,
         pose: &Pose2<f64>,
         camera: OmniCameraParams,
         rng: &mut R,
-    ) -> Result<RgbPicture, SimError> {
+    ) -> Result<RgbPicture, SimulationError> {
         check::finite("pose of the camera", pose.x() + pose.y() + pose.heading())?;
         let ambient_light = AmbientLight::nominal(self.n_lamps, self.n_curtains);
         Ok(ViewRenderer::new(camera)?.render_view(self, &ambient_light, &[], pose, rng))
@@ -88,7 +88,7 @@ impl Building {
 }
 
 /// Its walls and fronts as a plan, for a laser or a map; it has no landmarks.
-impl World for Building {
+impl SensorWorld for Building {
     fn landmarks(&self) -> Vec<TrueLandmark> {
         Vec::new()
     }
@@ -97,7 +97,7 @@ impl World for Building {
         self.panels.iter().map(|panel| Wall { from: panel.left, to: panel.right }).collect()
     }
 
-    fn targets(&self, _seconds: f64) -> Vec<(Target, Vector2<f64>)> {
+    fn targets(&self, _seconds: f64) -> Vec<(DetectionTarget, Vector2<f64>)> {
         Vec::new()
     }
 }

@@ -2,7 +2,7 @@ use nalgebra::Vector2;
 use rand::Rng;
 
 use super::super::color::{Rgb8, about, from_hsv};
-use super::aisles::{Aisles, Crossing};
+use super::aisles::{AisleCrossing, Aisles};
 use crate::random::deviate::{below, chance, uniform};
 
 /// Minimum distance of people from the robot, m.
@@ -22,8 +22,8 @@ pub(in crate::indoors) struct Crowd {
 struct Person {
     /// Colours of legs, body and head.
     clothes: [Rgb8; 3],
-    from: Crossing,
-    to: Crossing,
+    from: AisleCrossing,
+    to: AisleCrossing,
     /// Progress along the path, m.
     along_m: f64,
     aside_m: f64,

@@ -9,7 +9,7 @@ use super::aisles::Aisles;
 use super::building::Building;
 use super::decor::{curtain, outside, stand, wall};
 use crate::random::deviate::{chance, uniform};
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// Extent along x and y, metres. [Gross et al. 2004, Table 1]
 const SIZE_M: [f64; 2] = [15.0, 10.0];
@@ -27,22 +27,22 @@ const DESKS_M: [f64; 2] = [1.3, 0.9];
 ///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::indoors::Lab;
+/// use wayfix_scene_sim::indoors::Laboratory;
 /// let mut rng = ChaCha8Rng::seed_from_u64(1);
-/// let lab = Lab::draw(&mut rng);
+/// let lab = Laboratory::draw(&mut rng);
 /// assert!((lab.building().size_m().x - 15.0).abs() < 1e-12);
 /// assert!(lab.rearranged(0.5, &mut rng)? != lab);
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lab {
+pub struct Laboratory {
     /// Decides walls, windows and curtains.
     decor: u64,
     /// Objects on each group of desks.
     desks: [u64; 6],
 }
 
-impl Lab {
+impl Laboratory {
     /// Random furniture.
     pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Self {
         Self { decor: rng.next_u64(), desks: std::array::from_fn(|_| rng.next_u64()) }
@@ -52,7 +52,7 @@ impl Lab {
     ///
     /// # Errors
     /// Returns an error if the share is none.
-    pub fn rearranged<R: Rng + ?Sized>(&self, share: f64, rng: &mut R) -> Result<Self, SimError> {
+    pub fn rearranged<R: Rng + ?Sized>(&self, share: f64, rng: &mut R) -> Result<Self, SimulationError> {
         check::share("share of the desks that are rearranged", share)?;
         let mut later = self.clone();
         for desk in &mut later.desks {

@@ -9,8 +9,8 @@ use super::aisles::Aisles;
 use super::building::Building;
 use super::decor::{outside, stand, wall};
 use super::shelf::{Assortment, Section};
-use super::store_params::StoreParams;
-use crate::SimError;
+use super::store_params::RetailStoreParams;
+use crate::SimulationError;
 use crate::check;
 use crate::random::deviate::{below, chance};
 
@@ -24,16 +24,16 @@ const PLAY: f64 = 0.15;
 /// A store on one day: rows of shelves and their goods.
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
-/// use wayfix_scene_sim::indoors::{Store, StoreParams};
+/// use wayfix_scene_sim::indoors::{RetailStore, RetailStoreParams};
 /// let mut rng = ChaCha8Rng::seed_from_u64(1);
-/// let today = Store::draw(StoreParams::area(), &mut rng)?;
+/// let today = RetailStore::draw(RetailStoreParams::area(), &mut rng)?;
 /// let later = today.rearranged(0.4, &mut rng)?;
 /// assert!(today != later && today.building() == today.clone().building());
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Store {
-    params: StoreParams,
+pub struct RetailStore {
+    params: RetailStoreParams,
     /// Selects the assortment, the walls and the objects in front of the windows.
     decor: u64,
     /// Shelf by shelf, the front of low y, then that of high y; then the two ends.
@@ -42,12 +42,12 @@ pub struct Store {
     stands: Vec<[Option<u64>; 2]>,
 }
 
-impl Store {
+impl RetailStore {
     /// A store of this size with random goods.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
-    pub fn draw<R: Rng + ?Sized>(params: StoreParams, rng: &mut R) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
+    pub fn draw<R: Rng + ?Sized>(params: RetailStoreParams, rng: &mut R) -> Result<Self, SimulationError> {
         params.validate()?;
         let decor = rng.next_u64();
         let mut store = Self { params, decor, fronts: Vec::new(), stands: Vec::new() };
@@ -65,7 +65,7 @@ impl Store {
                 };
                 let n = params.n_sections();
                 store.fronts.push([front(0, n), front(1, 1), front(1, n), front(0, 1)]);
-                let mut stand = || chance(params.stand_share, rng).then(|| rng.next_u64());
+                let mut stand = || chance(params.end_display_share, rng).then(|| rng.next_u64());
                 store.stands.push([stand(), stand()]);
             }
         }
@@ -75,8 +75,8 @@ impl Store {
     /// The same store some weeks later. With probability `share` each section gets other goods (6 of 10), is exchanged with another (3) or
     /// cleared (1); a cleared one is filled again. Each stand is added or removed with half of that probability.
     /// # Errors
-    /// Returns [`SimError::Parameter`] if `share` is not in [0, 1].
-    pub fn rearranged<R: Rng + ?Sized>(&self, share: f64, rng: &mut R) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] if `share` is not in [0, 1].
+    pub fn rearranged<R: Rng + ?Sized>(&self, share: f64, rng: &mut R) -> Result<Self, SimulationError> {
         check::share("share of the sections that are rearranged", share)?;
         let mut later = self.clone();
         for shelf in 0..later.fronts.len() {
@@ -130,8 +130,8 @@ impl Store {
         for (shelf, (fronts, stands)) in self.fronts.iter().zip(&self.stands).enumerate() {
             let (low, high) = self.params.shelf(shelf);
             for ((left, right), sections) in sides(low, high).into_iter().zip(fronts) {
-                let texture = assortment.front(sections, self.params.shelf_m);
-                shop.put(left, right, [0.0, self.params.shelf_m], texture);
+                let texture = assortment.front(sections, self.params.shelf_height_m);
+                shop.put(left, right, [0.0, self.params.shelf_height_m], texture);
             }
             self.put_stands(&mut shop, [low, high], stands);
         }
@@ -201,7 +201,7 @@ impl Store {
 
     fn aisles(&self) -> Aisles {
         let (xs, ys) = self.params.aisles();
-        Aisles { xs, ys, max_lateral_offset_m: PLAY * self.params.aisle_m, turn_m: 0.8 }
+        Aisles { xs, ys, max_lateral_offset_m: PLAY * self.params.min_aisle_width_m, turn_m: 0.8 }
     }
 }
 

@@ -1,46 +1,46 @@
 use nalgebra::Vector2;
 
 use super::shelf::SECTION_M;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// Depth of a shelf, which is also the length of its ends, metres.
 const DEPTH_M: f64 = 1.0;
 /// The longest side of a store, metres.
 const LONGEST_M: f64 = 500.0;
 
-/// Size and furnishing of a [`Store`](crate::indoors::Store): shelves in rows along x, cut into blocks by aisles along y.
+/// Size and furnishing of a [`RetailStore`](crate::indoors::RetailStore): shelves in rows along x, cut into blocks by aisles along y.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StoreParams {
+pub struct RetailStoreParams {
     /// Extent along x, metres.
     pub length_m: f64,
     /// Extent along y, metres.
     pub width_m: f64,
     /// Minimum width of the aisles between the shelves, m; the remaining space is divided equally.
-    pub aisle_m: f64,
+    pub min_aisle_width_m: f64,
     /// The same of the aisles between the blocks, metres.
-    pub cross_aisle_m: f64,
+    pub min_cross_aisle_width_m: f64,
     /// Shelves of a row.
     pub n_blocks: usize,
     /// Height of the shelves, metres.
-    pub shelf_m: f64,
+    pub shelf_height_m: f64,
     /// Number of departments, each with its own colours.
     pub n_departments: usize,
     /// Share of the shelf ends with a stand of special offers.
-    pub stand_share: f64,
+    pub end_display_share: f64,
 }
 
-impl StoreParams {
+impl RetailStoreParams {
     /// The home store of 50 m × 80 m. [Gross et al. 2004, Sec. 3]
     pub fn home_store() -> Self {
         Self {
             length_m: 80.0,
             width_m: 50.0,
-            aisle_m: 2.6,
-            cross_aisle_m: 3.0,
+            min_aisle_width_m: 2.6,
+            min_cross_aisle_width_m: 3.0,
             n_blocks: 3,
-            shelf_m: 2.1,
+            shelf_height_m: 2.1,
             n_departments: 8,
-            stand_share: 0.3,
+            end_display_share: 0.3,
         }
     }
 
@@ -53,39 +53,39 @@ impl StoreParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         check::positive("length of the store (m)", self.length_m)?;
         check::at_most("length of the store (m)", self.length_m, LONGEST_M, "at most 500")?;
         check::positive("width of the store (m)", self.width_m)?;
         check::at_most("width of the store (m)", self.width_m, LONGEST_M, "at most 500")?;
-        check::above("width of the aisles (m)", self.aisle_m, 1.0, "above 1")?;
-        check::above("width of the aisles between blocks (m)", self.cross_aisle_m, 2.0, "above 2")?;
+        check::above("width of the aisles (m)", self.min_aisle_width_m, 1.0, "above 1")?;
+        check::above("width of the aisles between blocks (m)", self.min_cross_aisle_width_m, 2.0, "above 2")?;
         check::above("blocks", self.n_blocks as f64, 0.5, "at least 1")?;
         check::count("blocks", self.n_blocks, 100)?;
-        check::above("height of the shelves (m)", self.shelf_m, 0.5, "above 0.5")?;
-        check::at_most("height of the shelves (m)", self.shelf_m, 4.0, "at most 4")?;
+        check::above("height of the shelves (m)", self.shelf_height_m, 0.5, "above 0.5")?;
+        check::at_most("height of the shelves (m)", self.shelf_height_m, 4.0, "at most 4")?;
         check::above("departments", self.n_departments as f64, 0.5, "at least 1")?;
         check::count("departments", self.n_departments, 256)?;
-        check::share("share of the shelf ends with a stand", self.stand_share)?;
+        check::share("share of the shelf ends with a stand", self.end_display_share)?;
         check::above(
             "width of the store (m)",
             self.width_m,
-            2.0 * self.aisle_m + DEPTH_M,
+            2.0 * self.min_aisle_width_m + DEPTH_M,
             "room for a row of shelves",
         )?;
         let blocks = self.n_blocks as f64;
-        let least = blocks * 2.0 * SECTION_M + (blocks + 1.0) * self.cross_aisle_m;
+        let least = blocks * 2.0 * SECTION_M + (blocks + 1.0) * self.min_cross_aisle_width_m;
         check::above("length of the store (m)", self.length_m, least, "room for blocks of 2 m and more")
     }
 
     pub(in crate::indoors) fn n_rows(&self) -> usize {
-        ((self.width_m - self.aisle_m) / (self.aisle_m + DEPTH_M)) as usize
+        ((self.width_m - self.min_aisle_width_m) / (self.min_aisle_width_m + DEPTH_M)) as usize
     }
 
     /// Sections of a long side of a shelf.
     pub(in crate::indoors) fn n_sections(&self) -> usize {
         let blocks = self.n_blocks as f64;
-        ((self.length_m - (blocks + 1.0) * self.cross_aisle_m) / (blocks * SECTION_M)) as usize
+        ((self.length_m - (blocks + 1.0) * self.min_cross_aisle_width_m) / (blocks * SECTION_M)) as usize
     }
 
     /// Lowest and highest corner of a shelf, counted block by block in each row.
@@ -127,13 +127,13 @@ mod tests {
 
     #[test]
     fn shelves_and_aisles_fill_the_store() {
-        for params in [StoreParams::home_store(), StoreParams::area()] {
+        for params in [RetailStoreParams::home_store(), RetailStoreParams::area()] {
             params.validate().unwrap();
             let (_, high) = params.shelf(params.n_rows() * params.n_blocks - 1);
             let gaps = params.gaps();
             assert!((high.x + gaps.x - 0.5 * params.length_m).abs() < 1e-9);
             assert!((high.y + gaps.y - 0.5 * params.width_m).abs() < 1e-9);
-            assert!(gaps.y >= params.aisle_m && gaps.x >= params.cross_aisle_m);
+            assert!(gaps.y >= params.min_aisle_width_m && gaps.x >= params.min_cross_aisle_width_m);
         }
     }
 }

@@ -1,7 +1,7 @@
 use wayfix_color_map::Camera;
 
-use crate::league::Rgb;
-use crate::{SimError, check};
+use crate::league::LinearRgb;
+use crate::{SimulationError, check};
 
 /// The camera in a robot's head: optics, chip and image processing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,13 +13,13 @@ pub struct CameraParams {
     /// Signal, as a share of full scale, of radiance 1. Default 1.
     pub gain: f64,
     /// Gains of the three channels. Default 1.
-    pub white_balance: Rgb,
+    pub white_balance: LinearRgb,
     /// Drift of the automatic white balance: σ of the logarithm of the gains of red and blue. Default 0.02.
     pub white_balance_drift: f64,
     /// Correlation time of that drift, seconds. Default 20.
     pub white_balance_correlation_s: f64,
     /// Share of red, green and blue lost in the corners of the picture. Default (0.58, 0.50, 0.18): corners are dark and bluish.
-    pub vignetting: Rgb,
+    pub vignetting: LinearRgb,
     /// Share of each channel that comes from each of the others. Default 0.05.
     pub crosstalk: f64,
     /// Stray light: share of the image mean added to every pixel. Default 0.015.
@@ -30,15 +30,15 @@ pub struct CameraParams {
     pub read_noise: f64,
     /// Exponent of the response, signal to grey value. Default 0.5.
     pub gamma: f64,
-    /// Which pixels share their colour. Default [`Chroma::Pairs`].
-    pub chroma: Chroma,
+    /// Which pixels share their colour. Default [`ChromaSubsampling::Pairs`].
+    pub chroma_subsampling: ChromaSubsampling,
     /// Quality of the JPEG files, 1 to 100. Default 88.
     pub jpeg_quality: u8,
 }
 
 /// Chroma subsampling: pixels that share one value of U and V.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Chroma {
+pub enum ChromaSubsampling {
     /// Each has its own (4:4:4).
     Each,
     /// Two beside each other (4:2:2).
@@ -55,16 +55,16 @@ impl CameraParams {
             camera,
             exposure_ms: 10,
             gain: 1.0,
-            white_balance: Rgb::repeat(1.0),
+            white_balance: LinearRgb::repeat(1.0),
             white_balance_drift: 0.02,
             white_balance_correlation_s: 20.0,
-            vignetting: Rgb::new(0.58, 0.50, 0.18),
+            vignetting: LinearRgb::new(0.58, 0.50, 0.18),
             crosstalk: 0.05,
             flare: 0.015,
             full_well: 4000.0,
             read_noise: 0.003,
             gamma: 0.5,
-            chroma: Chroma::default(),
+            chroma_subsampling: ChromaSubsampling::default(),
             jpeg_quality: 88,
         }
     }
@@ -73,7 +73,7 @@ impl CameraParams {
     ///
     /// # Errors
     /// Returns the errors of [`Camera`]; none occur, because its numbers are constant.
-    pub fn ers7() -> Result<Self, SimError> {
+    pub fn ers7() -> Result<Self, SimulationError> {
         Ok(Self::new(Camera::from_field_of_view(208, 160, 56.9_f64.to_radians(), 45.2_f64.to_radians())?))
     }
 
@@ -81,7 +81,7 @@ impl CameraParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         let n_pixels = self.camera.width() as usize * self.camera.height() as usize;
         check::count("pixels of the camera", n_pixels, 1 << 22)?;
         check::at_most("exposure (ms)", f64::from(self.exposure_ms), 1000.0, "at most 1000")?;

@@ -4,28 +4,28 @@ use wayfix_estimation_traits::Pose3;
 use super::camera::CameraParams;
 use super::exposure::Exposure;
 use super::image_pipeline::ImagePipeline;
-use super::scene::Scene;
-use crate::SimError;
-use crate::league::Rgb;
+use super::scene::LeagueScene;
+use crate::SimulationError;
+use crate::league::LinearRgb;
 
 /// Takes pictures with one camera.
 ///
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::{Pose3, nalgebra::Vector3};
-/// use wayfix_scene_sim::league::{CameraParams, Hall, Lamps, CameraSimulator, Rgb, Scene, Surface, field_map};
+/// use wayfix_scene_sim::league::{CameraParams, HallBackdrop, Lamps, CameraSimulator, LinearRgb, LeagueScene, SceneSurface, field_map};
 /// use wayfix_scene_sim::space;
 ///
-/// let light = Lamps { ambient: Rgb::repeat(0.8), ..Lamps::default() };
-/// let paints = [Rgb::new(0.1, 0.4, 0.1); 5];
-/// let surfaces = Surface::of_map(&field_map()?);
-/// let scene = Scene { surfaces, paints: &paints, light: &light, backdrop: &Hall::default() };
+/// let light = Lamps { ambient: LinearRgb::repeat(0.8), ..Lamps::default() };
+/// let paints = [LinearRgb::new(0.1, 0.4, 0.1); 5];
+/// let surfaces = SceneSurface::of_map(&field_map()?);
+/// let scene = LeagueScene { surfaces, paints: &paints, light: &light, backdrop: &HallBackdrop::default() };
 /// let pose = Pose3 { translation: Vector3::new(0.0, 0.0, 0.25), rotation: space::pitch(0.3) };
 /// let mut camera_simulator = CameraSimulator::new(CameraParams::ers7()?)?;
-/// let picture = camera_simulator.take(&scene, [&pose, &pose], &Rgb::repeat(1.0), &mut ChaCha8Rng::seed_from_u64(1));
+/// let picture = camera_simulator.take(&scene, [&pose, &pose], &LinearRgb::repeat(1.0), &mut ChaCha8Rng::seed_from_u64(1));
 /// assert_eq!(picture.rgb.len(), 208 * 160 * 3);
 /// assert!(picture.labels.iter().filter(|&&label| label == 1).count() > 5000, "much of it is carpet");
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 pub struct CameraSimulator {
     exposure: Exposure,
@@ -35,7 +35,7 @@ pub struct CameraSimulator {
 
 /// A picture and the truth about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Picture {
+pub struct LeaguePicture {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
@@ -54,8 +54,8 @@ impl CameraSimulator {
     /// With this camera.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
-    pub fn new(params: CameraParams) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
+    pub fn new(params: CameraParams) -> Result<Self, SimulationError> {
         params.validate()?;
         Ok(Self {
             exposure: Exposure::new(params.camera),
@@ -68,13 +68,13 @@ impl CameraSimulator {
     /// `balance` multiplies its gains.
     pub fn take<R: Rng + ?Sized>(
         &mut self,
-        scene: &Scene<'_>,
+        scene: &LeagueScene<'_>,
         [opening, closing]: [&Pose3<f64>; 2],
-        balance: &Rgb,
+        balance: &LinearRgb,
         rng: &mut R,
-    ) -> Picture {
+    ) -> LeaguePicture {
         self.exposure.take(scene, opening, closing);
-        Picture {
+        LeaguePicture {
             width: self.params.camera.width(),
             height: self.params.camera.height(),
             rgb: self.image_pipeline.process(&self.exposure.light, balance, rng),

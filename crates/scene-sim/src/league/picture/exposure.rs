@@ -3,10 +3,10 @@ use wayfix_color_map::Camera;
 use wayfix_estimation_traits::Pose3;
 
 use super::layer::Layer;
-use super::scene::Scene;
+use super::scene::LeagueScene;
 use super::surface::Material;
 use super::view::View;
-use crate::league::Rgb;
+use crate::league::LinearRgb;
 use crate::space;
 
 /// Position of each ray in its pixel (beyond its borders, for a soft lens) and its time in the exposure.
@@ -18,7 +18,7 @@ pub(super) struct Exposure {
     layers: [Layer; RAYS.len()],
     camera: Camera,
     /// Row by row; 1 is a white wall in the everyday light of the venue.
-    pub(super) light: Vec<Rgb>,
+    pub(super) light: Vec<LinearRgb>,
     /// 0, or number of the map colour plus 1 where all rays of a pixel meet that colour.
     pub(super) labels: Vec<u8>,
 }
@@ -29,13 +29,13 @@ impl Exposure {
         Self {
             layers: std::array::from_fn(|_| Layer::new(n_pixels)),
             camera,
-            light: vec![Rgb::zeros(); n_pixels],
+            light: vec![LinearRgb::zeros(); n_pixels],
             labels: vec![0; n_pixels],
         }
     }
 
     /// Opens the shutter while the camera moves from one pose to the other.
-    pub(super) fn take(&mut self, scene: &Scene<'_>, opening: &Pose3<f64>, closing: &Pose3<f64>) {
+    pub(super) fn take(&mut self, scene: &LeagueScene<'_>, opening: &Pose3<f64>, closing: &Pose3<f64>) {
         let camera = self.camera;
         let views = RAYS.map(|(spot, when)| View::new(&space::between(opening, closing, when), camera, spot));
         for (layer, view) in self.layers.iter_mut().zip(&views) {
@@ -56,10 +56,10 @@ impl Exposure {
         &self,
         pixel: usize,
         met: [u16; RAYS.len()],
-        scene: &Scene<'_>,
+        scene: &LeagueScene<'_>,
         views: &[View; RAYS.len()],
-    ) -> Rgb {
-        let mut sum = Rgb::zeros();
+    ) -> LinearRgb {
+        let mut sum = LinearRgb::zeros();
         for (ray, number) in met.into_iter().enumerate() {
             if met[..ray].contains(&number) {
                 continue;
@@ -70,7 +70,7 @@ impl Exposure {
         sum / RAYS.len() as f64
     }
 
-    fn shade(&self, pixel: usize, ray: usize, scene: &Scene<'_>, view: &View) -> Rgb {
+    fn shade(&self, pixel: usize, ray: usize, scene: &LeagueScene<'_>, view: &View) -> LinearRgb {
         let width = self.camera.width() as usize;
         let direction = view.ray(pixel % width, pixel / width);
         let layer = &self.layers[ray];
@@ -84,7 +84,7 @@ impl Exposure {
     }
 }
 
-fn label(met: [u16; RAYS.len()], scene: &Scene<'_>) -> u8 {
+fn label(met: [u16; RAYS.len()], scene: &LeagueScene<'_>) -> u8 {
     let of = |number: u16| match scene.surfaces.get(usize::from(number)).map(|surface| surface.material) {
         Some(Material::Map(color)) => color.0.saturating_add(1),
         _ => 0,

@@ -1,7 +1,7 @@
 use rand::Rng;
 
-use super::camera::{CameraParams, Chroma};
-use crate::league::{Rgb, yuv};
+use super::camera::{CameraParams, ChromaSubsampling};
+use crate::league::{LinearRgb, yuv};
 use crate::random::deviate::quick_normal;
 
 /// Entries of the table of the response.
@@ -11,7 +11,7 @@ const STEPS: usize = 4096;
 pub(super) struct ImagePipeline {
     params: CameraParams,
     /// Transmission of the lens, row by row.
-    lens: Vec<Rgb>,
+    lens: Vec<LinearRgb>,
     response: Vec<f64>,
 }
 
@@ -23,8 +23,13 @@ impl ImagePipeline {
     }
 
     /// `balance` multiplies the gains of the channels.
-    pub(super) fn process<R: Rng + ?Sized>(&self, light: &[Rgb], balance: &Rgb, rng: &mut R) -> Vec<u8> {
-        let stray = light.iter().sum::<Rgb>() * (self.params.flare / light.len().max(1) as f64);
+    pub(super) fn process<R: Rng + ?Sized>(
+        &self,
+        light: &[LinearRgb],
+        balance: &LinearRgb,
+        rng: &mut R,
+    ) -> Vec<u8> {
+        let stray = light.iter().sum::<LinearRgb>() * (self.params.flare / light.len().max(1) as f64);
         let gains = self.params.white_balance.component_mul(balance) * self.params.gain;
         let grey = light.iter().zip(&self.lens).map(|(light, lens)| {
             let seen = self.mixed(&(light + stray).component_mul(lens));
@@ -34,9 +39,9 @@ impl ImagePipeline {
     }
 
     /// The filters of the pixels differ from the primaries.
-    fn mixed(&self, light: &Rgb) -> Rgb {
+    fn mixed(&self, light: &LinearRgb) -> LinearRgb {
         let cross = self.params.crosstalk;
-        light * (1.0 - 3.0 * cross) + Rgb::repeat(cross * light.sum())
+        light * (1.0 - 3.0 * cross) + LinearRgb::repeat(cross * light.sum())
     }
 
     fn grey_value<R: Rng + ?Sized>(&self, signal: f64, rng: &mut R) -> f64 {
@@ -47,18 +52,18 @@ impl ImagePipeline {
     }
 
     /// Averages U and V over the pixels that share them, and makes bytes.
-    fn share_chroma(&self, yuv: Vec<Rgb>) -> Vec<u8> {
+    fn share_chroma(&self, yuv: Vec<LinearRgb>) -> Vec<u8> {
         let width = self.params.camera.width() as usize;
-        let (across, down) = match self.params.chroma {
-            Chroma::Each => (1, 1),
-            Chroma::Pairs => (2, 1),
-            Chroma::Squares => (2, 2),
+        let (across, down) = match self.params.chroma_subsampling {
+            ChromaSubsampling::Each => (1, 1),
+            ChromaSubsampling::Pairs => (2, 1),
+            ChromaSubsampling::Squares => (2, 2),
         };
         let mut bytes = Vec::with_capacity(3 * yuv.len());
         for (pixel, own) in yuv.iter().enumerate() {
             let (column, row) = (pixel % width, pixel / width);
             let (left, top) = (column - column % across, row - row % down);
-            let mut sum = Rgb::zeros();
+            let mut sum = LinearRgb::zeros();
             let mut count = 0.0;
             for y in top..top + down {
                 for x in left..(left + across).min(width) {
@@ -75,13 +80,13 @@ impl ImagePipeline {
 }
 
 /// A smooth fall to the corners, where the stated share is lost.
-fn lens(params: &CameraParams) -> Vec<Rgb> {
+fn lens(params: &CameraParams) -> Vec<LinearRgb> {
     let (width, height) = (params.camera.width(), params.camera.height());
     let (half_width, half_height) = (0.5 * f64::from(width), 0.5 * f64::from(height));
     let through = |column: u32, row: u32| {
         let (x, y) = (f64::from(column) + 0.5 - half_width, f64::from(row) + 0.5 - half_height);
         let corner = (x * x + y * y) / (half_width * half_width + half_height * half_height);
-        Rgb::repeat(1.0) - params.vignetting * corner
+        LinearRgb::repeat(1.0) - params.vignetting * corner
     };
     (0..height).flat_map(|row| (0..width).map(move |column| through(column, row))).collect()
 }

@@ -1,6 +1,6 @@
 use nalgebra::Vector3;
 
-use super::surface::{Form, plane_normal};
+use super::surface::{SurfaceShape, plane_normal};
 use super::view::{Affine, View};
 
 /// Surfaces in one plane, seen at the same depth but for rounding: the later one is on top.
@@ -29,16 +29,16 @@ impl Layer {
         self.surface.fill(Self::NOTHING);
     }
 
-    pub(super) fn draw(&mut self, number: u16, form: &Form, view: &View) {
+    pub(super) fn draw(&mut self, number: u16, form: &SurfaceShape, view: &View) {
         match form {
-            Form::Polygon { corners } => self.draw_polygon(number, corners, view),
-            Form::Tube { axis, radius, from, to } => {
+            SurfaceShape::Polygon { corners } => self.draw_polygon(number, corners, view),
+            SurfaceShape::Tube { axis, radius, from, to } => {
                 let meet = |ray: &Vector3<f64>| {
                     tube_nearness(&(axis - view.eye), *radius, [from - view.eye.z, to - view.eye.z], ray)
                 };
                 self.draw_round(number, axis, *radius, view, meet);
             }
-            Form::Ball { centre, radius } => {
+            SurfaceShape::Ball { centre, radius } => {
                 let meet = |ray: &Vector3<f64>| ball_nearness(&(centre - view.eye), *radius, ray);
                 self.draw_round(number, centre, *radius, view, meet);
             }

@@ -1,11 +1,11 @@
 use nalgebra::Vector3;
-use wayfix_color_map::{ColorId, ColorMap, Shape};
+use wayfix_color_map::{ColorId, ColorMap, ColoredShape};
 
-use crate::league::Rgb;
+use crate::league::LinearRgb;
 
 /// The geometry of one surface. All are seen from both sides.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Form {
+pub enum SurfaceShape {
     /// A planar convex polygon.
     Polygon {
         /// Its corners in order, metres.
@@ -37,19 +37,19 @@ pub enum Material {
     /// A colour of the map; the venue defines its reflectance.
     Map(ColorId),
     /// A diffuse reflectance that no map lists.
-    Unmapped(Rgb),
+    Unmapped(LinearRgb),
 }
 
 /// Something to see.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Surface {
+pub struct SceneSurface {
     /// Shape and position.
-    pub form: Form,
+    pub form: SurfaceShape,
     /// Paint.
     pub material: Material,
 }
 
-impl Surface {
+impl SceneSurface {
     /// The surfaces of a map, in its order.
     pub fn of_map(map: &ColorMap) -> Vec<Self> {
         map.shapes().iter().flat_map(of_shape).collect()
@@ -70,22 +70,22 @@ impl Surface {
             Vector3::new(at.x, at.y, pick(2))
         };
         [[0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6]]
-            .map(|side| Self { form: Form::Polygon { corners: side.map(corner).to_vec() }, material })
+            .map(|side| Self { form: SurfaceShape::Polygon { corners: side.map(corner).to_vec() }, material })
     }
 }
 
-fn of_shape(shape: &Shape) -> Vec<Surface> {
+fn of_shape(shape: &ColoredShape) -> Vec<SceneSurface> {
     match shape {
-        Shape::Polygon { color, vertices } => {
-            vec![Surface {
-                form: Form::Polygon { corners: vertices.clone() },
+        ColoredShape::Polygon { color, vertices } => {
+            vec![SceneSurface {
+                form: SurfaceShape::Polygon { corners: vertices.clone() },
                 material: Material::Map(*color),
             }]
         }
-        Shape::Post { x, y, radius, bands } => bands
+        ColoredShape::Post { x, y, radius, bands } => bands
             .iter()
-            .map(|band| Surface {
-                form: Form::Tube {
+            .map(|band| SceneSurface {
+                form: SurfaceShape::Tube {
                     axis: Vector3::new(*x, *y, 0.0),
                     radius: *radius,
                     from: band.from,
@@ -97,7 +97,7 @@ fn of_shape(shape: &Shape) -> Vec<Surface> {
     }
 }
 
-impl Form {
+impl SurfaceShape {
     /// The unit normal at a point of the surface, on the side of `eye`.
     pub(super) fn normal(&self, at: &Vector3<f64>, eye: &Vector3<f64>) -> Vector3<f64> {
         let outward = match self {

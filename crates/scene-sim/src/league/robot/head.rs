@@ -2,14 +2,14 @@ use nalgebra::{UnitQuaternion, Vector2, Vector3};
 use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
-use super::HeadParams;
+use super::RobotHeadParams;
 use crate::random::deviate::{chance, normal, uniform};
 use crate::{plane, space};
 
 /// Gaze of the robot.
 #[derive(Clone, Debug)]
 pub(super) struct Head {
-    params: HeadParams,
+    params: RobotHeadParams,
     /// Pan (to the left) and tilt (down), radians.
     angles: Vector2<f64>,
     rates: Vector2<f64>,
@@ -35,7 +35,7 @@ const TILT_LIMITS_RAD: [f64; 2] = [-0.35, 0.8];
 const AIM_BELOW_RAD: f64 = 0.12;
 
 impl Head {
-    pub(super) fn new<R: Rng + ?Sized>(params: HeadParams, rng: &mut R) -> Self {
+    pub(super) fn new<R: Rng + ?Sized>(params: RobotHeadParams, rng: &mut R) -> Self {
         Self {
             params,
             angles: Vector2::new(0.0, AIM_BELOW_RAD),
@@ -58,7 +58,7 @@ impl Head {
         self.left_s -= step_s;
         if self.left_s <= 0.0 {
             self.target = self.choose(body, landmarks, rng);
-            self.left_s = 0.2 + self.params.dwell_s * uniform(0.5, 1.5, rng);
+            self.left_s = 0.2 + self.params.mean_gaze_s * uniform(0.5, 1.5, rng);
         }
         let wanted = self.wanted(body);
         let top = self.params.speed_radps;
@@ -82,7 +82,7 @@ impl Head {
     /// The rotation according to the joint angles.
     pub(super) fn reported_rotation(&self) -> UnitQuaternion<f64> {
         let old = self.angles - self.rates * self.params.lag_s;
-        let quantum = self.params.quantum_rad;
+        let quantum = self.params.angle_resolution_rad;
         let said = old.map(|angle| if quantum > 0.0 { (angle / quantum).round() * quantum } else { angle });
         space::yaw(said.x) * space::pitch(said.y)
     }
@@ -106,7 +106,7 @@ impl Head {
         landmarks: &[Vector3<f64>],
         rng: &mut R,
     ) -> Target {
-        let (down, aside) = (chance(self.params.down_share, rng), uniform(-1.0, 1.0, rng));
+        let (down, aside) = (chance(self.params.downward_gaze_share, rng), uniform(-1.0, 1.0, rng));
         self.n_looks.resize(landmarks.len(), 0);
         let in_reach =
             |at: &Vector3<f64>| plane::range_and_bearing(body, &at.xy()).1.abs() < self.params.pan_limit_rad;

@@ -6,9 +6,9 @@ use wayfix_estimation_traits::{LieGroup, Pose2, Pose3};
 use super::head::Head;
 use super::odometry::GaitOdometry;
 use super::walker::{Walker, advance_phase};
-use super::{RobotParams, SwayParams};
-use crate::random::{GaussMarkov, Source, Streams};
-use crate::{SimError, space};
+use super::{BodySwayParams, LeggedRobotParams};
+use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
+use crate::{SimulationError, space};
 
 /// The neck in the robot's frame on the ground, metres.
 const NECK_M: [f64; 3] = [0.07, 0.0, 0.19];
@@ -21,21 +21,21 @@ const UNSTEADY_S: f64 = 1.0;
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_scene_sim::{league::{Legged, RobotParams, landmarks}, random::Streams};
-/// let mut streams = Streams::new(ChaCha8Rng::seed_from_u64(1));
+/// use wayfix_scene_sim::{league::{LeggedRobot, LeggedRobotParams, landmarks}, random::RandomStreams};
+/// let mut streams = RandomStreams::new(ChaCha8Rng::seed_from_u64(1));
 /// let start = Pose2::new(0.0, 0.0, 0.0);
-/// let mut robot = Legged::new(RobotParams::default(), Some(start), landmarks(), &mut streams)?;
+/// let mut robot = LeggedRobot::new(LeggedRobotParams::default(), Some(start), landmarks(), &mut streams)?;
 /// (0..10_000).for_each(|_| robot.step(&mut streams));
 /// assert!((robot.pose().translation - start.translation).norm() > 0.2, "it walks");
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Legged {
+pub struct LeggedRobot {
     walker: Walker,
     head: Head,
     odometry: GaitOdometry,
     landmarks: Vec<Vector3<f64>>,
-    sway: SwayParams,
+    sway: BodySwayParams,
     /// Phase of the stride, radians.
     phase: f64,
     /// Strength of the sway, smoothed.
@@ -47,23 +47,23 @@ pub struct Legged {
 
 const STEP_S: f64 = 1e-3;
 
-impl Legged {
+impl LeggedRobot {
     /// A robot at rest at `start`, or at a random pose; it looks at `landmarks`.
     /// # Errors
-    /// Returns [`SimError::Parameter`] if a parameter is out of range.
+    /// Returns [`SimulationError::Parameter`] if a parameter is out of range.
     pub fn new(
-        params: RobotParams,
+        params: LeggedRobotParams,
         start: Option<Pose2<f64>>,
         landmarks: Vec<Vector3<f64>>,
-        streams: &mut Streams,
-    ) -> Result<Self, SimError> {
+        streams: &mut RandomStreams,
+    ) -> Result<Self, SimulationError> {
         params.validate()?;
-        let anywhere = Walker::anywhere(&params.walk, streams.of(Source::Walk));
+        let anywhere = Walker::anywhere(&params.walk, streams.of(RandomStreamPurpose::Walk));
         let slow = GaussMarkov::new(UNSTEADY_S);
         Ok(Self {
             walker: Walker::new(params.walk, start.unwrap_or(anywhere)),
-            head: Head::new(params.head, streams.of(Source::Joints)),
-            odometry: GaitOdometry::new(params.odometry, streams.of(Source::Gait)),
+            head: Head::new(params.head, streams.of(RandomStreamPurpose::Joints)),
+            odometry: GaitOdometry::new(params.odometry, streams.of(RandomStreamPurpose::Gait)),
             landmarks,
             sway: params.sway,
             phase: 0.0,
@@ -74,10 +74,10 @@ impl Legged {
     }
 
     /// Lets a millisecond pass.
-    pub fn step(&mut self, streams: &mut Streams) {
-        let moved = self.walker.step(STEP_S, streams.of(Source::Walk));
+    pub fn step(&mut self, streams: &mut RandomStreams) {
+        let moved = self.walker.step(STEP_S, streams.of(RandomStreamPurpose::Walk));
         self.odometry.add(&moved);
-        self.head.step(STEP_S, &self.walker.pose, &self.landmarks, streams.of(Source::Gaze));
+        self.head.step(STEP_S, &self.walker.pose, &self.landmarks, streams.of(RandomStreamPurpose::Gaze));
         self.strength += (self.walker.activity().min(1.0) - self.strength) * 0.01;
         self.phase = advance_phase(self.phase, TAU * STEP_S / self.sway.stride_s);
         self.wobble(streams);
@@ -106,8 +106,8 @@ impl Legged {
     }
 
     /// Odometry since the last call.
-    pub fn odometry(&mut self, seconds: f64, streams: &mut Streams) -> Pose2<f64> {
-        self.odometry.take(seconds, streams.of(Source::Gait))
+    pub fn odometry(&mut self, seconds: f64, streams: &mut RandomStreams) -> Pose2<f64> {
+        self.odometry.take(seconds, streams.of(RandomStreamPurpose::Gait))
     }
 
     /// Kidnaps the robot; its odometry does not measure it.
@@ -117,10 +117,10 @@ impl Legged {
     }
 
     /// The slow part of the sway.
-    fn wobble(&mut self, streams: &mut Streams) {
-        let rng = streams.of(Source::Joints);
+    fn wobble(&mut self, streams: &mut RandomStreams) {
+        let rng = streams.of(RandomStreamPurpose::Joints);
         for (slow, process) in self.slow.iter_mut().zip(&mut self.unsteady) {
-            *slow = self.sway.unsteady_rad * process.advance(STEP_S, rng);
+            *slow = self.sway.tilt_error_rad * process.advance(STEP_S, rng);
         }
     }
 }

@@ -6,5 +6,5 @@ mod odometry;
 mod params;
 mod walker;
 
-pub use legged::Legged;
-pub use params::{GaitOdometryParams, HeadParams, RobotParams, SwayParams, WalkParams};
+pub use legged::LeggedRobot;
+pub use params::{BodySwayParams, GaitOdometryParams, LegWalkParams, LeggedRobotParams, RobotHeadParams};

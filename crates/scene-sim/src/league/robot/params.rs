@@ -1,22 +1,22 @@
 use crate::random::NoiseShape;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// A four-legged robot: gait, sway, head motion, and its odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RobotParams {
+pub struct LeggedRobotParams {
     /// Gait.
-    pub walk: WalkParams,
+    pub walk: LegWalkParams,
     /// Motion of the body.
-    pub sway: SwayParams,
+    pub sway: BodySwayParams,
     /// Motion of the head.
-    pub head: HeadParams,
+    pub head: RobotHeadParams,
     /// Odometry from steps.
     pub odometry: GaitOdometryParams,
 }
 
 /// Path: between random points of the field, forwards or sideways, with turns and rests.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WalkParams {
+pub struct LegWalkParams {
     /// Speed, m/s; 0 never leaves its place. Default 0.25.
     pub speed_mps: f64,
     /// Turning rate, rad/s. Default 1.
@@ -24,16 +24,16 @@ pub struct WalkParams {
     /// Time constant of the speed, s. Default 0.15.
     pub lag_s: f64,
     /// Mean length of a rest, seconds. Default 0.5.
-    pub rest_s: f64,
+    pub mean_rest_s: f64,
     /// Share of legs of the path walked without turning first. Default 0.25.
     pub sideways_share: f64,
     /// Distance from the boards, m, at most 1. Default 0.35.
-    pub margin_m: f64,
+    pub board_margin_m: f64,
 }
 
 /// Motion of the body with the gait, which the joints of the head do not measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SwayParams {
+pub struct BodySwayParams {
     /// Length of one stride, seconds. Default 0.5.
     pub stride_s: f64,
     /// Amplitude of the roll at full speed, radians. Default 1°.
@@ -43,22 +43,22 @@ pub struct SwayParams {
     /// Amplitude of the height at full speed, metres. Default 0.004.
     pub height_m: f64,
     /// σ of a slow error of roll and pitch, walking or not, radians: the carpet is soft. Default 0.3°.
-    pub unsteady_rad: f64,
+    pub tilt_error_rad: f64,
 }
 
 /// The head: pan and tilt, and a camera in its nose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeadParams {
+pub struct RobotHeadParams {
     /// Top speed of a joint, rad/s. Default 2.
     pub speed_radps: f64,
     /// Furthest pan to either side, radians. Default 88°.
     pub pan_limit_rad: f64,
     /// Mean time of a gaze, s. Default 0.5.
-    pub dwell_s: f64,
+    pub mean_gaze_s: f64,
     /// Share of gazes at the carpet ahead instead of a landmark. Default 0.15.
-    pub down_share: f64,
+    pub downward_gaze_share: f64,
     /// Resolution of the reported angles, radians; 0 for none. Default 0.25°.
-    pub quantum_rad: f64,
+    pub angle_resolution_rad: f64,
     /// Delay of reported angles, s. Default 0.008.
     pub lag_s: f64,
     /// σ of the constant error of pan, tilt and roll of the camera, radians. Default 0.35°.
@@ -82,31 +82,31 @@ pub struct GaitOdometryParams {
     pub drift_correlation_s: f64,
 }
 
-impl Default for RobotParams {
+impl Default for LeggedRobotParams {
     fn default() -> Self {
         let degrees = f64::to_radians;
         Self {
-            walk: WalkParams {
+            walk: LegWalkParams {
                 speed_mps: 0.25,
                 turn_radps: 1.0,
                 lag_s: 0.15,
-                rest_s: 0.5,
+                mean_rest_s: 0.5,
                 sideways_share: 0.25,
-                margin_m: 0.35,
+                board_margin_m: 0.35,
             },
-            sway: SwayParams {
+            sway: BodySwayParams {
                 stride_s: 0.5,
                 roll_rad: degrees(1.0),
                 pitch_rad: degrees(0.7),
                 height_m: 0.004,
-                unsteady_rad: degrees(0.3),
+                tilt_error_rad: degrees(0.3),
             },
-            head: HeadParams {
+            head: RobotHeadParams {
                 speed_radps: 2.0,
                 pan_limit_rad: degrees(88.0),
-                dwell_s: 0.5,
-                down_share: 0.15,
-                quantum_rad: degrees(0.25),
+                mean_gaze_s: 0.5,
+                downward_gaze_share: 0.15,
+                angle_resolution_rad: degrees(0.25),
                 lag_s: 0.008,
                 bias_rad: degrees(0.35),
             },
@@ -122,30 +122,30 @@ impl Default for RobotParams {
     }
 }
 
-impl RobotParams {
+impl LeggedRobotParams {
     /// Whether the numbers make a robot.
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         let Self { walk, sway, head, odometry } = self;
         check::not_negative("speed (m/s)", walk.speed_mps)?;
         check::positive("turning rate (rad/s)", walk.turn_radps)?;
         check::positive("lag of the gait (s)", walk.lag_s)?;
-        check::not_negative("rest (s)", walk.rest_s)?;
+        check::not_negative("rest (s)", walk.mean_rest_s)?;
         check::share("ways walked sideways", walk.sideways_share)?;
-        check::not_negative("margin (m)", walk.margin_m)?;
-        check::at_most("margin (m)", walk.margin_m, 1.0, "at most 1")?;
+        check::not_negative("margin (m)", walk.board_margin_m)?;
+        check::at_most("margin (m)", walk.board_margin_m, 1.0, "at most 1")?;
         check::positive("stride (s)", sway.stride_s)?;
         check::not_negative("roll (rad)", sway.roll_rad)?;
         check::not_negative("pitch (rad)", sway.pitch_rad)?;
         check::not_negative("swaying height (m)", sway.height_m)?;
-        check::not_negative("slow roll and pitch (rad)", sway.unsteady_rad)?;
+        check::not_negative("slow roll and pitch (rad)", sway.tilt_error_rad)?;
         check::positive("speed of the head (rad/s)", head.speed_radps)?;
         check::not_negative("furthest pan (rad)", head.pan_limit_rad)?;
-        check::not_negative("length of a look (s)", head.dwell_s)?;
-        check::share("looks at the carpet", head.down_share)?;
-        check::not_negative("resolution of the joints (rad)", head.quantum_rad)?;
+        check::not_negative("length of a look (s)", head.mean_gaze_s)?;
+        check::share("looks at the carpet", head.downward_gaze_share)?;
+        check::not_negative("resolution of the joints (rad)", head.angle_resolution_rad)?;
         check::not_negative("lag of the joints (s)", head.lag_s)?;
         check::not_negative("error of the joints (rad)", head.bias_rad)?;
         for scale in [odometry.step_scale, odometry.turn_scale].concat() {

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use rand::Rng;
 use wayfix_estimation_traits::Pose2;
 
-use super::WalkParams;
+use super::LegWalkParams;
 use crate::league::field::spot;
 use crate::plane;
 use crate::random::deviate::{chance, uniform};
@@ -12,7 +12,7 @@ use crate::random::deviate::{chance, uniform};
 /// Path of the robot.
 #[derive(Clone, Debug)]
 pub(super) struct Walker {
-    params: WalkParams,
+    params: LegWalkParams,
     pub(super) pose: Pose2<f64>,
     /// Forwards and to the left, m/s.
     velocity: Vector2<f64>,
@@ -36,7 +36,7 @@ const WORTH_M: f64 = 1.2;
 const TURNED_RAD: f64 = 0.1;
 
 impl Walker {
-    pub(super) fn new(params: WalkParams, start: Pose2<f64>) -> Self {
+    pub(super) fn new(params: LegWalkParams, start: Pose2<f64>) -> Self {
         Self {
             params,
             pose: start,
@@ -47,8 +47,8 @@ impl Walker {
     }
 
     /// Somewhere on the field, any heading.
-    pub(super) fn anywhere<R: Rng + ?Sized>(params: &WalkParams, rng: &mut R) -> Pose2<f64> {
-        let at = spot(params.margin_m, rng);
+    pub(super) fn anywhere<R: Rng + ?Sized>(params: &LegWalkParams, rng: &mut R) -> Pose2<f64> {
+        let at = spot(params.board_margin_m, rng);
         Pose2::new(at.x, at.y, uniform(-PI, PI, rng))
     }
 
@@ -102,12 +102,12 @@ impl Walker {
 
     /// A random goal that is usually far enough.
     fn elsewhere<R: Rng + ?Sized>(&self, rng: &mut R) -> Vector2<f64> {
-        let mut to = spot(self.params.margin_m, rng);
+        let mut to = spot(self.params.board_margin_m, rng);
         for _ in 0..10 {
             if (to - self.pose.translation).norm() > WORTH_M {
                 break;
             }
-            to = spot(self.params.margin_m, rng);
+            to = spot(self.params.board_margin_m, rng);
         }
         to
     }
@@ -121,7 +121,7 @@ impl Walker {
         let there = plane::to_body(&self.pose, &to);
         let distance = there.norm();
         if distance < ARRIVED_M {
-            self.task = Task::Rest { left_s: 2.0 * self.params.rest_s * uniform(0.0, 1.0, rng) };
+            self.task = Task::Rest { left_s: 2.0 * self.params.mean_rest_s * uniform(0.0, 1.0, rng) };
             return (Vector2::zeros(), 0.0);
         }
         let velocity = there * (self.params.speed_mps / distance);

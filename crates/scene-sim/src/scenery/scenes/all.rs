@@ -1,14 +1,14 @@
 use crate::random::deviate::{below, uniform};
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
 use crate::scenery::noise::Noise;
 
 const BRICKS: [Color; 4] = [[0.66, 0.34, 0.26], [0.76, 0.68, 0.52], [0.46, 0.50, 0.58], [0.84, 0.80, 0.74]];
 
 /// A bit of everything: sky and clouds, hills, a row of houses, trees, a meadow with flowers, a pond.
-pub(super) fn paint((width, height): (usize, usize), streams: &mut Streams) -> Canvas {
+pub(super) fn paint((width, height): (usize, usize), streams: &mut RandomStreams) -> Canvas {
     let (w, h) = (width as f64, height as f64);
-    let noise = Noise::new(streams.of(Source::Texture));
+    let noise = Noise::new(streams.of(RandomStreamPurpose::Texture));
     let mut canvas = Canvas::new(width, height, |x, y| {
         let sky = mix([0.28, 0.48, 0.82], [0.78, 0.86, 0.94], (2.2 * y / h).min(1.0));
         let cloud = (3.0 * noise.fractal(x / 130.0, y / 60.0, 5) - 1.4).clamp(0.0, 1.0);
@@ -38,7 +38,7 @@ pub(super) fn paint((width, height): (usize, usize), streams: &mut Streams) -> C
         mix([0.20, 0.34, 0.46], [0.62, 0.76, 0.86], noise.fractal(x / 60.0, y / 5.0, 3))
     });
     trees(&mut canvas, (w, h), streams, &noise);
-    let rng = streams.of(Source::Objects);
+    let rng = streams.of(RandomStreamPurpose::Objects);
     for _ in 0..150 {
         let (at, size) = ((uniform(0.0, 0.5 * w, rng), uniform(0.70 * h, h, rng)), uniform(1.5, 4.5, rng));
         let tint = [[0.92, 0.20, 0.24], [0.97, 0.86, 0.25], [0.80, 0.45, 0.85]][below(3, rng)];
@@ -47,8 +47,8 @@ pub(super) fn paint((width, height): (usize, usize), streams: &mut Streams) -> C
     canvas
 }
 
-fn houses(canvas: &mut Canvas, w: f64, ground: f64, streams: &mut Streams, noise: &Noise) {
-    let rng = streams.of(Source::Objects);
+fn houses(canvas: &mut Canvas, w: f64, ground: f64, streams: &mut RandomStreams, noise: &Noise) {
+    let rng = streams.of(RandomStreamPurpose::Objects);
     let mut left = -10.0;
     while left < w {
         let (right, top) = (left + uniform(60.0, 110.0, rng), ground - uniform(60.0, 190.0, rng));
@@ -74,8 +74,8 @@ fn houses(canvas: &mut Canvas, w: f64, ground: f64, streams: &mut Streams, noise
     }
 }
 
-fn trees(canvas: &mut Canvas, (w, h): (f64, f64), streams: &mut Streams, noise: &Noise) {
-    let rng = streams.of(Source::Objects);
+fn trees(canvas: &mut Canvas, (w, h): (f64, f64), streams: &mut RandomStreams, noise: &Noise) {
+    let rng = streams.of(RandomStreamPurpose::Objects);
     for _ in 0..9 {
         let (x, foot, size) = (uniform(0.0, w, rng), uniform(0.62, 0.78, rng) * h, uniform(26.0, 58.0, rng));
         let leaf = mix([0.10, 0.28, 0.10], [0.55, 0.45, 0.12], uniform(0.0, 1.0, rng));

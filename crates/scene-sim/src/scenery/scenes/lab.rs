@@ -1,5 +1,5 @@
 use crate::random::deviate::{below, uniform};
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
 use crate::scenery::noise::Noise;
 
@@ -13,9 +13,9 @@ const BACKS: [Color; 6] = [
 ];
 
 /// A laboratory: shelves of books, a window, a desk with screens, a robot under it.
-pub(super) fn paint((width, height): (usize, usize), streams: &mut Streams) -> Canvas {
+pub(super) fn paint((width, height): (usize, usize), streams: &mut RandomStreams) -> Canvas {
     let (w, h) = (width as f64, height as f64);
-    let noise = Noise::new(streams.of(Source::Texture));
+    let noise = Noise::new(streams.of(RandomStreamPurpose::Texture));
     let mut canvas = Canvas::new(width, height, |x, y| {
         scaled(
             [0.76, 0.78, 0.72],
@@ -47,8 +47,8 @@ pub(super) fn paint((width, height): (usize, usize), streams: &mut Streams) -> C
     canvas
 }
 
-fn books(canvas: &mut Canvas, (left, right): (f64, f64), board: f64, streams: &mut Streams) {
-    let rng = streams.of(Source::Objects);
+fn books(canvas: &mut Canvas, (left, right): (f64, f64), board: f64, streams: &mut RandomStreams) {
+    let rng = streams.of(RandomStreamPurpose::Objects);
     let mut x = left;
     while x < right - 18.0 {
         let (next, tall) = (x + uniform(6.0, 18.0, rng), uniform(34.0, 58.0, rng));

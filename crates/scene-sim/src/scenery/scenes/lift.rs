@@ -1,5 +1,5 @@
 use crate::random::deviate::uniform;
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
 use crate::scenery::noise::Noise;
 
@@ -9,9 +9,9 @@ const TILES: Color = [0.44, 0.30, 0.24];
 const LEAF: Color = [0.16, 0.42, 0.18];
 
 /// A lift lobby: two steel doors in a plastered wall, buttons, a notice, a plant, a lamp, tiles.
-pub(super) fn paint((width, height): (usize, usize), streams: &mut Streams) -> Canvas {
+pub(super) fn paint((width, height): (usize, usize), streams: &mut RandomStreams) -> Canvas {
     let (w, h) = (width as f64, height as f64);
-    let noise = Noise::new(streams.of(Source::Texture));
+    let noise = Noise::new(streams.of(RandomStreamPurpose::Texture));
     let floor = 0.80 * h;
     let mut canvas = Canvas::new(width, height, |x, y| {
         let lamp = ((x - 0.3 * w) / w).powi(2) + (y / h).powi(2);
@@ -68,8 +68,8 @@ fn buttons(canvas: &mut Canvas, (x, y): (f64, f64)) {
     canvas.ellipse((x, y + 12.0), (6.0, 6.0), |_, _| [0.30, 0.28, 0.25]);
 }
 
-fn plant(canvas: &mut Canvas, (x, y): (f64, f64), size: f64, streams: &mut Streams) {
-    let rng = streams.of(Source::Objects);
+fn plant(canvas: &mut Canvas, (x, y): (f64, f64), size: f64, streams: &mut RandomStreams) {
+    let rng = streams.of(RandomStreamPurpose::Objects);
     for _ in 0..26 {
         let (dx, dy) = (uniform(-0.45, 0.45, rng) * size, uniform(0.25, 1.3, rng) * size);
         let radii = (uniform(0.05, 0.12, rng) * size, uniform(0.10, 0.22, rng) * size);

@@ -1,7 +1,7 @@
 use rand_chacha::ChaCha8Rng;
 
 use crate::random::deviate::{below, uniform};
-use crate::random::{Source, Streams};
+use crate::random::{RandomStreamPurpose, RandomStreams};
 use crate::scenery::canvas::{Canvas, Color, mix, scaled};
 use crate::scenery::noise::Noise;
 
@@ -16,10 +16,10 @@ const COUNTRIES: [Color; 6] = [
 ];
 
 /// A political map: countries in flat colours, a sea, rivers, roads, towns.
-pub(super) fn paint((width, height): (usize, usize), streams: &mut Streams) -> Canvas {
+pub(super) fn paint((width, height): (usize, usize), streams: &mut RandomStreams) -> Canvas {
     let (w, h) = (width as f64, height as f64);
-    let noise = Noise::new(streams.of(Source::Texture));
-    let rng = streams.of(Source::Objects);
+    let noise = Noise::new(streams.of(RandomStreamPurpose::Texture));
+    let rng = streams.of(RandomStreamPurpose::Objects);
     let capitals: Vec<((f64, f64), Color)> = (0..26)
         .map(|_| {
             let tint = scaled(COUNTRIES[below(COUNTRIES.len(), rng)], uniform(0.80, 1.02, rng));

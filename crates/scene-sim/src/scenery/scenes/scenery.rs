@@ -2,8 +2,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use super::{all, lab, lift, map};
-use crate::SimError;
-use crate::random::Streams;
+use crate::SimulationError;
+use crate::random::RandomStreams;
 use crate::scenery::RgbPicture;
 
 /// A named scene, and the grid of views it has room for.
@@ -36,10 +36,10 @@ impl Scenery {
     /// The scene of that name.
     ///
     /// # Errors
-    /// Returns [`SimError::UnknownScenario`] if there is none.
-    pub fn named(name: &str) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::UnknownScenario`] if there is none.
+    pub fn named(name: &str) -> Result<Self, SimulationError> {
         let found = Self::ALL.into_iter().find(|scenery| scenery.name == name);
-        found.ok_or_else(|| SimError::UnknownScenario { name: name.to_owned() })
+        found.ok_or_else(|| SimulationError::UnknownScenario { name: name.to_owned() })
     }
 
     /// Number of views.
@@ -55,7 +55,7 @@ impl Scenery {
 
     /// The scene as it is learned.
     pub fn compose(&self) -> RgbPicture {
-        let mut streams = Streams::new(ChaCha8Rng::seed_from_u64(self.seed));
+        let mut streams = RandomStreams::new(ChaCha8Rng::seed_from_u64(self.seed));
         let size = self.size_px();
         let canvas = match self.name {
             "lift" => lift::paint(size, &mut streams),

@@ -3,7 +3,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::People;
 use crate::random::NoiseShape;
 use crate::sensor::range_bearing::RangeSigma;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// The most beams a scan has.
 const MOST_BEAMS: usize = 100_000;
@@ -29,7 +29,7 @@ pub struct LaserParams {
     /// Maximum range of an echo, m. Default 30.
     pub max_range_m: f64,
     /// Range reported for no echo, m; scans state it as their `range_max`. Default 81.91.
-    pub no_echo_m: f64,
+    pub no_echo_range_m: f64,
     /// Standard deviation of the white range error. Default 0.005 m, not growing.
     pub range_noise: RangeSigma,
     /// Shape of the white range error. Default Gaussian.
@@ -39,11 +39,11 @@ pub struct LaserParams {
     /// Standard deviation of each beam's true direction about its stated one, radians. Default 0.0005.
     pub bearing_sigma_rad: f64,
     /// Ranges are whole multiples of this, metres; 0 for any range. Default 0.01.
-    pub quantum_m: f64,
+    pub range_resolution_m: f64,
     /// Opening angle of a beam, radians. Default 0.0044.
     pub beam_width_rad: f64,
     /// Share of the beams on the edge between two surfaces that report a range in between. Default 0.5.
-    pub mixed_share: f64,
+    pub mixed_pixel_share: f64,
     /// Share of beams without echo, independent of the surface. Default 0.
     pub dropout_share: f64,
     /// Share of beams with a random range short of the surface: dust, glare. Default 0.
@@ -60,14 +60,14 @@ impl Default for LaserParams {
             beam_step_rad: 1.0_f64.to_radians(),
             n_beams: 181,
             max_range_m: 30.0,
-            no_echo_m: 81.91,
+            no_echo_range_m: 81.91,
             range_noise: RangeSigma { constant_m: 0.005, per_meter: 0.0 },
             noise_shape: NoiseShape::Gaussian,
             range_bias_m: 0.0,
             bearing_sigma_rad: 0.0005,
-            quantum_m: 0.01,
+            range_resolution_m: 0.01,
             beam_width_rad: 0.0044,
-            mixed_share: 0.5,
+            mixed_pixel_share: 0.5,
             dropout_share: 0.0,
             spurious_share: 0.0,
             people: People::default(),
@@ -80,7 +80,7 @@ impl LaserParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         check::period("period of the scans (ms)", self.period_ms)?;
         check::finite("direction of the first beam (rad)", self.first_beam_rad)?;
         check::finite("angle between beams (rad)", self.beam_step_rad)?;
@@ -89,14 +89,14 @@ impl LaserParams {
         check::at_most("field of view (rad)", view, TAU, "at most a turn")?;
         check::positive("farthest range of the laser (m)", self.max_range_m)?;
         let must = "finite and above the farthest range";
-        check::above("range of a beam without echo (m)", self.no_echo_m, self.max_range_m, must)?;
+        check::above("range of a beam without echo (m)", self.no_echo_range_m, self.max_range_m, must)?;
         self.range_noise.validate()?;
         self.noise_shape.validate()?;
         check::finite("range bias of the laser (m)", self.range_bias_m)?;
         check::not_negative("σ of a beam's direction (rad)", self.bearing_sigma_rad)?;
-        check::not_negative("quantum of the ranges (m)", self.quantum_m)?;
+        check::not_negative("quantum of the ranges (m)", self.range_resolution_m)?;
         check::not_negative("opening angle of a beam (rad)", self.beam_width_rad)?;
-        check::share("share of mixed beams", self.mixed_share)?;
+        check::share("share of mixed beams", self.mixed_pixel_share)?;
         check::share("share of beams that are lost", self.dropout_share)?;
         check::share("share of spurious echoes", self.spurious_share)?;
         self.people.validate()

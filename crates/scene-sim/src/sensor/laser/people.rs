@@ -1,7 +1,7 @@
 use nalgebra::Vector2;
 
-use crate::random::{Source, Streams, deviate};
-use crate::{SimError, check, plane};
+use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
+use crate::{SimulationError, check, plane};
 
 /// People around the robot: round, at new random positions in every scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ impl Default for People {
 }
 
 impl People {
-    pub(super) fn validate(&self) -> Result<(), SimError> {
+    pub(super) fn validate(&self) -> Result<(), SimulationError> {
         check::not_negative("mean number of people", self.mean)?;
         check::at_most("mean number of people", self.mean, 100.0, "at most 100")?;
         check::positive("radius of a person (m)", self.radius_m)?;
@@ -34,8 +34,8 @@ impl People {
     }
 
     /// The people of one scan, in the sensor's frame, in directions from `from` to `to` radians.
-    pub(super) fn draw(&self, from: f64, to: f64, streams: &mut Streams) -> Vec<Person> {
-        let rng = streams.of(Source::People);
+    pub(super) fn draw(&self, from: f64, to: f64, streams: &mut RandomStreams) -> Vec<Person> {
+        let rng = streams.of(RandomStreamPurpose::People);
         (0..deviate::poisson(self.mean, rng))
             .map(|_| {
                 let direction = plane::direction(deviate::uniform(from, to, rng));

@@ -1,13 +1,13 @@
 use nalgebra::Vector2;
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Data, LaserScan};
+use wayfix_sensor_log::{LaserScan, RecordData};
 
 use super::LaserParams;
 use super::people::Person;
-use crate::random::{Source, Streams, deviate};
-use crate::sensor::{Reading, Sensor, TrueState};
+use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
+use crate::sensor::{Sensor, SensorReading, TrueState};
 use crate::world::Wall;
-use crate::{SimError, plane};
+use crate::{SimulationError, plane};
 
 /// The instrument to [`LaserParams`], at the robot's origin.
 ///
@@ -16,19 +16,19 @@ use crate::{SimError, plane};
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::{Pose2, nalgebra::Vector2};
-/// use wayfix_scene_sim::{random::Streams, sensor::{Laser, LaserParams, TrueState, Sensor}, world::{Plan, PlanarWorld, Wall}};
-/// use wayfix_sensor_log::Data;
+/// use wayfix_scene_sim::{random::RandomStreams, sensor::{Laser, LaserParams, TrueState, Sensor}, world::{FloorPlan, PlanarWorld, Wall}};
+/// use wayfix_sensor_log::RecordData;
 ///
 /// let ahead = Wall { from: Vector2::new(3.0, -1.0), to: Vector2::new(3.0, 1.0) };
-/// let world = PlanarWorld::new(Plan { landmarks: vec![], walls: vec![ahead] });
+/// let world = PlanarWorld::new(FloorPlan { landmarks: vec![], walls: vec![ahead] });
 /// let pose = Pose2::new(0.0, 0.0, 0.0);
 /// let moment = TrueState { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
 /// let mut laser = Laser::new(LaserParams::default())?;
-/// let reading = laser.sense(&moment, &mut Streams::new(ChaCha8Rng::seed_from_u64(1)));
-/// let Some(Data::Scan(scan)) = reading.map(|r| r.data) else { panic!("no scan") };
+/// let reading = laser.sense(&moment, &mut RandomStreams::new(ChaCha8Rng::seed_from_u64(1)));
+/// let Some(RecordData::Scan(scan)) = reading.map(|r| r.data) else { panic!("no scan") };
 /// assert!((scan.ranges[90] - 3.0).abs() < 0.03); // straight ahead: 5σ and half a quantum
 /// assert_eq!(scan.echoes().count(), 37); // those within atan(1/3) = 18.4°
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Laser {
@@ -42,27 +42,27 @@ impl Laser {
     /// A scanner.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] or [`SimError::TooMany`] if a parameter is out of range.
-    pub fn new(params: LaserParams) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] or [`SimulationError::TooMany`] if a parameter is out of range.
+    pub fn new(params: LaserParams) -> Result<Self, SimulationError> {
         params.validate()?;
         Ok(Self { params })
     }
 
     /// Reported range of a beam.
-    fn range(&self, bearing: f64, scene: &Scene<'_>, errors: &Errors) -> f64 {
+    fn range(&self, bearing: f64, scene: &LeagueScene<'_>, errors: &Errors) -> f64 {
         let hit = self.hit(bearing + self.params.bearing_sigma_rad * errors.direction, scene, errors);
         let Some(hit) = hit.filter(|hit| *hit <= self.params.max_range_m && !errors.lost) else {
-            return self.params.no_echo_m;
+            return self.params.no_echo_range_m;
         };
         let range = match errors.spurious {
             Some(share) => share * hit,
             None => hit + self.params.range_bias_m + self.params.range_noise.at(hit) * errors.range,
         };
-        quantized(range, self.params.quantum_m).clamp(0.0, self.params.max_range_m)
+        quantized(range, self.params.range_resolution_m).clamp(0.0, self.params.max_range_m)
     }
 
     /// Length of the beam: to the surface in its middle, or at an edge to a point between the two surfaces that it hits.
-    fn hit(&self, bearing: f64, scene: &Scene<'_>, errors: &Errors) -> Option<f64> {
+    fn hit(&self, bearing: f64, scene: &LeagueScene<'_>, errors: &Errors) -> Option<f64> {
         let half = 0.5 * self.params.beam_width_rad;
         let middle = scene.distance(bearing);
         let edges = scene.distance(bearing - half).zip(scene.distance(bearing + half));
@@ -82,8 +82,9 @@ impl Sensor for Laser {
         self.params.period_ms
     }
 
-    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
-        let LaserParams { first_beam_rad, beam_step_rad, n_beams, no_echo_m, .. } = self.params;
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut RandomStreams) -> Option<SensorReading> {
+        let LaserParams { first_beam_rad, beam_step_rad, n_beams, no_echo_range_m: no_echo_m, .. } =
+            self.params;
         let mut scan = LaserScan {
             angle_min: first_beam_rad,
             angle_increment: beam_step_rad,
@@ -92,22 +93,22 @@ impl Sensor for Laser {
             ranges: vec![],
         };
         let people = self.params.people.draw(first_beam_rad, scan.bearing(n_beams), streams);
-        let scene = Scene { pose: moment.pose, walls: &moment.world.walls(), people: &people };
+        let scene = LeagueScene { pose: moment.pose, walls: &moment.world.walls(), people: &people };
         scan.ranges = (0..n_beams)
             .map(|beam| self.range(scan.bearing(beam), &scene, &Errors::draw(&self.params, streams)))
             .collect();
-        Some(Reading { data: Data::Scan(scan), stamp_offset_ms: 0 })
+        Some(SensorReading { data: RecordData::Scan(scan), stamp_offset_ms: 0 })
     }
 }
 
 /// The surfaces.
-struct Scene<'a> {
+struct LeagueScene<'a> {
     pose: Pose2<f64>,
     walls: &'a [Wall],
     people: &'a [Person],
 }
 
-impl Scene<'_> {
+impl LeagueScene<'_> {
     /// To the nearest surface in a direction of the robot's frame.
     fn distance(&self, bearing: f64) -> Option<f64> {
         let (in_world, in_body): (Vector2<f64>, Vector2<f64>) =
@@ -130,17 +131,17 @@ struct Errors {
 }
 
 impl Errors {
-    fn draw(params: &LaserParams, streams: &mut Streams) -> Self {
-        let direction = deviate::normal(streams.of(Source::BearingNoise));
-        let range = params.noise_shape.draw(streams.of(Source::RangeNoise));
-        let lost = deviate::chance(params.dropout_share, streams.of(Source::Dropout));
+    fn draw(params: &LaserParams, streams: &mut RandomStreams) -> Self {
+        let direction = deviate::normal(streams.of(RandomStreamPurpose::BearingNoise));
+        let range = params.noise_shape.draw(streams.of(RandomStreamPurpose::RangeNoise));
+        let lost = deviate::chance(params.dropout_share, streams.of(RandomStreamPurpose::Dropout));
         let mut share_if = |share, source| {
             let rng = streams.of(source);
             let (happens, where_between) = (deviate::chance(share, rng), deviate::unit(rng));
             happens.then_some(where_between)
         };
-        let mixed = share_if(params.mixed_share, Source::MixedPixels);
-        let spurious = share_if(params.spurious_share, Source::Clutter);
+        let mixed = share_if(params.mixed_pixel_share, RandomStreamPurpose::MixedPixels);
+        let spurious = share_if(params.spurious_share, RandomStreamPurpose::Clutter);
         Self { direction, range, mixed, lost, spurious }
     }
 }

@@ -1,8 +1,8 @@
-use wayfix_sensor_log::{Detection, Target};
+use wayfix_sensor_log::{Detection, DetectionTarget};
 
 use super::RangeBearingParams;
-use crate::random::{Source, Streams, deviate};
-use crate::{SimError, check};
+use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
+use crate::{SimulationError, check};
 
 /// False detections: a Poisson number per scan, uniform in range and bearing over the field of view.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -26,7 +26,7 @@ pub enum ClutterLabel {
 }
 
 impl Clutter {
-    pub(super) fn validate(&self) -> Result<(), SimError> {
+    pub(super) fn validate(&self) -> Result<(), SimulationError> {
         check::not_negative("mean number of false detections", self.mean)?;
         check::at_most("mean number of false detections", self.mean, 100.0, "at most 100")
     }
@@ -36,9 +36,9 @@ impl Clutter {
         &self,
         params: &RangeBearingParams,
         landmark_ids: &[u32],
-        streams: &mut Streams,
+        streams: &mut RandomStreams,
     ) -> Vec<Detection> {
-        let rng = streams.of(Source::Clutter);
+        let rng = streams.of(RandomStreamPurpose::Clutter);
         let count = deviate::poisson(self.mean, rng);
         (0..count)
             .map(|_| {
@@ -52,11 +52,11 @@ impl Clutter {
 }
 
 impl ClutterLabel {
-    fn target(self, any_landmark: Option<&u32>) -> Target {
+    fn target(self, any_landmark: Option<&u32>) -> DetectionTarget {
         match (self, any_landmark) {
-            (Self::AnyLandmark, Some(id)) => Target::Landmark(*id),
-            (Self::UnknownCode(code), _) => Target::UnknownCode(code),
-            (Self::Unlabelled | Self::AnyLandmark, _) => Target::Unlabelled,
+            (Self::AnyLandmark, Some(id)) => DetectionTarget::Landmark(*id),
+            (Self::UnknownCode(code), _) => DetectionTarget::UnknownCode(code),
+            (Self::Unlabelled | Self::AnyLandmark, _) => DetectionTarget::Unlabelled,
         }
     }
 }

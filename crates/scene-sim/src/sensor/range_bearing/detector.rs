@@ -1,12 +1,12 @@
 use nalgebra::Vector2;
 use wayfix_estimation_traits::wrap_angle;
-use wayfix_sensor_log::{Data, Detection, Target};
+use wayfix_sensor_log::{Detection, DetectionTarget, RecordData};
 
 use super::RangeBearingParams;
 use super::drift::Drift;
-use crate::random::{Source, Streams, deviate};
-use crate::sensor::{Reading, Sensor, TrueState};
-use crate::{SimError, plane};
+use crate::random::{RandomStreamPurpose, RandomStreams, deviate};
+use crate::sensor::{Sensor, SensorReading, TrueState};
+use crate::{SimulationError, plane};
 
 /// The sensor of [`RangeBearingParams`]. One reading holds one scan, sorted by bearing.
 ///
@@ -14,17 +14,17 @@ use crate::{SimError, plane};
 /// ```
 /// use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_scene_sim::{random::Streams, sensor::{TrueState, RangeBearingDetector, RangeBearingParams, Sensor}, world::{Plan, PlanarWorld}};
-/// use wayfix_sensor_log::{Data, TrueLandmark};
+/// use wayfix_scene_sim::{random::RandomStreams, sensor::{TrueState, RangeBearingDetector, RangeBearingParams, Sensor}, world::{FloorPlan, PlanarWorld}};
+/// use wayfix_sensor_log::{RecordData, TrueLandmark};
 ///
-/// let world = PlanarWorld::new(Plan { landmarks: vec![TrueLandmark { id: 0, x: 3.0, y: 4.0 }], walls: vec![] });
+/// let world = PlanarWorld::new(FloorPlan { landmarks: vec![TrueLandmark { id: 0, x: 3.0, y: 4.0 }], walls: vec![] });
 /// let pose = Pose2::new(0.0, 0.0, 0.0);
 /// let moment = TrueState { milliseconds: 0, pose, wheel_angles: [0.0; 2], world: &world };
 /// let mut sensor = RangeBearingDetector::new(RangeBearingParams::default())?;
-/// let reading = sensor.sense(&moment, &mut Streams::new(ChaCha8Rng::seed_from_u64(1)));
-/// let Some(Data::Detections(seen)) = reading.map(|r| r.data) else { panic!("no look") };
+/// let reading = sensor.sense(&moment, &mut RandomStreams::new(ChaCha8Rng::seed_from_u64(1)));
+/// let Some(RecordData::Detections(seen)) = reading.map(|r| r.data) else { panic!("no look") };
 /// assert!((seen[0].range - 5.0).abs() < 0.25); // 5σ
-/// # Ok::<(), wayfix_scene_sim::SimError>(())
+/// # Ok::<(), wayfix_scene_sim::SimulationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct RangeBearingDetector {
@@ -36,8 +36,8 @@ impl RangeBearingDetector {
     /// A sensor before its first scan.
     ///
     /// # Errors
-    /// Returns [`SimError::Parameter`] if a parameter is out of range.
-    pub fn new(params: RangeBearingParams) -> Result<Self, SimError> {
+    /// Returns [`SimulationError::Parameter`] if a parameter is out of range.
+    pub fn new(params: RangeBearingParams) -> Result<Self, SimulationError> {
         params.validate()?;
         Ok(Self { params, drifts: Vec::new() })
     }
@@ -45,7 +45,7 @@ impl RangeBearingDetector {
     /// Detection of one target.
     fn detect(
         &self,
-        (target, point): (Target, Vector2<f64>),
+        (target, point): (DetectionTarget, Vector2<f64>),
         errors: &Errors,
         moment: &TrueState<'_>,
         landmark_ids: &[u32],
@@ -71,7 +71,7 @@ impl Sensor for RangeBearingDetector {
         self.params.period_ms
     }
 
-    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut Streams) -> Option<Reading> {
+    fn sense(&mut self, moment: &TrueState<'_>, streams: &mut RandomStreams) -> Option<SensorReading> {
         let targets = moment.world.targets(moment.seconds());
         let landmark_ids: Vec<u32> = moment.world.landmarks().iter().map(|l| l.id).collect();
         self.drifts.resize(targets.len(), Drift::new(&self.params.drift));
@@ -82,9 +82,9 @@ impl Sensor for RangeBearingDetector {
         }
         detections.extend(self.params.clutter.draw(&self.params, &landmark_ids, streams));
         detections.sort_by(|a, b| a.bearing.total_cmp(&b.bearing));
-        let lost = deviate::chance(self.params.dropout_share, streams.of(Source::Dropout));
-        (!lost).then_some(Reading {
-            data: Data::Detections(detections),
+        let lost = deviate::chance(self.params.dropout_share, streams.of(RandomStreamPurpose::Dropout));
+        (!lost).then_some(SensorReading {
+            data: RecordData::Detections(detections),
             stamp_offset_ms: i64::from(self.params.latency_ms),
         })
     }
@@ -101,20 +101,20 @@ struct Errors {
 }
 
 impl Errors {
-    fn draw(params: &RangeBearingParams, drift: &mut Drift, streams: &mut Streams) -> Self {
+    fn draw(params: &RangeBearingParams, drift: &mut Drift, streams: &mut RandomStreams) -> Self {
         let white = (
-            params.noise_shape.draw(streams.of(Source::RangeNoise)),
-            params.noise_shape.draw(streams.of(Source::BearingNoise)),
+            params.noise_shape.draw(streams.of(RandomStreamPurpose::RangeNoise)),
+            params.noise_shape.draw(streams.of(RandomStreamPurpose::BearingNoise)),
         );
         let drift = drift.advance(f64::from(params.period_ms) * 1e-3, streams);
-        let missed = deviate::chance(params.missed_share, streams.of(Source::Missed));
-        let rng = streams.of(Source::Outlier);
+        let missed = deviate::chance(params.missed_share, streams.of(RandomStreamPurpose::Missed));
+        let rng = streams.of(RandomStreamPurpose::Outlier);
         let is_outlier = deviate::chance(params.outlier_share, rng);
         let anywhere = (
             deviate::uniform(params.min_range_m, params.max_range_m, rng),
             deviate::uniform(-params.half_view(), params.half_view(), rng),
         );
-        let rng = streams.of(Source::Mislabel);
+        let rng = streams.of(RandomStreamPurpose::Mislabel);
         let (is_mislabelled, which) = (deviate::chance(params.mislabelled_share, rng), deviate::unit(rng));
         Self {
             white,
@@ -134,13 +134,13 @@ impl Errors {
     }
 
     /// The identity written to the log.
-    fn labelled(&self, target: Target, landmark_ids: &[u32], labelled: bool) -> Target {
+    fn labelled(&self, target: DetectionTarget, landmark_ids: &[u32], labelled: bool) -> DetectionTarget {
         match (target, self.mislabel) {
-            _ if !labelled => Target::Unlabelled,
-            (Target::Landmark(own), Some(which)) => {
+            _ if !labelled => DetectionTarget::Unlabelled,
+            (DetectionTarget::Landmark(own), Some(which)) => {
                 let others = || landmark_ids.iter().filter(|id| **id != own);
                 let pick = (which * others().count() as f64) as usize;
-                others().nth(pick).map_or(target, |id| Target::Landmark(*id))
+                others().nth(pick).map_or(target, |id| DetectionTarget::Landmark(*id))
             }
             _ => target,
         }

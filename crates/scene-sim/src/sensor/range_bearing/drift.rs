@@ -1,10 +1,10 @@
 use super::RangeSigma;
-use crate::random::{GaussMarkov, Source, Streams};
-use crate::{SimError, check};
+use crate::random::{GaussMarkov, RandomStreamPurpose, RandomStreams};
+use crate::{SimulationError, check};
 
 /// Errors that hang together in time, as of a target seen through the same haze for a while: a Gauss-Markov process per target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DriftParams {
+pub struct CorrelatedErrorParams {
     /// Standard deviation of the range's part. Default 0.
     pub range: RangeSigma,
     /// Standard deviation of the bearing's part, radians. Default 0.
@@ -13,14 +13,14 @@ pub struct DriftParams {
     pub correlation_time_s: f64,
 }
 
-impl Default for DriftParams {
+impl Default for CorrelatedErrorParams {
     fn default() -> Self {
         Self { range: RangeSigma::default(), bearing_sigma_rad: 0.0, correlation_time_s: 5.0 }
     }
 }
 
-impl DriftParams {
-    pub(super) fn validate(&self) -> Result<(), SimError> {
+impl CorrelatedErrorParams {
+    pub(super) fn validate(&self) -> Result<(), SimulationError> {
         self.range.validate()?;
         check::not_negative("σ of the bearing's drift (rad)", self.bearing_sigma_rad)?;
         check::not_negative("correlation time of the drift (s)", self.correlation_time_s)
@@ -35,14 +35,14 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    pub(super) fn new(params: &DriftParams) -> Self {
+    pub(super) fn new(params: &CorrelatedErrorParams) -> Self {
         let process = GaussMarkov::new(params.correlation_time_s);
         Self { range: process.clone(), bearing: process }
     }
 
     /// The errors of range and bearing, in units of their standard deviations.
-    pub(super) fn advance(&mut self, step_s: f64, streams: &mut Streams) -> (f64, f64) {
-        let rng = streams.of(Source::Drift);
+    pub(super) fn advance(&mut self, step_s: f64, streams: &mut RandomStreams) -> (f64, f64) {
+        let rng = streams.of(RandomStreamPurpose::Drift);
         (self.range.advance(step_s, rng), self.bearing.advance(step_s, rng))
     }
 }

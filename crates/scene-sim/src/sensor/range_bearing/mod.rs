@@ -21,5 +21,5 @@ mod params;
 
 pub use clutter::{Clutter, ClutterLabel};
 pub use detector::RangeBearingDetector;
-pub use drift::DriftParams;
+pub use drift::CorrelatedErrorParams;
 pub use params::{RangeBearingParams, RangeSigma};

@@ -1,8 +1,8 @@
 use std::f64::consts::TAU;
 
-use super::{Clutter, DriftParams};
+use super::{Clutter, CorrelatedErrorParams};
 use crate::random::NoiseShape;
-use crate::{SimError, check};
+use crate::{SimulationError, check};
 
 /// Everything about a range-bearing sensor. The default is honest: Gaussian noise of the shared range-bearing logs, no sins.
 ///
@@ -34,7 +34,7 @@ pub struct RangeBearingParams {
     /// Added to every bearing, radians. Default 0.
     pub bearing_bias_rad: f64,
     /// Errors that hang together in time. Default none.
-    pub drift: DriftParams,
+    pub drift: CorrelatedErrorParams,
     /// Delay of the stamp, milliseconds. Default 0.
     pub latency_ms: u32,
     /// Share of detections that are gross outliers. Default 0.
@@ -66,7 +66,7 @@ impl RangeSigma {
         self.constant_m + self.per_meter * range
     }
 
-    pub(in crate::sensor) fn validate(&self) -> Result<(), SimError> {
+    pub(in crate::sensor) fn validate(&self) -> Result<(), SimulationError> {
         check::not_negative("σ of range (m)", self.constant_m)?;
         check::not_negative("growth of σ with range", self.per_meter)
     }
@@ -85,7 +85,7 @@ impl Default for RangeBearingParams {
             range_bias_m: 0.0,
             range_scale: 1.0,
             bearing_bias_rad: 0.0,
-            drift: DriftParams::default(),
+            drift: CorrelatedErrorParams::default(),
             latency_ms: 0,
             outlier_share: 0.0,
             dropout_share: 0.0,
@@ -102,7 +102,7 @@ impl RangeBearingParams {
     ///
     /// # Errors
     /// Returns an error with the first parameter that is out of range.
-    pub fn validate(&self) -> Result<(), SimError> {
+    pub fn validate(&self) -> Result<(), SimulationError> {
         check::period("period of the looks (ms)", self.period_ms)?;
         check::not_negative("nearest range (m)", self.min_range_m)?;
         check::above(

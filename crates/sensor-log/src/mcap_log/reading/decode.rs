@@ -10,7 +10,9 @@ use super::super::{camera, scan, vehicle};
 use super::routes::Route;
 use crate::fault::{Fault, finite, inconsistent};
 use crate::planar::heading_of;
-use crate::{Data, Detection, ProblemKind, Record, Stamp, Target, TrueLandmark, TrueWall, Velocity};
+use crate::{
+    Detection, DetectionTarget, ProblemKind, Record, RecordData, Stamp, TrueLandmark, TrueWall, Velocity,
+};
 
 /// The records in one message; a message without a stamp gets its log time.
 pub(in crate::mcap_log) fn records(
@@ -23,37 +25,37 @@ pub(in crate::mcap_log) fn records(
             let message: Odometry = decode(bytes)?;
             Ok(vec![Record { stamp: stamp(message.timestamp, log_time)?, data: velocity(&message)? }])
         }
-        Route::Increment => pose_record(bytes, log_time, Data::OdometryIncrement),
+        Route::Increment => pose_record(bytes, log_time, RecordData::OdometryIncrement),
         Route::Ackermann => vehicle::drive(bytes, log_time),
         Route::DetectionWidths => vehicle::widths(bytes, log_time),
         Route::TruePosition => vehicle::position(bytes, log_time),
-        Route::TruePose => pose_record(bytes, log_time, Data::TruePose),
-        Route::EstimatedPose => pose_record(bytes, log_time, Data::EstimatedPose),
+        Route::TruePose => pose_record(bytes, log_time, RecordData::TruePose),
+        Route::EstimatedPose => pose_record(bytes, log_time, RecordData::EstimatedPose),
         Route::CameraInfo => camera::info(bytes, log_time),
         Route::CameraMount => camera::mount(bytes, log_time),
         Route::CameraOptical | Route::ScanPoints => Ok(Vec::new()),
         Route::Scan(channel) => scan::scan(channel, bytes, log_time),
         Route::LaserMount => scan::mount(bytes, log_time),
         Route::RawImage => camera::raw_image(bytes, log_time),
-        Route::Image => camera::image(bytes, log_time, Data::Image),
-        Route::TrueLabels => camera::image(bytes, log_time, Data::TrueLabels),
+        Route::Image => camera::image(bytes, log_time, RecordData::Image),
+        Route::TrueLabels => camera::image(bytes, log_time, RecordData::TrueLabels),
         Route::Detections => {
             let cloud: PointCloud = decode(bytes)?;
             Ok(vec![Record {
                 stamp: stamp(cloud.timestamp, log_time)?,
-                data: Data::Detections(detections(&cloud)?),
+                data: RecordData::Detections(detections(&cloud)?),
             }])
         }
         Route::TrueLandmarks => {
             let cloud: PointCloud = decode(bytes)?;
             let stamp = stamp(cloud.timestamp, log_time)?;
-            let to_record = |landmark| Record { stamp, data: Data::TrueLandmark(landmark) };
+            let to_record = |landmark| Record { stamp, data: RecordData::TrueLandmark(landmark) };
             Ok(landmarks(&cloud)?.into_iter().map(to_record).collect())
         }
         Route::TrueWalls => {
             let cloud: PointCloud = decode(bytes)?;
             let stamp = stamp(cloud.timestamp, log_time)?;
-            let to_record = |wall| Record { stamp, data: Data::TrueWall(wall) };
+            let to_record = |wall| Record { stamp, data: RecordData::TrueWall(wall) };
             Ok(walls(&cloud)?.into_iter().map(to_record).collect())
         }
     }
@@ -71,17 +73,17 @@ pub(in crate::mcap_log) fn stamp(timestamp: Option<Timestamp>, log_time: Stamp) 
         .ok_or_else(|| (ProblemKind::BadStamp, "time stamp out of range".to_owned()))
 }
 
-fn velocity(message: &Odometry) -> Result<Data, Fault> {
+fn velocity(message: &Odometry) -> Result<RecordData, Fault> {
     let linear = message.linear_velocity.unwrap_or_default().x;
     let angular = message.angular_velocity.unwrap_or_default().z;
     finite([linear, angular])?;
-    Ok(Data::Velocity(Velocity { linear, angular }))
+    Ok(RecordData::Velocity(Velocity { linear, angular }))
 }
 
 fn pose_record(
     bytes: &[u8],
     log_time: Stamp,
-    to_data: impl Fn(Pose2<f64>) -> Data,
+    to_data: impl Fn(Pose2<f64>) -> RecordData,
 ) -> Result<Vec<Record>, Fault> {
     let message: PoseInFrame = decode(bytes)?;
     let stamp = stamp(message.timestamp, log_time)?;
@@ -109,12 +111,12 @@ fn detections(cloud: &PointCloud) -> Result<Vec<Detection>, Fault> {
     Ok(detections)
 }
 
-fn target(kind: u32, id: u32) -> Option<Target> {
+fn target(kind: u32, id: u32) -> Option<DetectionTarget> {
     match kind {
-        0 => Some(Target::Unlabelled),
-        1 => Some(Target::Landmark(id)),
-        2 => Some(Target::Robot(id)),
-        3 => Some(Target::UnknownCode(id)),
+        0 => Some(DetectionTarget::Unlabelled),
+        1 => Some(DetectionTarget::Landmark(id)),
+        2 => Some(DetectionTarget::Robot(id)),
+        3 => Some(DetectionTarget::UnknownCode(id)),
         _ => None,
     }
 }

@@ -9,7 +9,7 @@ use mcap::records::MessageHeader;
 
 use super::super::origin;
 use super::super::writing::sink::{ChannelKey, Message, MessageSink};
-use crate::{Format, LogError};
+use crate::{LogError, LogFormat};
 
 /// Messages are flushed in chunks of about this size: a crash loses no more.
 const CHUNK_BYTES: u64 = 256 << 10;
@@ -75,8 +75,8 @@ impl<W: Write + Seek> MessageSink for McapFile<W> {
         Ok(())
     }
 
-    fn origin(&mut self, origin: Format) -> Result<(), LogError> {
-        if origin != Format::Mcap {
+    fn origin(&mut self, origin: LogFormat) -> Result<(), LogError> {
+        if origin != LogFormat::Mcap {
             self.writer.write_metadata(&origin::encode(origin))?;
         }
         Ok(())

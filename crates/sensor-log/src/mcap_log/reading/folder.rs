@@ -2,13 +2,13 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{LogError, Warning};
+use crate::{LogError, LogWarning};
 
 /// Metadata file that a ROS 2 recorder writes beside the files of a bag on a regular end.
 const METADATA: &str = "metadata.yaml";
 
 /// The files to read, with warnings: a ROS 2 recorder creates a folder for each bag, with one file, or several if it splits them.
-pub(crate) fn files_of(path: &Path) -> Result<(Vec<PathBuf>, Vec<Warning>), LogError> {
+pub(crate) fn files_of(path: &Path) -> Result<(Vec<PathBuf>, Vec<LogWarning>), LogError> {
     if !path.is_dir() {
         return Ok((vec![path.into()], Vec::new()));
     }
@@ -24,7 +24,7 @@ pub(crate) fn files_of(path: &Path) -> Result<(Vec<PathBuf>, Vec<Warning>), LogE
         _ => return Err(LogError::SeveralFiles { path: path.into(), files }),
     };
     let mut warnings = Vec::new();
-    let mut warn = |name, text| warnings.push(Warning { name, text });
+    let mut warn = |name, text| warnings.push(LogWarning { name, text });
     if !named.is_empty() && named.len() < files.len() {
         let text = format!("{METADATA} names {} of the {} parts: all are read", named.len(), files.len());
         warn("metadata_is_stale", text);

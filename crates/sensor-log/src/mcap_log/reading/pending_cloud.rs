@@ -1,7 +1,7 @@
 use foxglove::messages::PointCloud;
 
 use super::super::{topics, writing::encode};
-use crate::{Data, LogError, Record, Stamp, TrueLandmark, TrueWall};
+use crate::{LogError, Record, RecordData, Stamp, TrueLandmark, TrueWall};
 
 /// Successive landmarks, or walls, of one stamp, collected into one cloud so that viewers draw them together.
 #[derive(Default)]
@@ -15,7 +15,7 @@ impl PendingCloud {
     /// Whether a landmark or a wall belongs to the same cloud as the previous ones.
     pub(in crate::mcap_log) fn is_of_same_cloud(&self, record: &Record) -> bool {
         let same_kind = match record.data {
-            Data::TrueWall(_) => self.landmarks.is_empty(),
+            RecordData::TrueWall(_) => self.landmarks.is_empty(),
             _ => self.walls.is_empty(),
         };
         same_kind && record.stamp == self.stamp
@@ -25,8 +25,8 @@ impl PendingCloud {
     pub(in crate::mcap_log) fn push(&mut self, record: &Record) {
         self.stamp = record.stamp;
         match record.data {
-            Data::TrueLandmark(landmark) => self.landmarks.push(landmark),
-            Data::TrueWall(wall) => self.walls.push(wall),
+            RecordData::TrueLandmark(landmark) => self.landmarks.push(landmark),
+            RecordData::TrueWall(wall) => self.walls.push(wall),
             _ => {}
         }
     }

@@ -13,7 +13,9 @@ use super::topic_clock::TopicClock;
 use super::{decode, topic_listing};
 use crate::bag::{BagRecords, BagRoute, Choice};
 use crate::formats::format::shortened;
-use crate::{Data, Format, LogEnd, LogError, Problem, ProblemKind, ReadReport, Record, Stamp, Topic};
+use crate::{
+    LogEnd, LogError, LogFormat, ProblemKind, ReadReport, Record, RecordData, RowProblem, Stamp, Topic,
+};
 
 /// The records of an MCAP file, or of several of one recording, chunk by chunk: memory does not grow with them.
 pub(crate) struct McapRecords {
@@ -51,7 +53,7 @@ impl McapRecords {
     }
 
     /// The original format of the records, if it was read so far.
-    pub(crate) fn origin(&self) -> Option<Format> {
+    pub(crate) fn origin(&self) -> Option<LogFormat> {
         self.messages.origin
     }
 
@@ -102,7 +104,7 @@ fn readable(files: &[PathBuf], report: &mut ReadReport) -> Result<Vec<PathBuf>, 
             Ok(_) => readable.push(path.clone()),
             Err(error) => {
                 let reason = format!("left out: {error}");
-                report.add(Problem {
+                report.add(RowProblem {
                     file: file_name(path),
                     row: 0,
                     kind: ProblemKind::UnreadableFile,
@@ -125,7 +127,7 @@ fn file_name(path: &Path) -> String {
 /// Messages and metadata, wherever in the files they are.
 struct Messages {
     files: Vec<FileState>,
-    origin: Option<Format>,
+    origin: Option<LogFormat>,
     bag: BagRecords,
     clocks: BTreeMap<String, TopicClock>,
     set_back: Option<SetBack>,
@@ -240,8 +242,8 @@ impl Messages {
                 report.rows_read += 1;
                 for record in records {
                     match &record.data {
-                        Data::Image(image) => report.warn_of_orientation(image),
-                        Data::Scan(scan) => self.bag.note_range_limit(scan),
+                        RecordData::Image(image) => report.warn_of_orientation(image),
+                        RecordData::Scan(scan) => self.bag.note_range_limit(scan),
                         _ => {}
                     }
                     self.check_clock(file, &name, record, report);
@@ -307,6 +309,6 @@ impl Messages {
 
     fn trouble(&self, file: usize, kind: ProblemKind, reason: String, report: &mut ReadReport) {
         let FileState { name, n_messages, .. } = &self.files[file];
-        report.add(Problem { file: name.clone(), row: *n_messages, kind, reason });
+        report.add(RowProblem { file: name.clone(), row: *n_messages, kind, reason });
     }
 }

@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use crate::{Data, Record, Stamp};
+use crate::{Record, RecordData, Stamp};
 
 /// Number of records buffered to sort late ones.
 const WINDOW_RECORDS: usize = 256;
@@ -54,10 +54,10 @@ impl Reorder {
 /// Heap size of a record, in bytes.
 fn n_bytes(record: &Record) -> usize {
     match &record.data {
-        Data::Detections(detections) => size_of_val(detections.as_slice()),
-        Data::DetectionWidths(widths) => size_of_val(widths.as_slice()),
-        Data::Scan(scan) => size_of_val(scan.ranges.as_slice()),
-        Data::Image(image) | Data::TrueLabels(image) => image.bytes.len(),
+        RecordData::Detections(detections) => size_of_val(detections.as_slice()),
+        RecordData::DetectionWidths(widths) => size_of_val(widths.as_slice()),
+        RecordData::Scan(scan) => size_of_val(scan.ranges.as_slice()),
+        RecordData::Image(image) | RecordData::TrueLabels(image) => image.bytes.len(),
         _ => 0,
     }
 }

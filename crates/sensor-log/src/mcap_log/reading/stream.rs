@@ -8,7 +8,7 @@ use mcap::records::op;
 use super::super::frames::{Frame, Frames};
 use super::chunk::ChunkRecords;
 use crate::formats::unsupported_format;
-use crate::{Format, LogEnd, LogError};
+use crate::{LogEnd, LogError, LogFormat};
 
 /// The records of an MCAP file in file order, including those in chunks; memory use does not grow with the file.
 pub(in crate::mcap_log) struct RecordStream {
@@ -40,7 +40,7 @@ impl RecordStream {
         if magic != MAGIC {
             unsupported_format::check(path)?;
             let reason = "it does not begin with the magic bytes of MCAP".to_owned();
-            return Err(LogError::NotThisFormat { path: path.into(), format: Format::Mcap, reason });
+            return Err(LogError::NotThisFormat { path: path.into(), format: LogFormat::Mcap, reason });
         }
         Ok(Self { frames: Frames::new(reader), chunk: None })
     }

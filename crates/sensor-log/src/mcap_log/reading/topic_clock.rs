@@ -91,7 +91,7 @@ mod tests {
     use wayfix_estimation_traits::Pose2;
 
     use super::*;
-    use crate::Data;
+    use crate::RecordData;
 
     fn checked(seconds: &[u64]) -> (Vec<u64>, Vec<u64>, Option<(u64, u64)>) {
         let (mut clock, mut passed, mut wrong, mut set_back) =
@@ -99,7 +99,7 @@ mod tests {
         let whole = |stamp: Stamp| stamp.nanoseconds() / 1_000_000_000;
         for second in seconds {
             let stamp = Stamp::from_nanoseconds(second * 1_000_000_000);
-            let found = clock.check(Record { stamp, data: Data::TruePose(Pose2::new(0.0, 0.0, 0.0)) });
+            let found = clock.check(Record { stamp, data: RecordData::TruePose(Pose2::new(0.0, 0.0, 0.0)) });
             passed.extend(found.passed.iter().map(|record| whole(record.stamp)));
             wrong.extend(found.wrong.iter().map(|record| whole(record.stamp)));
             set_back = set_back.or(found.set_back.map(|(from, to)| (whole(from), whole(to))));

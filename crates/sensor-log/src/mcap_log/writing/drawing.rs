@@ -14,19 +14,19 @@ const TEXT_PIXELS: f64 = 12.0;
 
 /// Something to draw in a viewer; a later one with the same `id` replaces it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawing {
+pub struct ViewerDrawing {
     /// Its identity within the topic.
     pub id: String,
     /// Red, green, blue and alpha in [0, 1].
     pub color: [f64; 4],
     /// Its shape.
-    pub shape: Shape,
+    pub shape: DrawingShape,
 }
 
 /// Planar shapes; metres and radians.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Shape {
+pub enum DrawingShape {
     /// The outline of an ellipse, for instance of a covariance.
     Ellipse {
         /// Centre.
@@ -80,13 +80,13 @@ pub(in crate::mcap_log) fn image_annotations(
 pub(in crate::mcap_log) fn scene_update(
     timestamp: Timestamp,
     frame: &str,
-    drawings: &[Drawing],
+    drawings: &[ViewerDrawing],
 ) -> SceneUpdate {
     let entities = drawings.iter().map(|drawing| entity(timestamp, frame, drawing)).collect();
     SceneUpdate { entities, ..Default::default() }
 }
 
-fn entity(timestamp: Timestamp, frame: &str, drawing: &Drawing) -> SceneEntity {
+fn entity(timestamp: Timestamp, frame: &str, drawing: &ViewerDrawing) -> SceneEntity {
     let [r, g, b, a] = drawing.color;
     let color = Color { r, g, b, a };
     let mut entity = SceneEntity {
@@ -96,12 +96,12 @@ fn entity(timestamp: Timestamp, frame: &str, drawing: &Drawing) -> SceneEntity {
         ..Default::default()
     };
     match &drawing.shape {
-        Shape::Ellipse { center, semi_axes, angle } => {
+        DrawingShape::Ellipse { center, semi_axes, angle } => {
             let outline = ellipse_outline(*center, *semi_axes, *angle);
             entity.lines.push(line(line_primitive::Type::LineLoop, &outline, color));
         }
-        Shape::Path(points) => entity.lines.push(line(line_primitive::Type::LineStrip, points, color)),
-        Shape::Marker { position: [x, y], radius, text } => {
+        DrawingShape::Path(points) => entity.lines.push(line(line_primitive::Type::LineStrip, points, color)),
+        DrawingShape::Marker { position: [x, y], radius, text } => {
             let pose = Some(encode::pose(&Pose2::new(*x, *y, 0.0)));
             let size = Some(Vector3 { x: 2.0 * radius, y: 2.0 * radius, z: 2.0 * radius });
             entity.spheres.push(SpherePrimitive { pose, size, color: Some(color) });

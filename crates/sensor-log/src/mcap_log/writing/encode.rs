@@ -7,7 +7,7 @@ use wayfix_estimation_traits::Pose2;
 use super::super::cloud::{self, Column};
 use super::super::topics;
 use crate::planar::quaternion_of;
-use crate::{Detection, LogError, Stamp, Target, TrueLandmark, TrueWall, Velocity};
+use crate::{Detection, DetectionTarget, LogError, Stamp, TrueLandmark, TrueWall, Velocity};
 
 /// Bytes 0-15 are read back; the other columns are for viewers.
 const DETECTION_COLUMNS: [Column; 7] = [
@@ -86,12 +86,12 @@ pub(in crate::mcap_log) fn detections(timestamp: Timestamp, detections: &[Detect
     })
 }
 
-fn target_code(target: Target) -> (u32, u32) {
+fn target_code(target: DetectionTarget) -> (u32, u32) {
     match target {
-        Target::Unlabelled => (0, 0),
-        Target::Landmark(id) => (1, id),
-        Target::Robot(id) => (2, id),
-        Target::UnknownCode(code) => (3, code),
+        DetectionTarget::Unlabelled => (0, 0),
+        DetectionTarget::Landmark(id) => (1, id),
+        DetectionTarget::Robot(id) => (2, id),
+        DetectionTarget::UnknownCode(code) => (3, code),
     }
 }
 

@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use crate::{Format, LogError, Stamp};
+use crate::{LogError, LogFormat, Stamp};
 
 /// A Foxglove message, encoded as protobuf.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +70,7 @@ pub trait MessageSink {
     /// Announces the original format of the records, before the first message.
     /// # Errors
     /// Returns an error if that cannot be passed on.
-    fn origin(&mut self, origin: Format) -> Result<(), LogError> {
+    fn origin(&mut self, origin: LogFormat) -> Result<(), LogError> {
         let _ = origin;
         Ok(())
     }
@@ -84,14 +84,14 @@ pub trait MessageSink {
 }
 
 /// Several sinks; each gets every message.
-pub type Sinks = Vec<Box<dyn MessageSink>>;
+pub type MessageSinks = Vec<Box<dyn MessageSink>>;
 
-impl MessageSink for Sinks {
+impl MessageSink for MessageSinks {
     fn message(&mut self, message: &Message<'_>) -> Result<(), LogError> {
         self.iter_mut().try_for_each(|sink| sink.message(message))
     }
 
-    fn origin(&mut self, origin: Format) -> Result<(), LogError> {
+    fn origin(&mut self, origin: LogFormat) -> Result<(), LogError> {
         self.iter_mut().try_for_each(|sink| sink.origin(origin))
     }
 

@@ -9,11 +9,11 @@ use wayfix_estimation_traits::Pose2;
 
 use super::super::reading::file::McapFile;
 use super::super::reading::pending_cloud::PendingCloud;
-use super::super::{Drawing, ImageOutline, camera, topics};
+use super::super::{ImageOutline, ViewerDrawing, camera, topics};
 use super::drawing::{image_annotations, scene_update};
 use super::encode;
 use super::sink::{Message, MessageSink};
-use crate::{EncodedImage, Format, ImageFormat, LogError, Record, Stamp};
+use crate::{EncodedImage, ImageFormat, LogError, LogFormat, Record, Stamp};
 
 /// Writes records and things to draw as Foxglove messages, into a file ([`McapWriter`]) or wherever else messages can go ([`MessageSink`]).
 pub struct MessageWriter<S: MessageSink> {
@@ -29,10 +29,10 @@ pub struct MessageWriter<S: MessageSink> {
 /// ```
 /// use std::io::Cursor;
 /// use wayfix_estimation_traits::Pose2;
-/// use wayfix_sensor_log::{Data, McapWriter, Record, Stamp};
+/// use wayfix_sensor_log::{RecordData, McapWriter, Record, Stamp};
 /// let mut file = Cursor::new(Vec::new());
 /// let mut writer = McapWriter::new(&mut file)?;
-/// writer.record(&Record { stamp: Stamp::from_nanoseconds(5), data: Data::TruePose(Pose2::new(1.0, 2.0, 0.5)) })?;
+/// writer.record(&Record { stamp: Stamp::from_nanoseconds(5), data: RecordData::TruePose(Pose2::new(1.0, 2.0, 0.5)) })?;
 /// writer.poses_in_frame("/path", Stamp::from_nanoseconds(5), "world", &[Pose2::new(1.0, 2.0, 0.5)])?;
 /// writer.finish()?;
 /// assert!(file.into_inner().starts_with(b"\x89MCAP0\r\n"));
@@ -77,7 +77,7 @@ impl<S: MessageSink> MessageWriter<S> {
     /// format of the file.
     /// # Errors
     /// Returns an error if the output fails.
-    pub fn origin(&mut self, origin: Format) -> Result<(), LogError> {
+    pub fn origin(&mut self, origin: LogFormat) -> Result<(), LogError> {
         self.sink.origin(origin)
     }
 
@@ -160,7 +160,7 @@ impl<S: MessageSink> MessageWriter<S> {
         topic: &str,
         stamp: Stamp,
         frame: &str,
-        drawings: &[Drawing],
+        drawings: &[ViewerDrawing],
     ) -> Result<(), LogError> {
         let message = scene_update(encode::timestamp(stamp)?, frame, drawings);
         self.message(topic, stamp, &message)

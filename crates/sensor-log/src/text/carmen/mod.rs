@@ -26,7 +26,7 @@ use super::half_circle::is_half_circle;
 use super::row::{RowError, stamp_of};
 use super::scan_odometry::ScanOdometry;
 use crate::formats::compressed::TextReader;
-use crate::{Data, LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record};
+use crate::{LogEnd, LogError, PoseKind, ProblemKind, ReadReport, Record, RecordData};
 
 pub(crate) fn looks_like(row: &str) -> bool {
     parse(row).is_ok()
@@ -150,17 +150,17 @@ impl CarmenLog {
             (scan.angle_min, scan.angle_increment) = (*angle_min, *angle_increment);
         }
         let data = [
-            self.first_pass.mount.take().map(Data::LaserMount),
+            self.first_pass.mount.take().map(RecordData::LaserMount),
             row.poses.and_then(|poses| self.pose(&poses)),
-            motion.map(Data::OdometryIncrement),
-            Some(Data::Scan(scan)),
+            motion.map(RecordData::OdometryIncrement),
+            Some(RecordData::Scan(scan)),
         ];
         self.ready.extend(data.into_iter().flatten().map(|data| Record { stamp, data }));
         verdict
     }
 
     /// The robot's pose, unless it is the odometry; always, if the caller declares it true.
-    fn pose(&self, poses: &ScanPoses) -> Option<Data> {
+    fn pose(&self, poses: &ScanPoses) -> Option<RecordData> {
         let is_told = self.first_pass.poses_are_estimates || self.poses == PoseKind::True;
         let robot = match &self.first_pass.pose_mount {
             Some(mount) => poses.laser.compose(&mount.inverse()),

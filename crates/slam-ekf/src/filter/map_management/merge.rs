@@ -3,7 +3,7 @@ use wayfix_estimation_traits::{Manifold, Tangent};
 
 use super::super::{EkfSlam, state::Slot};
 use crate::{
-    LandmarkDim, LandmarkId, LandmarkModel, MeasurementDim, Merge, RobotDim, SlamAlloc, SlamError,
+    LandmarkDim, LandmarkId, LandmarkMerge, LandmarkModel, MeasurementDim, RobotDim, SlamAlloc, SlamError,
     covariance::SparseJacobian,
 };
 
@@ -20,7 +20,7 @@ use crate::{
 )]
 pub struct MergingParams {
     /// Minimum distance between two distinct landmarks, in units of the landmark's tangent space (m for points).
-    pub separation: f64,
+    pub min_separation: f64,
     /// Number of standard deviations of their difference that must also lie within that distance.
     pub n_sigmas: f64,
 }
@@ -28,13 +28,13 @@ pub struct MergingParams {
 impl Default for MergingParams {
     /// Points at least 0.1 m apart, with two standard deviations.
     fn default() -> Self {
-        Self { separation: 0.1, n_sigmas: 2.0 }
+        Self { min_separation: 0.1, n_sigmas: 2.0 }
     }
 }
 
 impl MergingParams {
     pub(in crate::filter) fn validated(self) -> Result<Self, SlamError> {
-        for (name, value) in [("separation", self.separation), ("n_sigmas", self.n_sigmas)] {
+        for (name, value) in [("separation", self.min_separation), ("n_sigmas", self.n_sigmas)] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(SlamError::Parameter { name, value, range: "finite and not negative" });
             }
@@ -96,7 +96,7 @@ where
     }
 
     /// Merges the landmarks observed in this scan with landmarks nearer than the minimum separation.
-    pub(in crate::filter) fn merge_duplicates(&mut self) -> Vec<Merge> {
+    pub(in crate::filter) fn merge_duplicates(&mut self) -> Vec<LandmarkMerge> {
         let Some(merging) = self.params.merging else { return Vec::new() };
         let seen: Vec<LandmarkId> = self
             .landmarks
@@ -108,7 +108,7 @@ where
         for id in seen {
             let Some((kept, removed)) = self.duplicate_of(id, &merging) else { continue };
             if self.merge(kept, removed) {
-                merges.push(Merge { kept, removed });
+                merges.push(LandmarkMerge { kept, removed });
             }
         }
         merges
@@ -128,7 +128,7 @@ where
     /// The trace bounds the largest variance of the difference in any direction.
     fn are_nearer_than(&self, merging: &MergingParams, a: &Slot<M::Landmark>, b: &Slot<M::Landmark>) -> bool {
         let difference: Tangent<M::Landmark> = self.mean(a).local(&self.mean(b));
-        let left = merging.separation - difference.norm();
+        let left = merging.min_separation - difference.norm();
         left >= 0.0 && {
             let between = |i| self.covariance.entry(a.offset + i, b.offset + i);
             let cross = (0..LandmarkDim::<M>::DIM).map(between).sum::<f64>();

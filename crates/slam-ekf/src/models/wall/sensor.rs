@@ -34,7 +34,7 @@ pub struct WallSensor {
     /// The same for its direction, rad.
     pub alpha_sigma: f64,
     /// Maximum gap along a wall between two pieces of the same wall, m.
-    pub largest_gap: f64,
+    pub max_wall_gap: f64,
     /// Distance up to which the middle of a wall is normally detected, m.
     pub sensor_range: f64,
     /// The same for its direction to either side, rad.
@@ -47,7 +47,7 @@ impl Default for WallSensor {
         Self {
             rho_sigma: 0.02,
             alpha_sigma: 0.01,
-            largest_gap: 0.5,
+            max_wall_gap: 0.5,
             sensor_range: 8.0,
             half_field_of_view: 1.4,
         }
@@ -111,7 +111,7 @@ impl LandmarkModel for WallSensor {
 
     /// Parallel pieces far apart along their line are different walls.
     fn is_compatible(&self, expected: &WallMeasurement, measurement: &WallMeasurement) -> bool {
-        measurement.overlap(expected) > -self.largest_gap
+        measurement.overlap(expected) > -self.max_wall_gap
     }
 
     fn expects_detection(&self, expected: &WallMeasurement) -> bool {

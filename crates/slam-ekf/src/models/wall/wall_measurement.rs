@@ -1,6 +1,6 @@
 use nalgebra::{Const, Matrix2, Vector2};
 use wayfix_estimation_traits::{Manifold, Pose2};
-use wayfix_line_extract::Segment;
+use wayfix_line_extract::WallSegment;
 
 use super::WallLine;
 
@@ -15,8 +15,8 @@ pub struct WallMeasurement {
     pub ends: [Vector2<f64>; 2],
 }
 
-impl From<&Segment> for WallMeasurement {
-    fn from(segment: &Segment) -> Self {
+impl From<&WallSegment> for WallMeasurement {
+    fn from(segment: &WallSegment) -> Self {
         let found = segment.estimate.line;
         Self {
             line: WallLine::new(found.rho(), found.alpha()),

@@ -1,6 +1,6 @@
 use std::{collections::BTreeMap, fs, path::Path};
 
-use wayfix_sensor_log::{EncodedImage, ImageFormat, Problem, ProblemKind, ReadReport, image_files};
+use wayfix_sensor_log::{EncodedImage, ImageFormat, ProblemKind, ReadReport, RowProblem, image_files};
 
 use wayfix_evaluation::errors::LONGEST_GAP;
 
@@ -13,7 +13,7 @@ use super::{
 
 /// A frame with its pose.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
+pub struct PosedFrame {
     /// Name of its file.
     pub name: String,
     /// Time, s.
@@ -28,9 +28,9 @@ pub struct Frame {
 
 /// A folder of frames with poses, in capture order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Recording {
+pub struct FrameRecording {
     /// Frames with a pose.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<PosedFrame>,
     /// Number of images without a pose.
     pub n_without_pose: usize,
     /// Skipped rows and images, and assumptions made.
@@ -41,7 +41,7 @@ pub struct Recording {
 
 /// The tables of a folder of frames.
 #[derive(Clone, Copy, Debug)]
-pub struct Tables<'a> {
+pub struct PoseTables<'a> {
     /// Table of poses.
     pub poses: &'a Path,
     /// Column names, for a table without a header.
@@ -52,12 +52,12 @@ pub struct Tables<'a> {
     pub stamp_columns: Option<&'a ColumnNames>,
 }
 
-impl Recording {
+impl FrameRecording {
     /// Reads the images of a folder and the tables of their times and poses. Skips unusable rows and images.
     ///
     /// # Errors
     /// Returns an error if a table cannot be parsed, or fewer than two frames have an image and a pose.
-    pub fn read(folder: &Path, tables: &Tables<'_>) -> Result<Self, RecordingError> {
+    pub fn read(folder: &Path, tables: &PoseTables<'_>) -> Result<Self, RecordingError> {
         let files = image_files(folder)?;
         let names: Vec<String> = files.iter().map(|path| name_of(path)).collect();
         let Some(first) = names.first() else {
@@ -83,9 +83,9 @@ impl Recording {
             match read_image(path) {
                 Ok(image) => {
                     read.warn_of_orientation(&image);
-                    frames.push(Frame { name: name_of(path), seconds, position, heading, image });
+                    frames.push(PosedFrame { name: name_of(path), seconds, position, heading, image });
                 }
-                Err(reason) => read.add(Problem {
+                Err(reason) => read.add(RowProblem {
                     file: name_of(path),
                     row: index as u64 + 1,
                     kind: ProblemKind::UnreadableImage,

@@ -12,7 +12,7 @@ mod table;
 
 pub use columns::ColumnNames;
 pub use error::RecordingError;
-pub use frames::{Frame, Recording, Tables};
-pub use path::Heading;
-pub use sense::{TurnEvidence, turn_evidence};
+pub use frames::{FrameRecording, PoseTables, PosedFrame};
+pub use path::HeadingSource;
+pub use sense::{AzimuthDirectionEvidence, turn_evidence};
 pub use smooth::{smoothed, smoothing_of};

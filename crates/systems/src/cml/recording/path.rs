@@ -1,10 +1,10 @@
 use wayfix_estimation_traits::Pose2;
 
-use super::{Frame, smoothed, smoothing_of};
+use super::{PosedFrame, smoothed, smoothing_of};
 
 /// Source of the headings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Heading {
+pub enum HeadingSource {
     /// The table contains them.
     Given,
     /// The camera points along the path.
@@ -15,9 +15,9 @@ pub enum Heading {
     Unknown,
 }
 
-impl Heading {
+impl HeadingSource {
     /// The initial assumption: the table's headings if every frame has one, else along the path.
-    pub fn of(frames: &[Frame]) -> Self {
+    pub fn of(frames: &[PosedFrame]) -> Self {
         if frames.iter().all(|frame| frame.heading.is_some()) { Self::Given } else { Self::AlongPath }
     }
 }
@@ -25,8 +25,8 @@ impl Heading {
 /// Poses of the frames as measured, and smoothed by a Gaussian of `sigma` frames. Without `sigma`, it is estimated from the measurement noise
 /// of the path.
 pub(in crate::cml) fn poses(
-    frames: &[Frame],
-    heading: Heading,
+    frames: &[PosedFrame],
+    heading: HeadingSource,
     sigma: Option<f64>,
 ) -> (Vec<Pose2<f64>>, Vec<Pose2<f64>>) {
     let coordinate = |axis: usize| -> Vec<f64> { frames.iter().map(|frame| frame.position[axis]).collect() };
@@ -34,9 +34,9 @@ pub(in crate::cml) fn poses(
     let sigma = sigma.unwrap_or_else(|| smoothing_of(&x, &y));
     let (x, y) = (smoothed(&x, sigma), smoothed(&y, sigma));
     let headings = match heading {
-        Heading::Given => frames.iter().map(|frame| frame.heading.unwrap_or(0.0)).collect(),
-        Heading::Fixed => vec![0.0; frames.len()],
-        Heading::AlongPath | Heading::Unknown => tangents(&x, &y),
+        HeadingSource::Given => frames.iter().map(|frame| frame.heading.unwrap_or(0.0)).collect(),
+        HeadingSource::Fixed => vec![0.0; frames.len()],
+        HeadingSource::AlongPath | HeadingSource::Unknown => tangents(&x, &y),
     };
     let measured = frames.iter().zip(&headings);
     let measured =

@@ -3,7 +3,7 @@ use wayfix_estimation_traits::wrap_angle;
 
 /// Agreement of the turns in the views with those of the path: mean disagreement, rad, with descriptors of clockwise columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TurnEvidence {
+pub struct AzimuthDirectionEvidence {
     /// If columns run clockwise.
     pub clockwise: f64,
     /// If columns run counterclockwise.
@@ -27,7 +27,7 @@ const ENOUGH: usize = 10;
 /// Maximum number of comparisons per lag.
 const N_COMPARED: usize = 400;
 
-impl TurnEvidence {
+impl AzimuthDirectionEvidence {
     /// Whether the camera clearly never turns.
     pub fn is_fixed(&self) -> bool {
         self.fixed < 0.5 * self.clockwise.min(self.counterclockwise)
@@ -45,7 +45,7 @@ impl TurnEvidence {
 }
 
 /// Compares the turns between successive views with the headings of a path; `None` if too few pairs of the same place turn.
-pub fn turn_evidence(views: &[PanoramaDescriptor], headings: &[f64]) -> Option<TurnEvidence> {
+pub fn turn_evidence(views: &[PanoramaDescriptor], headings: &[f64]) -> Option<AzimuthDirectionEvidence> {
     let n = views.len().min(headings.len());
     let alike = ALIKE * typical_distance(&views[..n])?;
     let pairs = LAGS.iter().flat_map(|lag| {
@@ -68,7 +68,7 @@ pub fn turn_evidence(views: &[PanoramaDescriptor], headings: &[f64]) -> Option<T
         }
     }
     let [clockwise, counterclockwise, fixed] = sums.map(|sum| sum / n_turns.max(1) as f64);
-    (n_turns >= ENOUGH).then_some(TurnEvidence { clockwise, counterclockwise, fixed })
+    (n_turns >= ENOUGH).then_some(AzimuthDirectionEvidence { clockwise, counterclockwise, fixed })
 }
 
 /// The median distance of unrelated views.

@@ -1,6 +1,6 @@
 use std::{fs, path::Path};
 
-use wayfix_sensor_log::{Problem, ProblemKind, ReadReport};
+use wayfix_sensor_log::{ProblemKind, ReadReport, RowProblem};
 
 use super::{
     RecordingError,
@@ -93,7 +93,7 @@ impl Table {
         report.rows_read = report.rows_read.saturating_sub(1);
         let kind =
             if reason.contains("columns, not") { ProblemKind::ColumnCount } else { ProblemKind::NotANumber };
-        report.add(Problem { file: self.file.clone(), row: line as u64, kind, reason });
+        report.add(RowProblem { file: self.file.clone(), row: line as u64, kind, reason });
     }
 
     /// The first skipped row of this table.

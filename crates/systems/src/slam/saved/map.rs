@@ -2,7 +2,7 @@ use std::{fs, path::Path};
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use wayfix_estimation_traits::Pose2;
-use wayfix_slam_ekf::Snapshot;
+use wayfix_slam_ekf::SlamSnapshot;
 
 use super::{SavedMapError, envelope};
 use crate::{
@@ -17,7 +17,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlamState<R, L, S> {
     /// Robot, map and covariance.
-    pub filter: Snapshot<R, L>,
+    pub filter: SlamSnapshot<R, L>,
     /// How observations find their landmarks.
     pub association: AssociationRule,
     /// The identity of the next new landmark; `None` where the sensor reads identities.
@@ -134,7 +134,7 @@ pub(crate) fn check_association(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::{PointState, SavedMap};
+    use crate::points::{PointState, SavedPointMap};
 
     #[test]
     fn a_map_of_another_kind_says_what_differs() {
@@ -148,7 +148,7 @@ mod tests {
             ),
         ] {
             let sealed = envelope::seal(&postcard::to_stdvec(&kind).unwrap());
-            let error = SavedMap::from_bytes(&sealed).unwrap_err();
+            let error = SavedPointMap::from_bytes(&sealed).unwrap_err();
             assert!(
                 matches!(error, SavedMapError::Kind { .. }) && error.to_string().contains(what),
                 "{error}"
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn a_sound_envelope_around_nonsense_is_refused() {
         for garbage in [&[][..], &[0xff; 64], &[0; 64]] {
-            assert!(SavedMap::from_bytes(&envelope::seal(garbage)).is_err());
+            assert!(SavedPointMap::from_bytes(&envelope::seal(garbage)).is_err());
         }
     }
 }

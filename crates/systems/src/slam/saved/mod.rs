@@ -16,4 +16,4 @@ mod saver;
 pub use error::SavedMapError;
 pub use map::SlamState;
 pub(crate) use map::check_association;
-pub use saver::Saver;
+pub use saver::PeriodicSaver;

@@ -7,7 +7,7 @@ use super::{SavedMapError, SlamState};
 use crate::slam::FrontEndState;
 
 /// Saves a system while it runs, every so often by the clock of the log, and at its end.
-pub struct Saver {
+pub struct PeriodicSaver {
     path: PathBuf,
     /// Seconds of the log between two saves; only at the end, when not given.
     period: Option<f64>,
@@ -15,7 +15,7 @@ pub struct Saver {
     failure: Option<SavedMapError>,
 }
 
-impl Saver {
+impl PeriodicSaver {
     /// A saver to `path`, every `period` seconds of the log's time.
     pub fn new(path: PathBuf, period: Option<f64>) -> Self {
         Self { path, period, saved_at: None, failure: None }

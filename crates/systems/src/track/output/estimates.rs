@@ -5,10 +5,12 @@ use std::{
 };
 
 use anyhow::{Context, Result};
-use wayfix_sensor_log::{Data, Format, ImageOutline, McapFile, MessageWriter, Record, Sinks, topics};
+use wayfix_sensor_log::{
+    ImageOutline, LogFormat, McapFile, MessageSinks, MessageWriter, Record, RecordData, topics,
+};
 use wayfix_visual_tracking::TrackStatus;
 
-use super::super::{FrameResult, TrackSystem, Truth};
+use super::super::{TargetTruth, TrackFrameResult, TrackSystem};
 use super::{overlay, run_history::outline};
 use crate::system::EstimateWriter;
 
@@ -25,7 +27,7 @@ impl TrackLog {
     ///
     /// # Errors
     /// Returns an error if a file cannot be created.
-    pub fn create(log: &Path, boxes: &Path, origin: Format) -> Result<Self> {
+    pub fn create(log: &Path, boxes: &Path, origin: LogFormat) -> Result<Self> {
         let file = File::create(boxes).with_context(|| format!("cannot create {}", boxes.display()))?;
         Self::new(vec![Box::new(McapFile::create(log)?)], Box::new(BufWriter::new(file)), origin)
     }
@@ -34,7 +36,7 @@ impl TrackLog {
     ///
     /// # Errors
     /// Returns an error if a sink fails.
-    pub fn new(sinks: Sinks, boxes: Box<dyn Write>, origin: Format) -> Result<Self> {
+    pub fn new(sinks: MessageSinks, boxes: Box<dyn Write>, origin: LogFormat) -> Result<Self> {
         let mut writer = MessageWriter::into_sink(sinks);
         writer.origin(origin)?;
         Ok(Self { writer, boxes, n_lines: 0, failure: None })
@@ -61,7 +63,7 @@ impl TrackLog {
     }
 
     fn write(&mut self, record: &Record, system: &TrackSystem) -> Result<()> {
-        if !matches!(record.data, Data::Image(_)) {
+        if !matches!(record.data, RecordData::Image(_)) {
             return Ok(());
         }
         self.writer.record(record)?;
@@ -90,11 +92,11 @@ impl TrackLog {
     }
 }
 
-fn outlines(frame: &FrameResult) -> Vec<ImageOutline> {
+fn outlines(frame: &TrackFrameResult) -> Vec<ImageOutline> {
     let ink = |[r, g, b]: [u8; 3]| [r, g, b, 255].map(|value| f64::from(value) / 255.0);
     let color = if frame.target.status == TrackStatus::Lost { overlay::LOST } else { overlay::ESTIMATE };
     let mut outlines = vec![ImageOutline { color: ink(color), points: outline(&frame.target) }];
-    if let Truth::At(truth) = &frame.truth {
+    if let TargetTruth::At(truth) = &frame.truth {
         outlines.push(ImageOutline { color: ink(overlay::TRUTH), points: overlay::corners(truth).to_vec() });
     }
     outlines

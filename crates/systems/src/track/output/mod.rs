@@ -3,5 +3,5 @@
 pub(super) mod decimated;
 pub(super) mod estimates;
 pub(super) mod overlay;
-pub(super) mod pictures;
+pub(super) mod plots;
 pub(super) mod run_history;

@@ -1,7 +1,7 @@
 use wayfix_sensor_log::{EncodedImage, ImageError};
-use wayfix_visual_tracking::{Target, TrackStatus};
+use wayfix_visual_tracking::{TargetEstimate, TrackStatus};
 
-use super::super::{FrameResult, TargetColors, Truth};
+use super::super::{TargetColors, TargetTruth, TrackFrameResult};
 use super::{decimated::Decimated, overlay};
 
 /// Maximum number of film frames.
@@ -44,7 +44,7 @@ impl RunHistory {
     ///
     /// # Errors
     /// Returns an error if its picture cannot be encoded.
-    pub fn observe(&mut self, frame: &FrameResult) -> Result<(), ImageError> {
+    pub fn observe(&mut self, frame: &TrackFrameResult) -> Result<(), ImageError> {
         let (index, colors) = (frame.index, frame.colors);
         let point = Point { index, iou: frame.iou, quality: frame.target.quality, colors };
         self.points.push(point);
@@ -57,7 +57,7 @@ impl RunHistory {
         }
         self.film.offer(|| {
             let mut picture = frame.picture.clone();
-            if let Truth::At(truth) = frame.truth {
+            if let TargetTruth::At(truth) = frame.truth {
                 overlay::draw(&mut picture, &overlay::corners(&truth), overlay::TRUTH);
             }
             let color =
@@ -69,7 +69,7 @@ impl RunHistory {
 }
 
 /// The outline of a target, or its box when it has none.
-pub(in crate::track) fn outline(target: &Target) -> Vec<[f64; 2]> {
+pub(in crate::track) fn outline(target: &TargetEstimate) -> Vec<[f64; 2]> {
     if target.outline.is_empty() {
         overlay::corners(&target.bounding_box).to_vec()
     } else {

@@ -7,7 +7,7 @@ use super::super::ViewsError;
 ///
 /// # Errors
 /// Returns [`ViewsError::Scenery`] if the visit has an invalid camera.
-pub fn composed(
+pub fn composed_scene_pair(
     scenery: &Scenery,
     imaging_conditions: &ImagingConditions,
 ) -> Result<(Picture, Picture), ViewsError> {

@@ -1,26 +1,26 @@
-use wayfix_condensation::{Light, Picture};
+use wayfix_condensation::{LightChange, Picture};
 
 use super::super::ViewsError;
 
 /// Change of an image into the real scene: other light, then a camera shift in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RealScene {
+pub struct SceneChange {
     /// The light.
-    pub light: Light,
+    pub light: LightChange,
     /// Shift to the right and down, in pixels.
     pub shift: (i32, i32),
 }
 
-impl Default for RealScene {
+impl Default for SceneChange {
     /// Less contrast, more brightness, a nonlinear tone curve, and a camera shift of 4 and 3 pixels.
     fn default() -> Self {
-        Self { light: Light { gain: 0.7, offset: 20.0, gamma: 1.3 }, shift: (4, 3) }
+        Self { light: LightChange { gain: 0.7, offset: 20.0, gamma: 1.3 }, shift: (4, 3) }
     }
 }
 
-impl RealScene {
+impl SceneChange {
     /// No change: the image is a photograph of the real scene.
-    pub const UNCHANGED: Self = Self { light: Light::SAME, shift: (0, 0) };
+    pub const UNCHANGED: Self = Self { light: LightChange::SAME, shift: (0, 0) };
 
     /// Makes the real scene from an image.
     ///

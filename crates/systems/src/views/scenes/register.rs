@@ -9,10 +9,10 @@ const STRIDE: usize = 4;
 ///
 /// ```
 /// use wayfix_systems::views::mean_shift;
-/// use wayfix_condensation::{Light, Picture};
+/// use wayfix_condensation::{LightChange, Picture};
 /// let wave = |i: usize| (120.0 + 60.0 * ((i % 90) as f64 / 9.0).sin() + 40.0 * ((i / 90) as f64 / 7.0).cos()) as u8;
 /// let learned = Picture::from_rgb(90, 80, (0..90 * 80).flat_map(|i| [wave(i); 3]).collect())?;
-/// let real = Light { gain: 0.8, offset: 10.0, gamma: 1.0 }.apply(&learned)?.shifted(5, -3);
+/// let real = LightChange { gain: 0.8, offset: 10.0, gamma: 1.0 }.apply(&learned)?.shifted(5, -3);
 /// assert_eq!(mean_shift(&learned, &real, 8), (5, -3));
 /// # Ok::<(), wayfix_condensation::CondensationError>(())
 /// ```

@@ -7,7 +7,7 @@ use super::super::ViewsError;
 
 /// An image from a file, and the changes made on conversion to eight-bit RGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Scene {
+pub struct SceneImage {
     /// The picture.
     pub picture: Picture,
     /// Conversions that changed the image, a phrase each.
@@ -18,7 +18,7 @@ pub struct Scene {
 ///
 /// # Errors
 /// Returns [`ViewsError::Read`], [`ViewsError::NotAPicture`], [`ViewsError::Image`].
-pub fn read_scene(path: &Path) -> Result<Scene, ViewsError> {
+pub fn read_scene(path: &Path) -> Result<SceneImage, ViewsError> {
     let bytes = fs::read(path).map_err(|source| ViewsError::Read { path: path.into(), source })?;
     let format =
         ImageFormat::of_bytes(&bytes).ok_or_else(|| ViewsError::NotAPicture { path: path.into() })?;
@@ -31,7 +31,7 @@ pub fn read_scene(path: &Path) -> Result<Scene, ViewsError> {
         (layout.bits_per_channel > 8, "has more than eight bits a channel: rounded to eight"),
         (layout.has_alpha(), "has transparency: left out"),
     ];
-    Ok(Scene {
+    Ok(SceneImage {
         picture: Picture::from_rgb(decoded.width as usize, decoded.height as usize, decoded.pixels)?,
         remarks: remarks.into_iter().filter_map(|(applies, remark)| applies.then_some(remark)).collect(),
     })

@@ -3,15 +3,15 @@ use super::super::ContourTrackerParams;
 /// Agreement of a segmentation with the known target, each part from 0 to 1.
 /// [Andrade-Cetto & Sanfeliu, section 3.3, "Measure and weight"]
 /// ```
-/// use wayfix_visual_tracking::{Agreement, ContourTrackerParams};
-/// let perfect = Agreement { affine: 1.0, area: Agreement::of_areas(400.0, 400.0), quality: Agreement::of_euler_number(1, 10.0) };
+/// use wayfix_visual_tracking::{SegmentationAgreement, ContourTrackerParams};
+/// let perfect = SegmentationAgreement { affine: 1.0, area: SegmentationAgreement::of_areas(400.0, 400.0), quality: SegmentationAgreement::of_euler_number(1, 10.0) };
 /// let params = ContourTrackerParams::default();
 /// assert_eq!((perfect.mismatch(&params), perfect.log_weight(&params), perfect.score(&params)), (0.0, 0.0, 1.0));
-/// assert_eq!(Agreement::of_areas(400.0, 300.0), 0.75);
-/// assert_eq!(Agreement::of_euler_number(-1, 10.0), 0.8); // two holes
+/// assert_eq!(SegmentationAgreement::of_areas(400.0, 300.0), 0.75);
+/// assert_eq!(SegmentationAgreement::of_euler_number(-1, 10.0), 0.8); // two holes
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Agreement {
+pub struct SegmentationAgreement {
     /// $`Φ_\text{affine}`$: the share of the fitted snake that lies on the segmented boundary.
     pub affine: f64,
     /// $`Φ_\text{area}`$, see [`of_areas`](Self::of_areas).
@@ -20,7 +20,7 @@ pub struct Agreement {
     pub quality: f64,
 }
 
-impl Agreement {
+impl SegmentationAgreement {
     /// No agreement.
     pub(in crate::contour) const NONE: Self = Self { affine: 0.0, area: 0.0, quality: 0.0 };
 
@@ -37,17 +37,17 @@ impl Agreement {
 
     /// $`ρ = μ_1 (1 - Φ_\text{affine}) + μ_2 (1 - Φ_\text{area}) + μ_3 (1 - Φ_\text{quality})`$.
     pub fn mismatch(&self, params: &ContourTrackerParams) -> f64 {
-        let [affine, area, quality] = params.mu;
+        let [affine, area, quality] = params.quality_weights;
         affine * (1.0 - self.affine) + area * (1.0 - self.area) + quality * (1.0 - self.quality)
     }
 
     /// $`\log π = -ρ^2 / 2σ^2`$ in nats.
     pub fn log_weight(&self, params: &ContourTrackerParams) -> f64 {
-        -0.5 * (self.mismatch(params) / params.sigma).powi(2)
+        -0.5 * (self.mismatch(params) / params.quality_sigma).powi(2)
     }
 
     /// $`1 - ρ / (μ_1 + μ_2 + μ_3)`$, from 0 to 1.
     pub fn score(&self, params: &ContourTrackerParams) -> f64 {
-        1.0 - self.mismatch(params) / params.mu.iter().sum::<f64>()
+        1.0 - self.mismatch(params) / params.quality_weights.iter().sum::<f64>()
     }
 }

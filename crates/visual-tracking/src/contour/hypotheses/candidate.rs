@@ -1,4 +1,4 @@
-use super::super::{Agreement, scene::Scene};
+use super::super::{SegmentationAgreement, scene::Scene};
 use crate::{AffineMap, BitMask, ColorEdges, ColorState, Connectivity, MaskEdges, TrackingCues};
 
 /// Estimate of the target under a hypothesis about its colours.
@@ -6,7 +6,7 @@ use crate::{AffineMap, BitMask, ColorEdges, ColorState, Connectivity, MaskEdges,
 pub(in crate::contour) struct Candidate {
     pub(in crate::contour) map: AffineMap,
     pub(in crate::contour) area: f64,
-    pub(in crate::contour) agreement: Agreement,
+    pub(in crate::contour) agreement: SegmentationAgreement,
 }
 
 impl Candidate {
@@ -14,7 +14,7 @@ impl Candidate {
     pub(in crate::contour) fn of_colors(scene: &Scene<'_>, state: &ColorState) -> Self {
         match scene.target_mask(&scene.bin_set(state)) {
             Some(mask) => Self::of_mask(scene, &scene.start, &mask),
-            None => Self { map: scene.start, area: 0.0, agreement: Agreement::NONE },
+            None => Self { map: scene.start, area: 0.0, agreement: SegmentationAgreement::NONE },
         }
     }
 
@@ -33,10 +33,10 @@ impl Candidate {
                 (fit.map, snake.area_at(&fit.map), fit.support * in_sight(fit.visible))
             }
         };
-        let agreement = Agreement {
+        let agreement = SegmentationAgreement {
             affine,
-            area: Agreement::of_areas(scene.expected_area, area),
-            quality: Agreement::of_euler_number(
+            area: SegmentationAgreement::of_areas(scene.expected_area, area),
+            quality: SegmentationAgreement::of_euler_number(
                 mask.euler_number(Connectivity::Eight),
                 params.euler_number_range,
             ),
@@ -50,9 +50,9 @@ impl Candidate {
         let edges = ColorEdges::new(scene.picture, params.edge_contrast);
         let fit = snake.fit(&scene.start, &edges, &params.snake);
         let area = snake.area_at(&fit.map);
-        let agreement = Agreement {
+        let agreement = SegmentationAgreement {
             affine: fit.support * in_sight(fit.visible),
-            area: Agreement::of_areas(scene.expected_area, area),
+            area: SegmentationAgreement::of_areas(scene.expected_area, area),
             quality: 1.0,
         };
         Self { map: fit.map, area, agreement }

@@ -1,5 +1,5 @@
 use rand::Rng;
-use wayfix_particle::{ParticleSet, Systematic};
+use wayfix_particle::{ParticleSet, SystematicResampler};
 
 use super::super::ContourTrackerParams;
 use crate::{ColorDynamics, ColorState, PrincipalColors, TrackingError};
@@ -38,7 +38,7 @@ impl Samples {
         rng: &mut R,
     ) -> Result<Vec<ColorState>, TrackingError> {
         let mut particles = self.particles.clone();
-        particles.resample(&Systematic, params.n_samples, rng)?;
+        particles.resample(&SystematicResampler, params.n_samples, rng)?;
         let n_anchored = (params.anchored_share * params.n_samples as f64).round() as usize;
         particles.states_mut().iter_mut().take(n_anchored).for_each(|state| *state = self.measured);
         particles.propagate(|state, rng| *state = dynamics.propagate(state, rng), rng);

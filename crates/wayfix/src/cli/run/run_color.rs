@@ -13,10 +13,10 @@ use super::super::{
     truth::TruthFile,
 };
 use crate::commented::commented;
-use wayfix_evaluation::{plot::Picture, report::Run};
+use wayfix_evaluation::{plot::SvgPlot, report::ReportRun};
 use wayfix_systems::{
     color::{self, ColorEstimateLog, ColorRun, ColorSystemParams, ParticleFilm, StartPose, priors},
-    system::{DriveStep, Stopwatch, System},
+    system::{RunStep, Stopwatch, System},
 };
 
 /// Adaptive colour localization: estimates the robot's pose on a coloured field, and the effect of the light on the colours.
@@ -131,7 +131,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         &params,
         start,
         arguments.common.seed,
-        |DriveStep { system, record, .. }| {
+        |RunStep { system, record, .. }| {
             if let Some(estimates) = &mut estimates {
                 estimates.observe(record, system);
             }
@@ -145,20 +145,20 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let run = Run { name, seconds, warnings, ..color::summarize(&mut color) };
+    let run = ReportRun { name, seconds, warnings, ..color::summarize(&mut color) };
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
-    outputs.show(run, || pictures(&mut color, &records, &particles))?;
+    outputs.show(run, || plots(&mut color, &records, &particles))?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Frames of the film strip.
 const FILM_FRAMES: usize = 5;
 
-fn pictures(color: &mut ColorRun, records: &[Record], particles: &ParticleFilm) -> Result<Vec<Picture>> {
-    let mut pictures = color::pictures(color)?;
-    pictures.push(particles.draw(color)?);
-    pictures.push(color::film(color, records, FILM_FRAMES)?);
-    Ok(pictures)
+fn plots(color: &mut ColorRun, records: &[Record], particles: &ParticleFilm) -> Result<Vec<SvgPlot>> {
+    let mut plots = color::plots(color)?;
+    plots.push(particles.draw(color)?);
+    plots.push(color::film(color, records, FILM_FRAMES)?);
+    Ok(plots)
 }

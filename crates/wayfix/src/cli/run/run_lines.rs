@@ -2,8 +2,8 @@ use std::{path::PathBuf, process::ExitCode};
 
 use anyhow::{Result, ensure};
 use wayfix_evaluation::terminal::{self, print};
-use wayfix_line_extract::Params;
-use wayfix_sensor_log::{Format, OpenOptions};
+use wayfix_line_extract::LineExtractionParams;
+use wayfix_sensor_log::{LogFormat, OpenOptions};
 
 use super::super::{
     common::Common,
@@ -12,10 +12,10 @@ use super::super::{
     read_problems::{add_read_problems, read_all},
 };
 use crate::commented::commented;
-use wayfix_evaluation::report::Run;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     lines::{self, LineLog, LineSystem},
-    system::{DriveStep, Stopwatch, System, drive},
+    system::{RunStep, Stopwatch, System, drive},
 };
 
 /// Walls: the straight segments in every laser scan of a log, with their ends.
@@ -33,7 +33,7 @@ pub(in crate::cli) struct Arguments {
     log: Vec<PathBuf>,
     /// Input format: carmen, scan-json or mcap [default: detected from the content].
     #[arg(long)]
-    format: Option<Format>,
+    format: Option<LogFormat>,
     #[command(flatten)]
     topics: Topics,
     #[command(flatten)]
@@ -49,7 +49,7 @@ Examples:
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let params = match &arguments.common.params {
         Some(path) => read_toml(path, |text| toml::from_str(text))?,
-        None => Params::default(),
+        None => LineExtractionParams::default(),
     };
     if arguments.common.print_params {
         print(commented(&params)?)?;
@@ -66,7 +66,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let mut walls: Option<LineLog> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
     let bar = terminal::bar(records.len(), "walls");
-    drive(&mut system, &records, |DriveStep { system, record, .. }| {
+    drive(&mut system, &records, |RunStep { system, record, .. }| {
         if let Some(walls) = &mut walls {
             walls.observe(record, system);
         }
@@ -79,10 +79,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let name = name_of(&arguments.log);
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let run = Run { name, seconds, warnings, ..lines::summarize(&mut system) };
+    let run = ReportRun { name, seconds, warnings, ..lines::summarize(&mut system) };
     if let Some(walls) = walls {
         walls.finish()?;
     }
-    outputs.show(run, || Ok(lines::pictures(&system)?))?;
+    outputs.show(run, || Ok(lines::plots(&system)?))?;
     Ok(ExitCode::SUCCESS)
 }

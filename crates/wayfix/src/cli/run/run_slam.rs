@@ -4,19 +4,19 @@ use anyhow::{Context, Result};
 use nalgebra::DefaultAllocator;
 use serde::{Serialize, de::DeserializeOwned};
 use wayfix_evaluation::{
-    plot::{Picture, PlotError},
-    report::Run,
+    plot::{PlotError, SvgPlot},
+    report::ReportRun,
     terminal::{self, print, print_message},
 };
-use wayfix_sensor_log::{Format, OpenOptions, ReadReport};
+use wayfix_sensor_log::{LogFormat, OpenOptions, ReadReport};
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
 use wayfix_systems::{
-    points::{self, PointSlamParams, Profile, SavedMap},
+    points::{self, PointSlamParams, RobotProfile, SavedPointMap},
     slam::{
-        AssociationRule, FrontEnd, FrontEndState, Saver, SlamEstimateLog, SlamRun, SlamState, SlamSystem,
-        StateOf,
+        AssociationRule, FrontEnd, FrontEndState, PeriodicSaver, SlamEstimateLog, SlamRun, SlamState,
+        SlamSystem, StateOf,
     },
-    system::{DriveStep, Stopwatch},
+    system::{RunStep, Stopwatch},
 };
 
 use super::super::{
@@ -54,7 +54,7 @@ pub(in crate::cli) struct Arguments {
     pub(in crate::cli) log: Vec<PathBuf>,
     /// How the log is stored: utias, victoria-park, range-bearing, carmen, scan-json or mcap [default: detected from the content].
     #[arg(long)]
-    pub(in crate::cli) format: Option<Format>,
+    pub(in crate::cli) format: Option<LogFormat>,
     /// Which robot, in sets of several.
     #[arg(long, value_name = "N")]
     pub(in crate::cli) robot: Option<u32>,
@@ -67,7 +67,7 @@ pub(in crate::cli) struct Arguments {
     pub(in crate::cli) association: Option<AssociationRule>,
     /// The kind of robot whose noise and timing are the defaults [default: by the format of the log, else generic].
     #[arg(long)]
-    pub(in crate::cli) profile: Option<Profile>,
+    pub(in crate::cli) profile: Option<RobotProfile>,
     /// A file of relations between poses that are known from elsewhere, for logs of scans: `t1 t2 x y z roll pitch yaw` lines of the Freiburg
     /// SLAM benchmark.
     #[arg(long, value_name = "FILE")]
@@ -112,7 +112,7 @@ A file of parameters names what differs from the defaults, for instance
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     if arguments.log.is_empty() {
-        print(commented(&params(&arguments, Profile::Generic)?)?)?;
+        print(commented(&params(&arguments, RobotProfile::Generic)?)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let options = OpenOptions {
@@ -129,12 +129,12 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         return run_walls::main(&arguments, &records, meta.first_format(), &read);
     }
     let origin = meta.first_format();
-    let params = params(&arguments, Profile::of_log(&meta))?;
+    let params = params(&arguments, RobotProfile::of_log(&meta))?;
     if arguments.common.print_params {
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let saved: Option<SavedMap> = arguments.saved_map()?;
+    let saved: Option<SavedPointMap> = arguments.saved_map()?;
     execute(
         &arguments,
         (origin, records.len(), &read),
@@ -143,7 +143,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
             None => points::run(&records, &params, observe),
         },
         |run| Ok(points::summarize(run)),
-        points::pictures,
+        points::plots,
     )
 }
 
@@ -151,10 +151,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 /// them went.
 pub(super) fn execute<F: FrontEnd, T>(
     arguments: &Arguments,
-    (origin, n_records, read): (Format, usize, &ReadReport),
-    run: impl FnOnce(&mut dyn FnMut(DriveStep<'_, SlamSystem<F>>)) -> Result<SlamRun<F, T>>,
-    summarize: impl FnOnce(&mut SlamRun<F, T>) -> Result<Run>,
-    pictures: impl FnOnce(&SlamRun<F, T>) -> Result<Vec<Picture>, PlotError>,
+    (origin, n_records, read): (LogFormat, usize, &ReadReport),
+    run: impl FnOnce(&mut dyn FnMut(RunStep<'_, SlamSystem<F>>)) -> Result<SlamRun<F, T>>,
+    summarize: impl FnOnce(&mut SlamRun<F, T>) -> Result<ReportRun>,
+    plots: impl FnOnce(&SlamRun<F, T>) -> Result<Vec<SvgPlot>, PlotError>,
 ) -> Result<ExitCode>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
@@ -163,9 +163,9 @@ where
     let mut outputs = Outputs::open("slam", &arguments.common)?;
     let mut estimates: Option<SlamEstimateLog<F>> = outputs.estimates(origin)?;
     let stopwatch = Stopwatch::start();
-    let mut saver = arguments.save.clone().map(|path| Saver::new(path, arguments.save_every));
+    let mut saver = arguments.save.clone().map(|path| PeriodicSaver::new(path, arguments.save_every));
     let bar = terminal::bar(n_records, "EKF-SLAM");
-    let slam = run(&mut |DriveStep { system, record, next }: DriveStep<'_, SlamSystem<F>>| {
+    let slam = run(&mut |RunStep { system, record, next }: RunStep<'_, SlamSystem<F>>| {
         if let Some(estimates) = &mut estimates {
             estimates.observe(record, system);
         }
@@ -180,7 +180,7 @@ where
         saver.finish(&slam.system.save()).context("cannot save the map")?;
     }
     let warnings = add_read_problems(slam.events(), read);
-    let run = Run {
+    let run = ReportRun {
         name: name_of(&arguments.log),
         seconds: stopwatch.elapsed().as_secs_f64(),
         warnings,
@@ -190,7 +190,7 @@ where
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
-    outputs.show(run, || Ok(pictures(&slam)?))?;
+    outputs.show(run, || Ok(plots(&slam)?))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -208,7 +208,7 @@ impl Arguments {
 }
 
 /// The parameters; `usual` is the profile unless the command line names one.
-fn params(arguments: &Arguments, usual: Profile) -> Result<PointSlamParams> {
+fn params(arguments: &Arguments, usual: RobotProfile) -> Result<PointSlamParams> {
     let profile = arguments.profile.unwrap_or(usual);
     let mut params = match &arguments.common.params {
         Some(path) => read_toml(path, |text| PointSlamParams::from_toml(text, profile))?

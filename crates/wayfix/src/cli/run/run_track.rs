@@ -8,15 +8,18 @@ use std::{
 
 use anyhow::{Context, Result};
 use wayfix_evaluation::terminal::{self, print, print_message};
-use wayfix_sensor_log::{Format, Log, OpenOptions};
+use wayfix_sensor_log::{Log, LogFormat, OpenOptions};
 use wayfix_visual_tracking::BoundingBox;
 
 use super::super::{common::Common, input::read_toml, outputs::Outputs, read_problems::add_read_problems};
 use crate::commented::commented;
-use wayfix_evaluation::report::Run;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     system::{Stopwatch, System},
-    track::{self, Method, Start, TrackLog, TrackParams, TrackSetup, TrackSystem, TrueBoxes, parse_box},
+    track::{
+        self, TargetStart, TrackLog, TrackParams, TrackSystem, TrackerConfig, TrackingMethod, TrueBoxes,
+        parse_box,
+    },
 };
 
 /// Tracking: estimates the position of a target in every image, from its position in the first one.
@@ -51,7 +54,7 @@ pub(in crate::cli) struct Arguments {
     truth: Option<PathBuf>,
     /// Which tracker.
     #[arg(long, value_enum, value_name = "NAME", default_value = "box")]
-    method: Method,
+    method: TrackingMethod,
     #[command(flatten)]
     common: Common,
 }
@@ -99,10 +102,10 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let stopwatch = Stopwatch::start();
     let init = match &arguments.init_mask {
-        Some(path) => Some(Start::read_mask(path)?),
-        None => arguments.init.map(|init| Start::Box(init.0)),
+        Some(path) => Some(TargetStart::read_mask(path)?),
+        None => arguments.init.map(|init| TargetStart::Box(init.0)),
     };
-    let setup = TrackSetup { method: arguments.method, params, init, truth, rate_hz };
+    let setup = TrackerConfig { method: arguments.method, params, init, truth, rate_hz };
     let system = TrackSystem::new(setup, arguments.common.seed);
     let bar = terminal::counter("tracking");
     let track = track::run(system, &mut log, |system, record| {
@@ -120,12 +123,12 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let name = log.meta().source.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let run = Run { name, seconds, warnings, ..track::summarize(&mut track) };
+    let run = ReportRun { name, seconds, warnings, ..track::summarize(&mut track) };
     run.notes.iter().for_each(|note| print_message(format!("note: {note}")));
     if let Some(estimates) = estimates {
         estimates.finish(track.system.n_frames())?;
     }
-    outputs.show(run, || Ok(track::pictures(&track.run_history)?))?;
+    outputs.show(run, || Ok(track::plots(&track.run_history)?))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -135,7 +138,7 @@ impl Arguments {
         let mut options = OpenOptions::default();
         match (&self.frames, self.log.as_slice()) {
             (Some(folder), _) => {
-                options.format = Some(Format::Images);
+                options.format = Some(LogFormat::Images);
                 let rate_hz = Some(options.frame_rate_hz);
                 Ok((wayfix_sensor_log::open(folder, &options)?, rate_hz))
             }
@@ -145,7 +148,7 @@ impl Arguments {
     }
 }
 
-fn open_estimates(outputs: &mut Outputs<'_>, origin: Format) -> Result<Option<TrackLog>> {
+fn open_estimates(outputs: &mut Outputs<'_>, origin: LogFormat) -> Result<Option<TrackLog>> {
     let sinks = outputs.sinks()?;
     if sinks.is_empty() {
         return Ok(None);

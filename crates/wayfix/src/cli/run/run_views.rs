@@ -6,15 +6,15 @@ use std::{
 
 use anyhow::{Context, Result};
 use clap::builder::RangedU64ValueParser;
-use wayfix_condensation::{ActionChoice, Light};
+use wayfix_condensation::{ActionSelection, LightChange};
 use wayfix_evaluation::terminal::{self, print, print_message};
 
 use super::super::{common::Common, input::read_toml, outputs::Outputs};
 use crate::commented::commented;
-use wayfix_evaluation::report::Run;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     system::Stopwatch,
-    views::{self, FeatureKind, Normalization, RealScene, Setup, ViewsParams},
+    views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSetup, ViewsParams},
 };
 
 /// State condensation: estimates which view of a scene a robot sees, from global image features.
@@ -45,10 +45,10 @@ pub(in crate::cli) struct Arguments {
     step: u64,
     /// Feature measured in a view.
     #[arg(long, value_enum, value_name = "NAME", default_value = "mean-var")]
-    feature: FeatureKind,
+    feature: DescriptorKind,
     /// Normalization of the current light to that of learning.
     #[arg(long, value_enum, value_name = "HOW", default_value = "whole-scene")]
-    normalization: Normalization,
+    normalization: LightNormalization,
     /// Drives with random start and goal.
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = positive())]
     trials: u64,
@@ -106,7 +106,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         None => ViewsParams::default(),
     };
     if let Some(hypotheses) = arguments.informed {
-        params.navigator.choice = ActionChoice::Informed { hypotheses };
+        params.navigator.action_selection = ActionSelection::Informed { hypotheses };
     }
     if arguments.common.print_params {
         print(commented(&params)?)?;
@@ -127,7 +127,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let mut outputs = Outputs::open("views", &arguments.common)?;
     let stopwatch = Stopwatch::start();
-    let setup = Setup {
+    let setup = ViewSetup {
         view: arguments.view as usize,
         step: arguments.step as usize,
         feature: arguments.feature,
@@ -141,24 +141,24 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
 
     let name = scene_path.display().to_string();
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let run = Run { name, seconds, ..views::summarize(&views) };
+    let run = ReportRun { name, seconds, ..views::summarize(&views) };
     let sinks = outputs.sinks()?;
     if !sinks.is_empty() {
         views::draw_drive(&views, &real, arguments.common.seed, sinks)?;
     }
-    outputs.show(run, || views::pictures(&views, learned, &real, arguments.common.seed))?;
+    outputs.show(run, || views::plots(&views, learned, &real, arguments.common.seed))?;
     Ok(ExitCode::SUCCESS)
 }
 
 impl Arguments {
-    fn real_scene(&self) -> RealScene {
-        let default = if self.learn_from.is_some() { RealScene::UNCHANGED } else { RealScene::default() };
-        let light = Light {
+    fn real_scene(&self) -> SceneChange {
+        let default = if self.learn_from.is_some() { SceneChange::UNCHANGED } else { SceneChange::default() };
+        let light = LightChange {
             gain: self.gain.unwrap_or(default.light.gain),
             offset: self.offset.unwrap_or(default.light.offset),
             gamma: self.gamma.unwrap_or(default.light.gamma),
         };
-        RealScene { light, shift: self.shift.map_or(default.shift, |shift| shift.0) }
+        SceneChange { light, shift: self.shift.map_or(default.shift, |shift| shift.0) }
     }
 }
 

@@ -2,10 +2,10 @@ use std::{path::Path, process::ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use wayfix_evaluation::terminal::{print, print_message};
-use wayfix_sensor_log::{Data, Format, ReadReport, Record, Relation, read_relations};
+use wayfix_sensor_log::{LogFormat, PoseRelation, ReadReport, Record, RecordData, read_relations};
 use wayfix_systems::{
     slam::AssociationRule,
-    walls::{self, SavedWalls, WallSlamParams},
+    walls::{self, SavedWallMap, WallSlamParams},
 };
 
 use super::{super::input::read_toml, run_slam};
@@ -13,15 +13,15 @@ use crate::commented::commented;
 
 /// Whether a log is one of scans: walls are its landmarks then.
 pub(in crate::cli) fn is_for(records: &[Record]) -> bool {
-    let has = |is: fn(&Data) -> bool| records.iter().any(|record| is(&record.data));
-    has(|data| matches!(data, Data::Scan(_))) && !has(|data| matches!(data, Data::Detections(_)))
+    let has = |is: fn(&RecordData) -> bool| records.iter().any(|record| is(&record.data));
+    has(|data| matches!(data, RecordData::Scan(_))) && !has(|data| matches!(data, RecordData::Detections(_)))
 }
 
 /// `wayfix run slam` on a log of scans.
 pub(in crate::cli) fn main(
     arguments: &run_slam::Arguments,
     records: &[Record],
-    origin: Format,
+    origin: LogFormat,
     read: &ReadReport,
 ) -> Result<ExitCode> {
     ensure!(
@@ -33,7 +33,7 @@ pub(in crate::cli) fn main(
         print(commented(&params)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let saved: Option<SavedWalls> = arguments.saved_map()?;
+    let saved: Option<SavedWallMap> = arguments.saved_map()?;
     let relations = arguments.relations.as_deref().map(relations).transpose()?;
     run_slam::execute(
         arguments,
@@ -47,11 +47,11 @@ pub(in crate::cli) fn main(
             summary.metrics.extend(relations.iter().flat_map(|known| walls::relation_metrics(run, known)));
             Ok(summary)
         },
-        walls::pictures,
+        walls::plots,
     )
 }
 
-fn relations(path: &Path) -> Result<Vec<Relation>> {
+fn relations(path: &Path) -> Result<Vec<PoseRelation>> {
     let (relations, read) = read_relations(path)?;
     if !read.is_clean() {
         print_message(&read);

@@ -1,19 +1,19 @@
 use anyhow::Result;
 
 use super::{scenes::Scenes, settings::Settings};
-use crate::regress::Job;
-use wayfix_evaluation::report::{Metric, Run};
-use wayfix_systems::views::{self, FeatureKind, ViewsParams};
+use crate::regress::PlannedJob;
+use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_systems::views::{self, DescriptorKind, ViewsParams};
 
 /// Greedy and informed actions on the same drives through a composed scene.
-pub(super) fn choices(job: &Job<'_>, settings: &Settings) -> Result<Run> {
+pub(super) fn choices(job: &PlannedJob<'_>, settings: &Settings) -> Result<ReportRun> {
     let scenes = Scenes::compose(settings)?;
     let greedy = ViewsParams::default();
     let mut informed = greedy.clone();
-    informed.navigator.choice = views::INFORMED;
+    informed.navigator.action_selection = views::INFORMED;
     let mut metrics = Vec::new();
     for &normalization in &settings.normalization {
-        for feature in FeatureKind::OF_THE_PAPER {
+        for feature in DescriptorKind::OF_THE_PAPER {
             let setup = scenes.setup(feature, normalization);
             let drive = |params| {
                 views::run(
@@ -32,5 +32,5 @@ pub(super) fn choices(job: &Job<'_>, settings: &Settings) -> Result<Run> {
                 .extend(views::compare_choices(&drive(&greedy)?, &drive(&informed)?).into_iter().map(named));
         }
     }
-    Ok(Run { metrics, ..Run::default() })
+    Ok(ReportRun { metrics, ..ReportRun::default() })
 }

@@ -1,26 +1,26 @@
 use anyhow::Result;
 
 use super::{scenes::Scenes, settings::Settings};
-use crate::regress::Job;
-use wayfix_evaluation::report::{Metric, Run};
-use wayfix_systems::views::{self, FeatureKind, Setup, ViewSystem, ViewsParams};
+use crate::regress::PlannedJob;
+use wayfix_evaluation::report::{Metric, ReportRun};
+use wayfix_systems::views::{self, DescriptorKind, ViewSetup, ViewSystem, ViewsParams};
 
 /// The paper's features with every normalization, on one scene. Figures are named after both; pictures are those of the last.
 pub(super) fn drive(
-    job: &Job<'_>,
+    job: &PlannedJob<'_>,
     settings: &Settings,
     scenes: &Scenes,
-    statistics: impl Fn(&Setup, &ViewSystem) -> Result<Vec<Metric>>,
-    beside: impl Fn(&Setup, Metric) -> Metric,
-) -> Result<Run> {
+    statistics: impl Fn(&ViewSetup, &ViewSystem) -> Result<Vec<Metric>>,
+    beside: impl Fn(&ViewSetup, Metric) -> Metric,
+) -> Result<ReportRun> {
     let (params, seed) = (ViewsParams::default(), job.options.seed);
-    let mut all = Run {
+    let mut all = ReportRun {
         notes: vec!["The pictures are of the last feature and normalization.".to_owned()],
-        ..Run::default()
+        ..ReportRun::default()
     };
     let mut last = None;
     for &normalization in &settings.normalization {
-        for feature in FeatureKind::OF_THE_PAPER {
+        for feature in DescriptorKind::OF_THE_PAPER {
             let setup = scenes.setup(feature, normalization);
             let run =
                 views::run(&scenes.learned, &scenes.real, &setup, &params, settings.trials, seed, &|| ())?;
@@ -40,7 +40,7 @@ pub(super) fn drive(
         }
     }
     if let Some(run) = last {
-        all.figures = views::pictures(&run, &scenes.learned, &scenes.real, seed)?;
+        all.figures = views::plots(&run, &scenes.learned, &scenes.real, seed)?;
     }
     Ok(all)
 }

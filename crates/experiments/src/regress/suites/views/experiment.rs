@@ -7,11 +7,11 @@ use super::{
     settings::{Experiment, Settings},
     tables::tables,
 };
-use crate::regress::Job;
-use wayfix_evaluation::report::Run;
+use crate::regress::PlannedJob;
+use wayfix_evaluation::report::ReportRun;
 
 /// An experiment with views.
-pub(in crate::regress::suites) fn run(job: &Job<'_>) -> Result<Run> {
+pub(in crate::regress::suites) fn run(job: &PlannedJob<'_>) -> Result<ReportRun> {
     let settings: Settings = job.planned.settings()?;
     match settings.experiment {
         Experiment::Drive => {

@@ -3,8 +3,8 @@ use wayfix_condensation::Picture;
 use wayfix_scene_sim::scenery::{ImagingConditions, Scenery};
 
 use super::settings::{ImagingConditionsKind, Settings};
-use crate::regress::Job;
-use wayfix_systems::views::{self, FeatureKind, Normalization, RealScene, Setup};
+use crate::regress::PlannedJob;
+use wayfix_systems::views::{self, DescriptorKind, LightNormalization, SceneChange, ViewSetup};
 
 /// The learned scene and the real one, and their views.
 pub(super) struct Scenes {
@@ -16,7 +16,7 @@ pub(super) struct Scenes {
 
 impl Scenes {
     /// Pictures in files.
-    pub(super) fn read(job: &Job<'_>, settings: &Settings) -> Result<Self> {
+    pub(super) fn read(job: &PlannedJob<'_>, settings: &Settings) -> Result<Self> {
         let path = job.log()?;
         let scene = views::read_scene(path)?.picture;
         let (learned, real) = match &settings.learn_from {
@@ -27,7 +27,7 @@ impl Scenes {
                 (learned, scene.shifted(-dx, -dy))
             }
             None => {
-                let real = RealScene::default().of(&scene)?;
+                let real = SceneChange::default().of(&scene)?;
                 (scene, real)
             }
         };
@@ -41,11 +41,11 @@ impl Scenes {
             ImagingConditionsKind::Dimmed => ImagingConditions::dimmed(),
             ImagingConditionsKind::OtherCamera => ImagingConditions::default(),
         };
-        let (learned, real) = views::composed(&scenery, &imaging_conditions)?;
+        let (learned, real) = views::composed_scene_pair(&scenery, &imaging_conditions)?;
         Ok(Self { learned, real, view: Scenery::VIEW_PX, step: scenery.step_px })
     }
 
-    pub(super) fn setup(&self, feature: FeatureKind, normalization: Normalization) -> Setup {
-        Setup { view: self.view, step: self.step, feature, normalization }
+    pub(super) fn setup(&self, feature: DescriptorKind, normalization: LightNormalization) -> ViewSetup {
+        ViewSetup { view: self.view, step: self.step, feature, normalization }
     }
 }

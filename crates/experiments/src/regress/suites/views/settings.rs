@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 
-use wayfix_systems::views::Normalization;
+use wayfix_systems::views::LightNormalization;
 
 /// Settings of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -29,7 +29,7 @@ pub(super) struct Settings {
     pub(super) step: usize,
     /// Normalizations of the light; each one listed is run.
     #[serde(default = "normalizations")]
-    pub(super) normalization: Vec<Normalization>,
+    pub(super) normalization: Vec<LightNormalization>,
     /// Drives of every feature.
     #[serde(default = "trials")]
     pub(super) trials: u64,
@@ -74,8 +74,8 @@ fn step() -> usize {
     32
 }
 
-fn normalizations() -> Vec<Normalization> {
-    vec![Normalization::WholeScene, Normalization::Online]
+fn normalizations() -> Vec<LightNormalization> {
+    vec![LightNormalization::WholeScene, LightNormalization::Online]
 }
 
 fn trials() -> u64 {

@@ -3,14 +3,14 @@ use std::{
     str::FromStr,
 };
 
-use wayfix_appearance_cml::{Donut, RingOrder, TurnSense};
+use wayfix_appearance_cml::{AzimuthDirection, OmnidirectionalRing, RingOrientation};
 use wayfix_estimation_traits::Pose2;
 
 use crate::cli::{
     common::Common,
     input::{Topics, name_of},
 };
-use wayfix_systems::cml::{Task, recording::ColumnNames};
+use wayfix_systems::cml::{CmlTask, recording::ColumnNames};
 
 /// Appearance maps: learn places by panoramic images, and localize in the map.
 ///
@@ -181,17 +181,22 @@ impl Arguments {
         self.withhold.unwrap_or(default)
     }
 
-    pub(super) fn task(&self) -> Task {
+    pub(super) fn task(&self) -> CmlTask {
         match (self.given_map(), &self.learn_from, self.withhold()) {
-            (Some(_), ..) => Task::LocalizeInSavedMap,
-            (None, None, 0) => Task::ConcurrentMapBuilding,
-            _ => Task::LearnThenLocalize,
+            (Some(_), ..) => CmlTask::LocalizeInSavedMap,
+            (None, None, 0) => CmlTask::ConcurrentMapBuilding,
+            _ => CmlTask::LearnThenLocalize,
         }
     }
 
-    pub(super) fn donut(&self) -> Option<Donut> {
-        let up = if self.inner_up { RingOrder::InnermostUp } else { RingOrder::OutermostUp };
-        Some(Donut { center: self.center?, radii: self.radii?, sense: TurnSense::Clockwise, up })
+    pub(super) fn donut(&self) -> Option<OmnidirectionalRing> {
+        let up = if self.inner_up { RingOrientation::InnermostUp } else { RingOrientation::OutermostUp };
+        Some(OmnidirectionalRing {
+            center: self.center?,
+            radii: self.radii?,
+            azimuth_direction: AzimuthDirection::Clockwise,
+            ring_orientation: up,
+        })
     }
 }
 

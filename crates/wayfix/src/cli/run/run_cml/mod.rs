@@ -6,9 +6,11 @@ use std::{path::Path, process::ExitCode};
 use wayfix_evaluation::terminal::{self, print, print_message};
 
 use anyhow::{Context, Result, bail, ensure};
-use wayfix_appearance_cml::{ArchiveParams, Forgetting, Learning, MapArchive, Start, TurnSense};
+use wayfix_appearance_cml::{
+    AzimuthDirection, ForgettingMode, Learning, MapArchive, MapArchiveParams, Start,
+};
 use wayfix_estimation_traits::Pose2;
-use wayfix_sensor_log::{Format, OpenOptions, ReadReport};
+use wayfix_sensor_log::{LogFormat, OpenOptions, ReadReport};
 
 pub(in crate::cli) use arguments::Arguments;
 use arguments::{ColumnsArgument, ForgettingArgument, StartArgument};
@@ -19,14 +21,14 @@ use super::super::{
     read_problems::{add_read_problems, read_all},
 };
 use crate::commented::commented;
-use wayfix_evaluation::report::Run;
+use wayfix_evaluation::report::ReportRun;
 use wayfix_systems::{
     cml::{
-        self, CameraChoice, CmlEstimateLog, CmlParams, CmlSystem, MapSaver, PanoramaMap, Plan, StartPlace,
-        Task, ViewReader,
-        recording::{Recording, Tables},
+        self, CameraReadingMode, CmlEstimateLog, CmlParams, CmlRunPlan, CmlSystem, CmlTask, MapSaver,
+        PanoramaMap, StartPlace, ViewReader,
+        recording::{FrameRecording, PoseTables},
     },
-    system::{DriveStep, Stopwatch, System},
+    system::{RunStep, Stopwatch, System},
 };
 
 pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
@@ -43,7 +45,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     let stopwatch = Stopwatch::start();
     let Input { mut plan, read, origin } = arguments.input(&mut params, saved.as_ref())?;
     let task = arguments.task();
-    let reader = ViewReader::new(params.views, arguments.donut());
+    let reader = ViewReader::new(params.panorama_descriptor, arguments.donut());
     let (system, start) = arguments.begin(task, &params, reader, saved, &mut plan)?;
 
     let mut outputs = Outputs::open("cml", &arguments.common)?;
@@ -57,7 +59,7 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
         start,
         &params,
         arguments.common.seed,
-        |DriveStep { system, record, .. }| {
+        |RunStep { system, record, .. }| {
             estimates.iter_mut().for_each(|estimates| estimates.observe(record, system));
             saver.iter_mut().for_each(|saver| saver.observe(record, system));
             bar.inc(1);
@@ -74,20 +76,20 @@ pub(in crate::cli) fn main(arguments: Arguments) -> Result<ExitCode> {
     }
 
     let seconds = stopwatch.elapsed().as_secs_f64();
-    let summary = Run { name: arguments.name(), seconds, warnings, ..cml::summarize(&mut run) };
+    let summary = ReportRun { name: arguments.name(), seconds, warnings, ..cml::summarize(&mut run) };
     print_message(summary.notes.join("\n"));
     if let Some(estimates) = estimates {
         estimates.finish()?;
     }
-    outputs.show(summary, || Ok(cml::pictures(&run)?))?;
+    outputs.show(summary, || Ok(cml::plots(&run)?))?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// The task, and the read report.
 struct Input {
-    plan: Plan,
+    plan: CmlRunPlan,
     read: ReadReport,
-    origin: Format,
+    origin: LogFormat,
 }
 
 impl Arguments {
@@ -95,8 +97,10 @@ impl Arguments {
         match self.forgetting {
             None => {}
             Some(ForgettingArgument::None) => params.localizer.learning = Learning::Static,
-            Some(ForgettingArgument::Active) => params.localizer.map.forgetting = Forgetting::Active,
-            Some(ForgettingArgument::Passive) => params.localizer.map.forgetting = Forgetting::Passive,
+            Some(ForgettingArgument::Active) => params.localizer.map.forgetting_mode = ForgettingMode::Active,
+            Some(ForgettingArgument::Passive) => {
+                params.localizer.map.forgetting_mode = ForgettingMode::Passive
+            }
         }
     }
 
@@ -106,25 +110,25 @@ impl Arguments {
             "--withhold 1 localizes every view and teaches none: give 0 to build the map on the way, or 2 and more"
         );
         let is_static = params.localizer.learning == Learning::Static;
-        if is_static && self.task() == Task::ConcurrentMapBuilding {
+        if is_static && self.task() == CmlTask::ConcurrentMapBuilding {
             bail!(
                 "--forgetting none keeps the map as it is, and there is none: teach one (--withhold, --learn-from) or give one (--map)"
             );
         }
         // A saved map stores the turning sense of its columns.
-        let saved_sense = saved.map(|archive| archive.params().views.sense);
+        let saved_sense = saved.map(|archive| archive.params().views.azimuth_direction);
         let told = self.column_order.map(|columns| match columns {
-            ColumnsArgument::Clockwise => TurnSense::Clockwise,
-            ColumnsArgument::Counterclockwise => TurnSense::Counterclockwise,
+            ColumnsArgument::Clockwise => AzimuthDirection::Clockwise,
+            ColumnsArgument::Counterclockwise => AzimuthDirection::Counterclockwise,
         });
-        let camera = CameraChoice { donut: self.donut(), sense: told.or(saved_sense) };
+        let camera = CameraReadingMode { donut: self.donut(), sense: told.or(saved_sense) };
         if !self.log.is_empty() {
             let options = OpenOptions { topics: self.topics.topics.clone(), ..OpenOptions::default() };
             let log = wayfix_sensor_log::open_all(&self.log, &options)?;
             let origin = log.meta().first_format();
             let (records, read) = read_all(log);
             return Ok(Input {
-                plan: Plan::of_log(records, self.withhold(), params, &camera)?,
+                plan: CmlRunPlan::of_log(records, self.withhold(), params, &camera)?,
                 read,
                 origin,
             });
@@ -139,7 +143,7 @@ impl Arguments {
             }
             _ => None,
         };
-        let plan = Plan::of_recording(
+        let plan = CmlRunPlan::of_recording(
             &recording,
             taught.as_ref(),
             self.withhold(),
@@ -151,16 +155,16 @@ impl Arguments {
         for recording in taught.iter().chain([&recording]) {
             read.join(&recording.read);
         }
-        Ok(Input { plan, read, origin: Format::Images })
+        Ok(Input { plan, read, origin: LogFormat::Images })
     }
 
     fn begin(
         &self,
-        task: Task,
+        task: CmlTask,
         params: &CmlParams,
         mut reader: ViewReader,
         saved: Option<MapArchive>,
-        plan: &mut Plan,
+        plan: &mut CmlRunPlan,
     ) -> Result<(CmlSystem, StartPlace)> {
         let first = cml::first_true_pose(&plan.records);
         let mut state = None;
@@ -168,7 +172,7 @@ impl Arguments {
         if let Some(archive) = saved {
             plan.notes.extend(cml::end_note(&archive));
             let size = plan.first_size(&mut reader).unwrap_or(archive.params().size);
-            let params = ArchiveParams { views: *reader.params(), size };
+            let params = MapArchiveParams { views: *reader.params(), size };
             (map, state) = archive.into_map(&params).context("the saved map cannot be used here")?;
         }
         let start = match (self.start, task, first) {
@@ -177,9 +181,9 @@ impl Arguments {
                 StartPlace::Saved(Start::Among(state))
             }
             (Some(StartArgument::Anywhere), ..) => StartPlace::Anywhere,
-            (Some(StartArgument::At(pose)), Task::ConcurrentMapBuilding, _) => StartPlace::Exactly(pose),
+            (Some(StartArgument::At(pose)), CmlTask::ConcurrentMapBuilding, _) => StartPlace::Exactly(pose),
             (Some(StartArgument::At(pose)), ..) => StartPlace::Near(pose),
-            (None, Task::ConcurrentMapBuilding, first) => {
+            (None, CmlTask::ConcurrentMapBuilding, first) => {
                 StartPlace::Exactly(first.unwrap_or(Pose2::new(0.0, 0.0, 0.0)))
             }
             (None, _, Some(first)) => StartPlace::Near(first),
@@ -188,9 +192,9 @@ impl Arguments {
         Ok((CmlSystem::new(params, reader, map)?, start))
     }
 
-    fn recording(&self, frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<Recording> {
+    fn recording(&self, frames: &Path, poses: &Path, stamps: Option<&Path>) -> Result<FrameRecording> {
         let (columns, stamp_columns) = (self.columns.as_ref(), self.stamp_columns.as_ref());
-        let recording = Recording::read(frames, &Tables { poses, columns, stamps, stamp_columns })?;
+        let recording = FrameRecording::read(frames, &PoseTables { poses, columns, stamps, stamp_columns })?;
         if !recording.read.is_clean() {
             print_message(&recording.read);
         }

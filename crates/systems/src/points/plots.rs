@@ -1,13 +1,13 @@
-use wayfix_evaluation::plot::{EstimatedLandmark, MapPlot, Picture, PlotError};
+use wayfix_evaluation::plot::{EstimatedLandmark, MapPlot, PlotError, SvgPlot};
 
 use super::PointRun;
-use crate::slam::pictures_with;
+use crate::slam::plots_with;
 
 /// Map and path, errors with their 3σ bands and NEES where there is truth, and step times.
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn pictures(run: &PointRun) -> Result<Vec<Picture>, PlotError> {
+pub fn plots(run: &PointRun) -> Result<Vec<SvgPlot>, PlotError> {
     let landmarks = run.system.filter().landmarks();
     let map = MapPlot {
         title: "Path and map with 2σ ellipses".to_owned(),
@@ -21,5 +21,5 @@ pub fn pictures(run: &PointRun) -> Result<Vec<Picture>, PlotError> {
         true_landmarks: run.true_map.values().map(|position| (position.x, position.y)).collect(),
         ..MapPlot::default()
     };
-    pictures_with(run, map)
+    plots_with(run, map)
 }

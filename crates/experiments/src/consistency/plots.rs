@@ -1,13 +1,13 @@
-use super::MonteCarlo;
-use wayfix_evaluation::plot::{LinesPlot, NamedBand, Picture, PlotError, Scale, Series};
+use super::ConsistencyMonteCarlo;
+use wayfix_evaluation::plot::{AxisScale, LinesPlot, NamedBand, PlotError, PlotSeries, SvgPlot};
 
 /// Average NEES of all filters over time, with the band at any one scan.
 /// # Errors
 /// Returns an error if the picture cannot be drawn.
-pub fn picture(runs: &MonteCarlo) -> Result<Picture, PlotError> {
+pub fn picture(runs: &ConsistencyMonteCarlo) -> Result<SvgPlot, PlotError> {
     let series = runs.courses.iter().map(|course| {
         let points = course.samples.iter().map(|look| (look.seconds, look.nees)).collect();
-        Series::new(course.kind.name().replace('_', " "), points)
+        PlotSeries::new(course.kind.name().replace('_', " "), points)
     });
     let (low, high) = (runs.band.low, runs.band.high);
     let plot = LinesPlot {
@@ -15,7 +15,7 @@ pub fn picture(runs: &MonteCarlo) -> Result<Picture, PlotError> {
         x_label: "time, s".to_owned(),
         y_label: "NEES, 3 expected".to_owned(),
         series: series.collect(),
-        y_scale: Scale::Log10,
+        y_scale: AxisScale::Log10,
         band: Some(NamedBand { name: format!("95 % band {low:.2} to {high:.2}"), low, high }),
         ..LinesPlot::default()
     };

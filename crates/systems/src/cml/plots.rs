@@ -1,34 +1,34 @@
-use super::{CmlRun, FrameResult, histogram::histogram};
-use wayfix_evaluation::plot::{LinesPlot, MapPlot, Picture, PlotError, Series};
+use super::{CmlRun, CmlViewResult, histogram::histogram};
+use wayfix_evaluation::plot::{LinesPlot, MapPlot, PlotError, PlotSeries, SvgPlot};
 
 /// Plots the path with the references, error histogram and error over time, distance to the best reference, and number of references.
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn pictures(run: &CmlRun) -> Result<Vec<Picture>, PlotError> {
+pub fn plots(run: &CmlRun) -> Result<Vec<SvgPlot>, PlotError> {
     let samples = run.samples();
-    let mut pictures = vec![map(run).draw()?];
+    let mut plots = vec![map(run).draw()?];
     let errors: Vec<f64> = samples.iter().map(|(_, sample)| sample.position_error()).collect();
     if !errors.is_empty() {
         let most = errors.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        pictures.push(histogram("Errors of the position", most, vec![("views".to_owned(), errors)]).draw()?);
-        let series = Series::new(
+        plots.push(histogram("Errors of the position", most, vec![("views".to_owned(), errors)]).draw()?);
+        let series = PlotSeries::new(
             "error",
             samples.iter().map(|(frame, sample)| (run.seconds(frame), sample.position_error())).collect(),
         );
-        pictures.push(over_time("Error over time", "position error, m", vec![series]).draw()?);
+        plots.push(over_time("Error over time", "position error, m", vec![series]).draw()?);
     }
-    let alike = |frame: &FrameResult| Some((run.seconds(frame), frame.nearest?.0));
+    let alike = |frame: &CmlViewResult| Some((run.seconds(frame), frame.nearest?.0));
     let frames = run.system.frames();
-    let distance = Series::new("nearest reference", frames.iter().filter_map(alike).collect());
-    pictures.push(
+    let distance = PlotSeries::new("nearest reference", frames.iter().filter_map(alike).collect());
+    plots.push(
         over_time("How much the most alike reference differs", "distance of the views", vec![distance])
             .draw()?,
     );
-    let count = |frame: &FrameResult| (run.seconds(frame), frame.n_references as f64);
-    let references = Series::new("references", frames.iter().map(count).collect());
-    pictures.push(over_time("References in the map", "number", vec![references]).draw()?);
-    Ok(pictures)
+    let count = |frame: &CmlViewResult| (run.seconds(frame), frame.n_references as f64);
+    let references = PlotSeries::new("references", frames.iter().map(count).collect());
+    plots.push(over_time("References in the map", "number", vec![references]).draw()?);
+    Ok(plots)
 }
 
 fn map(run: &CmlRun) -> MapPlot {
@@ -47,7 +47,7 @@ fn map(run: &CmlRun) -> MapPlot {
     }
 }
 
-fn over_time(title: &str, y_label: &str, series: Vec<Series>) -> LinesPlot {
+fn over_time(title: &str, y_label: &str, series: Vec<PlotSeries>) -> LinesPlot {
     LinesPlot {
         title: title.to_owned(),
         x_label: "t, s".to_owned(),

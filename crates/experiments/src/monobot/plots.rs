@@ -1,39 +1,39 @@
-use super::{Drive, Step, first_entry};
-use wayfix_evaluation::plot::{LinesPlot, Picture, PlotError, Series};
+use super::{MonobotDrive, MonobotStep, first_entry};
+use wayfix_evaluation::plot::{LinesPlot, PlotError, PlotSeries, SvgPlot};
 
 /// The four columns of [Andrade-Cetto 2005, Figs. 4-6] for one drive: places, robot error, landmark error, gains.
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn pictures(drive: &Drive) -> Result<Vec<Picture>, PlotError> {
-    let line = |value: &dyn Fn(&Step) -> f64| -> Vec<(f64, f64)> {
+pub fn plots(drive: &MonobotDrive) -> Result<Vec<SvgPlot>, PlotError> {
+    let line = |value: &dyn Fn(&MonobotStep) -> f64| -> Vec<(f64, f64)> {
         drive.steps.iter().enumerate().map(|(k, step)| (k as f64, value(step))).collect()
     };
-    let plot = |title: &str, y_label: &str, series: Vec<Series>| LinesPlot {
+    let plot = |title: &str, y_label: &str, series: Vec<PlotSeries>| LinesPlot {
         title: title.to_owned(),
         x_label: "step".to_owned(),
         y_label: y_label.to_owned(),
         series,
         ..LinesPlot::default()
     };
-    let with_bounds = |error: &dyn Fn(&Step) -> f64, sigma: &dyn Fn(&Step) -> f64| {
+    let with_bounds = |error: &dyn Fn(&MonobotStep) -> f64, sigma: &dyn Fn(&MonobotStep) -> f64| {
         vec![
-            Series::new("error", line(error)),
-            Series::new("+2σ", line(&|step| 2.0 * sigma(step))),
-            Series::new("−2σ", line(&|step| -2.0 * sigma(step))),
+            PlotSeries::new("error", line(error)),
+            PlotSeries::new("+2σ", line(&|step| 2.0 * sigma(step))),
+            PlotSeries::new("−2σ", line(&|step| -2.0 * sigma(step))),
         ]
     };
     let places = vec![
-        Series::new("robot", line(&|step| step.true_position)),
-        Series::new("its estimate", line(&|step| step.position)),
-        Series::new("landmark", line(&|_| drive.true_landmark)),
-        Series::new("its estimate", line(&|step| step.landmark)),
+        PlotSeries::new("robot", line(&|step| step.true_position)),
+        PlotSeries::new("its estimate", line(&|step| step.position)),
+        PlotSeries::new("landmark", line(&|_| drive.true_landmark)),
+        PlotSeries::new("its estimate", line(&|step| step.landmark)),
     ];
     let robot = with_bounds(&|step| step.position - step.true_position, &|step| step.position_sigma);
     let landmark = with_bounds(&|step| step.landmark - drive.true_landmark, &|step| step.landmark_sigma);
     let gains = vec![
-        Series::new("robot", line(&|step| step.gains[0])),
-        Series::new("landmark", line(&|step| step.gains[1])),
+        PlotSeries::new("robot", line(&|step| step.gains[0])),
+        PlotSeries::new("landmark", line(&|step| step.gains[1])),
     ];
     [
         plot("Places", "m", places),
@@ -50,11 +50,11 @@ pub fn pictures(drive: &Drive) -> Result<Vec<Picture>, PlotError> {
 ///
 /// # Errors
 /// Returns an error if the filter or the picture refuses.
-pub fn fisher_picture(n_landmarks: &[u32], n_steps: usize) -> anyhow::Result<Picture> {
+pub fn fisher_plot(n_landmarks: &[u32], n_steps: usize) -> anyhow::Result<SvgPlot> {
     let series = |n: &u32| {
         let points =
             first_entry(*n, n_steps)?.into_iter().enumerate().map(|(k, entry)| (k as f64 + 1.0, entry));
-        Ok(Series::new(format!("{n} landmarks"), points.collect()))
+        Ok(PlotSeries::new(format!("{n} landmarks"), points.collect()))
     };
     let plot = LinesPlot {
         title: "First entry of the total Fisher information".to_owned(),

@@ -1,7 +1,7 @@
 use nalgebra::Vector2;
 
 use super::{LineSystem, ScanWalls};
-use wayfix_evaluation::plot::{MapPlot, Picture, PlotError};
+use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot};
 
 /// Number of scans drawn, spread evenly over the log.
 const N_SCANS: usize = 3;
@@ -10,17 +10,17 @@ const N_SCANS: usize = 3;
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn pictures(system: &LineSystem) -> Result<Vec<Picture>, PlotError> {
+pub fn plots(system: &LineSystem) -> Result<Vec<SvgPlot>, PlotError> {
     let scans = system.scans();
-    let mut pictures = Vec::new();
+    let mut plots = Vec::new();
     if scans.iter().any(|scan| scan.pose.is_some()) {
-        pictures.push(map(system).draw()?);
+        plots.push(map(system).draw()?);
     }
     let n_drawn = N_SCANS.min(scans.len());
     for k in 0..n_drawn {
-        pictures.push(one(&scans[scans.len() * (k + 1) / (n_drawn + 1)]).draw()?);
+        plots.push(one(&scans[scans.len() * (k + 1) / (n_drawn + 1)]).draw()?);
     }
-    Ok(pictures)
+    Ok(plots)
 }
 
 fn map(system: &LineSystem) -> MapPlot {

@@ -1,7 +1,7 @@
 use nalgebra::DefaultAllocator;
 use wayfix_evaluation::{
-    errors::Sample,
-    plot::{ConsistencyPlot, ErrorPlot, ErrorSample, MapPlot, Picture, PlotError, Scale, TimesPlot},
+    errors::TrajectorySample,
+    plot::{AxisScale, ConsistencyPlot, ErrorPlot, ErrorSample, MapPlot, PlotError, SvgPlot, TimesPlot},
 };
 use wayfix_gaussian_core::ChiSquaredBand;
 use wayfix_slam_ekf::{LandmarkDim, MeasurementDim, RobotDim, SlamAlloc};
@@ -14,10 +14,7 @@ const POSE_DIMENSION: usize = 3;
 const WINDOW: usize = 100;
 
 /// Path and `map`, errors with their 3σ bands and NEES where there is truth, and step times.
-pub(crate) fn pictures_with<F: FrontEnd, T>(
-    run: &SlamRun<F, T>,
-    map: MapPlot,
-) -> Result<Vec<Picture>, PlotError>
+pub(crate) fn plots_with<F: FrontEnd, T>(run: &SlamRun<F, T>, map: MapPlot) -> Result<Vec<SvgPlot>, PlotError>
 where
     DefaultAllocator: SlamAlloc<RobotDim<F::Model>, LandmarkDim<F::Model>, MeasurementDim<F::Model>>,
 {
@@ -33,19 +30,19 @@ where
         dead_reckoning: estimates.iter().map(|at| (at.dead_reckoning.x(), at.dead_reckoning.y())).collect(),
         ..map
     };
-    let mut pictures = vec![path.draw()?];
+    let mut plots = vec![path.draw()?];
     if !samples.is_empty() {
-        pictures.push(errors(&samples).draw()?);
+        plots.push(errors(&samples).draw()?);
         let has_nees = !run.truth.is_estimate();
         let consistency = has_nees.then(|| consistency(&samples)).flatten();
-        pictures.extend(consistency.map(|plot| plot.draw()).transpose()?);
+        plots.extend(consistency.map(|plot| plot.draw()).transpose()?);
     }
-    pictures.push(times(estimates).draw()?);
-    Ok(pictures)
+    plots.push(times(estimates).draw()?);
+    Ok(plots)
 }
 
-fn errors(samples: &[(StampedEstimate, Sample)]) -> ErrorPlot {
-    let error_sample = |(stamped_estimate, sample): &(StampedEstimate, Sample)| {
+fn errors(samples: &[(StampedEstimate, TrajectorySample)]) -> ErrorPlot {
+    let error_sample = |(stamped_estimate, sample): &(StampedEstimate, TrajectorySample)| {
         let sigma = stamped_estimate.covariance.diagonal().map(f64::sqrt);
         ErrorSample {
             t: seconds(samples, stamped_estimate),
@@ -59,8 +56,8 @@ fn errors(samples: &[(StampedEstimate, Sample)]) -> ErrorPlot {
     }
 }
 
-fn consistency(samples: &[(StampedEstimate, Sample)]) -> Option<ConsistencyPlot> {
-    let nees = |(stamped_estimate, sample): &(StampedEstimate, Sample)| {
+fn consistency(samples: &[(StampedEstimate, TrajectorySample)]) -> Option<ConsistencyPlot> {
+    let nees = |(stamped_estimate, sample): &(StampedEstimate, TrajectorySample)| {
         Some((seconds(samples, stamped_estimate), sample.nees()?))
     };
     let samples: Vec<_> = samples.iter().filter_map(nees).collect();
@@ -72,7 +69,7 @@ fn consistency(samples: &[(StampedEstimate, Sample)]) -> Option<ConsistencyPlot>
         expected: POSE_DIMENSION as f64,
         band: (band.low, band.high),
         window: WINDOW,
-        scale: Scale::Log10,
+        scale: AxisScale::Log10,
     })
 }
 
@@ -84,12 +81,12 @@ fn times(stamped_estimates: &[StampedEstimate]) -> TimesPlot {
         title: "Computing time of a step".to_owned(),
         x_label: "landmarks in the map".to_owned(),
         points: stamped_estimates.iter().map(point).collect(),
-        x_scale: Scale::Linear,
-        y_scale: Scale::Log10,
+        x_scale: AxisScale::Linear,
+        y_scale: AxisScale::Log10,
     }
 }
 
 /// Time since the first sample.
-fn seconds(samples: &[(StampedEstimate, Sample)], stamped_estimate: &StampedEstimate) -> f64 {
+fn seconds(samples: &[(StampedEstimate, TrajectorySample)], stamped_estimate: &StampedEstimate) -> f64 {
     samples.first().map_or(0.0, |(first, _)| stamped_estimate.stamp.seconds_since(first.stamp))
 }

@@ -1,14 +1,14 @@
 use nalgebra::Vector2;
-use wayfix_evaluation::plot::{MapPlot, Picture, PlotError};
+use wayfix_evaluation::plot::{MapPlot, PlotError, SvgPlot};
 
 use super::WallRun;
-use crate::slam::pictures_with;
+use crate::slam::plots_with;
 
 /// Path and walls, errors with their 3σ bands and NEES where there is truth, and step times.
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn pictures(run: &WallRun) -> Result<Vec<Picture>, PlotError> {
+pub fn plots(run: &WallRun) -> Result<Vec<SvgPlot>, PlotError> {
     let point = |position: Vector2<f64>| (position.x, position.y);
     let walls = run.system.filter().landmarks();
     let map = MapPlot {
@@ -17,5 +17,5 @@ pub fn pictures(run: &WallRun) -> Result<Vec<Picture>, PlotError> {
         surroundings: run.true_map.iter().map(|wall| vec![point(wall.start), point(wall.end)]).collect(),
         ..MapPlot::default()
     };
-    pictures_with(run, map)
+    plots_with(run, map)
 }

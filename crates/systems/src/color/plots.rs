@@ -1,14 +1,14 @@
 use anyhow::Result;
 use wayfix_color_map::{ColorId, ColorMap};
 use wayfix_color_model::{LightingFilter, YuvImage};
-use wayfix_sensor_log::{Data, EncodedImage, Record};
+use wayfix_sensor_log::{EncodedImage, Record, RecordData};
 
-use super::{ColorRun, FrameResult, field_lines};
+use super::{ColorFrameResult, ColorRun, field_lines};
 use wayfix_evaluation::{
-    errors::Sample,
+    errors::TrajectorySample,
     plot::{
-        EllipsesPlot, ErrorPlot, ErrorSample, FilmFrame, FilmStrip, LinesPlot, MapPlot, NamedEllipse,
-        Picture, PlotError, Series,
+        EllipsesPlot, ErrorPlot, ErrorSample, FilmStrip, FilmStripFrame, LinesPlot, MapPlot, NamedEllipse,
+        PlotError, PlotSeries, SvgPlot,
     },
 };
 
@@ -16,11 +16,11 @@ use wayfix_evaluation::{
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn pictures(run: &ColorRun) -> Result<Vec<Picture>, PlotError> {
+pub fn plots(run: &ColorRun) -> Result<Vec<SvgPlot>, PlotError> {
     let samples = run.samples();
-    let mut pictures = vec![path(run, &samples).draw()?];
+    let mut plots = vec![path(run, &samples).draw()?];
     if !samples.is_empty() {
-        pictures.push(errors(run, &samples).draw()?);
+        plots.push(errors(run, &samples).draw()?);
     }
     let light = run.system.light();
     let member = |k: usize| (format!("light {k}, V"), uv_ellipses(run.system.map(), light.member(k)));
@@ -30,9 +30,9 @@ pub fn pictures(run: &ColorRun) -> Result<Vec<Picture>, PlotError> {
         sigmas: 1.0,
         groups: (0..light.n_members()).map(member).collect(),
     };
-    pictures.push(ellipses.draw()?);
-    pictures.push(particles(run).draw()?);
-    Ok(pictures)
+    plots.push(ellipses.draw()?);
+    plots.push(particles(run).draw()?);
+    Ok(plots)
 }
 
 /// The UV part of every colour's density (Eq. 9).
@@ -53,11 +53,11 @@ pub fn uv_ellipses(map: &ColorMap, light: &LightingFilter) -> Vec<NamedEllipse> 
 ///
 /// # Errors
 /// Returns an error if an image cannot be decoded or a picture not be drawn.
-pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<Picture> {
+pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<SvgPlot> {
     let images: Vec<(f64, &EncodedImage)> = records
         .iter()
         .filter_map(|record| match &record.data {
-            Data::Image(image) => Some((run.seconds(record.stamp), image)),
+            RecordData::Image(image) => Some((run.seconds(record.stamp), image)),
             _ => None,
         })
         .collect();
@@ -71,14 +71,18 @@ pub fn film(run: &mut ColorRun, records: &[Record], n_frames: usize) -> Result<P
         let (seconds, image) = images[images.len() * (k + 1) / (n_frames.min(images.len()) + 1)];
         let decoded = image.decode_rgb()?;
         film.frame_size = (decoded.width, decoded.height);
-        let yuv =
-            YuvImage::from_rgb(decoded.width, decoded.height, &decoded.pixels, run.system.params().yuv)?;
+        let yuv = YuvImage::from_rgb(
+            decoded.width,
+            decoded.height,
+            &decoded.pixels,
+            run.system.params().yuv_standard,
+        )?;
         let labels = run.system.classified(&yuv).map_err(anyhow::Error::msg)?;
         let pixels: Vec<u8> = labels.iter().flat_map(|label| paint(*label)).collect();
         let caption = format!("{seconds:.1} s");
-        seen.push(FilmFrame { image: image.to_browser_format()?, caption: caption.clone() });
+        seen.push(FilmStripFrame { image: image.to_browser_format()?, caption: caption.clone() });
         let painted = EncodedImage::png_rgb(decoded.width, decoded.height, &pixels)?;
-        classified.push(FilmFrame { image: painted, caption });
+        classified.push(FilmStripFrame { image: painted, caption });
     }
     film.rows = vec![("camera".to_owned(), seen), ("classified, grey for background".to_owned(), classified)];
     Ok(film.draw()?)
@@ -99,7 +103,7 @@ fn paint(label: u8) -> [u8; 3] {
     if label == u8::MAX { [96, 96, 100] } else { PAINTS[usize::from(label) % PAINTS.len()] }
 }
 
-fn path(run: &ColorRun, samples: &[(&FrameResult, Sample)]) -> MapPlot {
+fn path(run: &ColorRun, samples: &[(&ColorFrameResult, TrajectorySample)]) -> MapPlot {
     let frames = run.system.frames();
     MapPlot {
         title: "Path on the field".to_owned(),
@@ -111,8 +115,8 @@ fn path(run: &ColorRun, samples: &[(&FrameResult, Sample)]) -> MapPlot {
     }
 }
 
-fn errors(run: &ColorRun, samples: &[(&FrameResult, Sample)]) -> ErrorPlot {
-    let error_sample = |(frame, sample): &(&FrameResult, Sample)| {
+fn errors(run: &ColorRun, samples: &[(&ColorFrameResult, TrajectorySample)]) -> ErrorPlot {
+    let error_sample = |(frame, sample): &(&ColorFrameResult, TrajectorySample)| {
         let sigma = sample.covariance.diagonal().map(f64::sqrt);
         ErrorSample { t: run.seconds(frame.stamp), error: sample.error().into(), sigma: sigma.into() }
     };
@@ -123,9 +127,9 @@ fn errors(run: &ColorRun, samples: &[(&FrameResult, Sample)]) -> ErrorPlot {
 }
 
 fn particles(run: &ColorRun) -> LinesPlot {
-    let series = |name: &str, value: &dyn Fn(&FrameResult) -> f64| {
+    let series = |name: &str, value: &dyn Fn(&ColorFrameResult) -> f64| {
         let points = run.system.frames().iter().map(|frame| (run.seconds(frame.stamp), value(frame)));
-        Series::new(name, points.collect())
+        PlotSeries::new(name, points.collect())
     };
     LinesPlot {
         title: "Particles".to_owned(),

@@ -1,7 +1,7 @@
 use super::super::{RunHistory, TargetColors};
 use super::run_history::Point;
 use wayfix_evaluation::plot::{
-    EllipsesPlot, FilmFrame, FilmStrip, LinesPlot, NamedEllipse, Picture, PlotError, Series,
+    EllipsesPlot, FilmStrip, FilmStripFrame, LinesPlot, NamedEllipse, PlotError, PlotSeries, SvgPlot,
 };
 
 /// Film frames per row.
@@ -11,22 +11,22 @@ const FRAMES_A_ROW: usize = 3;
 ///
 /// # Errors
 /// Returns an error if a picture cannot be drawn.
-pub fn pictures(run_history: &RunHistory) -> Result<Vec<Picture>, PlotError> {
-    let mut pictures = vec![film(run_history).draw()?, overlap(run_history).draw()?];
+pub fn plots(run_history: &RunHistory) -> Result<Vec<SvgPlot>, PlotError> {
+    let mut plots = vec![film(run_history).draw()?, overlap(run_history).draw()?];
     if let Some(colors) = run_history.points.kept().iter().find_map(|point| point.colors) {
         let names = colors.space.axis_names();
-        pictures.push(clouds(run_history, names).draw()?);
-        pictures.push(color_path(run_history, names).draw()?);
+        plots.push(clouds(run_history, names).draw()?);
+        plots.push(color_path(run_history, names).draw()?);
     }
-    Ok(pictures)
+    Ok(plots)
 }
 
 fn film(run_history: &RunHistory) -> FilmStrip {
-    let frame = |(index, image): &(usize, _)| FilmFrame {
+    let frame = |(index, image): &(usize, _)| FilmStripFrame {
         image: wayfix_sensor_log::EncodedImage::clone(image),
         caption: format!("frame {index}"),
     };
-    let frames: Vec<FilmFrame> = run_history.film.kept().iter().map(frame).collect();
+    let frames: Vec<FilmStripFrame> = run_history.film.kept().iter().map(frame).collect();
     let legend = |row: usize| match row {
         0 => "yellow: tracked, red: lost, green: true box".to_owned(),
         _ => String::new(),
@@ -46,7 +46,8 @@ fn overlap(run_history: &RunHistory) -> LinesPlot {
     let points = run_history.points.kept();
     let iou = points.iter().filter_map(|point| Some((point.index as f64, point.iou?))).collect();
     let quality = points.iter().map(|point| (point.index as f64, point.quality)).collect();
-    let series = [Series::new("overlap with the truth", iou), Series::new("the tracker's quality", quality)];
+    let series =
+        [PlotSeries::new("overlap with the truth", iou), PlotSeries::new("the tracker's quality", quality)];
     LinesPlot {
         title: "Overlap over the frames".to_owned(),
         x_label: frames(run_history),
@@ -78,7 +79,7 @@ fn clouds(run_history: &RunHistory, names: [&str; 3]) -> EllipsesPlot {
 fn color_path(run_history: &RunHistory, names: [&str; 3]) -> LinesPlot {
     let axis = |c: usize| {
         let point = |point: &Point| Some((point.index as f64, point.colors?.mean[c]));
-        Series::new(names[c], run_history.points.kept().iter().filter_map(point).collect())
+        PlotSeries::new(names[c], run_history.points.kept().iter().filter_map(point).collect())
     };
     LinesPlot {
         title: "Mean colour of the target".to_owned(),

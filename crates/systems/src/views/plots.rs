@@ -1,11 +1,11 @@
 use std::cmp::Reverse;
 
 use anyhow::Result;
-use wayfix_condensation::{Grid, Picture as Pixels};
+use wayfix_condensation::{Picture as Pixels, PositionGrid};
 use wayfix_sensor_log::{EncodedImage, ImageError};
 
-use super::{Step, Trial, ViewSystem, ViewsRun};
-use wayfix_evaluation::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, Series};
+use super::{ViewSystem, ViewTrial, ViewTrialStep, ViewsRun};
+use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinesPlot, PlotSeries, SvgPlot};
 
 /// Moves after which the belief is shown, besides the last.
 const SHOWN: [usize; 5] = [0, 1, 2, 6, 16];
@@ -22,7 +22,7 @@ pub(super) const JPEG_QUALITY: u8 = 85;
 ///
 /// # Errors
 /// Returns an error if a picture cannot be encoded or drawn.
-pub fn pictures(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> Result<Vec<Picture>> {
+pub fn plots(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> Result<Vec<SvgPlot>> {
     Ok(vec![
         scenes(learned, real)?,
         belief_film(&run.system, seed, slowest(&run.trials))?,
@@ -34,7 +34,7 @@ pub fn pictures(run: &ViewsRun, learned: &Pixels, real: &Pixels, seed: u64) -> R
 ///
 /// # Errors
 /// Returns an error if the trial cannot be driven or an image cannot be encoded.
-pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture> {
+pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<SvgPlot> {
     let grid = *system.views().grid();
     let mut maps = Vec::new();
     let mut last = None;
@@ -50,9 +50,9 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture
     maps.extend(last);
     let size = ((grid.columns() * CELL) as u32, (grid.rows() * CELL) as u32);
     let frame = |(number, image): (usize, Result<EncodedImage, ImageError>)| {
-        Ok(FilmFrame { image: image?, caption: format!("{number} moves") })
+        Ok(FilmStripFrame { image: image?, caption: format!("{number} moves") })
     };
-    let frames: Vec<FilmFrame> = maps.into_iter().map(frame).collect::<Result<_, ImageError>>()?;
+    let frames: Vec<FilmStripFrame> = maps.into_iter().map(frame).collect::<Result<_, ImageError>>()?;
     let legends =
         ["red: true place, orange: best, green: goal", "dark: believed, by the logarithm to a millionth"];
     let rows =
@@ -66,14 +66,17 @@ pub fn belief_film(system: &ViewSystem, seed: u64, trial: u64) -> Result<Picture
 }
 
 /// The belief after a step, with the true place, the best and the goal.
-pub(super) fn belief_image(grid: &Grid, step: &Step<'_>) -> Result<EncodedImage, ImageError> {
+pub(super) fn belief_image(
+    grid: &PositionGrid,
+    step: &ViewTrialStep<'_>,
+) -> Result<EncodedImage, ImageError> {
     let marks = [(step.goal, GOAL), (step.localizer.best().state, BEST), (step.at, TRUTH)];
     let pixels = belief_map(grid, step.localizer.belief(), &marks);
     EncodedImage::png_rgb((grid.columns() * CELL) as u32, (grid.rows() * CELL) as u32, &pixels)
 }
 
 /// One square per place, darker for larger belief. The marks of one place are nested, the last outermost.
-fn belief_map(grid: &Grid, belief: &[f64], marks: &[(usize, [u8; 3])]) -> Vec<u8> {
+fn belief_map(grid: &PositionGrid, belief: &[f64], marks: &[(usize, [u8; 3])]) -> Vec<u8> {
     let most = belief.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let width = grid.columns() * CELL;
     let pixel = |i: usize| {
@@ -95,17 +98,17 @@ pub fn shade(share: f64) -> [u8; 3] {
 }
 
 /// The trial that became certain last; one that never did is the slowest.
-pub(super) fn slowest(trials: &[Trial]) -> u64 {
-    let steps = |trial: &Trial| trial.report.steps_to_certainty.unwrap_or(usize::MAX);
+pub(super) fn slowest(trials: &[ViewTrial]) -> u64 {
+    let steps = |trial: &ViewTrial| trial.report.steps_to_certainty.unwrap_or(usize::MAX);
     let slowest = (0_u64..).zip(trials).max_by_key(|(index, trial)| (steps(trial), Reverse(*index)));
     slowest.map_or(0, |(index, _)| index)
 }
 
-fn scenes(learned: &Pixels, real: &Pixels) -> Result<Picture> {
+fn scenes(learned: &Pixels, real: &Pixels) -> Result<SvgPlot> {
     let size = (learned.width() as u32, learned.height() as u32);
-    let frame = |picture: &Pixels, caption: &str| -> Result<FilmFrame> {
+    let frame = |picture: &Pixels, caption: &str| -> Result<FilmStripFrame> {
         let image = EncodedImage::jpeg(size.0, size.1, picture.pixels().as_flattened(), JPEG_QUALITY)?;
-        Ok(FilmFrame { image, caption: caption.to_owned() })
+        Ok(FilmStripFrame { image, caption: caption.to_owned() })
     };
     let frames = vec![frame(learned, "learned")?, frame(real, "seen")?];
     let film = FilmStrip {
@@ -117,10 +120,10 @@ fn scenes(learned: &Pixels, real: &Pixels) -> Result<Picture> {
 }
 
 /// Growth of the belief in the true place over the drives.
-fn certainty(trials: &[Trial]) -> LinesPlot {
+fn certainty(trials: &[ViewTrial]) -> LinesPlot {
     let n_moves = trials.iter().map(|trial| trial.belief_in_truth.len()).max().unwrap_or(0);
     // A finished drive keeps its last value.
-    let at = |trial: &Trial, moves: usize| {
+    let at = |trial: &ViewTrial, moves: usize| {
         let last = trial.belief_in_truth.len().saturating_sub(1);
         trial.belief_in_truth.get(moves.min(last)).copied().unwrap_or(f64::NAN)
     };
@@ -136,9 +139,9 @@ fn certainty(trials: &[Trial]) -> LinesPlot {
         x_label: "moves".to_owned(),
         y_label: "share of the drives".to_owned(),
         series: vec![
-            Series::new("belief above 0.5", share(0.5)),
-            Series::new("above 0.9", share(0.9)),
-            Series::new("above 0.999", share(0.999)),
+            PlotSeries::new("belief above 0.5", share(0.5)),
+            PlotSeries::new("above 0.9", share(0.9)),
+            PlotSeries::new("above 0.999", share(0.999)),
         ],
         ..LinesPlot::default()
     }

@@ -1,15 +1,15 @@
 //! What the SVG of a plot shows, measured in the SVG itself.
 
 use wayfix_evaluation::plot::{
-    ConsistencyPlot, ErrorPlot, ErrorSample, EstimatedLandmark, LinesPlot, MapPlot, Picture, Scale, Series,
-    TimesPlot,
+    AxisScale, ConsistencyPlot, ErrorPlot, ErrorSample, EstimatedLandmark, LinesPlot, MapPlot, PlotSeries,
+    SvgPlot, TimesPlot,
 };
 
 /// The backend draws in tenths of a pixel.
 const UNITS_PER_PIXEL: f64 = 10.0;
 
 /// The vertices, in pixels, of every element `tag` drawn with `colour`.
-fn shapes(picture: &Picture, tag: &str, colour: &str) -> Vec<Vec<(f64, f64)>> {
+fn shapes(picture: &SvgPlot, tag: &str, colour: &str) -> Vec<Vec<(f64, f64)>> {
     let elements = picture
         .svg
         .split('<')
@@ -29,7 +29,7 @@ fn size(shape: &[(f64, f64)]) -> (f64, f64) {
 }
 
 /// Pixels per metre on both axes, from true landmarks at `(0, 0)` and `(corner.0, corner.1)`: each is a cross of two strokes.
-fn pixels_per_meter(picture: &Picture, corner: (f64, f64)) -> (f64, f64) {
+fn pixels_per_meter(picture: &SvgPlot, corner: (f64, f64)) -> (f64, f64) {
     let strokes = shapes(picture, "polyline", "text");
     let centers: Vec<(f64, f64)> =
         strokes.iter().map(|s| (0.5 * (s[0].0 + s[1].0), 0.5 * (s[0].1 + s[1].1))).collect();
@@ -87,7 +87,7 @@ fn one_sample_among_many_stays_visible() {
         (0..200_000).map(|k| (f64::from(k), (f64::from(k) * 0.3).sin())).collect();
     points[123_456].1 = 9.0;
     let picture =
-        LinesPlot { series: vec![Series::new("s", points)], ..LinesPlot::default() }.draw().unwrap();
+        LinesPlot { series: vec![PlotSeries::new("s", points)], ..LinesPlot::default() }.draw().unwrap();
     let lines = shapes(&picture, "polyline", "ink-0");
     let (_, height) = size(lines.iter().max_by_key(|line| line.len()).unwrap());
     // From −1 to 9 with 5 % of room above and below, in a panel of 220 px.
@@ -95,7 +95,7 @@ fn one_sample_among_many_stays_visible() {
 }
 
 /// Every kind of plot with the same numbers in every place.
-fn all_plots(values: &[f64]) -> Vec<Picture> {
+fn all_plots(values: &[f64]) -> Vec<SvgPlot> {
     let pairs: Vec<(f64, f64)> = values.iter().enumerate().map(|(k, value)| (k as f64, *value)).collect();
     let places: Vec<(f64, f64)> = values.iter().zip(values.iter().skip(1)).map(|(x, y)| (*x, *y)).collect();
     let landmark = |place: &(f64, f64)| EstimatedLandmark {
@@ -103,8 +103,8 @@ fn all_plots(values: &[f64]) -> Vec<Picture> {
         covariance: [[place.0, place.1], [place.1, place.0]],
     };
     let sample = |(t, value): &(f64, f64)| ErrorSample { t: *t, error: [*value; 3], sigma: [*value; 3] };
-    let scales = [Scale::Linear, Scale::Log10];
-    let mut pictures = vec![
+    let scales = [AxisScale::Linear, AxisScale::Log10];
+    let mut plots = vec![
         MapPlot {
             truth: places.clone(),
             estimate: places.clone(),
@@ -125,15 +125,15 @@ fn all_plots(values: &[f64]) -> Vec<Picture> {
             scale,
             ..Default::default()
         };
-        pictures.push(consistency.draw());
-        pictures.push(
+        plots.push(consistency.draw());
+        plots.push(
             TimesPlot { points: pairs.clone(), x_scale: scale, y_scale: scale, ..TimesPlot::default() }
                 .draw(),
         );
-        let series = vec![Series::new("a", pairs.clone()), Series::new("b", places.clone())];
-        pictures.push(LinesPlot { series, x_scale: scale, y_scale: scale, ..LinesPlot::default() }.draw());
+        let series = vec![PlotSeries::new("a", pairs.clone()), PlotSeries::new("b", places.clone())];
+        plots.push(LinesPlot { series, x_scale: scale, y_scale: scale, ..LinesPlot::default() }.draw());
     }
-    pictures.into_iter().map(|picture| picture.expect("no input is an error")).collect()
+    plots.into_iter().map(|picture| picture.expect("no input is an error")).collect()
 }
 
 #[test]

@@ -6,8 +6,8 @@ use super::{
     localize::LocalizationRun,
     traverses::{Frame, Traverses},
 };
-use wayfix_evaluation::plot::{FilmFrame, FilmStrip, LinesPlot, Picture, Series};
-use wayfix_systems::views::{FeatureKind, shade};
+use wayfix_evaluation::plot::{FilmStrip, FilmStripFrame, LinesPlot, PlotSeries, SvgPlot};
+use wayfix_systems::views::{DescriptorKind, shade};
 
 /// Pixels a frame and a place of a belief map.
 const CELL: usize = 4;
@@ -18,22 +18,22 @@ const FILM_FRAMES: usize = 6;
 const TRUTH: [u8; 3] = [214, 39, 40];
 
 /// Belief frame by frame, error of the best place, and the frames with their matches.
-pub(super) fn pictures(traverses: &Traverses, variants: &[(FeatureKind, Variants)]) -> Result<Vec<Picture>> {
-    let mut pictures = vec![beliefs(variants)?, errors(variants).draw()?];
+pub(super) fn plots(traverses: &Traverses, variants: &[(DescriptorKind, Variants)]) -> Result<Vec<SvgPlot>> {
+    let mut plots = vec![beliefs(variants)?, errors(variants).draw()?];
     if let Some((kind, best)) = variants.last() {
-        pictures.push(film(traverses, *kind, &best.filtered)?);
+        plots.push(film(traverses, *kind, &best.filtered)?);
     }
-    Ok(pictures)
+    Ok(plots)
 }
 
-fn beliefs(variants: &[(FeatureKind, Variants)]) -> Result<Picture> {
+fn beliefs(variants: &[(DescriptorKind, Variants)]) -> Result<SvgPlot> {
     let mut film = FilmStrip { title: "Belief along the corridor".to_owned(), ..FilmStrip::default() };
     let mut frames = Vec::new();
     for (kind, variants) in variants {
         let (size, pixels) = belief_map(&variants.filtered.beliefs);
         film.frame_size = size;
         let image = EncodedImage::png_rgb(size.0, size.1, &pixels)?;
-        frames.push(FilmFrame { image, caption: kind.title().to_owned() });
+        frames.push(FilmStripFrame { image, caption: kind.title().to_owned() });
     }
     film.rows = vec![("frames to the right, places up; dark: believed, red: true".to_owned(), frames)];
     Ok(film.draw()?)
@@ -53,10 +53,10 @@ fn belief_map(beliefs: &[Vec<f64>]) -> ((u32, u32), Vec<u8>) {
     ((width as u32, height as u32), (0..width * height).flat_map(pixel).collect())
 }
 
-fn errors(variants: &[(FeatureKind, Variants)]) -> LinesPlot {
-    let series = |(kind, variants): &(FeatureKind, Variants)| {
+fn errors(variants: &[(DescriptorKind, Variants)]) -> LinesPlot {
+    let series = |(kind, variants): &(DescriptorKind, Variants)| {
         let points = variants.filtered.errors().enumerate().map(|(frame, off)| (frame as f64, off as f64));
-        Series::new(kind.title(), points.collect())
+        PlotSeries::new(kind.title(), points.collect())
     };
     LinesPlot {
         title: "How far off the best place is".to_owned(),
@@ -67,9 +67,9 @@ fn errors(variants: &[(FeatureKind, Variants)]) -> LinesPlot {
     }
 }
 
-fn film(traverses: &Traverses, kind: FeatureKind, journey: &LocalizationRun) -> Result<Picture> {
+fn film(traverses: &Traverses, kind: DescriptorKind, journey: &LocalizationRun) -> Result<SvgPlot> {
     let (mut seen, mut believed) = (Vec::new(), Vec::new());
-    let film_frame = |frame: &Frame, caption| FilmFrame { image: frame.image.clone(), caption };
+    let film_frame = |frame: &Frame, caption| FilmStripFrame { image: frame.image.clone(), caption };
     for k in 0..FILM_FRAMES {
         let at = traverses.seen.len() * k / FILM_FRAMES;
         let place = journey.best[at];
